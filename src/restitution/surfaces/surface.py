@@ -1,0 +1,37 @@
+"""The height map: what every source of roughness makes and the contact consumes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.errors import SurfaceError
+from restitution.numerics.grid import Grid
+
+
+@dataclass(frozen=True)
+class Surface:
+    """Heights (m, up is towards the other body) of shape `grid.nodes`, and where they come from.
+
+    `provenance` holds plain values (text and numbers) that are stored with every result.
+    Raises `SurfaceError` when the shape does not fit the grid or a height is undefined.
+    """
+
+    height: NDArray[np.float64]
+    grid: Grid
+    provenance: Mapping[str, str | float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if self.height.shape != self.grid.nodes:
+            raise SurfaceError(
+                f"heights of shape {self.height.shape} do not fit a grid of {self.grid.nodes} nodes"
+            )
+        undefined = self.height.size - np.count_nonzero(np.isfinite(self.height))
+        if undefined:
+            raise SurfaceError(
+                f"{undefined} of {self.height.size} heights are undefined (NaN or infinite); "
+                "fill or crop them first"
+            )
