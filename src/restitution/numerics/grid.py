@@ -13,7 +13,10 @@ from restitution.errors import CaseError
 
 @dataclass(frozen=True)
 class Grid:
-    """Cells of `spacing` (hx, hy) in metres, `nodes` (nx, ny) of them, centred on the origin.
+    """Cells of `spacing` (hx, hy) in metres, `nodes` (nx, ny) of them.
+
+    The origin is the centre of cell (nx // 2, ny // 2), so that the lowest point of a sphere on it
+    is a node at any grid size, and grids of one spacing coincide whatever their sizes.
 
     Raises `CaseError` for a grid without nodes or with a spacing that is not a positive length.
     """
@@ -39,14 +42,14 @@ class Grid:
 
     @property
     def x(self) -> NDArray[np.float64]:
-        """Cell centres along the first axis, shape (nx,), m; symmetric about zero."""
+        """Cell centres along the first axis, shape (nx,), m; zero at nx // 2."""
         return _centres(self.nodes[0], self.spacing[0])
 
     @property
     def y(self) -> NDArray[np.float64]:
-        """Cell centres along the second axis, shape (ny,), m; symmetric about zero."""
+        """Cell centres along the second axis, shape (ny,), m; zero at ny // 2."""
         return _centres(self.nodes[1], self.spacing[1])
 
 
 def _centres(n: int, h: float) -> NDArray[np.float64]:
-    return (np.arange(n) - 0.5 * (n - 1)) * h
+    return (np.arange(n) - n // 2) * h

@@ -1,0 +1,72 @@
+"""The two particles, and what their contact depends on: R*, E*, m*."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from restitution.errors import CaseError
+
+
+@dataclass(frozen=True)
+class Body:
+    """An isotropic elastic sphere, or a wall when the radius is infinite.
+
+    `radius` m, `youngs_modulus` Pa, `poissons_ratio` in (−1, 0.5], `density` kg/m³ (needed only for
+    velocities; a wall's mass is infinite whatever its density). Raises `CaseError` outside these.
+    """
+
+    radius: float
+    youngs_modulus: float
+    poissons_ratio: float
+    density: float | None = None
+
+    def __post_init__(self) -> None:
+        if not self.radius > 0:
+            raise CaseError(f"radius: {self.radius} m is not positive; use inf for a wall")
+        if not (math.isfinite(self.youngs_modulus) and self.youngs_modulus > 0):
+            raise CaseError(f"youngs_modulus: {self.youngs_modulus} Pa is not a positive modulus")
+        if not -1 < self.poissons_ratio <= 0.5:
+            raise CaseError(f"poissons_ratio: {self.poissons_ratio} is not in (-1, 0.5]")
+        if self.density is not None and not (math.isfinite(self.density) and self.density > 0):
+            raise CaseError(f"density: {self.density} kg/m³ is not a positive density")
+
+    @property
+    def mass(self) -> float | None:
+        """Mass of the sphere, kg; inf for a wall, None when the density is not given."""
+        if math.isinf(self.radius):
+            return math.inf
+        if self.density is None:
+            return None
+        return 4 / 3 * math.pi * self.radius**3 * self.density
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two bodies in normal contact. Raises `CaseError` for two walls."""
+
+    first: Body
+    second: Body
+
+    def __post_init__(self) -> None:
+        if math.isinf(self.first.radius) and math.isinf(self.second.radius):
+            raise CaseError("first.radius, second.radius: both are flat; one must be a sphere")
+
+    @property
+    def radius(self) -> float:
+        """R*, m: 1/R* = 1/R₁ + 1/R₂."""
+        return 1 / (1 / self.first.radius + 1 / self.second.radius)
+
+    @property
+    def contact_modulus(self) -> float:
+        """E*, Pa: 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂."""
+        return 1 / sum(
+            (1 - body.poissons_ratio**2) / body.youngs_modulus for body in (self.first, self.second)
+        )
+
+    @property
+    def mass(self) -> float | None:
+        """m*, kg: 1/m* = 1/m₁ + 1/m₂; None when a sphere's density is not given."""
+        if self.first.mass is None or self.second.mass is None:
+            return None
+        return 1 / (1 / self.first.mass + 1 / self.second.mass)

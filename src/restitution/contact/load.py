@@ -1,0 +1,62 @@
+"""Contact under a prescribed force: the indentation that carries it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from restitution.contact.contact import Contact
+from restitution.contact.equilibrium import solve, solve_uncut
+from restitution.contact.state import State
+from restitution.errors import CaseError, DomainError, NotConvergedError
+
+FORCE_TOLERANCE = 1e-8
+_SOLVE_RESIDUAL = 1e-10  # so that the noise of a solve stays well below the force tolerance
+
+
+def solve_at_force(contact: Contact, force: float, *, start: State | None = None) -> State:
+    """Load the undeformed bodies to `force` (N), met within 1e-8 of itself, and return the state.
+
+    The force grows with indentation, so a bracketing root finder cannot fail; each of its solves
+    starts from the one before. Raises `CaseError` for a force that is not positive, `DomainError`
+    when the grid cannot carry it, and as `solve`.
+    """
+    from scipy.optimize import brentq
+
+    if not 0 < force < math.inf:
+        raise CaseError(f"load: {force} N is not a positive force")
+    nx, ny = contact.grid.nodes
+    capacity = contact.yield_pressure * contact.grid.cell_area * nx * ny
+    if force >= capacity:
+        raise DomainError(
+            f"load: {force:.4g} N is more than the whole grid carries at the yield pressure "
+            f"({capacity:.4g} N); use a larger grid or a smaller load"
+        )
+    state = start
+    convolutions = 0
+
+    def excess(indentation: float) -> float:
+        nonlocal state, convolutions
+        if indentation == 0:
+            return -1.0
+        state = solve_uncut(contact, indentation, start=state, residual=_SOLVE_RESIDUAL)
+        convolutions += state.convolutions
+        carried = np.minimum(state.pressure[state.box], contact.yield_pressure).sum()
+        return float(carried) * contact.grid.cell_area / force - 1
+
+    R, E_star = contact.pair.radius, contact.pair.contact_modulus
+    hertz = (0.75 * force / (E_star * math.sqrt(R))) ** (2 / 3)
+    low, high = 0.0, max(hertz, start.indentation if start is not None else 0.0)
+    while excess(high) < 0:
+        low, high = high, 1.5 * high
+    indentation = brentq(excess, low, high, xtol=1e-12 * high, rtol=1e-12)
+    state = solve(contact, indentation, start=start, residual=_SOLVE_RESIDUAL)
+    if abs(state.force / force - 1) > FORCE_TOLERANCE:
+        raise NotConvergedError(
+            f"load: {force:.6g} N was met only within {abs(state.force / force - 1):.1e} at an "
+            f"indentation of {1e9 * indentation:.6g} nm; the force jumps there (too few nodes in "
+            "contact): refine the grid or change the load"
+        )
+    return replace(state, convolutions=state.convolutions + convolutions)

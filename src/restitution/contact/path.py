@@ -1,0 +1,51 @@
+"""Paths: states one after another, as generators that can be streamed, shown and stopped."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from restitution.contact.contact import Contact
+from restitution.contact.equilibrium import RESIDUAL, solve, step
+from restitution.contact.load import solve_at_force
+from restitution.contact.state import State
+from restitution.errors import CaseError
+
+
+def loading_path(
+    contact: Contact,
+    indentations: Iterable[float] | None = None,
+    *,
+    forces: Iterable[float] | None = None,
+    residual: float = RESIDUAL,
+) -> Iterator[State]:
+    """Yield the state at each of `indentations` (m) or `forces` (N), in the order given.
+
+    Each state is the first guess for the next. Raises as `solve` and `solve_at_force`, and
+    `CaseError` unless exactly one of the two is given.
+    """
+    if (indentations is None) == (forces is None):
+        raise CaseError("a loading path takes either indentations or forces")
+    state: State | None = None
+    for depth in () if indentations is None else indentations:
+        state = solve(contact, depth, start=state, residual=residual)
+        yield state
+    for force in () if forces is None else forces:
+        state = solve_at_force(contact, force, start=state)
+        yield state
+
+
+def unloading_path(
+    state: State, *, steps: int = 32, residual: float = RESIDUAL
+) -> Iterator[State]:
+    """Yield `state` and `steps` more on the way back to separation, where the force is zero.
+
+    The steps crowd towards separation as (1 − t)², which makes the force of a Hertz-like unloading,
+    (δ − δ_s)^1.5, a cubic in t. Raises as `solve`.
+    """
+    deepest, last = state.indentation, state.separation_indentation
+    yield state
+    for t in np.arange(1, steps + 1) / steps:
+        state = step(state, last + (deepest - last) * (1 - t) ** 2, residual=residual)
+        yield state
