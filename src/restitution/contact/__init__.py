@@ -1,0 +1,1 @@
+"""One quasi-static contact: bodies, gap, influence, equilibrium, paths, resolution."""

@@ -1,7 +1,8 @@
 """The contact before it is loaded: bodies, surface and yield, and the gap between them.
 
-Conventions: gap > 0 open, pressure > 0 compressive, indentation (approach of the bodies) > 0 closing
-and zero at the first touch of the undeformed bodies. Arrays `[i, j]` ↔ `[x, y]` at cell centres.
+Conventions: gap > 0 open, pressure > 0 compressive, indentation (approach of the bodies) > 0
+closing and zero at the first touch of the undeformed bodies. Arrays `[i, j]` ↔ `[x, y]` at cell
+centres.
 """
 
 from __future__ import annotations

@@ -121,8 +121,18 @@ def _equilibrate(
     box = bounding_box(gap < indentation)
     if box is None:
         nowhere = slice(0, 0), slice(0, 0)
-        return State(contact, indentation, pressure, plastic, nowhere, pressure[nowhere],
-                     work, work_error, residual=0.0, convolutions=0)
+        return State(
+            contact,
+            indentation,
+            pressure,
+            plastic,
+            nowhere,
+            pressure[nowhere],
+            work,
+            work_error,
+            residual=0.0,
+            convolutions=0,
+        )
 
     b = indentation - gap[box]
     shape = (b.shape[0], b.shape[1])
@@ -151,8 +161,18 @@ def _equilibrate(
         plastic = plastic.copy()
         plastic[box] += yielding
         work += limit * float(yielding.sum()) * contact.grid.cell_area
-    return State(contact, indentation, pressure, plastic, box, found.gradient + b,
-                 work, work_error, residual, K.count - before)
+    return State(
+        contact,
+        indentation,
+        pressure,
+        plastic,
+        box,
+        found.gradient + b,
+        work,
+        work_error,
+        residual,
+        K.count - before,
+    )
 
 
 def _truncate(elastic: State, start: State | None, residual: float) -> State:
@@ -173,9 +193,12 @@ def _truncate(elastic: State, start: State | None, residual: float) -> State:
     force = float(pressure[box].sum()) * area
     stored = 0.5 * float(np.vdot(pressure[box], displacement)) * area
 
-    shallower = start is not None and start.indentation < indentation
-    origin = (start.indentation, start.force, start.loading_work) if shallower else (0.0, 0.0, 0.0)
-    guess = start if shallower else None
+    guess = start if start is not None and start.indentation < indentation else None
+    first, first_force, work, work_error = (
+        (guess.indentation, guess.force, guess.loading_work, guess.plastic_work_error)
+        if guess is not None
+        else (0.0, 0.0, 0.0, 0.0)
+    )
     convolutions = elastic.convolutions + 1
 
     def cut_force(depth: float) -> float:
@@ -184,11 +207,19 @@ def _truncate(elastic: State, start: State | None, residual: float) -> State:
         convolutions += guess.convolutions
         return float(np.minimum(guess.pressure[guess.box], p_y).sum()) * area
 
-    first, first_force, work = origin
     scale = work + 0.5 * (first_force + force) * (indentation - first)
     increment, error = integrate_adaptively(
         cut_force, first, indentation, first_force, force, _WORK_TOLERANCE * scale
     )
-    error += start.plastic_work_error if shallower else 0.0
-    return State(contact, indentation, pressure, plastic, box, displacement,
-                 work + increment - stored, error, elastic.residual, convolutions)
+    return State(
+        contact,
+        indentation,
+        pressure,
+        plastic,
+        box,
+        displacement,
+        work + increment - stored,
+        work_error + error,
+        elastic.residual,
+        convolutions,
+    )

@@ -59,7 +59,7 @@ def influence_coefficients(
 ) -> Array:
     """Displacement at lag (i, j) cells, i as a column (from 0) and j as a row (from 0), m/Pa."""
     hx, hy = spacing
-    x, y = i * hx, j * hy
+    x, y = np.asarray(i * hx, dtype=np.float64), np.asarray(j * hy, dtype=np.float64)
     reach = _FAR * np.hypot(hx, hy)
     near_i = int(np.searchsorted(x.ravel(), reach))
     near_j = int(np.searchsorted(y.ravel(), reach))
@@ -84,7 +84,7 @@ def half_space(
 def inverse_half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
 ) -> SpectralFilter:
-    """An approximate inverse: u ↦ |q| E*/2 u, exact for a periodic half-space (Johnson 1985, §13)."""
+    """An approximate inverse, u ↦ |q| E*/2 u: exact on a periodic half-space (Johnson 1985)."""
 
     def symbol(qx: Array, qy: Array) -> Array:
         q = np.hypot(qx / spacing[0], qy / spacing[1])

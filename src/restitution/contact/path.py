@@ -36,9 +36,7 @@ def loading_path(
         yield state
 
 
-def unloading_path(
-    state: State, *, steps: int = 32, residual: float = RESIDUAL
-) -> Iterator[State]:
+def unloading_path(state: State, *, steps: int = 16, residual: float = RESIDUAL) -> Iterator[State]:
     """Yield `state` and `steps` more on the way back to separation, where the force is zero.
 
     The steps crowd towards separation as (1 − t)², which makes the force of a Hertz-like unloading,

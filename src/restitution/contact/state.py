@@ -21,11 +21,11 @@ Box = tuple[slice, slice]
 class State:
     """A contact in equilibrium at one indentation.
 
-    `pressure` (Pa) and `plastic_displacement` (m, the surface is left lower by it) have the shape of
-    the grid. `box` is the part of the grid that was solved on; pressure is zero outside it, and
-    `box_displacement` (m) is the elastic displacement inside it. `plastic_work` (J) is what yielding
-    has dissipated so far, known within `plastic_work_error`. `residual` is the largest violation of
-    the contact conditions over the indentation, `convolutions` what the solve cost.
+    `pressure` (Pa) and `plastic_displacement` (m, the surface is left lower by it) have the shape
+    of the grid. `box` is the part of the grid that was solved on; pressure is zero outside it, and
+    `box_displacement` (m) is the elastic displacement inside it. `plastic_work` (J) is what
+    yielding has dissipated so far, known within `plastic_work_error`. `residual` is the largest
+    violation of the contact conditions over the indentation, `convolutions` what the solve cost.
     """
 
     contact: Contact

@@ -1,0 +1,1 @@
+"""Arrays only: grids, FFT convolution, box-constrained minimiser, path quadrature."""

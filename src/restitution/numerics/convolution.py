@@ -42,8 +42,11 @@ class FreeConvolution:
     array of the broadcast shape.
     """
 
-    def __init__(self, kernel: Callable[[NDArray[np.int64], NDArray[np.int64]], Array],
-                 shape: tuple[int, int]) -> None:
+    def __init__(
+        self,
+        kernel: Callable[[NDArray[np.int64], NDArray[np.int64]], Array],
+        shape: tuple[int, int],
+    ) -> None:
         nx, ny = shape
         px, py = _even_fast_size(2 * nx - 1), _even_fast_size(2 * ny - 1)
         lags = kernel(np.arange(px // 2 + 1)[:, None], np.arange(py // 2 + 1)[None, :])
@@ -86,8 +89,8 @@ class SpectralFilter:
         self.shape = shape
         self._padded = np.zeros([ducc0.fft.good_size(n, True) for n in shape])
         mx, my = self._padded.shape
-        qx = 2 * np.pi * np.fft.fftfreq(mx)[:, None]
-        qy = 2 * np.pi * np.fft.rfftfreq(my)[None, :]
+        qx = np.asarray(2 * np.pi * np.fft.fftfreq(mx)[:, None], dtype=np.float64)
+        qy = np.asarray(2 * np.pi * np.fft.rfftfreq(my)[None, :], dtype=np.float64)
         self._symbol = symbol(qx, qy) / (mx * my)
         self._threads = threads_for(shape[0] * shape[1])
 
@@ -99,6 +102,12 @@ class SpectralFilter:
         padded[:nx, :ny] = r
         modes = ducc0.fft.r2c(padded, axes=[0, 1], nthreads=self._threads)
         modes *= self._symbol
-        ducc0.fft.c2r(modes, axes=[0, 1], lastsize=padded.shape[1], forward=False,
-                      out=padded, nthreads=self._threads)
+        ducc0.fft.c2r(
+            modes,
+            axes=[0, 1],
+            lastsize=padded.shape[1],
+            forward=False,
+            out=padded,
+            nthreads=self._threads,
+        )
         return padded[:nx, :ny].copy()

@@ -52,4 +52,4 @@ class Grid:
 
 
 def _centres(n: int, h: float) -> NDArray[np.float64]:
-    return (np.arange(n) - n // 2) * h
+    return np.asarray((np.arange(n) - n // 2) * h, dtype=np.float64)

@@ -81,14 +81,14 @@ def minimise_quadratic(
         free = ((p > lower) | (g < 0)) & ((p < upper) | (g > 0))
         r = np.where(free, -g, 0.0)
         z = np.where(free, precondition(r), 0.0)
-        rz = np.vdot(r, z)
-        d = np.where(free, z + max(0.0, (rz - np.vdot(r_old, z)) / rz_old) * d, 0.0)
+        rz = float(np.vdot(r, z))
+        d = np.where(free, z + max(0.0, (rz - float(np.vdot(r_old, z))) / rz_old) * d, 0.0)
         if np.vdot(r, d) <= 0:
             d = z
         r_old, rz_old = r, rz
 
         Kd = K(d)
-        step = np.vdot(r, d) / np.vdot(d, Kd)
+        step = float(np.vdot(r, d) / np.vdot(d, Kd))
         if not np.isfinite(step) or step <= 0:
             break
         trial = p + step * d

@@ -38,8 +38,14 @@ def integrate_adaptively(
 
 
 def _refine(
-    f: Callable[[float], float], a: float, b: float, f_a: float, f_m: float, f_b: float,
-    tolerance: float, depth: int,
+    f: Callable[[float], float],
+    a: float,
+    b: float,
+    f_a: float,
+    f_m: float,
+    f_b: float,
+    tolerance: float,
+    depth: int,
 ) -> tuple[float, float]:
     m, h = 0.5 * (a + b), b - a
     f_l, f_r = f(0.5 * (a + m)), f(0.5 * (m + b))

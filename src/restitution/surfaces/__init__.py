@@ -1,0 +1,17 @@
+"""Height maps: generate them, read measured ones, level, place on a grid and describe them."""
+
+from restitution.surfaces.describe import describe
+from restitution.surfaces.generate import generate_surface
+from restitution.surfaces.level import level
+from restitution.surfaces.measured import read_surface
+from restitution.surfaces.resample import place_on_grid
+from restitution.surfaces.surface import Surface
+
+__all__ = [
+    "Surface",
+    "describe",
+    "generate_surface",
+    "level",
+    "place_on_grid",
+    "read_surface",
+]

@@ -1,0 +1,54 @@
+"""`restitution check`: validate a case and say what follows from it, nothing solved."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def check(
+    case: Annotated[Path, typer.Argument(help="Case file (TOML).", show_default=False)],
+) -> None:
+    """Validate CASE and print R*, E*, m*, yield and contact size; solve nothing."""
+    from rich.table import Table
+
+    from restitution.cli.console import answers, warn
+    from restitution.contact.resolution import foreseen_warnings
+    from restitution.studies.case import read_case
+    from restitution.studies.derived import deepest_indentation, derived_quantities
+    from restitution.surfaces import describe
+
+    read, _ = read_case(case)
+    contact = read.contact(case.parent)
+    statistics = describe(contact.surface)
+    quantities = derived_quantities(read, contact)
+    labels = {
+        "reduced_radius_m": ("reduced radius R*", 1e6, "um"),
+        "contact_modulus_Pa": ("contact modulus E*", 1e-9, "GPa"),
+        "reduced_mass_kg": ("reduced mass m*", 1, "kg"),
+        "yield_pressure_Pa": ("yield pressure p_y (hardness, ~2.8 Y)", 1e-6, "MPa"),
+        "yield_indentation_m": ("yield indentation δ_y, smooth", 1e9, "nm"),
+        "yield_force_N": ("yield force F_y, smooth", 1, "N"),
+        "yield_velocity_m_per_s": ("yield velocity V_y, smooth", 1, "m/s"),
+        "deepest_indentation_m": ("deepest indentation", 1e9, "nm"),
+        "foreseen_contact_radius_m": ("contact radius there, smooth", 1e6, "um"),
+        "domain_half_width_m": ("half width of the grid", 1e6, "um"),
+        "nodes_over_contact_radius": ("nodes over the contact radius", 1, ""),
+    }
+    table = Table(box=None, show_header=False)
+    table.add_column(justify="left")
+    table.add_column(justify="right")
+    table.add_column(justify="left")
+    nx, ny = contact.grid.nodes
+    hx, hy = contact.grid.spacing
+    table.add_row("grid", f"{nx} x {ny}", f"nodes of {1e6 * hx:.4g} um x {1e6 * hy:.4g} um")
+    table.add_row("surface", f"{1e6 * (statistics['Sq_m'] or 0):.4g}",
+                  f"um Sq, {contact.surface.provenance['kind']}")  # fmt: skip
+    for key, (label, scale, unit) in labels.items():
+        value = quantities[key]
+        table.add_row(label, "-" if value is None else f"{scale * value:.5g}", unit)
+    answers.print(table)
+    warnings = foreseen_warnings(contact, deepest_indentation(read))
+    for warning in warnings:
+        warn(warning)
+    answers.print("The case is valid." if not warnings else "The case is valid, with warnings.")

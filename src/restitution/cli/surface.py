@@ -1,0 +1,45 @@
+"""`restitution surface`: make or read the surface of a case and describe it."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def surface(
+    case: Annotated[Path, typer.Argument(help="Case file (TOML).", show_default=False)],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the results; new or empty.")],
+) -> None:
+    """Write the surface of CASE to OUT: heights, ISO 25178 statistics and a picture."""
+    import xarray as xr
+    from rich.table import Table
+
+    from restitution.cli.console import answers
+    from restitution.reports.figures import surface_map, write_figure
+    from restitution.studies.case import read_case
+    from restitution.studies.results import ResultsFolder, replace_file, write_json
+    from restitution.surfaces import describe
+
+    read, text = read_case(case)
+    made = read.surface(case.parent)
+    folder = ResultsFolder(out)
+    statistics = describe(made)
+    height = xr.DataArray(
+        made.height,
+        {"x": ("x", made.grid.x, {"units": "m"}), "y": ("y", made.grid.y, {"units": "m"})},
+        ("x", "y"),
+        name="height",
+        attrs={"units": "m", "long_name": "composite roughness"},
+    )
+    dataset = height.to_dataset()
+    dataset.attrs = {"title": read.title, "case": text, **made.provenance}
+    replace_file(folder.path / "surface.nc", lambda to: dataset.to_netcdf(to, engine="netcdf4"))
+    write_json(folder.path / "statistics.json", {**statistics, "provenance": made.provenance})
+    write_figure(folder.path / "surface.png", surface_map(height, read.title))
+
+    table = Table(box=None, show_header=False)
+    for key, value in statistics.items():
+        table.add_row(key, "-" if value is None else f"{value:.5g}")
+    answers.print(table)
+    answers.print(f"In {out}: surface.nc, statistics.json, surface.png", markup=False,
+                  soft_wrap=True)  # fmt: skip

@@ -1,0 +1,83 @@
+"""How far a contact can be trusted: is it inside the grid, and do its nodes resolve it?
+
+Nothing here is solved; the foreseen contact is that of smooth spheres.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from restitution.contact.bodies import Pair
+from restitution.contact.contact import Contact
+
+# Smooth spheres follow the tables to 0.3 % from eight nodes over the contact radius; refining a
+# rough surface, restitution settles within 2 % once the largest patch has about ten nodes.
+NODES_PER_RADIUS = 8
+NODES_PER_PATCH = 10
+_HALF_SPACE = 0.2  # contact radius over R*, beyond which a sphere is not a half-space
+
+
+def foreseen_radius(pair: Pair, indentation: float, yield_pressure: float = math.inf) -> float:
+    """Contact radius of the smooth bodies, m: Hertz sqrt(R*δ), or sqrt(2R*δ) once fully plastic."""
+    R = pair.radius
+    yielded = (math.pi * yield_pressure / (2 * pair.contact_modulus)) ** 2 * R
+    # Between first yield and the fully plastic limit the area per πR*δ grows from 1 to 2.
+    fullness = 1.0 if indentation <= yielded else 2.0 - (yielded / indentation) ** 0.25
+    return math.sqrt(fullness * R * indentation)
+
+
+def foreseen_warnings(contact: Contact, indentation: float) -> list[str]:
+    """What the numbers before a solve say against loading `contact` to `indentation` (m)."""
+    grid, pair = contact.grid, contact.pair
+    radius = foreseen_radius(pair, indentation, contact.yield_pressure)
+    half_width, coarsest = 0.5 * min(grid.size), max(grid.spacing)
+    found = []
+    if radius >= half_width:
+        found.append(
+            f"the contact is foreseen to reach {_um(radius)} from the centre at an indentation of "
+            f"{_nm(indentation)}, but the grid ends at {_um(half_width)}: use more nodes or "
+            "stop earlier"
+        )
+    if radius < NODES_PER_RADIUS * coarsest:
+        found.append(
+            f"the spacing {_um(coarsest)} puts {radius / coarsest:.2g} nodes on the smooth contact "
+            f"radius {_um(radius)} at the deepest point ({NODES_PER_RADIUS} are needed): "
+            "use a finer grid or scan"
+        )
+    if radius > _HALF_SPACE * pair.radius:
+        found.append(
+            f"the contact radius {_um(radius)} is {radius / pair.radius:.2g} of R*: the half-space "
+            f"holds up to about {_HALF_SPACE}"
+        )
+    pixel = contact.surface.provenance.get("pixel_x_m")
+    if isinstance(pixel, float) and min(grid.spacing) < 0.999 * pixel:
+        found.append(
+            f"the grid spacing {_um(min(grid.spacing))} is finer than the scan's pixel "
+            f"{_um(pixel)}: roughness below the pixel is missing, not smooth"
+        )
+    return found
+
+
+def unresolved_warning(depths: Sequence[float], largest_patches: Sequence[int]) -> str | None:
+    """One line on the depths (m) whose largest contact patch has too few nodes, or None."""
+    few = [
+        (depth, nodes)
+        for depth, nodes in zip(depths, largest_patches, strict=True)
+        if nodes < NODES_PER_PATCH
+    ]
+    if not few:
+        return None
+    return (
+        f"{len(few)} of {len(depths)} depths (up to {_nm(max(few)[0])}) have fewer than "
+        f"{NODES_PER_PATCH} nodes in their largest contact patch: their numbers belong to the "
+        "grid, not to the surface; refine the grid"
+    )
+
+
+def _um(length: float) -> str:
+    return f"{1e6 * length:.3g} um"
+
+
+def _nm(length: float) -> str:
+    return f"{1e9 * length:.4g} nm"

@@ -1,0 +1,266 @@
+"""The case file: what it may say, checked, and turned into bodies, surface and contact."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import tomllib
+from pathlib import Path
+from typing import Annotated, Any, Generic, Literal, Self, TypeVar, cast
+
+import numpy as np
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
+
+from restitution.contact.bodies import Body, Pair
+from restitution.contact.contact import Contact, Plasticity, smooth
+from restitution.errors import CaseError
+from restitution.numerics.grid import Grid
+from restitution.studies.quantities import Density, Force, Length, Pressure
+from restitution.surfaces import Surface, generate_surface, level, place_on_grid, read_surface
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, populate_by_name=True)
+
+
+def _two(value: Any) -> Any:
+    """One value for both axes, or a list of two."""
+    if not isinstance(value, list):
+        return value, value
+    if len(value) != 2:
+        raise ValueError(f"{value} should be one value, or a list of two (for x and y)")
+    return tuple(value)
+
+
+Nodes = Annotated[int, Field(gt=0)]
+PairOf = BeforeValidator(_two)
+
+
+def _flat_is_infinite(value: Any) -> Any:
+    return None if value == "flat" else value
+
+
+class BodyTable(_Table):
+    """`[first]` and `[second]`."""
+
+    radius: Annotated[Length | None, BeforeValidator(_flat_is_infinite)]
+    youngs_modulus: Pressure
+    poissons_ratio: Annotated[float, Field(gt=-1, le=0.5, strict=False)]
+    density: Density | None = None
+
+    def body(self) -> Body:
+        """The body this table describes."""
+        radius = math.inf if self.radius is None else self.radius
+        return Body(radius, self.youngs_modulus, self.poissons_ratio, self.density)
+
+
+class InterfaceTable(_Table):
+    """`[interface]`; omitted: elastic."""
+
+    yield_pressure: Pressure | None = None
+    plasticity: Plasticity = "equilibrium"
+
+
+class GeneratedRoughness(_Table):
+    """`[roughness]` with `kind` exponential or gaussian."""
+
+    kind: Literal["exponential", "gaussian"]
+    rms: Length
+    correlation_length: Annotated[tuple[Length, Length], PairOf]
+    seed: Annotated[int, Field(ge=0)]
+
+
+class MeasuredRoughness(_Table):
+    """`[roughness]` with `kind = "measured"`."""
+
+    kind: Literal["measured"]
+    file: Annotated[str, Field(min_length=1)]
+    channel: Annotated[int, Field(ge=0)] | None = None
+    detrend: Literal["none", "center", "tilt", "curvature"] = "none"
+    size: Annotated[tuple[Length, Length], PairOf] | None = None
+    undefined: Literal["error", "interpolate"] = "error"
+
+
+Roughness = Annotated[GeneratedRoughness | MeasuredRoughness, Field(discriminator="kind")]
+
+
+class GridTable(_Table):
+    """`[grid]`; may be omitted for a measured surface, which brings its own."""
+
+    nodes: Annotated[tuple[Nodes, Nodes], PairOf]
+    spacing: Annotated[tuple[Length, Length], PairOf]
+
+
+Quantity = TypeVar("Quantity")
+
+
+class Series(_Table, Generic[Quantity]):
+    """`[indentation]` and `[load]`: a span with steps, or a list of values."""
+
+    from_: Annotated[Quantity | None, Field(alias="from")] = None
+    to: Quantity | None = None
+    steps: Annotated[int, Field(gt=0)] | None = None
+    scale: Literal["log", "linear"] = "log"
+    values: Annotated[list[Quantity], Field(min_length=1)] | None = None
+
+    @model_validator(mode="after")
+    def _one_way(self) -> Self:
+        span = (self.from_, self.to, self.steps)
+        if self.values is not None:
+            if span != (None, None, None):
+                raise ValueError("give either values or from, to and steps, not both")
+        elif None in span:
+            raise ValueError("give from, to and steps (or values = [...])")
+        elif not cast(float, self.from_) < cast(float, self.to):
+            raise ValueError("from must be smaller than to")
+        return self
+
+    def series(self) -> list[float]:
+        """The values asked for, in SI units, increasing."""
+        if self.values is not None:
+            return sorted(cast(set[float], set(self.values)))
+        space = np.geomspace if self.scale == "log" else np.linspace
+        first, last = cast(float, self.from_), cast(float, self.to)
+        return [float(v) for v in space(first, last, cast(int, self.steps))]
+
+
+class UnloadingTable(_Table):
+    """`[unloading]`: how many of the depths are unloaded step by step, and in how many steps."""
+
+    curves: Annotated[int, Field(ge=0)] = 3
+    steps: Annotated[int, Field(ge=4)] = 16
+
+
+class Case(_Table):
+    """A whole case file, in SI units."""
+
+    title: str = ""
+    first: BodyTable
+    second: BodyTable | None = None
+    interface: InterfaceTable = InterfaceTable()
+    roughness: Roughness | None = None
+    grid: GridTable | None = None
+    indentation: Series[Length] | None = None
+    load: Series[Force] | None = None
+    unloading: UnloadingTable = UnloadingTable()
+
+    @model_validator(mode="after")
+    def _whole(self) -> Case:
+        if (self.indentation is None) == (self.load is None):
+            which = "neither is" if self.load is None else "both are"
+            raise ValueError(
+                f"give one of the tables [indentation] and [load]; {which} in this case"
+            )
+        if self.grid is None and not isinstance(self.roughness, MeasuredRoughness):
+            raise ValueError("the table [grid] is missing; only a measured surface brings its own")
+        return self
+
+    def pair(self) -> Pair:
+        """The two bodies; `CaseError` when both are flat."""
+        first = self.first.body()
+        return Pair(first, first if self.second is None else self.second.body())
+
+    def surface(self, folder: Path) -> Surface:
+        """The composite roughness on the grid; files are relative to `folder`."""
+        grid = Grid(self.grid.nodes, self.grid.spacing) if self.grid else None
+        if self.roughness is None:
+            assert grid is not None  # _whole
+            return smooth(grid)
+        if isinstance(self.roughness, GeneratedRoughness):
+            assert grid is not None  # _whole
+            return generate_surface(
+                grid,
+                kind=self.roughness.kind,
+                rms=self.roughness.rms,
+                correlation_length=self.roughness.correlation_length,
+                seed=self.roughness.seed,
+            )
+        scan = read_surface(
+            folder / self.roughness.file,
+            channel=self.roughness.channel,
+            size=self.roughness.size,
+            undefined=self.roughness.undefined,
+        )
+        # Levelled as a whole before any part is cut out: the form belongs to the scan.
+        scan = level(scan, self.roughness.detrend)
+        return scan if grid is None else place_on_grid(scan, grid)
+
+    def contact(self, folder: Path) -> Contact:
+        """Everything before the first solve; files are relative to `folder`."""
+        return Contact(
+            self.pair(),
+            self.surface(folder),
+            yield_pressure=self.interface.yield_pressure or math.inf,
+            plasticity=self.interface.plasticity,
+        )
+
+    def depths(self) -> list[float]:
+        """The indentations (m) or loads (N) asked for, increasing."""
+        table = self.indentation or self.load
+        assert table is not None  # _whole
+        return table.series()
+
+
+def read_case(path: Path) -> tuple[Case, str]:
+    """Read and check a case file; return it with its text. Raises `CaseError`, naming the key."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except UnicodeDecodeError:
+        raise CaseError(f"{path}: is not a text file; a case file is TOML in UTF-8") from None
+    except OSError as error:
+        raise CaseError(f"{path}: cannot be read ({error.strerror}); name a case file") from None
+    try:
+        return parse_case(text), text
+    except CaseError as error:
+        raise CaseError(f"{path}: {error}") from None
+
+
+def parse_case(text: str) -> Case:
+    """Check the text of a case file. Raises `CaseError`, naming the key."""
+    try:
+        return Case.model_validate(tomllib.loads(text))
+    except tomllib.TOMLDecodeError as error:
+        raise CaseError(f"not valid TOML: {error}") from None
+    except ValidationError as error:
+        # A key that is not known explains one that is missing, not the other way round.
+        problems = error.errors(include_url=False)
+        problems.sort(key=lambda problem: problem["type"] != "extra_forbidden")
+        more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
+        raise CaseError(_in_words(problems[0]) + more) from None
+
+
+def _in_words(problem: Any) -> str:
+    """One line for one of pydantic's problems: the key, what is wrong, the remedy."""
+    # The tags of a union ("gaussian") and the places in a list are not keys of the file.
+    tags = {"exponential", "gaussian", "measured"}
+    keys = [str(k) for k in problem["loc"] if isinstance(k, str) and k not in tags]
+    key = ".".join(keys)
+    prefix = f"{key}: " if key else ""
+    kind, context = problem["type"], problem.get("ctx", {})
+    if kind == "extra_forbidden":
+        known = _keys_of(keys[:-1], problem["loc"])
+        near = difflib.get_close_matches(keys[-1], known, n=1)
+        hint = f'did you mean "{near[0]}"?' if near else f"known keys: {', '.join(known)}"
+        return f"{key}: unknown key; {hint}"
+    if kind == "missing":
+        what = f"the table [{key}]" if len(keys) == 1 else f'the key "{key}"'
+        return f"{what} is missing"
+    if kind == "union_tag_not_found":
+        return f'{key}.kind is missing; write "exponential", "gaussian" or "measured"'
+    if kind == "union_tag_invalid":
+        return f"{key}.kind: {context['tag']!r} is not one of {context['expected_tags']}"
+    if kind == "value_error":
+        return f"{prefix}{context['error']}"
+    message = problem["msg"].removeprefix("Input should be ")
+    return f"{prefix}{problem['input']!r} should be {message}"
+
+
+def _keys_of(path: list[str], loc: tuple[Any, ...]) -> list[str]:
+    """The keys that the table at `path` knows, as written in the file."""
+    tables: dict[str, type[_Table]] = {
+        "first": BodyTable, "second": BodyTable, "interface": InterfaceTable, "grid": GridTable,
+        "indentation": Series[Length], "load": Series[Force], "unloading": UnloadingTable,
+        "roughness": MeasuredRoughness if "measured" in loc else GeneratedRoughness,
+    }  # fmt: skip
+    model = tables[path[0]] if path else Case
+    return [field.alias or name for name, field in model.model_fields.items()]

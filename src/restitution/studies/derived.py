@@ -1,0 +1,44 @@
+"""What follows from a case before anything is solved."""
+
+from __future__ import annotations
+
+import math
+
+from restitution.contact.contact import Contact
+from restitution.contact.resolution import foreseen_radius
+from restitution.studies.case import Case
+from restitution.theory import hertz, yielding
+
+
+def deepest_indentation(case: Case) -> float:
+    """The deepest indentation, m; under a prescribed load, where smooth elastic bodies carry it."""
+    last = case.depths()[-1]
+    if case.indentation is not None:
+        return last
+    pair = case.pair()
+    return float(hertz.indentation_from_force(last, pair.radius, pair.contact_modulus))
+
+
+def derived_quantities(case: Case, contact: Contact) -> dict[str, float | None]:
+    """R*, E*, m*, yield quantities and the foreseen contact, keyed with SI units; None: not so."""
+    pair, p_y = contact.pair, contact.yield_pressure
+    deepest = deepest_indentation(case)
+    radius = foreseen_radius(pair, deepest, p_y)
+    elastic = math.isinf(p_y)
+    mass = pair.mass
+    arguments = (pair.radius, pair.contact_modulus, p_y)
+    return {
+        "reduced_radius_m": pair.radius,
+        "contact_modulus_Pa": pair.contact_modulus,
+        "reduced_mass_kg": mass,
+        "yield_pressure_Pa": None if elastic else p_y,
+        "yield_indentation_m": None if elastic else float(yielding.yield_indentation(*arguments)),
+        "yield_force_N": None if elastic else float(yielding.yield_force(*arguments)),
+        "yield_velocity_m_per_s": (
+            None if elastic or mass is None else float(yielding.yield_velocity(*arguments, mass))
+        ),
+        "deepest_indentation_m": deepest,
+        "foreseen_contact_radius_m": radius,
+        "nodes_over_contact_radius": radius / max(contact.grid.spacing),
+        "domain_half_width_m": 0.5 * min(contact.grid.size),
+    }

@@ -1,0 +1,195 @@
+"""The results folder: what is written where, in which units, and safely.
+
+`curve.csv` and `unloading.csv` grow row by row while a case runs, so that whatever stops it leaves
+what was computed. `results.nc` and `summary.json` are written once, at the end or on interruption,
+each into a temporary file that is then renamed.
+"""
+
+from __future__ import annotations
+
+import csv
+import importlib.metadata
+import json
+import math
+import os
+import platform
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO, Any
+
+import numpy as np
+import xarray as xr
+
+from restitution.collision import collide
+from restitution.contact.state import State
+from restitution.errors import OutputError
+
+# Column of curve.csv → (variable in results.nc, its unit, what it is).
+COLUMNS: dict[str, tuple[str, str, str]] = {
+    "indentation_m": ("indentation", "m", "maximum indentation"),
+    "force_N": ("force", "N", "normal force at maximum indentation"),
+    "contact_area_m2": ("contact_area", "m2", "real contact area"),
+    "stored_energy_J": ("stored_energy", "J", "elastic energy at maximum indentation"),
+    "plastic_work_J": ("plastic_work", "J", "work dissipated by yielding"),
+    "loading_work_J": ("loading_work", "J", "work of loading"),
+    "unloading_work_J": ("unloading_work", "J", "work returned until separation"),
+    "restitution": ("restitution", "1", "coefficient of restitution"),
+    "impact_velocity_m_per_s": ("impact_velocity", "m s-1", "approach velocity that reaches here"),
+    "contact_nodes": ("contact_nodes", "1", "nodes in contact"),
+    "contact_patches": ("contact_patches", "1", "contact patches (nodes joined by an edge)"),
+    "largest_patch_nodes": ("largest_patch_nodes", "1", "nodes in the largest contact patch"),
+    "residual": ("residual", "1", "largest violation of the contact conditions over indentation"),
+    "convolutions": ("convolutions", "1", "convolutions the solve took"),
+}
+UNLOADING_COLUMNS = ("indentation_max_m", "indentation_m", "force_N")
+
+
+def curve_row(state: State) -> dict[str, float]:
+    """The row of `curve.csv` for one state of loading; NaN for a velocity without a density."""
+    collision, patches = collide(state), state.patch_sizes()
+    velocity = collision.impact_velocity
+    values = (
+        state.indentation,
+        state.force,
+        state.contact_area,
+        state.stored_energy,
+        state.plastic_work,
+        collision.loading_work,
+        collision.unloading_work,
+        collision.restitution,
+        math.nan if velocity is None else velocity,
+        state.contact_nodes,
+        patches.size,
+        int(patches[0]) if patches.size else 0,
+        state.residual,
+        state.convolutions,
+    )
+    return dict(zip(COLUMNS, values, strict=True))
+
+
+def versions() -> dict[str, str]:
+    """Versions of this program and of what its numbers depend on."""
+    packages = ("restitution", "numpy", "scipy", "ducc0", "xarray", "netCDF4")
+    found = {name: importlib.metadata.version(name) for name in packages}
+    return {**found, "python": platform.python_version()}
+
+
+class ResultsFolder:
+    """A folder that holds the results of one run and nothing else's."""
+
+    def __init__(self, path: Path) -> None:
+        """Make the folder. Raises `OutputError` when it holds anything or cannot be written."""
+        self.path = path
+        self.rows: list[dict[str, float]] = []
+        self.unloading: list[tuple[float, list[tuple[float, float]]]] = []
+        with _writing(path):
+            path.mkdir(parents=True, exist_ok=True)
+            if any(path.iterdir()):
+                raise OutputError(
+                    f"{path}: this folder is not empty, and nothing in it is overwritten; "
+                    "name another one with -o, or move it away"
+                )
+
+    @contextmanager
+    def tables(self) -> Iterator[None]:
+        """Keep the two tables open for `add` and `add_unloading`."""
+        with (
+            _writing(self.path),
+            open(self.path / "curve.csv", "w", newline="") as curve,
+            open(self.path / "unloading.csv", "w", newline="") as unloading,
+        ):
+            self._curve, self._unloading = curve, unloading
+            _write_row(curve, list(COLUMNS))
+            _write_row(unloading, list(UNLOADING_COLUMNS))
+            yield
+
+    def add(self, state: State) -> None:
+        """Write the row of a state of loading."""
+        row = curve_row(state)
+        self.rows.append(row)
+        _write_row(self._curve, ["" if v != v else repr(v) for v in row.values()])
+
+    def add_unloading(self, path: list[State]) -> None:
+        """Write one unloading curve, from its deepest state to separation."""
+        deepest = path[0].indentation
+        points = [(state.indentation, state.force) for state in path]
+        self.unloading.append((deepest, points))
+        for point in points:
+            _write_row(self._unloading, [repr(v) for v in (deepest, *point)])
+
+    def write(self, dataset: xr.Dataset, summary: Mapping[str, Any]) -> None:
+        """Write `results.nc` and `summary.json`."""
+        packed = {name: {"zlib": True, "complevel": 1} for name in ("height", "pressure",
+                  "plastic_displacement") if name in dataset}  # fmt: skip
+        replace_file(
+            self.path / "results.nc",
+            lambda to: dataset.to_netcdf(to, engine="netcdf4", encoding=packed),
+        )
+        write_json(self.path / "summary.json", summary)
+
+
+def write_json(path: Path, content: Mapping[str, Any]) -> None:
+    """Write `content` as JSON, all of it or nothing. Raises `OutputError`."""
+    text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    replace_file(path, lambda to: to.write_text(text, encoding="utf-8"))
+
+
+def replace_file(path: Path, write: Callable[[Path], object]) -> None:
+    """Let `write` fill a temporary file and rename it to `path`. Raises `OutputError`."""
+    temporary = path.with_name(f".{path.name}.part")
+    with _writing(path.parent):
+        try:
+            write(temporary)
+            os.replace(temporary, path)
+        finally:
+            temporary.unlink(missing_ok=True)
+
+
+def results_dataset(folder: ResultsFolder, deepest: State | None) -> xr.Dataset:
+    """Everything that was computed, with units: curves, unloading curves and maps."""
+    data: dict[str, Any] = {}
+    for column, (name, unit, meaning) in COLUMNS.items():
+        values = np.array([row[column] for row in folder.rows])
+        attributes = {"units": unit, "long_name": meaning}
+        data[name] = ("indentation_max", values, attributes)
+    if folder.unloading:
+        depths, curves = zip(*folder.unloading, strict=True)
+        indentation, force = np.moveaxis(np.array(curves), -1, 0)
+        along = ("unloading", "unloading_step")
+        data["unloading_from"] = (
+            "unloading", np.array(depths), {"units": "m", "long_name": "maximum indentation"}
+        )  # fmt: skip
+        data["unloading_indentation"] = (along, indentation, {"units": "m"})
+        data["unloading_force"] = (along, force, {"units": "N"})
+    coordinates = {}
+    if deepest is not None:
+        grid = deepest.contact.grid
+        coordinates = {"x": ("x", grid.x, {"units": "m"}), "y": ("y", grid.y, {"units": "m"})}
+        maps = {
+            "height": (deepest.contact.surface.height, "m", "composite roughness"),
+            "pressure": (deepest.pressure, "Pa", "contact pressure at the deepest point"),
+            "plastic_displacement": (
+                deepest.plastic_displacement, "m", "lowering of the surface by yielding"
+            ),
+        }  # fmt: skip
+        for name, (values, unit, meaning) in maps.items():
+            data[name] = (("x", "y"), values, {"units": unit, "long_name": meaning})
+    return xr.Dataset(data, coordinates)
+
+
+def _write_row(file: IO[str], values: list[str]) -> None:
+    csv.writer(file, lineterminator="\n").writerow(values)
+    file.flush()
+
+
+@contextmanager
+def _writing(path: Path) -> Iterator[None]:
+    """Turn the system's refusals into one line."""
+    try:
+        yield
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise OutputError(
+            f"{path}: cannot be written ({reason}); name another folder with -o, or make room"
+        ) from error

@@ -1,0 +1,88 @@
+"""Numbers that characterise a rough surface, after ISO 25178-2.
+
+z is the height less its mean, ⟨ ⟩ the mean over all cells. The standard defines its parameters
+on the scale-limited surface, so tilt and form are to be taken out first (`level`). Clauses are
+those of ISO 25178-2:2012.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.surfaces.surface import Surface
+
+# Where the autocorrelation is read off: Hu & Tonder's (1992) correlation length, as in
+# `generate_surface`. (The standard's autocorrelation length Sal uses 0.2.)
+_CORRELATION_LEVEL = 0.1
+
+
+def describe(surface: Surface) -> dict[str, float | None]:
+    """Height, slope and correlation parameters of `surface`, in SI units.
+
+    - `Sq_m`: root mean square height, ⟨z²⟩^½ (4.1.1)
+    - `Ssk`: skewness, ⟨z³⟩/Sq³ (4.1.2)
+    - `Sku`: kurtosis, ⟨z⁴⟩/Sq⁴; 3 for normally distributed heights (4.1.3)
+    - `Sp_m`: maximum peak height, max z (4.1.4)
+    - `Sv_m`: maximum pit height, −min z (4.1.5)
+    - `Sz_m`: maximum height, Sp + Sv (4.1.6)
+    - `Sa_m`: arithmetical mean height, ⟨|z|⟩ (4.1.7)
+    - `Sdq`: root mean square gradient, ⟨(∂z/∂x)² + (∂z/∂y)²⟩^½ (4.3.1), of the surface joined
+      linearly from cell to cell. (Central differences would not see the shortest waves at all.)
+    - `correlation_length_x_m`, `correlation_length_y_m`: lag along that axis at which the biased
+      autocorrelation estimate of z, normalised to 1 at lag zero, first falls to 10 % (Hu &
+      Tonder 1992), interpolated linearly between lags.
+
+    `Ssk`, `Sku` and the correlation lengths of a flat surface are undefined and given as None,
+    and so is a correlation length that the domain is too short to show.
+    """
+    height = surface.height
+    z = height - height.mean()
+    hx, hy = surface.grid.spacing
+    Sq = math.sqrt(np.mean(z**2))
+    Sp, Sv = float(z.max()), float(-z.min())
+    values: dict[str, float | None] = {
+        "Sq_m": Sq,
+        "Sa_m": float(np.mean(np.abs(z))),
+        "Ssk": None,
+        "Sku": None,
+        "Sp_m": Sp,
+        "Sv_m": Sv,
+        "Sz_m": Sp + Sv,
+        "Sdq": math.sqrt(_mean_square_slope(z, hx) + _mean_square_slope(z.T, hy)),
+        "correlation_length_x_m": None,
+        "correlation_length_y_m": None,
+    }
+    # What is left of a constant height once its mean is taken off is rounding, not roughness.
+    if Sq > 8 * np.finfo(np.float64).eps * float(np.abs(height).max()):
+        unit = z / Sq
+        values["Ssk"] = float(np.mean(unit**3))
+        values["Sku"] = float(np.mean(unit**4))
+        values["correlation_length_x_m"] = _correlation_length(unit, hx)
+        values["correlation_length_y_m"] = _correlation_length(unit.T, hy)
+    return values
+
+
+def _mean_square_slope(z: NDArray[np.float64], h: float) -> float:
+    """⟨(∂z/∂x)²⟩ along the first axis; a single line of cells has no slope."""
+    return float(np.mean((np.diff(z, axis=0) / h) ** 2)) if z.shape[0] > 1 else 0.0
+
+
+def _correlation_length(z: NDArray[np.float64], h: float) -> float | None:
+    """Lag (m) along the first axis where the autocorrelation first falls to 10 %, or None."""
+    from scipy.fft import irfft, next_fast_len, rfft
+
+    # Padding with zeros to twice the length keeps the two ends from being correlated.
+    n = z.shape[0]
+    padded = next_fast_len(2 * n, real=True)
+    power = np.sum(np.abs(rfft(z, n=padded, axis=0)) ** 2, axis=1)
+    R = irfft(power, n=padded)[:n]
+    R = R / R[0]
+    fallen = np.flatnonzero(R <= _CORRELATION_LEVEL)
+    if fallen.size == 0:
+        return None
+    k = int(fallen[0])
+    fraction = (R[k - 1] - _CORRELATION_LEVEL) / (R[k - 1] - R[k])
+    return float((k - 1 + fraction) * h)

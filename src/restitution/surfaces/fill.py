@@ -1,0 +1,60 @@
+"""Heights for the pixels an instrument could not measure."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+def fill_harmonically(
+    height: NDArray[np.float64], spacing: tuple[float, float]
+) -> NDArray[np.float64]:
+    """Fill NaN pixels with the solution of Laplace's equation between the defined ones.
+
+    `height` has shape (nx, ny) with at least one defined pixel, `spacing` is (hx, hy) in m.
+    The fill is as smooth as the rim of each hole allows and stays between the lowest and the
+    highest height on that rim: it adds no summit that could make contact. Across the edge of
+    the scan the slope is zero.
+    """
+    from scipy.sparse import coo_array
+    from scipy.sparse.linalg import spsolve
+
+    unknown = ~np.isfinite(height)
+    count = int(np.count_nonzero(unknown))
+    if count == 0:
+        return height
+    number = np.full(height.shape, -1)
+    number[unknown] = np.arange(count)
+
+    # Five-point Laplacian, one row for each unknown pixel: Σ weight (z_here − z_neighbour) = 0.
+    diagonal, right_side = np.zeros(count), np.zeros(count)
+    rows, columns, values = [np.arange(count)], [np.arange(count)], [diagonal]
+    for axis, h in enumerate(spacing):
+        # Only the ratio of the two weights matters.
+        weight = (max(spacing) / h) ** 2
+        for step in (1, -1):
+            here, there = _neighbours(axis, step)
+            pairs = unknown[here]
+            me, other = number[here][pairs], number[there][pairs]
+            diagonal[me] += weight
+            inside = other >= 0
+            rows.append(me[inside])
+            columns.append(other[inside])
+            values.append(np.full(np.count_nonzero(inside), -weight))
+            right_side[me[~inside]] += weight * height[there][pairs][~inside]
+    laplacian = coo_array(
+        (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))),
+        shape=(count, count),
+    )
+    filled = height.copy()
+    # The matrix is symmetric, which this ordering of the unknowns exploits.
+    filled[unknown] = spsolve(laplacian.tocsc(), right_side, permc_spec="MMD_AT_PLUS_A")
+    return filled
+
+
+def _neighbours(axis: int, step: int) -> tuple[tuple[slice, slice], tuple[slice, slice]]:
+    """Slices of all pixels that have a neighbour `step` along `axis`, and of those neighbours."""
+    low, high = slice(None, -1), slice(1, None)
+    here, there = [slice(None), slice(None)], [slice(None), slice(None)]
+    here[axis], there[axis] = (low, high) if step > 0 else (high, low)
+    return (here[0], here[1]), (there[0], there[1])

@@ -1,0 +1,176 @@
+"""Instruments' own file formats, through the SurfaceTopography package.
+
+SurfaceTopography gives heights as `[i, j]` ↔ `[x, y]`, as this package does, and a physical size
+that is the number of pixels times the pixel. It is imported on use: it is an optional extra.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import re
+import warnings
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from restitution.errors import SurfaceError
+from restitution.surfaces.scan import Scan, in_metres
+
+# Earlier versions read the sample files wrongly without a word: .tmd a thousand times too small
+# along all three axes, undefined pixels of .sur as heights (found with 1.25.0).
+_OLDEST_VERSION = (1, 27)
+
+
+class UnrecognisedError(SurfaceError):
+    """A file that no reader opens: of an unknown format, or damaged."""
+
+
+class NoReadersError(SurfaceError):
+    """SurfaceTopography, which brings the readers, is not installed or too old."""
+
+
+def read_instrument(path: Path, channel: int | None) -> Scan:
+    """Read height channel `channel`, or the default one of the file's reader.
+
+    Raises `NoReadersError`, `UnrecognisedError` when no reader opens the file, and `SurfaceError`
+    when the channel does not exist or is not a height map in a unit of length.
+    """
+    with _quiet():
+        open_topography = _import_readers(path)
+        try:
+            reader = open_topography(str(path))
+        except Exception as error:
+            raise UnrecognisedError(
+                f"{path}: {_why_unreadable(error, path.suffix)}; export it again, or as a text "
+                "matrix of heights"
+            ) from error
+        try:
+            with contextlib.closing(reader):
+                return _read_channel(path, reader, channel)
+        except SurfaceError:
+            raise
+        except Exception as error:
+            raise SurfaceError(
+                f"{path}: its heights cannot be read ({_first_line(error)}); export it again, or "
+                "as a text matrix of heights"
+            ) from error
+
+
+def _import_readers(path: Path) -> Callable[[str], Any]:
+    """SurfaceTopography's function that opens a file."""
+    install = 'install it with `pip install "restitution[measured]"`'
+    try:
+        import SurfaceTopography
+    except ImportError as error:
+        raise NoReadersError(
+            f"{path}: reading this format takes the SurfaceTopography package; {install}"
+        ) from error
+    version = SurfaceTopography.__version__
+    if tuple(int(part) for part in re.findall(r"\d+", version)[:2]) < _OLDEST_VERSION:
+        oldest = ".".join(map(str, _OLDEST_VERSION))
+        raise NoReadersError(
+            f"{path}: reading this format takes SurfaceTopography {oldest} or later, and {version} "
+            f"is installed; {install}"
+        )
+    open_topography: Callable[[str], Any] = SurfaceTopography.open_topography
+    return open_topography
+
+
+def _read_channel(path: Path, reader: Any, channel: int | None) -> Scan:
+    channels = list(reader.channels)
+    index = _default_index(reader, channels) if channel is None else channel
+    if not 0 <= index < len(channels):
+        raise SurfaceError(
+            f"{path}: there is no channel {index}; choose from {_list(channels, channels)}"
+        )
+    chosen = channels[index]
+    if not _is_height(chosen):
+        heights = [candidate for candidate in channels if _is_height(candidate)]
+        remedy = (
+            f"choose a height channel: {_list(heights, channels)}"
+            if heights
+            else "export a height map with its unit, or save heights in metres with numpy.save"
+        )
+        raise SurfaceError(
+            f"{path}: channel {index} ('{chosen.name}', values in "
+            f"{_value_unit(chosen) or 'no stated unit'}) is not a height map that can be converted "
+            f"to metres; {remedy}"
+        )
+    # Without a size in the file the reader insists on one: its pixel count stands in for it.
+    sized = chosen.physical_sizes is not None
+    topography = chosen.topography(physical_sizes=None if sized else chosen.nb_grid_pts)
+    x, y = (in_metres(float(side), topography.unit) for side in topography.physical_sizes)
+    heights = topography.to_unit("m").heights()
+    return Scan(
+        # An undefined pixel is masked; numpy's own fill value would be taken for a height.
+        np.ma.filled(np.ma.asarray(heights, dtype=np.float64), np.nan),
+        (x, y) if sized else (None, None),
+        {
+            "format": f"SurfaceTopography {type(reader).__name__}",
+            "channel": index,
+            "channel_name": str(chosen.name),
+            "file_unit": str(chosen.unit),
+        },
+    )
+
+
+def _default_index(reader: Any, channels: list[Any]) -> int:
+    """The reader's default channel, or the first height map if that one is not a height map."""
+    default = int(reader.default_channel.index)
+    if _is_height(channels[default]):
+        return default
+    return next((i for i, candidate in enumerate(channels) if _is_height(candidate)), default)
+
+
+def _is_height(channel: Any) -> bool:
+    # The kind is asked for because the unit alone leaves A open: ampere or ångström.
+    is_length = in_metres(1.0, _value_unit(channel)) is not None
+    return bool(channel.is_height_channel and is_length and channel.dim == 2)
+
+
+def _value_unit(channel: Any) -> str | None:
+    """Unit of the values of a channel, None when it is not known.
+
+    `channel.unit` is the unit of the lateral lengths, unless the reader could not convert the
+    values to it: then it is a pair (lateral unit, value unit).
+    """
+    unit: str | None
+    unit = channel.unit[1] if isinstance(channel.unit, tuple) else channel.data_unit
+    return unit
+
+
+def _list(some: list[Any], channels: list[Any]) -> str:
+    return ", ".join(
+        f"{index} ('{channel.name}')"
+        for index, channel in enumerate(channels)
+        if any(channel is one for one in some)
+    )
+
+
+def _why_unreadable(error: Exception, suffix: str) -> str:
+    """One clause out of SurfaceTopography's list of what each of its readers tried."""
+    named_after_suffix = rf"tried {re.escape(suffix.removeprefix('.'))}reader:\s*(.+)"
+    reason = re.search(named_after_suffix, str(error), re.IGNORECASE)
+    if reason is None:
+        return "is damaged, or not a topography in a format known to SurfaceTopography"
+    return f"is damaged or incomplete ({reason[1].strip().rstrip('.')})"
+
+
+def _first_line(error: Exception) -> str:
+    lines = str(error).strip().splitlines()
+    return lines[0].rstrip(".") if lines else type(error).__name__
+
+
+@contextlib.contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep what third-party readers print and warn off the user's terminal."""
+    with (
+        warnings.catch_warnings(),
+        contextlib.redirect_stdout(io.StringIO()),
+        contextlib.redirect_stderr(io.StringIO()),
+    ):
+        warnings.simplefilter("ignore")
+        yield

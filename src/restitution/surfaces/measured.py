@@ -1,0 +1,184 @@
+"""Measured topographies: one function for every file format, one kind of error."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import os
+from pathlib import Path
+from typing import Literal, get_args
+
+import numpy as np
+
+from restitution.errors import SurfaceError
+from restitution.numerics.grid import Grid
+from restitution.surfaces.fill import fill_harmonically
+from restitution.surfaces.instrument_files import NoReadersError, UnrecognisedError, read_instrument
+from restitution.surfaces.matrix_files import (
+    NUMPY_SUFFIXES,
+    TEXT_SUFFIXES,
+    NotAMatrixError,
+    read_numpy,
+    read_text,
+)
+from restitution.surfaces.scan import Scan
+from restitution.surfaces.surface import Surface
+
+UndefinedPixels = Literal["error", "interpolate"]
+
+# Beyond this part of the scan the fill, which is smooth, would show up in every statistic.
+_LARGEST_FILL = 0.2
+# Two statements of a scan's size that differ by less, relatively, are the same one, rounded.
+_SIZE_ROUNDING = 1e-6
+# No scan is taller than this many times its longer side; heights not in metres are, by far.
+_TALLEST = 10.0
+
+
+def read_surface(
+    path: str | os.PathLike[str],
+    *,
+    channel: int | None = None,
+    size: tuple[float, float] | None = None,
+    undefined: UndefinedPixels = "error",
+) -> Surface:
+    """Read a measured height map; heights in m, shape (nx, ny) ↔ (x, y), not levelled.
+
+    - `.npy`, `.npz`: a 2-D array in metres, `array[i, j]` at x_i, y_j.
+    - `.txt`, `.csv`, `.dat`, `.asc`: a matrix in metres, a scan line (constant y) on each line.
+    - everything else, and text that is no plain matrix: SurfaceTopography's readers, which come
+      with the extra `measured`.
+
+    `channel` counts from 0; without it the reader's default height channel is taken. `size` is
+    the length of the x and y edges (pixels times pixel size) in m: needed where the file does
+    not give it, and not to be contradicted where it does. With `undefined="interpolate"` up to
+    20 % undefined pixels are filled harmonically from their neighbours.
+
+    The provenance names the file, its SHA-256, format and channel, the size, and the undefined
+    pixels. Raises `SurfaceError`, and nothing else, for a file that cannot be used.
+    """
+    if undefined not in get_args(UndefinedPixels):
+        raise SurfaceError(f"undefined: {undefined!r} is unknown; choose 'error' or 'interpolate'")
+    if size is not None and not all(math.isfinite(side) and side > 0 for side in size):
+        raise SurfaceError(
+            f"size: {_text(size)} um are not two positive lengths; give those of the scan, such "
+            'as size = ["10 um", "10 um"]'
+        )
+    file = Path(path)
+    digest = _check_readable(file)
+    scan = _read_scan(file, channel)
+    edges = _agreed_size(file, scan, size)
+    nx, ny = scan.height.shape
+    grid = Grid((nx, ny), (edges[0] / nx, edges[1] / ny))
+
+    missing = int(np.count_nonzero(~np.isfinite(scan.height)))
+    _check_undefined(file, missing, scan.height.size, undefined)
+    height = fill_harmonically(scan.height, grid.spacing)
+    span = float(height.max() - height.min())
+    if span > _TALLEST * max(edges):
+        raise SurfaceError(
+            f"{file}: heights that span {span:g} m on a scan of {_text(edges)} um cannot be "
+            "metres; convert them to metres, or correct size"
+        )
+    return Surface(
+        height,
+        grid,
+        {
+            "source": "measured",
+            "file": str(file),
+            "file_sha256": digest,
+            **scan.details,
+            "size_x_m": edges[0],
+            "size_y_m": edges[1],
+            "undefined_pixels": missing,
+            "undefined_fraction": missing / scan.height.size,
+            "undefined_treatment": "interpolated harmonically" if missing else "none to treat",
+        },
+    )
+
+
+def _check_readable(file: Path) -> str:
+    """SHA-256 of the file, once it is known to be there, a file, readable and not empty."""
+    if file.is_dir():
+        raise SurfaceError(f"{file}: is a directory; give the topography file inside it")
+    try:
+        with file.open("rb") as stream:
+            digest = hashlib.file_digest(stream, "sha256").hexdigest()
+            length = stream.tell()
+    except FileNotFoundError as error:
+        raise SurfaceError(f"{file}: there is no such file; check the path") from error
+    except (OSError, ValueError) as error:
+        raise SurfaceError(f"{file}: cannot be opened ({error}); check the path") from error
+    if length == 0:
+        raise SurfaceError(f"{file}: is empty; export the topography again")
+    return digest
+
+
+def _read_scan(file: Path, channel: int | None) -> Scan:
+    suffix = file.suffix.lower()
+    if suffix in NUMPY_SUFFIXES:
+        scan = read_numpy(file)
+    elif suffix in TEXT_SUFFIXES:
+        try:
+            scan = read_text(file)
+        except NotAMatrixError as not_a_matrix:
+            # Instruments use these suffixes, too. What none of their readers knows is judged as
+            # the matrix its name says it is.
+            try:
+                return read_instrument(file, channel)
+            except UnrecognisedError:
+                raise not_a_matrix from None
+            except NoReadersError as no_readers:
+                raise SurfaceError(
+                    f"{not_a_matrix}; if it is an instrument's own format, "
+                    '`pip install "restitution[measured]"`'
+                ) from no_readers
+    else:
+        return read_instrument(file, channel)
+    if channel not in (None, 0):
+        raise SurfaceError(
+            f"{file}: there is no channel {channel}; this format holds one, so leave channel out"
+        )
+    return scan
+
+
+def _agreed_size(file: Path, scan: Scan, given: tuple[float, float] | None) -> tuple[float, float]:
+    """Edge lengths (m) from the file and the argument, which must not contradict each other."""
+    x, y = scan.size
+    if given is None:
+        if x is None or y is None:
+            raise SurfaceError(
+                f"{file}: does not say how large the scan is; give its edge lengths, such as "
+                'size = ["10 um", "10 um"]'
+            )
+        given = (x, y)
+    for stated, wanted in zip(scan.size, given, strict=True):
+        if stated is not None and not math.isclose(stated, wanted, rel_tol=_SIZE_ROUNDING):
+            raise SurfaceError(
+                f"{file}: says that the scan is {_text(scan.size)} um, but size says "
+                f"{_text(given)} um; leave size out, or correct it"
+            )
+    # What the file says is the original; the argument may be a rounding of it.
+    edges = (given[0] if x is None else x, given[1] if y is None else y)
+    if not all(math.isfinite(edge) and edge > 0 for edge in edges):
+        raise SurfaceError(
+            f"{file}: says that the scan is {_text(edges)} um, which are not two positive lengths; "
+            "correct the file"
+        )
+    return edges
+
+
+def _check_undefined(file: Path, missing: int, total: int, undefined: UndefinedPixels) -> None:
+    if missing > _LARGEST_FILL * total:
+        raise SurfaceError(
+            f"{file}: {missing} of {total} pixels ({missing / total:.1%}) are undefined, more than "
+            f"the {_LARGEST_FILL:.0%} that can be filled; measure again, or crop the file"
+        )
+    if missing and undefined == "error":
+        raise SurfaceError(
+            f"{file}: {missing} of {total} pixels ({missing / total:.2%}) are undefined; give "
+            'undefined = "interpolate" to fill them from their neighbours, or crop the file'
+        )
+
+
+def _text(lengths: tuple[float | None, float | None]) -> str:
+    return " x ".join("?" if side is None else f"{side * 1e6:.7g}" for side in lengths)

@@ -1,0 +1,104 @@
+"""The rules every closed form shares: shapes, no contact, no body."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+from restitution.errors import CaseError
+from restitution.theory import hertz, jackson_green, thornton_ning, yielding
+
+MATERIAL = {
+    "radius": 250e-6,
+    "contact_modulus": 112e9,
+    "yield_pressure": 750e6,
+    "yield_strength": 270e6,
+    "poisson_ratio": 0.25,
+    "mass": 2e-6,
+}
+# what changes during an impact: zero or less means that nothing touches
+STATE = {
+    "indentation": 1e-7,
+    "maximum_indentation": 2e-7,
+    "contact_radius": 1e-6,
+    "force": 1e-2,
+    "velocity": 0.1,
+}
+
+SHARED = ("radius", "contact_modulus")
+SHARP = (*SHARED, "yield_pressure")
+SOFT = (*SHARED, "yield_strength", "poisson_ratio")
+FUNCTIONS = [
+    (hertz.force, ("indentation", *SHARED), 0),
+    (hertz.indentation_from_force, ("force", *SHARED), 0),
+    (hertz.contact_radius, ("indentation", "radius"), 0),
+    (hertz.contact_area, ("indentation", "radius"), 0),
+    (hertz.stored_energy, ("indentation", *SHARED), 0),
+    (hertz.peak_pressure, ("indentation", *SHARED), 0),
+    (yielding.yield_indentation, SHARP, None),
+    (yielding.yield_force, SHARP, None),
+    (yielding.yield_velocity, (*SHARP, "mass"), None),
+    (thornton_ning.loading_force, ("indentation", *SHARP), 0),
+    (thornton_ning.loading_work, ("indentation", *SHARP), 0),
+    (thornton_ning.unloading_force, ("indentation", "maximum_indentation", *SHARP), 0),
+    (thornton_ning.unloading_work, ("maximum_indentation", *SHARP), 0),
+    (thornton_ning.unloading_radius, ("maximum_indentation", *SHARP), MATERIAL["radius"]),
+    (thornton_ning.residual_indentation, ("maximum_indentation", *SHARP), 0),
+    (thornton_ning.impact_velocity, ("maximum_indentation", *SHARP, "mass"), 0),
+    (thornton_ning.indentation_from_velocity, ("velocity", *SHARP, "mass"), 0),
+    (thornton_ning.restitution, ("velocity", *SHARP, "mass"), 1),
+    (thornton_ning.restitution_at_indentation, ("maximum_indentation", *SHARP), 1),
+    (jackson_green.yield_coefficient, ("poisson_ratio",), None),
+    (jackson_green.critical_indentation, SOFT, None),
+    (jackson_green.critical_force, SOFT, None),
+    (jackson_green.contact_area, ("indentation", *SOFT), 0),
+    (jackson_green.contact_radius, ("indentation", *SOFT), 0),
+    (jackson_green.hardness, ("contact_radius", "radius", "yield_strength"), 2.84 * 270e6),
+    (jackson_green.loading_force, ("indentation", *SOFT), 0),
+]
+IDS = [f"{f.__module__.rsplit('.', 1)[1]}.{f.__name__}" for f, _, _ in FUNCTIONS]
+every_function = pytest.mark.parametrize(("function", "names", "untouched"), FUNCTIONS, ids=IDS)
+VALUES = MATERIAL | STATE
+
+
+@every_function
+def test_numbers_give_a_number_and_arrays_broadcast(function, names, untouched):
+    arguments = {name: VALUES[name] for name in names}
+    number = function(**arguments)
+    assert isinstance(number, float)
+    for axis, name in enumerate(names):
+        shape = [1] * len(names)
+        shape[axis] = 3
+        arguments[name] = np.full(shape, arguments[name])
+    result = function(**arguments)
+    assert result.shape == (3,) * len(names)
+    assert_array_equal(result, number)
+
+
+@every_function
+def test_no_contact_is_an_answer(function, names, untouched):
+    states = [name for name in names if name in STATE]
+    for state in states:
+        for value in (0.0, -1e-7):
+            arguments = {name: VALUES[name] for name in names} | {state: value}
+            if state == "maximum_indentation":  # below it nothing has touched either
+                arguments |= dict.fromkeys(states, value)
+            assert function(**arguments) == untouched
+        undefined = {name: VALUES[name] for name in names} | {state: np.nan}
+        assert np.isnan(function(**undefined))
+
+
+@every_function
+def test_a_body_that_cannot_be_is_refused_by_name(function, names, untouched):
+    for name in names:
+        if name in STATE:
+            continue
+        bad = (-1.0, 0.51, np.nan) if name == "poisson_ratio" else (0.0, -1.0, np.inf, np.nan)
+        for value in bad:
+            arguments = {n: VALUES[n] for n in names} | {name: np.array([VALUES[name], value])}
+            with pytest.raises(CaseError, match=f"^{name}: "):
+                function(**arguments)
+
+
+def test_the_refusal_is_a_value_error_that_says_what_to_give():
+    with pytest.raises(ValueError, match="radius: -1 is not a positive finite number; give radius"):
+        hertz.force(1e-6, -1.0, 1e9)
