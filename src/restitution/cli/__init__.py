@@ -43,7 +43,7 @@ def _options(
 
 
 def main() -> None:
-    """Run the command line: a user's error is one line and status 1, Ctrl-C status 130."""
+    """Run the command line; a user's error is one red line and status 1."""
     from restitution.cli.console import errors
 
     try:
@@ -51,6 +51,3 @@ def main() -> None:
     except RestitutionError as error:
         errors.print(f"Error: {error}", style="red", highlight=False, markup=False, soft_wrap=True)
         sys.exit(1)
-    except KeyboardInterrupt:
-        errors.print("Interrupted.", style="red")
-        sys.exit(130)

@@ -13,14 +13,14 @@ def check(
     from rich.table import Table
 
     from restitution.cli.console import answers, warn
-    from restitution.contact.resolution import foreseen_warnings
+    from restitution.contact.resolution import foreseen_warnings, refuse_coarse_scan
     from restitution.studies.case import read_case
     from restitution.studies.derived import deepest_indentation, derived_quantities
     from restitution.surfaces import describe
 
     read, _ = read_case(case)
     contact = read.contact(case.parent)
-    statistics = describe(contact.surface)
+    rms = describe(contact.surface)["Sq_m"] or 0.0
     quantities = derived_quantities(read, contact)
     labels = {
         "reduced_radius_m": ("reduced radius R*", 1e6, "um"),
@@ -42,13 +42,16 @@ def check(
     nx, ny = contact.grid.nodes
     hx, hy = contact.grid.spacing
     table.add_row("grid", f"{nx} x {ny}", f"nodes of {1e6 * hx:.4g} um x {1e6 * hy:.4g} um")
-    table.add_row("surface", f"{1e6 * (statistics['Sq_m'] or 0):.4g}",
-                  f"um Sq, {contact.surface.provenance['kind']}")  # fmt: skip
+    provenance = contact.surface.provenance
+    kind = provenance.get("kind", provenance["source"])
+    table.add_row("surface", f"{1e6 * rms:.4g}", f"um Sq, {kind}")
     for key, (label, scale, unit) in labels.items():
         value = quantities[key]
         table.add_row(label, "-" if value is None else f"{scale * value:.5g}", unit)
     answers.print(table)
-    warnings = foreseen_warnings(contact, deepest_indentation(read))
+    deepest = deepest_indentation(read)
+    refuse_coarse_scan(contact, deepest)
+    warnings = foreseen_warnings(contact, deepest)
     for warning in warnings:
         warn(warning)
     answers.print("The case is valid." if not warnings else "The case is valid, with warnings.")

@@ -42,6 +42,9 @@ def run(
                 read, text, case.parent, folder,
                 progress=lambda words: bar.update(task, advance=1, description=words),
             )  # fmt: skip
+    except KeyboardInterrupt:
+        errors.print("Interrupted.", style="red")
+        raise  # typer ends with status 130
     finally:
         if folder.rows and len(folder.rows) < depths:
             errors.print(

@@ -29,6 +29,7 @@ Array = NDArray[np.float64]
 RESIDUAL = 1e-8  # default tolerance: violation of the contact conditions over the indentation
 _MAX_ITERATIONS = 1000
 _WORK_TOLERANCE = 1e-5  # of the loading work, where it needs quadrature ("truncated")
+_WORK_RESIDUAL = 1e-6  # of the solves in between, whose force errors stay well below that
 
 
 def solve(
@@ -47,7 +48,7 @@ def solve(
         raise CaseError(f"indentation: {indentation} m is not a positive depth")
     state = solve_uncut(contact, indentation, start=start, residual=residual)
     if contact.plasticity == "truncated" and math.isfinite(contact.yield_pressure):
-        state = _truncate(state, start, residual)
+        state = _truncate(state, start)
     refuse_edge(state)
     return state
 
@@ -175,7 +176,7 @@ def _equilibrate(
     )
 
 
-def _truncate(elastic: State, start: State | None, residual: float) -> State:
+def _truncate(elastic: State, start: State | None) -> State:
     """Cut the elastic pressure at p_y; the rest of the contact does not take up what is cut.
 
     Force and area are then those of Thornton and Ning (1998). The plastic displacement is what the
@@ -203,7 +204,7 @@ def _truncate(elastic: State, start: State | None, residual: float) -> State:
 
     def cut_force(depth: float) -> float:
         nonlocal guess, convolutions
-        guess = solve_uncut(contact, depth, start=guess, residual=residual)
+        guess = solve_uncut(contact, depth, start=guess, residual=_WORK_RESIDUAL)
         convolutions += guess.convolutions
         return float(np.minimum(guess.pressure[guess.box], p_y).sum()) * area
 

@@ -45,5 +45,5 @@ def unloading_path(state: State, *, steps: int = 16, residual: float = RESIDUAL)
     deepest, last = state.indentation, state.separation_indentation
     yield state
     for t in np.arange(1, steps + 1) / steps:
-        state = step(state, last + (deepest - last) * (1 - t) ** 2, residual=residual)
+        state = step(state, float(last + (deepest - last) * (1 - t) ** 2), residual=residual)
         yield state

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 
 from restitution.contact.bodies import Pair
 from restitution.contact.contact import Contact
+from restitution.errors import SurfaceError
 
 # Smooth spheres follow the tables to 0.3 % from eight nodes over the contact radius; refining a
 # rough surface, restitution settles within 2 % once the largest patch has about ten nodes.
@@ -25,6 +26,21 @@ def foreseen_radius(pair: Pair, indentation: float, yield_pressure: float = math
     # Between first yield and the fully plastic limit the area per πR*δ grows from 1 to 2.
     fullness = 1.0 if indentation <= yielded else 2.0 - (yielded / indentation) ** 0.25
     return math.sqrt(fullness * R * indentation)
+
+
+def refuse_coarse_scan(contact: Contact, indentation: float) -> None:
+    """Raise `SurfaceError` when one pixel of a scan is larger than the contact at `indentation`."""
+    provenance = contact.surface.provenance
+    if provenance.get("source") != "measured":
+        return
+    pixel = max(float(provenance.get("pixel_x_m", 0.0)), *contact.grid.spacing)
+    radius = foreseen_radius(contact.pair, indentation, contact.yield_pressure)
+    if radius < pixel:
+        raise SurfaceError(
+            f"{provenance['file']}: one pixel ({_um(pixel)}) is larger than the contact radius at "
+            f"the deepest indentation ({_um(radius)} at {_nm(indentation)}), so the scan says "
+            "nothing about this contact; use a finer scan, a larger particle or a deeper contact"
+        )
 
 
 def foreseen_warnings(contact: Contact, indentation: float) -> list[str]:

@@ -83,6 +83,7 @@ class ResultsFolder:
         self.path = path
         self.rows: list[dict[str, float]] = []
         self.unloading: list[tuple[float, list[tuple[float, float]]]] = []
+        self._new = not path.exists()
         with _writing(path):
             path.mkdir(parents=True, exist_ok=True)
             if any(path.iterdir()):
@@ -118,10 +119,17 @@ class ResultsFolder:
         for point in points:
             _write_row(self._unloading, [repr(v) for v in (deepest, *point)])
 
+    def discard(self) -> None:
+        """Take back a folder in which nothing was computed, so that it can be named again."""
+        for name in ("curve.csv", "unloading.csv"):
+            (self.path / name).unlink(missing_ok=True)
+        if self._new:
+            self.path.rmdir()
+
     def write(self, dataset: xr.Dataset, summary: Mapping[str, Any]) -> None:
         """Write `results.nc` and `summary.json`."""
-        packed = {name: {"zlib": True, "complevel": 1} for name in ("height", "pressure",
-                  "plastic_displacement") if name in dataset}  # fmt: skip
+        maps = ("height", "pressure", "plastic_displacement")
+        packed = {name: {"zlib": True, "complevel": 1} for name in maps}
         replace_file(
             self.path / "results.nc",
             lambda to: dataset.to_netcdf(to, engine="netcdf4", encoding=packed),
@@ -146,7 +154,7 @@ def replace_file(path: Path, write: Callable[[Path], object]) -> None:
             temporary.unlink(missing_ok=True)
 
 
-def results_dataset(folder: ResultsFolder, deepest: State | None) -> xr.Dataset:
+def results_dataset(folder: ResultsFolder, deepest: State) -> xr.Dataset:
     """Everything that was computed, with units: curves, unloading curves and maps."""
     data: dict[str, Any] = {}
     for column, (name, unit, meaning) in COLUMNS.items():
@@ -162,19 +170,17 @@ def results_dataset(folder: ResultsFolder, deepest: State | None) -> xr.Dataset:
         )  # fmt: skip
         data["unloading_indentation"] = (along, indentation, {"units": "m"})
         data["unloading_force"] = (along, force, {"units": "N"})
-    coordinates = {}
-    if deepest is not None:
-        grid = deepest.contact.grid
-        coordinates = {"x": ("x", grid.x, {"units": "m"}), "y": ("y", grid.y, {"units": "m"})}
-        maps = {
-            "height": (deepest.contact.surface.height, "m", "composite roughness"),
-            "pressure": (deepest.pressure, "Pa", "contact pressure at the deepest point"),
-            "plastic_displacement": (
-                deepest.plastic_displacement, "m", "lowering of the surface by yielding"
-            ),
-        }  # fmt: skip
-        for name, (values, unit, meaning) in maps.items():
-            data[name] = (("x", "y"), values, {"units": unit, "long_name": meaning})
+    grid = deepest.contact.grid
+    coordinates = {"x": ("x", grid.x, {"units": "m"}), "y": ("y", grid.y, {"units": "m"})}
+    maps = {
+        "height": (deepest.contact.surface.height, "m", "composite roughness"),
+        "pressure": (deepest.pressure, "Pa", "contact pressure at the deepest point"),
+        "plastic_displacement": (
+            deepest.plastic_displacement, "m", "lowering of the surface by yielding"
+        ),
+    }  # fmt: skip
+    for name, (values, unit, meaning) in maps.items():
+        data[name] = (("x", "y"), values, {"units": unit, "long_name": meaning})
     return xr.Dataset(data, coordinates)
 
 

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
 from restitution.contact.contact import Contact
 from restitution.contact.path import loading_path, unloading_path
-from restitution.contact.resolution import foreseen_warnings, unresolved_warning
+from restitution.contact.resolution import (
+    foreseen_warnings,
+    refuse_coarse_scan,
+    unresolved_warning,
+)
 from restitution.contact.state import State
 from restitution.errors import RestitutionError
 from restitution.numerics.quadrature import integrate_curve
@@ -26,6 +32,18 @@ CONVENTIONS = {
 }
 
 
+@dataclass
+class _Progress:
+    """What a run has come to: how it ended, and what bears on how far it can be trusted."""
+
+    status: str = "complete"
+    reason: str = ""
+    deepest: State | None = None
+    warnings: list[str] = field(default_factory=list)
+    loading_work_errors: list[float] = field(default_factory=list)
+    unloading_checks: list[dict[str, float]] = field(default_factory=list)
+
+
 def run_case(
     case: Case,
     text: str,
@@ -35,70 +53,55 @@ def run_case(
 ) -> dict[str, Any]:
     """Run `case` (whose text was `text`, with files relative to `folder`) and return the summary.
 
-    `progress` is called with a few words after every depth. Whatever stops the run, what was
-    computed until then is in the folder, and the reason in its summary; then it is raised again.
+    `progress` is called with a few words after every depth. Whatever stops the run is raised again
+    once everything computed until then, and the reason, are in the folder; when nothing was, the
+    folder is taken back.
     """
     began = time.perf_counter()
-    contact = case.contact(folder)
-    warnings = foreseen_warnings(contact, deepest_indentation(case))
-    state: State | None = None
-    checks: list[dict[str, float]] = []
-    work_errors: list[float] = []
-    status, reason = "complete", ""
+    run = _Progress()
     try:
+        contact = case.contact(folder)
+        foreseen = deepest_indentation(case)
+        refuse_coarse_scan(contact, foreseen)
+        run.warnings += foreseen_warnings(contact, foreseen)
         with out.tables():
-            depths = case.depths()
-            unloaded = _spread(len(depths), case.unloading.curves)
-            path = (
-                loading_path(contact, forces=depths) if case.load else loading_path(contact, depths)
-            )
-            for number, state in enumerate(path):
-                out.add(state)
-                work_errors.append(state.plastic_work_error / state.loading_work)
-                if number in unloaded:
-                    checks.append(_unload(state, case.unloading.steps, out))
-                progress(f"{number + 1} of {len(depths)} depths")
+            _load_and_unload(contact, case, out, run, progress)
     except KeyboardInterrupt:
-        status, reason = "interrupted", "stopped by the user"
+        run.status, run.reason = "interrupted", "stopped by the user"
         raise
     except RestitutionError as error:
-        status, reason = "failed", str(error)
+        run.status, run.reason = "failed", str(error)
         raise
     finally:
-        if out.rows:
-            largest = [int(row["largest_patch_nodes"]) for row in out.rows]
-            unresolved = unresolved_warning([row["indentation_m"] for row in out.rows], largest)
-            warnings += [unresolved] if unresolved else []
-        summary = {
-            "title": case.title,
-            "status": status,
-            "reason": reason,
-            "depths_asked": len(case.depths()),
-            "depths_computed": len(out.rows),
-            "warnings": warnings,
-            "model": _model(contact),
-            "conventions": CONVENTIONS,
-            "derived": derived_quantities(case, contact),
-            "surface": dict(contact.surface.provenance),
-            "surface_statistics": describe(contact.surface),
-            "trust": {
-                "largest_residual": max((row["residual"] for row in out.rows), default=None),
-                "largest_loading_work_error": max(work_errors, default=None),
-                "unloading_checks": checks,
-            },
-            "convolutions": sum(int(row["convolutions"]) for row in out.rows),
-            "seconds": round(time.perf_counter() - began, 3),
-            "versions": versions(),
-        }
-        dataset = results_dataset(out, state)
-        dataset.attrs = _attributes(summary, text)
-        out.write(dataset, summary)
+        if run.deepest is None:
+            out.discard()
+        else:
+            summary = _summarise(case, run.deepest.contact, out, run)
+            summary["seconds"] = round(time.perf_counter() - began, 3)
+            dataset = results_dataset(out, run.deepest)
+            dataset.attrs = _attributes(summary, text)
+            out.write(dataset, summary)
     return summary
 
 
-def _spread(count: int, curves: int) -> set[int]:
-    """Indices of `curves` of `count` depths, evenly apart, the deepest among them."""
-    return {count - 1 - (k * count) // curves for k in range(min(curves, count))}
+def _load_and_unload(
+    contact: Contact,
+    case: Case,
+    out: ResultsFolder,
+    run: _Progress,
+    progress: Callable[[str], None],
+) -> None:
+    depths, curves = case.depths(), case.unloading.curves
+    # Evenly apart in number, the deepest among them.
+    unloaded = {len(depths) - 1 - (k * len(depths)) // curves for k in range(curves)}
+    path = loading_path(contact, forces=depths) if case.load else loading_path(contact, depths)
+    for number, state in enumerate(path):
+        out.add(state)
+        run.deepest = state
+        run.loading_work_errors.append(state.plastic_work_error / state.loading_work)
+        if number in unloaded:
+            run.unloading_checks.append(_unload(state, case.unloading.steps, out))
+        progress(f"{number + 1} of {len(depths)} depths")
 
 
 def _unload(state: State, steps: int, out: ResultsFolder) -> dict[str, float]:
@@ -114,35 +117,48 @@ def _unload(state: State, steps: int, out: ResultsFolder) -> dict[str, float]:
     }
 
 
-def _model(contact: Contact) -> dict[str, Any]:
-    grid = contact.grid
+def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Progress) -> dict[str, Any]:
+    patches = [int(row["largest_patch_nodes"]) for row in out.rows]
+    unresolved = unresolved_warning([row["indentation_m"] for row in out.rows], patches)
+    elastic = math.isinf(contact.yield_pressure)
     return {
-        "plasticity": contact.plasticity if contact.yield_pressure < float("inf") else "elastic",
-        "adhesion": "none",
-        "half_space": "free, Love cells, zero-padded FFT",
-        "nodes": list(grid.nodes),
-        "spacing_m": list(grid.spacing),
+        "title": case.title,
+        "status": run.status,
+        "reason": run.reason,
+        "depths_asked": len(case.depths()),
+        "depths_computed": len(out.rows),
+        "warnings": run.warnings + ([unresolved] if unresolved else []),
+        "model": {
+            "plasticity": "none" if elastic else contact.plasticity,
+            "adhesion": "none",
+            "half_space": "free, Love cells, zero-padded FFT",
+            **asdict(contact.grid),
+        },
+        "conventions": CONVENTIONS,
+        "derived": derived_quantities(case, contact),
+        "surface": dict(contact.surface.provenance),
+        "surface_statistics": describe(contact.surface),
+        "trust": {
+            "largest_residual": max(row["residual"] for row in out.rows),
+            "largest_loading_work_error": max(run.loading_work_errors),
+            "unloading_checks": run.unloading_checks,
+        },
+        "convolutions": sum(int(row["convolutions"]) for row in out.rows),
+        "versions": versions(),
     }
 
 
 def _attributes(summary: dict[str, Any], text: str) -> dict[str, str]:
     """Attributes of results.nc: flat texts."""
-    flat = {
-        f"{group}_{key}": str(value)
-        for group in (
-            "model",
-            "conventions",
-            "derived",
-            "surface",
-            "surface_statistics",
-            "versions",
-        )
-        for key, value in summary[group].items()
-    }
+    groups = ("model", "conventions", "derived", "surface", "surface_statistics", "versions")
     return {
         "title": summary["title"],
         "status": summary["status"],
         "warnings": "\n".join(summary["warnings"]),
         "case": text,
-        **flat,
+        **{
+            f"{group}_{key}": str(value)
+            for group in groups
+            for key, value in summary[group].items()
+        },
     }

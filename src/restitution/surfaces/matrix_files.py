@@ -58,14 +58,13 @@ def read_numpy(path: Path) -> Scan:
 def _load_arrays(
     path: Path,
 ) -> tuple[NDArray[np.generic], tuple[float | None, float | None], dict[str, str | float]]:
+    # Unpickling runs code that the file brings, so it stays forbidden in both branches.
     try:
-        # Unpickling runs code that the file brings, so it stays forbidden. Mapping the file into
-        # memory makes numpy compare the shape promised by the header with the length of the file
-        # instead of allocating whatever a damaged header asks for.
-        loaded = np.load(path, mmap_mode="r", allow_pickle=False)
-        if isinstance(loaded, np.ndarray):
-            return loaded, (None, None), {"format": "npy"}
-        with loaded as archive:
+        if path.suffix.lower() == ".npy":
+            # Mapping the file compares the shape its header promises with its length, where
+            # loading it would allocate whatever a damaged header asks for.
+            return np.lib.format.open_memmap(path, mode="r"), (None, None), {"format": "npy"}
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as archive:
             key = _height_key(path, archive.files)
             size = _size_entry(path, archive["size"]) if "size" in archive.files else (None, None)
             return archive[key], size, {"format": "npz", "channel_name": key}

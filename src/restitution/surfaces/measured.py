@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Literal, get_args
 
 import numpy as np
+from numpy.typing import NDArray
 
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
@@ -70,15 +71,11 @@ def read_surface(
     nx, ny = scan.height.shape
     grid = Grid((nx, ny), (edges[0] / nx, edges[1] / ny))
 
-    missing = int(np.count_nonzero(~np.isfinite(scan.height)))
-    _check_undefined(file, missing, scan.height.size, undefined)
+    defined = np.isfinite(scan.height)
+    missing = int(np.count_nonzero(~defined))
+    _check_undefined(file, missing, defined.size, undefined)
+    _check_metres(file, scan.height[defined], edges)
     height = fill_harmonically(scan.height, grid.spacing)
-    span = float(height.max() - height.min())
-    if span > _TALLEST * max(edges):
-        raise SurfaceError(
-            f"{file}: heights that span {span:g} m on a scan of {_text(edges)} um cannot be "
-            "metres; convert them to metres, or correct size"
-        )
     return Surface(
         height,
         grid,
@@ -90,7 +87,7 @@ def read_surface(
             "size_x_m": edges[0],
             "size_y_m": edges[1],
             "undefined_pixels": missing,
-            "undefined_fraction": missing / scan.height.size,
+            "undefined_fraction": missing / defined.size,
             "undefined_treatment": "interpolated harmonically" if missing else "none to treat",
         },
     )
@@ -143,6 +140,11 @@ def _read_scan(file: Path, channel: int | None) -> Scan:
 
 def _agreed_size(file: Path, scan: Scan, given: tuple[float, float] | None) -> tuple[float, float]:
     """Edge lengths (m) from the file and the argument, which must not contradict each other."""
+    if not all(side is None or (math.isfinite(side) and side > 0) for side in scan.size):
+        raise SurfaceError(
+            f"{file}: says that the scan is {_text(scan.size)} um, which are not two positive "
+            "lengths; correct the file"
+        )
     x, y = scan.size
     if given is None:
         if x is None or y is None:
@@ -150,7 +152,7 @@ def _agreed_size(file: Path, scan: Scan, given: tuple[float, float] | None) -> t
                 f"{file}: does not say how large the scan is; give its edge lengths, such as "
                 'size = ["10 um", "10 um"]'
             )
-        given = (x, y)
+        return x, y
     for stated, wanted in zip(scan.size, given, strict=True):
         if stated is not None and not math.isclose(stated, wanted, rel_tol=_SIZE_ROUNDING):
             raise SurfaceError(
@@ -158,13 +160,7 @@ def _agreed_size(file: Path, scan: Scan, given: tuple[float, float] | None) -> t
                 f"{_text(given)} um; leave size out, or correct it"
             )
     # What the file says is the original; the argument may be a rounding of it.
-    edges = (given[0] if x is None else x, given[1] if y is None else y)
-    if not all(math.isfinite(edge) and edge > 0 for edge in edges):
-        raise SurfaceError(
-            f"{file}: says that the scan is {_text(edges)} um, which are not two positive lengths; "
-            "correct the file"
-        )
-    return edges
+    return given[0] if x is None else x, given[1] if y is None else y
 
 
 def _check_undefined(file: Path, missing: int, total: int, undefined: UndefinedPixels) -> None:
@@ -177,6 +173,15 @@ def _check_undefined(file: Path, missing: int, total: int, undefined: UndefinedP
         raise SurfaceError(
             f"{file}: {missing} of {total} pixels ({missing / total:.2%}) are undefined; give "
             'undefined = "interpolate" to fill them from their neighbours, or crop the file'
+        )
+
+
+def _check_metres(file: Path, heights: NDArray[np.float64], edges: tuple[float, float]) -> None:
+    span = float(heights.max()) - float(heights.min())
+    if span > _TALLEST * max(edges):
+        raise SurfaceError(
+            f"{file}: heights that span {span:g} m on a scan of {_text(edges)} um cannot be in "
+            "metres; convert them to metres, or correct size"
         )
 
 

@@ -1,0 +1,5 @@
+"""`python -m restitution` is the command line."""
+
+from restitution.cli import main
+
+main()

@@ -1,0 +1,244 @@
+"""Bad input: one clear line that names the key or file and the remedy, and nothing lost."""
+
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+
+@pytest.fixture
+def refused_case(refused, case_text, tmp_path):
+    """Refusal of the small case with parts of its text replaced."""
+
+    def call(*replacements, verb="run"):
+        text = case_text
+        for old, new in replacements:
+            assert old in text
+            text = text.replace(old, new, 1)
+        (tmp_path / "case.toml").write_text(text)
+        out = () if verb == "check" else ("-o", tmp_path / "out")
+        message = refused(verb, tmp_path / "case.toml", *out)
+        assert not (tmp_path / "out").exists()
+        return message
+
+    return call
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "key", "remedy"),
+    [
+        ("radius =", "radus =", "first.radus", 'did you mean "radius"?'),
+        ("[grid]", "[gird]", "gird", 'did you mean "grid"?'),
+        ("seed = 1", "seed = 1\nhurst = 0.8", "roughness.hurst", "known keys: kind, rms"),
+        ('"500 um"', "500", "first.radius", '500 has no unit; write for example "0.25 um"'),
+        ('"500 um"', '"500"', "first.radius", "has no unit"),
+        ('"500 um"', '"500 kg"', "first.radius", '"500 kg" is not a length'),
+        ('"500 um"', '"500 furlonx"', "first.radius", "a unit that is not known"),
+        ('"500 um"', '"9**9**9 um"', "first.radius", "is not one number followed by a unit"),
+        ('"500 um"', '"nan um"', "first.radius", "is not one number followed by a unit"),
+        ('"500 um"', '"1e999 um"', "first.radius", "not a finite number"),
+        ('"210 GPa"', '"-210 GPa"', "first.youngs_modulus", "greater than zero"),
+        ('"210 GPa"', '"0 GPa"', "first.youngs_modulus", "greater than zero"),
+        ('"750 MPa"', '"-1 MPa"', "interface.yield_pressure", "greater than zero"),
+        ("ratio = 0.25", "ratio = 0.51", "first.poissons_ratio", "less than or equal to 0.5"),
+        ("ratio = 0.25", "ratio = -1.0", "first.poissons_ratio", "greater than -1"),
+        ("ratio = 0.25", "ratio = nan", "first.poissons_ratio", "less than or equal to 0.5"),
+        ("[72, 64]", "0", "grid.nodes", "greater than 0"),
+        ("[72, 64]", "[72, 0]", "grid.nodes", "greater than 0"),
+        ("[72, 64]", "[72, 64, 2]", "grid.nodes", "a list of two"),
+        ("[72, 64]", "72.5", "grid.nodes", "valid integer"),
+        ('"0.6 um"]', '"0 um"]', "grid.spacing", "greater than zero"),
+        ('"gaussian"', '"gausian"', "roughness.kind", "'exponential', 'gaussian', 'measured'"),
+        ('kind = "gaussian"', "", "roughness.kind", "is missing"),
+        ('"2 um"', '"0.1 um"', "roughness.correlation_length", "below the grid spacing"),
+        ('"2 um"', '"200 um"', "roughness.correlation_length", "above half of the domain"),
+        ('rms = "0.05 um"', "", "roughness.rms", "is missing"),
+        ("steps = 4", "", "indentation", "give from, to and steps"),
+        ('to = "300 nm"', 'to = "3 nm"', "indentation", "from must be smaller than to"),
+        ("steps = 4", 'scale = "cubic"', "indentation.scale", "'log' or 'linear'"),
+        ("[unloading]", '[load]\nvalues = ["1 N"]\n[unloading]', "[load]", "both are"),
+        ("[first]", "[first", "case.toml", "not valid TOML"),
+    ],
+)
+def test_a_key_that_is_wrong(refused_case, old, new, key, remedy):
+    message = refused_case((old, new))
+    assert key in message
+    assert remedy in message
+
+
+def test_neither_load_nor_indentation(refused_case, case_text):
+    span = case_text[case_text.index("[indentation]") : case_text.index("[unloading]")]
+    assert "give one of the tables [indentation] and [load]" in refused_case((span, ""))
+
+
+def test_two_flat_bodies(refused_case):
+    message = refused_case(('"500 um"', '"flat"'), verb="check")
+    assert "both are flat; one must be a sphere" in message
+
+
+def test_no_case_file(refused, tmp_path):
+    assert "cannot be read (No such file" in refused("run", tmp_path / "none.toml", "-o", tmp_path)
+
+
+def test_a_case_file_that_is_no_text(refused, tmp_path):
+    (tmp_path / "case.toml").write_bytes(b"\xff\xfe\x00\x01")
+    assert "is not a text file" in refused("check", tmp_path / "case.toml")
+
+
+def test_contact_off_the_domain_keeps_the_depths_before_it(cli, case_text, tmp_path):
+    (tmp_path / "case.toml").write_text(case_text.replace('"300 nm"', '"3 um"'))
+    status, _, said = cli("run", tmp_path / "case.toml", "-o", tmp_path / "out")
+    assert status == 1
+    assert "the contact reaches the edge of the 36 um x 38.4 um grid" in said
+    assert "use a grid of about" in said
+    assert "3 of 4 depths were computed and are kept" in said
+    assert len((tmp_path / "out" / "curve.csv").read_text().splitlines()) == 4
+    assert '"status": "failed"' in (tmp_path / "out" / "summary.json").read_text()
+    assert (tmp_path / "out" / "results.nc").exists()
+
+
+def test_more_load_than_the_grid_carries(refused_case, case_text):
+    span = case_text[case_text.index("[indentation]") : case_text.index("[unloading]")]
+    message = refused_case((span, '[load]\nvalues = ["5 N"]\n'), verb="run")
+    assert "more than the whole grid carries at the yield pressure" in message
+
+
+def measured(case_text, line):
+    """The small case with a measured surface instead of its own."""
+    begin, end = case_text.index("[roughness]"), case_text.index("[grid]")
+    return case_text[:begin] + f'[roughness]\nkind = "measured"\n{line}\n' + case_text[end:]
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "remedy"),
+    [
+        ("nan.npy", np.where(np.eye(90) > 0, np.nan, 0.0), 'give undefined = "interpolate"'),
+        ("inf.npy", np.where(np.eye(90) > 0, np.inf, 0.0), 'give undefined = "interpolate"'),
+        ("line.npy", np.zeros(90), "line.npy"),
+        ("cube.npy", np.zeros((9, 9, 9)), "cube.npy"),
+        ("complex.npy", np.zeros((90, 90), complex), "complex.npy"),
+        ("small.npy", np.zeros((20, 20)), "grid"),
+    ],
+)
+def test_an_array_that_is_no_surface(refused, case_text, tmp_path, name, content, remedy):
+    np.save(tmp_path / name, content)
+    edge = "4 um" if name == "small.npy" else "45 um"
+    line = f'file = "{name}"\nsize = ["{edge}", "{edge}"]'
+    (tmp_path / "case.toml").write_text(measured(case_text, line))
+    assert remedy in refused("run", tmp_path / "case.toml", "-o", tmp_path / "out")
+
+
+def test_a_ragged_text_matrix(refused, case_text, tmp_path):
+    (tmp_path / "ragged.csv").write_text("0,0,0\n0,0\n")
+    line = 'file = "ragged.csv"\nsize = "45 um"'
+    (tmp_path / "case.toml").write_text(measured(case_text, line))
+    assert "ragged.csv" in refused("surface", tmp_path / "case.toml", "-o", tmp_path / "out")
+
+
+class Bomb:
+    """Leaves a mark when unpickled."""
+
+    def __init__(self, mark):
+        self.mark = mark
+
+    def __reduce__(self):
+        return os.mkdir, (str(self.mark),)
+
+
+def test_a_pickled_array_is_refused_and_nothing_in_it_runs(refused, case_text, tmp_path):
+    np.save(tmp_path / "bomb.npy", np.array([Bomb(tmp_path / "mark")], dtype=object))
+    (tmp_path / "raw.npy").write_bytes(pickle.dumps(Bomb(tmp_path / "mark")))
+    for name in ("bomb.npy", "raw.npy"):
+        line = f'file = "{name}"\nsize = "45 um"'
+        (tmp_path / "case.toml").write_text(measured(case_text, line))
+        assert name in refused("run", tmp_path / "case.toml", "-o", tmp_path / "out")
+    assert not (tmp_path / "mark").exists()
+
+
+def test_a_damaged_array(refused, case_text, tmp_path):
+    np.save(tmp_path / "whole.npy", np.zeros((90, 90)))
+    (tmp_path / "cut.npy").write_bytes((tmp_path / "whole.npy").read_bytes()[:5000])
+    (tmp_path / "case.toml").write_text(measured(case_text, 'file = "cut.npy"\nsize = "45 um"'))
+    assert "cut.npy" in refused("run", tmp_path / "case.toml", "-o", tmp_path / "out")
+
+
+def test_a_measured_file_is_relative_to_the_case(cli, case_text, tmp_path, monkeypatch):
+    (tmp_path / "data").mkdir()
+    np.save(tmp_path / "data" / "flat.npy", np.zeros((90, 90)))
+    text = measured(case_text, 'file = "flat.npy"\nsize = ["45 um", "54 um"]')
+    (tmp_path / "data" / "case.toml").write_text(text)
+    monkeypatch.chdir(tmp_path)
+    assert cli("check", "data/case.toml")[0] == 0
+
+
+def test_results_are_never_overwritten(refused, case_text, tmp_path):
+    (tmp_path / "case.toml").write_text(case_text)
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "curve.csv").write_text("mine")
+    for verb in ("run", "surface"):
+        message = refused(verb, tmp_path / "case.toml", "-o", tmp_path / "out")
+        assert "not empty, and nothing in it is overwritten; name another one with -o" in message
+    assert [p.name for p in (tmp_path / "out").iterdir()] == ["curve.csv"]
+    assert (tmp_path / "out" / "curve.csv").read_text() == "mine"
+
+
+def test_an_output_that_cannot_be_a_folder(refused, case_text, tmp_path):
+    (tmp_path / "case.toml").write_text(case_text)
+    (tmp_path / "file").write_text("")
+    for out in (tmp_path / "file", tmp_path / "file" / "below"):
+        message = refused("run", tmp_path / "case.toml", "-o", out)
+        assert "cannot be written" in message
+        assert "name another folder with -o" in message
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")
+def test_a_full_disk(monkeypatch, case_text, cli, tmp_path):
+    """The table cannot be written: said, with the folder."""
+    import builtins
+
+    (tmp_path / "case.toml").write_text(case_text)
+    real = builtins.open
+
+    def open_full(file, *args, **kwargs):
+        full = str(file).endswith("curve.csv")
+        return real("/dev/full" if full else file, *args, **kwargs)
+
+    monkeypatch.setattr(builtins, "open", open_full)
+    status, _, said = cli("run", tmp_path / "case.toml", "-o", tmp_path / "out")
+    assert status == 1
+    assert "cannot be written (No space left on device)" in said
+    assert "Traceback" not in said
+
+
+def test_interruption_keeps_what_was_computed(case_text, tmp_path):
+    """Ctrl-C while a case runs: one line, status 130, and a readable folder of what was done."""
+    text = case_text.replace("steps = 4", "steps = 400").replace("curves = 2", "curves = 400")
+    (tmp_path / "case.toml").write_text(text)
+    out = tmp_path / "out"
+    command = [sys.executable, "-m", "restitution", "run", tmp_path / "case.toml", "-o", out]
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    deadline = time.monotonic() + 60
+    while time.monotonic() < deadline:
+        curve = out / "curve.csv"
+        if curve.exists() and curve.read_text().count("\n") > 5:
+            break
+        time.sleep(0.02)
+    process.send_signal(signal.SIGINT)
+    said = process.communicate(timeout=60)[1]
+    assert process.returncode == 130
+    assert "Interrupted" in said
+    assert "depths were computed and are kept" in said
+    assert "Traceback" not in said
+
+    import xarray as xr
+
+    rows = (out / "curve.csv").read_text().splitlines()[1:]
+    with xr.open_dataset(out / "results.nc") as results:
+        assert results.sizes["indentation_max"] == len(rows) > 4
+        assert results.attrs["status"] == "interrupted"
+    assert not list(out.glob(".*.part"))

@@ -1,0 +1,190 @@
+import csv
+import json
+import re
+
+import numpy as np
+import pytest
+import xarray as xr
+
+COLUMNS = """
+indentation_m force_N contact_area_m2 stored_energy_J plastic_work_J loading_work_J
+unloading_work_J restitution impact_velocity_m_per_s contact_nodes contact_patches
+largest_patch_nodes residual convolutions
+""".split()  # noqa: SIM905
+
+
+@pytest.fixture
+def done(cli, case_text, tmp_path):
+    case = tmp_path / "case.toml"
+    case.write_text(case_text)
+    out = tmp_path / "out"
+    status, said, _ = cli("run", case, "-o", out)
+    assert status == 0
+    return out, said
+
+
+def rows_of(path):
+    with open(path, newline="") as file:
+        reader = csv.DictReader(file)
+        return reader.fieldnames, [{k: float(v) for k, v in row.items()} for row in reader]
+
+
+def test_run_writes_every_file(done):
+    out, said = done
+    names = {path.name for path in out.iterdir()}
+    assert names == {
+        "results.nc", "curve.csv", "unloading.csv", "summary.json", "load-displacement.png",
+        "restitution-indentation.png", "restitution-velocity.png", "pressure.png",
+    }  # fmt: skip
+    for name in names:
+        assert name in said
+
+
+def test_run_writes_the_curve(done):
+    names, rows = rows_of(done[0] / "curve.csv")
+    assert names == COLUMNS
+    depths = [row["indentation_m"] for row in rows]
+    assert depths == pytest.approx(np.geomspace(20e-9, 300e-9, 4), rel=1e-12)
+    assert all(0 < row["restitution"] < 1 for row in rows)
+    mass = 4 / 3 * np.pi * 500e-6**3 * 7850 / 2
+    for row in rows:
+        assert 0.5 * mass * row["impact_velocity_m_per_s"] ** 2 == pytest.approx(
+            row["loading_work_J"]
+        )
+
+
+def test_run_writes_unloading_curves_down_to_separation(done):
+    names, rows = rows_of(done[0] / "unloading.csv")
+    assert names == ["indentation_max_m", "indentation_m", "force_N"]
+    deepest = sorted({row["indentation_max_m"] for row in rows})
+    assert len(deepest) == 2
+    assert deepest[-1] == pytest.approx(300e-9)
+    _, curve = rows_of(done[0] / "curve.csv")
+    for depth in deepest:
+        force = [row["force_N"] for row in rows if row["indentation_max_m"] == depth]
+        loaded = [row["force_N"] for row in curve if row["indentation_m"] == depth]
+        assert len(force) == 7
+        assert force[0] == loaded[0]
+        assert force[-1] == 0
+        assert all(np.diff(force) < 0)
+
+
+def test_results_hold_units_case_and_versions(done, case_text):
+    with xr.open_dataset(done[0] / "results.nc") as results:
+        assert results.attrs["case"] == case_text
+        assert results.attrs["versions_restitution"] == "0.1.0"
+        assert results["force"].attrs["units"] == "N"
+        assert results["impact_velocity"].attrs["units"] == "m s-1"
+        assert all("units" in results[name].attrs for name in results.variables)
+        assert results["pressure"].shape == (72, 64)
+        assert float(results["pressure"].max()) <= 750e6
+        area = 0.5e-6 * 0.6e-6
+        assert float(results["pressure"].sum()) * area == pytest.approx(
+            float(results["force"][-1]), rel=1e-12
+        )
+        assert float(results["x"][1] - results["x"][0]) == pytest.approx(0.5e-6)
+
+
+def test_summary_says_what_made_the_numbers_and_how_far_to_trust_them(done):
+    summary = json.loads((done[0] / "summary.json").read_text())
+    assert summary["status"] == "complete"
+    assert summary["depths_computed"] == 4
+    assert summary["model"]["plasticity"] == "equilibrium"
+    assert summary["trust"]["largest_residual"] <= 1e-8
+    assert summary["surface_statistics"]["Sq_m"] == pytest.approx(0.05e-6, rel=1e-9)
+    assert summary["derived"]["contact_modulus_Pa"] == pytest.approx(112e9)
+    for check in summary["trust"]["unloading_checks"]:
+        assert abs(check["relative_to_stored_energy"]) < 5e-3
+    assert "separation" in summary["conventions"]["end_of_contact"]
+
+
+def test_the_same_case_gives_the_same_numbers(cli, done, tmp_path):
+    assert cli("run", tmp_path / "case.toml", "-o", tmp_path / "again")[0] == 0
+    for name in ("curve.csv", "unloading.csv"):
+        assert (tmp_path / "again" / name).read_text() == (done[0] / name).read_text()
+
+
+def test_run_under_prescribed_load(cli, case_text, tmp_path):
+    case = tmp_path / "case.toml"
+    span = case_text[case_text.index("[indentation]") : case_text.index("[unloading]")]
+    case.write_text(case_text.replace(span, '[load]\nvalues = ["2 mN", "0.03 N", "0.2 N"]\n'))
+    assert cli("run", case, "-o", tmp_path / "out")[0] == 0
+    _, rows = rows_of(tmp_path / "out" / "curve.csv")
+    assert [row["force_N"] for row in rows] == pytest.approx([0.002, 0.03, 0.2], rel=1e-8)
+
+
+def test_a_smooth_elastic_case_without_density(cli, case_text, tmp_path):
+    text = re.sub(r"\[roughness\].*?(?=\[grid\])", "", case_text, flags=re.DOTALL)
+    text = text.replace('density = "7850 kg/m^3"\n', "").replace('yield_pressure = "750 MPa"', "")
+    (tmp_path / "case.toml").write_text(text)
+    status, _, _ = cli("run", tmp_path / "case.toml", "-o", tmp_path / "out")
+    assert status == 0
+    with open(tmp_path / "out" / "curve.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["restitution"] for row in rows] == ["1.0"] * 4
+    assert [row["impact_velocity_m_per_s"] for row in rows] == [""] * 4
+    assert not (tmp_path / "out" / "restitution-velocity.png").exists()
+
+
+def test_a_sphere_on_a_wall(cli, case_text, tmp_path):
+    wall = '[second]\nradius = "flat"\nyoungs_modulus = "70 GPa"\npoissons_ratio = 0.2\n'
+    (tmp_path / "case.toml").write_text(case_text.replace("[interface]", wall + "[interface]"))
+    status, said, _ = cli("check", tmp_path / "case.toml")
+    assert status == 0
+    assert re.search(r"reduced radius R\*\s+500\s+um", said)
+    assert re.search(r"reduced mass m\*\s+4.110[23]e-06\s+kg", said)
+
+
+def test_check_prints_the_derived_quantities_and_solves_nothing(cli, case_text, tmp_path):
+    (tmp_path / "case.toml").write_text(case_text)
+    status, said, warned = cli("check", tmp_path / "case.toml")
+    assert status == 0
+    for line in (
+        r"reduced radius R\*\s+250\s+um",
+        r"contact modulus E\*\s+112\s+GPa",
+        r"reduced mass m\*\s+2.0551e-06\s+kg",
+        r"yield indentation δ_y, smooth\s+27.661\s+nm",
+        r"yield velocity V_y, smooth\s+0.010815\s+m/s",
+        r"half width of the grid\s+18\s+um",
+        r"contact radius there, smooth",
+    ):
+        assert re.search(line, said), line
+    assert "The case is valid." in said
+    assert not warned
+    assert [p.name for p in tmp_path.iterdir()] == ["case.toml"]
+
+
+def test_check_warns_of_a_contact_larger_than_the_grid(cli, case_text, tmp_path):
+    (tmp_path / "case.toml").write_text(case_text.replace('"300 nm"', '"3 um"'))
+    status, said, warned = cli("check", tmp_path / "case.toml")
+    assert status == 0
+    assert "with warnings" in said
+    assert "the grid ends at 18 um" in warned
+
+
+def test_surface_writes_heights_statistics_and_a_picture(cli, case_text, tmp_path):
+    (tmp_path / "case.toml").write_text(case_text)
+    assert cli("surface", tmp_path / "case.toml", "-o", tmp_path / "out")[0] == 0
+    with xr.open_dataset(tmp_path / "out" / "surface.nc") as stored:
+        height = stored["height"].load()
+    assert height.dims == ("x", "y")
+    assert height.attrs["units"] == "m"
+    assert float((height**2).mean()) ** 0.5 == pytest.approx(0.05e-6, rel=1e-9)
+    statistics = json.loads((tmp_path / "out" / "statistics.json").read_text())
+    assert statistics["Sq_m"] == pytest.approx(0.05e-6, rel=1e-9)
+    assert {"Ssk", "Sku", "Sdq"} <= statistics.keys()
+    assert (tmp_path / "out" / "surface.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_version(cli):
+    status, said, _ = cli("--version")
+    assert status == 0
+    assert said.strip() == "restitution 0.1.0"
+
+
+def test_unresolved_depths_are_said(cli, case_text, tmp_path):
+    (tmp_path / "case.toml").write_text(case_text.replace('"20 nm"', '"1 nm"'))
+    status, _, warned = cli("run", tmp_path / "case.toml", "-o", tmp_path / "out")
+    assert status == 0
+    assert "fewer than 10 nodes" in warned
+    assert "fewer than 10 nodes" in (tmp_path / "out" / "summary.json").read_text()

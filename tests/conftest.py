@@ -1,0 +1,82 @@
+"""What tests of the command line and of studies share."""
+
+import re
+import sys
+from pathlib import Path
+
+import pytest
+
+CASE = """
+title = "A small rough contact"
+[first]
+radius = "500 um"
+youngs_modulus = "210 GPa"
+poissons_ratio = 0.25
+density = "7850 kg/m^3"
+[interface]
+yield_pressure = "750 MPa"
+[roughness]
+kind = "gaussian"
+rms = "0.05 um"
+correlation_length = "2 um"
+seed = 1
+[grid]
+nodes = [72, 64]
+spacing = ["0.5 um", "0.6 um"]
+[indentation]
+from = "20 nm"
+to = "300 nm"
+steps = 4
+[unloading]
+curves = 2
+steps = 6
+"""
+
+
+@pytest.fixture
+def case_text():
+    """The text of a small case; `str.replace` makes others of it."""
+    return CASE
+
+
+@pytest.fixture
+def cli(monkeypatch, capsys):
+    """Call the command line in this process: status, standard output, standard error."""
+    from restitution.cli import main
+
+    def call(*arguments):
+        monkeypatch.setattr(sys, "argv", ["restitution", *map(str, arguments)])
+        monkeypatch.setenv("COLUMNS", "200")
+        status = 0
+        try:
+            main()
+        except SystemExit as end:
+            status = end.code if isinstance(end.code, int) else int(bool(end.code))
+        said = capsys.readouterr()
+        return status, said.out, said.err
+
+    return call
+
+
+@pytest.fixture
+def refused(cli):
+    """Call the command line and return its one line of refusal."""
+
+    def call(*arguments):
+        status, out, err = cli(*arguments)
+        assert status != 0
+        assert "Traceback" not in out + err
+        lines = [line for line in err.splitlines() if line.startswith("Error: ")]
+        assert len(lines) == 1, err
+        return re.sub(r"\s+", " ", lines[0])
+
+    return call
+
+
+@pytest.fixture(scope="session")
+def topographies():
+    """The folder of instrument files beside the checkout."""
+    folder = Path(__file__).parents[2] / "shared" / "topographies"
+    if not folder.is_dir():
+        pytest.skip("the folder shared/topographies is not beside this checkout")
+    return folder

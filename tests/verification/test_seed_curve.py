@@ -1,0 +1,54 @@
+"""The whole rough curve of the seed case through the command line."""
+
+import csv
+import os
+import resource
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "steel.toml"
+
+
+@pytest.fixture(scope="module")
+def curve(tmp_path_factory):
+    out = tmp_path_factory.mktemp("seed") / "out"
+    subprocess.run(
+        [sys.executable, "-m", "restitution", "run", EXAMPLE, "-o", out],
+        check=True,
+        env={**os.environ, "NO_COLOR": "1"},
+        capture_output=True,
+    )
+    peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * 1024
+    with open(out / "curve.csv", newline="") as file:
+        return [{k: float(v) for k, v in row.items()} for row in csv.DictReader(file)], peak
+
+
+def test_the_memory_stays_below_one_gibibyte(curve):
+    assert curve[1] < 2**30
+
+
+def test_it_has_the_three_stages_of_a_rough_contact(curve):
+    """Asperities yield, the bulk takes over, the bulk yields (Ghanbarzadeh 2019, fig. 10)."""
+    cor = [row["restitution"] for row in curve[0]]
+    assert len(cor) == 24
+    bottom = cor.index(min(cor[:16]))
+    top = bottom + cor[bottom:].index(max(cor[bottom:]))
+    assert cor[0] > cor[bottom] + 0.3
+    assert cor[top] > cor[bottom] + 0.2
+    assert cor[-1] < cor[top] - 0.2
+    assert 0 < bottom < top < 23
+
+
+def test_every_depth_meets_the_residual_and_the_energy_balance(curve):
+    for row in curve[0]:
+        assert row["residual"] <= 1e-8
+        assert row["convolutions"] <= 90
+        assert row["loading_work_J"] == pytest.approx(
+            row["stored_energy_J"] + row["plastic_work_J"], rel=1e-12
+        )
+        assert row["restitution"] ** 2 == pytest.approx(
+            row["unloading_work_J"] / row["loading_work_J"], rel=1e-9
+        )
