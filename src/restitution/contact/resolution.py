@@ -33,7 +33,7 @@ def refuse_coarse_scan(contact: Contact, indentation: float) -> None:
     provenance = contact.surface.provenance
     if provenance.get("source") != "measured":
         return
-    pixel = max(float(provenance.get("pixel_x_m", 0.0)), *contact.grid.spacing)
+    pixel = max(_coarsest_pixel(contact), *contact.grid.spacing)
     radius = foreseen_radius(contact.pair, indentation, contact.yield_pressure)
     if radius < pixel:
         raise SurfaceError(
@@ -47,7 +47,8 @@ def foreseen_warnings(contact: Contact, indentation: float) -> list[str]:
     """What the numbers before a solve say against loading `contact` to `indentation` (m)."""
     grid, pair = contact.grid, contact.pair
     radius = foreseen_radius(pair, indentation, contact.yield_pressure)
-    half_width, coarsest = 0.5 * min(grid.size), max(grid.spacing)
+    pixel = _coarsest_pixel(contact)
+    half_width, coarsest = 0.5 * min(grid.size), max(pixel, *grid.spacing)
     found = []
     if radius >= half_width:
         found.append(
@@ -66,8 +67,7 @@ def foreseen_warnings(contact: Contact, indentation: float) -> list[str]:
             f"the contact radius {_um(radius)} is {radius / pair.radius:.2g} of R*: the half-space "
             f"holds up to about {_HALF_SPACE}"
         )
-    pixel = contact.surface.provenance.get("pixel_x_m")
-    if isinstance(pixel, float) and min(grid.spacing) < 0.999 * pixel:
+    if min(grid.spacing) < 0.999 * pixel:
         found.append(
             f"the grid spacing {_um(min(grid.spacing))} is finer than the scan's pixel "
             f"{_um(pixel)}: roughness below the pixel is missing, not smooth"
@@ -89,6 +89,12 @@ def unresolved_warning(depths: Sequence[float], largest_patches: Sequence[int]) 
         f"{NODES_PER_PATCH} nodes in their largest contact patch: their numbers belong to the "
         "grid, not to the surface; refine the grid"
     )
+
+
+def _coarsest_pixel(contact: Contact) -> float:
+    """The coarsest pixel that resampled heights have passed through, m; 0 when they have not."""
+    provenance = contact.surface.provenance
+    return max(float(provenance.get(key, 0.0)) for key in ("pixel_x_m", "pixel_y_m"))
 
 
 def _um(length: float) -> str:

@@ -1,0 +1,84 @@
+import math
+
+import numpy as np
+import pytest
+
+from restitution.errors import CaseError
+from restitution.studies.case import parse_case, read_case
+
+
+def test_the_second_body_is_the_first_unless_given(case_text):
+    pair = parse_case(case_text).pair()
+    assert pair.first == pair.second
+    assert pair.radius == 250e-6
+    assert pair.contact_modulus == pytest.approx(112e9)
+
+
+def test_a_wall_has_no_curvature_and_infinite_mass(case_text):
+    wall = '[second]\nradius = "flat"\nyoungs_modulus = "70 GPa"\npoissons_ratio = 0.2\n'
+    pair = parse_case(case_text + wall).pair()
+    assert pair.radius == 500e-6
+    assert pair.mass == pytest.approx(4 / 3 * math.pi * 500e-6**3 * 7850)
+
+
+def test_depths(case_text):
+    span = case_text[case_text.index("[indentation]") : case_text.index("[unloading]")]
+
+    def depths(table):
+        return parse_case(case_text.replace(span, table)).depths()
+
+    assert depths('[indentation]\nfrom="1 nm"\nto="100 nm"\nsteps=3\n') == pytest.approx(
+        [1e-9, 1e-8, 1e-7]
+    )
+    linear = '[indentation]\nfrom="1 nm"\nto="101 nm"\nsteps=3\nscale="linear"\n'
+    assert depths(linear) == pytest.approx([1e-9, 51e-9, 101e-9])
+    assert depths('[indentation]\nvalues=["50 nm", "10 nm", "50 nm"]\n') == pytest.approx(
+        [10e-9, 50e-9]
+    )
+    assert depths('[load]\nvalues=["1 N", "0.5 N"]\n') == [0.5, 1.0]
+
+
+def test_elastic_when_no_yield_pressure_is_given(case_text, tmp_path):
+    contact = parse_case(case_text.replace('yield_pressure = "750 MPa"', "")).contact(tmp_path)
+    assert contact.yield_pressure == math.inf
+
+
+def test_the_scan_is_levelled_before_a_part_is_cut_out(case_text, tmp_path):
+    x = np.linspace(-1, 1, 80)
+    scan = 1e-7 * x[:, None] ** 3 + 0 * x[None, :]
+    np.save(tmp_path / "scan.npy", scan)
+    begin, end = case_text.index("[roughness]"), case_text.index("[grid]")
+    rough = (
+        '[roughness]\nkind="measured"\nfile="scan.npy"\nsize=["40 um","48 um"]\ndetrend="tilt"\n'
+    )
+    surface = parse_case(case_text[:begin] + rough + case_text[end:]).surface(tmp_path)
+    # The plane that fits the whole cubic is steeper than the one that fits its middle.
+    slope = np.polyfit(surface.grid.x, surface.height[:, 10], 1)[0]
+    assert slope == pytest.approx(np.polyfit(surface.grid.x, _levelled_cubic(x), 1)[0], rel=1e-2)
+
+
+def _levelled_cubic(x):
+    z = 1e-7 * x**3
+    z = z - np.polyval(np.polyfit(x, z, 1), x)
+    return z[40 - 36 : 40 + 36]
+
+
+def test_a_measured_case_without_grid_uses_the_pixels(case_text, tmp_path):
+    np.save(tmp_path / "scan.npy", np.zeros((30, 20)))
+    begin, end = case_text.index("[roughness]"), case_text.index("[indentation]")
+    rough = '[roughness]\nkind="measured"\nfile="scan.npy"\nsize=["15 um","12 um"]\n'
+    surface = parse_case(case_text[:begin] + rough + case_text[end:]).surface(tmp_path)
+    assert surface.grid.nodes == (30, 20)
+    assert surface.grid.spacing == pytest.approx((0.5e-6, 0.6e-6))
+
+
+def test_only_a_measured_case_may_leave_out_the_grid(case_text):
+    begin, end = case_text.index("[grid]"), case_text.index("[indentation]")
+    with pytest.raises(CaseError, match=r"the table \[grid\] is missing"):
+        parse_case(case_text[:begin] + case_text[end:])
+
+
+def test_read_case_names_the_file(tmp_path, case_text):
+    (tmp_path / "bad.toml").write_text(case_text.replace("title", "titel"))
+    with pytest.raises(CaseError, match=r"bad\.toml: titel: unknown key; did you mean \"title\""):
+        read_case(tmp_path / "bad.toml")

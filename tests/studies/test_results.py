@@ -1,0 +1,32 @@
+import pytest
+
+from restitution.errors import OutputError
+from restitution.studies.results import ResultsFolder, replace_file, write_json
+
+
+def test_a_new_folder_is_taken_back_when_nothing_was_computed(tmp_path):
+    folder = ResultsFolder(tmp_path / "new")
+    with folder.tables():
+        pass
+    folder.discard()
+    assert not (tmp_path / "new").exists()
+
+
+def test_an_empty_folder_of_the_user_stays(tmp_path):
+    (tmp_path / "mine").mkdir()
+    ResultsFolder(tmp_path / "mine").discard()
+    assert (tmp_path / "mine").is_dir()
+
+
+def test_a_file_is_replaced_whole_or_not_at_all(tmp_path):
+    path = tmp_path / "file.json"
+    write_json(path, {"a": 1})
+
+    def half(to):
+        to.write_text("ha")
+        raise OSError(28, "No space left on device")
+
+    with pytest.raises(OutputError, match="No space left on device"):
+        replace_file(path, half)
+    assert path.read_text() == '{\n  "a": 1\n}\n'
+    assert list(tmp_path.iterdir()) == [path]

@@ -1,0 +1,115 @@
+import numpy as np
+import pytest
+
+from restitution.errors import SurfaceError
+from restitution.numerics.grid import Grid
+from restitution.surfaces import Surface, generate_surface, place_on_grid
+
+ROUGH = generate_surface(
+    Grid((40, 31), (0.1e-6, 0.2e-6)),
+    kind="exponential",
+    rms=0.1e-6,
+    correlation_length=1e-6,
+    seed=1,
+)
+
+
+def wave(grid):
+    """A sum of waves of at least 1.9 um, about 19 pixels of the scans below."""
+    x, y = np.meshgrid(grid.x, grid.y, indexing="ij")
+    return Surface(np.sin(3e6 * x + 1e6 * y + 0.4) + 0.5 * np.cos(1e6 * x - 2e6 * y), grid)
+
+
+def test_identical_grid_leaves_the_heights():
+    np.testing.assert_array_equal(place_on_grid(ROUGH, ROUGH.grid).height, ROUGH.height)
+
+
+@pytest.mark.parametrize("scan", [(40, 31), (41, 30)])
+@pytest.mark.parametrize("nodes", [(20, 11), (21, 12), (40, 1), (1, 30)])
+def test_equal_spacing_crops_about_the_origin(scan, nodes):
+    # Heights that tell their own coordinates, in pixels: no interpolation may touch them.
+    spacing = (0.1e-6, 0.2e-6)
+    i, j = np.indices(scan)
+    surface = Surface(1000.0 * (i - scan[0] // 2) + (j - scan[1] // 2), Grid(scan, spacing))
+    placed = place_on_grid(surface, Grid(nodes, spacing))
+    i, j = np.indices(nodes)
+    np.testing.assert_array_equal(placed.height, 1000.0 * (i - nodes[0] // 2) + (j - nodes[1] // 2))
+    assert placed.grid == Grid(nodes, spacing)
+    assert placed.provenance["placement"].startswith("cropped from ")
+
+
+def test_spacing_that_differs_by_rounding_still_crops():
+    third = Surface(ROUGH.height, Grid((40, 31), (0.1e-6 * (1 + 1e-13), 0.2e-6)))
+    placed = place_on_grid(third, ROUGH.grid)
+    np.testing.assert_array_equal(placed.height, ROUGH.height)
+
+
+@pytest.mark.parametrize("spacing", [(0.05e-6, 0.03e-6), (0.13e-6, 0.17e-6)])
+def test_smooth_surfaces_are_interpolated_accurately(spacing):
+    scan = wave(Grid((101, 120), (0.1e-6, 0.1e-6)))
+    grid = Grid((50, 50), spacing)
+    placed = place_on_grid(scan, grid)
+    np.testing.assert_allclose(placed.height, wave(grid).height, atol=2e-4)
+
+
+def test_interpolation_converges_with_fourth_order():
+    grid = Grid((20, 20), (0.07e-6, 0.07e-6))
+    errors = []
+    for n in (51, 101, 201):
+        scan = wave(Grid((n, n), (10e-6 / n, 10e-6 / n)))
+        errors.append(abs(place_on_grid(scan, grid).height - wave(grid).height).max())
+    orders = np.diff(-np.log(errors)) / np.diff(np.log([51, 101, 201]))
+    assert orders.min() > 3.5
+
+
+def test_refining_keeps_the_coarse_nodes():
+    fine = place_on_grid(ROUGH, Grid((80, 62), (0.05e-6, 0.1e-6)))
+    np.testing.assert_allclose(fine.height[::2, 1::2], ROUGH.height, atol=1e-19)
+
+
+def test_rim_is_held_not_extrapolated():
+    grid = Grid((10, 10), (1e-6, 1e-6))
+    x = np.broadcast_to(grid.x[:, None], grid.nodes)
+    fine = Grid((80, 10), (0.125e-6, 1e-6))
+    placed = place_on_grid(Surface(np.array(x), grid), fine)
+    np.testing.assert_allclose(placed.height[:, 0], np.clip(fine.x, x.min(), x.max()), atol=1e-18)
+
+
+def test_coarser_grid_samples_and_says_what_aliases():
+    placed = place_on_grid(ROUGH, Grid((20, 15), (0.2e-6, 0.4e-6)))
+    # Node 10, 7 of the coarse grid is node 20, 15 of the fine one: the origin.
+    np.testing.assert_allclose(placed.height, ROUGH.height[::2, 1:31:2], atol=1e-19)
+    text = placed.provenance["placement"]
+    assert text.startswith("sampled every 0.2 x 0.4 um from pixels of 0.1 x 0.2 um")
+    assert "shorter than 0.4 x 0.8 um" in text
+
+
+def test_provenance_keeps_the_source_and_the_coarsest_pixel():
+    fine = place_on_grid(ROUGH, Grid((30, 30), (0.05e-6, 0.05e-6)))
+    assert fine.provenance["placement"] == (
+        "interpolated from 0.1 x 0.2 um to 0.05 x 0.05 um by cubic spline"
+    )
+    assert fine.provenance["seed"] == 1
+    again = place_on_grid(fine, Grid((10, 10), (0.05e-6, 0.05e-6)))
+    assert again.provenance["pixel_x_m"] == 0.1e-6
+    assert again.provenance["pixel_y_m"] == 0.2e-6
+
+
+def test_grid_that_reaches_beyond_the_scan_is_refused():
+    with pytest.raises(SurfaceError) as caught:
+        place_on_grid(ROUGH, Grid((10, 64), (0.1e-6, 0.1e-6)))
+    assert str(caught.value) == (
+        "grid: its 1 x 6.4 um reach beyond the surface of 4 x 6.2 um; use a smaller grid.nodes or "
+        "grid.spacing, or a larger scan"
+    )
+
+
+def test_grid_that_is_larger_by_rounding_is_accepted():
+    place_on_grid(ROUGH, Grid((40, 62), (0.1e-6 * (1 + 1e-12), 0.1e-6 * (1 + 1e-12))))
+
+
+@pytest.mark.parametrize("nodes", [(1, 1), (1, 3), (2, 2), (3, 4)])
+def test_scans_too_small_for_a_cubic(nodes):
+    scan = Surface(np.full(nodes, 0.7), Grid(nodes, (1.0, 1.0)))
+    placed = place_on_grid(scan, Grid((2, 3), (0.25, 0.25)))
+    np.testing.assert_allclose(placed.height, 0.7, rtol=1e-14)

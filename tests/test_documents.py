@@ -1,0 +1,82 @@
+"""Every example a reader is shown does what the text beside it says."""
+
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+from typing import get_args
+
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).parents[1]
+README = (ROOT / "README.md").read_text()
+
+
+def block(language):
+    return re.findall(rf"```{language}\n(.*?)```", README, re.DOTALL)
+
+
+def test_the_python_example_prints_what_the_readme_says():
+    (code,) = block("python")
+    printed = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    ).stdout.strip()
+    assert f"It prints `{printed}`" in README
+
+
+def test_the_case_file_of_the_readme_runs(cli, tmp_path):
+    (text,) = block("toml")
+    (tmp_path / "case.toml").write_text(text)
+    x = np.linspace(0, 10e-6, 128)[:, None]
+    y = x.T
+    scan = 5e-9 * np.cos(4e6 * x) * np.cos(5e6 * y) - (x**2 + y**2) / (2 * 100e-6)
+    np.save(tmp_path / "bead.npy", scan)
+    status, said, warned = cli("run", tmp_path / "case.toml", "-o", tmp_path / "results")
+    assert status == 0, warned
+    assert "20 depths" in said
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "examples").glob("*.toml")), ids=lambda p: p.name)
+def test_bundled_examples_are_valid(cli, path):
+    assert cli("check", path)[0] == 0
+
+
+def test_every_key_of_a_case_is_documented():
+    from restitution.studies.case import Case
+
+    text = (ROOT / "docs" / "case-file.md").read_text()
+
+    def keys(kind):
+        for name, field in getattr(kind, "model_fields", {}).items():
+            yield field.alias or name
+            yield from keys(field.annotation)
+        for part in get_args(kind):
+            yield from keys(part)
+
+    found = set(keys(Case))
+    assert {"from", "detrend", "rms", "plasticity"} <= found
+    for key in found:
+        assert f"`{key}`" in text or f"`[{key}]`" in text, key
+
+
+def test_every_column_is_documented():
+    from restitution.studies.results import COLUMNS
+
+    text = (ROOT / "docs" / "results.md").read_text()
+    for column in COLUMNS:
+        assert f"`{column}`" in text
+
+
+def test_make_targets_named_to_readers_exist():
+    makefile = (ROOT / "Makefile").read_text()
+    for document in ("README.md", "CONTRIBUTING.md"):
+        for target in re.findall(r"^make (\w+)", (ROOT / document).read_text(), re.MULTILINE):
+            assert f"\n{target}:" in makefile
+
+
+def test_the_version_is_stated_once_everywhere():
+    version = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
+    assert f"version: {version}" in (ROOT / "CITATION.cff").read_text()
+    assert f"## {version}" in (ROOT / "CHANGELOG.md").read_text()
