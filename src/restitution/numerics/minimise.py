@@ -37,9 +37,11 @@ class Minimum:
 def violation(p: Array, g: Array, lower: Array, upper: Array) -> float:
     """Largest violation of the optimality conditions, in the units of the gradient."""
     wrong = np.abs(g)
-    np.copyto(wrong, np.maximum(-g, 0.0), where=p <= lower)
-    np.copyto(wrong, np.maximum(g, 0.0), where=p >= upper)
-    return float(wrong.max())
+    at_lower, at_upper = p <= lower, p >= upper
+    np.copyto(wrong, -g, where=at_lower)
+    np.copyto(wrong, g, where=at_upper)
+    np.copyto(wrong, 0.0, where=at_lower & at_upper)  # held from both sides: nothing to violate
+    return max(float(wrong.max()), 0.0)
 
 
 def minimise_quadratic(
