@@ -51,7 +51,28 @@ def refused_case(refused, case_text, tmp_path):
         ("[72, 64]", "0", "grid.nodes", "greater than 0"),
         ("[72, 64]", "[72, 0]", "grid.nodes", "greater than 0"),
         ("[72, 64]", "[72, 64, 2]", "grid.nodes", "a list of two"),
-        ("[72, 64]", "72.5", "grid.nodes", "valid integer"),
+        ("[72, 64]", "72.5", "grid.nodes", "a whole number"),
+        ("[72, 64]", "100_000", "grid.nodes", "more than a grid may have (134217728 in all)"),
+        ("[72, 64]", "1" * 4000, "grid.nodes", "more than a grid may have"),
+        ("[72, 64]", "1" * 5000, "case.toml", "a number of thousands of digits; correct it"),
+        ("seed = 1", f"seed = {2**63}", "roughness.seed", "less than"),
+        ("seed = 1", 'seed = 1\n"a\\nb" = 2', "roughness.a\\nb", "unknown key"),
+        ("ratio = 0.25", 'ratio = "0.25"', "first.poissons_ratio", '"0.25" should be a number'),
+        ("ratio = 0.25", "ratio = true", "first.poissons_ratio", "true should be a number"),
+        ('"500 um"', '"500 km"', "first.radius", "outside what a contact can have"),
+        ('"500 um"', '"500 fm"', "first.radius", "check the unit"),
+        ('"750 MPa"', '"750 mPa"', "interface.yield_pressure", "did you mean MPa?"),
+        ('"750 MPa"', '"750 mpa"', "interface.yield_pressure", "did you mean MPa?"),
+        ('"500 um"', f'"{"x" * 500}"', "first.radius", f'"{"x" * 59}…" is not one number'),
+        ('"500 um"', '"5\\n\\u001b[31m um"', "first.radius", r'"5\n\x1b[31m um" is not one number'),
+        ('yield_pressure = "750 MPa"', 'plasticity = "truncated"', "interface", "give yield_pr"),
+        ("steps = 4", "steps = 1", "indentation", "use values = [...]"),
+        ("steps = 4", "steps = 10_001", "indentation.steps", "less than or equal to 10000"),
+        ('to = "300 nm"', 'to = "20 nm"', "indentation", "use values = [...]"),
+        ("steps = 6", "steps = 10_001", "unloading.steps", "less than or equal to 10000"),
+        ("curves = 2", "curves = 10_001", "unloading.curves", "less than or equal to 10000"),
+        ("curves = 2", "curves = true", "unloading.curves", "true should be a whole number"),
+        ("title =", f"deep = {'[' * 5000}{']' * 5000}\ntitle =", "case.toml", "nested too deeply"),
         ('"0.6 um"]', '"0 um"]', "grid.spacing", "greater than zero"),
         ('"gaussian"', '"gausian"', "roughness.kind", "'exponential', 'gaussian', 'measured'"),
         ('kind = "gaussian"', "", "roughness.kind", "is missing"),
@@ -76,9 +97,47 @@ def test_neither_load_nor_indentation(refused_case, case_text):
     assert "give one of the tables [indentation] and [load]" in refused_case((span, ""))
 
 
-def test_two_flat_bodies(refused_case):
-    message = refused_case(('"500 um"', '"flat"'), verb="check")
+@pytest.mark.parametrize("verb", ["check", "run"])
+def test_two_flat_bodies(refused_case, verb):
+    message = refused_case(('"500 um"', '"flat"'), verb=verb)
+    assert "case.toml: first.radius: is flat" in message
+    assert "[second] is left out and so defaults to [first]" in message
     assert "both are flat; one must be a sphere" in message
+
+
+@pytest.mark.parametrize(
+    ("replacement", "words"),
+    [
+        (("[interface]", "[interfaces]"), "interfaces: unknown key"),
+        (('values = ["1 N"]', "values = []"), "[] should be a list with at least one value"),
+        (('values = ["1 N"]', 'values = "1 N"'), '"1 N" should be a list'),
+        (('title = "A small rough contact"', "title = 3"), "title: 3 should be a text"),
+        (('[grid]\nnodes = [72, 64]\nspacing = ["0.5 um", "0.6 um"]', ""), "[grid] is missing"),
+        (("[unloading]\ncurves = 2\nsteps = 6", "[[unloading]]"), "should be a table"),
+    ],
+)
+def test_plain_words(refused_case, case_text, replacement, words):
+    span = case_text[case_text.index("[indentation]") : case_text.index("[unloading]")]
+    assert words in refused_case((span, '[load]\nvalues = ["1 N"]\n'), replacement, verb="check")
+
+
+def test_other_problems_are_counted_by_key(refused_case):
+    """Two places in one list are one key."""
+    once = refused_case(('["0.5 um", "0.6 um"]', '["a", "b"]'), verb="check")
+    assert "grid.spacing" in once
+    assert "more)" not in once
+    twice = refused_case(('["0.5 um", "0.6 um"]', '["a", "b"]'), ("seed = 1", ""), verb="check")
+    assert twice.endswith("(and 1 more)")
+
+
+def test_what_is_wrong_with_a_surface_names_the_case(refused_case):
+    message = refused_case(('"2 um"', '"200 um"'), verb="surface")
+    assert "case.toml: roughness.correlation_length" in message
+
+
+def test_a_byte_order_mark_is_no_error(cli, case_text, tmp_path):
+    (tmp_path / "case.toml").write_text(case_text, encoding="utf-8-sig")
+    assert cli("check", tmp_path / "case.toml")[0] == 0
 
 
 def test_no_case_file(refused, tmp_path):
@@ -131,6 +190,13 @@ def test_an_array_that_is_no_surface(refused, case_text, tmp_path, name, content
     line = f'file = "{name}"\nsize = ["{edge}", "{edge}"]'
     (tmp_path / "case.toml").write_text(measured(case_text, line))
     assert remedy in refused("run", tmp_path / "case.toml", "-o", tmp_path / "out")
+
+
+@pytest.mark.parametrize("name", ["x" * 300 + ".npy", "a\\u0000b.npy"])
+def test_a_name_that_no_file_has(refused, case_text, tmp_path, name):
+    line = f'file = "{name}"\nsize = "45 um"'
+    (tmp_path / "case.toml").write_text(measured(case_text, line))
+    assert "check the path" in refused("check", tmp_path / "case.toml")
 
 
 def test_a_ragged_text_matrix(refused, case_text, tmp_path):
@@ -190,7 +256,7 @@ def test_results_are_never_overwritten(refused, case_text, tmp_path):
 def test_an_output_that_cannot_be_a_folder(refused, case_text, tmp_path):
     (tmp_path / "case.toml").write_text(case_text)
     (tmp_path / "file").write_text("")
-    for out in (tmp_path / "file", tmp_path / "file" / "below"):
+    for out in (tmp_path / "file", tmp_path / "file" / "below", tmp_path / ("x" * 300)):
         message = refused("run", tmp_path / "case.toml", "-o", out)
         assert "cannot be written" in message
         assert "name another folder with -o" in message

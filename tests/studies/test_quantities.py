@@ -24,6 +24,10 @@ from restitution.studies.quantities import read_quantity
         ("7.85 g/cm^3", "kg/m^3", 7850),
         ("7850 kg/m**3", "kg/m^3", 7850),
         ("2 mN", "N", 2e-3),
+        ("7.85 g/cm3", "kg/m^3", 7850),
+        ("7850 kg/m3", "kg/m^3", 7850),
+        ("750 N/mm2", "Pa", 750e6),
+        ("1 m3/cm2", "m", 1e4),
     ],
 )
 def test_units(text, unit, expected):
@@ -38,6 +42,20 @@ def test_units(text, unit, expected):
 def test_what_is_no_length(value):
     with pytest.raises(ValueError, match="write for example"):
         read_quantity(value, "m")
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "meant"),
+    [
+        ("210 gpa", "Pa", "GPa"),
+        ("5 UM", "m", "um"),
+        ("7 G/cm3", "kg/m^3", "g/cm3"),
+        ("1 n", "N", "N"),
+    ],
+)
+def test_a_unit_in_the_wrong_case(text, unit, meant):
+    with pytest.raises(ValueError, match=rf"did you mean {meant}\?"):
+        read_quantity(text, unit)
 
 
 @given(st.text(max_size=30))

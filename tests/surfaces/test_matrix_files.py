@@ -276,7 +276,7 @@ def test_headers_that_set_scales_unknown_here_are_not_guessed_at(tmp_path, line)
     path = write(tmp_path / "a.txt", f"{line}\n{MATRIX}")
     message = refusal(path, size=SIZE)
     assert "may set a unit or a scale" in message
-    assert 'pip install "restitution[measured]"' in message
+    assert 'pip install "SurfaceTopography>=1.27"' in message
 
 
 def test_other_comments_are_only_comments(tmp_path):
@@ -395,6 +395,6 @@ def test_provenance(tmp_path):
 def test_other_formats_need_the_extra(tmp_path):
     message = refusal(write(tmp_path / "scan.sur", "DIGITAL SURF"))
     assert message == (
-        "reading this format takes the SurfaceTopography package; install it with "
-        '`pip install "restitution[measured]"`'
+        "reading this format takes the SurfaceTopography package; install the readers with "
+        '`pip install "SurfaceTopography>=1.27"` (the extra "measured")'
     )

@@ -14,12 +14,13 @@ def check(
 
     from restitution.cli.console import answers, warn
     from restitution.contact.resolution import foreseen_warnings, refuse_coarse_scan
-    from restitution.studies.case import read_case
+    from restitution.studies.case import naming, read_case
     from restitution.studies.derived import deepest_indentation, derived_quantities
     from restitution.surfaces import describe
 
     read, _ = read_case(case)
-    contact = read.contact(case.parent)
+    with naming(case):
+        contact = read.contact(case.parent)
     rms = describe(contact.surface)["Sq_m"] or 0.0
     quantities = derived_quantities(read, contact)
     labels = {

@@ -21,7 +21,7 @@ def run(
 
     from restitution.cli.console import answers, errors, warn
     from restitution.reports.figures import write_figures
-    from restitution.studies.case import read_case
+    from restitution.studies.case import naming, read_case
     from restitution.studies.results import ResultsFolder
     from restitution.studies.run import run_case
 
@@ -36,7 +36,7 @@ def run(
     )
     depths = len(read.depths())
     try:
-        with Progress(*columns, console=errors, transient=True) as bar:
+        with naming(case), Progress(*columns, console=errors, transient=True) as bar:
             task = bar.add_task("reading the surface", total=depths)
             summary = run_case(
                 read, text, case.parent, folder,

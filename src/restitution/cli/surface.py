@@ -16,12 +16,13 @@ def surface(
 
     from restitution.cli.console import answers
     from restitution.reports.figures import surface_map, write_figure
-    from restitution.studies.case import read_case
+    from restitution.studies.case import naming, read_case
     from restitution.studies.results import ResultsFolder, replace_file, write_json
     from restitution.surfaces import describe
 
     read, text = read_case(case)
-    made = read.surface(case.parent)
+    with naming(case):
+        made = read.surface(case.parent)
     folder = ResultsFolder(out)
     statistics = describe(made)
     height = xr.DataArray(

@@ -5,18 +5,31 @@ from __future__ import annotations
 import difflib
 import math
 import tomllib
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any, Generic, Literal, Self, TypeVar, cast
 
 import numpy as np
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidationError,
+    model_validator,
+)
 
 from restitution.contact.bodies import Body, Pair
 from restitution.contact.contact import Contact, Plasticity, smooth
-from restitution.errors import CaseError
+from restitution.errors import CaseError, SurfaceError, shown
 from restitution.numerics.grid import Grid
 from restitution.studies.quantities import Density, Force, Length, Pressure
 from restitution.surfaces import Surface, generate_surface, level, place_on_grid, read_surface
+
+MOST_NODES = 2**27  # of a grid: more do not fit into the memory of common machines
+MOST_STEPS = 10_000  # of a curve
 
 
 class _Table(BaseModel):
@@ -28,12 +41,21 @@ def _two(value: Any) -> Any:
     if not isinstance(value, list):
         return value, value
     if len(value) != 2:
-        raise ValueError(f"{value} should be one value, or a list of two (for x and y)")
+        raise ValueError(f"{shown(value)} should be one value, or a list of two (for x and y)")
     return tuple(value)
 
 
 Nodes = Annotated[int, Field(gt=0)]
 PairOf = BeforeValidator(_two)
+
+
+def _few_enough(nodes: tuple[int, int]) -> tuple[int, int]:
+    if nodes[0] * nodes[1] > MOST_NODES:
+        raise ValueError(
+            f"{shown(nodes[0])} x {shown(nodes[1])} nodes are more than a grid may have "
+            f"({MOST_NODES} in all); give fewer, or a larger spacing"
+        )
+    return nodes
 
 
 def _flat_is_infinite(value: Any) -> Any:
@@ -45,7 +67,7 @@ class BodyTable(_Table):
 
     radius: Annotated[Length | None, BeforeValidator(_flat_is_infinite)]
     youngs_modulus: Pressure
-    poissons_ratio: Annotated[float, Field(gt=-1, le=0.5, strict=False)]
+    poissons_ratio: Annotated[float, Field(gt=-1, le=0.5)]
     density: Density | None = None
 
     def body(self) -> Body:
@@ -60,6 +82,15 @@ class InterfaceTable(_Table):
     yield_pressure: Pressure | None = None
     plasticity: Plasticity = "equilibrium"
 
+    @model_validator(mode="after")
+    def _truncated_at(self) -> Self:
+        if self.plasticity == "truncated" and self.yield_pressure is None:
+            raise ValueError(
+                'plasticity = "truncated" needs the pressure to cut at; give yield_pressure, or '
+                "leave plasticity out for elastic bodies"
+            )
+        return self
+
 
 class GeneratedRoughness(_Table):
     """`[roughness]` with `kind` exponential or gaussian."""
@@ -67,7 +98,7 @@ class GeneratedRoughness(_Table):
     kind: Literal["exponential", "gaussian"]
     rms: Length
     correlation_length: Annotated[tuple[Length, Length], PairOf]
-    seed: Annotated[int, Field(ge=0)]
+    seed: Annotated[int, Field(ge=0, lt=2**63)]
 
 
 class MeasuredRoughness(_Table):
@@ -87,7 +118,7 @@ Roughness = Annotated[GeneratedRoughness | MeasuredRoughness, Field(discriminato
 class GridTable(_Table):
     """`[grid]`; may be omitted for a measured surface, which brings its own."""
 
-    nodes: Annotated[tuple[Nodes, Nodes], PairOf]
+    nodes: Annotated[tuple[Nodes, Nodes], PairOf, AfterValidator(_few_enough)]
     spacing: Annotated[tuple[Length, Length], PairOf]
 
 
@@ -99,9 +130,9 @@ class Series(_Table, Generic[Quantity]):
 
     from_: Annotated[Quantity | None, Field(alias="from")] = None
     to: Quantity | None = None
-    steps: Annotated[int, Field(gt=0)] | None = None
+    steps: Annotated[int, Field(gt=0, le=MOST_STEPS)] | None = None
     scale: Literal["log", "linear"] = "log"
-    values: Annotated[list[Quantity], Field(min_length=1)] | None = None
+    values: Annotated[list[Quantity], Field(min_length=1, max_length=MOST_STEPS)] | None = None
 
     @model_validator(mode="after")
     def _one_way(self) -> Self:
@@ -111,8 +142,15 @@ class Series(_Table, Generic[Quantity]):
                 raise ValueError("give either values or from, to and steps, not both")
         elif None in span:
             raise ValueError("give from, to and steps (or values = [...])")
+        elif self.from_ == self.to:
+            raise ValueError("from and to are the same; for one depth or load use values = [...]")
         elif not cast(float, self.from_) < cast(float, self.to):
             raise ValueError("from must be smaller than to")
+        elif self.steps == 1:
+            raise ValueError(
+                "steps = 1 does not reach from one to the other; give at least 2, or for one depth "
+                "or load use values = [...]"
+            )
         return self
 
     def series(self) -> list[float]:
@@ -127,8 +165,8 @@ class Series(_Table, Generic[Quantity]):
 class UnloadingTable(_Table):
     """`[unloading]`: how many of the depths are unloaded step by step, and in how many steps."""
 
-    curves: Annotated[int, Field(ge=0)] = 3
-    steps: Annotated[int, Field(ge=4)] = 16
+    curves: Annotated[int, Field(ge=0, le=MOST_STEPS)] = 3
+    steps: Annotated[int, Field(ge=4, le=MOST_STEPS)] = 16
 
 
 class Case(_Table):
@@ -158,6 +196,11 @@ class Case(_Table):
     def pair(self) -> Pair:
         """The two bodies; `CaseError` when both are flat."""
         first = self.first.body()
+        if math.isinf(first.radius) and self.second is None:
+            raise CaseError(
+                "first.radius: is flat, and the table [second] is left out and so defaults to "
+                "[first]: both are flat; one must be a sphere: write [second]"
+            )
         return Pair(first, first if self.second is None else self.second.body())
 
     def surface(self, folder: Path) -> Surface:
@@ -204,37 +247,75 @@ class Case(_Table):
 def read_case(path: Path) -> tuple[Case, str]:
     """Read and check a case file; return it with its text. Raises `CaseError`, naming the key."""
     try:
-        text = path.read_text(encoding="utf-8")
+        text = path.read_text(encoding="utf-8-sig")  # editors on Windows write a byte order mark
     except UnicodeDecodeError:
         raise CaseError(f"{path}: is not a text file; a case file is TOML in UTF-8") from None
     except OSError as error:
         raise CaseError(f"{path}: cannot be read ({error.strerror}); name a case file") from None
-    try:
+    with naming(path):
         return parse_case(text), text
-    except CaseError as error:
-        raise CaseError(f"{path}: {error}") from None
+
+
+@contextmanager
+def naming(path: Path) -> Iterator[None]:
+    """Put the name of the case file before what is wrong with what it describes."""
+    try:
+        yield
+    except (CaseError, SurfaceError) as error:
+        raise type(error)(f"{path}: {error}") from error
 
 
 def parse_case(text: str) -> Case:
     """Check the text of a case file. Raises `CaseError`, naming the key."""
     try:
-        return Case.model_validate(tomllib.loads(text))
+        content = tomllib.loads(text)
+    except RecursionError:
+        raise CaseError("not valid TOML: nested too deeply; correct the brackets") from None
     except tomllib.TOMLDecodeError as error:
         raise CaseError(f"not valid TOML: {error}") from None
+    except ValueError:  # Python refuses to read an integer of more than 4300 digits
+        raise CaseError("holds a number of thousands of digits; correct it") from None
+    try:
+        return Case.model_validate(content)
     except ValidationError as error:
         # A key that is not known explains one that is missing, not the other way round.
         problems = error.errors(include_url=False)
         problems.sort(key=lambda problem: problem["type"] != "extra_forbidden")
-        more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
+        others = {_key_of(problem) for problem in problems} - {_key_of(problems[0])}
+        more = f" (and {len(others)} more)" if others else ""
         raise CaseError(_in_words(problems[0]) + more) from None
+
+
+# pydantic's kinds of problem in the words of a case file.
+_WORDS = {
+    "model_type": "a table",
+    "model_attributes_type": "a table",
+    "dict_type": "a table",
+    "list_type": "a list",
+    "too_short": "a list with at least one value",
+    "too_long": f"a list with at most {MOST_STEPS} values",
+    "string_type": "a text",
+    "string_too_short": "a text that is not empty",
+    "bool_type": "true or false",
+    "float_type": "a number",
+    "int_type": "a whole number",
+    "int_parsing_size": "a smaller number",
+}
+
+
+def _keys(problem: Any) -> list[str]:
+    # The tags of a union ("gaussian") and the places in a list are not keys of the file.
+    tags = {"exponential", "gaussian", "measured"}
+    return [str(k) for k in problem["loc"] if isinstance(k, str) and k not in tags]
+
+
+def _key_of(problem: Any) -> str:
+    return ".".join(shown(key)[1:-1] for key in _keys(problem))
 
 
 def _in_words(problem: Any) -> str:
     """One line for one of pydantic's problems: the key, what is wrong, the remedy."""
-    # The tags of a union ("gaussian") and the places in a list are not keys of the file.
-    tags = {"exponential", "gaussian", "measured"}
-    keys = [str(k) for k in problem["loc"] if isinstance(k, str) and k not in tags]
-    key = ".".join(keys)
+    keys, key = _keys(problem), _key_of(problem)
     prefix = f"{key}: " if key else ""
     kind, context = problem["type"], problem.get("ctx", {})
     if kind == "extra_forbidden":
@@ -248,11 +329,11 @@ def _in_words(problem: Any) -> str:
     if kind == "union_tag_not_found":
         return f'{key}.kind is missing; write "exponential", "gaussian" or "measured"'
     if kind == "union_tag_invalid":
-        return f"{key}.kind: {context['tag']!r} is not one of {context['expected_tags']}"
+        return f"{key}.kind: {shown(context['tag'])} is not one of {context['expected_tags']}"
     if kind == "value_error":
         return f"{prefix}{context['error']}"
-    message = problem["msg"].removeprefix("Input should be ")
-    return f"{prefix}{problem['input']!r} should be {message}"
+    should_be = _WORDS.get(kind, problem["msg"].removeprefix("Input should be "))
+    return f"{prefix}{shown(problem['input'])} should be {should_be}"
 
 
 def _keys_of(path: list[str], loc: tuple[Any, ...]) -> list[str]:

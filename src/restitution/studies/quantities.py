@@ -10,10 +10,14 @@ from typing import Annotated, Any
 import pint
 from pydantic import BeforeValidator
 
+from restitution.errors import shown
+
 # One number, then one unit expression: names, powers, * and /. Nothing that could be arithmetic on
-# numbers, so that a case file cannot make the unit parser compute.
+# numbers, so that a case file cannot make the unit parser compute. A digit right behind a name is
+# its power: "g/cm3" is g/cm^3.
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
-_UNIT = r"[^\W\d]+(?:\s*(?:\^|\*\*)\s*-?\d)?"
+_UNIT = r"[^\W\d]+(?:\s*(?:\^|\*\*)\s*-?\d|\d)?"
+_POWER = re.compile(r"(?<=[^\W\d])(\d)")
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*((?:{_UNIT})(?:\s*[*/·]\s*{_UNIT})*)\s*", re.UNICODE)
 
 _EXAMPLES = {
@@ -23,6 +27,15 @@ _EXAMPLES = {
     "N": '"0.1 N"',
 }
 _NAMES = {"m": "a length", "Pa": "a pressure", "kg/m^3": "a density", "N": "a force"}
+# Spellings of which one in the wrong case is recognised.
+_USUAL = {
+    "m": ("m", "cm", "mm", "um", "µm", "nm", "pm"),
+    "Pa": ("Pa", "kPa", "MPa", "GPa", "N/mm^2", "N/mm2"),
+    "kg/m^3": ("kg/m^3", "kg/m3", "g/cm^3", "g/cm3"),
+    "N": ("N", "kN", "mN", "uN", "µN", "nN"),
+}
+# Beyond these a number is a slip of the unit, and formulas would over- or underflow.
+_BOUNDS = {"m": (1e-12, 1e3), "Pa": (1.0, 1e15), "kg/m^3": (1e-2, 1e6), "N": (1e-15, 1e12)}
 
 
 @lru_cache(maxsize=1)
@@ -34,32 +47,50 @@ def read_quantity(value: object, unit: str) -> float:
     """Return `value`, such as "500 um", in the SI `unit`; raise `ValueError` in plain words."""
     example = f"write for example {_EXAMPLES[unit]}"
     if isinstance(value, (int, float)) and not isinstance(value, bool):
-        raise ValueError(f"{value} has no unit; {example}")
+        raise ValueError(f"{shown(value)} has no unit; {example}")
     if not isinstance(value, str):
-        raise ValueError(f"{value!r} is not a text with a number and a unit; {example}")
+        raise ValueError(f"{shown(value)} is not a text with a number and a unit; {example}")
     match = _QUANTITY.fullmatch(value)
     if match is None:
         missing = re.fullmatch(rf"\s*{_NUMBER}\s*", value)
         problem = "has no unit" if missing else "is not one number followed by a unit"
-        raise ValueError(f'"{value}" {problem}; {example}')
+        raise ValueError(f"{shown(value)} {problem}; {example}")
     number, name = float(match[1]), match[2].replace("·", "*").replace("^", "**")
     try:
-        factor = float(_registry().Quantity(1.0, name).m_as(unit))
+        factor = float(_registry().Quantity(1.0, _POWER.sub(r"**\1", name)).m_as(unit))
     except pint.DimensionalityError:
-        raise ValueError(f'"{value}" is not {_NAMES[unit]}; {example}') from None
+        remedy = _other_case(match[2], unit) or example
+        raise ValueError(f"{shown(value)} is not {_NAMES[unit]}; {remedy}") from None
     except (pint.PintError, ValueError, TypeError, AttributeError):
-        raise ValueError(f'"{value}" has a unit that is not known; {example}') from None
+        remedy = _other_case(match[2], unit) or example
+        raise ValueError(f"{shown(value)} has a unit that is not known; {remedy}") from None
     result = number * factor
     if not math.isfinite(result):
-        raise ValueError(f'"{value}" is not a finite number; {example}')
+        raise ValueError(f"{shown(value)} is not a finite number; {example}")
     return result
+
+
+def _other_case(name: str, unit: str) -> str | None:
+    """Advice when `name` is a usual unit but for upper and lower case ("gpa")."""
+    for usual in _USUAL[unit]:
+        if usual.lower() == name.lower() and usual != name:
+            return f"did you mean {usual}?"
+    return None
 
 
 def _positive(unit: str) -> BeforeValidator:
     def read(value: Any) -> float:
         result = read_quantity(value, unit)
         if result <= 0:
-            raise ValueError(f'"{value}" must be greater than zero')
+            raise ValueError(f"{shown(value)} must be greater than zero")
+        low, high = _BOUNDS[unit]
+        if not low <= result <= high:
+            match = _QUANTITY.fullmatch(value)
+            hint = _other_case(match[2], unit) if match else None
+            raise ValueError(
+                f"{shown(value)} is outside what a contact can have ({low:g} to {high:g} {unit}); "
+                f"check the unit{f': {hint}' if hint else ''}"
+            )
         return result
 
     return BeforeValidator(read)

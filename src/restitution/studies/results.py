@@ -83,8 +83,8 @@ class ResultsFolder:
         self.path = path
         self.rows: list[dict[str, float]] = []
         self.unloading: list[tuple[float, list[tuple[float, float]]]] = []
-        self._new = not path.exists()
         with _writing(path):
+            self._new = not path.exists()
             path.mkdir(parents=True, exist_ok=True)
             if any(path.iterdir()):
                 raise OutputError(

@@ -22,6 +22,9 @@ from restitution.surfaces.scan import Scan, in_metres
 # Earlier versions read the sample files wrongly without a word: .tmd a thousand times too small
 # along all three axes, undefined pixels of .sur as heights (found with 1.25.0).
 _OLDEST_VERSION = (1, 27)
+INSTALL_READERS = (
+    'install the readers with `pip install "SurfaceTopography>=1.27"` (the extra "measured")'
+)
 
 
 class UnrecognisedError(SurfaceError):
@@ -61,19 +64,18 @@ def read_instrument(path: Path, channel: int | None) -> Scan:
 
 def _import_readers(path: Path) -> Callable[[str], Any]:
     """SurfaceTopography's function that opens a file."""
-    install = 'install it with `pip install "restitution[measured]"`'
     try:
         import SurfaceTopography
     except ImportError as error:
         raise NoReadersError(
-            f"{path}: reading this format takes the SurfaceTopography package; {install}"
+            f"{path}: reading this format takes the SurfaceTopography package; {INSTALL_READERS}"
         ) from error
     version = SurfaceTopography.__version__
     if tuple(int(part) for part in re.findall(r"\d+", version)[:2]) < _OLDEST_VERSION:
         oldest = ".".join(map(str, _OLDEST_VERSION))
         raise NoReadersError(
             f"{path}: reading this format takes SurfaceTopography {oldest} or later, and {version} "
-            f"is installed; {install}"
+            f"is installed; {INSTALL_READERS}"
         )
     open_topography: Callable[[str], Any] = SurfaceTopography.open_topography
     return open_topography

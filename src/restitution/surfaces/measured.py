@@ -14,7 +14,12 @@ from numpy.typing import NDArray
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.surfaces.fill import fill_harmonically
-from restitution.surfaces.instrument_files import NoReadersError, UnrecognisedError, read_instrument
+from restitution.surfaces.instrument_files import (
+    INSTALL_READERS,
+    NoReadersError,
+    UnrecognisedError,
+    read_instrument,
+)
 from restitution.surfaces.matrix_files import (
     NUMPY_SUFFIXES,
     TEXT_SUFFIXES,
@@ -95,12 +100,14 @@ def read_surface(
 
 def _check_readable(file: Path) -> str:
     """SHA-256 of the file, once it is known to be there, a file, readable and not empty."""
-    if file.is_dir():
-        raise SurfaceError(f"{file}: is a directory; give the topography file inside it")
     try:
+        if file.is_dir():
+            raise SurfaceError(f"{file}: is a directory; give the topography file inside it")
         with file.open("rb") as stream:
             digest = hashlib.file_digest(stream, "sha256").hexdigest()
             length = stream.tell()
+    except SurfaceError:
+        raise
     except FileNotFoundError as error:
         raise SurfaceError(f"{file}: there is no such file; check the path") from error
     except (OSError, ValueError) as error:
@@ -126,8 +133,7 @@ def _read_scan(file: Path, channel: int | None) -> Scan:
                 raise not_a_matrix from None
             except NoReadersError as no_readers:
                 raise SurfaceError(
-                    f"{not_a_matrix}; if it is an instrument's own format, "
-                    '`pip install "restitution[measured]"`'
+                    f"{not_a_matrix}; if it is an instrument's own format, {INSTALL_READERS}"
                 ) from no_readers
     else:
         return read_instrument(file, channel)
