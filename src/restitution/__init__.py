@@ -1,22 +1,25 @@
 """Coefficient of restitution of rough elastic-plastic particles from their surface topography."""
 
-from restitution.collision import Collision, collide
-from restitution.contact.bodies import Body, Pair
-from restitution.contact.contact import Contact, smooth
-from restitution.contact.equilibrium import solve, step
-from restitution.contact.load import solve_at_force
-from restitution.contact.path import loading_path, unloading_path
-from restitution.contact.state import State
-from restitution.errors import RestitutionError
-from restitution.numerics.grid import Grid
-from restitution.surfaces import (
-    Surface,
-    describe,
-    generate_surface,
-    level,
-    place_on_grid,
-    read_surface,
-)
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from restitution.collision import Collision, collide
+    from restitution.contact.bodies import Body, Pair
+    from restitution.contact.contact import Contact, smooth
+    from restitution.contact.equilibrium import solve, step
+    from restitution.contact.load import solve_at_force
+    from restitution.contact.path import loading_path, unloading_path
+    from restitution.contact.state import State
+    from restitution.errors import RestitutionError
+    from restitution.numerics.grid import Grid
+    from restitution.surfaces import (
+        Surface,
+        describe,
+        generate_surface,
+        level,
+        place_on_grid,
+        read_surface,
+    )
 
 __all__ = [
     "Body",
@@ -40,3 +43,38 @@ __all__ = [
     "step",
     "unloading_path",
 ]
+
+# Where each name above comes from. They are imported on first use: the command line is in this
+# package, too, and is to answer (and to be stopped) before numpy is loaded.
+_HOMES = {
+    "collision": ("Collision", "collide"),
+    "contact.bodies": ("Body", "Pair"),
+    "contact.contact": ("Contact", "smooth"),
+    "contact.equilibrium": ("solve", "step"),
+    "contact.load": ("solve_at_force",),
+    "contact.path": ("loading_path", "unloading_path"),
+    "contact.state": ("State",),
+    "errors": ("RestitutionError",),
+    "numerics.grid": ("Grid",),
+    "surfaces": (
+        "Surface",
+        "describe",
+        "generate_surface",
+        "level",
+        "place_on_grid",
+        "read_surface",
+    ),
+}
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name):
+        from importlib import import_module
+
+        for home, names in _HOMES.items():
+            if name in names:
+                return getattr(import_module(f"{__name__}.{home}"), name)
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+    def __dir__():
+        return sorted({*globals(), *__all__})

@@ -156,6 +156,9 @@ def test_contact_off_the_domain_keeps_the_depths_before_it(cli, case_text, tmp_p
     assert "the contact reaches the edge of the 36 um x 38.4 um grid" in said
     assert "use a grid of about" in said
     assert "3 of 4 depths were computed and are kept" in said
+    # What is foreseen is said before the solve that fails on it.
+    assert said.index("Warning: the contact is foreseen to reach") < said.index("Error: ")
+    assert (tmp_path / "out" / "load-displacement.png").exists()
     assert len((tmp_path / "out" / "curve.csv").read_text().splitlines()) == 4
     assert '"status": "failed"' in (tmp_path / "out" / "summary.json").read_text()
     assert (tmp_path / "out" / "results.nc").exists()
@@ -281,8 +284,11 @@ def test_a_full_disk(monkeypatch, case_text, cli, tmp_path):
     assert "Traceback" not in said
 
 
-def test_interruption_keeps_what_was_computed(case_text, tmp_path):
-    """Ctrl-C while a case runs: one line, status 130, and a readable folder of what was done."""
+@pytest.mark.parametrize(
+    ("sent", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)]
+)
+def test_interruption_keeps_what_was_computed(case_text, tmp_path, sent, status):
+    """Ctrl-C while a case runs: one line, its status, and a readable folder of what was done."""
     text = case_text.replace("steps = 4", "steps = 400").replace("curves = 2", "curves = 400")
     (tmp_path / "case.toml").write_text(text)
     out = tmp_path / "out"
@@ -294,9 +300,9 @@ def test_interruption_keeps_what_was_computed(case_text, tmp_path):
         if curve.exists() and curve.read_text().count("\n") > 5:
             break
         time.sleep(0.02)
-    process.send_signal(signal.SIGINT)
+    process.send_signal(sent)
     said = process.communicate(timeout=60)[1]
-    assert process.returncode == 130
+    assert process.returncode == status
     assert "Interrupted" in said
     assert "depths were computed and are kept" in said
     assert "Traceback" not in said
@@ -307,4 +313,6 @@ def test_interruption_keeps_what_was_computed(case_text, tmp_path):
     with xr.open_dataset(out / "results.nc") as results:
         assert results.sizes["indentation_max"] == len(rows) > 4
         assert results.attrs["status"] == "interrupted"
+    assert '"status": "interrupted"' in (out / "summary.json").read_text()
+    assert (out / "restitution-indentation.png").exists()
     assert not list(out.glob(".*.part"))

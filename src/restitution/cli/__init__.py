@@ -1,53 +1,42 @@
 """The command line: one verb a file, heavy imports inside the verb."""
 
-from __future__ import annotations
-
+import errno
 import sys
-from typing import Annotated
 
-import typer
-
-from restitution.cli import check, run, surface
-from restitution.errors import RestitutionError
-
-app = typer.Typer(
-    name="restitution",
-    help="Coefficient of restitution of rough elastic-plastic particles from their surface.",
-    no_args_is_help=True,
-    add_completion=False,
-    pretty_exceptions_enable=False,
-)
-app.command()(run.run)
-app.command()(check.check)
-app.command()(surface.surface)
-
-
-def _print_version(wanted: bool) -> None:
-    if wanted:
-        from importlib.metadata import version
-
-        typer.echo(f"restitution {version('restitution')}")
-        raise typer.Exit
-
-
-@app.callback()
-def _options(
-    version: Annotated[
-        bool,
-        typer.Option(
-            "--version", callback=_print_version, is_eager=True, help="Print the version."
-        ),
-    ] = False,
-) -> None:
-    pass
+# Reasons of the system why a terminal, pipe or file takes no more output.
+_NO_ROOM = {errno.ENOSPC, errno.EFBIG, errno.EIO, getattr(errno, "EDQUOT", errno.ENOSPC)}
 
 
 def main() -> None:
     """Run the command line; a user's error is one red line and status 1."""
-    from restitution.cli.console import errors
+    try:
+        for stream in (sys.stdout, sys.stderr):
+            # A terminal without Greek letters shows a question mark instead.
+            getattr(stream, "reconfigure", lambda **_: None)(errors="replace")
+        sys.exit(_run())
+    except KeyboardInterrupt:
+        sys.exit(130)
+
+
+def _run() -> int:
+    from restitution.cli.app import app
+    from restitution.cli.console import refuse
+    from restitution.cli.signals import Stopped, stoppable
+    from restitution.errors import RestitutionError
 
     try:
-        app()
+        with stoppable():
+            app()
     except RestitutionError as error:
-        errors.print(f"Error: {error}", style="red", highlight=False, markup=False, soft_wrap=True)
-        sys.exit(1)
+        refuse(str(error))
+    except MemoryError:
+        refuse("the memory is too small for this case; use fewer grid.nodes")
+    except OSError as error:
+        if error.errno not in _NO_ROOM:
+            raise
+        refuse(f"standard output: cannot be written ({error.strerror}); send it elsewhere")
+        # What is left in its buffer would fail again when Python ends.
+        sys.stdout = None
+    except Stopped as stop:
+        return stop.status
+    return 1

@@ -20,6 +20,7 @@ def run(
     )
 
     from restitution.cli.console import answers, errors, warn
+    from restitution.cli.signals import Stopped
     from restitution.reports.figures import write_figures
     from restitution.studies.case import naming, read_case
     from restitution.studies.results import ResultsFolder
@@ -41,28 +42,42 @@ def run(
             summary = run_case(
                 read, text, case.parent, folder,
                 progress=lambda words: bar.update(task, advance=1, description=words),
+                warn=warn,
             )  # fmt: skip
-    except KeyboardInterrupt:
+        _print_curve(answers, folder.rows)
+        answers.print(
+            f"{depths} depths, {summary['convolutions']} convolutions, {summary['seconds']:.1f} s; "
+            f"largest residual {summary['trust']['largest_residual']:.1e}",
+            markup=False,
+        )
+        figures = write_figures(out)
+    except KeyboardInterrupt as stop:
         errors.print("Interrupted.", style="red")
-        raise  # typer ends with status 130
-    finally:
-        if folder.rows and len(folder.rows) < depths:
-            errors.print(
-                f"{len(folder.rows)} of {depths} depths were computed and are kept in {out}",
-                markup=False, soft_wrap=True,
-            )  # fmt: skip
-    for warning in summary["warnings"]:
-        warn(warning)
-    figures = write_figures(out)
-    _print_curve(answers, folder.rows)
-    answers.print(
-        f"{depths} depths, {summary['convolutions']} convolutions, {summary['seconds']:.1f} s; "
-        f"largest residual {summary['trust']['largest_residual']:.1e}",
-        markup=False,
-    )
+        _keep(folder, depths)
+        raise typer.Exit(stop.status if isinstance(stop, Stopped) else 130) from None
+    except BaseException:
+        _keep(folder, depths)
+        raise
     names = ["curve.csv", "unloading.csv", "summary.json", "results.nc"]
     answers.print(f"In {out}: {', '.join(names + [f.name for f in figures])}", markup=False,
                   soft_wrap=True)  # fmt: skip
+
+
+def _keep(folder, depths) -> None:  # type: ignore[no-untyped-def]
+    """Say what a run that ended early leaves, and draw it."""
+    from contextlib import suppress
+
+    from restitution.cli.console import errors
+    from restitution.reports.figures import write_figures
+
+    if not folder.rows:
+        return
+    errors.print(
+        f"{len(folder.rows)} of {depths} depths were computed and are kept in {folder.path}",
+        markup=False, soft_wrap=True,
+    )  # fmt: skip
+    with suppress(Exception):  # what ended the run is to be said, not that its figures fail, too
+        write_figures(folder.path)
 
 
 def _print_curve(console, rows) -> None:  # type: ignore[no-untyped-def]

@@ -17,7 +17,7 @@ from restitution.contact.resolution import (
     unresolved_warning,
 )
 from restitution.contact.state import State
-from restitution.errors import RestitutionError
+from restitution.errors import RestitutionError, one_line
 from restitution.numerics.quadrature import integrate_curve
 from restitution.studies.case import Case
 from restitution.studies.derived import deepest_indentation, derived_quantities
@@ -31,13 +31,15 @@ CONVENTIONS = {
     "yield_pressure": "largest contact pressure, a hardness: about 2.8 times the yield strength",
 }
 
+_BALANCE = 0.01  # difference of unloading work and stored energy that is worth a warning
+
 
 @dataclass
 class _Progress:
     """What a run has come to: how it ended, and what bears on how far it can be trusted."""
 
-    status: str = "complete"
-    reason: str = ""
+    status: str = "failed"
+    reason: str = "stopped by an unforeseen error"
     deepest: State | None = None
     warnings: list[str] = field(default_factory=list)
     loading_work_errors: list[float] = field(default_factory=list)
@@ -50,12 +52,14 @@ def run_case(
     folder: Path,
     out: ResultsFolder,
     progress: Callable[[str], None] = lambda _: None,
+    warn: Callable[[str], None] = lambda _: None,
 ) -> dict[str, Any]:
     """Run `case` (whose text was `text`, with files relative to `folder`) and return the summary.
 
-    `progress` is called with a few words after every depth. Whatever stops the run is raised again
-    once everything computed until then, and the reason, are in the folder; when nothing was, the
-    folder is taken back.
+    `progress` is called with a few words after every depth, `warn` with every warning: what is
+    foreseen before the first solve, what the results show at the end, whichever end it is.
+    Whatever stops the run is raised again once everything computed until then, and the reason, are
+    in the folder; when nothing was, the folder is taken back.
     """
     began = time.perf_counter()
     run = _Progress()
@@ -64,13 +68,19 @@ def run_case(
         foreseen = deepest_indentation(case)
         refuse_coarse_scan(contact, foreseen)
         run.warnings += foreseen_warnings(contact, foreseen)
+        for warning in run.warnings:
+            warn(warning)
         with out.tables():
             _load_and_unload(contact, case, out, run, progress)
+        run.status, run.reason = "complete", ""
     except KeyboardInterrupt:
         run.status, run.reason = "interrupted", "stopped by the user"
         raise
     except RestitutionError as error:
-        run.status, run.reason = "failed", str(error)
+        run.reason = str(error)
+        raise
+    except Exception as error:
+        run.reason = one_line(f"{run.reason}: {type(error).__name__} {error}".strip())
         raise
     finally:
         if run.deepest is None:
@@ -81,6 +91,8 @@ def run_case(
             dataset = results_dataset(out, run.deepest)
             dataset.attrs = _attributes(summary, text)
             out.write(dataset, summary)
+            for warning in summary["warnings"][len(run.warnings) :]:
+                warn(warning)
     return summary
 
 
@@ -120,6 +132,7 @@ def _unload(state: State, steps: int, out: ResultsFolder) -> dict[str, float]:
 def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Progress) -> dict[str, Any]:
     patches = [int(row["largest_patch_nodes"]) for row in out.rows]
     unresolved = unresolved_warning([row["indentation_m"] for row in out.rows], patches)
+    found = [unresolved, _unbalanced(run.unloading_checks)]
     elastic = math.isinf(contact.yield_pressure)
     return {
         "title": case.title,
@@ -127,7 +140,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Progress)
         "reason": run.reason,
         "depths_asked": len(case.depths()),
         "depths_computed": len(out.rows),
-        "warnings": run.warnings + ([unresolved] if unresolved else []),
+        "warnings": run.warnings + [warning for warning in found if warning],
         "model": {
             "plasticity": "none" if elastic else contact.plasticity,
             "adhesion": "none",
@@ -146,6 +159,19 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Progress)
         "convolutions": sum(int(row["convolutions"]) for row in out.rows),
         "versions": versions(),
     }
+
+
+def _unbalanced(checks: list[dict[str, float]]) -> str | None:
+    """One line on unloading curves whose work is not the stored energy, or None."""
+    off = [check for check in checks if not abs(check["relative_to_stored_energy"]) <= _BALANCE]
+    if not off:
+        return None
+    worst = max(off, key=lambda check: abs(check["relative_to_stored_energy"]))
+    return (
+        f"{len(off)} of {len(checks)} unloading curves return another work than was stored, at "
+        f"worst {worst['relative_to_stored_energy']:+.1%} from "
+        f"{1e9 * worst['indentation_m']:.4g} nm: raise unloading.steps, or refine the grid"
+    )
 
 
 def _attributes(summary: dict[str, Any], text: str) -> dict[str, str]:

@@ -1,0 +1,40 @@
+"""The verbs and options of the command line."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from restitution.cli import check, run, surface
+
+app = typer.Typer(
+    name="restitution",
+    help="Coefficient of restitution of rough elastic-plastic particles from their surface.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+app.command()(run.run)
+app.command()(check.check)
+app.command()(surface.surface)
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        typer.echo(f"restitution {version('restitution')}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_print_version, is_eager=True, help="Print the version."
+        ),
+    ] = False,
+) -> None:
+    pass

@@ -1,0 +1,116 @@
+"""However a command ends: what is said, what is kept, and which status."""
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+
+from restitution.studies import run as study
+
+CALL = "from restitution.cli import main; main()"
+
+
+@pytest.fixture
+def case(case_text, tmp_path):
+    (tmp_path / "case.toml").write_text(case_text)
+    return tmp_path / "case.toml"
+
+
+def call(*arguments, before="", **options):
+    """The command line in a process of its own, after the statements `before`."""
+    command = [sys.executable, "-c", f"{before}\n{CALL}", *map(str, arguments)]
+    return subprocess.run(command, capture_output="stdout" not in options, text=True, **options)
+
+
+def fail_at_the_third_depth(monkeypatch, error):
+    real, calls = study.loading_path, []
+
+    def path(*arguments, **options):
+        for state in real(*arguments, **options):
+            calls.append(state)
+            if len(calls) == 3:
+                raise error
+            yield state
+
+    monkeypatch.setattr(study, "loading_path", path)
+
+
+def test_an_unforeseen_error_is_recorded(cli, case, tmp_path, monkeypatch):
+    fail_at_the_third_depth(monkeypatch, ZeroDivisionError("by\nnought"))
+    with pytest.raises(ZeroDivisionError):
+        cli("run", case, "-o", tmp_path / "out")
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text())
+    assert summary["status"] == "failed"
+    assert summary["reason"] == ("stopped by an unforeseen error: ZeroDivisionError by\\nnought")
+    assert summary["depths_computed"] == 2
+
+
+def test_too_little_memory_is_one_line(refused, case, tmp_path, monkeypatch):
+    fail_at_the_third_depth(monkeypatch, MemoryError("9 TiB"))
+    assert "use fewer grid.nodes" in refused("run", case, "-o", tmp_path / "out")
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text())
+    assert summary["status"] == "failed"
+    assert "MemoryError 9 TiB" in summary["reason"]
+
+
+def test_an_interruption_after_the_last_depth_says_what_is_kept(cli, case, tmp_path, monkeypatch):
+    from restitution.reports import figures
+
+    def stop(_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(figures, "pressure_map", stop)
+    status, table, said = cli("run", case, "-o", tmp_path / "out")
+    assert status == 130
+    assert f"4 of 4 depths were computed and are kept in {tmp_path / 'out'}" in said
+    assert "COR" in table  # before the figures
+
+
+def test_an_unloading_curve_that_misses_the_stored_energy_is_warned_of(
+    cli, case, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(study, "_BALANCE", 1e-9)
+    status, _, said = cli("run", case, "-o", tmp_path / "out")
+    assert status == 0
+    assert "2 of 2 unloading curves return another work than was stored, at worst" in said
+    assert "raise unloading.steps" in (tmp_path / "out" / "summary.json").read_text()
+
+
+def test_a_name_with_a_line_break_stays_one_line(refused, tmp_path):
+    assert "two\\nlines.toml" in refused("check", tmp_path / "two\nlines.toml")
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
+def test_a_terminal_without_greek_letters(case, encoding):
+    done = call("check", case, env={**os.environ, "PYTHONIOENCODING": encoding})
+    assert done.returncode == 0
+    assert not done.stderr
+    assert "yield indentation ?_y" in done.stdout
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")
+@pytest.mark.parametrize("verb", ["check", "--version"])
+def test_a_standard_output_that_is_full(case, verb):
+    with open("/dev/full", "w") as full:
+        done = call(verb, *([case] if verb == "check" else []), stdout=full, stderr=subprocess.PIPE)
+    assert done.returncode == 1
+    assert done.stderr == (
+        "Error: standard output: cannot be written (No space left on device); send it elsewhere\n"
+    )
+
+
+@pytest.mark.parametrize("module", ["numpy", "typer", "pint"])
+def test_an_interruption_while_modules_load(case, module):
+    before = f"""
+import sys
+class Stop:
+    def find_spec(name, *_):
+        if name == "{module}":
+            raise KeyboardInterrupt
+sys.meta_path.insert(0, Stop)
+"""
+    done = call("check", case, before=before)
+    assert done.returncode == 130
+    assert not done.stderr
