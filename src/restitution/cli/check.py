@@ -13,6 +13,7 @@ def check(
     from rich.table import Table
 
     from restitution.cli.console import answers, warn
+    from restitution.contact.plausibility import implausible
     from restitution.contact.resolution import foreseen_warnings, refuse_coarse_scan
     from restitution.studies.case import naming, read_case
     from restitution.studies.derived import deepest_indentation, derived_quantities
@@ -52,7 +53,7 @@ def check(
     answers.print(table)
     deepest = deepest_indentation(read)
     refuse_coarse_scan(contact, deepest)
-    warnings = foreseen_warnings(contact, deepest)
+    warnings = foreseen_warnings(contact, deepest) + implausible(contact, deepest)
     for warning in warnings:
         warn(warning)
     answers.print("The case is valid." if not warnings else "The case is valid, with warnings.")

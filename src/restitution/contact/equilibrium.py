@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.contact.contact import Contact
+from restitution.contact.edge import edge_advice
 from restitution.contact.influence import half_space, inverse_half_space
 from restitution.contact.state import Box, State
 from restitution.errors import CaseError, DomainError, NotConvergedError
@@ -84,13 +85,10 @@ def refuse_edge(state: State) -> None:
     p, grid = state.pressure, state.contact.grid
     if not max(p[0].max(), p[-1].max(), p[:, 0].max(), p[:, -1].max()) > 0:
         return
-    # A fully plastic sphere touches within sqrt(2 R* δ), an elastic one within sqrt(R* δ).
-    needed = 2.4 * np.sqrt(2 * state.contact.pair.radius * state.indentation)
     wide, long = (1e6 * edge for edge in grid.size)
     raise DomainError(
         f"the contact reaches the edge of the {wide:.4g} um x {long:.4g} um grid at an indentation "
-        f"of {1e9 * state.indentation:.4g} nm; use a grid of about {1e6 * needed:.3g} um "
-        "(more grid.nodes or a larger grid.spacing) or stop at a smaller indentation"
+        f"of {1e9 * state.indentation:.4g} nm; {edge_advice(state.contact, state.indentation)}"
     )
 
 

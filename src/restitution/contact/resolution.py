@@ -50,10 +50,11 @@ def foreseen_warnings(contact: Contact, indentation: float) -> list[str]:
     pixel = _coarsest_pixel(contact)
     half_width, coarsest = 0.5 * min(grid.size), max(pixel, *grid.spacing)
     found = []
+    larger = "a larger scan" if grid_of_a_scan(contact) else "more nodes"
     if radius >= half_width:
         found.append(
             f"the contact is foreseen to reach {_um(radius)} from the centre at an indentation of "
-            f"{_nm(indentation)}, but the grid ends at {_um(half_width)}: use more nodes or "
+            f"{_nm(indentation)}, but the grid ends at {_um(half_width)}: use {larger} or "
             "stop earlier"
         )
     if radius < NODES_PER_RADIUS * coarsest:
@@ -64,8 +65,8 @@ def foreseen_warnings(contact: Contact, indentation: float) -> list[str]:
         )
     if radius > _HALF_SPACE * pair.radius:
         found.append(
-            f"the contact radius {_um(radius)} is {radius / pair.radius:.2g} of R*: the half-space "
-            f"holds up to about {_HALF_SPACE}"
+            f"the contact radius {_um(radius)} is {radius / pair.radius:.4g} of R*: the half-space "
+            f"holds up to about {_HALF_SPACE} (a tenth of the radius of two equal spheres)"
         )
     if min(grid.spacing) < 0.999 * pixel:
         found.append(
@@ -89,6 +90,15 @@ def unresolved_warning(depths: Sequence[float], largest_patches: Sequence[int]) 
         f"{NODES_PER_PATCH} nodes in their largest contact patch: their numbers belong to the "
         "grid, not to the surface; refine the grid"
     )
+
+
+def grid_of_a_scan(contact: Contact) -> bool:
+    """Whether the grid takes up a whole scan, so that only a larger scan gives a larger grid."""
+    provenance = contact.surface.provenance
+    if provenance.get("source") != "measured":
+        return False
+    edges = zip("xy", contact.grid.size, strict=True)
+    return all(edge > 0.9 * float(provenance.get(f"size_{a}_m", 0.0)) for a, edge in edges)
 
 
 def _coarsest_pixel(contact: Contact) -> float:

@@ -11,6 +11,7 @@ from typing import Any
 
 from restitution.contact.contact import Contact
 from restitution.contact.path import loading_path, unloading_path
+from restitution.contact.plausibility import implausible
 from restitution.contact.resolution import (
     foreseen_warnings,
     refuse_coarse_scan,
@@ -67,7 +68,7 @@ def run_case(
         contact = case.contact(folder)
         foreseen = deepest_indentation(case)
         refuse_coarse_scan(contact, foreseen)
-        run.warnings += foreseen_warnings(contact, foreseen)
+        run.warnings += foreseen_warnings(contact, foreseen) + implausible(contact, foreseen)
         for warning in run.warnings:
             warn(warning)
         with out.tables():

@@ -1,6 +1,6 @@
 """Height maps: generate them, read measured ones, level, place on a grid and describe them."""
 
-from restitution.surfaces.describe import describe
+from restitution.surfaces.describe import describe, rms_slope
 from restitution.surfaces.generate import generate_surface
 from restitution.surfaces.level import level
 from restitution.surfaces.measured import read_surface
@@ -14,4 +14,5 @@ __all__ = [
     "level",
     "place_on_grid",
     "read_surface",
+    "rms_slope",
 ]

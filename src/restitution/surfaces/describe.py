@@ -51,7 +51,7 @@ def describe(surface: Surface) -> dict[str, float | None]:
         "Sp_m": Sp,
         "Sv_m": Sv,
         "Sz_m": Sp + Sv,
-        "Sdq": math.sqrt(_mean_square_slope(z, hx) + _mean_square_slope(z.T, hy)),
+        "Sdq": rms_slope(surface),
         "correlation_length_x_m": None,
         "correlation_length_y_m": None,
     }
@@ -63,6 +63,13 @@ def describe(surface: Surface) -> dict[str, float | None]:
         values["correlation_length_x_m"] = _correlation_length(unit, hx)
         values["correlation_length_y_m"] = _correlation_length(unit.T, hy)
     return values
+
+
+def rms_slope(surface: Surface) -> float:
+    """Root mean square gradient `Sdq`, as `describe` gives it."""
+    hx, hy = surface.grid.spacing
+    z = surface.height - surface.height.mean()
+    return math.sqrt(_mean_square_slope(z, hx) + _mean_square_slope(z.T, hy))
 
 
 def _mean_square_slope(z: NDArray[np.float64], h: float) -> float:

@@ -1,0 +1,96 @@
+"""What speaks against a contact before it is solved: slips of a unit, and theory's limits."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from restitution.contact.contact import Contact
+from restitution.contact.edge import edge_advice, first_touch
+from restitution.contact.resolution import foreseen_radius
+from restitution.surfaces import level, rms_slope
+
+_TILTED = 0.5  # of the variance of the heights that a plane explains
+_STEEP = 0.5  # rms slope beyond which small-slope theory misleads
+_PRESSURES = (1e-5, 0.3)  # p_y/E* of materials, from soft polymers to the ideal strength
+_NEAR_EDGE = 0.1  # of the width of the grid
+_SAFELY = 0.9  # foreseen radii are good to 6 %
+
+
+def implausible(contact: Contact, indentation: float) -> list[str]:
+    """What the input of `contact` says against loading it to `indentation` (m)."""
+    checks = (
+        _tilt(contact), _edge(contact, indentation), _steepness(contact),
+        _yield_pressure(contact), _coarse_grid(contact),
+    )  # fmt: skip
+    return [line for line in checks if line]
+
+
+def _tilt(contact: Contact) -> str | None:
+    surface = contact.surface
+    if surface.provenance.get("source") != "measured":
+        return None
+    if surface.provenance.get("levelling") not in ("none", "center"):
+        return None
+    variance = float(np.var(surface.height))
+    explained = 1 - float(np.var(level(surface, "tilt").height)) / variance if variance else 0.0
+    if explained <= _TILTED:
+        return None
+    return (
+        f"{surface.provenance['file']}: the scan is tilted (a plane explains {explained:.0%} of "
+        'the variance of its heights): set roughness.detrend = "tilt" or "curvature"'
+    )
+
+
+def _edge(contact: Contact, indentation: float) -> str | None:
+    """Contact at the rim that smooth bodies would not have: those are foreseen by their radius."""
+    radius = foreseen_radius(contact.pair, indentation, contact.yield_pressure)
+    gap, grid = contact.gap, contact.grid
+    if radius >= 0.5 * min(grid.size):
+        return None
+    rim = float(min(gap[0].min(), gap[-1].min(), gap[:, 0].min(), gap[:, -1].min()))
+    position = zip(first_touch(contact), grid.size, strict=True)
+    near = any(abs(at) > (0.5 - _NEAR_EDGE) * edge for at, edge in position)
+    # Smooth bodies touch where the undeformed gap is below a²/(2R*).
+    if not near and rim >= _SAFELY * radius**2 / (2 * contact.pair.radius):
+        return None
+    return (
+        f"the contact is foreseen to reach the edge of the grid: the gap there is "
+        f"{1e9 * rim:.4g} nm at first touch, and the deepest indentation is "
+        f"{1e9 * indentation:.4g} nm; {edge_advice(contact, indentation)}"
+    )
+
+
+def _steepness(contact: Contact) -> str | None:
+    slope = rms_slope(contact.surface)
+    if slope <= _STEEP:
+        return None
+    return (
+        f"the rms slope of the surface is {slope:.2g}: half-space theory holds for small slopes, "
+        f"below about {_STEEP}; check the units of the heights, or level or filter the surface"
+    )
+
+
+def _yield_pressure(contact: Contact) -> str | None:
+    ratio = contact.yield_pressure / contact.pair.contact_modulus
+    low, high = _PRESSURES
+    if math.isinf(ratio) or low <= ratio <= high:
+        return None
+    return (
+        f"the yield pressure is {ratio:.2g} of the contact modulus E*, where materials have "
+        f"{low:g} to {high:g}: check the units of yield_pressure and youngs_modulus"
+    )
+
+
+def _coarse_grid(contact: Contact) -> str | None:
+    provenance, grid = contact.surface.provenance, contact.grid
+    for axis, h in zip("xy", grid.spacing, strict=True):
+        pixel = float(provenance.get(f"pixel_{axis}_m", h))
+        if h > 1.001 * pixel:
+            return (
+                f"the grid spacing {1e6 * h:.3g} um is coarser than the scan's pixel "
+                f"{1e6 * pixel:.3g} um along {axis}: waves shorter than {2e6 * h:.3g} um are "
+                "aliased; use the pixel as grid.spacing"
+            )
+    return None

@@ -1,0 +1,63 @@
+"""What is said against a contact before it is solved."""
+
+import numpy as np
+import pytest
+
+from restitution import Body, Contact, Grid, Pair, Surface, generate_surface, smooth
+from restitution.contact.plausibility import implausible
+
+STEEL = Pair(*2 * [Body(500e-6, 210e9, 0.25)])
+GRID = Grid((64, 64), (0.5e-6, 0.5e-6))
+X, Y = GRID.x[:, None], GRID.y[None, :]
+ROUGH = generate_surface(GRID, kind="gaussian", rms=2e-8, correlation_length=3e-6, seed=1).height
+
+
+def measured(height, **provenance):
+    provenance = {"source": "measured", "file": "scan.npy", "levelling": "none", **provenance}
+    return Contact(STEEL, Surface(height, GRID, provenance), 750e6)
+
+
+def test_a_good_contact_is_let_pass():
+    assert implausible(Contact(STEEL, smooth(GRID), 750e6), 4e-7) == []
+    assert implausible(Contact(STEEL, smooth(GRID)), 4e-7) == []
+    assert implausible(measured(ROUGH), 4e-7) == []
+
+
+def test_a_tilted_scan():
+    line, edge = implausible(measured(ROUGH + 6e-2 * X), 1e-7)
+    assert "off the centre; use roughness.detrend" in edge
+    assert line.startswith("scan.npy: the scan is tilted (a plane explains ")
+    assert 'set roughness.detrend = "tilt"' in line
+    assert len(implausible(measured(ROUGH + 6e-2 * X, levelling="tilt"), 1e-7)) == 1
+
+
+def test_contact_at_the_rim_is_foreseen_where_smooth_bodies_would_not_have_it():
+    bump = 8e-7 * np.exp(-(((X + 14e-6) / 1e-6) ** 2) - (Y / 1e-6) ** 2)
+    lines = implausible(Contact(STEEL, Surface(bump, GRID), 750e6), 1e-7)
+    assert len(lines) == 1
+    assert "foreseen to reach the edge of the grid" in lines[0]
+    assert "first at x = -14 um, y = 0 um, off the centre" in lines[0]
+    # a ridge that is lower than the centre, but not by enough
+    ridge = 3.5e-7 * np.exp(-(((X - 15e-6) / 2e-6) ** 2)) + 0 * Y
+    (line,) = implausible(Contact(STEEL, Surface(ridge, GRID), 750e6), 4e-7)
+    assert "the gap there is 151.7 nm" in line
+    assert implausible(Contact(STEEL, Surface(ridge, GRID), 750e6), 5e-8) == []
+
+
+def test_steep_surfaces():
+    (line,) = implausible(Contact(STEEL, Surface(60 * ROUGH, GRID)), 4e-7)[-1:]
+    assert "the rms slope of the surface is " in line
+
+
+@pytest.mark.parametrize(("yield_pressure", "said"), [(750e3, "6.7e-06"), (750e9, "6.7")])
+def test_a_yield_pressure_that_no_such_body_has(yield_pressure, said):
+    lines = implausible(Contact(STEEL, smooth(GRID), yield_pressure), 1e-7)
+    assert len(lines) == 1
+    assert f"the yield pressure is {said} of the contact modulus" in lines[0]
+
+
+def test_a_grid_coarser_than_the_scan():
+    (line,) = implausible(measured(ROUGH, pixel_x_m=0.5e-6, pixel_y_m=0.2e-6), 1e-7)
+    assert "spacing 0.5 um is coarser than the scan's pixel 0.2 um along y" in line
+    assert "shorter than 1 um are aliased" in line
+    assert implausible(measured(ROUGH, pixel_x_m=0.5e-6, pixel_y_m=0.7e-6), 1e-7) == []
