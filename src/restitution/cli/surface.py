@@ -36,7 +36,10 @@ def surface(
     dataset.attrs = {"title": read.title, "case": text, **made.provenance}
     replace_file(folder.path / "surface.nc", lambda to: dataset.to_netcdf(to, engine="netcdf4"))
     write_json(folder.path / "statistics.json", {**statistics, "provenance": made.provenance})
-    write_figure(folder.path / "surface.png", surface_map(height, read.title))
+    write_figure(
+        folder.path / "surface.png",
+        surface_map(height, read.title, str(made.provenance.get("y_axis", "up"))),
+    )
 
     table = Table(box=None, show_header=False)
     for key, value in statistics.items():

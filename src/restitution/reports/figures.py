@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import textwrap
+import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -17,6 +19,9 @@ from restitution.studies.results import replace_file
 from restitution.theory import hertz, thornton_ning
 
 _SIZE = (6.4, 4.4)
+_WIDE = (10.4, 4.4)
+_SMOOTH = "smooth, same model"
+_THORNTON_NING = "smooth, Thornton–Ning (truncated pressure)"
 _UNRESOLVED = f"open: fewer than {NODES_PER_PATCH} nodes in the largest patch"
 
 
@@ -35,7 +40,10 @@ def write_figures(out: Path) -> list[Path]:
 def write_figure(path: Path, figure: Figure) -> None:
     """Write one figure as PNG, all of it or nothing."""
     FigureCanvasAgg(figure)
-    replace_file(path, lambda to: figure.savefig(to, format="png", dpi=150))
+    with warnings.catch_warnings():
+        # A title may be in a script that the font does not have: boxes are all it can get.
+        warnings.filterwarnings("ignore", message="Glyph .* missing from font")
+        replace_file(path, lambda to: figure.savefig(to, format="png", dpi=150))
 
 
 def figures(results: xr.Dataset) -> Iterator[tuple[str, Figure]]:
@@ -50,26 +58,40 @@ def figures(results: xr.Dataset) -> Iterator[tuple[str, Figure]]:
 
 
 def load_displacement(results: xr.Dataset) -> Figure:
-    """Force against indentation, loading and unloading."""
-    figure, axes = _axes(results, "indentation (µm)", "normal force (N)")
+    """Force against indentation, loading and unloading; again on logarithmic axes."""
+    figure = Figure(figsize=_WIDE, layout="constrained")
+    linear, logarithmic = figure.subplots(1, 2)
     depth, force = results["indentation"].values, results["force"].values
-    origin = np.zeros(1)
-    axes.plot(1e6 * np.append(origin, depth), np.append(origin, force), "o-", ms=3.5,
-              color="C0", label="loading")  # fmt: skip
-    for k in range(results.sizes.get("unloading", 0)):
-        axes.plot(1e6 * results["unloading_indentation"][k], results["unloading_force"][k], "-",
-                  color="C1", label="unloading" if k == 0 else None)  # fmt: skip
+    unloading = range(results.sizes.get("unloading", 0))
     R, E_star, p_y = _parameters(results)
-    fine = np.linspace(0, depth.max(), 400)
-    force_hertz = hertz.force(fine, R, E_star)
-    shown = force_hertz <= 1.3 * force.max()
-    axes.plot(1e6 * fine[shown], force_hertz[shown], ":", color="0.4", label="Hertz, smooth")
-    if np.isfinite(p_y):
-        axes.plot(1e6 * fine, thornton_ning.loading_force(fine, R, E_star, p_y), "--",
-                  color="0.4", label="Thornton–Ning, smooth")  # fmt: skip
-    axes.set_xlim(left=0)
-    axes.set_ylim(bottom=0)
-    axes.legend(frameon=False)
+    low = min([depth.min(), *(_last_carrying(results, k) for k in unloading)])
+    fine = np.geomspace(0.7 * low, depth.max(), 400)
+    for axes, start in ((linear, np.zeros(1)), (logarithmic, np.empty(0))):
+        axes.plot(1e6 * np.append(start, depth), np.append(start, force), "o-", ms=3.5,
+                  color="C0", label="loading")  # fmt: skip
+        for k in unloading:
+            x, y = results["unloading_indentation"][k].values, results["unloading_force"][k].values
+            shown = y > 0 if axes is logarithmic else np.isfinite(y)
+            axes.plot(1e6 * x[shown], y[shown], "-", color="C1",
+                      label="unloading" if k == 0 else None)  # fmt: skip
+        if "smooth_force" in results and np.isfinite(p_y):
+            axes.plot(1e6 * results["smooth_indentation"], results["smooth_force"], "-", lw=1,
+                      color="0.4", label=_SMOOTH)  # fmt: skip
+        force_hertz = hertz.force(fine, R, E_star)
+        shown = force_hertz <= 1.3 * force.max()
+        axes.plot(1e6 * fine[shown], force_hertz[shown], ":", color="0.4", label="Hertz, smooth")
+        if np.isfinite(p_y):
+            axes.plot(1e6 * fine, thornton_ning.loading_force(fine, R, E_star, p_y), "--",
+                      color="0.4", label=_THORNTON_NING)  # fmt: skip
+        axes.set(xlabel="indentation (µm)", ylabel="normal force (N)")
+    linear.set_title(_plain(results.attrs.get("title", "")))
+    linear.set_xlim(left=0)
+    linear.set_ylim(bottom=0)
+    linear.legend(edgecolor="none", fontsize="small")
+    logarithmic.set_title("the same, logarithmic")
+    logarithmic.set(xscale="log", yscale="log")
+    logarithmic.set_xlim(0.7e6 * low, 1.3e6 * depth.max())
+    logarithmic.set_ylim(0.3 * force.min(), 2 * force.max())
     return figure
 
 
@@ -78,12 +100,13 @@ def restitution_against_indentation(results: xr.Dataset) -> Figure:
     figure, axes = _axes(results, "maximum indentation (µm)", "coefficient of restitution")
     depth = results["indentation"].values
     _plot_restitution(axes, results, 1e6 * depth)
+    _plot_smooth(axes, results, "smooth_indentation", 1e6)
     R, E_star, p_y = _parameters(results)
     if np.isfinite(p_y):
         fine = _between(depth)
         reference = thornton_ning.restitution_at_indentation(fine, R, E_star, p_y)
-        axes.plot(1e6 * fine, reference, "--", color="0.4", label="Thornton–Ning, smooth")
-    axes.legend(frameon=False, loc="lower left")
+        axes.plot(1e6 * fine, reference, "--", color="0.4", label=_THORNTON_NING)
+    axes.legend(frameon=False, fontsize="small", loc="lower left")
     return figure
 
 
@@ -92,13 +115,14 @@ def restitution_against_velocity(results: xr.Dataset) -> Figure:
     figure, axes = _axes(results, "impact velocity (m/s)", "coefficient of restitution")
     velocity = results["impact_velocity"].values
     _plot_restitution(axes, results, velocity)
+    _plot_smooth(axes, results, "smooth_impact_velocity", 1.0)
     R, E_star, p_y = _parameters(results)
     if np.isfinite(p_y):
         fine = _between(velocity)
         mass = float(results.attrs["derived_reduced_mass_kg"])
         reference = thornton_ning.restitution(fine, R, E_star, p_y, mass)
-        axes.plot(fine, reference, "--", color="0.4", label="Thornton–Ning, smooth")
-    axes.legend(frameon=False, loc="lower left")
+        axes.plot(fine, reference, "--", color="0.4", label=_THORNTON_NING)
+    axes.legend(frameon=False, fontsize="small", loc="lower left")
     return figure
 
 
@@ -111,28 +135,35 @@ def pressure_map(results: xr.Dataset) -> Figure:
     part = pressure[low[0] : high[0], low[1] : high[1]]
     depth = float(results["indentation"].max())
     figure, axes = _axes(results, "x (µm)", "y (µm)", size=(5.6, 4.8))
+    if results.attrs.get("surface_y_axis") == "down":
+        axes.invert_yaxis()
     return _map(
         figure, axes, part.where(part > 0), 1e-6, "viridis",
         f"pressure (MPa) at an indentation of {1e6 * depth:.3g} µm",
     )  # fmt: skip
 
 
-def surface_map(height: xr.DataArray, title: str) -> Figure:
-    """Heights of a surface, with a colour bar in micrometres."""
+def surface_map(height: xr.DataArray, title: str, y_axis: str = "up") -> Figure:
+    """Heights of a surface, with a colour bar in micrometres; `y_axis` runs "up" or "down"."""
     figure = Figure(figsize=(5.6, 4.8), layout="constrained")
     axes = figure.add_subplot()
     axes.set(xlabel="x (µm)", ylabel="y (µm)", title=_plain(title))
+    if y_axis == "down":
+        axes.invert_yaxis()
     return _map(figure, axes, height, 1e6, "cividis", "height (µm)")
 
 
 def _map(
     figure: Figure, axes: Axes, values: xr.DataArray, scale: float, colours: str, label: str
 ) -> Figure:
+    downwards = axes.yaxis_inverted()
     x, y = (1e6 * values[name].values for name in ("x", "y"))
     hx, hy = (_cell(edge) for edge in (x, y))
     extent = (x[0] - hx / 2, x[-1] + hx / 2, y[0] - hy / 2, y[-1] + hy / 2)
     image = axes.imshow(scale * values.values.T, origin="lower", extent=extent, cmap=colours,
                         interpolation="nearest")  # fmt: skip
+    if downwards:
+        axes.invert_yaxis()  # which imshow has set upwards
     figure.colorbar(image, ax=axes, label=label)
     return figure
 
@@ -151,8 +182,9 @@ def _axes(
 
 
 def _plain(text: str) -> str:
-    """A user's text, kept from being read as mathematics."""
-    return text.replace("$", r"\$")
+    """A user's text as a title: at most two lines, and kept from being read as mathematics."""
+    lines = textwrap.wrap(text, 55, max_lines=2, placeholder=" …")
+    return "\n".join(lines).replace("$", r"\$")
 
 
 def _parameters(results: xr.Dataset) -> tuple[float, float, float]:
@@ -167,6 +199,22 @@ def _parameters(results: xr.Dataset) -> tuple[float, float, float]:
 
 def _between(values: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.geomspace(values.min(), values.max(), 300)
+
+
+def _last_carrying(results: xr.Dataset, k: int) -> float:
+    """Indentation (m) of the last point of unloading curve `k` that still carries a force."""
+    force = results["unloading_force"][k].values
+    return float(results["unloading_indentation"][k].values[force > 0].min())
+
+
+def _plot_smooth(axes: Axes, results: xr.Dataset, x: str, scale: float) -> None:
+    """The smooth bodies under the model of the case, where the run stored them."""
+    if x not in results:
+        return
+    limits = axes.get_xlim()
+    axes.plot(scale * results[x], results["smooth_restitution"], "-", lw=1, color="0.4",
+              label=_SMOOTH)  # fmt: skip
+    axes.set_xlim(limits)
 
 
 def _plot_restitution(axes: Axes, results: xr.Dataset, x: NDArray[np.float64]) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,7 @@ from restitution.numerics.quadrature import integrate_curve
 from restitution.studies.case import Case
 from restitution.studies.derived import deepest_indentation, derived_quantities
 from restitution.studies.results import ResultsFolder, results_dataset, versions
+from restitution.studies.smooth import smooth_curve
 from restitution.surfaces import describe
 
 CONVENTIONS = {
@@ -90,6 +92,8 @@ def run_case(
             summary = _summarise(case, run.deepest.contact, out, run)
             summary["seconds"] = round(time.perf_counter() - began, 3)
             dataset = results_dataset(out, run.deepest)
+            with suppress(RestitutionError):  # a reference that fails is no reason to fail
+                dataset = dataset.assign(smooth_curve(run.deepest.contact, out.rows))
             dataset.attrs = _attributes(summary, text)
             out.write(dataset, summary)
             for warning in summary["warnings"][len(run.warnings) :]:

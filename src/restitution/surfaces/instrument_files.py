@@ -1,7 +1,9 @@
 """Instruments' own file formats, through the SurfaceTopography package.
 
-SurfaceTopography gives heights as `[i, j]` ↔ `[x, y]`, as this package does, and a physical size
-that is the number of pixels times the pixel. It is imported on use: it is an optional extra.
+SurfaceTopography gives heights as `[i, j]` ↔ `[x, y]`, as this package does, with y running down
+the picture (its readers are made so that `imshow(heights.T)` shows what the instrument shows), and
+a physical size that is the number of pixels times the pixel. It is imported on use: it is an
+optional extra.
 """
 
 from __future__ import annotations
@@ -17,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from restitution.errors import SurfaceError
-from restitution.surfaces.scan import Scan, in_metres
+from restitution.surfaces.scan import Y_DOWN, Scan, in_metres
 
 # Earlier versions read the sample files wrongly without a word: .tmd a thousand times too small
 # along all three axes, undefined pixels of .sur as heights (found with 1.25.0).
@@ -112,6 +114,7 @@ def _read_channel(path: Path, reader: Any, channel: int | None) -> Scan:
         (x, y) if sized else (None, None),
         {
             "format": f"SurfaceTopography {type(reader).__name__}",
+            **Y_DOWN,
             "channel": index,
             "channel_name": str(chosen.name),
             "file_unit": str(chosen.unit),

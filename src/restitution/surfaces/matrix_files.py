@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.errors import SurfaceError
-from restitution.surfaces.scan import Scan, in_metres
+from restitution.surfaces.scan import Y_DOWN, Scan, in_metres
 
 NUMPY_SUFFIXES = frozenset({".npy", ".npz"})
 TEXT_SUFFIXES = frozenset({".txt", ".csv", ".dat", ".asc"})
@@ -130,7 +130,7 @@ def read_text(path: Path) -> Scan:
         path, [line for line in lines if line.startswith("#")]
     )
     height = np.ascontiguousarray(np.array(rows, dtype=np.float64).T) * metres_per_value
-    return Scan(height, size, {"format": "text matrix", **details})
+    return Scan(height, size, {"format": "text matrix", **Y_DOWN, **details})
 
 
 def _decode(path: Path) -> str:

@@ -16,12 +16,17 @@ _PER_METRE = {
 }  # fmt: skip
 
 
+# For files of scan lines: y counts them, and they are drawn downwards, as instruments do.
+Y_DOWN = {"y_axis": "down"}
+
+
 @dataclass(frozen=True)
 class Scan:
     """Heights in m, shape (nx, ny), NaN where undefined, and what the file says about them.
 
     `size` is the length of the x and the y edge in m, None where the file does not give it.
-    `details` become part of the provenance.
+    `details` become part of the provenance, `Y_DOWN` among them where the file is an image whose
+    first line is at the top.
     """
 
     height: NDArray[np.float64]

@@ -1,0 +1,62 @@
+"""The smooth bodies of a case under its own model: what the surface is to be compared with."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from restitution.collision import Collision, collide
+from restitution.contact.contact import Contact, smooth
+from restitution.contact.equilibrium import solve
+from restitution.contact.resolution import foreseen_radius
+from restitution.numerics.grid import Grid
+from restitution.theory import hertz, yielding
+
+# The error of restitution is below 0.3 % from eight nodes over the contact radius.
+_NODES = 80
+_WIDTH = 2.5  # of each grid, in foreseen contact radii
+_DEPTHS = 20
+
+
+def smooth_curve(contact: Contact, rows: list[dict[str, float]]) -> dict[str, Any]:
+    """Variables of results.nc: force, restitution and velocity of the smooth bodies of `contact`.
+
+    They span the depths and velocities of `rows`. Each depth beyond yield is solved on a small grid
+    of its own; up to yield Hertz holds. Empty in the `truncated` model, whose smooth contact is
+    Thornton and Ning's. Raises as `solve`.
+    """
+    pair, p_y = contact.pair, contact.yield_pressure
+    R, E_star = pair.radius, pair.contact_modulus
+    if contact.plasticity == "truncated" or not rows:
+        return {}
+    last = max(row["indentation_m"] for row in rows)
+    # Smooth bodies need less depth for the same work.
+    least = min(row["loading_work_J"] for row in rows)
+    same_work = (15 * least / (8 * E_star * math.sqrt(R))) ** 0.4
+    first = min(same_work, *(row["indentation_m"] for row in rows))
+    onset = math.inf if math.isinf(p_y) else float(yielding.yield_indentation(R, E_star, p_y))
+    depths = np.unique(np.append(first, np.geomspace(min(max(first, onset), last), last, _DEPTHS)))
+    force, cor, velocity = (np.empty(depths.size) for _ in range(3))
+    for k, depth in enumerate(depths):
+        if depth <= onset:
+            work = float(hertz.stored_energy(depth, R, E_star))
+            force[k], collision = hertz.force(depth, R, E_star), Collision(work, work, pair.mass)
+        else:
+            spacing = _WIDTH * foreseen_radius(pair, depth, p_y) / _NODES
+            grid = Grid((_NODES, _NODES), (spacing, spacing))
+            state = solve(replace(contact, surface=smooth(grid)), float(depth))
+            force[k], collision = state.force, collide(state)
+        cor[k] = collision.restitution
+        velocity[k] = math.nan if pair.mass is None else collision.impact_velocity
+    return {
+        name: ("smooth", values, {"units": unit, "long_name": f"{words}, smooth, same model"})
+        for name, values, unit, words in (
+            ("smooth_indentation", depths, "m", "maximum indentation"),
+            ("smooth_force", force, "N", "normal force"),
+            ("smooth_restitution", cor, "1", "coefficient of restitution"),
+            ("smooth_impact_velocity", velocity, "m s-1", "approach velocity"),
+        )
+    }
