@@ -29,9 +29,11 @@ $(BIN)/python:
 	$(PYTHON) -m venv $(VENV)
 
 $(VENV)/demo.installed: pyproject.toml | $(BIN)/python
+	@echo "installing (about two minutes)…"
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[measured]"
 	@touch $@
 
 $(VENV)/test.installed: pyproject.toml | $(BIN)/python
+	@echo "installing (about two minutes)…"
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[measured,test,lint]"
 	@touch $@

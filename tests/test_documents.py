@@ -40,7 +40,10 @@ def test_the_case_file_of_the_readme_runs(cli, tmp_path):
 
 @pytest.mark.parametrize("path", sorted((ROOT / "examples").glob("*.toml")), ids=lambda p: p.name)
 def test_bundled_examples_are_valid(cli, path):
-    assert cli("check", path)[0] == 0
+    status, said, warned = cli("check", path)
+    assert status == 0
+    assert "The case is valid." in said
+    assert not warned
 
 
 def test_every_key_of_a_case_is_documented():
@@ -80,3 +83,10 @@ def test_the_version_is_stated_once_everywhere():
     version = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
     assert f"version: {version}" in (ROOT / "CITATION.cff").read_text()
     assert f"## {version}" in (ROOT / "CHANGELOG.md").read_text()
+
+
+def test_the_readme_says_what_to_run_first_and_what_it_writes():
+    assert (ROOT / "examples" / "steel.toml").exists()
+    assert ".venv/bin/restitution run examples/steel.toml" in README
+    for name in ("curve.csv", "unloading.csv", "summary.json", "results.nc"):
+        assert f"`{name}`" in README
