@@ -9,12 +9,33 @@ Shared by every function of this room:
 - **Shapes** Any argument may be a number or an array; they broadcast, and the result has the
   broadcast shape (a NumPy scalar where every argument is a number).
 - **No contact is an answer** Where indentation, force or velocity is zero or negative nothing
-  touches: every force, pressure, length, area and energy is 0 and every restitution 1. NaN stays
-  NaN.
+  touches: every force, pressure, length, area and energy is 0 and every restitution 1. A contact
+  that adheres holds on at negative indentation; nothing touches below its break. Spheres that
+  touch and stick have restitution 0. NaN stays NaN.
+- **No answer is NaN** Where a formula has no answer for bodies and states that can be, the result
+  is NaN there, and the function says where that is.
 - **No body is an error** A radius, modulus, pressure, strength or mass that is not positive and
   finite raises `CaseError` (a `ValueError`) naming the argument.
 """
 
-from . import hertz, jackson_green, thornton_ning, yielding
+from . import (
+    adhesive_thornton_ning,
+    hertz,
+    jackson_green,
+    jkr,
+    kendall,
+    sticking,
+    thornton_ning,
+    yielding,
+)
 
-__all__ = ["hertz", "jackson_green", "thornton_ning", "yielding"]
+__all__ = [
+    "adhesive_thornton_ning",
+    "hertz",
+    "jackson_green",
+    "jkr",
+    "kendall",
+    "sticking",
+    "thornton_ning",
+    "yielding",
+]

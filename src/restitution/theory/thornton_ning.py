@@ -1,5 +1,6 @@
 """Thornton & Ning (1998): elastic, then perfectly plastic spheres, here without adhesion.
 
+With adhesion: `adhesive_thornton_ning`.
 C. Thornton, Z. Ning, Powder Technology 99 (1998) 154–162; the plastic law is that of Thornton,
 J. Appl. Mech. 64 (1997) 383–386. The Hertz pressure is cut off at p_y; the rest of the contact is
 not brought back into equilibrium and keeps a² = R*δ. With x = δ/δ_y, f = F/F_y, W in F_y δ_y:
