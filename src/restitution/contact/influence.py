@@ -70,21 +70,33 @@ def influence_coefficients(
     return u
 
 
-@lru_cache(maxsize=4)
 def half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
 ) -> FreeConvolution:
     """The operator p ↦ u on a block of nodes of the free (non-periodic) half-space."""
+    return _half_space(shape, spacing, contact_modulus).fresh()
+
+
+@lru_cache(maxsize=4)
+def _half_space(
+    shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
+) -> FreeConvolution:
     return FreeConvolution(
         lambda i, j: influence_coefficients(i, j, spacing, contact_modulus), shape
     )
 
 
-@lru_cache(maxsize=4)
 def inverse_half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
 ) -> SpectralFilter:
     """An approximate inverse, u ↦ |q| E*/2 u: exact on a periodic half-space (Johnson 1985)."""
+    return _inverse_half_space(shape, spacing, contact_modulus).fresh()
+
+
+@lru_cache(maxsize=4)
+def _inverse_half_space(
+    shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
+) -> SpectralFilter:
 
     def symbol(qx: Array, qy: Array) -> Array:
         q = np.hypot(qx / spacing[0], qy / spacing[1])

@@ -14,6 +14,8 @@ so their row transforms are skipped.
 from __future__ import annotations
 
 from collections.abc import Callable
+from copy import copy
+from typing import Self
 
 import ducc0
 import numpy as np
@@ -58,6 +60,13 @@ class FreeConvolution:
         self._rows = np.zeros((nx, py))
         self._modes = np.empty((px, py // 2 + 1), dtype=np.complex128)
 
+    def fresh(self) -> Self:
+        """The same operator with buffers and a count of its own, for another user or thread."""
+        other = copy(self)
+        other.count = 0
+        other._rows, other._modes = np.empty_like(self._rows), np.empty_like(self._modes)
+        return other
+
     def __call__(self, p: Array) -> Array:
         """Return K * p, same shape as `p` and a new array."""
         nx, ny = self.shape
@@ -93,6 +102,12 @@ class SpectralFilter:
         qy = np.asarray(2 * np.pi * np.fft.rfftfreq(my)[None, :], dtype=np.float64)
         self._symbol = symbol(qx, qy) / (mx * my)
         self._threads = threads_for(shape[0] * shape[1])
+
+    def fresh(self) -> Self:
+        """The same filter with a buffer of its own, for another user or thread."""
+        other = copy(self)
+        other._padded = np.empty_like(self._padded)
+        return other
 
     def __call__(self, r: Array) -> Array:
         """Return the filtered array, same shape as `r`."""

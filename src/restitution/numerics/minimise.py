@@ -13,6 +13,7 @@ yield, adhesion) is the caller's affair.
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -21,6 +22,9 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Operator = Callable[[Array], Array]
+
+_MEMORY = 8  # iterations over which the energy must fall
+_HALVINGS = 30
 
 
 @dataclass(frozen=True)
@@ -34,14 +38,14 @@ class Minimum:
     converged: bool
 
 
+def free_nodes(p: Array, g: Array, lower: Array, upper: Array) -> NDArray[np.bool_]:
+    """Nodes that may go downhill: between the bounds, or on one and pushed off it."""
+    return ((p > lower) | (g < 0)) & ((p < upper) | (g > 0))
+
+
 def violation(p: Array, g: Array, lower: Array, upper: Array) -> float:
     """Largest violation of the optimality conditions, in the units of the gradient."""
-    wrong = np.abs(g)
-    at_lower, at_upper = p <= lower, p >= upper
-    np.copyto(wrong, -g, where=at_lower)
-    np.copyto(wrong, g, where=at_upper)
-    np.copyto(wrong, 0.0, where=at_lower & at_upper)  # held from both sides: nothing to violate
-    return max(float(wrong.max()), 0.0)
+    return float(np.where(free_nodes(p, g, lower, upper), np.abs(g), 0.0).max())
 
 
 def minimise_quadratic(
@@ -64,23 +68,28 @@ def minimise_quadratic(
 
     `tolerance` is on the violation, in the units of `b`. The gradient is updated along the step
     while no bound interferes and recomputed when one does; the result is accepted only on a freshly
-    computed gradient. Not converging is reported in the result, never raised.
+    computed gradient. Projecting after an exact step may raise the energy; where it has not fallen
+    below the highest of the last few iterations, a descending step is taken instead, so that no
+    cycle can last (Grippo, Lampariello and Lucidi 1986, SIAM J. Numer. Anal. 23, 707–716). Not
+    converging is reported in the result, never raised.
     """
     p = np.clip(start, lower, upper)
     g = K(p) - b if p.any() else -b
     fresh = True
     d = r_old = np.zeros_like(p)
     rz_old = np.inf
+    energies: deque[float] = deque(maxlen=_MEMORY)
+    iteration = 0
     residual = violation(p, g, lower, upper)
 
-    for iteration in range(max_iterations):
+    for iteration in range(1, max_iterations + 1):
         if residual <= tolerance:
             if fresh:
-                return Minimum(p, g, residual, iteration, converged=True)
+                return Minimum(p, g, residual, iteration - 1, converged=True)
             g, fresh = K(p) - b, True
             residual = violation(p, g, lower, upper)
             continue
-        free = ((p > lower) | (g < 0)) & ((p < upper) | (g > 0))
+        free = free_nodes(p, g, lower, upper)
         r = np.where(free, -g, 0.0)
         z = np.where(free, precondition(r), 0.0)
         rz = _dot(r, z)
@@ -90,18 +99,43 @@ def minimise_quadratic(
         r_old, rz_old = r, rz
 
         Kd = K(d)
-        step = _dot(r, d) / _dot(d, Kd)
-        if not np.isfinite(step) or step <= 0:
+        curvature = _dot(d, Kd)
+        if not 0 < curvature < np.inf:
             break
+        step = _dot(r, d) / curvature
         trial = p + step * d
+        old, g_old = p, g
         p = np.clip(trial, lower, upper)
         fresh = not np.array_equal(p, trial)
         g = K(p) - b if fresh else g + step * Kd
+        energy = 0.5 * _dot(p, g - b)
+        if fresh and len(energies) == energies.maxlen and energy >= max(energies):
+            p, g = _descend(K, b, lower, upper, old, g_old, r)
+            energy = 0.5 * _dot(p, g - b)
+            d, r_old, rz_old = np.zeros_like(p), np.zeros_like(p), np.inf
+        energies.append(energy)
         residual = violation(p, g, lower, upper)
 
-    return Minimum(p, g, residual, max_iterations, converged=False)
+    if not fresh:
+        g = K(p) - b
+        residual = violation(p, g, lower, upper)
+    return Minimum(p, g, residual, iteration, converged=residual <= tolerance)
+
+
+def _descend(
+    K: Operator, b: Array, lower: Array, upper: Array, p: Array, g: Array, r: Array
+) -> tuple[Array, Array]:
+    """Projected steepest descent from p along r, shortened until the energy falls."""
+    step = _dot(r, r) / _dot(r, K(r))
+    for _ in range(_HALVINGS):
+        trial = np.clip(p + step * r, lower, upper)
+        g_trial = K(trial) - b
+        if _dot(g + g_trial, trial - p) < 0:  # twice the change of a quadratic
+            break
+        step *= 0.5
+    return trial, g_trial
 
 
 def _dot(a: Array, b: Array) -> float:
     # Not np.vdot: its threads wait for each other longer than these products take.
-    return float(np.einsum("ij,ij->", a, b))
+    return float(np.einsum("i,i->", a.ravel(), b.ravel()))

@@ -1,0 +1,142 @@
+"""The FFT convolution against the sum it stands for."""
+
+from functools import partial
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose, assert_array_equal
+
+from restitution.numerics.convolution import FreeConvolution, SpectralFilter, threads_for
+
+approx = partial(pytest.approx, abs=0.0)  # whose own 1e-12 is more than these energies
+
+# 1 x 1, single rows, primes and powers of two; up to 19 x 23 the direct sum stays quick.
+sizes = st.sampled_from([1, 2, 3, 5, 7, 8, 11, 13, 16, 17, 19, 23])
+shapes = st.tuples(sizes, sizes)
+spacings = st.tuples(st.floats(0.1, 10), st.floats(0.1, 10))
+seeds = st.integers(0, 2**32 - 1)
+
+
+def point_load(spacing):
+    """1/r on rectangular cells, softened at the origin: positive, even, slowly decaying."""
+    hx, hy = spacing
+    return lambda i, j: 1 / np.sqrt((i * hx) ** 2 + (j * hy) ** 2 + 0.1 * hx * hy)
+
+
+def direct(kernel, p):
+    """Σ_kl K[|i − k|, |j − l|] p[k, l], term by term."""
+    nx, ny = p.shape
+    table = kernel(np.arange(nx)[:, None], np.arange(ny)[None, :])
+    lag_x = abs(np.arange(nx)[:, None] - np.arange(nx))
+    lag_y = abs(np.arange(ny)[:, None] - np.arange(ny))
+    return np.einsum("ikjl,kl->ij", table[lag_x[:, :, None, None], lag_y], p)
+
+
+@settings(deadline=None, max_examples=80)
+@given(shapes, spacings, seeds)
+def test_it_is_the_direct_sum_on_any_shape_and_cell(shape, spacing, seed):
+    kernel = point_load(spacing)
+    p = np.random.default_rng(seed).random(shape)
+    assert_allclose(FreeConvolution(kernel, shape)(p), direct(kernel, p), rtol=1e-12)
+
+
+@settings(deadline=None, max_examples=30)
+@given(shapes, seeds)
+def test_it_is_the_direct_sum_for_any_even_kernel_and_sign(shape, seed):
+    rng = np.random.default_rng(seed)
+    table = rng.normal(size=(64, 64))
+    p = rng.normal(size=shape)
+    scale = np.abs(table).max() * np.abs(p).sum()
+
+    def kernel(i, j):
+        return table[i, j]
+
+    assert_allclose(FreeConvolution(kernel, shape)(p), direct(kernel, p), atol=1e-13 * scale)
+
+
+@settings(deadline=None, max_examples=20)
+@given(shapes, st.floats(-5, 5), seeds)
+def test_it_is_linear(shape, factor, seed):
+    p, q = np.random.default_rng(seed).normal(size=(2, *shape))
+    K = FreeConvolution(point_load((1.0, 2.0)), shape)
+    bound = 1e-12 * K(np.abs(p) + abs(factor) * np.abs(q)).max()
+    assert_allclose(K(p + factor * q), K(p) + factor * K(q), atol=bound)
+
+
+@pytest.mark.parametrize("corner", [(0, 0), (0, -1), (-1, 0), (-1, -1)])
+def test_a_load_in_a_corner_does_not_come_round_to_the_other(corner):
+    shape = (9, 14)
+    p = np.zeros(shape)
+    p[corner] = 1.0
+    table = point_load((1.0, 0.3))(np.arange(9)[:, None], np.arange(14)[None, :])
+    flipped = table[:: -1 if corner[0] else 1, :: -1 if corner[1] else 1]
+    K = FreeConvolution(point_load((1.0, 0.3)), shape)
+    assert_allclose(K(p), flipped, rtol=1e-12)
+
+
+def test_lags_that_never_meet_do_not_matter():
+    def wild(i, j):
+        return np.where((i < 7) & (j < 10), point_load((1.0, 1.0))(i, j), 1e3)
+
+    p = np.random.default_rng(0).random((7, 10))
+    assert_allclose(FreeConvolution(wild, (7, 10))(p), direct(wild, p), rtol=1e-9)
+
+
+def test_it_is_counted_and_leaves_its_input_and_its_earlier_answers_alone():
+    K = FreeConvolution(point_load((1.0, 1.0)), (6, 5))
+    p = np.random.default_rng(1).random((6, 5))
+    given_p = p.copy()
+    assert K.count == 0
+    first = K(p)
+    kept = first.copy()
+    K(100 * p)
+    assert_array_equal(K(p), first)  # nothing is left over from the call before
+    assert_array_equal(first, kept)
+    assert_array_equal(p, given_p)
+    assert K.count == 3
+    assert FreeConvolution(point_load((1.0, 1.0)), (6, 5)).count == 0
+
+
+def test_the_memory_layout_of_the_input_does_not_matter():
+    K = FreeConvolution(point_load((1.0, 1.0)), (6, 5))
+    p = np.random.default_rng(2).random((6, 5))
+    wide = np.random.default_rng(2).random((12, 15))
+    wide[::2, ::3] = p
+    for other in (np.asfortranarray(p), wide[::2, ::3]):
+        assert_array_equal(K(other), K(p))
+
+
+@settings(deadline=None, max_examples=20)
+@given(shapes, seeds)
+def test_a_filter_that_passes_everything_returns_its_input(shape, seed):
+    r = np.random.default_rng(seed).normal(size=shape)
+    through = SpectralFilter(lambda qx, qy: np.ones(np.broadcast(qx, qy).shape), shape)
+    assert_allclose(through(r), r, atol=1e-13)
+
+
+@pytest.mark.parametrize(("mx", "my"), [(0, 0), (3, 0), (0, 2), (2, 5), (6, 4)])
+def test_a_wave_is_multiplied_by_its_symbol(mx, my):
+    shape = (12, 10)  # fast sizes: no padding, so that a wave is one mode
+    x, y = np.meshgrid(np.arange(12), np.arange(10), indexing="ij")
+    qx, qy = 2 * np.pi * mx / 12, 2 * np.pi * my / 10
+    wave = np.cos(qx * x + qy * y)
+    steep = SpectralFilter(lambda qx, qy: 1 + qx**2 + 3 * np.abs(qy), shape)
+    assert_allclose(steep(wave), (1 + qx**2 + 3 * qy) * wave, atol=1e-12)
+
+
+@settings(deadline=None, max_examples=20)
+@given(shapes, seeds)
+def test_a_filter_is_symmetric_and_keeps_the_sign_of_its_symbol(shape, seed):
+    """What a preconditioner must be, padded sizes included."""
+    r, s = np.random.default_rng(seed).normal(size=(2, *shape))
+    symbol = SpectralFilter(lambda qx, qy: 0.1 + np.hypot(qx, qy), shape)
+    bound = 1e-12 * np.linalg.norm(r) * np.linalg.norm(s)
+    assert np.vdot(r, symbol(s)) == approx(np.vdot(symbol(r), s), abs=bound)
+    assert np.vdot(r, symbol(r)) > 0.099 * np.vdot(r, r)
+
+
+def test_small_transforms_take_one_thread_and_large_ones_what_there_is():
+    assert threads_for(100 * 100) == 1
+    assert threads_for(512 * 512) == 0

@@ -1,0 +1,266 @@
+"""The minimiser against enumerated active sets and an independent least-squares solver."""
+
+import itertools
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose, assert_array_equal
+from scipy.linalg import solve_triangular
+from scipy.optimize import lsq_linear
+
+from restitution.numerics.minimise import minimise_quadratic, violation
+
+approx = partial(pytest.approx, abs=0.0)  # whose own 1e-12 is more than these energies
+
+TOLERANCE = 1e-10
+seeds = st.integers(0, 2**32 - 1)
+
+
+def minimise(A, b, lower, upper, *, start=None, inverse=None, **options):
+    """Minimise with a dense matrix A; the points it was applied to come along.
+
+    The program's arrays are of two dimensions: a column serves.
+    """
+    applied = []
+
+    def apply(p):
+        applied.append(p[:, 0].copy())
+        return A @ p
+
+    options = {"tolerance": TOLERANCE, "max_iterations": 500} | options
+    found = minimise_quadratic(
+        apply,
+        b[:, None],
+        lower[:, None],
+        upper[:, None],
+        start=np.zeros((b.size, 1)) if start is None else start[:, None],
+        precondition=(lambda r: r) if inverse is None else (lambda r: inverse @ r),
+        **options,
+    )
+    return replace(found, point=found.point[:, 0], gradient=found.gradient[:, 0]), applied
+
+
+def random_matrix(rng, n, condition=10.0):
+    Q = np.linalg.qr(rng.normal(size=(n, n)))[0]
+    A = Q @ np.diag(condition ** rng.uniform(0, 1, n)) @ Q.T
+    return 0.5 * (A + A.T)
+
+
+def random_bounds(rng, n):
+    """Finite, one-sided and absent bounds, negative lower ones among them."""
+    kind = rng.integers(0, 4, n)
+    lower = np.where(kind == 0, -np.inf, rng.uniform(-1, 0.2, n))
+    upper = np.where(kind == 1, np.inf, rng.uniform(0.3, 1, n))
+    return lower, upper
+
+
+def enumerated(A, b, lower, upper):
+    """The best of the stationary points of all faces of the box."""
+    best, best_energy = None, np.inf
+    for side in itertools.product((-1, 0, 1), repeat=b.size):
+        side = np.array(side)
+        p = np.select([side < 0, side > 0], [lower, upper], 0.0)
+        if not np.isfinite(p).all():
+            continue
+        free = side == 0
+        if free.any():
+            p[free] = np.linalg.solve(A[free][:, free], (b - A @ p)[free])
+        if (p < lower - 1e-12).any() or (p > upper + 1e-12).any():
+            continue
+        energy = 0.5 * p @ A @ p - b @ p
+        if energy < best_energy:
+            best, best_energy = p, energy
+    return best
+
+
+def kkt_violation(A, b, p, lower, upper):
+    """The three conditions of the module, node by node."""
+    worst = 0.0
+    for g, at, low, up in zip(A @ p - b, p, lower, upper, strict=True):
+        assert low <= at <= up
+        may_fall, may_rise = at > low, at < up
+        worst = max(worst, g if may_fall else 0.0, -g if may_rise else 0.0)
+    return worst
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.integers(1, 4), seeds)
+def test_it_finds_the_best_of_all_active_sets(n, seed):
+    rng = np.random.default_rng(seed)
+    A, b = random_matrix(rng, n), 3 * rng.normal(size=n)
+    lower, upper = random_bounds(rng, n)
+    found, _ = minimise(A, b, lower, upper, start=rng.normal(size=n))
+    assert found.converged
+    assert_allclose(found.point, enumerated(A, b, lower, upper), atol=1e-9)
+
+
+@settings(deadline=None, max_examples=40)
+@given(st.integers(5, 40), st.booleans(), seeds)
+def test_it_agrees_with_least_squares_on_the_cholesky_factor(n, preconditioned, seed):
+    rng = np.random.default_rng(seed)
+    A, b = random_matrix(rng, n), 3 * rng.normal(size=n)
+    lower, upper = random_bounds(rng, n)
+    inverse = np.diag(1 / np.diag(A)) if preconditioned else None
+    found, _ = minimise(A, b, lower, upper, start=5 * rng.normal(size=n), inverse=inverse)
+    L = np.linalg.cholesky(A)  # ½pᵀAp − pᵀb = ½|Lᵀp − L⁻¹b|² + constant
+    c = solve_triangular(L, b, lower=True)
+    other = lsq_linear(L.T, c, (lower, upper), method="bvls", tol=1e-14)
+    assert found.converged
+    assert_allclose(found.point, other.x, atol=1e-8)
+    assert_allclose(found.gradient, A @ found.point - b, atol=1e-12 * n)
+    assert found.residual <= TOLERANCE
+    assert found.residual == approx(kkt_violation(A, b, found.point, lower, upper), abs=1e-12 * n)
+
+
+def test_without_bounds_it_is_conjugate_gradients():
+    """At most n steps in exact arithmetic, and one with the exact inverse."""
+    rng = np.random.default_rng(3)
+    A, b = random_matrix(rng, 12, condition=5.0), rng.normal(size=12)
+    free = np.full(12, np.inf)
+    found, _ = minimise(A, b, -free, free)
+    assert_allclose(found.point, np.linalg.solve(A, b), atol=1e-9)
+    assert found.iterations <= 12 + 2
+    at_once, applied = minimise(A, b, -free, free, inverse=np.linalg.inv(A))
+    assert_allclose(at_once.point, np.linalg.solve(A, b), atol=1e-9)
+    assert len(applied) <= 3  # the step, and the gradient that is believed
+
+
+def test_the_answer_is_believed_on_a_gradient_computed_there():
+    """Updated along the steps, the gradient drifts."""
+    rng = np.random.default_rng(9)
+    A, b = random_matrix(rng, 30), rng.normal(size=30)
+    found, applied = minimise(A, b, np.full(30, -np.inf), np.full(30, np.inf))
+    assert_array_equal(applied[-1], found.point)
+    assert_allclose(found.gradient, A @ found.point - b, atol=1e-14)
+
+
+@pytest.mark.parametrize("start", [-100.0, 0.5, 100.0, 1e12])
+def test_a_start_outside_the_bounds_is_put_onto_them(start):
+    rng = np.random.default_rng(4)
+    A, b = random_matrix(rng, 6), 3 * rng.normal(size=6)
+    lower, upper = np.zeros(6), np.ones(6)
+    found, _ = minimise(A, b, lower, upper, start=np.full(6, start))
+    assert_allclose(found.point, minimise(A, b, lower, upper)[0].point, atol=1e-9)
+    assert found.converged
+
+
+def test_an_optimal_start_costs_one_product():
+    A = np.array([[2.0, 1.0], [1.0, 2.0]])
+    # p = (1, 0): g = (0, 1), at the lower bound and pushed onto it
+    found, applied = minimise(
+        A, np.array([2.0, 0.0]), np.zeros(2), np.full(2, np.inf), start=np.array([1.0, 0.0])
+    )
+    assert found.converged
+    assert (found.iterations, found.residual, len(applied)) == (0, 0.0, 1)
+    assert_array_equal(found.point, [1.0, 0.0])
+    assert_array_equal(found.gradient, [0.0, 1.0])
+
+
+def test_values_worked_out_by_hand():
+    A = np.array([[2.0, 1.0], [1.0, 2.0]])
+    big = np.full(2, np.inf)
+    # free: (2, -1); p₂ ≥ 0 holds: p₁ = 3/2; p₁ ≤ 1 holds: p = (1, 0)
+    b = np.array([3.0, 0.0])
+    assert_allclose(minimise(A, b, -big, big)[0].point, [2, -1], atol=1e-9)
+    assert_allclose(minimise(A, b, np.zeros(2), big)[0].point, [1.5, 0], atol=1e-9)
+    assert_allclose(minimise(A, b, np.zeros(2), np.ones(2))[0].point, [1, 0], atol=1e-9)
+    # room for tension: p₂ ≥ −½ holds p₂ there, p₁ = (3 + ½)/2
+    tension = np.array([0.0, -0.5])
+    assert_allclose(minimise(A, b, tension, big)[0].point, [1.75, -0.5], atol=1e-9)
+
+
+def test_the_shape_is_that_of_the_input():
+    rng = np.random.default_rng(5)
+    A, b = random_matrix(rng, 12), rng.normal(size=12)
+    flat, _ = minimise(A, b, np.zeros(12), np.ones(12))
+    shaped = minimise_quadratic(
+        lambda p: (A @ p.ravel()).reshape(3, 4),
+        b.reshape(3, 4),
+        np.zeros((3, 4)),
+        np.ones((3, 4)),
+        start=np.zeros((3, 4)),
+        precondition=lambda r: r,
+        tolerance=TOLERANCE,
+        max_iterations=500,
+    )
+    assert_allclose(shaped.point, flat.point.reshape(3, 4), atol=1e-12)
+
+
+def test_without_a_load_nothing_moves_unless_the_bounds_move_it():
+    A = np.diag([1.0, 2.0, 3.0])
+    rest, applied = minimise(A, np.zeros(3), -np.ones(3), np.ones(3))
+    assert rest.converged
+    assert_array_equal(rest.point, np.zeros(3))
+    assert (rest.iterations, len(applied)) == (0, 0)
+    held, _ = minimise(A, np.zeros(3), np.array([0.5, -1, -1]), np.ones(3), start=np.ones(3))
+    assert held.converged
+    assert_allclose(held.point, [0.5, 0, 0], atol=1e-9)
+
+
+@pytest.mark.parametrize("allowed", [0, 1, 3])
+def test_too_few_iterations_are_reported_and_not_raised(allowed):
+    rng = np.random.default_rng(6)
+    A, b = random_matrix(rng, 30), 3 * rng.normal(size=30)
+    lower, upper = np.zeros(30), np.full(30, np.inf)
+    found, _ = minimise(A, b, lower, upper, max_iterations=allowed)
+    assert not found.converged
+    assert found.iterations == allowed
+    assert found.residual > TOLERANCE
+    assert found.residual == approx(kkt_violation(A, b, found.point, lower, upper), rel=1e-9)
+
+
+def test_a_looser_tolerance_is_met_in_fewer_iterations():
+    rng = np.random.default_rng(7)
+    A, b = random_matrix(rng, 60, condition=30.0), rng.normal(size=60)
+    lower, upper = np.zeros(60), np.full(60, 0.3)
+    loose, _ = minimise(A, b, lower, upper, tolerance=1e-2)
+    tight, _ = minimise(A, b, lower, upper, tolerance=1e-12)
+    assert loose.converged
+    assert tight.converged
+    assert tight.residual <= 1e-12 < loose.residual <= 1e-2
+    assert loose.iterations < tight.iterations
+
+
+def test_violation_looks_only_where_a_node_may_move():
+    lower, upper = np.zeros(4), np.ones(4)
+    p = np.array([0.0, 1.0, 0.5, 0.5])
+    assert violation(p, np.array([7.0, -7.0, 0.0, 0.0]), lower, upper) == 0
+    assert violation(p, np.array([-2.0, -7.0, 0.0, 0.0]), lower, upper) == 2
+    assert violation(p, np.array([7.0, 3.0, 0.0, 0.0]), lower, upper) == 3
+    assert violation(p, np.array([7.0, -7.0, 0.0, -4.0]), lower, upper) == 4
+
+
+@pytest.mark.parametrize("push", [1.0, -1.0])
+def test_a_node_between_equal_bounds_is_held(push):
+    """Prescribed pressures: both signs of the gradient are optimal there."""
+    A = np.array([[2.0, 1.0], [1.0, 2.0]])
+    lower, upper = np.array([0.5, 0.0]), np.array([0.5, 9.0])
+    found, _ = minimise(A, np.array([5 * push, 2.5]), lower, upper)
+    assert found.converged
+    assert_allclose(found.point, [0.5, 1.0], atol=1e-9)
+
+
+def test_it_does_not_cycle_on_an_ill_conditioned_matrix():
+    A = np.array(
+        [
+            [15.91849023, -14.23225511, -25.1834665],
+            [-14.23225511, 14.93316061, 27.634366],
+            [-25.1834665, 27.634366, 80.14834916],
+        ]
+    )
+    b = np.array([-2.97295187, 2.47269883, 2.88949394])
+    assert np.linalg.cond(A) < 101
+    found, _ = minimise(A, b, np.zeros(3), np.full(3, np.inf))
+    assert found.converged
+    assert_allclose(found.point, [0, b[1] / A[1, 1], 0], atol=1e-9)
+
+
+def test_an_unreachable_tolerance_is_reported_and_not_raised():
+    rng = np.random.default_rng(8)
+    A, b = random_matrix(rng, 8), rng.normal(size=8)
+    found, _ = minimise(A, b, np.zeros(8), np.full(8, np.inf), tolerance=-1.0)
+    assert not found.converged
