@@ -6,8 +6,8 @@ if TYPE_CHECKING:
     from restitution.collision import Collision, collide
     from restitution.contact.bodies import Body, Pair
     from restitution.contact.contact import Contact, smooth
-    from restitution.contact.equilibrium import solve, step
     from restitution.contact.load import solve_at_force
+    from restitution.contact.loading import solve, step
     from restitution.contact.path import loading_path, unloading_path
     from restitution.contact.state import State
     from restitution.errors import RestitutionError
@@ -50,8 +50,8 @@ _HOMES = {
     "collision": ("Collision", "collide"),
     "contact.bodies": ("Body", "Pair"),
     "contact.contact": ("Contact", "smooth"),
-    "contact.equilibrium": ("solve", "step"),
     "contact.load": ("solve_at_force",),
+    "contact.loading": ("solve", "step"),
     "contact.path": ("loading_path", "unloading_path"),
     "contact.state": ("State",),
     "errors": ("RestitutionError",),

@@ -9,7 +9,8 @@ import xarray as xr
 COLUMNS = """
 indentation_m force_N contact_area_m2 stored_energy_J plastic_work_J loading_work_J
 unloading_work_J restitution impact_velocity_m_per_s contact_nodes contact_patches
-largest_patch_nodes residual convolutions
+largest_patch_nodes residual convolutions pull_off_force_N separation_indentation_m
+restitution_error sticks adhesion_resolved
 """.split()  # noqa: SIM905
 
 
@@ -26,7 +27,11 @@ def done(cli, case_text, tmp_path):
 def rows_of(path):
     with open(path, newline="") as file:
         reader = csv.DictReader(file)
-        return reader.fieldnames, [{k: float(v) for k, v in row.items()} for row in reader]
+        return reader.fieldnames, [{k: number(v) for k, v in row.items()} for row in reader]
+
+
+def number(text):
+    return {"true": True, "false": False}[text] if text in ("true", "false") else float(text)
 
 
 def test_run_writes_every_file(done):

@@ -32,6 +32,13 @@ def check(
         "yield_indentation_m": ("yield indentation δ_y, smooth", 1e9, "nm"),
         "yield_force_N": ("yield force F_y, smooth", 1, "N"),
         "yield_velocity_m_per_s": ("yield velocity V_y, smooth", 1, "m/s"),
+        "work_of_adhesion_J_per_m2": ("work of adhesion w", 1, "J/m^2"),
+        "pull_off_force_smooth_N": ("pull-off force F_c, smooth", 1, "N"),
+        "pull_off_radius_m": ("pull-off radius a_c, smooth", 1e6, "um"),
+        "nodes_over_pull_off_radius": ("nodes over the pull-off radius, a_c/h", 1, ""),
+        "expected_pull_off_error": ("expected error of pull-off on this grid", 100, "%"),
+        "tabor_parameter": ("Tabor parameter (JKR holds well above 1)", 1, ""),
+        "sticking_velocity_m_per_s": ("sticking velocity V_s, smooth elastic", 1, "m/s"),
         "deepest_indentation_m": ("deepest indentation", 1e9, "nm"),
         "foreseen_contact_radius_m": ("contact radius there, smooth", 1e6, "um"),
         "domain_half_width_m": ("half width of the grid", 1e6, "um"),
@@ -45,9 +52,11 @@ def check(
     hx, hy = contact.grid.spacing
     table.add_row("grid", f"{nx} x {ny}", f"nodes of {1e6 * hx:.4g} um x {1e6 * hy:.4g} um")
     provenance = contact.surface.provenance
-    kind = provenance.get("kind", provenance["source"])
+    kind = provenance.get("kind") or provenance["source"]
     table.add_row("surface", f"{1e6 * rms:.4g}", f"um Sq, {kind}")
     for key, (label, scale, unit) in labels.items():
+        if key not in quantities:
+            continue
         value = quantities[key]
         table.add_row(label, "-" if value is None else f"{scale * value:.5g}", unit)
     answers.print(table)

@@ -10,17 +10,19 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from restitution.contact.bodies import Pair
+from restitution.contact.detachment import Detachment
 from restitution.errors import CaseError
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface
 
 Plasticity = Literal["equilibrium", "truncated"]
+Approach = Literal["equilibrium", "hertzian", "seed"]
 
 
 @dataclass(frozen=True)
@@ -37,12 +39,47 @@ class Contact:
     surface: Surface
     yield_pressure: float = math.inf
     plasticity: Plasticity = "equilibrium"
+    work_of_adhesion: float = 0.0
+    approach: Approach = "equilibrium"
+    detachment: Detachment = "crack-closure"
 
     def __post_init__(self) -> None:
         if not self.yield_pressure > 0:
             raise CaseError(f"yield_pressure: {self.yield_pressure} Pa is not positive")
         if self.plasticity not in ("equilibrium", "truncated"):
             raise CaseError(f'plasticity: "{self.plasticity}" is not "equilibrium" or "truncated"')
+        if not 0 <= self.work_of_adhesion < math.inf:
+            raise CaseError(f"work_of_adhesion: {self.work_of_adhesion} J/m2 is not zero or more")
+        for name, value, known in (
+            ("approach", self.approach, get_args(Approach)),
+            ("detachment", self.detachment, get_args(Detachment)),
+        ):
+            if value not in known:
+                raise CaseError(f'{name}: "{value}" is not one of {", ".join(known)}')
+
+    @property
+    def adhesive(self) -> bool:
+        """Whether nodes in contact can carry tension."""
+        return self.work_of_adhesion > 0
+
+    @property
+    def adhesive_length(self) -> float:
+        """Length scale of adhesion, (w²R*/E*²)^⅓, m: a JKR sphere breaks off at −1.61 of it."""
+        w, E_star = self.work_of_adhesion, self.pair.contact_modulus
+        return float((w * w * self.pair.radius / E_star**2) ** (1 / 3))
+
+    @property
+    def opening(self) -> float:
+        """How far the surfaces part over the first cell outside an edge that lets go, m.
+
+        1.86 sqrt(w h/E*) on a straight edge of the grid; see `detachment`.
+        """
+        h = math.sqrt(self.grid.cell_area)
+        return 1.86 * math.sqrt(self.work_of_adhesion * h / self.pair.contact_modulus)
+
+    def length_at(self, indentation: float) -> float:
+        """The length that violations are measured against at `indentation`, m."""
+        return max(abs(indentation), self.adhesive_length)
 
     @property
     def grid(self) -> Grid:
@@ -60,4 +97,4 @@ class Contact:
 
 def smooth(grid: Grid) -> Surface:
     """The surface without roughness on `grid`."""
-    return Surface(np.zeros(grid.nodes), grid, {"kind": "smooth"})
+    return Surface(np.zeros(grid.nodes), grid, {"source": "smooth", "kind": "smooth"})

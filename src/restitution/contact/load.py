@@ -5,10 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-import numpy as np
-
 from restitution.contact.contact import Contact
-from restitution.contact.equilibrium import solve, solve_uncut
+from restitution.contact.loading import load, solve
 from restitution.contact.state import State
 from restitution.errors import CaseError, DomainError, NotConvergedError
 
@@ -41,10 +39,9 @@ def solve_at_force(contact: Contact, force: float, *, start: State | None = None
         nonlocal state, convolutions
         if indentation == 0:
             return -1.0
-        state = solve_uncut(contact, indentation, start=state, residual=_SOLVE_RESIDUAL)
+        state = load(contact, indentation, start=state, residual=_SOLVE_RESIDUAL)
         convolutions += state.convolutions
-        carried = np.minimum(state.pressure[state.box], contact.yield_pressure).sum()
-        return float(carried) * contact.grid.cell_area / force - 1
+        return state.force / force - 1
 
     R, E_star = contact.pair.radius, contact.pair.contact_modulus
     hertz = (0.75 * force / (E_star * math.sqrt(R))) ** (2 / 3)

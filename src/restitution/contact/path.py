@@ -7,8 +7,10 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from restitution.contact.contact import Contact
-from restitution.contact.equilibrium import RESIDUAL, solve, step
+from restitution.contact.equilibrium import RESIDUAL
 from restitution.contact.load import solve_at_force
+from restitution.contact.loading import solve, step
+from restitution.contact.separation import RESTITUTION_ERROR, separate
 from restitution.contact.state import State
 from restitution.errors import CaseError
 
@@ -36,12 +38,23 @@ def loading_path(
         yield state
 
 
-def unloading_path(state: State, *, steps: int = 16, residual: float = RESIDUAL) -> Iterator[State]:
-    """Yield `state` and `steps` more on the way back to separation, where the force is zero.
+def unloading_path(
+    state: State,
+    *,
+    steps: int = 16,
+    tolerance: float = RESTITUTION_ERROR,
+    residual: float = RESIDUAL,
+) -> Iterator[State]:
+    """Yield `state` and more on the way back to separation, where the force is zero.
 
+    With adhesion the steps are as many as an error of restitution of `tolerance` takes, see
+    `separate`. Without, where the restitution is known from the energies, there are `steps`.
     The steps crowd towards separation as (1 − t)², which makes the force of a Hertz-like unloading,
     (δ − δ_s)^1.5, a cubic in t. Raises as `solve`.
     """
+    if state.contact.adhesive:
+        yield from separate(state, tolerance=tolerance)
+        return
     deepest, last = state.indentation, state.separation_indentation
     yield state
     for t in np.arange(1, steps + 1) / steps:

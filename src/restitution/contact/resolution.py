@@ -8,14 +8,20 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+import numpy as np
+
 from restitution.contact.bodies import Pair
 from restitution.contact.contact import Contact
+from restitution.contact.state import State
 from restitution.errors import SurfaceError
 
 # Smooth spheres follow the tables to 0.3 % from eight nodes over the contact radius; refining a
 # rough surface, restitution settles within 2 % once the largest patch has about ten nodes.
 NODES_PER_RADIUS = 8
 NODES_PER_PATCH = 10
+# From four nodes over the pull-off radius on, pull-off is within 4 % in the mean and 7 % wherever
+# the apex lies between the nodes (docs/adhesion.md).
+ADHESIVE_NODES = 4
 _HALF_SPACE = 0.2  # contact radius over R*, beyond which a sphere is not a half-space
 
 
@@ -26,6 +32,51 @@ def foreseen_radius(pair: Pair, indentation: float, yield_pressure: float = math
     # Between first yield and the fully plastic limit the area per πR*δ grows from 1 to 2.
     fullness = 1.0 if indentation <= yielded else 2.0 - (yielded / indentation) ** 0.25
     return math.sqrt(fullness * R * indentation)
+
+
+def adhesive_nodes(state: State) -> float:
+    """Nodes over the radius at which one asperity of this contact pulls off, a_c/h.
+
+    a_c = (9πw/(8E*κ²))^⅓ (JKR) with κ the mean curvature of the undeformed gap over the contact,
+    1/R* for smooth spheres; inf without adhesion.
+    """
+    contact, box = state.contact, state.box
+    if not contact.adhesive:
+        return math.inf
+    rows, columns = (slice(part.start, part.stop) for part in box)
+    hx, hy = contact.grid.spacing
+    gap = np.pad(contact.gap, 1, mode="reflect", reflect_type="odd")
+    around = gap[rows.start : rows.stop + 2, columns.start : columns.stop + 2]
+    laplacian = np.diff(around[:, 1:-1], 2, axis=0) / hx**2
+    laplacian = laplacian + np.diff(around[1:-1, :], 2, axis=1) / hy**2
+    touching = state.pressure[box] != 0
+    curvature = 0.5 * float(laplacian[touching].mean()) if touching.any() else 0.0
+    curvature = max(curvature, 1 / contact.pair.radius)
+    return pull_off_radius(contact, 1 / curvature) / max(contact.grid.spacing)
+
+
+def pull_off_radius(contact: Contact, radius: float) -> float:
+    """Contact radius a_c at which a sphere of `radius` pulls off (JKR), m."""
+    w, E_star = contact.work_of_adhesion, contact.pair.contact_modulus
+    return float((9 * math.pi * w * radius**2 / (8 * E_star)) ** (1 / 3))
+
+
+def expected_pull_off_error(contact: Contact) -> float:
+    """Relative error of the pull-off force of smooth spheres on this grid, as measured (docs)."""
+    nodes = pull_off_radius(contact, contact.pair.radius) / max(contact.grid.spacing)
+    return {"pohrt-popov": 1.5, "crack-closure": 0.25}[contact.detachment] / nodes
+
+
+def adhesion_warning(depths: Sequence[float], nodes: Sequence[float]) -> str | None:
+    """One line on the depths (m) whose adhesion the grid does not resolve, or None."""
+    few = [depth for depth, n in zip(depths, nodes, strict=True) if n < ADHESIVE_NODES]
+    if not few:
+        return None
+    return (
+        f"adhesion is not resolved at {len(few)} of {len(depths)} depths (adhesion_resolved is "
+        f"false): the pull-off radius of its asperities is below {ADHESIVE_NODES} nodes, at worst "
+        f"{min(nodes):.2g}; use a finer grid"
+    )
 
 
 def refuse_coarse_scan(contact: Contact, indentation: float) -> None:

@@ -35,9 +35,12 @@ class State:
     box: Box
     box_displacement: Array
     plastic_work: float
-    plastic_work_error: float
+    adhesive_work: float
+    work_error: float
     residual: float
     convolutions: int
+    pulled_force: float | None = None
+    virgin: bool = True
 
     @property
     def force(self) -> float:
@@ -58,7 +61,11 @@ class State:
     def stored_energy(self) -> float:
         """Elastic energy E_el = ½ Σ p u hx hy, J."""
         p = self.pressure[self.box]
-        return 0.5 * float(np.vdot(p, self.box_displacement)) * self.contact.grid.cell_area
+        return (
+            0.5
+            * float(np.einsum("ij,ij->", p, self.box_displacement))
+            * self.contact.grid.cell_area
+        )
 
     @property
     def plastic_volume(self) -> float:
@@ -68,7 +75,7 @@ class State:
     @property
     def loading_work(self) -> float:
         """Work done on the bodies so far, W = E_el + plastic work, J."""
-        return self.stored_energy + self.plastic_work
+        return self.stored_energy + self.plastic_work - self.adhesive_work
 
     @property
     def separation_indentation(self) -> float:
@@ -79,6 +86,6 @@ class State:
         """Nodes in each contact patch (nodes joined by an edge), largest first."""
         from scipy.ndimage import label
 
-        labels, count = label(self.pressure[self.box] > 0)
+        labels, count = label(self.pressure[self.box] != 0)
         sizes = np.bincount(labels.ravel(), minlength=count + 1)[1:]
         return np.sort(sizes)[::-1]

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from restitution.contact.resolution import NODES_PER_PATCH
 from restitution.studies.results import replace_file
-from restitution.theory import hertz, thornton_ning
+from restitution.theory import adhesive_thornton_ning, hertz, jkr, thornton_ning
 
 _SIZE = (6.4, 4.4)
 _WIDE = (10.4, 4.4)
@@ -64,7 +64,9 @@ def load_displacement(results: xr.Dataset) -> Figure:
     depth, force = results["indentation"].values, results["force"].values
     unloading = range(results.sizes.get("unloading", 0))
     R, E_star, p_y = _parameters(results)
+    w = _work_of_adhesion(results)
     low = min([depth.min(), *(_last_carrying(results, k) for k in unloading)])
+    lowest = np.nanmin(results["unloading_force"].values, initial=0.0) if unloading else 0.0
     fine = np.geomspace(0.7 * low, depth.max(), 400)
     for axes, start in ((linear, np.zeros(1)), (logarithmic, np.empty(0))):
         axes.plot(1e6 * np.append(start, depth), np.append(start, force), "o-", ms=3.5,
@@ -77,21 +79,29 @@ def load_displacement(results: xr.Dataset) -> Figure:
         if "smooth_force" in results and np.isfinite(p_y):
             axes.plot(1e6 * results["smooth_indentation"], results["smooth_force"], "-", lw=1,
                       color="0.4", label=_SMOOTH)  # fmt: skip
-        force_hertz = hertz.force(fine, R, E_star)
-        shown = force_hertz <= 1.3 * force.max()
-        axes.plot(1e6 * fine[shown], force_hertz[shown], ":", color="0.4", label="Hertz, smooth")
+        if w > 0:
+            reach = np.append(np.linspace(float(jkr.break_indentation(R, E_star, w)), 0, 60), fine)
+            elastic, law = jkr.force(reach, R, E_star, w), "JKR, smooth elastic"
+        else:
+            reach, elastic, law = fine, hertz.force(fine, R, E_star), "Hertz, smooth"
+        shown = elastic <= 1.3 * force.max()
+        axes.plot(1e6 * reach[shown], elastic[shown], ":", color="0.4", label=law)
         if np.isfinite(p_y):
             axes.plot(1e6 * fine, thornton_ning.loading_force(fine, R, E_star, p_y), "--",
                       color="0.4", label=_THORNTON_NING)  # fmt: skip
         axes.set(xlabel="indentation (µm)", ylabel="normal force (N)")
     linear.set_title(_plain(results.attrs.get("title", "")))
-    linear.set_xlim(left=0)
-    linear.set_ylim(bottom=0)
+    if lowest >= 0:
+        linear.set_xlim(left=0)
+        linear.set_ylim(bottom=0)
+    linear.axhline(0, color="0.8", lw=0.6, zorder=0)
     linear.legend(edgecolor="none", fontsize="small")
     logarithmic.set_title("the same, logarithmic")
     logarithmic.set(xscale="log", yscale="log")
     logarithmic.set_xlim(0.7e6 * low, 1.3e6 * depth.max())
-    logarithmic.set_ylim(0.3 * force.min(), 2 * force.max())
+    carrying = force[force > 0]
+    if carrying.size:
+        logarithmic.set_ylim(0.3 * carrying.min(), 2 * carrying.max())
     return figure
 
 
@@ -106,6 +116,10 @@ def restitution_against_indentation(results: xr.Dataset) -> Figure:
         fine = _between(depth)
         reference = thornton_ning.restitution_at_indentation(fine, R, E_star, p_y)
         axes.plot(1e6 * fine, reference, "--", color="0.4", label=_THORNTON_NING)
+    if (w := _work_of_adhesion(results)) > 0:
+        fine = _between(depth)
+        reference = jkr.restitution_at_indentation(fine, R, E_star, w)
+        axes.plot(1e6 * fine, reference, ":", color="0.4", label="JKR, smooth elastic")
     axes.legend(frameon=False, fontsize="small", loc="lower left")
     return figure
 
@@ -117,9 +131,18 @@ def restitution_against_velocity(results: xr.Dataset) -> Figure:
     _plot_restitution(axes, results, velocity)
     _plot_smooth(axes, results, "smooth_impact_velocity", 1.0)
     R, E_star, p_y = _parameters(results)
-    if np.isfinite(p_y):
-        fine = _between(velocity)
-        mass = float(results.attrs["derived_reduced_mass_kg"])
+    w, fine = _work_of_adhesion(results), _between(velocity)
+    mass = float(results.attrs["derived_reduced_mass_kg"])
+    if w > 0:
+        # Where adhesion and yield do not simply add, this law has no answer and no line.
+        law = (
+            adhesive_thornton_ning.restitution(fine, R, E_star, p_y, w, mass)
+            if np.isfinite(p_y)
+            else jkr.restitution(fine, R, E_star, w, mass)
+        )
+        label = "smooth, Thornton–Ning with adhesion" if np.isfinite(p_y) else "JKR, smooth elastic"
+        axes.plot(fine, law, "--", color="0.4", label=label)
+    elif np.isfinite(p_y):
         reference = thornton_ning.restitution(fine, R, E_star, p_y, mass)
         axes.plot(fine, reference, "--", color="0.4", label=_THORNTON_NING)
     axes.legend(frameon=False, fontsize="small", loc="lower left")
@@ -129,7 +152,7 @@ def restitution_against_velocity(results: xr.Dataset) -> Figure:
 def pressure_map(results: xr.Dataset) -> Figure:
     """Contact pressure at the deepest point, on the part of the grid that is in contact."""
     pressure = results["pressure"]
-    touching = np.argwhere(pressure.values > 0)
+    touching = np.argwhere(pressure.values != 0)
     low = np.maximum(touching.min(axis=0) - 4, 0)
     high = touching.max(axis=0) + 5
     part = pressure[low[0] : high[0], low[1] : high[1]]
@@ -138,7 +161,7 @@ def pressure_map(results: xr.Dataset) -> Figure:
     if results.attrs.get("surface_y_axis") == "down":
         axes.invert_yaxis()
     return _map(
-        figure, axes, part.where(part > 0), 1e-6, "viridis",
+        figure, axes, part.where(part != 0), 1e-6, "viridis",
         f"pressure (MPa) at an indentation of {1e6 * depth:.3g} µm",
     )  # fmt: skip
 
@@ -197,14 +220,20 @@ def _parameters(results: xr.Dataset) -> tuple[float, float, float]:
     )
 
 
+def _work_of_adhesion(results: xr.Dataset) -> float:
+    return float(results.attrs.get("derived_work_of_adhesion_J_per_m2", 0.0))
+
+
 def _between(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    values = values[values > 0]
     return np.geomspace(values.min(), values.max(), 300)
 
 
 def _last_carrying(results: xr.Dataset, k: int) -> float:
     """Indentation (m) of the last point of unloading curve `k` that still carries a force."""
     force = results["unloading_force"][k].values
-    return float(results["unloading_indentation"][k].values[force > 0].min())
+    depths = results["unloading_indentation"][k].values[(force > 0)]
+    return float(min(depths[depths > 0], default=np.inf))
 
 
 def _plot_smooth(axes: Axes, results: xr.Dataset, x: str, scale: float) -> None:

@@ -21,11 +21,14 @@ from pydantic import (
     model_validator,
 )
 
+from restitution.collision import UnloadingMethod
 from restitution.contact.bodies import Body, Pair
-from restitution.contact.contact import Contact, Plasticity, smooth
+from restitution.contact.contact import Approach, Contact, Plasticity, smooth
+from restitution.contact.detachment import Detachment
+from restitution.contact.separation import RESTITUTION_ERROR
 from restitution.errors import CaseError, SurfaceError, shown
 from restitution.numerics.grid import Grid
-from restitution.studies.quantities import Density, Force, Length, Pressure
+from restitution.studies.quantities import Density, Force, Length, Pressure, SurfaceEnergy
 from restitution.surfaces import Surface, generate_surface, level, place_on_grid, read_surface
 
 MOST_NODES = 2**27  # of a grid: more do not fit into the memory of common machines
@@ -81,6 +84,10 @@ class InterfaceTable(_Table):
 
     yield_pressure: Pressure | None = None
     plasticity: Plasticity = "equilibrium"
+    work_of_adhesion: SurfaceEnergy = 0.0
+    approach: Approach = "equilibrium"
+    detachment: Detachment = "crack-closure"
+    equilibrium_separation: Length = 0.3e-9
 
     @model_validator(mode="after")
     def _truncated_at(self) -> Self:
@@ -163,10 +170,12 @@ class Series(_Table, Generic[Quantity]):
 
 
 class UnloadingTable(_Table):
-    """`[unloading]`: how many of the depths are unloaded step by step, and in how many steps."""
+    """`[unloading]`: which curves are written, and how unloading is computed."""
 
     curves: Annotated[int, Field(ge=0, le=MOST_STEPS)] = 3
     steps: Annotated[int, Field(ge=4, le=MOST_STEPS)] = 16
+    method: UnloadingMethod = "path"
+    restitution_error: Annotated[float, Field(gt=0, lt=1)] = RESTITUTION_ERROR
 
 
 class Case(_Table):
@@ -235,6 +244,9 @@ class Case(_Table):
             self.surface(folder),
             yield_pressure=self.interface.yield_pressure or math.inf,
             plasticity=self.interface.plasticity,
+            work_of_adhesion=self.interface.work_of_adhesion,
+            approach=self.interface.approach,
+            detachment=self.interface.detachment,
         )
 
     def depths(self) -> list[float]:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 from restitution.contact.contact import Contact
-from restitution.contact.resolution import foreseen_radius
+from restitution.contact.resolution import expected_pull_off_error, foreseen_radius
 from restitution.studies.case import Case
-from restitution.theory import hertz, yielding
+from restitution.theory import hertz, jkr, sticking, yielding
 
 
 def deepest_indentation(case: Case) -> float:
@@ -37,8 +37,30 @@ def derived_quantities(case: Case, contact: Contact) -> dict[str, float | None]:
         "yield_velocity_m_per_s": (
             None if elastic or mass is None else float(yielding.yield_velocity(*arguments, mass))
         ),
+        **_adhesion(case, contact),
         "deepest_indentation_m": deepest,
         "foreseen_contact_radius_m": radius,
         "nodes_over_contact_radius": radius / max(contact.grid.spacing),
         "domain_half_width_m": 0.5 * min(contact.grid.size),
+    }
+
+
+def _adhesion(case: Case, contact: Contact) -> dict[str, float | None]:
+    if not contact.adhesive:
+        return {}
+    pair, w = contact.pair, contact.work_of_adhesion
+    arguments = (pair.radius, pair.contact_modulus, w)
+    a_c = float(jkr.pull_off_radius(*arguments))
+    return {
+        "work_of_adhesion_J_per_m2": w,
+        "pull_off_force_smooth_N": float(jkr.pull_off_force(pair.radius, w)),
+        "pull_off_radius_m": a_c,
+        "nodes_over_pull_off_radius": a_c / max(contact.grid.spacing),
+        "expected_pull_off_error": expected_pull_off_error(contact),
+        "tabor_parameter": float(
+            sticking.tabor_parameter(*arguments, case.interface.equilibrium_separation)
+        ),
+        "sticking_velocity_m_per_s": (
+            None if pair.mass is None else float(sticking.sticking_velocity(*arguments, pair.mass))
+        ),
     }

@@ -25,17 +25,31 @@ _EXAMPLES = {
     "Pa": '"750 MPa"',
     "kg/m^3": '"7850 kg/m^3"',
     "N": '"0.1 N"',
+    "J/m^2": '"0.09 J/m^2"',
 }
-_NAMES = {"m": "a length", "Pa": "a pressure", "kg/m^3": "a density", "N": "a force"}
+_NAMES = {
+    "m": "a length",
+    "Pa": "a pressure",
+    "kg/m^3": "a density",
+    "N": "a force",
+    "J/m^2": "a work of adhesion",
+}
 # Spellings of which one in the wrong case is recognised.
 _USUAL = {
     "m": ("m", "cm", "mm", "um", "µm", "nm", "pm"),
     "Pa": ("Pa", "kPa", "MPa", "GPa", "N/mm^2", "N/mm2"),
     "kg/m^3": ("kg/m^3", "kg/m3", "g/cm^3", "g/cm3"),
     "N": ("N", "kN", "mN", "uN", "µN", "nN"),
+    "J/m^2": ("J/m^2", "J/m2", "mJ/m^2", "mJ/m2", "N/m", "mN/m"),
 }
 # Beyond these a number is a slip of the unit, and formulas would over- or underflow.
-_BOUNDS = {"m": (1e-12, 1e3), "Pa": (1.0, 1e15), "kg/m^3": (1e-2, 1e6), "N": (1e-15, 1e12)}
+_BOUNDS = {
+    "m": (1e-12, 1e3),
+    "Pa": (1.0, 1e15),
+    "kg/m^3": (1e-2, 1e6),
+    "N": (1e-15, 1e12),
+    "J/m^2": (1e-9, 1e4),
+}
 
 
 @lru_cache(maxsize=1)
@@ -78,9 +92,13 @@ def _other_case(name: str, unit: str) -> str | None:
     return None
 
 
-def _positive(unit: str) -> BeforeValidator:
+def _positive(unit: str, *, or_zero: bool = False) -> BeforeValidator:
     def read(value: Any) -> float:
         result = read_quantity(value, unit)
+        if or_zero and result == 0:
+            return 0.0
+        if result < 0 and or_zero:
+            raise ValueError(f"{shown(value)} must not be negative")
         if result <= 0:
             raise ValueError(f"{shown(value)} must be greater than zero")
         low, high = _BOUNDS[unit]
@@ -99,4 +117,5 @@ def _positive(unit: str) -> BeforeValidator:
 Length = Annotated[float, _positive("m")]
 Pressure = Annotated[float, _positive("Pa")]
 Density = Annotated[float, _positive("kg/m^3")]
+SurfaceEnergy = Annotated[float, _positive("J/m^2", or_zero=True)]
 Force = Annotated[float, _positive("N")]

@@ -21,7 +21,8 @@ from typing import IO, Any
 import numpy as np
 import xarray as xr
 
-from restitution.collision import collide
+from restitution.collision import Collision
+from restitution.contact.resolution import ADHESIVE_NODES, adhesive_nodes
 from restitution.contact.state import State
 from restitution.errors import OutputError
 
@@ -40,14 +41,19 @@ COLUMNS: dict[str, tuple[str, str, str]] = {
     "contact_patches": ("contact_patches", "1", "contact patches (nodes joined by an edge)"),
     "largest_patch_nodes": ("largest_patch_nodes", "1", "nodes in the largest contact patch"),
     "residual": ("residual", "1", "largest violation of the contact conditions over indentation"),
-    "convolutions": ("convolutions", "1", "convolutions the solve took"),
+    "convolutions": ("convolutions", "1", "convolutions that loading and unloading took"),
+    "pull_off_force_N": ("pull_off_force", "N", "largest tension on the way back"),
+    "separation_indentation_m": ("separation_indentation", "m", "where the bodies part"),
+    "restitution_error": ("restitution_error", "1", "numerical error of the restitution"),
+    "sticks": ("sticks", "1", "nothing is returned: the pair does not come apart by itself"),
+    "adhesion_resolved": ("adhesion_resolved", "1", "pull-off radius of at least 4 nodes"),
 }
 UNLOADING_COLUMNS = ("indentation_max_m", "indentation_m", "force_N")
 
 
-def curve_row(state: State) -> dict[str, float]:
-    """The row of `curve.csv` for one state of loading; NaN for a velocity without a density."""
-    collision, patches = collide(state), state.patch_sizes()
+def curve_row(state: State, collision: Collision) -> dict[str, float]:
+    """The row of `curve.csv` for one state of loading; NaN where there is no answer."""
+    patches = state.patch_sizes()
     velocity = collision.impact_velocity
     values = (
         state.indentation,
@@ -63,7 +69,12 @@ def curve_row(state: State) -> dict[str, float]:
         patches.size,
         int(patches[0]) if patches.size else 0,
         state.residual,
-        state.convolutions,
+        state.convolutions + collision.convolutions,
+        collision.pull_off_force,
+        collision.separation_indentation,
+        collision.restitution_error,
+        collision.sticks,
+        adhesive_nodes(state) >= ADHESIVE_NODES,
     )
     return dict(zip(COLUMNS, values, strict=True))
 
@@ -105,11 +116,11 @@ class ResultsFolder:
             _write_row(unloading, list(UNLOADING_COLUMNS))
             yield
 
-    def add(self, state: State) -> None:
+    def add(self, state: State, collision: Collision) -> None:
         """Write the row of a state of loading."""
-        row = curve_row(state)
+        row = curve_row(state, collision)
         self.rows.append(row)
-        _write_row(self._curve, ["" if v != v else repr(v) for v in row.values()])
+        _write_row(self._curve, [_written(value) for value in row.values()])
 
     def add_unloading(self, path: list[State]) -> None:
         """Write one unloading curve, from its deepest state to separation."""
@@ -163,7 +174,11 @@ def results_dataset(folder: ResultsFolder, deepest: State) -> xr.Dataset:
         data[name] = ("indentation_max", values, attributes)
     if folder.unloading:
         depths, curves = zip(*folder.unloading, strict=True)
-        indentation, force = np.moveaxis(np.array(curves), -1, 0)
+        # Curves of different length end in NaN.
+        points = np.full((len(curves), max(map(len, curves)), 2), np.nan)
+        for k, curve in enumerate(curves):
+            points[k, : len(curve)] = curve
+        indentation, force = np.moveaxis(points, -1, 0)
         along = ("unloading", "unloading_step")
         data["unloading_from"] = (
             "unloading", np.array(depths), {"units": "m", "long_name": "maximum indentation"}
@@ -182,6 +197,12 @@ def results_dataset(folder: ResultsFolder, deepest: State) -> xr.Dataset:
     for name, (values, unit, meaning) in maps.items():
         data[name] = (("x", "y"), values, {"units": unit, "long_name": meaning})
     return xr.Dataset(data, coordinates)
+
+
+def _written(value: float) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return "" if math.isnan(value) else repr(value)
 
 
 def _write_row(file: IO[str], values: list[str]) -> None:

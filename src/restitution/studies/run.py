@@ -10,10 +10,13 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
+from restitution.collision import Collision, collide
 from restitution.contact.contact import Contact
 from restitution.contact.path import loading_path, unloading_path
 from restitution.contact.plausibility import implausible
 from restitution.contact.resolution import (
+    adhesion_warning,
+    adhesive_nodes,
     foreseen_warnings,
     refuse_coarse_scan,
     unresolved_warning,
@@ -46,6 +49,7 @@ class _Progress:
     deepest: State | None = None
     warnings: list[str] = field(default_factory=list)
     loading_work_errors: list[float] = field(default_factory=list)
+    adhesive_nodes: list[float] = field(default_factory=list)
     unloading_checks: list[dict[str, float]] = field(default_factory=list)
 
 
@@ -113,31 +117,46 @@ def _load_and_unload(
     unloaded = {len(depths) - 1 - (k * len(depths)) // curves for k in range(curves)}
     path = loading_path(contact, forces=depths) if case.load else loading_path(contact, depths)
     for number, state in enumerate(path):
-        out.add(state)
+        followed = contact.adhesive and case.unloading.method == "path"
+        back: list[State] = []
+        if followed or number in unloaded:
+            back = list(
+                unloading_path(
+                    state, steps=case.unloading.steps, tolerance=case.unloading.restitution_error
+                )
+            )
+        collision = collide(state, back if followed else None, method=case.unloading.method)
+        out.add(state, collision)
         run.deepest = state
-        run.loading_work_errors.append(state.plastic_work_error / state.loading_work)
+        run.adhesive_nodes.append(adhesive_nodes(state))
+        run.loading_work_errors.append(state.work_error / max(abs(state.loading_work), 1e-300))
         if number in unloaded:
-            run.unloading_checks.append(_unload(state, case.unloading.steps, out))
+            out.add_unloading(back)
+            run.unloading_checks.append(_check(state, back, collision))
         progress(f"{number + 1} of {len(depths)} depths")
 
 
-def _unload(state: State, steps: int, out: ResultsFolder) -> dict[str, float]:
-    """Unload in steps, write the curve, and compare its work with the stored energy."""
-    path = list(unloading_path(state, steps=steps))
-    out.add_unloading(path)
-    work = -integrate_curve([s.indentation for s in path], [s.force for s in path])
+def _check(state: State, back: list[State], collision: Collision) -> dict[str, float]:
+    """The work of an unloading curve beside what energies say it should be."""
+    work = -integrate_curve([s.indentation for s in back], [s.force for s in back])
+    estimate = collide(state, method="energy-estimate")
     return {
         "indentation_m": state.indentation,
         "unloading_work_J": work,
-        "relative_to_stored_energy": work / state.stored_energy - 1,
-        "separation_indentation_m": state.separation_indentation,
+        "adhesive_loss_J": collision.adhesive_loss,
+        "relative_to_stored_energy": (work + collision.adhesive_loss) / state.stored_energy - 1,
+        "restitution_from_energy_estimate": estimate.restitution,
+        "separation_indentation_m": back[-1].indentation,
     }
 
 
 def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Progress) -> dict[str, Any]:
     patches = [int(row["largest_patch_nodes"]) for row in out.rows]
-    unresolved = unresolved_warning([row["indentation_m"] for row in out.rows], patches)
-    found = [unresolved, _unbalanced(run.unloading_checks)]
+    depths = [row["indentation_m"] for row in out.rows]
+    found = [unresolved_warning(depths, patches), adhesion_warning(depths, run.adhesive_nodes)]
+    found.append(_imprecise(out, case))
+    if not contact.adhesive:
+        found.append(_unbalanced(run.unloading_checks))
     elastic = math.isinf(contact.yield_pressure)
     return {
         "title": case.title,
@@ -148,7 +167,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Progress)
         "warnings": run.warnings + [warning for warning in found if warning],
         "model": {
             "plasticity": "none" if elastic else contact.plasticity,
-            "adhesion": "none",
+            **_adhesion_of(contact, case),
             "half_space": "free, Love cells, zero-padded FFT",
             **asdict(contact.grid),
         },
@@ -159,10 +178,36 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Progress)
         "trust": {
             "largest_residual": max(row["residual"] for row in out.rows),
             "largest_loading_work_error": max(run.loading_work_errors),
+            "largest_restitution_error": max(row["restitution_error"] for row in out.rows),
             "unloading_checks": run.unloading_checks,
         },
         "convolutions": sum(int(row["convolutions"]) for row in out.rows),
         "versions": versions(),
+    }
+
+
+def _imprecise(out: ResultsFolder, case: Case) -> str | None:
+    """One line on depths whose restitution is not as precise as asked for, or None."""
+    asked = case.unloading.restitution_error
+    missed = [row for row in out.rows if row["restitution_error"] > asked]
+    if not missed or case.unloading.method != "path":
+        return None
+    worst = max(missed, key=lambda row: row["restitution_error"])
+    return (
+        f"restitution_error is above {asked:g} at {len(missed)} of {len(out.rows)} depths, at "
+        f"worst {worst['restitution_error']:.2g} at {1e9 * worst['indentation_m']:.4g} nm: contact "
+        "comes and goes in jumps there; use a finer grid"
+    )
+
+
+def _adhesion_of(contact: Contact, case: Case) -> dict[str, Any]:
+    if not contact.adhesive:
+        return {"adhesion": "none"}
+    return {
+        "adhesion": "JKR limit",
+        "approach": contact.approach,
+        "detachment": contact.detachment,
+        "unloading": case.unloading.method,
     }
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from restitution.collision import Collision, collide
 from restitution.contact.contact import Contact, smooth
-from restitution.contact.equilibrium import solve
+from restitution.contact.loading import solve
 from restitution.contact.resolution import foreseen_radius
 from restitution.numerics.grid import Grid
 from restitution.theory import hertz, yielding
@@ -26,11 +26,11 @@ def smooth_curve(contact: Contact, rows: list[dict[str, float]]) -> dict[str, An
 
     They span the depths and velocities of `rows`. Each depth beyond yield is solved on a small grid
     of its own; up to yield Hertz holds. Empty in the `truncated` model, whose smooth contact is
-    Thornton and Ning's. Raises as `solve`.
+    Thornton and Ning's, and with adhesion, which small grids do not resolve. Raises as `solve`.
     """
     pair, p_y = contact.pair, contact.yield_pressure
     R, E_star = pair.radius, pair.contact_modulus
-    if contact.plasticity == "truncated" or not rows:
+    if contact.plasticity == "truncated" or contact.adhesive or not rows:
         return {}
     last = max(row["indentation_m"] for row in rows)
     # Smooth bodies need less depth for the same work.
@@ -43,7 +43,10 @@ def smooth_curve(contact: Contact, rows: list[dict[str, float]]) -> dict[str, An
     for k, depth in enumerate(depths):
         if depth <= onset:
             work = float(hertz.stored_energy(depth, R, E_star))
-            force[k], collision = hertz.force(depth, R, E_star), Collision(work, work, pair.mass)
+            force[k], collision = (
+                hertz.force(depth, R, E_star),
+                Collision(work, work, pair.mass),
+            )
         else:
             spacing = _WIDTH * foreseen_radius(pair, depth, p_y) / _NODES
             grid = Grid((_NODES, _NODES), (spacing, spacing))

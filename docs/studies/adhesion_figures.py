@@ -1,0 +1,109 @@
+"""Figures 8, 9 and 14 of Ghanbarzadeh et al. (2019), on a grid that resolves the adhesion.
+
+Writes docs/images/adhesion-smooth.png, docs/images/adhesion-rough.png and the numbers behind them,
+docs/studies/adhesion_figures.csv. Takes some minutes: `python docs/studies/adhesion_figures.py`.
+"""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from restitution import Body, Contact, Grid, Pair, collide, generate_surface, loading_path, smooth
+from restitution.contact.resolution import ADHESIVE_NODES, adhesive_nodes
+
+HERE = Path(__file__).parent
+STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25, density=7850)
+PAIR = Pair(STEEL, STEEL)
+ENERGIES = (0.01, 0.03, 0.09)
+SMOOTH_DEPTHS = np.geomspace(1e-9, 220e-9, 11)
+ROUGH_DEPTHS = np.geomspace(5e-9, 500e-9, 8)
+
+
+def smooth_rows():
+    """COR of smooth spheres, spacing a fifth of the pull-off radius at each work of adhesion."""
+    for w in ENERGIES:
+        a_c = (9 * np.pi * w * PAIR.radius**2 / (8 * PAIR.contact_modulus)) ** (1 / 3)
+        h = a_c / 5
+        n = 2 * int(1.25 * np.sqrt(1.5 * PAIR.radius * SMOOTH_DEPTHS[-1]) / h)
+        for p_y in (750e6, 1500e6):
+            contact = Contact(PAIR, smooth(Grid((n, n), (h, h))), p_y, work_of_adhesion=w)
+            yield from rows_of("smooth", contact, SMOOTH_DEPTHS)
+
+
+def rough_rows():
+    """COR of one rough surface at the paper's spacing."""
+    grid = Grid((256, 256), (0.25e-6, 0.25e-6))
+    surface = generate_surface(
+        grid, kind="exponential", rms=0.1e-6, correlation_length=2e-6, seed=1
+    )
+    for w in (0.01, 0.09):
+        contact = Contact(PAIR, surface, 750e6, work_of_adhesion=w)
+        yield from rows_of("rough", contact, ROUGH_DEPTHS)
+
+
+def rows_of(surface, contact, depths):
+    """One row for each depth."""
+    for state in loading_path(contact, depths):
+        collision = collide(state)
+        yield {
+            "surface": surface,
+            "work_of_adhesion_J_per_m2": contact.work_of_adhesion,
+            "yield_pressure_Pa": contact.yield_pressure,
+            "spacing_m": contact.grid.spacing[0],
+            "indentation_m": state.indentation,
+            "restitution": collision.restitution,
+            "restitution_error": collision.restitution_error,
+            "adhesion_resolved": adhesive_nodes(state) >= ADHESIVE_NODES,
+            "impact_velocity_m_per_s": collision.impact_velocity,
+        }
+
+
+def draw(rows, name, title):
+    """COR against indentation, a line for each work of adhesion and yield pressure."""
+    figure = Figure(figsize=(6.4, 4.4), layout="constrained")
+    axes = figure.add_subplot(
+        xlabel="maximum indentation (nm)", ylabel="coefficient of restitution", title=title
+    )
+    keys = sorted({(r["yield_pressure_Pa"], r["work_of_adhesion_J_per_m2"]) for r in rows})
+    for p_y, w in keys:
+        some = [
+            r for r in rows
+            if (r["yield_pressure_Pa"], r["work_of_adhesion_J_per_m2"]) == (p_y, w)
+        ]  # fmt: skip
+        colour = {0.01: "C0", 0.03: "C2", 0.09: "C1"}[w]
+        x = [1e9 * r["indentation_m"] for r in some]
+        y = [r["restitution"] for r in some]
+        axes.plot(x, y, "-" if p_y < 1e9 else "--", color=colour,
+                  label=f"w = {w:g} J/m², p_y = {p_y / 1e6:.0f} MPa")  # fmt: skip
+        for filled in (True, False):
+            points = [(a, b) for a, b, r in zip(x, y, some, strict=True)
+                      if r["adhesion_resolved"] == filled]  # fmt: skip
+            if points:
+                axes.plot(*zip(*points, strict=True), "o", ms=4.5, color=colour,
+                          mfc=colour if filled else "white")  # fmt: skip
+    axes.set_xscale("log")
+    axes.set_ylim(-0.03, 1.03)
+    axes.legend(frameon=False, fontsize="small")
+    FigureCanvasAgg(figure)
+    figure.savefig(HERE.parent / "images" / name, dpi=150)
+
+
+def main():
+    """Compute, store and draw."""
+    rows = [*smooth_rows(), *rough_rows()]
+    with open(HERE / "adhesion_figures.csv", "w", newline="") as file:
+        writer = csv.DictWriter(file, rows[0], lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+    draw([r for r in rows if r["surface"] == "smooth"], "adhesion-smooth.png", "Smooth spheres")
+    draw([r for r in rows if r["surface"] == "rough"], "adhesion-rough.png",
+         "Rough, Rq 0.1 µm; open: adhesion not resolved")  # fmt: skip
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,203 @@
+"""Loading the undeformed bodies to one indentation, and the work that takes.
+
+Under the yield bound the state of a monotonic loading does not depend on its path, so one solve
+from the undeformed bodies is enough. Without adhesion the work is then W = E_el + p_y V_p; with a
+cut pressure (`truncated`) or with adhesion on approach it is the integral of the force.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from restitution.contact.adhesion import attach, limit_of, pull
+from restitution.contact.contact import Contact
+from restitution.contact.equilibrium import RESIDUAL, equilibrate, refuse_edge
+from restitution.contact.influence import half_space
+from restitution.contact.state import State
+from restitution.errors import CaseError
+from restitution.numerics.quadrature import integrate_adaptively
+
+SEED_PULL = 1e-10  # m: the pull after each loading increment (Ghanbarzadeh et al. 2019, §2.2)
+_CUT_TOLERANCE = 3e-5  # of force times indentation, where the work needs quadrature
+# The force of an adhesive contact jumps as asperities come in: more is asked of it in vain. 5e-4 of
+# the work is at most 0.0005 in restitution.
+_ADHESIVE_TOLERANCE = 5e-4
+_ADHESIVE_HALVINGS = 5
+_WORK_RESIDUAL = 1e-6  # of the solves in between, whose force errors stay well below that
+
+
+def solve(
+    contact: Contact, indentation: float, *, start: State | None = None, residual: float = RESIDUAL
+) -> State:
+    """Load the undeformed bodies to `indentation` (m) in one solve and return the state there.
+
+    `start`, a shallower state of the same contact, serves as first guess, and as the point from
+    which the work is integrated where it has to be (`truncated`, or adhesion on approach); else
+    that is first touch. Raises `CaseError` for an indentation that is not positive,
+    `NotConvergedError` when `residual` is not reached, and `DomainError` when the contact reaches
+    the edge of the grid.
+    """
+    if not 0 < indentation < math.inf:
+        raise CaseError(f"indentation: {indentation} m is not a positive depth")
+    state = load(contact, indentation, start=start, residual=residual)
+    if _work_is_integrated(contact):
+        state = _integrate_work(state, start)
+    refuse_edge(state)
+    return state
+
+
+def step(state: State, indentation: float, *, residual: float = RESIDUAL) -> State:
+    """Move a deformed contact to another `indentation` (m), deeper or shallower.
+
+    What has yielded stays yielded, and what adheres lets go only where it has to. Raises as
+    `solve`, and `CaseError` for deeper loading of a `truncated` contact, which has no law for
+    loading a deformed surface.
+    """
+    contact = state.contact
+    if not math.isfinite(indentation):
+        raise CaseError(f"indentation: {indentation} m is not a depth")
+    if contact.plasticity == "truncated" and indentation > state.indentation:
+        raise CaseError("a truncated contact can only be unloaded; use solve for a deeper one")
+    if contact.adhesive:
+        new = pull(state, indentation, residual=residual)
+    else:
+        new = equilibrate(contact, indentation, limit=contact.yield_pressure, history=state,
+                          first_guess=state.pressure, residual=residual)  # fmt: skip
+    refuse_edge(new)
+    return replace(new, virgin=False)
+
+
+def load(contact: Contact, indentation: float, *, start: State | None, residual: float) -> State:
+    """`solve` without its work, and letting contact at the edge of the grid pass."""
+    if contact.adhesive and contact.approach == "equilibrium":
+        shallower = start if start is not None and start.indentation <= indentation else None
+        held = contact.gap <= indentation if shallower is None else shallower.pressure != 0
+        state = attach(contact, indentation, held, limit=limit_of(contact),
+                       first_guess=None if start is None else start.pressure,
+                       residual=residual)  # fmt: skip
+    elif contact.adhesive and contact.approach == "seed":
+        pressed = _press(contact, indentation + SEED_PULL, start, residual)
+        state = pull(pressed, indentation, residual=residual)
+        state = replace(state, adhesive_work=0.0, virgin=True)
+    else:
+        state = _press(contact, indentation, start, residual)
+    if contact.plasticity == "truncated" and math.isfinite(contact.yield_pressure):
+        state = _cut(state)
+    return state
+
+
+def _press(contact: Contact, indentation: float, start: State | None, residual: float) -> State:
+    guess = None if start is None else np.maximum(start.pressure, 0.0)
+    return equilibrate(contact, indentation, limit=limit_of(contact), first_guess=guess,
+                       residual=residual)  # fmt: skip
+
+
+def _cut(elastic: State) -> State:
+    """Cut the elastic pressure at p_y; the rest of the contact does not take up what is cut.
+
+    Force and area are then those of Thornton and Ning (1998). The plastic displacement is what the
+    cut pressure leaves of the interference (next to the contact too), so that unloading starts from
+    the cut pressure.
+    """
+    contact, indentation, box = elastic.contact, elastic.indentation, elastic.box
+    pressure = np.minimum(elastic.pressure, contact.yield_pressure)
+    shape = elastic.box_displacement.shape
+    K = half_space((shape[0], shape[1]), contact.grid.spacing, contact.pair.contact_modulus)
+    displacement = K(pressure[box])
+    plastic = np.zeros_like(pressure)
+    plastic[box] = np.maximum(indentation - contact.gap[box] - displacement, 0.0)
+    return replace(elastic, pressure=pressure, plastic_displacement=plastic,
+                   box_displacement=displacement,
+                   convolutions=elastic.convolutions + 1)  # fmt: skip
+
+
+def _work_is_integrated(contact: Contact) -> bool:
+    cut = contact.plasticity == "truncated" and math.isfinite(contact.yield_pressure)
+    return cut or (contact.adhesive and contact.approach != "hertzian")
+
+
+def _integrate_work(state: State, start: State | None) -> State:
+    """The state with its work, ∫F dδ from `start` or from first touch."""
+    contact, indentation = state.contact, state.indentation
+    if start is None or not start.virgin or start.indentation >= indentation:
+        start = None
+    if contact.adhesive and contact.approach != "hertzian":
+        work, error, convolutions = _work_by_force(state, start)
+    else:
+        work, error, convolutions = _work_by_cut(state, start)
+    convolutions += state.convolutions
+    if contact.plasticity == "truncated":
+        # The cut pressure's plastic work is what is left of the work; it has no formula of its own.
+        return replace(state, plastic_work=work - state.stored_energy, adhesive_work=0.0,
+                       work_error=error, convolutions=convolutions)  # fmt: skip
+    gained = state.stored_energy + state.plastic_work - work
+    return replace(state, adhesive_work=gained, work_error=error, convolutions=convolutions)
+
+
+def _work_by_force(state: State, start: State | None) -> tuple[float, float, int]:
+    """Work, its error and the convolutions it took, by quadrature of the force."""
+    contact, indentation = state.contact, state.indentation
+    guess, convolutions = start, 0
+
+    def force_at(depth: float) -> float:
+        nonlocal guess, convolutions
+        guess = load(contact, depth, start=guess, residual=_WORK_RESIDUAL)
+        convolutions += guess.convolutions
+        return guess.force
+
+    first, first_force, work, error = 0.0, 0.0, 0.0, 0.0
+    if start is not None:
+        first, first_force = start.indentation, start.force
+        work, error = start.loading_work, start.work_error
+    elif contact.approach == "equilibrium":
+        first_force = force_at(0.0)  # jump-in
+    scale = abs(work) + 0.5 * (abs(first_force) + abs(state.force)) * (indentation - first)
+    increment, its_error = integrate_adaptively(
+        force_at, first, indentation, first_force, state.force,
+        _ADHESIVE_TOLERANCE * scale, depth=_ADHESIVE_HALVINGS,
+    )  # fmt: skip
+    return work + increment, error + its_error, convolutions
+
+
+def _work_by_cut(state: State, start: State | None) -> tuple[float, float, int]:
+    """The same for a cut pressure without adhesion on approach.
+
+    What the cut takes away integrates to the elastic energy less the work: exact below yield, and
+    the better of the two integrals until it takes more than it leaves.
+    """
+    contact, indentation = state.contact, state.indentation
+    p_y, area = contact.yield_pressure, contact.grid.cell_area
+    guess, convolutions = start, 0
+
+    def elastic(depth: float, residual: float) -> State:
+        nonlocal guess, convolutions
+        guess = _press(contact, depth, guess, residual)
+        convolutions += guess.convolutions
+        return guess
+
+    def cut(whole: State) -> float:
+        return float(np.minimum(whole.pressure[whole.box], p_y).sum()) * area
+
+    end = _press(contact, indentation, state, RESIDUAL)
+    by_excess = end.force < 2 * cut(end)
+
+    def integrand(whole: State) -> float:
+        return whole.force - cut(whole) if by_excess else cut(whole)
+
+    first, value, energy, work, error = 0.0, 0.0, 0.0, 0.0, 0.0
+    if start is not None:
+        begin = elastic(start.indentation, RESIDUAL)
+        first, value, energy = start.indentation, integrand(begin), begin.stored_energy
+        work, error = start.loading_work, start.work_error
+    increment, its_error = 0.0, 0.0
+    if integrand(end) > 0:
+        increment, its_error = integrate_adaptively(
+            lambda depth: integrand(elastic(depth, _WORK_RESIDUAL)), first, indentation, value,
+            integrand(end), _CUT_TOLERANCE * cut(end) * indentation,
+        )  # fmt: skip
+    if by_excess:
+        increment = end.stored_energy - energy - increment
+    return work + increment, error + its_error, convolutions + end.convolutions

@@ -1,0 +1,218 @@
+"""The two criteria by themselves: the tension limit, the energy release rate, who lets go."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import dblquad
+from scipy.ndimage import label
+
+from restitution import Body, Contact, Grid, Pair, Surface, solve
+from restitution.contact import detachment
+from restitution.contact.adhesion import peel
+from restitution.contact.detachment import (
+    CrackClosure,
+    TensionLimit,
+    criterion,
+    energy_release_rate,
+    tension_limit,
+)
+from restitution.contact.influence import half_space
+from restitution.contact.separation import separate, separation_of
+from restitution.theory import kendall
+
+E_STAR, W = 112e9, 0.09
+WALL = Body(radius=2e3, youngs_modulus=1e9, poissons_ratio=0.25)
+FLAT = Pair(WALL, WALL)
+
+
+@pytest.mark.parametrize("h", [1e-9, 0.25e-6, 1.0])
+def test_the_tension_limit_of_square_cells(h):
+    kappa = 0.4732010044
+    assert kappa == pytest.approx(
+        2 / (3 * math.pi) * (1 - math.sqrt(2) + 3 * math.log(1 + math.sqrt(2))), rel=1e-9
+    )
+    limit = tension_limit(E_STAR, W, (h, h))
+    assert limit**2 == pytest.approx(E_STAR * W / (kappa * h), rel=1e-9)
+
+
+@pytest.mark.parametrize(("hx", "hy"), [(1, 1), (1, 2), (3, 0.7)])
+def test_the_tension_limit_of_rectangular_cells(hx, hy):
+    """σ_c² = 2πE*w hx hy/I; I, the integral of 1/r over the cell twice, by quadrature.
+
+    The lags x = x₁ − x₂ have the density hx − |x|: I = 4 ∬ (hx − x)(hy − y)/r over the cell.
+    """
+
+    def over_r(angle_fraction, r_fraction):  # polar, which takes the singularity away
+        angle = angle_fraction * math.pi / 2
+        reach = min(hx / max(math.cos(angle), 1e-300), hy / max(math.sin(angle), 1e-300))
+        r = r_fraction * reach
+        return reach * (hx - r * math.cos(angle)) * (hy - r * math.sin(angle)) * math.pi / 2
+
+    integral = 4 * dblquad(over_r, 0, 1, 0, 1, epsabs=1e-10, epsrel=1e-8)[0]
+    expected = 2 * math.pi * E_STAR * W * hx * hy / integral
+    assert tension_limit(E_STAR, W, (hx, hy)) ** 2 == pytest.approx(expected, rel=1e-5)
+    assert tension_limit(E_STAR, W, (hx, hy)) == tension_limit(E_STAR, W, (hy, hx))
+
+
+def punch(nodes, depth=1e-3, w=0.1, detachment="crack-closure"):
+    """A disc of 10 um standing out by `depth` from a wall, and its radius."""
+    h = 10e-6 / nodes
+    n = 2 * int(nodes + 4) + 1
+    grid = Grid((n, n), (h, h))
+    r = np.hypot(grid.x[:, None], grid.y[None, :])
+    disc = r < 10e-6
+    surface = Surface(np.where(disc, 0.0, -depth), grid, {"source": "punch"})
+    contact = Contact(FLAT, surface, work_of_adhesion=w, approach="hertzian", detachment=detachment)
+    return contact, disc, math.sqrt(disc.sum() * grid.cell_area / math.pi)
+
+
+def drawn(contact, disc, distance):
+    """Pressure, displacement, gap of the disc drawn out by `distance`, all of it held."""
+    patient = Contact(contact.pair, contact.surface, work_of_adhesion=1e6)  # nothing lets go
+    state, _ = peel(patient, -distance, disc, limit=math.inf, residual=1e-9)
+    box = state.box
+    return state, (state.pressure[box], state.box_displacement, contact.gap[box], disc[box])
+
+
+@pytest.mark.parametrize("nodes", [20.4, 30.3])
+def test_the_edge_of_a_punch_is_a_crack(nodes):
+    """G = K²/2E* = F²/(8πE*a³): w at Kendall's force."""
+    contact, disc, radius = punch(nodes)
+    E, w = contact.pair.contact_modulus, 0.1
+    state, fields = drawn(contact, disc, float(kendall.pull_off_displacement(radius, E, w)))
+    G = energy_release_rate(*fields)[1]
+    expected = state.force**2 / (8 * math.pi * E * radius**3)
+    assert expected == pytest.approx(w, rel=0.02)
+    assert G.mean() == pytest.approx(expected, rel=0.03)
+    assert G.std() < 0.1 * G.mean()
+
+
+def test_a_straight_edge_releases_k_squared_over_two_e():
+    """A strip of half width c held and drawn: flat, and so with p = −P/(π sqrt(c² − x²)) across.
+
+    Halfway along a strip much longer than wide, K = P/sqrt(πc) with P the pull per length there.
+    """
+    half, long, h = 24, 400, 1e-7
+    n = (2 * half + 9, long)
+    touching = np.zeros(n, dtype=bool)
+    touching[4:-4, :] = True
+    K = half_space(n, (h, h), E_STAR)
+    from scipy.sparse.linalg import LinearOperator, cg
+
+    inside = np.flatnonzero(touching)
+
+    def apply(x):
+        p = np.zeros(n)
+        p.flat[inside] = x
+        return K(p).flat[inside]
+
+    A = LinearOperator((inside.size, inside.size), matvec=apply)
+    x, status = cg(A, np.full(inside.size, -1e-9), rtol=1e-10)
+    assert status == 0
+    p = np.zeros(n)
+    p.flat[inside] = x
+    u = K(p)
+    (_, j), G = energy_release_rate(p, u, np.zeros(n), touching)
+    middle = abs(j - (long - 1) / 2) < 20
+    P = p[:, long // 2 - 20 : long // 2 + 20].sum(axis=0).mean() * h
+    c = (half + 0.5) * h
+    assert G[middle].mean() == pytest.approx(P**2 / (2 * math.pi * c * E_STAR), rel=0.01)
+
+
+def test_geometry_outside_the_contact_is_no_opening():
+    rates = []
+    for depth in (1e-9, 1e-6, 1e-3):
+        contact, disc, _ = punch(12.2, depth)
+        rates.append(energy_release_rate(*drawn(contact, disc, 2e-8)[1])[1])
+    assert rates[0] == pytest.approx(rates[1], rel=1e-6)
+    assert rates[1] == pytest.approx(rates[2], rel=1e-6)
+
+
+def test_a_punch_parts_at_the_same_force_whatever_is_beside_it():
+    forces = [
+        separation_of(
+            list(separate(solve(punch(12.2, depth)[0], 1e-10), tolerance=0.02))
+        ).pull_off_force
+        for depth in (1e-6, 1e-3)
+    ]
+    assert forces[0] == pytest.approx(forces[1], rel=1e-6)
+
+
+def patches():
+    """Two patches one cell apart, and a single node."""
+    touching = np.zeros((20, 24), dtype=bool)
+    touching[3:12, 2:9] = True
+    touching[3:14, 10:20] = True
+    touching[17, 4] = True
+    return touching
+
+
+def test_smoothing_conserves_the_sum_and_stays_on_its_patch():
+    touching = patches()
+    joined = label(touching, structure=np.ones((3, 3)))[0]
+    surrounded = touching[:-2, 1:-1] & touching[2:, 1:-1] & touching[1:-1, :-2] & touching[1:-1, 2:]
+    edge = touching.copy()
+    edge[1:-1, 1:-1] &= ~surrounded
+    i, j = np.nonzero(edge)
+    stay, W_ = detachment._diffusion(i, j, touching.shape)
+    for start in (0, i.size // 2, i.size - 1):
+        amount = np.zeros(i.size)
+        amount[start] = 1.0
+        for _ in range(detachment._SMOOTHING_STEPS):
+            amount = stay * amount + W_ @ amount
+        assert amount.sum() == pytest.approx(1.0, rel=1e-12)
+        assert amount.min() >= 0
+        home = joined[i[start], j[start]]
+        assert not amount[joined[i, j] != home].any()
+
+
+def test_a_patch_without_tension_has_no_rate_beside_one_with():
+    touching = patches()
+    p, u = np.zeros(touching.shape), np.zeros(touching.shape)
+    left = touching & (np.arange(24) < 9)[None, :] & (np.arange(20) < 12)[:, None]
+    p[left] = -1e8
+    u[~touching] = 1e-9
+    (i, j), G = energy_release_rate(p, u, np.zeros(touching.shape), touching)
+    assert (G[left[i, j]] > 0).all()
+    assert not G[~left[i, j]].any()
+
+
+def test_the_tension_limit_releases_exactly_what_is_beyond_it():
+    random = np.random.default_rng(5)
+    touching = random.random((30, 31)) < 0.6
+    p = np.where(touching, random.normal(0, 2.0, touching.shape), 0.0)
+    p[0, 0], touching[0, 0] = -1.5, True  # on the limit: it stays
+    rule = TensionLimit(1.5)
+    released = rule.releases(p, p, p, touching)
+    assert np.array_equal(released, touching & (p < -1.5))
+    assert released.any()
+
+
+@pytest.mark.parametrize(
+    ("name", "kind"), [("crack-closure", CrackClosure), ("pohrt-popov", TensionLimit)]
+)
+def test_criteria_by_name(name, kind):
+    rule = criterion(name, E_STAR, W, (1e-7, 2e-7))
+    assert isinstance(rule, kind)
+    assert rule.limit == tension_limit(E_STAR, W, (1e-7, 2e-7))
+
+
+def test_crack_closure_releases_nodes_apart_from_each_other():
+    """Beyond w everywhere along the edge: the tensest go, none beside another."""
+    contact, disc, radius = punch(20.4)
+    E, w = contact.pair.contact_modulus, 0.1
+    far = 1.3 * float(kendall.pull_off_displacement(radius, E, w))
+    _, (p, u, h, touching) = drawn(contact, disc, far)
+    # The disc is symmetric; ties are broken so that each stretch has one tensest node.
+    p = p * (1 + 1e-9 * np.random.default_rng(0).random(p.shape))
+    released = CrackClosure(w, math.inf).releases(p, u, h, touching)
+    assert 4 <= released.sum() < 40
+    assert not (released & ~touching).any()
+    i, j = np.nonzero(released)
+    apart = np.maximum(abs(i[:, None] - i), abs(j[:, None] - j))
+    assert apart[~np.eye(i.size, dtype=bool)].min() > 1
+    assert p[released].max() < 0
+    near = 0.8 * float(kendall.pull_off_displacement(radius, E, w))
+    _, fields = drawn(contact, disc, near)
+    assert not CrackClosure(w, math.inf).releases(*fields).any()

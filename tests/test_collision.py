@@ -1,0 +1,110 @@
+"""What follows from the energies of one contact."""
+
+import math
+from functools import partial
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from restitution.collision import Collision, collide
+from restitution.contact.bodies import Body, Pair
+from restitution.contact.contact import Contact, smooth
+from restitution.contact.loading import solve, step
+from restitution.numerics.grid import Grid
+
+approx = partial(pytest.approx, abs=0.0)  # whose own 1e-12 is more than these energies
+
+UM, NM = 1e-6, 1e-9
+STEEL = Body(500 * UM, 210e9, 0.25, density=7850.0)
+
+
+def contact(first=STEEL, second=STEEL, **options):
+    return Contact(Pair(first, second), smooth(Grid((25, 23), (0.5 * UM, 0.5 * UM))), **options)
+
+
+def test_values_worked_out_by_hand():
+    # e = sqrt(2/8) = ½; ½·4·V² = 8
+    collision = Collision(loading_work=8.0, unloading_work=2.0, mass=4.0)
+    assert collision.restitution == 0.5
+    assert collision.impact_velocity == 2.0
+    assert Collision(8.0, 2.0, None).impact_velocity is None
+    assert Collision(8.0, 8.0, 4.0).restitution == 1.0
+    assert Collision(8.0, 0.0, 4.0).restitution == 0.0
+
+
+@given(st.floats(1e-30, 1e6), st.floats(1e-6, 1), st.floats(1e-20, 1e6))
+def test_the_energies_are_those_of_the_velocities(work, returned, mass):
+    collision = Collision(work, returned * work, mass)
+    rebound = collision.restitution * collision.impact_velocity
+    assert 0.5 * mass * collision.impact_velocity**2 == approx(work, rel=1e-12)
+    assert 0.5 * mass * rebound**2 == approx(returned * work, rel=1e-12)
+    assert 0 < collision.restitution <= 1
+
+
+def test_a_solve_gives_works_and_mass():
+    state = solve(contact(yield_pressure=750e6), 100 * NM)
+    collision = collide(state)
+    assert collision.loading_work == state.loading_work
+    assert collision.unloading_work == state.stored_energy
+    assert collision.mass == state.contact.pair.mass
+    assert collision.restitution**2 == approx(
+        state.stored_energy / (state.stored_energy + state.plastic_work), rel=1e-12
+    )
+    assert 0 < collision.restitution < 0.95
+
+
+def test_elastic_bodies_lose_nothing():
+    assert collide(solve(contact(), 40 * NM)).restitution == 1.0
+    assert collide(solve(contact(yield_pressure=1e15), 40 * NM)).restitution == 1.0
+
+
+def test_restitution_falls_with_depth_and_with_yield_pressure():
+    depths = np.array([35, 50, 75, 100]) * NM
+    by_depth = [collide(solve(contact(yield_pressure=750e6), d)).restitution for d in depths]
+    assert (np.diff(by_depth) < 0).all()
+    by_pressure = [
+        collide(solve(contact(yield_pressure=p), 50 * NM)).restitution for p in (1e8, 4e8, 8e8, 2e9)
+    ]
+    assert (np.diff(by_pressure) > 0).all()
+
+
+def test_hertz_velocity():
+    """½ m* V² = 8/15 E* R*^½ δ^{5/2}, eleven nodes over the contact radius: 1 %."""
+    fine = Contact(Pair(STEEL, STEEL), smooth(Grid((31, 31), (0.25 * UM, 0.25 * UM))))
+    depth = (2.75 * UM) ** 2 / 250e-6
+    work = 8 / 15 * 112e9 * math.sqrt(250e-6) * depth**2.5
+    mass = 2 / 3 * math.pi * 500e-6**3 * 7850
+    velocity = collide(solve(fine, depth)).impact_velocity
+    assert velocity == approx(math.sqrt(2 * work / mass), rel=1e-2)
+
+
+def test_a_wall_doubles_the_mass_of_like_spheres():
+    wall = Body(math.inf, 210e9, 0.25)
+    assert collide(solve(contact(second=wall), 30 * NM)).mass == approx(STEEL.mass, rel=1e-14)
+    assert collide(solve(contact(), 30 * NM)).mass == approx(STEEL.mass / 2, rel=1e-14)
+
+
+def test_without_a_density_there_is_a_restitution_but_no_velocity():
+    light = Body(500 * UM, 210e9, 0.25)
+    collision = collide(solve(contact(light, STEEL, yield_pressure=750e6), 100 * NM))
+    assert collision.impact_velocity is None
+    assert collision.mass is None
+    assert collision.restitution == approx(
+        collide(solve(contact(yield_pressure=750e6), 100 * NM)).restitution, rel=1e-12
+    )
+
+
+def test_the_way_to_the_deepest_point_does_not_matter():
+    at_once = solve(contact(yield_pressure=750e6), 100 * NM, residual=1e-11)
+    state = solve(contact(yield_pressure=750e6), 40 * NM, residual=1e-11)
+    for nm in (60, 45, 80, 100):  # once back on the way
+        state = step(state, nm * NM, residual=1e-11)
+    assert collide(state).restitution == approx(collide(at_once).restitution, rel=1e-8)
+
+
+def test_no_collision_returns_more_than_it_took():
+    grid = Grid((41, 41), (0.25 * UM, 0.25 * UM))
+    below_yield = Contact(Pair(STEEL, STEEL), smooth(grid), 1e12, "truncated")
+    assert collide(solve(below_yield, 20 * NM)).restitution <= 1 + 1e-8

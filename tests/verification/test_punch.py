@@ -1,0 +1,64 @@
+"""A flat punch against Kendall, and rectangular cells: criteria that know the shape of a cell."""
+
+import math
+
+import numpy as np
+import pytest
+
+from restitution import Body, Contact, Grid, Pair, Surface, smooth, solve
+from restitution.contact.separation import separate, separation_of
+from restitution.theory import jkr, kendall
+
+A, W = 10e-6, 0.1
+
+
+def punch(nodes, offset=(0, 0), ratio=1, depth=1e-3):
+    """A disc of radius A standing out by `depth` from a wall, a/h = `nodes`; and its radius."""
+    h = A / nodes
+    hx, hy = h * math.sqrt(ratio), h / math.sqrt(ratio)
+    grid = Grid((2 * int(A / hx + 4) + 1, 2 * int(A / hy + 4) + 1), (hx, hy))
+    x, y = grid.x[:, None] - offset[0] * hx, grid.y[None, :] - offset[1] * hy
+    disc = x * x + y * y < A * A
+    surface = Surface(np.where(disc, 0.0, -depth), grid, {"source": "punch"})
+    wall = Body(radius=2e3, youngs_modulus=1e9, poissons_ratio=0.25)
+    return Pair(wall, wall), surface, math.sqrt(disc.sum() * grid.cell_area / math.pi)
+
+
+@pytest.mark.parametrize("detachment", ["crack-closure", "pohrt-popov"])
+@pytest.mark.parametrize(
+    ("nodes", "offset", "ratio"),
+    [
+        (15.1, (0, 0), 1), (20.4, (0, 0), 1),
+        (15.1, (0.3, 0.4), 1), (20.4, (0.3, 0.4), 1),
+        (15.1, (0, 0), 2), (20.4, (0.3, 0.4), 2),
+    ],
+)  # fmt: skip
+def test_kendall(detachment, nodes, offset, ratio):
+    pair, surface, radius = punch(nodes, offset, ratio)
+    contact = Contact(pair, surface, work_of_adhesion=W, approach="hertzian", detachment=detachment)
+    path = list(separate(solve(contact, 1e-10), tolerance=0.01))
+    expected = float(kendall.pull_off_force(radius, pair.contact_modulus, W))
+    assert separation_of(path).pull_off_force == pytest.approx(expected, rel=0.02)
+
+
+@pytest.mark.parametrize("ratio", [2, 0.5])
+def test_jkr_on_rectangular_cells(ratio):
+    """Cells of the same area: the same sphere, the same numbers."""
+    steel = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25)
+    pair, w = Pair(steel, steel), 0.09
+    material = pair.radius, pair.contact_modulus, w
+    depth = -2.5 * float(jkr.break_indentation(*material))
+    reach = 1.4 * math.sqrt(pair.radius * depth)
+    F_c = float(jkr.pull_off_force(pair.radius, w))
+    found = []
+    for r in (1, ratio):
+        h = float(jkr.pull_off_radius(*material)) / 8
+        hx, hy = h * math.sqrt(r), h / math.sqrt(r)
+        grid = Grid((2 * int(reach / hx) + 1, 2 * int(reach / hy) + 1), (hx, hy))
+        contact = Contact(pair, smooth(grid), work_of_adhesion=w, approach="hertzian")
+        state = solve(contact, depth)
+        separation = separation_of(list(separate(state, tolerance=0.005)))
+        found.append((separation.pull_off_force / F_c, separation.unloading_work / (F_c * depth)))
+    square, rectangle = np.array(found)
+    assert rectangle[0] == pytest.approx(square[0], rel=0.03)
+    assert rectangle[1] == pytest.approx(square[1], abs=0.03)
