@@ -40,6 +40,7 @@ def peel(
     # No node keeps more than the tension limit, so twice that is as good as no bound, and easier.
     tension = 2 * tension_limit(pair.contact_modulus, contact.work_of_adhesion, grid.spacing)
     rough = max(residual, _RELEASING * contact.opening / contact.length_at(indentation))
+    held = held.copy()
     accuracy = residual
     pulled: State | None = None
     convolutions = 0
@@ -61,7 +62,7 @@ def peel(
             return pulled, state
         box = state.box
         # Nodes that were pushed into contact are held from now on.
-        held = held | (state.pressure > 0)
+        held[box] |= state.pressure[box] > 0
         gap = contact.gap[box] + state.plastic_displacement[box]
         released = rule.releases(state.pressure[box], state.box_displacement, gap, held[box])
         if not released.any():
@@ -71,8 +72,8 @@ def peel(
             continue
         accuracy = rough
         held[box] &= ~released
-        first_guess = state.pressure.copy()
-        first_guess[box][released] = 0.0
+        first_guess = np.zeros_like(state.pressure)
+        first_guess[box] = np.where(released, 0.0, state.pressure[box])
 
 
 def attach(

@@ -49,22 +49,25 @@ def equilibrate(
     the rim is let pass.
     """
     pressure = np.zeros(contact.grid.nodes)
+    region: Box = slice(None), slice(None)
     if history is None:
-        gap, plastic, work, work_error = contact.gap, np.zeros_like(pressure), 0.0, 0.0
+        plastic, work, adhesive_work, work_error = np.zeros_like(pressure), 0.0, 0.0, 0.0
     else:
-        gap = contact.gap + history.plastic_displacement
         plastic, work = history.plastic_displacement, history.plastic_work
-        work_error = history.work_error
-    adhesive_work = 0.0 if history is None else history.adhesive_work
-    box = bounding_box(gap < indentation if held is None else (gap < indentation) | held)
+        adhesive_work, work_error = history.adhesive_work, history.work_error
+        if indentation <= history.indentation:  # no contact where there was none
+            region = _widen(history.box, 2, contact.grid.nodes)
+    gap = contact.gap[region] + plastic[region]
+    box = bounding_box(gap < indentation if held is None else (gap < indentation) | held[region])
     if box is None:
         nowhere = slice(0, 0), slice(0, 0)
         return State(contact, indentation, pressure, plastic, nowhere, pressure[nowhere],
                      work, adhesive_work, work_error, residual=0.0, convolutions=0)  # fmt: skip
+    box = _shift(box, region)
     if held is not None:
         box = _widen(box, 2, contact.grid.nodes)
 
-    b = indentation - gap[box]
+    b = indentation - contact.gap[box] - plastic[box]
     shape = (b.shape[0], b.shape[1])
     K = half_space(shape, contact.grid.spacing, contact.pair.contact_modulus)
     # How far the surfaces overlap: δ itself when nothing has yielded.
@@ -115,6 +118,15 @@ def bounding_box(mask: Mask) -> Box | None:
         return None
     columns = np.flatnonzero(mask[rows[0] : rows[-1] + 1].any(axis=0))
     return slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
+
+
+def _shift(box: Box, region: Box) -> Box:
+    """The box in the indices of the grid, when it was found in those of `region`."""
+    rows, columns = (
+        slice(part.start + (within.start or 0), part.stop + (within.start or 0))
+        for part, within in zip(box, region, strict=True)
+    )
+    return rows, columns
 
 
 def _widen(box: Box, cells: int, nodes: tuple[int, int]) -> Box:

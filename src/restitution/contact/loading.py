@@ -124,6 +124,11 @@ def _integrate_work(state: State, start: State | None) -> State:
     contact, indentation = state.contact, state.indentation
     if start is None or not start.virgin or start.indentation >= indentation:
         start = None
+    gain = contact.work_of_adhesion * state.contact_area
+    known = state.stored_energy + state.plastic_work
+    if _gain_hardly_matters(state):
+        # What comes in gains energy, and at most w per area: half of it, give or take the other.
+        return replace(state, adhesive_work=0.5 * gain, work_error=0.5 * gain)
     if contact.adhesive and contact.approach != "hertzian":
         work, error, convolutions = _work_by_force(state, start)
     else:
@@ -133,8 +138,18 @@ def _integrate_work(state: State, start: State | None) -> State:
         # The cut pressure's plastic work is what is left of the work; it has no formula of its own.
         return replace(state, plastic_work=work - state.stored_energy, adhesive_work=0.0,
                        work_error=error, convolutions=convolutions)  # fmt: skip
-    gained = state.stored_energy + state.plastic_work - work
-    return replace(state, adhesive_work=gained, work_error=error, convolutions=convolutions)
+    return replace(state, adhesive_work=known - work, work_error=error, convolutions=convolutions)
+
+
+def _gain_hardly_matters(state: State) -> bool:
+    """Whether all that adhesion can have done on approach is within the tolerance of the work."""
+    contact = state.contact
+    if not contact.adhesive or contact.approach != "equilibrium":
+        return False
+    if contact.plasticity == "truncated" and math.isfinite(contact.yield_pressure):
+        return False
+    gain = contact.work_of_adhesion * state.contact_area
+    return gain <= 2 * _ADHESIVE_TOLERANCE * (state.stored_energy + state.plastic_work)
 
 
 def _work_by_force(state: State, start: State | None) -> tuple[float, float, int]:
