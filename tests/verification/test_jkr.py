@@ -80,7 +80,8 @@ def test_the_loading_branch(depth):
     contact, _ = sphere(16)
     state = load(contact, depth * BREAK, start=None, residual=1e-6)
     expected = float(jkr.force(depth * BREAK, *MATERIAL))
-    assert state.force == pytest.approx(expected, abs=0.04 * F_C)
+    # One cell of contact radius is worth 0.18 F_c at the deepest; measured 0.011 to 0.040.
+    assert state.force == pytest.approx(expected, abs=0.05 * F_C)
 
 
 def test_the_jump_in():
