@@ -21,12 +21,17 @@ def main() -> None:
 def _run() -> int:
     from restitution.cli.app import app
     from restitution.cli.console import refuse
-    from restitution.cli.signals import Stopped, stoppable
+    from restitution.cli.signals import Stopped, received, stoppable
     from restitution.errors import RestitutionError
 
     try:
         with stoppable():
-            app()
+            try:
+                app()
+            except BaseException:
+                if received:
+                    raise Stopped(received[-1]) from None
+                raise
     except RestitutionError as error:
         refuse(str(error))
     except MemoryError:

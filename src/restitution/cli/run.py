@@ -20,7 +20,7 @@ def run(
     )
 
     from restitution.cli.console import answers, errors, warn
-    from restitution.cli.signals import Stopped
+    from restitution.cli.signals import Stopped, received
     from restitution.reports.figures import write_figures
     from restitution.studies.case import naming, read_case
     from restitution.studies.results import ResultsFolder
@@ -56,6 +56,8 @@ def run(
         _keep(folder, depths)
         raise typer.Exit(stop.status if isinstance(stop, Stopped) else 130) from None
     except BaseException:
+        if received:
+            errors.print("Interrupted.", style="red")
         _keep(folder, depths)
         raise
     names = ["curve.csv", "unloading.csv", "summary.json", "results.nc"]

@@ -16,11 +16,17 @@ class Stopped(KeyboardInterrupt):
         self.status = 128 + number
 
 
+# Compiled code that calls back into Python may turn `Stopped` into an error of its own: what has
+# been received tells such an error from one of the program.
+received: list[int] = []
+
+
 @contextmanager
 def stoppable() -> Iterator[None]:
     """Raise `Stopped` on SIGTERM and SIGHUP, unless the process was started to ignore them."""
 
     def stop(number: int, _: FrameType | None) -> None:
+        received.append(number)
         raise Stopped(number)
 
     before = {}
