@@ -1,0 +1,101 @@
+"""Loading with a cut pressure (`truncated`), whose work is an integral."""
+
+import math
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+from restitution.contact.contact import Contact, smooth
+from restitution.contact.loading import solve, step
+from restitution.errors import CaseError
+from restitution.numerics.grid import Grid
+
+approx = partial(pytest.approx, abs=0.0)  # whose own 1e-12 is more than these energies
+
+UM, NM = 1e-6, 1e-9
+P_Y = 750e6
+DEPTH = 40 * NM
+
+
+def test_truncated_is_the_elastic_pressure_cut(rough_contact, dense):
+    contact = rough_contact(
+        (16, 13), (0.8 * UM, 0.9 * UM), yield_pressure=P_Y, plasticity="truncated"
+    )
+    state = solve(contact, 30 * NM, residual=1e-11)
+    elastic = dense.pressure(contact, 30 * NM, math.inf)
+    cut = np.minimum(elastic, P_Y)
+    assert (elastic > P_Y).any()
+    assert ((elastic > 0) & (elastic < P_Y)).any()
+    assert_allclose(state.pressure, cut, atol=1e-7 * P_Y)
+    lowered = np.maximum(-dense.gap(contact, cut, 30 * NM), 0)
+    assert_allclose(state.plastic_displacement, lowered, atol=1e-8 * 30 * NM)
+    u = dense.gap(contact, cut, 30 * NM) - contact.gap + 30 * NM
+    area = contact.grid.cell_area
+    assert state.stored_energy == approx(0.5 * (cut * u).sum() * area, rel=1e-7)
+
+
+def test_truncated_work_is_the_work_of_its_force(rough_contact):
+    """A fine Riemann sum, and the same work from a state on the way."""
+    contact = rough_contact(yield_pressure=P_Y, plasticity="truncated")
+    uncut = replace(contact, yield_pressure=math.inf)
+    state = solve(contact, DEPTH)
+    depths = DEPTH * ((np.arange(400) + 0.5) / 400) ** 2
+    edges = DEPTH * (np.arange(401) / 400) ** 2
+    elastic, work = None, 0.0
+    for depth, width in zip(depths, np.diff(edges), strict=True):
+        elastic = solve(uncut, depth, start=elastic, residual=1e-6)
+        work += np.minimum(elastic.pressure, P_Y).sum() * contact.grid.cell_area * width
+    assert state.loading_work == approx(work, rel=1e-4)
+    assert 0 < state.work_error < 5e-5 * state.loading_work
+    halfway = solve(contact, DEPTH, start=solve(contact, 0.5 * DEPTH))
+    assert halfway.loading_work == approx(state.loading_work, rel=3e-5)
+    assert halfway.force == approx(state.force, rel=1e-6)
+    deeper = solve(contact, DEPTH, start=solve(contact, 1.2 * DEPTH))  # only a guess
+    assert deeper.loading_work == approx(state.loading_work, rel=3e-5)
+
+
+def test_truncated_unloading_starts_at_the_cut_pressure(rough_contact):
+    state = solve(rough_contact(yield_pressure=P_Y, plasticity="truncated"), DEPTH)
+    same = step(state, DEPTH)
+    assert same.force == approx(state.force, rel=1e-6)
+    assert_allclose(same.pressure, state.pressure, atol=1e-5 * P_Y)
+    just = step(state, (1 - 1e-6) * DEPTH)
+    assert just.force == approx(state.force, rel=1e-4)
+    assert just.force < state.force
+
+
+def test_truncated_goes_no_deeper_by_steps(rough_contact):
+    state = solve(rough_contact(yield_pressure=P_Y, plasticity="truncated"), DEPTH)
+    for beginning in (state, step(state, 0.9 * DEPTH)):
+        with pytest.raises(CaseError, match="truncated contact can only be unloaded; use solve"):
+            step(beginning, 1.01 * DEPTH)
+
+
+def test_truncated_without_a_yield_pressure_is_elastic(rough_contact):
+    cut, elastic = (solve(rough_contact(plasticity=p), DEPTH) for p in ("truncated", "equilibrium"))
+    assert_array_equal(cut.pressure, elastic.pressure)
+    assert cut.loading_work == elastic.loading_work
+
+
+def test_truncated_below_yield_is_elastic(pair):
+    contact = Contact(pair, smooth(Grid((41, 41), (0.25 * UM, 0.25 * UM))), 1e12, "truncated")
+    state = solve(contact, 20 * NM)
+    assert state.pressure.max() < 1e12
+    assert abs(state.plastic_work) <= state.work_error + 1e-8 * state.stored_energy
+    assert state.loading_work == approx(state.stored_energy, rel=1e-5)
+
+
+def test_truncated_work_from_an_unloaded_state_is_not_taken_for_granted(rough_contact):
+    contact = rough_contact(yield_pressure=P_Y, plasticity="truncated")
+    unloaded = step(solve(contact, 0.9 * DEPTH), 0.7 * DEPTH)
+    try:
+        state = solve(contact, DEPTH, start=unloaded)
+    except CaseError:
+        return
+    assert state.loading_work == approx(solve(contact, DEPTH).loading_work, rel=1e-4)
+
+
+# --- refusals ---------------------------------------------------------------------------------
