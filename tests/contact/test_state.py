@@ -51,10 +51,8 @@ def test_a_state_is_frozen(state):
 def with_pressure(state, rows):
     """A state whose pressure is 1 Pa where `rows` shows an x."""
     mask = np.array([[mark == "x" for mark in row] for row in rows])
-    p = np.zeros(state.contact.grid.nodes)
     box = slice(2, 2 + mask.shape[0]), slice(3, 3 + mask.shape[1])
-    p[box] = mask
-    return replace(state, pressure=p, box=box)
+    return replace(state, box_pressure=1.0 * mask, box=box)
 
 
 @pytest.mark.parametrize(

@@ -27,9 +27,9 @@ def minimise(A, b, lower, upper, *, start=None, inverse=None, **options):
     """
     applied = []
 
-    def apply(p):
+    def apply(p, out=None):
         applied.append(p[:, 0].copy())
-        return A @ p
+        return np.matmul(A, p, out=out)
 
     options = {"tolerance": TOLERANCE, "max_iterations": 500} | options
     found = minimise_quadratic(
@@ -38,10 +38,15 @@ def minimise(A, b, lower, upper, *, start=None, inverse=None, **options):
         lower[:, None],
         upper[:, None],
         start=np.zeros((b.size, 1)) if start is None else start[:, None],
-        precondition=(lambda r: r) if inverse is None else (lambda r: inverse @ r),
+        precondition=copied if inverse is None else partial(np.matmul, inverse),
         **options,
     )
     return replace(found, point=found.point[:, 0], gradient=found.gradient[:, 0]), applied
+
+
+def copied(r, out=None):
+    """The identity as an operator."""
+    return np.positive(r, out=out)
 
 
 def random_matrix(rng, n, condition=10.0):
@@ -178,12 +183,12 @@ def test_the_shape_is_that_of_the_input():
     A, b = random_matrix(rng, 12), rng.normal(size=12)
     flat, _ = minimise(A, b, np.zeros(12), np.ones(12))
     shaped = minimise_quadratic(
-        lambda p: (A @ p.ravel()).reshape(3, 4),
+        lambda p, out=None: np.positive((A @ p.ravel()).reshape(3, 4), out=out),
         b.reshape(3, 4),
         np.zeros((3, 4)),
         np.ones((3, 4)),
         start=np.zeros((3, 4)),
-        precondition=lambda r: r,
+        precondition=copied,
         tolerance=TOLERANCE,
         max_iterations=500,
     )

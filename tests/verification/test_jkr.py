@@ -124,9 +124,12 @@ def order(nodes, errors):
     return -np.polyfit(np.log(nodes), np.log(errors), 1)[0]
 
 
-@pytest.mark.parametrize(("nodes", "mean", "each"), [(4, 0.05, 0.07), (8, 0.02, 0.03)])
+@pytest.mark.parametrize(("nodes", "mean", "each"), [(4, 0.04, 0.05), (8, 0.01, 0.025)])
 def test_crack_closure_pulls_off_at_the_jkr_force_wherever_the_apex_is(nodes, mean, each):
-    """Measured: 1.035 (1.013 to 1.055) at four nodes, 1.002 (0.987 to 1.026) at eight."""
+    """Measured: 1.032 (1.013 to 1.045) at four nodes, 1.000 (0.987 to 1.020) at eight.
+
+    Over 18 more offsets at random: 1.013 to 1.052, and 0.986 to 1.010.
+    """
     found = pull_off(nodes, "crack-closure")
     assert found.mean() == pytest.approx(1, abs=mean)
     assert found == pytest.approx(np.ones(len(OFFSETS)), abs=each)

@@ -8,9 +8,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.contact.box import Box, bounding_box, reframe, union, widen
 from restitution.contact.contact import Contact
 from restitution.contact.detachment import Mask, criterion, tension_limit
-from restitution.contact.equilibrium import equilibrate
+from restitution.contact.equilibrium import equilibrate, parted, reach
 from restitution.contact.state import State
 
 Array = NDArray[np.float64]
@@ -22,6 +23,7 @@ _RELEASING = 0.05
 def peel(
     contact: Contact,
     indentation: float,
+    box: Box,
     held: Mask,
     *,
     limit: float,
@@ -29,18 +31,29 @@ def peel(
     first_guess: Array | None = None,
     residual: float,
 ) -> tuple[State, State]:
-    """Hold the nodes `held` in contact, then release until none has to let go.
+    """Hold the nodes `held` of `box` in contact, then release until none has to let go.
 
-    Returns the state before the first release and the one after the last.
+    `first_guess` is an array on `box`, too. Returns the state before the first release and the one
+    after the last.
     """
     grid, pair = contact.grid, contact.pair
+    around = union(reach(contact, indentation, history), bounding_box(held, box))
+    if around is None:
+        state = parted(contact, indentation, history)
+        return state, state
+    around = widen(around, 2, grid.nodes)
+    held = reframe(held, box, around).copy()
+    if first_guess is not None:
+        first_guess = reframe(first_guess, box, around)
+    gap = contact.gap[around]
+    if history is not None:
+        gap = gap + history.plastic_displacement[around]
     rule = criterion(
         contact.detachment, pair.contact_modulus, contact.work_of_adhesion, grid.spacing
     )
     # No node keeps more than the tension limit, so twice that is as good as no bound, and easier.
     tension = 2 * tension_limit(pair.contact_modulus, contact.work_of_adhesion, grid.spacing)
     rough = max(residual, _RELEASING * contact.opening / contact.length_at(indentation))
-    held = held.copy()
     accuracy = residual
     pulled: State | None = None
     convolutions = 0
@@ -48,6 +61,7 @@ def peel(
         state = equilibrate(
             contact,
             indentation,
+            around,
             limit=limit,
             history=history,
             held=held,
@@ -58,27 +72,24 @@ def peel(
         convolutions += state.convolutions
         state = replace(state, convolutions=convolutions)
         pulled = state if pulled is None else pulled
-        if not state.contact_nodes:
-            return pulled, state
-        box = state.box
+        pressure = state.box_pressure
         # Nodes that were pushed into contact are held from now on.
-        held[box] |= state.pressure[box] > 0
-        gap = contact.gap[box] + state.plastic_displacement[box]
-        released = rule.releases(state.pressure[box], state.box_displacement, gap, held[box])
+        held |= pressure > 0
+        released = rule.releases(pressure, state.box_displacement, gap, held)
         if not released.any():
             if accuracy == residual:
                 return pulled, state
-            accuracy, first_guess = residual, state.pressure
+            accuracy, first_guess = residual, pressure
             continue
         accuracy = rough
-        held[box] &= ~released
-        first_guess = np.zeros_like(state.pressure)
-        first_guess[box] = np.where(released, 0.0, state.pressure[box])
+        held &= ~released
+        first_guess = np.where(released, 0.0, pressure)
 
 
 def attach(
     contact: Contact,
     indentation: float,
+    box: Box,
     held: Mask,
     *,
     limit: float,
@@ -90,40 +101,44 @@ def attach(
 
     ring = np.ones((3, 3), dtype=bool)
     _, state = peel(
-        contact, indentation, held, limit=limit, first_guess=first_guess, residual=residual
+        contact, indentation, box, held, limit=limit, first_guess=first_guess, residual=residual
     )
     convolutions = state.convolutions
     # At first touch the node that touches carries nothing yet; what grows from it may.
-    touching = state.pressure != 0 if state.contact_nodes else held
+    touching = state.box_pressure != 0 if state.contact_nodes else reframe(held, box, state.box)
     while True:
+        wider_box = widen(state.box, 1, contact.grid.nodes)
         _, wider = peel(
             contact,
             indentation,
-            binary_dilation(touching, structure=ring),
+            wider_box,
+            binary_dilation(reframe(touching, state.box, wider_box), structure=ring),
             limit=limit,
-            first_guess=state.pressure,
+            first_guess=reframe(state.box_pressure, state.box, wider_box),
             residual=residual,
         )
         convolutions += wider.convolutions
         if wider.contact_nodes <= state.contact_nodes:
             return replace(state, convolutions=convolutions)
-        state, touching = wider, wider.pressure != 0
+        state, touching = wider, wider.box_pressure != 0
 
 
 def pull(state: State, indentation: float, *, first_guess: Array | None = None,
          residual: float) -> State:  # fmt: skip
     """Move an adhesive contact to a smaller `indentation` and let nodes go there.
 
-    The state remembers the force just before the first release: with the contact held the force is
-    linear in the indentation, so the work up to there is exact by the trapezium.
+    `first_guess` is an array on the box of `state`. The new state remembers the force just before
+    the first release: with the contact held the force is linear in the indentation, so the work up
+    to there is exact by the trapezium.
     """
     pulled, settled = peel(
         state.contact,
         indentation,
-        state.pressure != 0,
+        state.box,
+        state.box_pressure != 0,
         limit=state.contact.yield_pressure,
         history=state,
-        first_guess=state.pressure if first_guess is None else first_guess,
+        first_guess=state.box_pressure if first_guess is None else first_guess,
         residual=residual,
     )
     lost = pulled.stored_energy - settled.stored_energy

@@ -38,9 +38,12 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Detachment = Literal["crack-closure", "pohrt-popov"]
 
-_FACES = ((1, 0), (-1, 0), (0, 1), (0, -1))
+_FACES = np.array([(1, 0), (-1, 0), (0, 1), (0, -1)])
+_AROUND = np.array([(-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1), (0, 0)])
 _SMOOTHING_STEPS = 32  # each spreads by ⅔ cell² along an edge: some five cells in all
 _RELEASE_RADIUS = 3  # cells around a released node that wait for the next solve
+_ALIKE = 1e-6  # of the largest tension: a smaller difference is rounding
+_TINY = float(np.finfo(float).tiny)
 
 
 def tension_limit(
@@ -84,13 +87,16 @@ class CrackClosure:
         from scipy.ndimage import minimum_filter
 
         edge, G = energy_release_rate(p, u, h, touching)
-        # Releasing neighbours at once would overshoot: each relieves the others.
-        tension = np.zeros_like(p)
+        # Releasing neighbours at once would overshoot: each relieves the others. Of nodes that are
+        # equal but for rounding the first goes, so that the last digits decide nothing.
         ready = np.where((self.work_of_adhesion <= G) & (p[edge] < 0), p[edge], 0.0)
+        ready = np.round(ready / (_ALIKE * max(-float(ready.min(initial=0.0)), _TINY)))
+        ready = np.where(ready < 0, ready + 0.5 * np.arange(ready.size) / ready.size, 0.0)
+        tension = np.zeros_like(p)
         tension[edge] = ready
         tensest = minimum_filter(tension, size=2 * _RELEASE_RADIUS + 1, mode="constant")
         released = touching & (p < -self.limit)
-        released[edge] |= (ready < 0) & (ready <= tensest[edge])
+        released[edge] |= (ready < 0) & (ready == tensest[edge])
         return released
 
 
@@ -111,39 +117,42 @@ def energy_release_rate(
     p: Array, u: Array, h: Array, touching: Mask
 ) -> tuple[tuple[NDArray[np.intp], NDArray[np.intp]], Array]:
     """Nodes at the edge of the contact (indices) and G there, J/m², averaged along the edge."""
-    T = np.pad(touching, 2)
-    u, h = np.pad(u, 2, mode="edge"), np.pad(h, 2, mode="edge")
-    surrounded = T[1:-3, 2:-2] & T[3:-1, 2:-2] & T[2:-2, 1:-3] & T[2:-2, 3:-1]
-    edge_i, edge_j = np.nonzero(touching & ~surrounded)
-    i, j = edge_i + 2, edge_j + 2
-    sums = np.zeros((i.size, 2))  # work and number of faces of each node
-    for di, dj in _FACES:
-        outside = ~T[i + di, j + dj]
-        opening = u[i + di, j + dj] - 2 * u[i, j] + u[i - di, j - dj]
-        curvature = h[i, j] - 2 * h[i - di, j - dj] + h[i - 2 * di, j - 2 * dj]
-        opening += np.where(T[i - di, j - dj], curvature, 0.0)
-        sums[:, 0] -= np.where(outside, 0.5 * p[edge_i, edge_j] * np.maximum(opening, 0.0), 0.0)
-        sums[:, 1] += outside
-    stay, W = _diffusion(edge_i, edge_j, touching.shape)
+    T = np.pad(touching, 1)
+    surrounded = T[:-2, 1:-1] & T[2:, 1:-1] & T[1:-1, :-2] & T[1:-1, 2:]
+    i, j = np.nonzero(touching & ~surrounded)
+
+    def beside(values: Array, cells: int) -> Array:
+        """The values so many cells from each node across its four faces; on the rim, the rim's."""
+        rows = np.clip(i + cells * _FACES[:, :1], 0, values.shape[0] - 1)
+        columns = np.clip(j + cells * _FACES[:, 1:], 0, values.shape[1] - 1)
+        taken: Array = np.take(values, rows * values.shape[1] + columns)
+        return taken
+
+    outside = ~T[i + 1 + _FACES[:, :1], j + 1 + _FACES[:, 1:]]
+    inside = T[i + 1 - _FACES[:, :1], j + 1 - _FACES[:, 1:]]
+    opening = beside(u, 1) - 2 * u[i, j] + beside(u, -1)
+    curvature = h[i, j] - 2 * beside(h, -1) + beside(h, -2)
+    opening += np.where(inside, curvature, 0.0)
+    work = -0.5 * p[i, j] * np.where(outside, np.maximum(opening, 0.0), 0.0).sum(axis=0)
+    sums = np.column_stack([work, outside.sum(axis=0)])
+    spread = _diffusion(i, j, touching.shape)
     for _ in range(_SMOOTHING_STEPS):
-        sums = stay[:, None] * sums + W @ sums
-    return (edge_i, edge_j), sums[:, 0] / sums[:, 1]
+        sums = spread @ sums
+    return (i, j), sums[:, 0] / sums[:, 1]
 
 
-def _diffusion(
-    i: NDArray[np.intp], j: NDArray[np.intp], shape: tuple[int, ...]
-) -> tuple[Array, Any]:
-    """Weights of one step of diffusion along the edge that conserves the sum (Metropolis)."""
-    from scipy.sparse import coo_array
+def _diffusion(i: NDArray[np.intp], j: NDArray[np.intp], shape: tuple[int, ...]) -> Any:
+    """Matrix of one step of diffusion along the edge that conserves the sum (Metropolis)."""
+    from scipy.sparse import csr_array
 
+    n = i.size
     number = np.full((shape[0] + 2, shape[1] + 2), -1)
-    nodes = np.arange(i.size)
-    number[i + 1, j + 1] = nodes
-    steps = [(a, b) for a in (0, 1, 2) for b in (0, 1, 2) if (a, b) != (1, 1)]
-    beside = np.stack([number[i + a, j + b] for a, b in steps])
-    joined = beside >= 0
-    degree = joined.sum(axis=0)
-    here, there = np.broadcast_to(nodes, beside.shape)[joined], beside[joined]
-    weight = 1.0 / (1 + np.maximum(degree[here], degree[there]))
-    W = coo_array((weight, (here, there)), shape=(i.size, i.size)).tocsr()
-    return np.asarray(1.0 - W.sum(axis=1)), W
+    number[i + 1, j + 1] = np.arange(n)
+    # One row for each node: its eight neighbours, and last itself.
+    neighbours = number[i[:, None] + 1 + _AROUND[:, 0], j[:, None] + 1 + _AROUND[:, 1]]
+    joined = neighbours >= 0
+    degree = joined.sum(axis=1) - 1
+    weight = np.where(joined, 1.0 / (1 + np.maximum(degree[:, None], degree[neighbours])), 0.0)
+    weight[:, -1] = 1.0 - weight[:, :-1].sum(axis=1)
+    ends = np.concatenate([[0], np.cumsum(degree + 1)])
+    return csr_array((weight[joined], neighbours[joined], ends), shape=(n, n))

@@ -17,10 +17,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.contact.box import NOWHERE, Box, bounding_box, shape_of, widen
 from restitution.contact.contact import Contact
 from restitution.contact.edge import edge_advice
 from restitution.contact.influence import half_space, inverse_half_space
-from restitution.contact.state import Box, State
+from restitution.contact.state import State
 from restitution.errors import DomainError, NotConvergedError
 from restitution.numerics.minimise import minimise_quadratic
 
@@ -34,6 +35,7 @@ _MAX_ITERATIONS = 1000
 def equilibrate(
     contact: Contact,
     indentation: float,
+    box: Box,
     *,
     limit: float,
     history: State | None = None,
@@ -44,41 +46,24 @@ def equilibrate(
 ) -> State:
     """Solve for p ≤ `limit` on the surface `history` left; p ≥ 0, or ≥ −`tension` where `held`.
 
-    The violation of the contact conditions is measured against the overlap δ − min h, with adhesion
-    against the indentation or the length scale of adhesion. Raises `NotConvergedError`. Contact at
-    the rim is let pass.
+    `box` has to hold the `reach` and all nodes that are held; `held` and `first_guess` are arrays
+    on it. The violation of the contact conditions is measured against the overlap δ − min h, with
+    adhesion against the indentation or the length scale of adhesion. Raises `NotConvergedError`.
+    Contact at the rim is let pass.
     """
-    pressure = np.zeros(contact.grid.nodes)
-    region: Box = slice(None), slice(None)
-    if history is None:
-        plastic, work, adhesive_work, work_error = np.zeros_like(pressure), 0.0, 0.0, 0.0
-    else:
-        plastic, work = history.plastic_displacement, history.plastic_work
-        adhesive_work, work_error = history.adhesive_work, history.work_error
-        if indentation <= history.indentation:  # no contact where there was none
-            region = _widen(history.box, 2, contact.grid.nodes)
-    gap = contact.gap[region] + plastic[region]
-    box = bounding_box(gap < indentation if held is None else (gap < indentation) | held[region])
-    if box is None:
-        nowhere = slice(0, 0), slice(0, 0)
-        return State(contact, indentation, pressure, plastic, nowhere, pressure[nowhere],
-                     work, adhesive_work, work_error, residual=0.0, convolutions=0)  # fmt: skip
-    box = _shift(box, region)
-    if held is not None:
-        box = _widen(box, 2, contact.grid.nodes)
-
+    grid, shape = contact.grid, shape_of(box)
+    plastic, work, adhesive_work, work_error = _past(contact, history)
     b = indentation - contact.gap[box] - plastic[box]
-    shape = (b.shape[0], b.shape[1])
-    K = half_space(shape, contact.grid.spacing, contact.pair.contact_modulus)
+    K = half_space(shape, grid.spacing, contact.pair.contact_modulus)
     # How far the surfaces overlap: δ itself when nothing has yielded.
     scale = contact.length_at(indentation) if contact.adhesive else float(b.max())
     found = minimise_quadratic(
         K,
         b,
-        lower=np.zeros(shape) if held is None else np.where(held[box], -tension, 0.0),
-        upper=np.full(shape, limit),
-        start=np.zeros(shape) if first_guess is None else first_guess[box],
-        precondition=inverse_half_space(shape, contact.grid.spacing, contact.pair.contact_modulus),
+        lower=0.0 if held is None else np.where(held, -tension, 0.0),
+        upper=limit,
+        start=np.zeros(shape) if first_guess is None else first_guess,
+        precondition=inverse_half_space(shape, grid.spacing, contact.pair.contact_modulus),
         tolerance=residual * scale,
         max_iterations=_MAX_ITERATIONS,
     )
@@ -89,49 +74,59 @@ def equilibrate(
             f"{reached:.1e} (asked: {residual:.0e}) after {found.iterations} iterations; "
             "ask for a larger residual, or smooth or refine the surface"
         )
-    pressure[box] = found.point
-    yielding = np.where(found.point >= limit, np.maximum(-found.gradient, 0.0), 0.0)
+    yielding = (found.point >= limit) & (found.gradient < 0)
     if yielding.any():
+        sinking = np.where(yielding, -found.gradient, 0.0)
         plastic = plastic.copy()
-        plastic[box] += yielding
-        work += limit * float(yielding.sum()) * contact.grid.cell_area
-    return State(contact, indentation, pressure, plastic, box, found.gradient + b,
+        plastic[box] += sinking
+        work += limit * float(sinking.sum()) * grid.cell_area
+    return State(contact, indentation, box, found.point, found.gradient + b, plastic,
                  work, adhesive_work, work_error, reached, K.count)  # fmt: skip
+
+
+def reach(contact: Contact, indentation: float, history: State | None = None) -> Box | None:
+    """The box of the nodes that bodies without adhesion could touch: gap below `indentation`."""
+    nodes = contact.grid.nodes
+    if history is None:
+        return bounding_box(contact.gap < indentation)
+    if indentation <= history.indentation:  # no contact where there was none
+        region = widen(history.box, 2, nodes)
+    else:
+        region = (slice(0, nodes[0]), slice(0, nodes[1]))
+    gap = contact.gap[region] + history.plastic_displacement[region]
+    return bounding_box(gap < indentation, region)
+
+
+def parted(contact: Contact, indentation: float, history: State | None = None) -> State:
+    """The state without any contact."""
+    nothing = np.zeros((0, 0))
+    return State(contact, indentation, NOWHERE, nothing, nothing, *_past(contact, history),
+                 residual=0.0, convolutions=0)  # fmt: skip
+
+
+def _past(contact: Contact, history: State | None) -> tuple[Array, float, float, float]:
+    """Plastic displacement, plastic and adhesive work, and the error of the works."""
+    if history is None:
+        # Zeros that take no memory.
+        return np.broadcast_to(0.0, contact.grid.nodes), 0.0, 0.0, 0.0
+    return (history.plastic_displacement, history.plastic_work,
+            history.adhesive_work, history.work_error)  # fmt: skip
 
 
 def refuse_edge(state: State) -> None:
     """Raise `DomainError` when a node on the rim of the grid is in contact."""
-    p, grid = state.pressure, state.contact.grid
-    if not (p[0].any() or p[-1].any() or p[:, 0].any() or p[:, -1].any()):
+    p, grid = state.box_pressure, state.contact.grid
+    (top, left), (bottom, right) = ((part.start for part in state.box),
+                                    (part.stop for part in state.box))  # fmt: skip
+    nx, ny = grid.nodes
+    reached = (
+        (top == 0 and p[:1].any()) or (bottom == nx and p[-1:].any())
+        or (left == 0 and p[:, :1].any()) or (right == ny and p[:, -1:].any())
+    )  # fmt: skip
+    if not reached:
         return
     wide, long = (1e6 * edge for edge in grid.size)
     raise DomainError(
         f"the contact reaches the edge of the {wide:.4g} um x {long:.4g} um grid at an indentation "
         f"of {1e9 * state.indentation:.4g} nm; {edge_advice(state.contact, state.indentation)}"
     )
-
-
-def bounding_box(mask: Mask) -> Box | None:
-    """The smallest block of indices that holds every true node; None when there is none."""
-    rows = np.flatnonzero(mask.any(axis=1))
-    if rows.size == 0:
-        return None
-    columns = np.flatnonzero(mask[rows[0] : rows[-1] + 1].any(axis=0))
-    return slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
-
-
-def _shift(box: Box, region: Box) -> Box:
-    """The box in the indices of the grid, when it was found in those of `region`."""
-    rows, columns = (
-        slice(part.start + (within.start or 0), part.stop + (within.start or 0))
-        for part, within in zip(box, region, strict=True)
-    )
-    return rows, columns
-
-
-def _widen(box: Box, cells: int, nodes: tuple[int, int]) -> Box:
-    rows, columns = (
-        slice(max(part.start - cells, 0), min(part.stop + cells, n))
-        for part, n in zip(box, nodes, strict=True)
-    )
-    return rows, columns

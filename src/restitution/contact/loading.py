@@ -13,8 +13,9 @@ from dataclasses import replace
 import numpy as np
 
 from restitution.contact.adhesion import attach, limit_of, pull
+from restitution.contact.box import bounding_box, shape_of
 from restitution.contact.contact import Contact
-from restitution.contact.equilibrium import RESIDUAL, equilibrate, refuse_edge
+from restitution.contact.equilibrium import RESIDUAL, equilibrate, parted, reach, refuse_edge
 from restitution.contact.influence import half_space
 from restitution.contact.state import State
 from restitution.errors import CaseError
@@ -64,8 +65,8 @@ def step(state: State, indentation: float, *, residual: float = RESIDUAL) -> Sta
     if contact.adhesive:
         new = pull(state, indentation, residual=residual)
     else:
-        new = equilibrate(contact, indentation, limit=contact.yield_pressure, history=state,
-                          first_guess=state.pressure, residual=residual)  # fmt: skip
+        new = _equilibrate_without_adhesion(contact, indentation, state, contact.yield_pressure,
+                                            residual, history=state)  # fmt: skip
     refuse_edge(new)
     return replace(new, virgin=False)
 
@@ -74,9 +75,15 @@ def load(contact: Contact, indentation: float, *, start: State | None, residual:
     """`solve` without its work, and letting contact at the edge of the grid pass."""
     if contact.adhesive and contact.approach == "equilibrium":
         shallower = start if start is not None and start.indentation <= indentation else None
-        held = contact.gap <= indentation if shallower is None else shallower.pressure != 0
-        state = attach(contact, indentation, held, limit=limit_of(contact),
-                       first_guess=None if start is None else start.pressure,
+        if shallower is None:
+            held = contact.gap <= indentation
+            box = bounding_box(held)
+            assert box is not None  # the gap is zero at first touch
+            held = held[box]
+        else:
+            box, held = shallower.box, shallower.box_pressure != 0
+        state = attach(contact, indentation, box, held, limit=limit_of(contact),
+                       first_guess=None if start is None else start.pressure_on(box),
                        residual=residual)  # fmt: skip
     elif contact.adhesive and contact.approach == "seed":
         pressed = _press(contact, indentation + SEED_PULL, start, residual)
@@ -90,8 +97,22 @@ def load(contact: Contact, indentation: float, *, start: State | None, residual:
 
 
 def _press(contact: Contact, indentation: float, start: State | None, residual: float) -> State:
-    guess = None if start is None else np.maximum(start.pressure, 0.0)
-    return equilibrate(contact, indentation, limit=limit_of(contact), first_guess=guess,
+    return _equilibrate_without_adhesion(contact, indentation, start, limit_of(contact), residual)
+
+
+def _equilibrate_without_adhesion(
+    contact: Contact,
+    indentation: float,
+    start: State | None,
+    limit: float,
+    residual: float,
+    history: State | None = None,
+) -> State:
+    box = reach(contact, indentation, history)
+    if box is None:
+        return parted(contact, indentation, history)
+    guess = None if start is None else np.maximum(start.pressure_on(box), 0.0)
+    return equilibrate(contact, indentation, box, limit=limit, history=history, first_guess=guess,
                        residual=residual)  # fmt: skip
 
 
@@ -103,13 +124,12 @@ def _cut(elastic: State) -> State:
     the cut pressure.
     """
     contact, indentation, box = elastic.contact, elastic.indentation, elastic.box
-    pressure = np.minimum(elastic.pressure, contact.yield_pressure)
-    shape = elastic.box_displacement.shape
-    K = half_space((shape[0], shape[1]), contact.grid.spacing, contact.pair.contact_modulus)
-    displacement = K(pressure[box])
-    plastic = np.zeros_like(pressure)
+    pressure = np.minimum(elastic.box_pressure, contact.yield_pressure)
+    K = half_space(shape_of(box), contact.grid.spacing, contact.pair.contact_modulus)
+    displacement = K(pressure)
+    plastic = np.zeros(contact.grid.nodes)
     plastic[box] = np.maximum(indentation - contact.gap[box] - displacement, 0.0)
-    return replace(elastic, pressure=pressure, plastic_displacement=plastic,
+    return replace(elastic, box_pressure=pressure, plastic_displacement=plastic,
                    box_displacement=displacement,
                    convolutions=elastic.convolutions + 1)  # fmt: skip
 
@@ -194,7 +214,7 @@ def _work_by_cut(state: State, start: State | None) -> tuple[float, float, int]:
         return guess
 
     def cut(whole: State) -> float:
-        return float(np.minimum(whole.pressure[whole.box], p_y).sum()) * area
+        return float(np.minimum(whole.box_pressure, p_y).sum()) * area
 
     end = _press(contact, indentation, state, RESIDUAL)
     by_excess = end.force < 2 * cut(end)

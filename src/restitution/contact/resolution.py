@@ -11,6 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from restitution.contact.bodies import Pair
+from restitution.contact.box import widen
 from restitution.contact.contact import Contact
 from restitution.contact.state import State
 from restitution.errors import SurfaceError
@@ -43,13 +44,16 @@ def adhesive_nodes(state: State) -> float:
     contact, box = state.contact, state.box
     if not contact.adhesive:
         return math.inf
-    rows, columns = (slice(part.start, part.stop) for part in box)
     hx, hy = contact.grid.spacing
-    gap = np.pad(contact.gap, 1, mode="reflect", reflect_type="odd")
-    around = gap[rows.start : rows.stop + 2, columns.start : columns.stop + 2]
-    laplacian = np.diff(around[:, 1:-1], 2, axis=0) / hx**2
-    laplacian = laplacian + np.diff(around[1:-1, :], 2, axis=1) / hy**2
-    touching = state.pressure[box] != 0
+    around = widen(box, 1, contact.grid.nodes)
+    missing = [
+        (1 - (inner.start - outer.start), 1 - (outer.stop - inner.stop))
+        for outer, inner in zip(around, box, strict=True)
+    ]
+    gap = np.pad(contact.gap[around], missing, mode="reflect", reflect_type="odd")
+    laplacian = np.diff(gap[:, 1:-1], 2, axis=0) / hx**2
+    laplacian = laplacian + np.diff(gap[1:-1, :], 2, axis=1) / hy**2
+    touching = state.box_pressure != 0
     curvature = 0.5 * float(laplacian[touching].mean()) if touching.any() else 0.0
     curvature = max(curvature, 1 / contact.pair.radius)
     return pull_off_radius(contact, 1 / curvature) / max(contact.grid.spacing)

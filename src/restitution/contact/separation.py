@@ -153,5 +153,5 @@ def _predict(previous: State | None, state: State, step: float) -> NDArray[np.fl
     if previous is None:
         return None
     slope = step / (previous.indentation - state.indentation)
-    guess = state.pressure + slope * (state.pressure - previous.pressure)
-    return np.where(state.pressure != 0, guess, 0.0)
+    before, now = previous.pressure_on(state.box), state.box_pressure
+    return np.where(now != 0, now + slope * (now - before), 0.0)

@@ -11,29 +11,30 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.contact.box import Box, reframe
 from restitution.contact.contact import Contact
 
 Array = NDArray[np.float64]
-Box = tuple[slice, slice]
 
 
 @dataclass(frozen=True)
 class State:
     """A contact in equilibrium at one indentation.
 
-    `pressure` (Pa) and `plastic_displacement` (m, the surface is left lower by it) have the shape
-    of the grid. `box` is the part of the grid that was solved on; pressure is zero outside it, and
-    `box_displacement` (m) is the elastic displacement inside it. `plastic_work` (J) is what
-    yielding has dissipated so far, known within `plastic_work_error`. `residual` is the largest
-    violation of the contact conditions over the indentation, `convolutions` what the solve cost.
+    `box` is the part of the grid that was solved on; `box_pressure` (Pa) and the elastic
+    displacement `box_displacement` (m) are known there, and outside it the pressure is zero.
+    `plastic_displacement` (m, the surface is left lower by it) has the shape of the grid.
+    `plastic_work` (J) is what yielding has dissipated so far and `adhesive_work` what adhesion has
+    done, known within `work_error`. `residual` is the largest violation of the contact conditions
+    over the indentation, `convolutions` what the solve cost.
     """
 
     contact: Contact
     indentation: float
-    pressure: Array
-    plastic_displacement: Array
     box: Box
+    box_pressure: Array
     box_displacement: Array
+    plastic_displacement: Array
     plastic_work: float
     adhesive_work: float
     work_error: float
@@ -43,14 +44,24 @@ class State:
     virgin: bool = True
 
     @property
+    def pressure(self) -> Array:
+        """Pressure on the whole grid, Pa."""
+        rows, columns = (slice(0, n) for n in self.contact.grid.nodes)
+        return self.pressure_on((rows, columns))
+
+    def pressure_on(self, box: Box) -> Array:
+        """Pressure on a box of the grid, Pa."""
+        return reframe(self.box_pressure, self.box, box)
+
+    @property
     def force(self) -> float:
         """Normal force F = Σ p hx hy, N."""
-        return float(self.pressure[self.box].sum()) * self.contact.grid.cell_area
+        return float(self.box_pressure.sum()) * self.contact.grid.cell_area
 
     @property
     def contact_nodes(self) -> int:
         """Number of nodes that carry pressure."""
-        return int(np.count_nonzero(self.pressure[self.box]))
+        return int(np.count_nonzero(self.box_pressure))
 
     @property
     def contact_area(self) -> float:
@@ -60,12 +71,8 @@ class State:
     @property
     def stored_energy(self) -> float:
         """Elastic energy E_el = ½ Σ p u hx hy, J."""
-        p = self.pressure[self.box]
-        return (
-            0.5
-            * float(np.einsum("ij,ij->", p, self.box_displacement))
-            * self.contact.grid.cell_area
-        )
+        twice = float(np.einsum("ij,ij->", self.box_pressure, self.box_displacement))
+        return 0.5 * twice * self.contact.grid.cell_area
 
     @property
     def plastic_volume(self) -> float:
@@ -86,6 +93,6 @@ class State:
         """Nodes in each contact patch (nodes joined by an edge), largest first."""
         from scipy.ndimage import label
 
-        labels, count = label(self.pressure[self.box] != 0)
+        labels, count = label(self.box_pressure != 0)
         sizes = np.bincount(labels.ravel(), minlength=count + 1)[1:]
         return np.sort(sizes)[::-1]

@@ -13,7 +13,7 @@ so their row transforms are skipped.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from copy import copy
 from typing import Self
 
@@ -25,6 +25,7 @@ Array = NDArray[np.float64]
 
 # Two threads cost more than they save on smaller transforms (measured on two cores).
 _NODES_WORTH_THREADS = 200 * 200
+_ROW_BUFFER = 2**22  # numbers in the padded rows that are transformed at once: 32 MiB
 
 
 def threads_for(nodes: int) -> int:
@@ -57,7 +58,7 @@ class FreeConvolution:
         self._threads = threads_for(nx * ny)
         # The normalisation of the inverse transform rides along with the kernel.
         self._spectrum = ducc0.fft.dct(lags, type=1, nthreads=self._threads) / (px * py)
-        self._rows = np.zeros((nx, py))
+        self._rows = np.empty((min(nx, max(1, _ROW_BUFFER // py)), py))
         self._modes = np.empty((px, py // 2 + 1), dtype=np.complex128)
 
     def fresh(self) -> Self:
@@ -67,24 +68,37 @@ class FreeConvolution:
         other._rows, other._modes = np.empty_like(self._rows), np.empty_like(self._modes)
         return other
 
-    def __call__(self, p: Array) -> Array:
-        """Return K * p, same shape as `p` and a new array."""
+    def __call__(self, p: Array, out: Array | None = None) -> Array:
+        """Return K * p, same shape as `p`: in a new array, or in `out`."""
         nx, ny = self.shape
-        rows, modes, spectrum, threads = self._rows, self._modes, self._spectrum, self._threads
-        px, py = modes.shape[0], rows.shape[1]
+        modes, spectrum, threads = self._modes, self._spectrum, self._threads
+        px, py = modes.shape[0], self._rows.shape[1]
+        result = np.empty(self.shape) if out is None else out
         self.count += 1
 
-        rows[:, :ny] = p
-        rows[:, ny:] = 0.0
+        for some, rows in self._row_blocks():
+            rows[:, :ny] = p[some]
+            rows[:, ny:] = 0.0
+            ducc0.fft.r2c(rows, axes=[1], out=modes[some], nthreads=threads)
         modes[nx:] = 0.0
-        ducc0.fft.r2c(rows, axes=[1], out=modes[:nx], nthreads=threads)
         ducc0.fft.c2c(modes, axes=[0], out=modes, nthreads=threads)
         half = px // 2 + 1
         modes[:half] *= spectrum
         modes[half:] *= spectrum[px // 2 - 1 : 0 : -1]
         ducc0.fft.c2c(modes, axes=[0], forward=False, out=modes, nthreads=threads)
-        ducc0.fft.c2r(modes[:nx], axes=[1], lastsize=py, forward=False, out=rows, nthreads=threads)
-        return rows[:, :ny].copy()
+        for some, rows in self._row_blocks():
+            ducc0.fft.c2r(
+                modes[some], axes=[1], lastsize=py, forward=False, out=rows, nthreads=threads
+            )
+            result[some] = rows[:, :ny]
+        return result
+
+    def _row_blocks(self) -> Iterator[tuple[slice, Array]]:
+        """Rows of the result, some at a time, with the padded buffer for them."""
+        nx, some = self.shape[0], self._rows.shape[0]
+        for first in range(0, nx, some):
+            last = min(first + some, nx)
+            yield slice(first, last), self._rows[: last - first]
 
 
 class SpectralFilter:
@@ -109,20 +123,19 @@ class SpectralFilter:
         other._padded = np.empty_like(self._padded)
         return other
 
-    def __call__(self, r: Array) -> Array:
-        """Return the filtered array, same shape as `r`."""
+    def __call__(self, r: Array, out: Array | None = None) -> Array:
+        """Return the filtered array, same shape as `r`: in a new array, or in `out`."""
         nx, ny = self.shape
-        padded = self._padded
-        padded[:] = 0.0
+        padded, threads = self._padded, self._threads
         padded[:nx, :ny] = r
-        modes = ducc0.fft.r2c(padded, axes=[0, 1], nthreads=self._threads)
+        padded[nx:] = 0.0
+        padded[:nx, ny:] = 0.0
+        modes = ducc0.fft.r2c(padded, axes=[0, 1], nthreads=threads)
         modes *= self._symbol
         ducc0.fft.c2r(
-            modes,
-            axes=[0, 1],
-            lastsize=padded.shape[1],
-            forward=False,
-            out=padded,
-            nthreads=self._threads,
-        )
-        return padded[:nx, :ny].copy()
+            modes, axes=[0, 1], lastsize=padded.shape[1], forward=False, out=padded,
+            nthreads=threads,
+        )  # fmt: skip
+        result = np.empty(self.shape) if out is None else out
+        result[:] = padded[:nx, :ny]
+        return result

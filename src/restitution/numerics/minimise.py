@@ -14,17 +14,24 @@ yield, adhesion) is the caller's affair.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-Operator = Callable[[Array], Array]
+Bound = Array | float
 
 _MEMORY = 8  # iterations over which the energy must fall
 _HALVINGS = 30
+
+
+class Operator(Protocol):
+    """A linear map of arrays of one shape."""
+
+    def __call__(self, p: Array, /, out: Array | None = None) -> Array:
+        """The map of `p`: in a new array, or in `out`."""
 
 
 @dataclass(frozen=True)
@@ -38,21 +45,21 @@ class Minimum:
     converged: bool
 
 
-def free_nodes(p: Array, g: Array, lower: Array, upper: Array) -> NDArray[np.bool_]:
+def free_nodes(p: Array, g: Array, lower: Bound, upper: Bound) -> NDArray[np.bool_]:
     """Nodes that may go downhill: between the bounds, or on one and pushed off it."""
-    return ((p > lower) | (g < 0)) & ((p < upper) | (g > 0))
-
-
-def violation(p: Array, g: Array, lower: Array, upper: Array) -> float:
-    """Largest violation of the optimality conditions, in the units of the gradient."""
-    return float(np.where(free_nodes(p, g, lower, upper), np.abs(g), 0.0).max())
+    free = p > lower
+    free |= g < 0
+    below = p < upper
+    below |= g > 0
+    free &= below
+    return free
 
 
 def minimise_quadratic(
     K: Operator,
     b: Array,
-    lower: Array,
-    upper: Array,
+    lower: Bound,
+    upper: Bound,
     *,
     start: Array,
     precondition: Operator,
@@ -74,66 +81,95 @@ def minimise_quadratic(
     converging is reported in the result, never raised.
     """
     p = np.clip(start, lower, upper)
-    g = K(p) - b if p.any() else -b
-    fresh = True
-    d = r_old = np.zeros_like(p)
+    g = _gradient(K, p, b)
+    free = free_nodes(p, g, lower, upper)
+    r = g * free  # uphill, where there is a way down
+    residual, fresh = _largest(r), True
+    d, r_old, p_old, work = (np.zeros_like(p) for _ in range(4))
     rz_old = np.inf
     energies: deque[float] = deque(maxlen=_MEMORY)
     iteration = 0
-    residual = violation(p, g, lower, upper)
 
     for iteration in range(1, max_iterations + 1):
         if residual <= tolerance:
             if fresh:
                 return Minimum(p, g, residual, iteration - 1, converged=True)
-            g, fresh = K(p) - b, True
-            residual = violation(p, g, lower, upper)
-            continue
+            g, fresh = _gradient(K, p, b, out=g), True
+        else:
+            z = precondition(r, out=work)
+            z *= free
+            rz = _dot(r, z)
+            d *= max(0.0, (rz - _dot(r_old, z)) / rz_old)
+            d -= z
+            d *= free
+            slope = _dot(r, d)
+            if slope >= 0:
+                np.negative(z, out=d)
+                slope = -rz
+            Kd = K(d, out=work)
+            curvature = _dot(d, Kd)
+            if not 0 < curvature < np.inf:
+                break
+            step = -slope / curvature
+            r, r_old, rz_old = r_old, r, rz
+            np.multiply(d, step, out=p_old)
+            p_old += p
+            p, p_old = p_old, p
+            fresh = bool(((p < lower) | (p > upper)).any())
+            if fresh:
+                np.clip(p, lower, upper, out=p)
+                g = _gradient(K, p, b, out=g)
+            else:
+                Kd *= step
+                g += Kd
+            energy = _energy(p, g, b)
+            if fresh and len(energies) == energies.maxlen and energy >= max(energies):
+                p, g = _descend(K, b, lower, upper, p_old, r_old)
+                energy = _energy(p, g, b)
+                d[:], r_old[:], rz_old = 0.0, 0.0, np.inf
+            energies.append(energy)
         free = free_nodes(p, g, lower, upper)
-        r = np.where(free, -g, 0.0)
-        z = np.where(free, precondition(r), 0.0)
-        rz = _dot(r, z)
-        d = np.where(free, z + max(0.0, (rz - _dot(r_old, z)) / rz_old) * d, 0.0)
-        if _dot(r, d) <= 0:
-            d = z
-        r_old, rz_old = r, rz
-
-        Kd = K(d)
-        curvature = _dot(d, Kd)
-        if not 0 < curvature < np.inf:
-            break
-        step = _dot(r, d) / curvature
-        trial = p + step * d
-        old, g_old = p, g
-        p = np.clip(trial, lower, upper)
-        fresh = not np.array_equal(p, trial)
-        g = K(p) - b if fresh else g + step * Kd
-        energy = 0.5 * _dot(p, g - b)
-        if fresh and len(energies) == energies.maxlen and energy >= max(energies):
-            p, g = _descend(K, b, lower, upper, old, g_old, r)
-            energy = 0.5 * _dot(p, g - b)
-            d, r_old, rz_old = np.zeros_like(p), np.zeros_like(p), np.inf
-        energies.append(energy)
-        residual = violation(p, g, lower, upper)
+        np.multiply(g, free, out=r)
+        residual = _largest(r)
 
     if not fresh:
-        g = K(p) - b
+        g = _gradient(K, p, b, out=g)
         residual = violation(p, g, lower, upper)
     return Minimum(p, g, residual, iteration, converged=residual <= tolerance)
 
 
+def violation(p: Array, g: Array, lower: Bound, upper: Bound) -> float:
+    """Largest violation of the optimality conditions, in the units of the gradient."""
+    return _largest(g * free_nodes(p, g, lower, upper))
+
+
+def _gradient(K: Operator, p: Array, b: Array, out: Array | None = None) -> Array:
+    g = K(p, out=out) if p.any() else np.zeros_like(p)
+    g -= b
+    return g
+
+
 def _descend(
-    K: Operator, b: Array, lower: Array, upper: Array, p: Array, g: Array, r: Array
+    K: Operator, b: Array, lower: Bound, upper: Bound, p: Array, uphill: Array
 ) -> tuple[Array, Array]:
-    """Projected steepest descent from p along r, shortened until the energy falls."""
-    step = _dot(r, r) / _dot(r, K(r))
+    """Projected steepest descent from p, shortened until the energy falls."""
+    g = _gradient(K, p, b)
+    step = _dot(uphill, uphill) / _dot(uphill, K(uphill))
     for _ in range(_HALVINGS):
-        trial = np.clip(p + step * r, lower, upper)
-        g_trial = K(trial) - b
+        trial = np.clip(p - step * uphill, lower, upper)
+        g_trial = _gradient(K, trial, b)
         if _dot(g + g_trial, trial - p) < 0:  # twice the change of a quadratic
             break
         step *= 0.5
     return trial, g_trial
+
+
+def _energy(p: Array, g: Array, b: Array) -> float:
+    return 0.5 * _dot(p, g - b)
+
+
+def _largest(r: Array) -> float:
+    return max(float(r.max()), -float(r.min()))
 
 
 def _dot(a: Array, b: Array) -> float:

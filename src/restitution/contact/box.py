@@ -1,0 +1,71 @@
+"""Boxes: blocks of the grid that hold a contact, and arrays that are known on one of them."""
+
+from __future__ import annotations
+
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+Box = tuple[slice, slice]
+Scalar = TypeVar("Scalar", bound=np.generic)
+
+NOWHERE: Box = (slice(0, 0), slice(0, 0))
+
+
+def shape_of(box: Box) -> tuple[int, int]:
+    """Nodes of the box along x and y."""
+    rows, columns = box
+    return rows.stop - rows.start, columns.stop - columns.start
+
+
+def bounding_box(mask: NDArray[np.bool_], within: Box | None = None) -> Box | None:
+    """The smallest block that holds every true node; None when there is none.
+
+    `within` is the box that `mask` covers; the grid, when it is left out.
+    """
+    rows = np.flatnonzero(mask.any(axis=1))
+    if rows.size == 0:
+        return None
+    columns = np.flatnonzero(mask[rows[0] : rows[-1] + 1].any(axis=0))
+    i, j = (0, 0) if within is None else (within[0].start, within[1].start)
+    return (
+        slice(i + int(rows[0]), i + int(rows[-1]) + 1),
+        slice(j + int(columns[0]), j + int(columns[-1]) + 1),
+    )
+
+
+def widen(box: Box, cells: int, nodes: tuple[int, int]) -> Box:
+    """The box with so many cells more on each side, inside a grid of `nodes`."""
+    rows, columns = (
+        slice(max(part.start - cells, 0), min(part.stop + cells, n))
+        for part, n in zip(box, nodes, strict=True)
+    )
+    return rows, columns
+
+
+def union(first: Box | None, second: Box | None) -> Box | None:
+    """The smallest box that holds both."""
+    if first is None or second is None:
+        return second if first is None else first
+    rows, columns = (
+        slice(min(a.start, b.start), max(a.stop, b.stop))
+        for a, b in zip(first, second, strict=True)
+    )
+    return rows, columns
+
+
+def reframe(values: NDArray[Scalar], box: Box, wanted: Box) -> NDArray[Scalar]:
+    """What is known on `box` as an array on the box `wanted`: zero where nothing is known."""
+    if box == wanted:
+        return values
+    framed: NDArray[Any] = np.zeros(shape_of(wanted), dtype=values.dtype)
+    into, out_of = [], []
+    for have, want in zip(box, wanted, strict=True):
+        start, stop = max(have.start, want.start), min(have.stop, want.stop)
+        if stop <= start:
+            return framed
+        into.append(slice(start - want.start, stop - want.start))
+        out_of.append(slice(start - have.start, stop - have.start))
+    framed[tuple(into)] = values[tuple(out_of)]
+    return framed
