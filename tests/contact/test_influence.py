@@ -167,7 +167,7 @@ def test_the_preconditioner_is_nearly_the_inverse(dense, spacing):
     A = dense.influence(Grid(shape, spacing), E_STAR)
     inverse = inverse_half_space(shape, spacing, E_STAR)
     M = np.array([inverse(e.reshape(shape)).ravel() for e in np.eye(A.shape[0])])
-    assert_allclose(M, M.T, atol=1e-12 * np.abs(M).max())
+    assert_allclose(M, M.T, atol=1e-6 * np.abs(M).max())  # single precision
     assert np.linalg.eigvalsh(M).min() > 0
     values = np.linalg.eigvals(M @ A).real
     assert values.max() / values.min() < 0.25 * np.linalg.cond(A)
@@ -180,7 +180,7 @@ def test_the_preconditioner_is_exact_on_a_periodic_wave():
     q = 2 * np.pi * 3 / (16 * 0.5)
     u = np.cos(q * x) * np.ones(shape)
     inverse = inverse_half_space(shape, spacing, E_STAR)
-    assert_allclose(inverse(u), 0.5 * E_STAR * q * u, atol=1e-12)
+    assert_allclose(inverse(u), 0.5 * E_STAR * q * u, atol=1e-6 * E_STAR * q)
 
 
 def test_one_node_has_an_approximate_inverse_too():

@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.contact.box import Box, bounding_box, reframe, union, widen
 from restitution.contact.contact import Contact
 from restitution.contact.detachment import Mask, criterion, tension_limit
 from restitution.contact.equilibrium import equilibrate, parted, reach
 from restitution.contact.state import State
+from restitution.numerics.window import Box, bounding_box, reframe, union, widen
 
 Array = NDArray[np.float64]
 

@@ -17,13 +17,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.contact.box import NOWHERE, Box, bounding_box, shape_of, widen
 from restitution.contact.contact import Contact
 from restitution.contact.edge import edge_advice
 from restitution.contact.influence import half_space, inverse_half_space
 from restitution.contact.state import State
 from restitution.errors import DomainError, NotConvergedError
+from restitution.numerics.convolution import FreeConvolution, SpectralFilter
 from restitution.numerics.minimise import minimise_quadratic
+from restitution.numerics.nesting import minimise_nested
+from restitution.numerics.window import NOWHERE, Box, bounding_box, shape_of, widen
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -54,19 +56,33 @@ def equilibrate(
     grid, shape = contact.grid, shape_of(box)
     plastic, work, adhesive_work, work_error = _past(contact, history)
     b = indentation - contact.gap[box] - plastic[box]
-    K = half_space(shape, grid.spacing, contact.pair.contact_modulus)
     # How far the surfaces overlap: δ itself when nothing has yielded.
     scale = contact.length_at(indentation) if contact.adhesive else float(b.max())
-    found = minimise_quadratic(
-        K,
-        b,
-        lower=0.0 if held is None else np.where(held, -tension, 0.0),
-        upper=limit,
-        start=np.zeros(shape) if first_guess is None else first_guess,
-        precondition=inverse_half_space(shape, grid.spacing, contact.pair.contact_modulus),
-        tolerance=residual * scale,
-        max_iterations=_MAX_ITERATIONS,
-    )
+
+    def system(shape: tuple[int, int], level: int) -> tuple[FreeConvolution, SpectralFilter]:
+        hx, hy = grid.spacing
+        cells = 2**level * hx, 2**level * hy
+        E_star = contact.pair.contact_modulus
+        return half_space(shape, cells, E_star), inverse_half_space(shape, cells, E_star)
+
+    if held is None and first_guess is None:
+        found, convolutions = minimise_nested(
+            system, b, limit, tolerance=residual * scale, max_iterations=_MAX_ITERATIONS
+        )
+    else:
+        K, inverse = system(shape, 0)
+        found = minimise_quadratic(
+            K,
+            b,
+            lower=0.0 if held is None else np.where(held, -tension, 0.0),
+            upper=limit,
+            start=np.zeros(shape) if first_guess is None else first_guess,
+            precondition=inverse,
+            quick=K.quick,
+            tolerance=residual * scale,
+            max_iterations=_MAX_ITERATIONS,
+        )
+        convolutions = K.count
     reached = found.residual / scale
     if not found.converged:
         raise NotConvergedError(
@@ -77,11 +93,12 @@ def equilibrate(
     yielding = (found.point >= limit) & (found.gradient < 0)
     if yielding.any():
         sinking = np.where(yielding, -found.gradient, 0.0)
-        plastic = plastic.copy()
+        if history is not None:
+            plastic = plastic.copy()
         plastic[box] += sinking
         work += limit * float(sinking.sum()) * grid.cell_area
     return State(contact, indentation, box, found.point, found.gradient + b, plastic,
-                 work, adhesive_work, work_error, reached, K.count)  # fmt: skip
+                 work, adhesive_work, work_error, reached, convolutions)  # fmt: skip
 
 
 def reach(contact: Contact, indentation: float, history: State | None = None) -> Box | None:
@@ -107,8 +124,7 @@ def parted(contact: Contact, indentation: float, history: State | None = None) -
 def _past(contact: Contact, history: State | None) -> tuple[Array, float, float, float]:
     """Plastic displacement, plastic and adhesive work, and the error of the works."""
     if history is None:
-        # Zeros that take no memory.
-        return np.broadcast_to(0.0, contact.grid.nodes), 0.0, 0.0, 0.0
+        return np.zeros(contact.grid.nodes), 0.0, 0.0, 0.0
     return (history.plastic_displacement, history.plastic_work,
             history.adhesive_work, history.work_error)  # fmt: skip
 

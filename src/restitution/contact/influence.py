@@ -43,31 +43,38 @@ def far_displacement(x: Array, y: Array, hx: float, hy: float, contact_modulus: 
     u πE*/(p hx hy) = [1 + (hx²∂x² + hy²∂y²)/24 + hx⁴∂x⁴/1920 + hx²hy²∂x²∂y²/576 + hy⁴∂y⁴/1920] 1/r;
     the next term is of relative order (h/r)⁶.
     """
-    r2 = x * x + y * y
-    cx, cy = x * x / r2, y * y / r2  # squared direction cosines
-    ax, ay = hx * hx / r2, hy * hy / r2
-    second = ax * (3 * cx - 1) + ay * (3 * cy - 1)
-    xxxx = 9 - 90 * cx + 105 * cx * cx
-    yyyy = 9 - 90 * cy + 105 * cy * cy
-    xxyy = 3 - 15 * (cx + cy) + 105 * cx * cy
-    fourth = (ax * ax * xxxx + ay * ay * yyyy) / 1920 + ax * ay * xxyy / 576
-    return hx * hy / (np.pi * contact_modulus) * (1 + second / 24 + fourth) / np.sqrt(r2)
+    xx, yy = hx * hx, hy * hy
+    # ∂x² 1/r = (3c − 1)/r³ and so on, with c the squared direction cosine along x.
+    second = np.array([2 * yy - xx, 3 * (xx - yy)]) / 24
+    fourth = (
+        np.array([9 * xx * xx + 24 * yy * yy, -90 * xx * xx - 120 * yy * yy, 105 * (xx**2 + yy**2)])
+        / 1920
+        + xx * yy * np.array([-12, 105, -105]) / 576
+    )
+    s = 1 / (x * x + y * y)
+    c = x * x * s
+    series: Array = fourth[1] + fourth[2] * c
+    series *= c
+    series += fourth[0]
+    series *= s
+    series += second[0] + second[1] * c
+    series *= s
+    series += 1.0
+    np.sqrt(s, out=s)
+    series *= s
+    series *= hx * hy / (np.pi * contact_modulus)
+    return series
 
 
 def influence_coefficients(
     i: NDArray[np.int64], j: NDArray[np.int64], spacing: tuple[float, float], contact_modulus: float
 ) -> Array:
     """Displacement at lag (i, j) cells, i as a column (from 0) and j as a row (from 0), m/Pa."""
+    # Lengths scale: u/h depends on the shape of the cells and on the lag alone.
     hx, hy = spacing
-    x, y = np.asarray(i * hx, dtype=np.float64), np.asarray(j * hy, dtype=np.float64)
-    reach = _FAR * np.hypot(hx, hy)
-    near_i = int(np.searchsorted(x.ravel(), reach))
-    near_j = int(np.searchsorted(y.ravel(), reach))
-    # The origin is always in the near block, which Love's formula overwrites.
-    with np.errstate(divide="ignore", invalid="ignore"):
-        u = far_displacement(x, y, hx, hy, contact_modulus)
-    u[:near_i, :near_j] = love_displacement(x[:near_i], y[:, :near_j], hx, hy, contact_modulus)
-    return u
+    unit = _unit_coefficients((i.size, j.size), hy / hx)
+    scaled: Array = unit * (hx / contact_modulus)
+    return scaled
 
 
 def half_space(
@@ -77,7 +84,46 @@ def half_space(
     return _half_space(shape, spacing, contact_modulus).fresh()
 
 
-@lru_cache(maxsize=4)
+def inverse_half_space(
+    shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
+) -> SpectralFilter:
+    """An approximate inverse, u ↦ |q| E*/2 u: exact on a periodic half-space (Johnson 1985)."""
+    return _inverse_half_space(shape, spacing, contact_modulus).fresh()
+
+
+# Boxes follow the contact, so that most solves want coefficients of a block larger or smaller than
+# the last: the largest block so far is kept, by the aspect ratio of the cells.
+_known: dict[float, Array] = {}
+_MOST_KNOWN = 2**22  # coefficients: 32 MiB
+
+
+def _unit_coefficients(lags: tuple[int, int], aspect: float) -> Array:
+    """Coefficients for cells 1 × `aspect` and E* = 1."""
+    known = _known.get(aspect, np.empty((0, 0)))
+    if known.shape[0] < lags[0] or known.shape[1] < lags[1]:
+        rows, columns = (max(*pair) for pair in zip(known.shape, lags, strict=True))
+        known = _compute_coefficients((rows, columns), (1.0, aspect))
+        if known.size <= _MOST_KNOWN:
+            _known.clear()
+            _known[aspect] = known
+    return known[: lags[0], : lags[1]]
+
+
+def _compute_coefficients(lags: tuple[int, int], spacing: tuple[float, float]) -> Array:
+    hx, hy = spacing
+    x: Array = np.asarray(hx * np.arange(lags[0])[:, None])
+    y: Array = np.asarray(hy * np.arange(lags[1])[None, :])
+    reach = _FAR * np.hypot(hx, hy)
+    near_i = int(np.searchsorted(x.ravel(), reach))
+    near_j = int(np.searchsorted(y.ravel(), reach))
+    # The origin is always in the near block, which Love's formula overwrites.
+    with np.errstate(divide="ignore", invalid="ignore"):
+        u = far_displacement(x, y, hx, hy, 1.0)
+    u[:near_i, :near_j] = love_displacement(x[:near_i], y[:, :near_j], hx, hy, 1.0)
+    return u
+
+
+@lru_cache(maxsize=8)
 def _half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
 ) -> FreeConvolution:
@@ -86,14 +132,7 @@ def _half_space(
     )
 
 
-def inverse_half_space(
-    shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
-) -> SpectralFilter:
-    """An approximate inverse, u ↦ |q| E*/2 u: exact on a periodic half-space (Johnson 1985)."""
-    return _inverse_half_space(shape, spacing, contact_modulus).fresh()
-
-
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=8)
 def _inverse_half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
 ) -> SpectralFilter:

@@ -13,13 +13,13 @@ from dataclasses import replace
 import numpy as np
 
 from restitution.contact.adhesion import attach, limit_of, pull
-from restitution.contact.box import bounding_box, shape_of
 from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import RESIDUAL, equilibrate, parted, reach, refuse_edge
 from restitution.contact.influence import half_space
 from restitution.contact.state import State
 from restitution.errors import CaseError
 from restitution.numerics.quadrature import integrate_adaptively
+from restitution.numerics.window import bounding_box, shape_of
 
 SEED_PULL = 1e-10  # m: the pull after each loading increment (Ghanbarzadeh et al. 2019, §2.2)
 _CUT_TOLERANCE = 3e-5  # of force times indentation, where the work needs quadrature

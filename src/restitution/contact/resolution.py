@@ -11,10 +11,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from restitution.contact.bodies import Pair
-from restitution.contact.box import widen
 from restitution.contact.contact import Contact
 from restitution.contact.state import State
 from restitution.errors import SurfaceError
+from restitution.numerics.window import widen
 
 # Smooth spheres follow the tables to 0.3 % from eight nodes over the contact radius; refining a
 # rough surface, restitution settles within 2 % once the largest patch has about ten nodes.

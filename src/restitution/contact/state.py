@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.contact.box import Box, reframe
 from restitution.contact.contact import Contact
+from restitution.numerics.window import Box, reframe
 
 Array = NDArray[np.float64]
 

@@ -25,6 +25,7 @@ Bound = Array | float
 
 _MEMORY = 8  # iterations over which the energy must fall
 _HALVINGS = 30
+_DRIFT = 1e-3  # of the violation, after which the gradient is computed anew
 
 
 class Operator(Protocol):
@@ -65,6 +66,7 @@ def minimise_quadratic(
     precondition: Operator,
     tolerance: float,
     max_iterations: int,
+    quick: Operator | None = None,
 ) -> Minimum:
     """Projected conjugate gradients, Polak–Ribière+, preconditioned on the free nodes.
 
@@ -73,28 +75,30 @@ def minimise_quadratic(
     direction is not reset when nodes change sides (Polak–Ribière+ forgets by itself), and the
     residual is preconditioned by an approximate inverse of K masked to the free nodes.
 
-    `tolerance` is on the violation, in the units of `b`. The gradient is updated along the step
-    while no bound interferes and recomputed when one does; the result is accepted only on a freshly
-    computed gradient. Projecting after an exact step may raise the energy; where it has not fallen
-    below the highest of the last few iterations, a descending step is taken instead, so that no
-    cycle can last (Grippo, Lampariello and Lucidi 1986, SIAM J. Numer. Anal. 23, 707–716). Not
-    converging is reported in the result, never raised.
+    `tolerance` is on the violation, in the units of `b`. The gradient follows the steps with the
+    products of `quick`, which may be K in single precision; it is computed anew with K whenever the
+    violation has fallen to a thousandth, and the result is accepted only on such a gradient.
+    Projecting after an exact step may raise the energy; where it has not fallen below the highest
+    of the last few iterations, a descending step is taken instead, so that no cycle can last
+    (Grippo, Lampariello and Lucidi 1986, SIAM J. Numer. Anal. 23, 707–716). Not converging is
+    reported in the result, never raised.
     """
+    quick = K if quick is None else quick
     p = np.clip(start, lower, upper)
     g = _gradient(K, p, b)
     free = free_nodes(p, g, lower, upper)
     r = g * free  # uphill, where there is a way down
-    residual, fresh = _largest(r), True
+    residual = refresh = _largest(r)
     d, r_old, p_old, work = (np.zeros_like(p) for _ in range(4))
-    rz_old = np.inf
+    rz_old, energy, exact = np.inf, _energy(p, g, b), True
     energies: deque[float] = deque(maxlen=_MEMORY)
     iteration = 0
 
     for iteration in range(1, max_iterations + 1):
-        if residual <= tolerance:
-            if fresh:
-                return Minimum(p, g, residual, iteration - 1, converged=True)
-            g, fresh = _gradient(K, p, b, out=g), True
+        if exact and residual <= tolerance:
+            return Minimum(p, g, residual, iteration - 1, converged=True)
+        if not exact and residual <= max(tolerance, _DRIFT * refresh):
+            g, exact = _gradient(K, p, b, out=g), True
         else:
             z = precondition(r, out=work)
             z *= free
@@ -106,33 +110,35 @@ def minimise_quadratic(
             if slope >= 0:
                 np.negative(z, out=d)
                 slope = -rz
-            Kd = K(d, out=work)
+            Kd = quick(d, out=work)
             curvature = _dot(d, Kd)
             if not 0 < curvature < np.inf:
                 break
             step = -slope / curvature
-            r, r_old, rz_old = r_old, r, rz
+            r, r_old, rz_old, exact = r_old, r, rz, False
             np.multiply(d, step, out=p_old)
             p_old += p
             p, p_old = p_old, p
-            fresh = bool(((p < lower) | (p > upper)).any())
-            if fresh:
+            if ((p < lower) | (p > upper)).any():
                 np.clip(p, lower, upper, out=p)
-                g = _gradient(K, p, b, out=g)
+                np.subtract(p, p_old, out=work)
+                g += quick(work, out=work)
+                energy = _energy(p, g, b)
+                if len(energies) == energies.maxlen and energy >= max(energies):
+                    p, g = _descend(K, b, lower, upper, p_old, r_old)
+                    energy = _energy(p, g, b)
+                    d[:], r_old[:], rz_old = 0.0, 0.0, np.inf
             else:
                 Kd *= step
                 g += Kd
-            energy = _energy(p, g, b)
-            if fresh and len(energies) == energies.maxlen and energy >= max(energies):
-                p, g = _descend(K, b, lower, upper, p_old, r_old)
-                energy = _energy(p, g, b)
-                d[:], r_old[:], rz_old = 0.0, 0.0, np.inf
+                energy += 0.5 * step * slope
             energies.append(energy)
         free = free_nodes(p, g, lower, upper)
         np.multiply(g, free, out=r)
         residual = _largest(r)
+        refresh = residual if exact else refresh
 
-    if not fresh:
+    if not exact:
         g = _gradient(K, p, b, out=g)
         residual = violation(p, g, lower, upper)
     return Minimum(p, g, residual, iteration, converged=residual <= tolerance)
@@ -165,7 +171,7 @@ def _descend(
 
 
 def _energy(p: Array, g: Array, b: Array) -> float:
-    return 0.5 * _dot(p, g - b)
+    return 0.5 * (_dot(p, g) - _dot(p, b))
 
 
 def _largest(r: Array) -> float:

@@ -1,4 +1,4 @@
-"""Boxes: blocks of the grid that hold a contact, and arrays that are known on one of them."""
+"""Boxes: blocks of a grid, and arrays that are known on one of them."""
 
 from __future__ import annotations
 

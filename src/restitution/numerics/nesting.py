@@ -1,0 +1,118 @@
+"""Minimising from nothing: a first guess from coarser grids, then a window around it.
+
+The problem is that of `minimise` with lower = 0 on a uniform grid. Averaged over 2 × 2 nodes it is
+the same problem on half as many nodes each way, whose solution is a first guess for all but the
+shortest waves (nested iteration; Venner and Lubrecht 2000, *Multilevel Methods in Lubrication*).
+The guess also shows where the pressure is: the fine problem is solved on that window, and the
+conditions are checked on all nodes, where they may widen the window.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.numerics.convolution import FreeConvolution, SpectralFilter
+from restitution.numerics.minimise import Minimum, minimise_quadratic, violation
+from restitution.numerics.window import Box, bounding_box, shape_of, union, widen
+
+Array = NDArray[np.float64]
+
+# The operator and its approximate inverse on a block of so many nodes 2ⁿ as wide as the finest.
+System = Callable[[tuple[int, int], int], tuple[FreeConvolution, SpectralFilter]]
+
+_COARSEST = 80  # nodes along the shorter edge below which a guess costs more than it saves
+_COARSE_ACCURACY = 1e-2  # of the largest b; finer is lost in going to the finer grid
+_COARSE_ITERATIONS = 60
+_MARGIN = 3  # nodes around the guess
+_WORTH_A_WINDOW = 0.7  # of all nodes: checking a larger window would cost more than it saves
+
+
+def minimise_nested(
+    system: System,
+    b: Array,
+    upper: float,
+    *,
+    tolerance: float,
+    max_iterations: int,
+) -> tuple[Minimum, int]:
+    """Minimise with 0 ≤ p ≤ `upper`; the result and the products with K on the finest grid."""
+    everywhere: Box = (slice(0, b.shape[0]), slice(0, b.shape[1]))
+    K_everywhere, _ = system(shape_of(everywhere), 0)
+    p = _first_guess(system, b, upper, level=1)
+    window = bounding_box(p > 0)
+    window = everywhere if window is None else widen(window, _MARGIN, shape_of(everywhere))
+    products = 0
+    while True:
+        rows, columns = shape_of(window)
+        if rows * columns > _WORTH_A_WINDOW * b.size:
+            window = everywhere
+        K, inverse = system(shape_of(window), 0)
+        found = minimise_quadratic(
+            K,
+            b[window],
+            0.0,
+            upper,
+            start=p[window],
+            precondition=inverse,
+            quick=K.quick,
+            tolerance=tolerance,
+            max_iterations=max_iterations,
+        )
+        products += K.count
+        if window == everywhere:
+            return found, products
+        p[...] = 0.0
+        p[window] = found.point
+        g = K_everywhere(p)
+        g -= b
+        products += 1
+        residual = violation(p, g, 0.0, upper)
+        if residual <= tolerance or not found.converged:
+            whole = Minimum(p, g, residual, found.iterations, residual <= tolerance)
+            return whole, products
+        wider = union(window, bounding_box(g < -tolerance))
+        # The same window again: what the last digits of the check leave, all nodes mend.
+        window = (
+            everywhere
+            if wider is None or wider == window
+            else widen(wider, _MARGIN, shape_of(everywhere))
+        )
+
+
+def _first_guess(system: System, b: Array, upper: float, level: int) -> Array:
+    """The solution on the next coarser grid, itself begun on one coarser; zero on the coarsest."""
+    if min(b.shape) < _COARSEST:
+        return np.zeros_like(b)
+    coarse = _average(b)
+    K, inverse = system((coarse.shape[0], coarse.shape[1]), level)
+    found = minimise_quadratic(
+        K,
+        coarse,
+        0.0,
+        upper,
+        start=_first_guess(system, coarse, upper, level + 1),
+        precondition=inverse,
+        quick=K.quick,
+        tolerance=_COARSE_ACCURACY * float(b.max()),
+        max_iterations=_COARSE_ITERATIONS,
+    )
+    rows, columns = b.shape
+    return np.ascontiguousarray(_interpolate(_interpolate(found.point, rows).T, columns).T)
+
+
+def _average(b: Array) -> Array:
+    """Means over 2 × 2 nodes; a last odd row or column counts twice."""
+    b = np.pad(b, [(0, n % 2) for n in b.shape], mode="edge")
+    return np.asarray(0.25 * (b[::2, ::2] + b[1::2, ::2] + b[::2, 1::2] + b[1::2, 1::2]))
+
+
+def _interpolate(coarse: Array, rows: int) -> Array:
+    """Linear interpolation from cells twice as long onto `rows` cells; constant at the ends."""
+    before, after = np.vstack([coarse[:1], coarse[:-1]]), np.vstack([coarse[1:], coarse[-1:]])
+    fine = np.empty((2 * coarse.shape[0], coarse.shape[1]))
+    fine[::2] = 0.75 * coarse + 0.25 * before
+    fine[1::2] = 0.75 * coarse + 0.25 * after
+    return fine[:rows]

@@ -1,0 +1,103 @@
+"""The nested solve against the plain one: same answer, from any first guess and window."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from restitution.contact.influence import half_space, inverse_half_space
+from restitution.numerics import nesting
+from restitution.numerics.minimise import minimise_quadratic
+from restitution.numerics.nesting import minimise_nested
+
+TOLERANCE = 1e-9
+
+
+def system(shape, level):
+    cells = 2.0**level, 2.0**level
+    return half_space(shape, cells, 1.0), inverse_half_space(shape, cells, 1.0)
+
+
+def plain(b, upper):
+    K, inverse = system(b.shape, 0)
+    return minimise_quadratic(K, b, 0.0, upper, start=np.zeros_like(b), precondition=inverse,
+                              tolerance=TOLERANCE, max_iterations=500)  # fmt: skip
+
+
+def nested(b, upper, **options):
+    return minimise_nested(system, b, upper, tolerance=TOLERANCE,
+                           **{"max_iterations": 500} | options)  # fmt: skip
+
+
+def bowl(shape, depth=1.0, rough=0.0, seed=0):
+    """δ − h of a paraboloid that touches half of the grid, with waves on it."""
+    x, y = (np.linspace(-1, 1, n) for n in shape)
+    b = depth * (1 - 1.2 * (x[:, None] ** 2 + y**2))
+    random = np.random.default_rng(seed)
+    for _ in range(12):
+        k, phase = random.uniform(-40, 40, 2), random.uniform(0, 2 * np.pi)
+        b += rough * np.cos(k[0] * x[:, None] + k[1] * y + phase)
+    return b
+
+
+@pytest.mark.parametrize("upper", [np.inf, 0.02])
+@pytest.mark.parametrize("rough", [0.0, 0.05, 0.3])
+@pytest.mark.parametrize("shape", [(201, 180), (97, 330), (60, 60), (3, 50)])
+def test_the_answer_is_that_of_the_plain_solve(shape, rough, upper):
+    b = bowl(shape, rough=rough, seed=len(shape))
+    found, products = nested(b, upper)
+    expected = plain(b, upper)
+    assert found.converged
+    assert found.residual <= TOLERANCE
+    assert products > 0
+    assert_allclose(found.point, expected.point, atol=1e-6 * expected.point.max())
+    assert found.point.sum() == pytest.approx(expected.point.sum(), rel=1e-7)
+    K, _ = system(shape, 0)
+    assert_allclose(found.gradient, K(found.point) - b, atol=1e-12 * np.abs(b).max())
+
+
+def test_what_the_guess_does_not_see_widens_the_window(monkeypatch):
+    """A spike of one node far from the rest, lost in the means over 2 x 2 nodes."""
+    windows = []
+
+    def watched(K, b, *bounds, **options):
+        windows.append(b.shape)
+        return minimise_quadratic(K, b, *bounds, **options)
+
+    monkeypatch.setattr(nesting, "minimise_quadratic", watched)
+    b = bowl((200, 200), depth=0.2) - 0.1
+    b[10, 15] = 0.15
+    found, _ = nested(b, np.inf)
+    assert found.converged
+    assert found.point[10, 15] > 0
+    assert len(windows) >= 3
+    assert max(windows[-2][0], windows[-2][1]) < max(windows[-1])
+    assert_allclose(found.point, plain(b, np.inf).point, atol=1e-6 * found.point.max())
+
+
+def test_the_window_and_the_coarse_grids_save_products():
+    b = bowl((240, 240))
+    found, products = nested(b, np.inf)
+    K, _ = system(b.shape, 0)
+    assert found.converged
+    K, inverse = system(b.shape, 0)
+    minimise_quadratic(K, b, 0.0, np.inf, start=np.zeros_like(b), precondition=inverse,
+                       tolerance=TOLERANCE, max_iterations=500)  # fmt: skip
+    assert products < 0.9 * K.count
+
+
+def test_not_converging_is_reported():
+    found, _ = nested(bowl((200, 200), rough=0.05), np.inf, max_iterations=3)
+    assert not found.converged
+    assert found.residual > TOLERANCE
+
+
+def test_a_guess_on_finer_cells_keeps_straight_lines():
+    coarse = np.add.outer(np.arange(9.0), 3 * np.arange(7.0))
+    b = np.repeat(np.repeat(coarse, 2, axis=0), 2, axis=1)
+    assert_allclose(nesting._average(b), coarse)
+    fine = nesting._interpolate(nesting._interpolate(coarse, 18).T, 14).T
+    expected = np.add.outer(np.arange(18) / 2 - 0.25, 3 * (np.arange(14) / 2 - 0.25))
+    assert_allclose(fine[1:-1, 1:-1], expected[1:-1, 1:-1], atol=1e-12)
+    odd = nesting._average(np.ones((5, 3)))
+    assert odd.shape == (3, 2)
+    assert_allclose(odd, 1.0)

@@ -1,0 +1,74 @@
+"""The fast path (nested grids, windows, boxes, single precision inside) against the plain one."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from restitution import Body, Contact, Grid, Pair, solve, step
+from restitution.contact import adhesion, loading
+from restitution.contact.influence import half_space, inverse_half_space
+from restitution.numerics.convolution import FreeConvolution
+from restitution.numerics.minimise import minimise_quadratic
+from restitution.surfaces import generate_surface
+
+STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25, density=7850.0)
+DEPTH = 200e-9
+
+
+def rough(seed, **options):
+    """A rough contact on so many nodes that coarser grids and windows come in."""
+    grid = Grid((200, 184), (0.12e-6, 0.13e-6))
+    rms = (20e-9, 60e-9)[seed % 2]
+    surface = generate_surface(grid, kind="gaussian", rms=rms, correlation_length=1e-6, seed=seed)
+    return Contact(Pair(STEEL, STEEL), surface, **options)
+
+
+def plain_pressure(contact, depth):
+    """Every node of the grid, from nothing, in double precision throughout."""
+    arguments = contact.grid.nodes, contact.grid.spacing, contact.pair.contact_modulus
+    b = depth - contact.gap
+    found = minimise_quadratic(
+        half_space(*arguments), b, 0.0, contact.yield_pressure, start=np.zeros_like(b),
+        precondition=inverse_half_space(*arguments), tolerance=1e-9 * depth, max_iterations=1000,
+    )  # fmt: skip
+    assert found.converged
+    return found.point
+
+
+@pytest.mark.parametrize("p_y", [np.inf, 2e9, 750e6])
+@pytest.mark.parametrize("seed", range(4))
+def test_elastic_and_plastic(seed, p_y):
+    contact = rough(seed, yield_pressure=p_y)
+    state = solve(contact, DEPTH)
+    plain = plain_pressure(contact, DEPTH)
+    assert_allclose(state.pressure, plain, atol=1e-5 * plain.max())
+    assert state.force == pytest.approx(plain.sum() * contact.grid.cell_area, rel=1e-7)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_adhesive(seed, monkeypatch):
+    """Loaded, then drawn back past where nodes let go.
+
+    Between releases the solves are rough, so a node may go a step earlier or later.
+    """
+    contact = rough(seed, work_of_adhesion=0.5, yield_pressure=2e9, approach="hertzian")
+
+    def pulled():
+        deepest = solve(contact, DEPTH)
+        return deepest, step(replace(deepest, virgin=False), 0.8 * DEPTH)
+
+    fast = pulled()
+    nx, ny = contact.grid.nodes
+    for module in (adhesion, loading):
+        monkeypatch.setattr(module, "reach", lambda *_: (slice(0, nx), slice(0, ny)))
+    monkeypatch.setattr(FreeConvolution, "quick", FreeConvolution.__call__)
+    plain = pulled()
+    assert fast[1].contact_nodes < fast[0].contact_nodes
+    assert np.array_equal(fast[0].pressure != 0, plain[0].pressure != 0)
+    assert fast[0].force == pytest.approx(plain[0].force, rel=1e-7)
+    changed = (fast[1].pressure != 0) != (plain[1].pressure != 0)
+    assert changed.sum() <= 0.01 * plain[1].contact_nodes
+    assert fast[1].force == pytest.approx(plain[1].force, rel=1e-3)
+    assert fast[1].stored_energy == pytest.approx(plain[1].stored_energy, rel=1e-3)
