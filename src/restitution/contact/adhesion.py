@@ -68,6 +68,7 @@ def peel(
             tension=tension,
             first_guess=first_guess,
             residual=accuracy,
+            rough=accuracy > residual,
         )
         convolutions += state.convolutions
         state = replace(state, convolutions=convolutions)

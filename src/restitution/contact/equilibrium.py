@@ -45,13 +45,14 @@ def equilibrate(
     tension: float = 0.0,
     first_guess: Array | None = None,
     residual: float = RESIDUAL,
+    rough: bool = False,
 ) -> State:
     """Solve for p ≤ `limit` on the surface `history` left; p ≥ 0, or ≥ −`tension` where `held`.
 
     `box` has to hold the `reach` and all nodes that are held; `held` and `first_guess` are arrays
-    on it. The violation of the contact conditions is measured against the overlap δ − min h, with
-    adhesion against the indentation or the length scale of adhesion. Raises `NotConvergedError`.
-    Contact at the rim is let pass.
+    on it. A `rough` solve is one whose state only leads to the next. The violation of the contact
+    conditions is measured against the overlap δ − min h, with adhesion against the indentation or
+    the length scale of adhesion. Raises `NotConvergedError`. Contact at the rim is let pass.
     """
     grid, shape = contact.grid, shape_of(box)
     plastic, work, adhesive_work, work_error = _past(contact, history)
@@ -79,6 +80,7 @@ def equilibrate(
             start=np.zeros(shape) if first_guess is None else first_guess,
             precondition=inverse,
             quick=K.quick,
+            rough=rough,
             tolerance=residual * scale,
             max_iterations=_MAX_ITERATIONS,
         )

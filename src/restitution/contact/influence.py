@@ -6,14 +6,20 @@ lumped into one half-space of contact modulus E*: 1/E* = (1 − ν₁²)/E₁ + 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import lru_cache
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from restitution.numerics.convolution import FreeConvolution, SpectralFilter
 
+if TYPE_CHECKING:
+    from functools import _lru_cache_wrapper
+
 Array = NDArray[np.float64]
+Operator = TypeVar("Operator", FreeConvolution, SpectralFilter)
 
 # Beyond this distance (in cell diagonals) the series below differs from Love's formula by less than
 # 2e-12 of the value, while the formula itself loses digits to cancellation as (r/h)².
@@ -81,20 +87,26 @@ def half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
 ) -> FreeConvolution:
     """The operator p ↦ u on a block of nodes of the free (non-periodic) half-space."""
-    return _half_space(shape, spacing, contact_modulus).fresh()
+    return _kept(_half_space, shape)(shape, spacing, contact_modulus).fresh()
 
 
 def inverse_half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
 ) -> SpectralFilter:
     """An approximate inverse, u ↦ |q| E*/2 u: exact on a periodic half-space (Johnson 1985)."""
-    return _inverse_half_space(shape, spacing, contact_modulus).fresh()
+    return _kept(_inverse_half_space, shape)(shape, spacing, contact_modulus).fresh()
+
+
+def _kept(build: _lru_cache_wrapper[Operator], shape: tuple[int, int]) -> Callable[..., Operator]:
+    """`build` with its cache, or without it where what it keeps would fill the memory."""
+    return build if shape[0] * shape[1] <= _MOST_KEPT else build.__wrapped__
 
 
 # Boxes follow the contact, so that most solves want coefficients of a block larger or smaller than
 # the last: the largest block so far is kept, by the aspect ratio of the cells.
 _known: dict[float, Array] = {}
 _MOST_KNOWN = 2**22  # coefficients: 32 MiB
+_MOST_KEPT = 2**21  # nodes of an operator that is kept: 16 MiB
 
 
 def _unit_coefficients(lags: tuple[int, int], aspect: float) -> Array:

@@ -23,9 +23,9 @@ from restitution.numerics.window import bounding_box, shape_of
 
 SEED_PULL = 1e-10  # m: the pull after each loading increment (Ghanbarzadeh et al. 2019, §2.2)
 _CUT_TOLERANCE = 3e-5  # of force times indentation, where the work needs quadrature
-# The force of an adhesive contact jumps as asperities come in: more is asked of it in vain. 5e-4 of
-# the work is at most 0.0005 in restitution.
-_ADHESIVE_TOLERANCE = 5e-4
+# The force of an adhesive contact jumps as asperities come in: more is asked of it in vain. 1.5e-3
+# of the work is at most 0.00075 in restitution.
+_ADHESIVE_TOLERANCE = 1.5e-3
 _ADHESIVE_HALVINGS = 5
 _WORK_RESIDUAL = 1e-6  # of the solves in between, whose force errors stay well below that
 

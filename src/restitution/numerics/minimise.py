@@ -67,6 +67,7 @@ def minimise_quadratic(
     tolerance: float,
     max_iterations: int,
     quick: Operator | None = None,
+    rough: bool = False,
 ) -> Minimum:
     """Projected conjugate gradients, Polak–Ribière+, preconditioned on the free nodes.
 
@@ -77,13 +78,15 @@ def minimise_quadratic(
 
     `tolerance` is on the violation, in the units of `b`. The gradient follows the steps with the
     products of `quick`, which may be K in single precision; it is computed anew with K whenever the
-    violation has fallen to a thousandth, and the result is accepted only on such a gradient.
+    violation has fallen to a thousandth, and the result is accepted only on such a gradient; or, if
+    `rough`, on one that `quick` has led there, which will do for a large tolerance.
     Projecting after an exact step may raise the energy; where it has not fallen below the highest
     of the last few iterations, a descending step is taken instead, so that no cycle can last
     (Grippo, Lampariello and Lucidi 1986, SIAM J. Numer. Anal. 23, 707–716). Not converging is
     reported in the result, never raised.
     """
     quick = K if quick is None else quick
+    K = quick if rough else K
     p = np.clip(start, lower, upper)
     g = _gradient(K, p, b)
     free = free_nodes(p, g, lower, upper)
@@ -115,7 +118,7 @@ def minimise_quadratic(
             if not 0 < curvature < np.inf:
                 break
             step = -slope / curvature
-            r, r_old, rz_old, exact = r_old, r, rz, False
+            r, r_old, rz_old, exact = r_old, r, rz, rough
             np.multiply(d, step, out=p_old)
             p_old += p
             p, p_old = p_old, p
