@@ -1,9 +1,10 @@
 # Everything happens in a local environment (.venv); nothing else on the machine is touched.
 PYTHON ?= python3
+PEER_PYTHON ?= python3.11
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test lint bench clean
+.PHONY: demo test lint bench bench-peers clean
 
 demo: $(VENV)/demo.installed  ## run the bundled example
 	rm -rf demo
@@ -18,11 +19,24 @@ lint: $(VENV)/test.installed  ## style, format and types
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
 
-bench: $(VENV)/test.installed  ## time the example curve in units of one convolution
+bench: $(VENV)/test.installed  ## time the example curve, and one solve against the size of the grid
 	$(BIN)/python benchmarks/rough_curve.py
+	$(BIN)/python benchmarks/scaling.py
 
-clean:  ## remove the environment and the demo
-	rm -rf $(VENV) demo
+PEERS := $(patsubst benchmarks/peers/%.txt,.venv-peers/%/installed,$(wildcard benchmarks/peers/*.txt))
+
+bench-peers: $(VENV)/test.installed $(PEERS)  ## time this program beside others, each in its own environment
+	$(BIN)/python benchmarks/compare.py
+
+# SlipPy's packages end with Python 3.11; its own list of them cannot be installed any more.
+.venv-peers/%/installed: benchmarks/peers/%.txt
+	$(PEER_PYTHON) -m venv --clear .venv-peers/$*
+	echo '*' > .venv-peers/.gitignore
+	.venv-peers/$*/bin/python -m pip install --quiet --disable-pip-version-check --no-deps -r $<
+	@touch $@
+
+clean:  ## remove the environments and the demo
+	rm -rf $(VENV) .venv-peers demo
 
 $(BIN)/python:
 	@$(PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 11) else "restitution needs Python 3.11 or newer: make PYTHON=python3.11")'

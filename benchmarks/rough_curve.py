@@ -1,39 +1,21 @@
 """Time and memory of the 24-depth rough curve of `examples/steel.toml`, in one run.
 
-The unit U is one full-grid zero-padded convolution (forward and inverse) with scipy.fft, two
-workers, float64, so that machines can be compared.
+Times are also given in the unit U of `unit.py`, so that machines can be compared.
 """
 
 from __future__ import annotations
 
 import resource
 import statistics
-import time
 from pathlib import Path
 
-import numpy as np
-import scipy.fft
+from unit import convolution, seconds
 
 from restitution import loading_path, unloading_path
 from restitution.studies.case import read_case
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "steel.toml"
 REPEATS = 5
-
-
-def convolution(n: int) -> None:
-    """One U on n × n nodes."""
-    p = np.ones((n, n))
-    modes = scipy.fft.rfft2(p, s=(2 * n, 2 * n), workers=2)
-    modes *= 1.0
-    scipy.fft.irfft2(modes, s=(2 * n, 2 * n), workers=2)
-
-
-def seconds(work) -> float:
-    """Wall time of a call."""
-    began = time.perf_counter()
-    work()
-    return time.perf_counter() - began
 
 
 def main() -> None:

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 # Two threads cost more than they save on smaller transforms (measured on two cores).
-_NODES_WORTH_THREADS = 200 * 200
+_NODES_WORTH_THREADS = 350 * 350
 _ROW_BUFFER = 2**22  # numbers in the padded rows that are transformed at once: 32 MiB
 
 

@@ -1,0 +1,50 @@
+"""Worker of ContactMechanics. Its tolerance is that of the gap, times δ.
+
+Elastic contact is solved for the pressures by conjugate gradients without restart, the fastest of
+its solvers here; plastic contact by the one that takes a hardness.
+"""
+
+from importlib.metadata import version
+
+import ContactMechanics  # noqa: F401  (adds make_contact_system to topographies)
+import numpy as np
+from SurfaceTopography import PlasticTopography, Topography
+from worker import serve
+
+MAX_ITERATIONS = 100_000
+
+
+def prepare(problem):
+    """Heights, domain, E*, hardness and indentation in micrometres and MPa."""
+    h = float(problem.spacing) * 1e6
+    size = tuple(n * h for n in problem.gap.shape)
+    return (-problem.gap * 1e6, size, float(problem.contact_modulus) / 1e6,
+            float(problem.limit) / 1e6, float(problem.indentation) * 1e6, h * h)  # fmt: skip
+
+
+def solve(inputs, tolerance):
+    """One indentation of the free half-space."""
+    heights, size, E_star, hardness, indentation, cell = inputs
+    length = tolerance * indentation
+    topography = Topography(heights, size)
+    if np.isinf(hardness):
+        system = topography.make_contact_system(young=E_star, substrate="free")
+        result = system.dual_minimize_proxy(
+            offset=indentation, init_force=np.zeros(heights.shape), gtol=length,
+            maxiter=MAX_ITERATIONS,
+        )  # fmt: skip
+        forces = result.x.reshape(heights.shape)
+    else:
+        topography = PlasticTopography(topography, hardness)
+        system = topography.make_plastic_contact_system(young=E_star, substrate="free")
+        result = system.minimize_proxy(
+            offset=indentation, pentol=length, forcetol=tolerance * hardness * cell,
+            thermotol=tolerance, maxiter=MAX_ITERATIONS,
+        )  # fmt: skip
+        forces = result.jac
+    if not result.success:
+        raise RuntimeError(result.message)
+    return forces / cell * 1e6
+
+
+serve(version("ContactMechanics"), prepare, solve)

@@ -1,0 +1,39 @@
+"""Worker of this program. Its tolerance is the `residual` of a solve."""
+
+import sys
+from importlib.metadata import version
+
+from worker import serve
+
+from restitution import Body, Contact, Grid, Pair, Surface, solve
+from restitution.contact import influence
+
+
+def prepare(problem):
+    """The bodies, and the surface that makes up the gap together with the sphere."""
+    h = float(problem.spacing)
+    grid = Grid(problem.gap.shape, (h, h))
+    sphere = (grid.x[:, None] ** 2 + grid.y**2) / (2 * problem.radius)
+    body = Body(2 * float(problem.radius), 2 * float(problem.contact_modulus), 0.0)
+    surface = Surface(sphere - problem.gap, grid)
+    return Pair(body, body), surface, float(problem.limit), float(problem.indentation)
+
+
+def solve_once(inputs, tolerance):
+    """One indentation of the undeformed bodies."""
+    pair, surface, limit, indentation = inputs
+    contact = Contact(pair, surface, yield_pressure=limit)
+    return solve(contact, indentation, residual=tolerance).pressure
+
+
+def forget():
+    """Empty every cache of the package."""
+    for name, module in list(sys.modules.items()):
+        if name.startswith("restitution"):
+            for value in vars(module).values():
+                if hasattr(value, "cache_clear"):
+                    value.cache_clear()
+    influence._known.clear()
+
+
+serve(version("restitution"), prepare, solve_once, forget)

@@ -1,0 +1,206 @@
+"""Time, convolutions and memory of one rough solve against the size of the grid.
+
+One band-limited surface on a domain of 64 um, made on 256² nodes and refined by zero padding its
+spectrum, is pressed by the same sphere at every size. Writes scaling.csv, scaling.md and
+scaling.png into docs/benchmarks; `--largest 8192` goes one size further.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import json
+import math
+import resource
+import statistics
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import scipy.fft
+from unit import machine, measure_unit, today
+
+from restitution import Body, Contact, Grid, Pair, Surface, generate_surface, solve
+
+OUT = Path(__file__).parents[1] / "docs" / "benchmarks"
+COARSEST = 256
+DOMAIN = 64e-6
+STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25)
+PAIR = Pair(STEEL, STEEL)  # R* = 250 um, E* = 112 GPa
+LIMITS = {"elastic": math.inf, "plastic": 750e6}
+DEPTHS = ("a = 20 um", "filling")
+REPEAT_SECONDS, REPEATS = 3.0, 5  # a solve is repeated this long, or so often
+
+REPORT = """\
+# Time and memory against size
+
+{date}, {machine}. Written by `make bench`; all columns are in [scaling.csv](scaling.csv).
+
+One solve to 1e-8 of a sphere (R* = 250 µm, E* = 112 GPa) on one rough surface (Rq = 0.1 µm,
+Gaussian autocorrelation of length 2 µm) over 64 µm, made on {coarsest}² nodes and refined by zero
+padding its spectrum. "a = 20 um" is δ = 20²/250 µm; "filling" is the depth at which {{h₀ < δ}} all
+but reaches the rim ({filling:.2f} µm). Plastic: p ≤ 750 MPa. U is one zero-padded convolution
+(forward and inverse) on the whole grid of that size with scipy.fft, two workers, float64, measured
+just before. Every row is a process of its own; memory is the most that it ever held, Python and the
+surface included, in GiB and in float64 arrays of the whole grid. Times are medians where a solve
+takes less than {repeat_seconds:.0f} s, of one solve else; set-up and kernel are included.
+
+{table}
+
+Time grows with the number of nodes to the power {exponents}.
+
+![time and memory against nodes](scaling.png)
+"""
+
+
+def refined(surface: Surface, n: int) -> Surface:
+    """The same band-limited surface on n × n nodes of the same domain."""
+    coarse = surface.grid.nodes[0]
+    half = coarse // 2
+    modes = scipy.fft.rfft2(surface.height)
+    padded = np.zeros((n, n // 2 + 1), dtype=complex)
+    # The Nyquist modes stay out: on a finer grid they have no one meaning.
+    padded[:half, :half] = modes[:half, :half]
+    padded[1 - half :, :half] = modes[1 - half :, :half]
+    height = scipy.fft.irfft2(padded, s=(n, n), overwrite_x=True)
+    height *= (n / coarse) ** 2
+    return Surface(height, Grid((n, n), (DOMAIN / n, DOMAIN / n)))
+
+
+def surface_of(n: int) -> Surface:
+    """The surface of this benchmark on n × n nodes."""
+    grid = Grid((COARSEST, COARSEST), (DOMAIN / COARSEST, DOMAIN / COARSEST))
+    surface = generate_surface(grid, kind="gaussian", rms=0.1e-6, correlation_length=2e-6, seed=1)
+    return refined(surface, n)
+
+
+def indentation(depth: str) -> float:
+    """δ in m, the same at every size."""
+    if depth == "a = 20 um":
+        return (20e-6) ** 2 / PAIR.radius
+    gap = Contact(PAIR, surface_of(COARSEST)).gap
+    rim = min(gap[0].min(), gap[-1].min(), gap[:, 0].min(), gap[:, -1].min())
+    return 0.99 * float(rim)
+
+
+def measure(n: int, limit: str, depth: str) -> dict:
+    """Solve in this process and say what it took."""
+    delta = indentation(depth)
+    surface = surface_of(n)
+    times: list[float] = []
+    while not times or (sum(times) < REPEAT_SECONDS and len(times) < REPEATS):
+        forget()
+        began = time.perf_counter()
+        state = solve(Contact(PAIR, surface, yield_pressure=LIMITS[limit]), delta)
+        times.append(time.perf_counter() - began)
+    box = "x".join(str(part.stop - part.start) for part in state.box)
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+    return {"seconds": statistics.median(times), "solves": len(times), "box": box,
+            "convolutions": state.convolutions, "residual": state.residual, "peak_bytes": peak,
+            "arrays_per_node": peak / (8 * n * n), "force": state.force}  # fmt: skip
+
+
+def forget() -> None:
+    """Empty every cache of the package, so that kernels count."""
+    for name, module in list(sys.modules.items()):
+        if name.startswith("restitution"):
+            for value in vars(module).values():
+                if hasattr(value, "cache_clear"):
+                    value.cache_clear()
+
+
+def in_its_own_process(*arguments: object) -> dict:
+    """What this script prints when it is called with `--measure` and the arguments."""
+    command = [sys.executable, __file__, "--measure", *map(str, arguments)]
+    return json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)
+
+
+def exponent(rows: list[dict]) -> float:
+    """Slope of log time against log nodes, by least squares."""
+    nodes, times = ([row[key] for row in rows] for key in ("nodes", "seconds"))
+    return float(np.polyfit(np.log(nodes), np.log(times), 1)[0])
+
+
+def table(rows: list[dict]) -> str:
+    """The rows as Markdown."""
+    lines = ["| case | grid | box | time, s | U | convolutions | memory, GiB | arrays per node |",
+             "|---|---|---|---|---|---|---|---|"]  # fmt: skip
+    for row in rows:
+        lines.append(
+            f"| {row['limit']}, {row['depth']} | {row['n']}² | {row['box']} | {row['seconds']:.3g} "
+            f"| {row['seconds'] / row['unit_s']:.3g} | {row['convolutions']} "
+            f"| {row['peak_bytes'] / 2**30:.2f} | {row['arrays_per_node']:.1f} |"
+        )
+    return "\n".join(lines)
+
+
+def draw(cases: dict[str, list[dict]], path: Path) -> None:
+    """Time and memory against nodes, both axes logarithmic."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(9, 4), layout="constrained")
+    FigureCanvasAgg(figure)
+    left, right = figure.subplots(1, 2)
+    for case, rows in cases.items():
+        nodes = [row["nodes"] for row in rows]
+        left.loglog(nodes, [row["seconds"] for row in rows], "o-", markersize=4,
+                    label=f"{case} (power {exponent(rows):.2f})")  # fmt: skip
+        right.loglog(nodes, [row["peak_bytes"] / 2**30 for row in rows], "o-", markersize=4)
+    left.loglog(nodes, [row["unit_s"] for row in rows], "k--", linewidth=1, label="U")
+    left.set_ylabel("time, s")
+    left.legend(fontsize=8)
+    right.set_ylabel("memory, GiB")
+    for axes in (left, right):
+        axes.set_xlabel("nodes")
+        axes.grid(alpha=0.3)
+    figure.savefig(path, dpi=150)
+
+
+def main() -> None:
+    """Measure every case in a process of its own and write the report."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--largest", type=int, default=4096)
+    parser.add_argument("--out", type=Path, default=OUT)
+    parser.add_argument("--measure", nargs="+", help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.measure:
+        what, n, *case = options.measure
+        unit = {"unit_s": measure_unit(int(n), samples=3)} if what == "unit" else {}
+        print(json.dumps(unit or measure(int(n), *case)))
+        return
+
+    sizes = [n for n in (256, 512, 1024, 2048, 4096, 8192) if n <= options.largest]
+    where = machine()
+    rows = []
+    for limit in LIMITS:
+        for depth in DEPTHS:
+            for n in sizes:
+                row = {"limit": limit, "depth": depth, "n": n, "nodes": n * n}
+                row |= in_its_own_process("unit", n)
+                row |= in_its_own_process("solve", n, limit, depth)
+                rows.append(row)
+                print(rows[-1], flush=True)
+
+    options.out.mkdir(parents=True, exist_ok=True)
+    with open(options.out / "scaling.csv", "w", newline="") as file:
+        writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+    cases: dict[str, list[dict]] = {}
+    for row in rows:
+        cases.setdefault(f"{row['limit']}, {row['depth']}", []).append(row)
+    report = REPORT.format(
+        date=today(), machine=where, coarsest=COARSEST, filling=1e6 * indentation("filling"),
+        repeat_seconds=REPEAT_SECONDS, table=table(rows),
+        exponents=", ".join(f"{exponent(its):.2f} ({case})" for case, its in cases.items()),
+    )  # fmt: skip
+    (options.out / "scaling.md").write_text(report)
+    draw(cases, options.out / "scaling.png")
+    print(report)
+
+
+if __name__ == "__main__":
+    main()
