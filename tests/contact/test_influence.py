@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from scipy.integrate import dblquad, quad
 
+from restitution.contact import influence
 from restitution.contact.influence import (
     far_displacement,
     half_space,
@@ -213,3 +214,30 @@ def test_two_threads_do_not_disturb_each_other(monkeypatch):
     for thread in threads:
         thread.join()
     assert_allclose(together, alone, rtol=1e-12)
+
+
+def test_large_operators_are_not_kept(monkeypatch):
+    """Their spectra would fill the memory as a contact grows."""
+    influence._half_space.cache_clear()
+    monkeypatch.setattr(influence, "_MOST_KEPT", 100)
+    for shape in ((10, 10), (11, 10)):
+        half_space(shape, (1.0, 1.0), E_STAR)
+    assert influence._half_space.cache_info().currsize == 1
+
+
+@pytest.mark.parametrize("aspect", [1.0, 0.4])
+def test_coefficients_of_a_smaller_or_larger_block_are_the_same(aspect):
+    influence._known.clear()
+    blocks = [influence_coefficients(*lags(*n), (1.0, aspect), 1.0)
+              for n in ((30, 60), (50, 20), (40, 40))]  # fmt: skip
+    influence._known.clear()
+    whole = influence_coefficients(*lags(60, 60), (1.0, aspect), 1.0)
+    for k in blocks:
+        assert_allclose(k, whole[: k.shape[0], : k.shape[1]], rtol=1e-14)
+
+
+def test_a_block_that_is_too_large_is_not_kept(monkeypatch):
+    monkeypatch.setattr(influence, "_MOST_KNOWN", 100)
+    influence._known.clear()
+    influence_coefficients(*lags(20, 20), (1.0, 1.0), 1.0)
+    assert not influence._known

@@ -130,3 +130,11 @@ def test_an_elastic_path_returns_to_the_first_touch_with_nothing_left(pair, roug
     loaded = [solve(contact, s.indentation).force for s in path[:-1]]
     assert [s.force for s in path[:-1]] == approx(loaded, rel=1e-6)
     assert_array_equal(path[-1].plastic_displacement, np.zeros(contact.grid.nodes))
+
+
+def test_a_state_on_another_grid_does_not_start_a_contact(rough_contact):
+    coarse, fine = (rough_contact((24, 20), (h, h)) for h in (0.6e-6, 0.5e-6))
+    state = solve(coarse, 20e-9)
+    with pytest.raises(CaseError, match="another grid"):
+        solve(fine, 30e-9, start=state)
+    assert solve(coarse, 30e-9, start=state).force > state.force

@@ -37,12 +37,14 @@ def solve(
 
     `start`, a shallower state of the same contact, serves as first guess, and as the point from
     which the work is integrated where it has to be (`truncated`, or adhesion on approach); else
-    that is first touch. Raises `CaseError` for an indentation that is not positive,
-    `NotConvergedError` when `residual` is not reached, and `DomainError` when the contact reaches
-    the edge of the grid.
+    that is first touch. Raises `CaseError` for an indentation that is not positive or a start on
+    another grid, `NotConvergedError` when `residual` is not reached, and `DomainError` when the
+    contact reaches the edge of the grid.
     """
     if not 0 < indentation < math.inf:
         raise CaseError(f"indentation: {indentation} m is not a positive depth")
+    if start is not None and start.contact.grid != contact.grid:
+        raise CaseError("start: a state on another grid cannot start this contact")
     state = load(contact, indentation, start=start, residual=residual)
     if _work_is_integrated(contact):
         state = _integrate_work(state, start)
