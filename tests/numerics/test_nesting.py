@@ -77,7 +77,6 @@ def test_what_the_guess_does_not_see_widens_the_window(monkeypatch):
 def test_the_window_and_the_coarse_grids_save_products():
     b = bowl((240, 240))
     found, products = nested(b, np.inf)
-    K, _ = system(b.shape, 0)
     assert found.converged
     K, inverse = system(b.shape, 0)
     minimise_quadratic(K, b, 0.0, np.inf, start=np.zeros_like(b), precondition=inverse,

@@ -15,7 +15,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from copy import copy
-from functools import cached_property
 from typing import Any, Self
 
 import ducc0
@@ -59,6 +58,7 @@ class FreeConvolution:
         self._threads = threads_for(nx * ny)
         # The normalisation of the inverse transform rides along with the kernel.
         self._spectrum = ducc0.fft.dct(lags, type=1, nthreads=self._threads) / (px * py)
+        self._single_spectrum = self._spectrum.astype(np.float32)
         self._rows = np.empty((min(nx, max(1, _ROW_BUFFER // py)), py))
         self._modes = np.empty((px, py // 2 + 1), dtype=np.complex128)
 
@@ -79,10 +79,6 @@ class FreeConvolution:
         rows = self._rows.view(np.float32)[:, : self._rows.shape[1]]
         modes = self._modes.view(np.complex64)[:, : self._modes.shape[1]]
         return self._apply(p, rows, modes, self._single_spectrum, out)
-
-    @cached_property
-    def _single_spectrum(self) -> NDArray[np.float32]:
-        return np.asarray(self._spectrum, dtype=np.float32)
 
     def _apply(
         self,
