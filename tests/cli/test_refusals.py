@@ -316,3 +316,25 @@ def test_interruption_keeps_what_was_computed(case_text, tmp_path, sent, status)
     assert '"status": "interrupted"' in (out / "summary.json").read_text()
     assert (out / "restitution-indentation.png").exists()
     assert not list(out.glob(".*.part"))
+
+
+def test_interruption_while_results_are_written_loses_nothing(case_text, tmp_path, monkeypatch):
+    from restitution.studies.case import parse_case
+    from restitution.studies.results import ResultsFolder
+    from restitution.studies.run import run_case
+
+    write, calls = ResultsFolder.write, []
+
+    def interrupted(self, dataset, summary):
+        calls.append(summary["status"])
+        if len(calls) == 1:
+            raise KeyboardInterrupt
+        write(self, dataset, summary)
+
+    monkeypatch.setattr(ResultsFolder, "write", interrupted)
+    out = ResultsFolder(tmp_path / "out")
+    with pytest.raises(KeyboardInterrupt):
+        run_case(parse_case(case_text), case_text, tmp_path, out)
+    assert calls == ["complete", "complete"]
+    assert (tmp_path / "out" / "results.nc").exists()
+    assert (tmp_path / "out" / "summary.json").exists()

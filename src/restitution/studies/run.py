@@ -93,15 +93,27 @@ def run_case(
         if run.deepest is None:
             out.discard()
         else:
-            summary = _summarise(case, run.deepest.contact, out, run)
-            summary["seconds"] = round(time.perf_counter() - began, 3)
-            dataset = results_dataset(out, run.deepest)
-            with suppress(RestitutionError):  # a reference that fails is no reason to fail
-                dataset = dataset.assign(smooth_curve(run.deepest.contact, out.rows))
-            dataset.attrs = _attributes(summary, text)
-            out.write(dataset, summary)
+            try:
+                summary = _keep(case, text, out, run, run.deepest, began)
+            except KeyboardInterrupt:  # what was computed is not lost for being put down just now
+                summary = _keep(case, text, out, run, run.deepest, began)
+                raise
             for warning in summary["warnings"][len(run.warnings) :]:
                 warn(warning)
+    return summary
+
+
+def _keep(
+    case: Case, text: str, out: ResultsFolder, run: _Progress, deepest: State, began: float
+) -> dict[str, Any]:
+    """Write what the run has come to, and return its summary."""
+    summary = _summarise(case, deepest.contact, out, run)
+    summary["seconds"] = round(time.perf_counter() - began, 3)
+    dataset = results_dataset(out, deepest)
+    with suppress(RestitutionError):  # a reference that fails is no reason to fail
+        dataset = dataset.assign(smooth_curve(deepest.contact, out.rows))
+    dataset.attrs = _attributes(summary, text)
+    out.write(dataset, summary)
     return summary
 
 
