@@ -19,8 +19,8 @@ lint: $(VENV)/test.installed  ## style, format and types
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
 
-bench: $(VENV)/test.installed  ## time the example curve, and one solve against the size of the grid
-	$(BIN)/python benchmarks/rough_curve.py
+bench: $(VENV)/test.installed  ## time whole curves, and one solve against the size of the grid
+	$(BIN)/python benchmarks/curves.py
 	$(BIN)/python benchmarks/scaling.py
 
 PEERS := $(patsubst benchmarks/peers/%.txt,.venv-peers/%/installed,$(wildcard benchmarks/peers/*.txt))

@@ -76,6 +76,8 @@ def test_the_run_says_whether_it_sticks_and_is_resolved(run, tmp_path):
         assert float(row["separation_indentation_m"]) < 0
         assert 0 <= float(row["restitution_error"]) <= 0.05
     assert summary["status"] == "complete"
+    assert len(summary["seconds_by_depth"]) == len(rows)
+    assert 0 < sum(summary["seconds_by_depth"]) <= summary["seconds"]
     model = summary["model"]
     assert (model["adhesion"], model["approach"]) == ("JKR limit", "hertzian")
     assert (model["detachment"], model["unloading"]) == ("crack-closure", "path")

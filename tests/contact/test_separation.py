@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from restitution import Body, Contact, Grid, Pair, smooth, solve
+from restitution import Body, Contact, Grid, Pair, generate_surface, smooth, solve
 from restitution.contact import separation
 from restitution.errors import NotConvergedError
 
@@ -38,3 +38,13 @@ def test_a_smaller_error_takes_more_steps(pressed):
         for tolerance in (0.05, 0.002)
     ]
     assert steps[1] > steps[0]
+
+
+def test_no_step_jumps_over_the_tension():
+    """Steps of a tenth of the recovery found half of this pull-off force; finer ones 2.2e-4 N."""
+    grid = Grid((128, 128), (0.25e-6, 0.25e-6))
+    surface = generate_surface(grid, kind="gaussian", rms=0.1e-6, correlation_length=2e-6, seed=2)
+    contact = Contact(Pair(STEEL, STEEL), surface, 750e6, work_of_adhesion=0.09)
+    path = list(separation.separate(solve(contact, 200e-9)))
+    assert sum(state.force < 0 for state in path) > 15
+    assert separation.separation_of(path).pull_off_force == pytest.approx(2.2e-4, rel=0.05)

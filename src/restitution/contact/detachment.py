@@ -117,24 +117,28 @@ def energy_release_rate(
     p: Array, u: Array, h: Array, touching: Mask
 ) -> tuple[tuple[NDArray[np.intp], NDArray[np.intp]], Array]:
     """Nodes at the edge of the contact (indices) and G there, J/m², averaged along the edge."""
-    T = np.pad(touching, 1)
+    T = np.zeros((touching.shape[0] + 2, touching.shape[1] + 2), dtype=bool)
+    T[1:-1, 1:-1] = touching
     surrounded = T[:-2, 1:-1] & T[2:, 1:-1] & T[1:-1, :-2] & T[1:-1, 2:]
     i, j = np.nonzero(touching & ~surrounded)
+    side, node = np.nonzero(~T[i + 1 + _FACES[:, :1], j + 1 + _FACES[:, 1:]])
+    # Flat indices: a step outwards is one number. Where one leaves the array the contact is at the
+    # rim of the grid, which is refused.
+    row = touching.shape[1]
+    here = i[node] * row + j[node]
+    outwards = (_FACES @ np.array([row, 1]))[side]
 
-    def beside(values: Array, cells: int) -> Array:
-        """The values so many cells from each node across its four faces; on the rim, the rim's."""
-        rows = np.clip(i + cells * _FACES[:, :1], 0, values.shape[0] - 1)
-        columns = np.clip(j + cells * _FACES[:, 1:], 0, values.shape[1] - 1)
-        taken: Array = np.take(values, rows * values.shape[1] + columns)
-        return taken
+    def taken(values: Array, cells: int) -> Array:
+        """The values so many cells outwards of each face."""
+        found: Array = np.take(values, here + cells * outwards, mode="clip")
+        return found
 
-    outside = ~T[i + 1 + _FACES[:, :1], j + 1 + _FACES[:, 1:]]
-    inside = T[i + 1 - _FACES[:, :1], j + 1 - _FACES[:, 1:]]
-    opening = beside(u, 1) - 2 * u[i, j] + beside(u, -1)
-    curvature = h[i, j] - 2 * beside(h, -1) + beside(h, -2)
-    opening += np.where(inside, curvature, 0.0)
-    work = -0.5 * p[i, j] * np.where(outside, np.maximum(opening, 0.0), 0.0).sum(axis=0)
-    sums = np.column_stack([work, outside.sum(axis=0)])
+    opening = taken(u, 1) - 2 * taken(u, 0) + taken(u, -1)
+    inside = np.take(touching, here - outwards, mode="clip")
+    opening += inside * (taken(h, 0) - 2 * taken(h, -1) + taken(h, -2))
+    opened = np.bincount(node, weights=np.maximum(opening, 0.0), minlength=i.size)
+    faces = np.bincount(node, minlength=i.size)
+    sums = np.column_stack([-0.5 * p[i, j] * opened, faces])
     spread = _diffusion(i, j, touching.shape)
     for _ in range(_SMOOTHING_STEPS):
         sums = spread @ sums

@@ -50,6 +50,7 @@ class _Progress:
     warnings: list[str] = field(default_factory=list)
     loading_work_errors: list[float] = field(default_factory=list)
     adhesive_nodes: list[float] = field(default_factory=list)
+    seconds: list[float] = field(default_factory=list)
     unloading_checks: list[dict[str, float]] = field(default_factory=list)
 
 
@@ -128,6 +129,7 @@ def _load_and_unload(
     # Evenly apart in number, the deepest among them.
     unloaded = {len(depths) - 1 - (k * len(depths)) // curves for k in range(curves)}
     path = loading_path(contact, forces=depths) if case.load else loading_path(contact, depths)
+    began = time.perf_counter()
     for number, state in enumerate(path):
         followed = contact.adhesive and case.unloading.method == "path"
         back: list[State] = []
@@ -145,6 +147,8 @@ def _load_and_unload(
         if number in unloaded:
             out.add_unloading(back)
             run.unloading_checks.append(_check(state, back, collision))
+        run.seconds.append(round(time.perf_counter() - began, 4))
+        began = time.perf_counter()
         progress(f"{number + 1} of {len(depths)} depths")
 
 
@@ -194,6 +198,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Progress)
             "unloading_checks": run.unloading_checks,
         },
         "convolutions": sum(int(row["convolutions"]) for row in out.rows),
+        "seconds_by_depth": run.seconds,
         "versions": versions(),
     }
 

@@ -1,0 +1,145 @@
+"""Time of whole curves of restitution, in one run; writes docs/benchmarks/curves.md.
+
+Times are also given in the unit U of `unit.py`, so that machines can be compared. `--repeats 1`
+is quicker.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import statistics
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from unit import convolution, machine, seconds, today
+
+from restitution import (
+    Body,
+    Contact,
+    Grid,
+    Pair,
+    collide,
+    generate_surface,
+    loading_path,
+    smooth,
+    solve,
+)
+from restitution.studies.case import read_case
+
+ROOT = Path(__file__).parents[1]
+EXAMPLE = ROOT / "examples" / "steel.toml"
+OUT = ROOT / "docs" / "benchmarks" / "curves.md"
+NODES = 512
+STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25)
+GRID = Grid((NODES, NODES), (0.25e-6, 0.25e-6))
+ROUGHNESS = (0.0, 0.1e-6, 0.2e-6, 0.5e-6, 1e-6)  # of the paper's Fig. 10
+DEPTHS = np.geomspace(10e-9, 1e-6, 24)
+
+REPORT = """\
+# Time of whole curves
+
+{date}, {machine}. Written by `make bench`.
+
+All on {nodes}² nodes of 0.25 µm, two steel spheres (R* = 250 µm, E* = 112 GPa, p_y = 750 MPa),
+times from the contact in memory to the numbers, kernels included. U is one zero-padded convolution
+(forward and inverse) on that grid with scipy.fft, two workers, float64: {unit_ms:.0f} ms, measured
+between the others. Medians of {repeats} (least and largest), of Fig. 10 one run.
+
+| what | time, s | U | convolutions | largest error of COR |
+|---|---|---|---|---|
+{rows}
+
+Fig. 10 is that of Ghanbarzadeh et al. (2019): smooth, and Rq = 0.1, 0.2, 0.5 and 1 µm (Gaussian,
+correlation length 2 µm), w = 0.09 J/m², 24 depths from 10 nm to 1 µm each, every one loaded and
+followed back to separation.
+"""
+
+
+@dataclass
+class Tally:
+    """What a piece of work has cost, and how far its answers can be trusted."""
+
+    convolutions: int = 0
+    error: float = 0.0
+
+
+def adhesive(rms: float) -> Contact:
+    """One of the contacts of Fig. 10."""
+    surface = smooth(GRID)
+    if rms > 0:
+        surface = generate_surface(GRID, kind="gaussian", rms=rms, correlation_length=2e-6, seed=1)
+    return Contact(Pair(STEEL, STEEL), surface, 750e6, work_of_adhesion=0.09)
+
+
+def add(tally: Tally, state) -> None:
+    """Let the bodies of `state` part, and add what that and the state have cost."""
+    collision = collide(state)
+    tally.convolutions += state.convolutions + collision.convolutions
+    tally.error = max(tally.error, collision.restitution_error)
+
+
+def one(contact: Contact, depth: float) -> Tally:
+    """One restitution."""
+    tally = Tally()
+    add(tally, solve(contact, depth))
+    return tally
+
+
+def curve(contacts: list[Contact], depths) -> Tally:
+    """Curves of restitution, each depth in turn."""
+    tally = Tally()
+    for contact in contacts:
+        for state in loading_path(contact, depths):
+            add(tally, state)
+    return tally
+
+
+def main() -> None:
+    """Time the curves and write the report."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--repeats", type=int, default=5)
+    parser.add_argument("--out", type=Path, default=OUT)
+    options = parser.parse_args()
+    where = machine()
+    case, _ = read_case(EXAMPLE)
+    example = case.contact(EXAMPLE.parent)
+    rough = adhesive(0.1e-6)
+    figure = [adhesive(rms) for rms in ROUGHNESS]
+    work = {
+        "24 depths of `examples/steel.toml`, 2 nm to 5 µm, rough, no adhesion":
+            (lambda: curve([example], case.depths()), options.repeats),
+        "one restitution at 600 nm, Rq = 0.1 µm, w = 0.09 J/m²":
+            (lambda: one(rough, 600e-9), options.repeats),
+        "120 restitutions of Fig. 10": (lambda: curve(figure, DEPTHS), 1),
+    }  # fmt: skip
+    units: list[float] = []
+    found: dict[str, tuple[list[float], Tally]] = {}
+    convolution(NODES)
+    for name, (call, repeats) in work.items():
+        times, tallies = [], []
+        for _ in range(repeats):
+            units += [seconds(lambda: convolution(NODES)) for _ in range(3)]
+            began = time.perf_counter()
+            tallies.append(call())
+            times.append(time.perf_counter() - began)
+        found[name] = times, tallies[-1]
+    U = statistics.median(units)
+    rows = []
+    for name, (times, tally) in found.items():
+        t = statistics.median(times)
+        spread = f" ({min(times):.3g} to {max(times):.3g})" if len(times) > 1 else ""
+        error = f"{tally.error:.1g}" if tally.error and math.isfinite(tally.error) else "0"
+        rows.append(f"| {name} | {t:.3g}{spread} | {t / U:.3g} | {tally.convolutions} | {error} |")
+    report = REPORT.format(
+        date=today(), machine=where, nodes=NODES, unit_ms=1e3 * U, repeats=options.repeats,
+        rows="\n".join(rows),
+    )  # fmt: skip
+    options.out.write_text(report)
+    print(report)
+
+
+if __name__ == "__main__":
+    main()
