@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from restitution import Body, Contact, Grid, Pair, generate_surface, smooth, solve
+from restitution import Body, Contact, Grid, Pair, collide, generate_surface, smooth, solve
 from restitution.contact import separation
 from restitution.errors import NotConvergedError
 
@@ -38,6 +38,15 @@ def test_a_smaller_error_takes_more_steps(pressed):
         for tolerance in (0.05, 0.002)
     ]
     assert steps[1] > steps[0]
+
+
+def test_an_error_above_the_asked_one_is_mended_by_finer_steps(monkeypatch):
+    grid = Grid((40, 40), (0.15e-6, 0.15e-6))
+    contact = Contact(Pair(STEEL, STEEL), smooth(grid), work_of_adhesion=0.09, approach="hertzian")
+    state = solve(contact, 4e-9)
+    assert collide(state).restitution_error <= separation.RESTITUTION_ERROR
+    monkeypatch.setattr(separation, "_FINER", (1,))
+    assert collide(state).restitution_error > separation.RESTITUTION_ERROR
 
 
 def test_no_step_jumps_over_the_tension():

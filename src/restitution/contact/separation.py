@@ -25,6 +25,7 @@ _ACCURACY = 1e-3  # of the solves on the way, in parts of the opening at the edg
 _STEPS_OF_RECOVERY = 8  # at least so many steps over the elastic recovery
 _STEPS_OF_TENSION = 16  # and so many over the stretch a punch of this area bears in tension
 _FINEST = 400
+_FINER = (1, 2, 4)  # times as many steps, as long as the error is above what was asked
 _MOST_STEPS = 3000
 # The trapezium through the settled states removes the work of letting go late, to first order. Of
 # that work, what steps ten times finer still moved was below a tenth with crack closure and below
@@ -48,25 +49,44 @@ class Separation:
 def separate(state: State, *, tolerance: float = RESTITUTION_ERROR) -> Iterator[State]:
     """Yield `state` and the states on the way to separation, the last one without contact.
 
-    `tolerance` is the error of the coefficient of restitution that the steps may cause. Raises
-    `NotConvergedError` when the bodies do not come apart.
+    `tolerance` is the error of the coefficient of restitution that the steps may cause; where their
+    own estimate is above it, the way back is gone again in finer steps, at last four times as many.
+    Raises `NotConvergedError` when the bodies do not come apart.
     """
+    for finer in _FINER:
+        path = list(_way_back(state, tolerance / finer, finer))
+        separation = separation_of(path)
+        returned, given = separation.unloading_work, state.loading_work
+        # e = sqrt(W_u/W_l) makes 2 de/e = dW_u/W_u + dW_l/W_l. A pair that sticks has no e.
+        if (
+            returned <= 0
+            or given <= 0
+            or separation.error / returned + state.work_error / given
+            <= (2 * tolerance / math.sqrt(returned / given))
+        ):
+            break
+    yield from path
+
+
+def _way_back(state: State, tolerance: float, finer: int) -> Iterator[State]:
+    """`state` and the states to separation, by at least `finer` times as many steps as usual."""
     contact = state.contact
     yield state
     recovery, allowed = _plan(state, tolerance)
-    step = recovery / _STEPS_OF_RECOVERY
+    step = recovery / (finer * _STEPS_OF_RECOVERY)
     previous: State | None = None
     for _ in range(_MOST_STEPS):
         reach = _tension_reach(state)
-        longest = recovery / _STEPS_OF_RECOVERY
+        longest = recovery / (finer * _STEPS_OF_RECOVERY)
+        shortened = reach / (finer * _STEPS_OF_TENSION)
         if state.force < 0.1 * abs(_punch_force(state)):
-            longest = min(longest, reach / _STEPS_OF_TENSION)
+            longest = min(longest, shortened)
         elif previous is not None:
             # Not past the force's zero, where the tension asks for shorter steps: the slope of a
             # Hertz-like recovery leads to two thirds of the way there.
             slope = (previous.force - state.force) / (previous.indentation - state.indentation)
             if slope > 0:
-                longest = min(longest, max(1.3 * state.force / slope, reach / _STEPS_OF_TENSION))
+                longest = min(longest, max(1.3 * state.force / slope, shortened))
         step = min(step, longest)
         accuracy = _ACCURACY * contact.opening / contact.length_at(state.indentation - step)
         new = pull(state, state.indentation - step,
