@@ -294,16 +294,6 @@ def test_thirty_steps_are_one_solve(rough_contact, p_y):
     assert stepped.plastic_work == approx(p_y * stepped.plastic_volume, rel=1e-9)
 
 
-def test_the_first_guess_does_not_matter(rough_contact):
-    contact = rough_contact(yield_pressure=P_Y)
-    cold = solve(contact, DEPTH, residual=1e-11)
-    for depth in (0.2 * DEPTH, DEPTH, 1.1 * DEPTH):
-        warm = solve(contact, DEPTH, start=solve(contact, depth), residual=1e-11)
-        assert warm.force == approx(cold.force, rel=1e-9)
-        assert warm.plastic_work == approx(cold.plastic_work, rel=1e-8)
-    assert solve(contact, DEPTH, start=cold, residual=1e-10).convolutions == 1
-
-
 def test_back_and_forth_is_elastic_then_continues_on_the_virgin_curve(rough_contact):
     contact = rough_contact(yield_pressure=P_Y)
     tight = {"residual": 1e-11}

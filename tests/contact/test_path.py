@@ -27,20 +27,14 @@ def curve(states):
 
 
 def test_each_state_of_a_path_is_the_solve_at_its_depth(contact):
+    """To the last digit: no state depends on what was solved before it."""
     depths = [10e-9, 30e-9, 20e-9, 40e-9]  # in any order
-    path = list(loading_path(contact, depths, residual=1e-10))
+    path = list(loading_path(contact, depths))
     assert [s.indentation for s in path] == depths
     for state in path:
-        alone = solve(contact, state.indentation, residual=1e-10)
-        assert state.force == approx(alone.force, rel=1e-8)
-        assert state.plastic_work == approx(alone.plastic_work, rel=1e-6)
-
-
-def test_each_state_of_a_path_is_the_first_guess_for_the_next(rough_contact):
-    elastic = rough_contact((40, 36))
-    depths = DEPTH * np.linspace(0.9, 1.0, 9)
-    path = sum(s.convolutions for s in loading_path(elastic, depths))
-    assert path < 0.9 * sum(solve(elastic, d).convolutions for d in depths)
+        alone = solve(contact, state.indentation)
+        assert state.force == alone.force
+        assert state.plastic_work == alone.plastic_work
 
 
 def test_a_truncated_path_adds_to_the_work_it_has(rough_contact):

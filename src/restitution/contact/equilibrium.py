@@ -49,10 +49,11 @@ def equilibrate(
 ) -> State:
     """Solve for p ≤ `limit` on the surface `history` left; p ≥ 0, or ≥ −`tension` where `held`.
 
-    `box` has to hold the `reach` and all nodes that are held; `held` and `first_guess` are arrays
-    on it. A `rough` solve is one whose state only leads to the next. The violation of the contact
-    conditions is measured against the overlap δ − min h, with adhesion against the indentation or
-    the length scale of adhesion. Raises `NotConvergedError`. Contact at the rim is let pass.
+    `box` has to hold the `reach` and all nodes that are held; `held` and `first_guess`, where to
+    begin with nodes held, are arrays on it. A `rough` solve is one whose state only leads to the
+    next. The violation of the contact conditions is measured against the overlap δ − min h, with
+    adhesion against the indentation or the length scale of adhesion. Raises `NotConvergedError`.
+    Contact at the rim is let pass.
     """
     grid, shape = contact.grid, shape_of(box)
     plastic, work, adhesive_work, work_error = _past(contact, history)
@@ -66,7 +67,7 @@ def equilibrate(
         E_star = contact.pair.contact_modulus
         return half_space(shape, cells, E_star), inverse_half_space(shape, cells, E_star)
 
-    if held is None and first_guess is None:
+    if held is None:
         found, convolutions = minimise_nested(
             system, b, limit, tolerance=residual * scale, max_iterations=_MAX_ITERATIONS
         )
@@ -75,7 +76,7 @@ def equilibrate(
         found = minimise_quadratic(
             K,
             b,
-            lower=0.0 if held is None else np.where(held, -tension, 0.0),
+            lower=np.where(held, -tension, 0.0),
             upper=limit,
             start=np.zeros(shape) if first_guess is None else first_guess,
             precondition=inverse,

@@ -35,11 +35,11 @@ def solve(
 ) -> State:
     """Load the undeformed bodies to `indentation` (m) in one solve and return the state there.
 
-    `start`, a shallower state of the same contact, serves as first guess, and as the point from
-    which the work is integrated where it has to be (`truncated`, or adhesion on approach); else
-    that is first touch. Raises `CaseError` for an indentation that is not positive or a start on
-    another grid, `NotConvergedError` when `residual` is not reached, and `DomainError` when the
-    contact reaches the edge of the grid.
+    `start`, a shallower state of the same contact, serves as the point from which the work is
+    integrated where it has to be (`truncated`, or adhesion on approach; else that is first touch),
+    and with adhesion on approach as first guess. Raises `CaseError` for an indentation that is not
+    positive or a start on another grid, `NotConvergedError` when `residual` is not reached, and
+    `DomainError` when the contact reaches the edge of the grid.
     """
     if not 0 < indentation < math.inf:
         raise CaseError(f"indentation: {indentation} m is not a positive depth")
@@ -67,8 +67,7 @@ def step(state: State, indentation: float, *, residual: float = RESIDUAL) -> Sta
     if contact.adhesive:
         new = pull(state, indentation, residual=residual)
     else:
-        new = _equilibrate_without_adhesion(contact, indentation, state, contact.yield_pressure,
-                                            residual, history=state)  # fmt: skip
+        new = _press(contact, indentation, contact.yield_pressure, residual, history=state)
     refuse_edge(new)
     return replace(new, virgin=False)
 
@@ -88,34 +87,28 @@ def load(contact: Contact, indentation: float, *, start: State | None, residual:
                        first_guess=None if start is None else start.pressure_on(box),
                        residual=residual)  # fmt: skip
     elif contact.adhesive and contact.approach == "seed":
-        pressed = _press(contact, indentation + SEED_PULL, start, residual)
+        pressed = _press(contact, indentation + SEED_PULL, limit_of(contact), residual)
         state = pull(pressed, indentation, residual=residual)
         state = replace(state, adhesive_work=0.0, virgin=True)
     else:
-        state = _press(contact, indentation, start, residual)
+        state = _press(contact, indentation, limit_of(contact), residual)
     if contact.plasticity == "truncated" and math.isfinite(contact.yield_pressure):
         state = _cut(state)
     return state
 
 
-def _press(contact: Contact, indentation: float, start: State | None, residual: float) -> State:
-    return _equilibrate_without_adhesion(contact, indentation, start, limit_of(contact), residual)
-
-
-def _equilibrate_without_adhesion(
+def _press(
     contact: Contact,
     indentation: float,
-    start: State | None,
     limit: float,
     residual: float,
     history: State | None = None,
 ) -> State:
+    """The contact without adhesion, always from nothing: coarser grids beat any earlier state."""
     box = reach(contact, indentation, history)
     if box is None:
         return parted(contact, indentation, history)
-    guess = None if start is None else np.maximum(start.pressure_on(box), 0.0)
-    return equilibrate(contact, indentation, box, limit=limit, history=history, first_guess=guess,
-                       residual=residual)  # fmt: skip
+    return equilibrate(contact, indentation, box, limit=limit, history=history, residual=residual)
 
 
 def _cut(elastic: State) -> State:
@@ -207,18 +200,18 @@ def _work_by_cut(state: State, start: State | None) -> tuple[float, float, int]:
     """
     contact, indentation = state.contact, state.indentation
     p_y, area = contact.yield_pressure, contact.grid.cell_area
-    guess, convolutions = start, 0
+    convolutions = 0
 
     def elastic(depth: float, residual: float) -> State:
-        nonlocal guess, convolutions
-        guess = _press(contact, depth, guess, residual)
-        convolutions += guess.convolutions
-        return guess
+        nonlocal convolutions
+        state = _press(contact, depth, math.inf, residual)
+        convolutions += state.convolutions
+        return state
 
     def cut(whole: State) -> float:
         return float(np.minimum(whole.box_pressure, p_y).sum()) * area
 
-    end = _press(contact, indentation, state, RESIDUAL)
+    end = _press(contact, indentation, math.inf, RESIDUAL)
     by_excess = end.force < 2 * cut(end)
 
     def integrand(whole: State) -> float:

@@ -24,8 +24,8 @@ def loading_path(
 ) -> Iterator[State]:
     """Yield the state at each of `indentations` (m) or `forces` (N), in the order given.
 
-    Each state is the first guess for the next. Raises as `solve` and `solve_at_force`, and
-    `CaseError` unless exactly one of the two is given.
+    Work that has to be integrated is integrated from each state to the next. Raises as `solve` and
+    `solve_at_force`, and `CaseError` unless exactly one of the two is given.
     """
     if (indentations is None) == (forces is None):
         raise CaseError("a loading path takes either indentations or forces")
