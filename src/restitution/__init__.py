@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from restitution.collision import Collision, collide
+    from restitution.contact.batch import solve_batch
     from restitution.contact.bodies import Body, Pair
     from restitution.contact.contact import Contact, smooth
     from restitution.contact.load import solve_at_force
@@ -11,6 +12,7 @@ if TYPE_CHECKING:
     from restitution.contact.path import loading_path, unloading_path
     from restitution.contact.state import State
     from restitution.errors import RestitutionError
+    from restitution.numerics.device import on_device
     from restitution.numerics.grid import Grid
     from restitution.surfaces import (
         Surface,
@@ -35,11 +37,13 @@ __all__ = [
     "generate_surface",
     "level",
     "loading_path",
+    "on_device",
     "place_on_grid",
     "read_surface",
     "smooth",
     "solve",
     "solve_at_force",
+    "solve_batch",
     "step",
     "unloading_path",
 ]
@@ -48,6 +52,7 @@ __all__ = [
 # package, too, and is to answer (and to be stopped) before numpy is loaded.
 _HOMES = {
     "collision": ("Collision", "collide"),
+    "contact.batch": ("solve_batch",),
     "contact.bodies": ("Body", "Pair"),
     "contact.contact": ("Contact", "smooth"),
     "contact.load": ("solve_at_force",),
@@ -55,6 +60,7 @@ _HOMES = {
     "contact.path": ("loading_path", "unloading_path"),
     "contact.state": ("State",),
     "errors": ("RestitutionError",),
+    "numerics.device": ("on_device",),
     "numerics.grid": ("Grid",),
     "surfaces": (
         "Surface",

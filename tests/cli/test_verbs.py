@@ -1,6 +1,7 @@
 import csv
 import json
 import re
+import sys
 
 import numpy as np
 import pytest
@@ -107,6 +108,26 @@ def test_the_same_case_gives_the_same_numbers(cli, done, tmp_path):
     assert cli("run", tmp_path / "case.toml", "-o", tmp_path / "again")[0] == 0
     for name in ("curve.csv", "unloading.csv"):
         assert (tmp_path / "again" / name).read_text() == (done[0] / name).read_text()
+
+
+def test_the_device_is_chosen_and_recorded(cli, case_text, tmp_path, monkeypatch):
+    from restitution.numerics import device
+
+    monkeypatch.setitem(sys.modules, "cupy", None)
+    device._gpu.cache_clear()
+    case, out = tmp_path / "case.toml", tmp_path / "out"
+    case.write_text(case_text)
+    status, _, said = cli("run", case, "-o", out, "--device", "gpu")
+    assert status == 1
+    assert "device: gpu needs CuPy" in said
+    assert "use --device cpu" in said
+    assert not out.exists()
+    status, _, _ = cli("run", case, "-o", out, "--device", "auto")
+    assert status == 0
+    assert json.loads((out / "summary.json").read_text())["device"] == "cpu"
+    status, _, said = cli("run", case, "-o", tmp_path / "other", "--device", "tpu")
+    assert status == 2
+    assert "'cpu', 'gpu', 'auto'" in said
 
 
 def test_run_under_prescribed_load(cli, case_text, tmp_path):

@@ -74,7 +74,7 @@ def test_the_advice_of_a_rim_asperity_is_not_a_smaller_grid(pair):
 
 
 def test_a_solve_that_does_not_converge_says_how_far_it_came(rough_contact, monkeypatch):
-    monkeypatch.setattr(equilibrium, "_MAX_ITERATIONS", 2)
+    monkeypatch.setattr(equilibrium, "MAX_ITERATIONS", 2)
     with pytest.raises(NotConvergedError) as failure:
         solve(rough_contact(), DEPTH)
     message = str(failure.value)

@@ -231,12 +231,12 @@ def test_a_looser_tolerance_is_met_in_fewer_iterations():
 
 
 def test_violation_looks_only_where_a_node_may_move():
-    lower, upper = np.zeros(4), np.ones(4)
-    p = np.array([0.0, 1.0, 0.5, 0.5])
-    assert violation(p, np.array([7.0, -7.0, 0.0, 0.0]), lower, upper) == 0
-    assert violation(p, np.array([-2.0, -7.0, 0.0, 0.0]), lower, upper) == 2
-    assert violation(p, np.array([7.0, 3.0, 0.0, 0.0]), lower, upper) == 3
-    assert violation(p, np.array([7.0, -7.0, 0.0, -4.0]), lower, upper) == 4
+    lower, upper = np.zeros((1, 4)), np.ones((1, 4))
+    p = np.array([[0.0, 1.0, 0.5, 0.5]])
+    gradients = {(7.0, -7.0, 0.0, 0.0): 0, (-2.0, -7.0, 0.0, 0.0): 2,
+                 (7.0, 3.0, 0.0, 0.0): 3, (7.0, -7.0, 0.0, -4.0): 4}  # fmt: skip
+    for g, expected in gradients.items():
+        assert violation(p, np.array([g]), lower, upper) == expected
 
 
 @pytest.mark.parametrize("push", [1.0, -1.0])

@@ -1,14 +1,28 @@
 """`restitution run`: a case from start to figures."""
 
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 
+class Device(StrEnum):
+    """What solves may run on."""
+
+    cpu = "cpu"
+    gpu = "gpu"
+    auto = "auto"
+
+
 def run(
+    context: typer.Context,
     case: Annotated[Path, typer.Argument(help="Case file (TOML).", show_default=False)],
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the results; new or empty.")],
+    device: Annotated[
+        Device,
+        typer.Option(help="Where to solve; auto is the GPU where one answers (needs CuPy)."),
+    ] = Device.cpu,
 ) -> None:
     """Load and unload the contact of CASE and write its curves, restitution and figures to OUT."""
     from rich.progress import (
@@ -21,12 +35,14 @@ def run(
 
     from restitution.cli.console import answers, errors, warn
     from restitution.cli.signals import Stopped, received
+    from restitution.numerics.device import on_device
     from restitution.reports.figures import write_figures
     from restitution.studies.case import naming, read_case
     from restitution.studies.results import ResultsFolder
     from restitution.studies.run import run_case
 
     read, text = read_case(case)
+    context.with_resource(on_device(device.value))
     folder = ResultsFolder(out)
     errors.print(f"Results go to {out}", markup=False, soft_wrap=True)
     columns = (
@@ -37,7 +53,11 @@ def run(
     )
     depths = len(read.depths())
     try:
-        with naming(case), Progress(*columns, console=errors, transient=True) as bar:
+        with (
+            naming(case),
+            on_device(device.value),
+            Progress(*columns, console=errors, transient=True) as bar,
+        ):
             task = bar.add_task("reading the surface", total=depths)
             summary = run_case(
                 read, text, case.parent, folder,

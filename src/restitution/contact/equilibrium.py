@@ -23,15 +23,16 @@ from restitution.contact.influence import half_space, inverse_half_space
 from restitution.contact.state import State
 from restitution.errors import DomainError, NotConvergedError
 from restitution.numerics.convolution import FreeConvolution, SpectralFilter
+from restitution.numerics.device import current
 from restitution.numerics.minimise import minimise_quadratic
-from restitution.numerics.nesting import minimise_nested
+from restitution.numerics.nesting import System, minimise_nested
 from restitution.numerics.window import NOWHERE, Box, bounding_box, shape_of, widen
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 RESIDUAL = 1e-8  # default tolerance: violation of the contact conditions over the overlap
-_MAX_ITERATIONS = 1000
+MAX_ITERATIONS = 1000
 
 
 def equilibrate(
@@ -55,53 +56,91 @@ def equilibrate(
     adhesion against the indentation or the length scale of adhesion. Raises `NotConvergedError`.
     Contact at the rim is let pass.
     """
-    grid, shape = contact.grid, shape_of(box)
-    plastic, work, adhesive_work, work_error = _past(contact, history)
-    b = indentation - contact.gap[box] - plastic[box]
-    # How far the surfaces overlap: δ itself when nothing has yielded.
-    scale = contact.length_at(indentation) if contact.adhesive else float(b.max())
-
-    def system(shape: tuple[int, int], level: int) -> tuple[FreeConvolution, SpectralFilter]:
-        hx, hy = grid.spacing
-        cells = 2**level * hx, 2**level * hy
-        E_star = contact.pair.contact_modulus
-        return half_space(shape, cells, E_star), inverse_half_space(shape, cells, E_star)
-
+    device, shape = current(), shape_of(box)
+    b = overlap(contact, indentation, box, history)
+    scale = scale_of(contact, indentation, b)
+    system = system_of(contact)
     if held is None:
         found, convolutions = minimise_nested(
-            system, b, limit, tolerance=residual * scale, max_iterations=_MAX_ITERATIONS
+            system, device.put(b), limit, tolerance=residual * scale, max_iterations=MAX_ITERATIONS
         )
     else:
         K, inverse = system(shape, 0)
         found = minimise_quadratic(
             K,
-            b,
-            lower=np.where(held, -tension, 0.0),
+            device.put(b),
+            lower=device.put(np.where(held, -tension, 0.0)),
             upper=limit,
-            start=np.zeros(shape) if first_guess is None else first_guess,
+            start=device.put(np.zeros(shape) if first_guess is None else first_guess),
             precondition=inverse,
             quick=K.quick,
             rough=rough,
             tolerance=residual * scale,
-            max_iterations=_MAX_ITERATIONS,
+            max_iterations=MAX_ITERATIONS,
         )
         convolutions = K.count
-    reached = found.residual / scale
-    if not found.converged:
+    reached = float(found.residual.max()) / scale
+    if not found.converged.all():
         raise NotConvergedError(
             f"the solve at an indentation of {1e9 * indentation:.6g} nm stopped at a residual of "
             f"{reached:.1e} (asked: {residual:.0e}) after {found.iterations} iterations; "
             "ask for a larger residual, or smooth or refine the surface"
         )
-    yielding = (found.point >= limit) & (found.gradient < 0)
+    return settled(contact, indentation, box, device.get(found.point), device.get(found.gradient),
+                   limit=limit, history=history, residual=reached,
+                   convolutions=convolutions)  # fmt: skip
+
+
+def overlap(contact: Contact, indentation: float, box: Box, history: State | None = None) -> Array:
+    """δ − h on `box`: how far the bodies would go into each other there, m."""
+    b: Array = indentation - contact.gap[box]
+    if history is not None:
+        b -= history.plastic_displacement[box]
+    return b
+
+
+def scale_of(contact: Contact, indentation: float, b: Array) -> float:
+    """What residuals are measured against: how far the surfaces overlap, or adhesion's length."""
+    return contact.length_at(indentation) if contact.adhesive else float(b.max())
+
+
+def system_of(contact: Contact, batch: tuple[int, ...] = ()) -> System:
+    """The half-space of a contact and its approximate inverse, for a batch of such contacts."""
+    E_star, (hx, hy) = contact.pair.contact_modulus, contact.grid.spacing
+
+    def system(shape: tuple[int, int], level: int) -> tuple[FreeConvolution, SpectralFilter]:
+        cells = 2**level * hx, 2**level * hy
+        return half_space(shape, cells, E_star, batch), inverse_half_space(
+            shape, cells, E_star, batch
+        )
+
+    return system
+
+
+def settled(
+    contact: Contact,
+    indentation: float,
+    box: Box,
+    pressure: Array,
+    gradient: Array,
+    *,
+    limit: float,
+    history: State | None,
+    residual: float,
+    convolutions: int,
+) -> State:
+    """The state with that pressure and deformed gap on `box`: what yields has given way."""
+    plastic, work, adhesive_work, work_error = _past(contact, history)
+    yielding = (pressure >= limit) & (gradient < 0)
+    displacement = gradient + overlap(contact, indentation, box, history)
     if yielding.any():
-        sinking = np.where(yielding, -found.gradient, 0.0)
+        sinking = np.where(yielding, -gradient, 0.0)
         if history is not None:
             plastic = plastic.copy()
         plastic[box] += sinking
-        work += limit * float(sinking.sum()) * grid.cell_area
-    return State(contact, indentation, box, found.point, found.gradient + b, plastic,
-                 work, adhesive_work, work_error, reached, convolutions)  # fmt: skip
+        work += limit * float(sinking.sum()) * contact.grid.cell_area
+    return State(contact, indentation, box, pressure, displacement, plastic,
+                 work, adhesive_work, work_error, residual, convolutions)  # fmt: skip
 
 
 def reach(contact: Contact, indentation: float, history: State | None = None) -> Box | None:

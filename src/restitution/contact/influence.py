@@ -6,6 +6,7 @@ lumped into one half-space of contact modulus E*: 1/E* = (1 − ν₁²)/E₁ + 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import lru_cache
 from typing import TYPE_CHECKING, TypeVar
@@ -14,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.numerics.convolution import FreeConvolution, SpectralFilter
+from restitution.numerics.device import CPU, Device, current
 
 if TYPE_CHECKING:
     from functools import _lru_cache_wrapper
@@ -35,12 +37,14 @@ def love_displacement(x: Array, y: Array, hx: float, hy: float, contact_modulus:
     a, b = 0.5 * hx, 0.5 * hy
     pp, pm = np.hypot(x + a, y + b), np.hypot(x + a, y - b)
     mp, mm = np.hypot(x - a, y + b), np.hypot(x - a, y - b)
-    return np.asarray(
+    displacement: Array = (
         (x + a) * np.log(((y + b) + pp) / ((y - b) + pm))
         + (y + b) * np.log(((x + a) + pp) / ((x - a) + mp))
         + (x - a) * np.log(((y - b) + mm) / ((y + b) + mp))
         + (y - b) * np.log(((x - a) + mm) / ((x + a) + pm))
-    ) / (np.pi * contact_modulus)
+    )
+    displacement /= np.pi * contact_modulus
+    return displacement
 
 
 def far_displacement(x: Array, y: Array, hx: float, hy: float, contact_modulus: float) -> Array:
@@ -73,28 +77,42 @@ def far_displacement(x: Array, y: Array, hx: float, hy: float, contact_modulus: 
 
 
 def influence_coefficients(
-    i: NDArray[np.int64], j: NDArray[np.int64], spacing: tuple[float, float], contact_modulus: float
+    i: NDArray[np.int64],
+    j: NDArray[np.int64],
+    spacing: tuple[float, float],
+    contact_modulus: float,
+    device: Device = CPU,
 ) -> Array:
     """Displacement at lag (i, j) cells, i as a column (from 0) and j as a row (from 0), m/Pa."""
     # Lengths scale: u/h depends on the shape of the cells and on the lag alone.
     hx, hy = spacing
-    unit = _unit_coefficients((i.size, j.size), hy / hx)
+    unit = _unit_coefficients((i.size, j.size), hy / hx, device)
     scaled: Array = unit * (hx / contact_modulus)
     return scaled
 
 
 def half_space(
-    shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
+    shape: tuple[int, int],
+    spacing: tuple[float, float],
+    contact_modulus: float,
+    batch: tuple[int, ...] = (),
 ) -> FreeConvolution:
-    """The operator p ↦ u on a block of nodes of the free (non-periodic) half-space."""
-    return _kept(_half_space, shape)(shape, spacing, contact_modulus).fresh()
+    """The operator p ↦ u on a block of nodes of the free (non-periodic) half-space.
+
+    Arrays are of shape (*batch, *shape), on the current device.
+    """
+    return _kept(_half_space, shape)(shape, spacing, contact_modulus, current()).fresh(batch)
 
 
 def inverse_half_space(
-    shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
+    shape: tuple[int, int],
+    spacing: tuple[float, float],
+    contact_modulus: float,
+    batch: tuple[int, ...] = (),
 ) -> SpectralFilter:
     """An approximate inverse, u ↦ |q| E*/2 u: exact on a periodic half-space (Johnson 1985)."""
-    return _kept(_inverse_half_space, shape)(shape, spacing, contact_modulus).fresh()
+    build = _kept(_inverse_half_space, shape)
+    return build(shape, spacing, contact_modulus, current()).fresh(batch)
 
 
 def _kept(build: _lru_cache_wrapper[Operator], shape: tuple[int, int]) -> Callable[..., Operator]:
@@ -103,31 +121,31 @@ def _kept(build: _lru_cache_wrapper[Operator], shape: tuple[int, int]) -> Callab
 
 
 # Boxes follow the contact, so that most solves want coefficients of a block larger or smaller than
-# the last: the largest block so far is kept, by the aspect ratio of the cells.
-_known: dict[float, Array] = {}
+# the last: the largest block so far is kept, by the aspect ratio of the cells and the device.
+_known: dict[tuple[float, Device], Array] = {}
 _MOST_KNOWN = 2**22  # coefficients: 32 MiB
 _MOST_KEPT = 2**21  # nodes of an operator that is kept: 16 MiB
 
 
-def _unit_coefficients(lags: tuple[int, int], aspect: float) -> Array:
+def _unit_coefficients(lags: tuple[int, int], aspect: float, device: Device) -> Array:
     """Coefficients for cells 1 × `aspect` and E* = 1."""
-    known = _known.get(aspect, np.empty((0, 0)))
+    known = _known.get((aspect, device), np.empty((0, 0)))
     if known.shape[0] < lags[0] or known.shape[1] < lags[1]:
         rows, columns = (max(*pair) for pair in zip(known.shape, lags, strict=True))
-        known = _compute_coefficients((rows, columns), (1.0, aspect))
+        known = _compute_coefficients((rows, columns), (1.0, aspect), device)
         if known.size <= _MOST_KNOWN:
             _known.clear()
-            _known[aspect] = known
+            _known[aspect, device] = known
     return known[: lags[0], : lags[1]]
 
 
-def _compute_coefficients(lags: tuple[int, int], spacing: tuple[float, float]) -> Array:
+def _compute_coefficients(
+    lags: tuple[int, int], spacing: tuple[float, float], device: Device
+) -> Array:
     hx, hy = spacing
-    x: Array = np.asarray(hx * np.arange(lags[0])[:, None])
-    y: Array = np.asarray(hy * np.arange(lags[1])[None, :])
-    reach = _FAR * np.hypot(hx, hy)
-    near_i = int(np.searchsorted(x.ravel(), reach))
-    near_j = int(np.searchsorted(y.ravel(), reach))
+    x: Array = hx * device.arange(lags[0])[:, None]
+    y: Array = hy * device.arange(lags[1])[None, :]
+    near_i, near_j = (math.ceil(_FAR * math.hypot(hx, hy) / h) for h in spacing)
     # The origin is always in the near block, which Love's formula overwrites.
     with np.errstate(divide="ignore", invalid="ignore"):
         u = far_displacement(x, y, hx, hy, 1.0)
@@ -137,22 +155,26 @@ def _compute_coefficients(lags: tuple[int, int], spacing: tuple[float, float]) -
 
 @lru_cache(maxsize=8)
 def _half_space(
-    shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
+    shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float, device: Device
 ) -> FreeConvolution:
     return FreeConvolution(
-        lambda i, j: influence_coefficients(i, j, spacing, contact_modulus), shape
+        lambda i, j: influence_coefficients(i, j, spacing, contact_modulus, device), shape, device
     )
 
 
 @lru_cache(maxsize=8)
 def _inverse_half_space(
-    shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
+    shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float, device: Device
 ) -> SpectralFilter:
 
     def symbol(qx: Array, qy: Array) -> Array:
-        q = np.hypot(qx / spacing[0], qy / spacing[1])
+        q: Array = np.hypot(qx / spacing[0], qy / spacing[1])
         # The mean mode has no inverse on a periodic half-space; half of the longest wave serves.
-        q[0, 0] = 0.5 * np.min(q[q > 0], initial=2 * np.pi / min(spacing))
-        return np.asarray(0.5 * contact_modulus * q)
+        longest = [2 * np.pi / min(spacing)]
+        longest += [float(q[1, 0])] if q.shape[0] > 1 else []
+        longest += [float(q[0, 1])] if q.shape[1] > 1 else []
+        q[0, 0] = 0.5 * min(longest)
+        q *= 0.5 * contact_modulus
+        return q
 
-    return SpectralFilter(symbol, shape)
+    return SpectralFilter(symbol, shape, device)

@@ -13,6 +13,7 @@ so their row transforms are skipped.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from copy import copy
 from typing import Any, Self
@@ -21,11 +22,13 @@ import ducc0
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.numerics.device import CPU, Device
+from restitution.numerics.items import largest
+
 Array = NDArray[np.float64]
 
 # Two threads cost more than they save on smaller transforms (measured on two cores).
 _NODES_WORTH_THREADS = 350 * 350
-_ROW_BUFFER = 2**22  # numbers in the padded rows that are transformed at once: 32 MiB
 
 
 def threads_for(nodes: int) -> int:
@@ -42,31 +45,40 @@ class FreeConvolution:
     """Convolution of arrays of one shape with one kernel; `count` tells how often it was applied.
 
     `kernel(i, j)` returns the kernel at lags i (column of integers) and j (row of integers), as an
-    array of the broadcast shape.
+    array of the broadcast shape. What is convolved may be a batch: arrays (*batch, nx, ny).
     """
 
     def __init__(
         self,
         kernel: Callable[[NDArray[np.int64], NDArray[np.int64]], Array],
         shape: tuple[int, int],
+        device: Device = CPU,
     ) -> None:
         nx, ny = shape
         px, py = _even_fast_size(2 * nx - 1), _even_fast_size(2 * ny - 1)
-        lags = kernel(np.arange(px // 2 + 1)[:, None], np.arange(py // 2 + 1)[None, :])
+        lags = kernel(device.arange(px // 2 + 1)[:, None], device.arange(py // 2 + 1)[None, :])
         self.shape = shape
-        self.count = 0
-        self._threads = threads_for(nx * ny)
+        self._device = device
+        self._padded = px, py
         # The normalisation of the inverse transform rides along with the kernel.
-        self._spectrum = ducc0.fft.dct(lags, type=1, nthreads=self._threads) / (px * py)
-        self._single_spectrum = self._spectrum.astype(np.float32)
-        self._rows = np.empty((min(nx, max(1, _ROW_BUFFER // py)), py))
-        self._modes = np.empty((px, py // 2 + 1), dtype=np.complex128)
+        spectrum = device.even_spectrum(lags, threads_for(nx * ny))
+        spectrum /= px * py
+        self._spectrum, self._single_spectrum = spectrum, spectrum.astype(np.float32)
+        self._make_room(())
 
-    def fresh(self) -> Self:
-        """The same operator with buffers and a count of its own, for another user or thread."""
+    def _make_room(self, batch: tuple[int, ...]) -> None:
+        (nx, ny), (px, py) = self.shape, self._padded
+        items = math.prod(batch)
+        rows = min(nx, max(1, self._device.row_buffer // (items * py)))
+        self.count = 0
+        self._threads = threads_for(items * nx * ny)
+        self._rows = self._device.empty((*batch, rows, py), np.float64)
+        self._modes = self._device.empty((*batch, px, py // 2 + 1), np.complex128)
+
+    def fresh(self, batch: tuple[int, ...] = ()) -> Self:
+        """The same operator with buffers and a count of its own, for another user or a batch."""
         other = copy(self)
-        other.count = 0
-        other._rows, other._modes = np.empty_like(self._rows), np.empty_like(self._modes)
+        other._make_room(batch)
         return other
 
     def __call__(self, p: Array, out: Array | None = None) -> Array:
@@ -76,8 +88,8 @@ class FreeConvolution:
     def quick(self, p: Array, out: Array | None = None) -> Array:
         """The same in single precision: an error of about 5e-7 of the largest value."""
         # The buffers of double precision serve.
-        rows = self._rows.view(np.float32)[:, : self._rows.shape[1]]
-        modes = self._modes.view(np.complex64)[:, : self._modes.shape[1]]
+        rows = self._rows.view(np.float32)[..., : self._rows.shape[-1]]
+        modes = self._modes.view(np.complex64)[..., : self._modes.shape[-1]]
         return self._apply(p, rows, modes, self._single_spectrum, out)
 
     def _apply(
@@ -88,35 +100,33 @@ class FreeConvolution:
         spectrum: NDArray[Any],
         out: Array | None,
     ) -> Array:
-        nx, ny = self.shape
-        px, py, threads = modes.shape[0], padded.shape[1], self._threads
-        result = np.empty(self.shape) if out is None else out
+        (nx, ny), px = self.shape, self._padded[0]
+        device, threads = self._device, self._threads
+        result = np.empty_like(p, dtype=np.float64, order="C") if out is None else out
         self.count += 1
 
         for some, rows in _blocks(nx, padded):
-            rows[:, :ny] = p[some]
-            rows[:, ny:] = 0.0
-            ducc0.fft.r2c(rows, axes=[1], out=modes[some], nthreads=threads)
-        modes[nx:] = 0.0
-        ducc0.fft.c2c(modes, axes=[0], out=modes, nthreads=threads)
+            rows[..., :ny] = p[..., some, :]
+            rows[..., ny:] = 0.0
+            device.forward(rows, (-1,), modes[..., some, :], threads)
+        modes[..., nx:, :] = 0.0
+        device.along_columns(modes, forward=True, threads=threads)
         half = px // 2 + 1
-        modes[:half] *= spectrum
-        modes[half:] *= spectrum[px // 2 - 1 : 0 : -1]
-        ducc0.fft.c2c(modes, axes=[0], forward=False, out=modes, nthreads=threads)
+        modes[..., :half, :] *= spectrum
+        modes[..., half:, :] *= spectrum[px // 2 - 1 : 0 : -1]
+        device.along_columns(modes, forward=False, threads=threads)
         for some, rows in _blocks(nx, padded):
-            ducc0.fft.c2r(
-                modes[some], axes=[1], lastsize=py, forward=False, out=rows, nthreads=threads
-            )
-            result[some] = rows[:, :ny]
+            device.backward(modes[..., some, :], (-1,), rows, threads)
+            result[..., some, :] = rows[..., :ny]
         return result
 
 
 def _blocks(rows: int, buffer: NDArray[Any]) -> Iterator[tuple[slice, NDArray[Any]]]:
     """Rows of an array, some at a time, with as much of the buffer for them."""
-    some = buffer.shape[0]
+    some = buffer.shape[-2]
     for first in range(0, rows, some):
         last = min(first + some, rows)
-        yield slice(first, last), buffer[: last - first]
+        yield slice(first, last), buffer[..., : last - first, :]
 
 
 class SpectralFilter:
@@ -127,35 +137,44 @@ class SpectralFilter:
     enough for a preconditioner.
     """
 
-    def __init__(self, symbol: Callable[[Array, Array], Array], shape: tuple[int, int]) -> None:
+    def __init__(
+        self,
+        symbol: Callable[[Array, Array], Array],
+        shape: tuple[int, int],
+        device: Device = CPU,
+    ) -> None:
         mx, my = (int(ducc0.fft.good_size(n, True)) for n in shape)
-        qx = np.asarray(2 * np.pi * np.fft.fftfreq(mx)[:, None], dtype=np.float64)
-        qy = np.asarray(2 * np.pi * np.fft.rfftfreq(my)[None, :], dtype=np.float64)
+        i, j = device.arange(mx)[:, None], device.arange(my // 2 + 1)[None, :]
+        values = symbol(2 * np.pi / mx * (i - mx * (2 * i > mx)), 2 * np.pi / my * j)
         self.shape = shape
-        self._symbol = (symbol(qx, qy) / (mx * my)).astype(np.float32)
-        self._padded = np.empty((mx, my), dtype=np.float32)
-        self._modes = np.empty((mx, my // 2 + 1), dtype=np.complex64)
-        self._threads = threads_for(shape[0] * shape[1])
+        self._device = device
+        self._symbol = (values / (mx * my)).astype(np.float32)
+        self._size = mx, my
+        self._make_room(())
 
-    def fresh(self) -> Self:
-        """The same filter with buffers of its own, for another user or thread."""
+    def _make_room(self, batch: tuple[int, ...]) -> None:
+        mx, my = self._size
+        self._threads = threads_for(math.prod((*batch, *self.shape)))
+        self._padded = self._device.empty((*batch, mx, my), np.float32)
+        self._modes = self._device.empty((*batch, mx, my // 2 + 1), np.complex64)
+
+    def fresh(self, batch: tuple[int, ...] = ()) -> Self:
+        """The same filter with buffers of its own, for another user or a batch."""
         other = copy(self)
-        other._padded, other._modes = np.empty_like(self._padded), np.empty_like(self._modes)
+        other._make_room(batch)
         return other
 
     def __call__(self, r: Array, out: Array | None = None) -> Array:
         """Return the filtered array, same shape as `r`: in a new array, or in `out`."""
         nx, ny = self.shape
-        padded, modes, threads = self._padded, self._modes, self._threads
+        padded, modes, device = self._padded, self._modes, self._device
         # What is far below the largest value is lost in single precision, wherever that lies.
-        scale = max(float(r.max()), -float(r.min())) or 1.0
-        np.divide(r, scale, out=padded[:nx, :ny], casting="same_kind")
-        padded[nx:] = 0.0
-        padded[:nx, ny:] = 0.0
-        ducc0.fft.r2c(padded, axes=[0, 1], out=modes, nthreads=threads)
+        scale = largest(r)
+        scale += scale == 0
+        np.divide(r, scale, out=padded[..., :nx, :ny])
+        padded[..., nx:, :] = 0.0
+        padded[..., :nx, ny:] = 0.0
+        device.forward(padded, (-2, -1), modes, self._threads)
         modes *= self._symbol
-        ducc0.fft.c2r(
-            modes, axes=[0, 1], lastsize=padded.shape[1], forward=False, out=padded,
-            nthreads=threads,
-        )  # fmt: skip
-        return np.multiply(padded[:nx, :ny], scale, out=out, dtype=np.float64)
+        device.backward(modes, (-2, -1), padded, self._threads)
+        return np.multiply(padded[..., :nx, :ny], scale, out=out, dtype=np.float64)

@@ -9,16 +9,22 @@ solution is characterised by (Karush–Kuhn–Tucker)
 
 The largest violation of these three conditions is the `residual`. What the bounds mean (contact,
 yield, adhesion) is the caller's affair.
+
+Arrays are of shape (*batch, nx, ny): each item of a batch is a problem of its own, with
+steps and residuals of its own (`items`).
 """
 
 from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass
+from functools import reduce
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+
+from restitution.numerics.items import dot, largest, ratio
 
 Array = NDArray[np.float64]
 Bound = Array | float
@@ -37,13 +43,16 @@ class Operator(Protocol):
 
 @dataclass(frozen=True)
 class Minimum:
-    """Where the minimiser stopped: the point, its gradient, and how far both can be trusted."""
+    """Where the minimiser stopped: the point, its gradient, and how far both can be trusted.
+
+    `residual` and `converged` are of shape (*batch, 1, 1).
+    """
 
     point: Array
     gradient: Array
-    residual: float
+    residual: Array
     iterations: int
-    converged: bool
+    converged: NDArray[np.bool_]
 
 
 def free_nodes(p: Array, g: Array, lower: Bound, upper: Bound) -> NDArray[np.bool_]:
@@ -64,7 +73,7 @@ def minimise_quadratic(
     *,
     start: Array,
     precondition: Operator,
-    tolerance: float,
+    tolerance: Bound,
     max_iterations: int,
     quick: Operator | None = None,
     rough: bool = False,
@@ -76,10 +85,11 @@ def minimise_quadratic(
     direction is not reset when nodes change sides (Polak–Ribière+ forgets by itself), and the
     residual is preconditioned by an approximate inverse of K masked to the free nodes.
 
-    `tolerance` is on the violation, in the units of `b`. The gradient follows the steps with the
-    products of `quick`, which may be K in single precision; it is computed anew with K whenever the
-    violation has fallen to a thousandth, and the result is accepted only on such a gradient; or, if
-    `rough`, on one that `quick` has led there, which will do for a large tolerance.
+    `tolerance` is on the violation, in the units of `b`; an item that has come so far rests until
+    all have. The gradient follows the steps with the products of `quick`, which may be K in single
+    precision; it is computed anew with K whenever the violation has fallen to a thousandth, and the
+    result is accepted only on such a gradient; or, if `rough`, on one that `quick` has led there,
+    which will do for a large tolerance.
     Projecting after an exact step may raise the energy; where it has not fallen below the highest
     of the last few iterations, a descending step is taken instead, so that no cycle can last
     (Grippo, Lampariello and Lucidi 1986, SIAM J. Numer. Anal. 23, 707–716). Not converging is
@@ -91,33 +101,42 @@ def minimise_quadratic(
     g = _gradient(K, p, b)
     free = free_nodes(p, g, lower, upper)
     r = g * free  # uphill, where there is a way down
-    residual = refresh = _largest(r)
+    residual = refresh = largest(r)
     d, r_old, p_old, work = (np.zeros_like(p) for _ in range(4))
-    rz_old, energy, exact = np.inf, _energy(p, g, b), True
-    energies: deque[float] = deque(maxlen=_MEMORY)
+    rz_old, energy, exact = np.full_like(residual, np.inf), _energy(p, g, b), True
+    stuck = np.zeros_like(residual, dtype=bool)
+    energies: deque[Array] = deque(maxlen=_MEMORY)
     iteration = 0
 
     for iteration in range(1, max_iterations + 1):
-        if exact and residual <= tolerance:
-            return Minimum(p, g, residual, iteration - 1, converged=True)
-        if not exact and residual <= max(tolerance, _DRIFT * refresh):
+        if exact:
+            going = (residual > tolerance) & ~stuck
+            if not going.any():
+                iteration -= 1
+                break
+            if not going.all():
+                r *= going
+        if not exact and (~going | (residual <= np.maximum(tolerance, _DRIFT * refresh))).all():
             g, exact = _gradient(K, p, b, out=g), True
         else:
             z = precondition(r, out=work)
             z *= free
-            rz = _dot(r, z)
-            d *= max(0.0, (rz - _dot(r_old, z)) / rz_old)
+            rz = dot(r, z)
+            d *= np.maximum(0.0, ratio(rz - dot(r_old, z), rz_old))
             d -= z
             d *= free
-            slope = _dot(r, d)
-            if slope >= 0:
-                np.negative(z, out=d)
-                slope = -rz
+            slope = dot(r, d)
+            uphill = going & (slope >= 0)
+            if uphill.any():
+                d = np.where(uphill, -z, d)
+                slope = np.where(uphill, -rz, slope)
             Kd = quick(d, out=work)
-            curvature = _dot(d, Kd)
-            if not 0 < curvature < np.inf:
+            curvature = dot(d, Kd)
+            stuck |= going & ~((curvature > 0) & (curvature < np.inf))
+            going &= ~stuck
+            if not going.any():
                 break
-            step = -slope / curvature
+            step = ratio(-slope, curvature)
             r, r_old, rz_old, exact = r_old, r, rz, rough
             np.multiply(d, step, out=p_old)
             p_old += p
@@ -127,18 +146,23 @@ def minimise_quadratic(
                 np.subtract(p, p_old, out=work)
                 g += quick(work, out=work)
                 energy = _energy(p, g, b)
-                if len(energies) == energies.maxlen and energy >= max(energies):
-                    p, g = _descend(K, b, lower, upper, p_old, r_old)
+                recent = reduce(np.maximum, energies) if len(energies) == _MEMORY else np.inf
+                rising = going & (energy >= recent)
+                if rising.any():
+                    lower_p, lower_g = _descend(K, b, lower, upper, p_old, r_old, rising)
+                    p, g = np.where(rising, lower_p, p), np.where(rising, lower_g, g)
                     energy = _energy(p, g, b)
-                    d[:], r_old[:], rz_old = 0.0, 0.0, np.inf
+                    d *= ~rising
+                    r_old *= ~rising
+                    rz_old = np.where(rising, np.inf, rz_old)
             else:
                 Kd *= step
                 g += Kd
-                energy += 0.5 * step * slope
+                energy = energy + 0.5 * step * slope
             energies.append(energy)
         free = free_nodes(p, g, lower, upper)
         np.multiply(g, free, out=r)
-        residual = _largest(r)
+        residual = largest(r)
         refresh = residual if exact else refresh
 
     if not exact:
@@ -147,9 +171,9 @@ def minimise_quadratic(
     return Minimum(p, g, residual, iteration, converged=residual <= tolerance)
 
 
-def violation(p: Array, g: Array, lower: Bound, upper: Bound) -> float:
+def violation(p: Array, g: Array, lower: Bound, upper: Bound) -> Array:
     """Largest violation of the optimality conditions, in the units of the gradient."""
-    return _largest(g * free_nodes(p, g, lower, upper))
+    return largest(g * free_nodes(p, g, lower, upper))
 
 
 def _gradient(K: Operator, p: Array, b: Array, out: Array | None = None) -> Array:
@@ -159,28 +183,26 @@ def _gradient(K: Operator, p: Array, b: Array, out: Array | None = None) -> Arra
 
 
 def _descend(
-    K: Operator, b: Array, lower: Bound, upper: Bound, p: Array, uphill: Array
+    K: Operator,
+    b: Array,
+    lower: Bound,
+    upper: Bound,
+    p: Array,
+    uphill: Array,
+    wanted: NDArray[np.bool_],
 ) -> tuple[Array, Array]:
-    """Projected steepest descent from p, shortened until the energy falls."""
+    """Projected steepest descent from p, shortened until the energy of the items `wanted` falls."""
     g = _gradient(K, p, b)
-    step = _dot(uphill, uphill) / _dot(uphill, K(uphill))
+    step = ratio(dot(uphill, uphill), dot(uphill, K(uphill)))
     for _ in range(_HALVINGS):
         trial = np.clip(p - step * uphill, lower, upper)
         g_trial = _gradient(K, trial, b)
-        if _dot(g + g_trial, trial - p) < 0:  # twice the change of a quadratic
+        falls = dot(g + g_trial, trial - p) < 0  # twice the change of a quadratic
+        if (falls | ~wanted).all():
             break
-        step *= 0.5
+        step = np.where(falls, step, 0.5 * step)
     return trial, g_trial
 
 
-def _energy(p: Array, g: Array, b: Array) -> float:
-    return 0.5 * (_dot(p, g) - _dot(p, b))
-
-
-def _largest(r: Array) -> float:
-    return max(float(r.max()), -float(r.min()))
-
-
-def _dot(a: Array, b: Array) -> float:
-    # Not np.vdot: its threads wait for each other longer than these products take.
-    return float(np.einsum("i,i->", a.ravel(), b.ravel()))
+def _energy(p: Array, g: Array, b: Array) -> Array:
+    return 0.5 * (dot(p, g) - dot(p, b))

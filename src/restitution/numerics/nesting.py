@@ -4,7 +4,7 @@ The problem is that of `minimise` with lower = 0 on a uniform grid. Averaged ove
 the same problem on half as many nodes each way, whose solution is a first guess for all but the
 shortest waves (nested iteration; Venner and Lubrecht 2000, *Multilevel Methods in Lubrication*).
 The guess also shows where the pressure is: the fine problem is solved on that window, and the
-conditions are checked on all nodes, where they may widen the window.
+conditions are checked on all nodes, where they may widen the window. The items of a batch share it.
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.numerics.convolution import FreeConvolution, SpectralFilter
-from restitution.numerics.minimise import Minimum, minimise_quadratic, violation
+from restitution.numerics.items import somewhere
+from restitution.numerics.minimise import Bound, Minimum, minimise_quadratic, violation
 from restitution.numerics.window import Box, bounding_box, shape_of, union, widen
 
 Array = NDArray[np.float64]
@@ -33,29 +34,31 @@ _WORTH_A_WINDOW = 0.7  # of all nodes: checking a larger window would cost more 
 def minimise_nested(
     system: System,
     b: Array,
-    upper: float,
+    upper: Bound,
     *,
-    tolerance: float,
+    tolerance: Bound,
     max_iterations: int,
 ) -> tuple[Minimum, int]:
     """Minimise with 0 ≤ p ≤ `upper`; the result and the products with K on the finest grid."""
-    everywhere: Box = (slice(0, b.shape[0]), slice(0, b.shape[1]))
+    size = b.shape[-2:]
+    everywhere: Box = (slice(0, size[0]), slice(0, size[1]))
     K_everywhere, _ = system(shape_of(everywhere), 0)
     p = _first_guess(system, b, upper, level=1)
-    window = bounding_box(p > 0)
+    window = bounding_box(somewhere(p > 0))
     window = everywhere if window is None else widen(window, _MARGIN, shape_of(everywhere))
     products = 0
     while True:
         rows, columns = shape_of(window)
-        if rows * columns > _WORTH_A_WINDOW * b.size:
+        if rows * columns > _WORTH_A_WINDOW * size[0] * size[1]:
             window = everywhere
         K, inverse = system(shape_of(window), 0)
+        inside = (..., *window)
         found = minimise_quadratic(
             K,
-            b[window],
+            b[inside],
             0.0,
             upper,
-            start=p[window],
+            start=p[inside],
             precondition=inverse,
             quick=K.quick,
             tolerance=tolerance,
@@ -65,15 +68,15 @@ def minimise_nested(
         if window == everywhere:
             return found, products
         p[...] = 0.0
-        p[window] = found.point
+        p[inside] = found.point
         g = K_everywhere(p)
         g -= b
         products += 1
         residual = violation(p, g, 0.0, upper)
-        if residual <= tolerance or not found.converged:
+        if (residual <= tolerance).all() or not found.converged.all():
             whole = Minimum(p, g, residual, found.iterations, residual <= tolerance)
             return whole, products
-        wider = union(window, bounding_box(g < -tolerance))
+        wider = union(window, bounding_box(somewhere(g < -tolerance)))
         # The same window again: what the last digits of the check leave, all nodes mend.
         window = (
             everywhere
@@ -82,12 +85,12 @@ def minimise_nested(
         )
 
 
-def _first_guess(system: System, b: Array, upper: float, level: int) -> Array:
+def _first_guess(system: System, b: Array, upper: Bound, level: int) -> Array:
     """The solution on the next coarser grid, itself begun on one coarser; zero on the coarsest."""
-    if min(b.shape) < _COARSEST:
+    if min(b.shape[-2:]) < _COARSEST:
         return np.zeros_like(b)
     coarse = _average(b)
-    K, inverse = system((coarse.shape[0], coarse.shape[1]), level)
+    K, inverse = system((coarse.shape[-2], coarse.shape[-1]), level)
     found = minimise_quadratic(
         K,
         coarse,
@@ -96,23 +99,31 @@ def _first_guess(system: System, b: Array, upper: float, level: int) -> Array:
         start=_first_guess(system, coarse, upper, level + 1),
         precondition=inverse,
         quick=K.quick,
-        tolerance=_COARSE_ACCURACY * float(b.max()),
+        tolerance=_COARSE_ACCURACY * np.maximum(b.max(axis=(-2, -1), keepdims=True), 0.0),
         max_iterations=_COARSE_ITERATIONS,
     )
-    rows, columns = b.shape
-    return np.ascontiguousarray(_interpolate(_interpolate(found.point, rows).T, columns).T)
+    rows, columns = b.shape[-2:]
+    taller = _interpolate(found.point, rows).swapaxes(-1, -2)
+    return _interpolate(taller, columns).swapaxes(-1, -2).copy()
 
 
 def _average(b: Array) -> Array:
     """Means over 2 × 2 nodes; a last odd row or column counts twice."""
-    b = np.pad(b, [(0, n % 2) for n in b.shape], mode="edge")
-    return np.asarray(0.25 * (b[::2, ::2] + b[1::2, ::2] + b[::2, 1::2] + b[1::2, 1::2]))
+    rows, columns = (n % 2 for n in b.shape[-2:])
+    b = np.pad(b, [(0, 0)] * (b.ndim - 2) + [(0, rows), (0, columns)], mode="edge")
+    total: Array = b[..., ::2, ::2] + b[..., 1::2, ::2]
+    total += b[..., ::2, 1::2]
+    total += b[..., 1::2, 1::2]
+    total *= 0.25
+    return total
 
 
 def _interpolate(coarse: Array, rows: int) -> Array:
     """Linear interpolation from cells twice as long onto `rows` cells; constant at the ends."""
-    before, after = np.vstack([coarse[:1], coarse[:-1]]), np.vstack([coarse[1:], coarse[-1:]])
-    fine = np.empty((2 * coarse.shape[0], coarse.shape[1]))
-    fine[::2] = 0.75 * coarse + 0.25 * before
-    fine[1::2] = 0.75 * coarse + 0.25 * after
-    return fine[:rows]
+    before = np.concatenate([coarse[..., :1, :], coarse[..., :-1, :]], axis=-2)
+    after = np.concatenate([coarse[..., 1:, :], coarse[..., -1:, :]], axis=-2)
+    *batch, n, columns = coarse.shape
+    fine = np.empty_like(coarse, shape=(*batch, 2 * n, columns), order="C")
+    fine[..., ::2, :] = 0.75 * coarse + 0.25 * before
+    fine[..., 1::2, :] = 0.75 * coarse + 0.25 * after
+    return fine[..., :rows, :]

@@ -27,12 +27,10 @@ def bounding_box(mask: NDArray[np.bool_], within: Box | None = None) -> Box | No
     rows = np.flatnonzero(mask.any(axis=1))
     if rows.size == 0:
         return None
-    columns = np.flatnonzero(mask[rows[0] : rows[-1] + 1].any(axis=0))
+    top, bottom = int(rows[0]), int(rows[-1]) + 1
+    columns = np.flatnonzero(mask[top:bottom].any(axis=0))
     i, j = (0, 0) if within is None else (within[0].start, within[1].start)
-    return (
-        slice(i + int(rows[0]), i + int(rows[-1]) + 1),
-        slice(j + int(columns[0]), j + int(columns[-1]) + 1),
-    )
+    return slice(i + top, i + bottom), slice(j + int(columns[0]), j + int(columns[-1]) + 1)
 
 
 def widen(box: Box, cells: int, nodes: tuple[int, int]) -> Box:

@@ -23,6 +23,7 @@ from restitution.contact.resolution import (
 )
 from restitution.contact.state import State
 from restitution.errors import RestitutionError, one_line
+from restitution.numerics.device import current
 from restitution.numerics.quadrature import integrate_curve
 from restitution.studies.case import Case
 from restitution.studies.derived import deepest_indentation, derived_quantities
@@ -197,6 +198,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Progress)
             "largest_restitution_error": max(row["restitution_error"] for row in out.rows),
             "unloading_checks": run.unloading_checks,
         },
+        "device": current().name,
         "convolutions": sum(int(row["convolutions"]) for row in out.rows),
         "seconds_by_depth": run.seconds,
         "versions": versions(),

@@ -1,0 +1,97 @@
+"""A GPU beside this machine: one large solve, and many realisations of one curve.
+
+Needs CuPy and a GPU (`pip install "restitution[gpu]"`); `--device cpu` runs the same on this
+machine. `--nodes` and `--realisations` make it smaller.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import statistics
+import time
+
+import numpy as np
+from curves import EXAMPLE
+from scaling import PAIR, indentation, surface_of
+from unit import machine, today
+
+from restitution import Contact, Grid, collide, generate_surface, on_device, solve, solve_batch
+from restitution.studies.case import read_case
+
+BANDWIDTH = 3.35e12  # bytes/s: H100 SXM5, its data sheet
+
+
+def seconds(work, repeats: int) -> tuple[float, object]:
+    """Median time of a call, after one that is not counted, and its last answer."""
+    answer = work()
+    times = []
+    for _ in range(repeats):
+        began = time.perf_counter()
+        answer = work()
+        times.append(time.perf_counter() - began)
+    return statistics.median(times), answer
+
+
+def least_seconds(n: int, products: int, iterations: int) -> float:
+    """What moving the arrays of a solve on n × n nodes takes, at the device's bandwidth.
+
+    A product in single precision reads and writes the padded half-complex array (8n² bytes times
+    two) eight times (rows, columns in two passes, spectrum, and back); an iteration reads or
+    writes some 40 arrays of n² in double precision.
+    """
+    return (products * 8 * 2 * 16 * n**2 + iterations * 40 * 8 * n**2) / BANDWIDTH
+
+
+def large(device: str, n: int) -> None:
+    """The elastic solve of `scaling.py` at a = 20 um."""
+    contact = Contact(PAIR, surface_of(n))
+    depth = indentation("a = 20 um")
+    assert contact.gap.shape == (n, n)
+    with on_device(device):
+        t, state = seconds(lambda: solve(contact, depth), 3)
+    limit = least_seconds(n, state.convolutions, state.convolutions // 2)
+    print(f"{n} x {n} rough, elastic, a = 20 um: {t:.3f} s on {device}, {state.convolutions} "
+          f"products, residual {state.residual:.1e}; bandwidth alone {limit:.3f} s")  # fmt: skip
+    if device != "cpu":
+        here = solve(contact, depth)
+        off = np.abs(state.box_pressure - here.box_pressure).max() / here.box_pressure.max()
+        print(f"  largest difference of pressure from this machine's: {off:.1e} of the largest")
+
+
+def many(device: str, realisations: int) -> None:
+    """The 24 depths of the example on many surfaces, one depth after the other."""
+    case, _ = read_case(EXAMPLE)
+    example = case.contact(EXAMPLE.parent)
+    rough = case.roughness
+    contacts = [
+        Contact(example.pair, generate_surface(
+            Grid(example.grid.nodes, example.grid.spacing), kind=rough.kind, rms=rough.rms,
+            correlation_length=rough.correlation_length, seed=seed), example.yield_pressure)
+        for seed in range(realisations)
+    ]  # fmt: skip
+    for contact in contacts:
+        assert math.isfinite(contact.gap[0, 0])  # made here, not in what is timed
+    began = time.perf_counter()
+    with on_device(device):
+        curves = [solve_batch(contacts, [depth] * len(contacts)) for depth in case.depths()]
+    t = time.perf_counter() - began
+    print(f"{realisations} realisations of {len(curves)} depths, {example.grid.nodes[0]}²: "
+          f"{t:.1f} s on {device}, mean restitution at the deepest "
+          f"{np.mean([collide(state).restitution for state in curves[-1]]):.4f}")  # fmt: skip
+
+
+def main() -> None:
+    """Print both."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--device", default="gpu")
+    parser.add_argument("--nodes", type=int, default=4096)
+    parser.add_argument("--realisations", type=int, default=256)
+    options = parser.parse_args()
+    print(f"{today()}, {machine()}")
+    large(options.device, options.nodes)
+    many(options.device, options.realisations)
+
+
+if __name__ == "__main__":
+    main()
