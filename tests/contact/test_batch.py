@@ -43,7 +43,7 @@ def test_depths_are_solved_as_each_alone(rough_contact):
 @given(
     st.lists(
         st.tuples(
-            st.integers(0, 10**6), st.floats(1e-9, 60e-9), st.sampled_from([np.inf, 2e9, 5e8])
+            st.integers(0, 10**6), st.floats(1e-9, 45e-9), st.sampled_from([np.inf, 2e9, 5e8])
         ),
         min_size=1,
         max_size=4,

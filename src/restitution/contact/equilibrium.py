@@ -71,7 +71,7 @@ def equilibrate(
             device.put(b),
             lower=device.put(np.where(held, -tension, 0.0)),
             upper=limit,
-            start=device.put(np.zeros(shape) if first_guess is None else first_guess),
+            start=device.put(np.zeros(shape) if first_guess is None else first_guess.copy()),
             precondition=inverse,
             quick=K.quick,
             rough=rough,

@@ -85,11 +85,11 @@ def minimise_quadratic(
     direction is not reset when nodes change sides (Polak–Ribière+ forgets by itself), and the
     residual is preconditioned by an approximate inverse of K masked to the free nodes.
 
-    `tolerance` is on the violation, in the units of `b`; an item that has come so far rests until
-    all have. The gradient follows the steps with the products of `quick`, which may be K in single
-    precision; it is computed anew with K whenever the violation has fallen to a thousandth, and the
-    result is accepted only on such a gradient; or, if `rough`, on one that `quick` has led there,
-    which will do for a large tolerance.
+    `start` is overwritten. `tolerance` is on the violation, in the units of `b`; an item that has
+    come so far rests until all have. The gradient follows the steps with the products of `quick`,
+    which may be K in single precision; it is computed anew with K whenever the violation has fallen
+    to a thousandth, and the result is accepted only on such a gradient; or, if `rough`, on one that
+    `quick` has led there, which will do for a large tolerance.
     Projecting after an exact step may raise the energy; where it has not fallen below the highest
     of the last few iterations, a descending step is taken instead, so that no cycle can last
     (Grippo, Lampariello and Lucidi 1986, SIAM J. Numer. Anal. 23, 707–716). Not converging is
@@ -97,7 +97,7 @@ def minimise_quadratic(
     """
     quick = K if quick is None else quick
     K = quick if rough else K
-    p = np.clip(start, lower, upper)
+    p = np.clip(start, lower, upper, out=start)
     g = _gradient(K, p, b)
     free = free_nodes(p, g, lower, upper)
     r = g * free  # uphill, where there is a way down

@@ -58,7 +58,7 @@ def minimise_nested(
             b[inside],
             0.0,
             upper,
-            start=p[inside],
+            start=p if window == everywhere else p[inside].copy(),
             precondition=inverse,
             quick=K.quick,
             tolerance=tolerance,
@@ -69,13 +69,14 @@ def minimise_nested(
             return found, products
         p[...] = 0.0
         p[inside] = found.point
+        iterations, converged = found.iterations, found.converged.all()
+        del K, inverse, found  # their arrays make room for those of the check
         g = K_everywhere(p)
         g -= b
         products += 1
         residual = violation(p, g, 0.0, upper)
-        if (residual <= tolerance).all() or not found.converged.all():
-            whole = Minimum(p, g, residual, found.iterations, residual <= tolerance)
-            return whole, products
+        if (residual <= tolerance).all() or not converged:
+            return Minimum(p, g, residual, iterations, residual <= tolerance), products
         wider = union(window, bounding_box(somewhere(g < -tolerance)))
         # The same window again: what the last digits of the check leave, all nodes mend.
         window = (
