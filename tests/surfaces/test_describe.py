@@ -24,6 +24,9 @@ def test_sine(along, tolerance):
     assert values["Sv_m"] == pytest.approx(AMPLITUDE, rel=2e-2)
     assert values["Sz_m"] == pytest.approx(2 * AMPLITUDE, rel=2e-2)
     assert values["Sdq"] == pytest.approx(AMPLITUDE * K / math.sqrt(2), rel=tolerance)
+    assert values["rms_curvature_per_m"] == pytest.approx(
+        0.5 * AMPLITUDE * K**2 / math.sqrt(2), rel=2 * tolerance
+    )
 
 
 def test_sine_correlation_length():
@@ -40,6 +43,7 @@ def test_plane():
     """A plane's heights are uniformly distributed along x, and its slope is exact."""
     values = describe(Surface(0.02 * X - 0.01 * Y, GRID))
     assert values["Sdq"] == pytest.approx(math.hypot(0.02, 0.01), rel=1e-10)
+    assert values["rms_curvature_per_m"] == pytest.approx(0, abs=1e-3)
     uniform = describe(Surface(0.02 * X, GRID))
     assert uniform["Sku"] == pytest.approx(1.8, rel=1e-3)
     assert uniform["Sq_m"] == pytest.approx(0.02 * GRID.size[0] / math.sqrt(12), rel=1e-4)
@@ -106,7 +110,7 @@ def test_units():
     small = describe(Surface(1e-9 * height, Grid((16, 16), (1e-9, 1e-9))))
     large = describe(Surface(height, Grid((16, 16), (1.0, 1.0))))
     for key, value in large.items():
-        scale = 1e-9 if key.endswith("_m") else 1.0
+        scale = 1e9 if key.endswith("_per_m") else 1e-9 if key.endswith("_m") else 1.0
         assert small[key] == pytest.approx(scale * value, rel=1e-9), key
 
 

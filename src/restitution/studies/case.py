@@ -28,8 +28,9 @@ from restitution.contact.detachment import Detachment
 from restitution.contact.separation import RESTITUTION_ERROR
 from restitution.errors import CaseError, SurfaceError, shown
 from restitution.numerics.grid import Grid
-from restitution.studies.quantities import Density, Force, Length, Pressure, SurfaceEnergy
+from restitution.studies.quantities import Angle, Density, Force, Length, Pressure, SurfaceEnergy
 from restitution.surfaces import Surface, generate_surface, level, place_on_grid, read_surface
+from restitution.surfaces.generate import RoughnessKind
 
 MOST_NODES = 2**27  # of a grid: more do not fit into the memory of common machines
 MOST_STEPS = 10_000  # of a curve
@@ -100,12 +101,19 @@ class InterfaceTable(_Table):
 
 
 class GeneratedRoughness(_Table):
-    """`[roughness]` with `kind` exponential or gaussian."""
+    """`[roughness]` with `kind` exponential, gaussian or self-affine."""
 
-    kind: Literal["exponential", "gaussian"]
+    kind: RoughnessKind
     rms: Length
-    correlation_length: Annotated[tuple[Length, Length], PairOf]
     seed: Annotated[int, Field(ge=0, lt=2**63)]
+    correlation_length: Annotated[tuple[Length, Length], PairOf] | None = None
+    lay: Angle = 0.0
+    hurst: float | None = None
+    rolloff: Length | None = None
+    shortest: Length | None = None
+    skewness: float = 0.0
+    kurtosis: float = 3.0
+    periodic: bool = True
 
 
 class MeasuredRoughness(_Table):
@@ -220,13 +228,7 @@ class Case(_Table):
             return smooth(grid)
         if isinstance(self.roughness, GeneratedRoughness):
             assert grid is not None  # _whole
-            return generate_surface(
-                grid,
-                kind=self.roughness.kind,
-                rms=self.roughness.rms,
-                correlation_length=self.roughness.correlation_length,
-                seed=self.roughness.seed,
-            )
+            return generate_surface(grid, **dict(self.roughness))
         scan = read_surface(
             folder / self.roughness.file,
             channel=self.roughness.channel,

@@ -26,6 +26,7 @@ _EXAMPLES = {
     "kg/m^3": '"7850 kg/m^3"',
     "N": '"0.1 N"',
     "J/m^2": '"0.09 J/m^2"',
+    "rad": '"30 deg"',
 }
 _NAMES = {
     "m": "a length",
@@ -33,6 +34,7 @@ _NAMES = {
     "kg/m^3": "a density",
     "N": "a force",
     "J/m^2": "a work of adhesion",
+    "rad": "an angle",
 }
 # Spellings of which one in the wrong case is recognised.
 _USUAL = {
@@ -41,6 +43,7 @@ _USUAL = {
     "kg/m^3": ("kg/m^3", "kg/m3", "g/cm^3", "g/cm3"),
     "N": ("N", "kN", "mN", "uN", "µN", "nN"),
     "J/m^2": ("J/m^2", "J/m2", "mJ/m^2", "mJ/m2", "N/m", "mN/m"),
+    "rad": ("deg", "rad"),
 }
 # Beyond these a number is a slip of the unit, and formulas would over- or underflow.
 _BOUNDS = {
@@ -119,3 +122,4 @@ Pressure = Annotated[float, _positive("Pa")]
 Density = Annotated[float, _positive("kg/m^3")]
 SurfaceEnergy = Annotated[float, _positive("J/m^2", or_zero=True)]
 Force = Annotated[float, _positive("N")]
+Angle = Annotated[float, BeforeValidator(lambda value: read_quantity(value, "rad"))]

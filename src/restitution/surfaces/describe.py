@@ -31,6 +31,8 @@ def describe(surface: Surface) -> dict[str, float | None]:
     - `Sa_m`: arithmetical mean height, ⟨|z|⟩ (4.1.7)
     - `Sdq`: root mean square gradient, ⟨(∂z/∂x)² + (∂z/∂y)²⟩^½ (4.3.1), of the surface joined
       linearly from cell to cell. (Central differences would not see the shortest waves at all.)
+    - `rms_curvature_per_m`: half the root mean square Laplacian, ½⟨(∇²z)²⟩^½, by second
+      differences; for asperities alike along x and y their rms curvature.
     - `correlation_length_x_m`, `correlation_length_y_m`: lag along that axis at which the biased
       autocorrelation estimate of z, normalised to 1 at lag zero, first falls to 10 % (Hu &
       Tonder 1992), interpolated linearly between lags.
@@ -52,6 +54,7 @@ def describe(surface: Surface) -> dict[str, float | None]:
         "Sv_m": Sv,
         "Sz_m": Sp + Sv,
         "Sdq": rms_slope(surface),
+        "rms_curvature_per_m": _rms_curvature(z, hx, hy),
         "correlation_length_x_m": None,
         "correlation_length_y_m": None,
     }
@@ -75,6 +78,17 @@ def rms_slope(surface: Surface) -> float:
 def _mean_square_slope(z: NDArray[np.float64], h: float) -> float:
     """⟨(∂z/∂x)²⟩ along the first axis; a single line of cells has no slope."""
     return float(np.mean((np.diff(z, axis=0) / h) ** 2)) if z.shape[0] > 1 else 0.0
+
+
+def _rms_curvature(z: NDArray[np.float64], hx: float, hy: float) -> float:
+    """½⟨(∇²z)²⟩^½ over the nodes off the rim; fewer than three in a line have no curvature."""
+    laplacian = np.zeros([n - 2 if n > 2 else n for n in z.shape])
+    inner = tuple(slice(1, -1) if n > 2 else slice(None) for n in z.shape)
+    if z.shape[0] > 2:
+        laplacian = laplacian + (np.diff(z, 2, axis=0) / hx**2)[:, inner[1]]
+    if z.shape[1] > 2:
+        laplacian = laplacian + (np.diff(z, 2, axis=1) / hy**2)[inner[0], :]
+    return 0.5 * math.sqrt(np.mean(laplacian**2))
 
 
 def _correlation_length(z: NDArray[np.float64], h: float) -> float | None:

@@ -1,11 +1,9 @@
-"""Random rough surfaces with a prescribed autocorrelation, by an FFT digital filter.
+"""Random rough surfaces: waves of prescribed amplitudes, heights of prescribed distribution.
 
-    R(τ) = Rq² exp(−2.3 ρ)   (exponential)     R(τ) = Rq² exp(−2.3 ρ²)   (Gaussian)
-    ρ = sqrt((τx/βx)² + (τy/βy)²),   S = FFT(R),   z = IFFT(sqrt(S) · FFT(white noise))
+    z = IFFT(H · FFT(white noise)),   H the amplitudes of `spectra`
 
-β, the correlation length, is where the autocorrelation has fallen to 10 % (e^−2.3 = 0.100).
-
-Source: Hu & Tonder (1992), Int. J. Mach. Tools Manufact. 32, 83–90.
+(Hu and Tonder 1992, Int. J. Mach. Tools Manufact. 32, 83–90), with normally distributed heights
+unless a skewness and a kurtosis are asked for (`heights`).
 """
 
 from __future__ import annotations
@@ -18,35 +16,52 @@ from numpy.typing import NDArray
 
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
+from restitution.surfaces.heights import adjusted, distribution, filtered, in_order
+from restitution.surfaces.johnson import LEAST_KURTOSIS, possible
+from restitution.surfaces.spectra import Autocorrelated, SelfAffine, Spectrum
 from restitution.surfaces.surface import Surface
 
-AutocorrelationKind = Literal["exponential", "gaussian"]
+Array = NDArray[np.float64]
+RoughnessKind = Literal["exponential", "gaussian", "self-affine"]
+
+_MARGIN = 2.0  # correlation lengths around a surface that is not to be periodic
 
 
 def generate_surface(
     grid: Grid,
     *,
-    kind: AutocorrelationKind,
+    kind: RoughnessKind,
     rms: float,
-    correlation_length: float | tuple[float, float],
     seed: int,
+    correlation_length: float | tuple[float, float] | None = None,
+    lay: float = 0.0,
+    hurst: float | None = None,
+    rolloff: float | None = None,
+    shortest: float | None = None,
+    skewness: float = 0.0,
+    kurtosis: float = 3.0,
+    periodic: bool = True,
 ) -> Surface:
-    """Make a Gaussian-distributed surface with zero mean and exactly the rms height `rms`.
+    """Make a random surface with zero mean and exactly the rms height `rms` (Rq, m).
 
-    `rms` (Rq) and `correlation_length` (β, or (βx, βy)) are in metres. The same arguments give
-    the same surface on every machine and numpy version, to rounding. The surface is periodic
-    over the domain of `grid`: opposite edges match. Another grid draws other noise, so the same
-    seed on a finer grid is another surface and not a refinement of this one.
+    `exponential` and `gaussian` autocorrelation take `correlation_length` β (m), or two, along the
+    `lay` and across it; `lay` is the angle (rad) of the first from the x axis. `self-affine` takes
+    the `hurst` exponent and, if it is not to be a power law up to the domain, the wavelength
+    `rolloff` (m) above which the spectrum is flat. `shortest` (m) leaves out all shorter waves.
+    Where `skewness` and `kurtosis` (3 is normal) differ from the normal distribution's, noise is
+    translated before it is filtered if that suffices; else heights and amplitudes are adjusted in
+    turns, and `provenance` holds the misfit of the amplitudes.
 
-    Raises `SurfaceError` for an unknown `kind`, a negative seed, and an rms or a correlation
-    length that is not positive or that the grid cannot hold (below its spacing, above half of
-    its domain).
+    The same arguments give the same surface on every machine and numpy version, to rounding. The
+    surface is periodic over the domain of `grid` (opposite edges match), unless `periodic` is
+    false. Another grid draws other noise, so the same seed on a finer grid is another surface and
+    not a refinement of this one.
+
+    Raises `SurfaceError` for an unknown `kind`, keywords that do not belong to it, a negative seed,
+    lengths that are not positive or that the grid cannot hold, and moments that no distribution
+    has (kurtosis below skewness² + 1.1).
     """
-    if kind not in get_args(AutocorrelationKind):
-        raise SurfaceError(
-            f"roughness.kind: {kind!r} is no autocorrelation known here; "
-            "choose 'exponential' or 'gaussian'"
-        )
+    spectrum = _spectrum(kind, correlation_length, lay, hurst, rolloff, shortest)
     if not (math.isfinite(rms) and rms > 0):
         raise SurfaceError(
             f"roughness.rms: {rms:g} m is not a positive length; give the rms height, "
@@ -54,56 +69,116 @@ def generate_surface(
         )
     if seed < 0:
         raise SurfaceError(f"roughness.seed: {seed} is negative; give a whole number from 0 up")
-    beta = (
-        correlation_length
-        if isinstance(correlation_length, tuple)
-        else (correlation_length, correlation_length)
-    )
-    for axis in range(2):
-        _check_correlation_length("xy"[axis], beta[axis], grid.spacing[axis], grid.size[axis])
-
-    height = _filter_noise(_white_noise(grid.nodes, seed), _autocorrelation(grid, kind, beta))
+    if not possible(skewness, kurtosis):
+        raise SurfaceError(
+            f"roughness.kurtosis: no heights have a skewness of {skewness:g} and a kurtosis of "
+            f"{kurtosis:g}; it has to be at least skewness² + {LEAST_KURTOSIS:g} = "
+            f"{skewness**2 + LEAST_KURTOSIS:g}"
+        )
+    spectrum.check(grid)
+    height, made = _heights(grid, spectrum, seed, (skewness, kurtosis), periodic)
     height -= height.mean()
     height *= rms / math.sqrt(np.mean(height**2))
-    return Surface(
-        height,
-        grid,
-        {
-            "source": "generated",
-            "method": "Hu and Tonder 1992",
-            "kind": kind,
-            "rms_m": float(rms),
-            "correlation_length_x_m": float(beta[0]),
-            "correlation_length_y_m": float(beta[1]),
-            "correlation_length_defined_at": "autocorrelation of 10 %",
-            "seed": int(seed),
-            "noise": "PCG64 raw stream, inverse normal distribution",
-            "periodicity": "periodic over the domain",
-        },
+    asked: dict[str, str | float] = {"source": "generated", **made, "kind": kind}
+    asked["rms_m"] = float(rms)
+    if isinstance(spectrum, Autocorrelated):
+        first, second = ("x", "y") if lay == 0 else ("along_lay", "across_lay")
+        for name, beta in zip((first, second), spectrum.correlation_length, strict=True):
+            asked[f"correlation_length_{name}_m"] = float(beta)
+        asked["correlation_length_defined_at"] = "autocorrelation of 10 %"
+        asked["lay_rad"] = float(lay)
+    elif isinstance(spectrum, SelfAffine):
+        asked["hurst"] = float(spectrum.hurst)
+        asked["rolloff_m"] = float(rolloff or max(grid.size))
+    asked["shortest_m"] = float(shortest or 2 * max(grid.spacing))
+    asked["skewness"], asked["kurtosis"] = float(skewness), float(kurtosis)
+    asked["seed"] = int(seed)
+    asked["noise"] = "PCG64 raw stream, inverse normal distribution"
+    asked["periodicity"] = "periodic over the domain" if periodic else "none"
+    return Surface(height, grid, asked)
+
+
+def _spectrum(
+    kind: str,
+    correlation_length: float | tuple[float, float] | None,
+    lay: float,
+    hurst: float | None,
+    rolloff: float | None,
+    shortest: float | None,
+) -> Spectrum:
+    """The spectrum of that kind, refusing what belongs to another."""
+    if kind not in get_args(RoughnessKind):
+        raise SurfaceError(
+            f"roughness.kind: {kind!r} is no kind of roughness known here; "
+            "choose 'exponential', 'gaussian' or 'self-affine'"
+        )
+    foreign: list[tuple[str, object]] = [("hurst", hurst), ("rolloff", rolloff)]
+    if kind == "self-affine":
+        foreign = [("correlation_length", correlation_length), ("lay", lay or None)]
+    for name, value in foreign:
+        if value is not None:
+            raise SurfaceError(
+                f"roughness.{name}: does not belong to kind = {kind!r}; leave it out"
+            )
+    if kind == "self-affine":
+        if hurst is None:
+            raise SurfaceError("roughness.hurst: missing; a self-affine surface needs it, say 0.8")
+        return SelfAffine(hurst, rolloff, shortest)
+    if correlation_length is None:
+        raise SurfaceError(
+            f"roughness.correlation_length: missing; kind = {kind!r} needs the length over which "
+            'the autocorrelation falls to 10 %, such as "2 um"'
+        )
+    if not isinstance(correlation_length, tuple):
+        correlation_length = correlation_length, correlation_length
+    autocorrelation: Literal["exponential", "gaussian"]
+    autocorrelation = "exponential" if kind == "exponential" else "gaussian"
+    return Autocorrelated(autocorrelation, correlation_length, lay, shortest)
+
+
+def _heights(
+    grid: Grid, spectrum: Spectrum, seed: int, wanted: tuple[float, float], periodic: bool
+) -> tuple[Array, dict[str, str | float]]:
+    """Heights to any scale, and how they were made."""
+    from scipy.fft import irfft2, rfft2
+
+    larger = grid if periodic else _enlarged(grid, spectrum.longest)
+    noise, H = _white_noise(larger.nodes, seed), spectrum.amplitude(larger)
+    made: dict[str, str | float] = {"method": "Hu and Tonder 1992"}
+    z: Array | None = None
+    if wanted != (0.0, 3.0):
+        z = filtered(noise, H, *wanted)
+        made["method"] = "Hu and Tonder 1992, Johnson-translated noise"
+    if z is None:
+        z = irfft2(H * rfft2(noise), s=larger.nodes)
+        if wanted != (0.0, 3.0):
+            found = adjusted(z, *wanted)
+            if found is None:
+                raise SurfaceError(
+                    f"roughness.kurtosis: no Johnson distribution was found with a skewness of "
+                    f"{wanted[0]:g} and a kurtosis of {wanted[1]:g}; ask for a larger kurtosis"
+                )
+            z, made["amplitude_misfit"] = found
+            made["method"] = "Schreiber and Schmitz 1996, adjusted amplitudes"
+    z = z[: grid.nodes[0], : grid.nodes[1]].copy()
+    if not periodic and wanted != (0.0, 3.0):  # a part has other moments than the whole
+        heights = distribution(z.size, *wanted)
+        z = z if heights is None else in_order(heights, z)
+    return z, made
+
+
+def _enlarged(grid: Grid, longest: float) -> Grid:
+    """A grid so much larger that opposite edges of a part like `grid` are strangers."""
+    from scipy.fft import next_fast_len
+
+    nx, ny = (
+        next_fast_len(n + math.ceil(min(_MARGIN * longest, size) / h), real=True)
+        for n, h, size in zip(grid.nodes, grid.spacing, grid.size, strict=True)
     )
+    return Grid((nx, ny), grid.spacing)
 
 
-def _check_correlation_length(axis: str, beta: float, spacing: float, size: float) -> None:
-    if not (math.isfinite(beta) and beta > 0):
-        raise SurfaceError(
-            f"roughness.correlation_length: {beta:g} m along {axis} is not a positive length; "
-            'give one such as "5 um"'
-        )
-    if beta < spacing:
-        raise SurfaceError(
-            f"roughness.correlation_length: {beta * 1e6:g} um along {axis} is below the grid "
-            f"spacing of {spacing * 1e6:g} um and cannot be resolved; refine grid.spacing or give "
-            "a longer correlation length"
-        )
-    if beta > 0.5 * size:
-        raise SurfaceError(
-            f"roughness.correlation_length: {beta * 1e6:g} um along {axis} is above half of the "
-            f"domain of {size * 1e6:g} um; enlarge the domain (grid.nodes) or give a shorter "
-            "correlation length"
-        )
-
-
-def _white_noise(shape: tuple[int, int], seed: int) -> NDArray[np.float64]:
+def _white_noise(shape: tuple[int, int], seed: int) -> Array:
     """Independent standard normal numbers of the given shape."""
     from scipy.special import ndtri
 
@@ -113,30 +188,5 @@ def _white_noise(shape: tuple[int, int], seed: int) -> NDArray[np.float64]:
     # the inverse distribution is infinite; a 53rd bit would round up to 1.
     raw = np.random.PCG64(seed).random_raw(shape[0] * shape[1])
     u = ((raw >> np.uint64(12)).astype(np.float64) + 0.5) * 2.0**-52
-    noise: NDArray[np.float64] = ndtri(u).reshape(shape)
+    noise: Array = ndtri(u).reshape(shape)
     return noise
-
-
-def _autocorrelation(
-    grid: Grid, kind: AutocorrelationKind, beta: tuple[float, float]
-) -> NDArray[np.float64]:
-    """Target R/Rq² at every lag of the grid, shape `grid.nodes`, wrapped round the domain."""
-    lag_x, lag_y = (
-        np.minimum(np.arange(n), n - np.arange(n)) * h
-        for n, h in zip(grid.nodes, grid.spacing, strict=True)
-    )
-    rho2 = (lag_x[:, None] / beta[0]) ** 2 + (lag_y[None, :] / beta[1]) ** 2
-    rho_power = np.sqrt(rho2) if kind == "exponential" else rho2
-    R: NDArray[np.float64] = np.exp(-2.3 * rho_power)
-    return R
-
-
-def _filter_noise(noise: NDArray[np.float64], R: NDArray[np.float64]) -> NDArray[np.float64]:
-    """White noise coloured to the autocorrelation `R`; both of shape (nx, ny)."""
-    from scipy.fft import irfft2, rfft2
-
-    # Wrapping puts a kink into R at half of the domain, so S may dip below zero there.
-    S = np.maximum(rfft2(R).real, 0.0)
-    H = np.sqrt(S)
-    z: NDArray[np.float64] = irfft2(H * rfft2(noise), s=noise.shape)
-    return z

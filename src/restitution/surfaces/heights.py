@@ -1,0 +1,112 @@
+"""Rough surfaces with waves of given amplitudes and heights of given skewness and kurtosis.
+
+`filtered`: white noise is translated (Johnson) before it is filtered, to moments that the filter
+will turn into those asked for,
+
+    Sk_z = Sk_η Σθ³/(Σθ²)^{3/2},   K_z − 3 = (K_η − 3) Σθ⁴/(Σθ²)²,
+
+θ the filter's response to a single impulse (Watson and Spedding 1982, Wear 83, 215–231; Manesh et
+al. 2010, Tribol. Int. 43, 2218–2225). The sum over many nodes draws heights back towards the normal
+distribution, so this reaches mild cases only.
+
+`adjusted`: the heights are replaced by those of the wanted distribution in the same order, then the
+amplitudes by the wanted ones with the same phases, and again (Schreiber and Schmitz 1996, Phys.
+Rev. Lett. 77, 635–638). Ends with the heights: their distribution is exact, the amplitudes nearly.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.surfaces.johnson import possible, translation
+
+Array = NDArray[np.float64]
+Waves = Callable[[Array], Array]
+
+_STRONGEST = 3.0, 40.0  # skewness and kurtosis of noise that is still worth translating
+_CLOSE = 0.02  # of the moments (of kurtosis: of it)
+_CORRECTIONS = 12
+_ADJUSTMENTS = 60
+_STANDSTILL = 0.02  # of the misfit of amplitudes, from one adjustment to the next
+
+
+def filtered(noise: Array, H: Array, skewness: float, kurtosis: float) -> Array | None:
+    """Heights by a digital filter; None where it does not reach the moments with this noise."""
+    from scipy.fft import irfft2, rfft2
+
+    theta = irfft2(H, s=noise.shape)
+    squares = float((theta**2).sum())
+    skewing = float((theta**3).sum()) / squares**1.5
+    peaking = float((theta**4).sum()) / squares**2
+    if skewing == 0 and skewness != 0:
+        return None
+    asked = skewness / skewing if skewness else 0.0, 3 + (kurtosis - 3) / peaking
+    for _ in range(_CORRECTIONS):
+        if abs(asked[0]) > _STRONGEST[0] or asked[1] > _STRONGEST[1] or not possible(*asked):
+            return None
+        translate = translation(*asked)
+        if translate is None:
+            return None
+        z: Array = irfft2(H * rfft2(translate(noise)), s=noise.shape)
+        skew, kurt = moments(z)
+        if abs(skew - skewness) < _CLOSE and abs(kurt - kurtosis) < _CLOSE * kurtosis:
+            return z
+        # One realisation is off its expectation: ask for as much more or less.
+        asked = (asked[0] + (skewness - skew) / skewing if skewing else 0.0,
+                 asked[1] + (kurtosis - kurt) / peaking)  # fmt: skip
+    return None
+
+
+def adjusted(z: Array, skewness: float, kurtosis: float) -> tuple[Array, float] | None:
+    """Heights of that distribution with the amplitudes of z, and their misfit; None if none.
+
+    The misfit is the root mean square difference of the amplitudes over their own.
+    """
+    from scipy.fft import irfft2, rfft2
+
+    heights = distribution(z.size, skewness, kurtosis)
+    if heights is None:
+        return None
+    modes = rfft2(z - z.mean())
+    wanted = np.abs(modes) * math.sqrt(z.size) / math.sqrt(float(((z - z.mean()) ** 2).sum()))
+    misfit = math.inf
+    for _ in range(_ADJUSTMENTS):
+        z = in_order(heights, z)
+        modes = rfft2(z)
+        size = np.abs(modes)
+        last, misfit = misfit, float(np.linalg.norm(size - wanted) / np.linalg.norm(wanted))
+        if misfit > last * (1 - _STANDSTILL):
+            break
+        modes *= wanted / np.maximum(size, np.finfo(float).tiny)
+        z = irfft2(modes, s=z.shape)
+    return in_order(heights, z), misfit
+
+
+def in_order(heights: Array, z: Array) -> Array:
+    """Sorted `heights`, placed so that their order over the surface is that of z."""
+    placed = np.empty(z.size)
+    placed[np.argsort(z, axis=None, kind="stable")] = heights
+    return placed.reshape(z.shape)
+
+
+def distribution(n: int, skewness: float, kurtosis: float) -> Array | None:
+    """n heights in ascending order with mean 0, variance 1 and those moments; None if none."""
+    from scipy.special import ndtri
+
+    translate = translation(skewness, kurtosis)
+    if translate is None:
+        return None
+    heights = translate(ndtri((np.arange(n) + 0.5) / n))
+    heights -= heights.mean()
+    return heights / math.sqrt(float(np.mean(heights**2)))
+
+
+def moments(z: Array) -> tuple[float, float]:
+    """Skewness and kurtosis."""
+    unit = z - z.mean()
+    unit = unit / math.sqrt(float(np.mean(unit**2)))
+    return float(np.mean(unit**3)), float(np.mean(unit**4))

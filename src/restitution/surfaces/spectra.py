@@ -1,0 +1,180 @@
+"""What the waves of a generated surface are to be like: amplitudes over the wave vector.
+
+`Autocorrelated` surfaces have a given autocorrelation,
+
+    R(τ) = Rq² exp(−2.3 ρ)   (exponential)     R(τ) = Rq² exp(−2.3 ρ²)   (Gaussian)
+    ρ = sqrt((τ₁/β₁)² + (τ₂/β₂)²),
+
+τ₁ along the lay and τ₂ across it; β, the correlation length, is where the autocorrelation has
+fallen to 10 % (e^−2.3 = 0.100). Hu and Tonder (1992), Int. J. Mach. Tools Manufact. 32, 83–90.
+
+`SelfAffine` surfaces have the power spectral density
+
+    C(q) = const. for q < q_r,   (q/q_r)^−2(H+1) up to q_s,   0 beyond,
+
+H the Hurst exponent, 2π/q_r the roll-off and 2π/q_s the shortest wavelength. Persson et al. (2005),
+J. Phys.: Condens. Matter 17, R1–R62.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.errors import SurfaceError
+from restitution.numerics.grid import Grid
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Autocorrelated:
+    """Exponential or Gaussian autocorrelation; lengths in m, `lay` in radians from the x axis."""
+
+    kind: Literal["exponential", "gaussian"]
+    correlation_length: tuple[float, float]
+    lay: float = 0.0
+    shortest: float | None = None
+
+    @property
+    def longest(self) -> float:
+        """The length over which heights forget each other, m."""
+        return max(self.correlation_length)
+
+    def check(self, grid: Grid) -> None:
+        """Raise `SurfaceError` where `grid` cannot hold such waves."""
+        for axis, beta in enumerate(self.correlation_length):
+            where = (
+                f"along {'xy'[axis]}" if self.lay == 0 else ("along", "across")[axis] + " the lay"
+            )
+            # Turned against the grid a length has to fit both axes.
+            spacing, size = grid.spacing[axis], grid.size[axis]
+            if self.lay != 0:
+                spacing, size = max(grid.spacing), min(grid.size)
+            _check_correlation_length(where, beta, spacing, size)
+        if self.lay != 0 and self.correlation_length[0] == self.correlation_length[1]:
+            raise SurfaceError(
+                "roughness.lay: a surface with one correlation length has no lay; give two in "
+                "roughness.correlation_length, along the lay and across it, or leave lay out"
+            )
+        _check_shortest(self.shortest, grid)
+
+    def amplitude(self, grid: Grid) -> Array:
+        """Amplitudes for `rfft2` of white noise on `grid`, to any scale."""
+        from scipy.fft import rfft2
+
+        x, y = (
+            np.where(2 * np.arange(n) > n, np.arange(n) - n, np.arange(n)) * h
+            for n, h in zip(grid.nodes, grid.spacing, strict=True)
+        )
+        c, s = math.cos(self.lay), math.sin(self.lay)
+        along = c * x[:, None] + s * y[None, :]
+        across = c * y[None, :] - s * x[:, None]
+        rho2 = (along / self.correlation_length[0]) ** 2
+        rho2 = rho2 + (across / self.correlation_length[1]) ** 2
+        R = np.exp(-2.3 * (np.sqrt(rho2) if self.kind == "exponential" else rho2))
+        # Wrapping puts a kink into R at half of the domain, so S may dip below zero there.
+        H: Array = np.sqrt(np.maximum(rfft2(R).real, 0.0))
+        return _cut(H, grid, self.shortest)
+
+
+@dataclass(frozen=True)
+class SelfAffine:
+    """A power law between two wavelengths (m), flat above the longer one; `rolloff` may be None."""
+
+    hurst: float
+    rolloff: float | None = None
+    shortest: float | None = None
+
+    @property
+    def longest(self) -> float:
+        """The length over which heights forget each other, m."""
+        return math.inf if self.rolloff is None else self.rolloff
+
+    def check(self, grid: Grid) -> None:
+        """Raise `SurfaceError` where `grid` cannot hold such waves."""
+        if not 0 < self.hurst <= 1:
+            raise SurfaceError(
+                f"roughness.hurst: {self.hurst:g} is not an exponent above 0 and up to 1; real "
+                "surfaces often have 0.8"
+            )
+        _check_shortest(self.shortest, grid)
+        rolloff, shortest = self.rolloff, self.shortest or 2 * max(grid.spacing)
+        if rolloff is None:
+            return
+        if not (math.isfinite(rolloff) and rolloff > 0):
+            raise SurfaceError(
+                f"roughness.rolloff: {rolloff:g} m is not a positive wavelength; give one such as "
+                '"10 um", or leave it out for a power law up to the domain'
+            )
+        if not shortest < rolloff <= max(grid.size):
+            raise SurfaceError(
+                f"roughness.rolloff: {rolloff * 1e6:g} um is not between the shortest wavelength, "
+                f"{shortest * 1e6:g} um, and the domain, {max(grid.size) * 1e6:g} um; move it, or "
+                "leave it out for a power law up to the domain"
+            )
+
+    def amplitude(self, grid: Grid) -> Array:
+        """Amplitudes for `rfft2` of white noise on `grid`, to any scale."""
+        q = _wave_numbers(grid)
+        q_r = 2 * math.pi / (max(grid.size) if self.rolloff is None else self.rolloff)
+        H: Array = np.maximum(q / q_r, 1.0) ** -(self.hurst + 1.0)
+        H[0, 0] = 0.0
+        return _cut(H, grid, self.shortest)
+
+
+Spectrum = Autocorrelated | SelfAffine
+
+
+def _cut(H: Array, grid: Grid, shortest: float | None) -> Array:
+    """The amplitudes without waves shorter than `shortest`."""
+    if shortest is not None:
+        H[_wave_numbers(grid) > 2 * math.pi / shortest * (1 + 1e-9)] = 0.0
+    return H
+
+
+def _wave_numbers(grid: Grid) -> Array:
+    """|q| of the modes of `rfft2`, rad/m."""
+    (nx, ny), (hx, hy) = grid.nodes, grid.spacing
+    qx, qy = np.fft.fftfreq(nx, hx)[:, None], np.fft.rfftfreq(ny, hy)[None, :]
+    return np.asarray(2 * math.pi * np.hypot(qx, qy))
+
+
+def _check_correlation_length(where: str, beta: float, spacing: float, size: float) -> None:
+    if not (math.isfinite(beta) and beta > 0):
+        raise SurfaceError(
+            f"roughness.correlation_length: {beta:g} m {where} is not a positive length; "
+            'give one such as "5 um"'
+        )
+    if beta < spacing:
+        raise SurfaceError(
+            f"roughness.correlation_length: {beta * 1e6:g} um {where} is below the grid "
+            f"spacing of {spacing * 1e6:g} um and cannot be resolved; refine grid.spacing or give "
+            "a longer correlation length"
+        )
+    if beta > 0.5 * size:
+        raise SurfaceError(
+            f"roughness.correlation_length: {beta * 1e6:g} um {where} is above half of the "
+            f"domain of {size * 1e6:g} um; enlarge the domain (grid.nodes) or give a shorter "
+            "correlation length"
+        )
+
+
+def _check_shortest(shortest: float | None, grid: Grid) -> None:
+    if shortest is None:
+        return
+    if not (math.isfinite(shortest) and shortest > 0):
+        raise SurfaceError(
+            f"roughness.shortest: {shortest:g} m is not a positive wavelength; give one such as "
+            '"1 um", or leave it out'
+        )
+    if not 2 * max(grid.spacing) <= shortest < max(grid.size):
+        raise SurfaceError(
+            f"roughness.shortest: {shortest * 1e6:g} um is no wavelength that the grid can hold "
+            f"({2e6 * max(grid.spacing):g} to {1e6 * max(grid.size):g} um); refine grid.spacing, "
+            "or leave it out"
+        )
