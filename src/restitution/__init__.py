@@ -21,6 +21,7 @@ if TYPE_CHECKING:
         level,
         place_on_grid,
         read_surface,
+        refine,
     )
 
 __all__ = [
@@ -40,6 +41,7 @@ __all__ = [
     "on_device",
     "place_on_grid",
     "read_surface",
+    "refine",
     "smooth",
     "solve",
     "solve_at_force",
@@ -69,6 +71,7 @@ _HOMES = {
         "level",
         "place_on_grid",
         "read_surface",
+        "refine",
     ),
 }
 

@@ -34,7 +34,7 @@ def refused_case(refused, case_text, tmp_path):
     [
         ("radius =", "radus =", "first.radus", 'did you mean "radius"?'),
         ("[grid]", "[gird]", "gird", 'did you mean "grid"?'),
-        ("seed = 1", "seed = 1\nwavyness = 1", "roughness.wavyness", "known keys: kind, rms"),
+        ("seed = 1", "seed = 1\nxyz = 1", "roughness.xyz", "known keys: kind, rms"),
         ("seed = 1", "seed = 1\nhurst = 0.8", "roughness.hurst", "does not belong to kind"),
         (
             "seed = 1",

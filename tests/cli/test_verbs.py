@@ -11,7 +11,7 @@ COLUMNS = """
 indentation_m force_N contact_area_m2 stored_energy_J plastic_work_J loading_work_J
 unloading_work_J restitution impact_velocity_m_per_s contact_nodes contact_patches
 largest_patch_nodes residual convolutions pull_off_force_N separation_indentation_m
-restitution_error sticks adhesion_resolved
+restitution_error sticks adhesion_resolved median_patch_nodes resolved
 """.split()  # noqa: SIM905
 
 
@@ -212,5 +212,24 @@ def test_unresolved_depths_are_said(cli, case_text, tmp_path):
     (tmp_path / "case.toml").write_text(case_text.replace('"20 nm"', '"1 nm"'))
     status, _, warned = cli("run", tmp_path / "case.toml", "-o", tmp_path / "out")
     assert status == 0
-    assert "fewer than 10 nodes" in warned
-    assert "fewer than 10 nodes" in (tmp_path / "out" / "summary.json").read_text()
+    assert "fewer than 20 nodes" in warned
+    assert "fewer than 20 nodes" in (tmp_path / "out" / "summary.json").read_text()
+    _, rows = rows_of(tmp_path / "out" / "curve.csv")
+    assert [row["resolved"] for row in rows] == [row["median_patch_nodes"] >= 20 for row in rows]
+    assert not all(row["resolved"] for row in rows)
+
+
+def test_a_refined_grid_resolves_more(cli, case_text, tmp_path):
+    found = []
+    for refine in (1, 2):
+        case, out = tmp_path / f"{refine}.toml", tmp_path / f"{refine}"
+        case.write_text(case_text.replace("[indentation]", f"refine = {refine}\n[indentation]"))
+        assert cli("run", case, "-o", out)[0] == 0
+        summary = json.loads((out / "summary.json").read_text())
+        assert summary["model"]["nodes"] == [72 * refine, 64 * refine]
+        found.append(rows_of(out / "curve.csv")[1])
+    coarse, fine = found
+    assert all(
+        b["contact_nodes"] > 2 * a["contact_nodes"] for a, b in zip(coarse, fine, strict=True)
+    )
+    assert fine[-1]["restitution"] == pytest.approx(coarse[-1]["restitution"], rel=0.05)

@@ -12,7 +12,9 @@ from restitution.contact.resolution import (
     NODES_PER_RADIUS,
     foreseen_radius,
     foreseen_warnings,
+    median_patch,
     refuse_coarse_scan,
+    resolves,
     unresolved_warning,
 )
 from restitution.errors import SurfaceError
@@ -105,6 +107,15 @@ def test_a_scan_coarser_than_the_contact_is_refused(contact):
     refuse_coarse_scan(scan, 9 * shallow)
     refuse_coarse_scan(contact(source="generated", pixel_x_m=1.5e-6), shallow)
     refuse_coarse_scan(contact(), shallow)
+
+
+@pytest.mark.parametrize(
+    ("patches", "median"),
+    [([7], 7), ([5, 1, 1, 1], 5), ([3, 1, 1, 1], 3), ([3, 1, 1, 1, 1], 1), ([4, 3, 2], 3), ([], 0)],
+)
+def test_the_median_patch_holds_the_median_node(patches, median):
+    assert median_patch(np.array(patches, dtype=int)) == median
+    assert resolves(median) == (median >= NODES_PER_PATCH)
 
 
 def test_what_is_resolved_is_not_mentioned():

@@ -9,6 +9,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from restitution.contact.bodies import Pair
 from restitution.contact.contact import Contact
@@ -16,10 +17,11 @@ from restitution.contact.state import State
 from restitution.errors import SurfaceError
 from restitution.numerics.window import widen
 
-# Smooth spheres follow the tables to 0.3 % from eight nodes over the contact radius; refining a
-# rough surface, restitution settles within 2 % once the largest patch has about ten nodes.
+# Smooth spheres follow the tables to 0.3 % from eight nodes over the contact radius; refining rough
+# surfaces, restitution is within 2 % (root mean square; 5 % at worst) of that on the finest grid
+# once half of the contact lies in patches of 20 nodes or more (docs/resolution.md).
 NODES_PER_RADIUS = 8
-NODES_PER_PATCH = 10
+NODES_PER_PATCH = 20
 # From four nodes over the pull-off radius on, pull-off is within 4 % in the mean and 7 % wherever
 # the apex lies between the nodes (docs/adhesion.md).
 ADHESIVE_NODES = 4
@@ -131,19 +133,28 @@ def foreseen_warnings(contact: Contact, indentation: float) -> list[str]:
     return found
 
 
-def unresolved_warning(depths: Sequence[float], largest_patches: Sequence[int]) -> str | None:
-    """One line on the depths (m) whose largest contact patch has too few nodes, or None."""
-    few = [
-        (depth, nodes)
-        for depth, nodes in zip(depths, largest_patches, strict=True)
-        if nodes < NODES_PER_PATCH
-    ]
+def median_patch(patches: NDArray[np.int64]) -> int:
+    """Nodes of the patch that the median node of the contact lies in; `patches` as in `State`."""
+    if patches.size == 0:
+        return 0
+    covered = np.cumsum(patches)
+    return int(patches[np.searchsorted(2 * covered, covered[-1])])
+
+
+def resolves(median_patch_nodes: float) -> bool:
+    """Whether the grid resolves a contact half of whose nodes lie in patches of so many or more."""
+    return median_patch_nodes >= NODES_PER_PATCH
+
+
+def unresolved_warning(depths: Sequence[float], median_patches: Sequence[float]) -> str | None:
+    """One line on the depths (m) whose contact patches have too few nodes, or None."""
+    few = [depth for depth, n in zip(depths, median_patches, strict=True) if not resolves(n)]
     if not few:
         return None
     return (
-        f"{len(few)} of {len(depths)} depths (up to {_nm(max(few)[0])}) have fewer than "
-        f"{NODES_PER_PATCH} nodes in their largest contact patch: their numbers belong to the "
-        "grid, not to the surface; refine the grid"
+        f"{len(few)} of {len(depths)} depths (up to {_nm(max(few))}) are not resolved (resolved is "
+        f"false): half of their contact is in patches of fewer than {NODES_PER_PATCH} nodes, and "
+        "their numbers belong to the grid, not to the surface; refine the grid (grid.refine)"
     )
 
 

@@ -22,7 +22,7 @@ _SIZE = (6.4, 4.4)
 _WIDE = (10.4, 4.4)
 _SMOOTH = "smooth, same model"
 _THORNTON_NING = "smooth, Thornton–Ning (truncated pressure)"
-_UNRESOLVED = f"open: fewer than {NODES_PER_PATCH} nodes in the largest patch"
+_UNRESOLVED = f"open: not resolved (patches below {NODES_PER_PATCH} nodes)"
 
 
 def write_figures(out: Path) -> list[Path]:
@@ -248,7 +248,7 @@ def _plot_smooth(axes: Axes, results: xr.Dataset, x: str, scale: float) -> None:
 
 def _plot_restitution(axes: Axes, results: xr.Dataset, x: NDArray[np.float64]) -> None:
     cor = results["restitution"].values
-    resolved = results["largest_patch_nodes"].values >= NODES_PER_PATCH
+    resolved = results["resolved"].values.astype(bool)
     axes.plot(x, cor, "-", color="C0", lw=1)
     axes.plot(x[resolved], cor[resolved], "o", ms=4.5, color="C0", label="this contact")
     if not resolved.all():

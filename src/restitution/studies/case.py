@@ -29,7 +29,14 @@ from restitution.contact.separation import RESTITUTION_ERROR
 from restitution.errors import CaseError, SurfaceError, shown
 from restitution.numerics.grid import Grid
 from restitution.studies.quantities import Angle, Density, Force, Length, Pressure, SurfaceEnergy
-from restitution.surfaces import Surface, generate_surface, level, place_on_grid, read_surface
+from restitution.surfaces import (
+    Surface,
+    generate_surface,
+    level,
+    place_on_grid,
+    read_surface,
+    refine,
+)
 from restitution.surfaces.generate import RoughnessKind
 
 MOST_NODES = 2**27  # of a grid: more do not fit into the memory of common machines
@@ -135,6 +142,13 @@ class GridTable(_Table):
 
     nodes: Annotated[tuple[Nodes, Nodes], PairOf, AfterValidator(_few_enough)]
     spacing: Annotated[tuple[Length, Length], PairOf]
+    refine: Literal[1, 2, 4, 8] = 1
+
+    @model_validator(mode="after")
+    def _not_too_fine(self) -> Self:
+        nx, ny = self.nodes
+        _few_enough((self.refine * nx, self.refine * ny))
+        return self
 
 
 Quantity = TypeVar("Quantity")
@@ -222,13 +236,19 @@ class Case(_Table):
 
     def surface(self, folder: Path) -> Surface:
         """The composite roughness on the grid; files are relative to `folder`."""
-        grid = Grid(self.grid.nodes, self.grid.spacing) if self.grid else None
+        if self.grid is None:
+            return self._scan(folder)
+        grid = Grid(self.grid.nodes, self.grid.spacing)
         if self.roughness is None:
-            assert grid is not None  # _whole
-            return smooth(grid)
-        if isinstance(self.roughness, GeneratedRoughness):
-            assert grid is not None  # _whole
-            return generate_surface(grid, **dict(self.roughness))
+            surface = smooth(grid)
+        elif isinstance(self.roughness, GeneratedRoughness):
+            surface = generate_surface(grid, **dict(self.roughness))
+        else:
+            surface = place_on_grid(self._scan(folder), grid)
+        return refine(surface, self.grid.refine)
+
+    def _scan(self, folder: Path) -> Surface:
+        assert isinstance(self.roughness, MeasuredRoughness)  # _whole
         scan = read_surface(
             folder / self.roughness.file,
             channel=self.roughness.channel,
@@ -236,8 +256,7 @@ class Case(_Table):
             undefined=self.roughness.undefined,
         )
         # Levelled as a whole before any part is cut out: the form belongs to the scan.
-        scan = level(scan, self.roughness.detrend)
-        return scan if grid is None else place_on_grid(scan, grid)
+        return level(scan, self.roughness.detrend)
 
     def contact(self, folder: Path) -> Contact:
         """Everything before the first solve; files are relative to `folder`."""

@@ -22,7 +22,12 @@ import numpy as np
 import xarray as xr
 
 from restitution.collision import Collision
-from restitution.contact.resolution import ADHESIVE_NODES, adhesive_nodes
+from restitution.contact.resolution import (
+    ADHESIVE_NODES,
+    adhesive_nodes,
+    median_patch,
+    resolves,
+)
 from restitution.contact.state import State
 from restitution.errors import OutputError
 
@@ -47,6 +52,8 @@ COLUMNS: dict[str, tuple[str, str, str]] = {
     "restitution_error": ("restitution_error", "1", "numerical error of the restitution"),
     "sticks": ("sticks", "1", "nothing is returned: the pair does not come apart by itself"),
     "adhesion_resolved": ("adhesion_resolved", "1", "pull-off radius of at least 4 nodes"),
+    "median_patch_nodes": ("median_patch_nodes", "1", "nodes in the patch of the median node"),
+    "resolved": ("resolved", "1", "half of the contact in patches of at least 20 nodes"),
 }
 UNLOADING_COLUMNS = ("indentation_max_m", "indentation_m", "force_N")
 
@@ -54,6 +61,7 @@ UNLOADING_COLUMNS = ("indentation_max_m", "indentation_m", "force_N")
 def curve_row(state: State, collision: Collision) -> dict[str, float]:
     """The row of `curve.csv` for one state of loading; NaN where there is no answer."""
     patches = state.patch_sizes()
+    median = median_patch(patches)
     velocity = collision.impact_velocity
     values = (
         state.indentation,
@@ -75,6 +83,8 @@ def curve_row(state: State, collision: Collision) -> dict[str, float]:
         collision.restitution_error,
         collision.sticks,
         adhesive_nodes(state) >= ADHESIVE_NODES,
+        median,
+        resolves(median),
     )
     return dict(zip(COLUMNS, values, strict=True))
 

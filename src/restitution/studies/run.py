@@ -168,7 +168,7 @@ def _check(state: State, back: list[State], collision: Collision) -> dict[str, f
 
 
 def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Progress) -> dict[str, Any]:
-    patches = [int(row["largest_patch_nodes"]) for row in out.rows]
+    patches = [row["median_patch_nodes"] for row in out.rows]
     depths = [row["indentation_m"] for row in out.rows]
     found = [unresolved_warning(depths, patches), adhesion_warning(depths, run.adhesive_nodes)]
     found.append(_imprecise(out, case))

@@ -4,6 +4,7 @@ from restitution.surfaces.describe import describe, rms_slope
 from restitution.surfaces.generate import generate_surface
 from restitution.surfaces.level import level
 from restitution.surfaces.measured import read_surface
+from restitution.surfaces.refine import refine
 from restitution.surfaces.resample import place_on_grid
 from restitution.surfaces.surface import Surface
 
@@ -14,5 +15,6 @@ __all__ = [
     "level",
     "place_on_grid",
     "read_surface",
+    "refine",
     "rms_slope",
 ]

@@ -1,0 +1,105 @@
+"""How many nodes a contact needs: restitution on one surface, refined, against its finest grid.
+
+Writes docs/studies/resolution.csv and docs/images/resolution.png. Some minutes:
+`python docs/studies/resolution.py`.
+
+Every grid is pressed to the same depth below the highest point of the finest, so that what is
+compared is the contact and not where its first touch lies between the nodes.
+"""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from restitution import Body, Contact, Grid, Pair, collide, generate_surface, refine, solve
+from restitution.contact.resolution import NODES_PER_PATCH, median_patch
+
+HERE = Path(__file__).parent
+STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25)
+PAIR = Pair(STEEL, STEEL)
+GRID = Grid((256, 256), (0.25e-6, 0.25e-6))
+FACTORS = (1, 2, 4, 8)
+DEPTHS = np.array([5, 8, 20, 50, 100, 200, 400]) * 1e-9
+SURFACES = (
+    {"kind": "gaussian", "rms": 0.5e-6, "correlation_length": 5e-6},
+    {"kind": "gaussian", "rms": 0.1e-6, "correlation_length": 2e-6},
+    {"kind": "self-affine", "rms": 0.2e-6, "hurst": 0.8, "rolloff": 20e-6, "shortest": 2e-6},
+)
+SEEDS = (1, 2, 3, 4)
+
+
+def rows():
+    """Restitution and patches on every grid of every surface."""
+    for number, kind in enumerate(SURFACES):
+        for seed in SEEDS:
+            coarse = generate_surface(GRID, seed=seed, **kind)
+            contacts = {k: Contact(PAIR, refine(coarse, k), 750e6) for k in FACTORS}
+            # All grids keep the coarse nodes: there gaps differ by where first touch lies.
+            finest = contacts[FACTORS[-1]].gap[:: FACTORS[-1], :: FACTORS[-1]]
+            for k, contact in contacts.items():
+                later = float((finest - contact.gap[::k, ::k]).mean())
+                for depth in DEPTHS:
+                    if depth <= later:
+                        continue
+                    state = solve(contact, depth - later)
+                    patches = state.patch_sizes()
+                    yield {
+                        "surface": number, "seed": seed, "refine": k, "depth_m": depth,
+                        "restitution": collide(state).restitution,
+                        "contact_nodes": state.contact_nodes, "patches": patches.size,
+                        "largest_patch_nodes": int(patches[0]),
+                        "median_patch_nodes": median_patch(patches),
+                    }  # fmt: skip
+
+
+def errors(table):
+    """Relative error against the finest grid, beside the nodes of the patches."""
+    finest = {(row["surface"], row["seed"], row["depth_m"]): row["restitution"]
+              for row in table if row["refine"] == FACTORS[-1]}  # fmt: skip
+    for row in table:
+        if row["refine"] != FACTORS[-1]:
+            exact = finest[row["surface"], row["seed"], row["depth_m"]]
+            yield (
+                row["largest_patch_nodes"],
+                row["median_patch_nodes"],
+                row["restitution"] / exact - 1,
+            )
+
+
+def main():
+    """Compute, print and draw."""
+    table = list(rows())
+    with open(HERE / "resolution.csv", "w", newline="") as file:
+        writer = csv.DictWriter(file, list(table[0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(table)
+    largest, median, off = np.array(list(errors(table))).T
+    print("| nodes | cases | rms | 90 % within | worst |\n|---|---|---|---|---|")
+    for name, nodes in (("largest patch", largest), ("median patch", median)):
+        for low, high in ((1, 2), (2, 5), (5, 10), (10, 20), (20, 50), (50, 200), (200, np.inf)):
+            those = np.abs(off[(low <= nodes) & (nodes < high)])
+            if those.size:
+                rms, most = np.sqrt(np.mean(those**2)), np.quantile(those, 0.9)
+                print(f"| {name}, {low} to {high} | {those.size} | {rms:.1%} | {most:.1%} "
+                      f"| {those.max():.1%} |")  # fmt: skip
+    figure = Figure(figsize=(6.4, 4.4), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.add_subplot(
+        xscale="log", xlabel="nodes in the patch of the median node",
+        ylabel="COR over that of the finest grid − 1 (%)",
+        title="One surface on four grids: restitution against resolution",
+    )  # fmt: skip
+    axes.plot(median, 100 * off, "o", markersize=3, alpha=0.6)
+    axes.axhspan(-2, 2, color="0.9", zorder=0)
+    axes.axvline(NODES_PER_PATCH, color="0.3", linewidth=1, linestyle="--")
+    axes.grid(alpha=0.3)
+    figure.savefig(HERE.parent / "images" / "resolution.png", dpi=150)
+
+
+if __name__ == "__main__":
+    main()
