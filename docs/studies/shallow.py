@@ -1,0 +1,95 @@
+"""Shallow depths on the paper's grid and on one eight times finer: its claims about 8 and 50 nm.
+
+Writes docs/studies/shallow.csv and docs/images/shallow.png. Some minutes:
+`python docs/studies/shallow.py`.
+"""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from restitution import Body, Contact, Grid, Pair, collide, generate_surface, refine, solve
+from restitution.contact.resolution import median_patch, resolves
+
+HERE = Path(__file__).parent
+STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25)
+PAIR = Pair(STEEL, STEEL)
+GRID = Grid((256, 256), (0.25e-6, 0.25e-6))
+ROUGHNESS = (0.1e-6, 0.2e-6, 0.5e-6, 1e-6)
+SEEDS = (1, 2, 3)
+FACTORS = (1, 8)
+DEPTHS = np.geomspace(0.5e-9, 100e-9, 16)
+
+
+def rows():
+    """Restitution at every depth of every surface on both grids."""
+    for rms in ROUGHNESS:
+        for seed in SEEDS:
+            coarse = generate_surface(
+                GRID, kind="gaussian", rms=rms, correlation_length=2e-6, seed=seed
+            )
+            for k in FACTORS:
+                contact = Contact(PAIR, refine(coarse, k), 750e6)
+                for depth in DEPTHS:
+                    state = solve(contact, depth)
+                    patches = state.patch_sizes()
+                    yield {
+                        "rms_m": rms, "seed": seed, "refine": k, "depth_m": depth,
+                        "restitution": collide(state).restitution,
+                        "contact_nodes": state.contact_nodes, "patches": patches.size,
+                        "resolved": resolves(median_patch(patches)),
+                    }  # fmt: skip
+
+
+def draw(table):
+    """COR against depth, a panel for each grid."""
+    figure = Figure(figsize=(9, 4.2), layout="constrained")
+    FigureCanvasAgg(figure)
+    panels = figure.subplots(1, 2, sharey=True)
+    for axes, k in zip(panels, FACTORS, strict=True):
+        for number, rms in enumerate(ROUGHNESS):
+            for seed in SEEDS:
+                these = [r for r in table if (r["rms_m"], r["seed"], r["refine"]) == (rms, seed, k)]
+                x, y = (np.array([r[key] for r in these]) for key in ("depth_m", "restitution"))
+                good = np.array([r["resolved"] for r in these])
+                label = f"Rq = {1e6 * rms:g} µm" if seed == SEEDS[0] else None
+                axes.plot(1e9 * x, y, "-", lw=0.8, color=f"C{number}", label=label)
+                for mask, face in ((good, f"C{number}"), (~good, "white")):
+                    axes.plot(1e9 * x[mask], y[mask], "o", ms=3.5, mfc=face, color=f"C{number}")
+        axes.set(xscale="log", xlabel="maximum indentation (nm)", ylim=(0, 1),
+                 title=f"spacing {250 / k:g} nm (open: not resolved)")  # fmt: skip
+        for depth in (8, 50):
+            axes.axvline(depth, color="0.6", lw=0.8, ls="--")
+        axes.grid(alpha=0.3)
+    panels[0].set_ylabel("coefficient of restitution")
+    panels[0].legend(fontsize=8)
+    figure.savefig(HERE.parent / "images" / "shallow.png", dpi=150)
+
+
+def main():
+    """Compute, print and draw."""
+    table = list(rows())
+    with open(HERE / "shallow.csv", "w", newline="") as file:
+        writer = csv.DictWriter(file, list(table[0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(table)
+    draw(table)
+    print("| depth, nm | grid | one node | COR at Rq = 0.1, 0.2, 0.5, 1 µm (means of 3) |")
+    print("|---|---|---|---|")
+    for depth in DEPTHS[::3]:
+        for k in FACTORS:
+            these = [r for r in table if r["depth_m"] == depth and r["refine"] == k]
+            single = sum(r["contact_nodes"] == 1 for r in these)
+            means = [np.mean([r["restitution"] for r in these if r["rms_m"] == rms])
+                     for rms in ROUGHNESS]  # fmt: skip
+            print(f"| {1e9 * depth:.3g} | {250 / k:g} nm | {single} of {len(these)} | "
+                  + ", ".join(f"{m:.2f}" for m in means) + " |")  # fmt: skip
+
+
+if __name__ == "__main__":
+    main()
