@@ -21,6 +21,7 @@ STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25)
 PAIR = Pair(STEEL, STEEL)
 GRID = Grid((960, 960), (0.25e-6, 0.25e-6))
 ROUGHNESS = (0.1e-6, 0.2e-6, 0.5e-6, 1e-6)
+LENGTHS = (2e-6, 5e-6)  # correlation lengths
 SEEDS = (1, 2, 3, 4, 5)
 DEPTHS = np.geomspace(0.1e-6, 20e-6, 28)
 WITHIN = 0.05
@@ -41,47 +42,55 @@ def critical(off):
     return float(np.exp(np.log(DEPTHS[k]) + share * np.log(DEPTHS[k + 1] / DEPTHS[k])))
 
 
+def fit(length, x, y):
+    """Straight line and power law through what was reached, printed; the line."""
+    known = ~np.isnan(y)
+    line, power = linregress(x[known], y[known]), linregress(np.log(x[known]), np.log(y[known]))
+    student = t.ppf(0.975, known.sum() - 2)
+    print(f"correlation length {1e6 * length:g} um: {known.sum()} of {known.size} reached; "
+          f"i_cr,max = a + b Rq/R with b = {1e6 * line.slope:.0f} ± "
+          f"{1e6 * student * line.stderr:.0f} um, a = {1e6 * line.intercept:.2f} ± "
+          f"{1e6 * student * line.intercept_stderr:.2f} um (95 %), r² = {line.rvalue**2:.3f}; "
+          f"power law {power.slope:.2f} ± {student * power.stderr:.2f}")  # fmt: skip
+    for ratio in np.unique(x):
+        found = 1e6 * y[known & (x == ratio)]
+        print(f"| {1e6 * length:g} | {1e6 * STEEL.radius * ratio:g} | {found.size} of 5 | "
+              f"{found.mean():.2f} ± {found.std(ddof=1):.2f} |")  # fmt: skip
+    return line
+
+
 def main():
     """Compute, print and draw."""
     reference = restitutions(Contact(PAIR, smooth(GRID), 750e6))
     table = []
-    for rms in ROUGHNESS:
-        for seed in SEEDS:
-            surface = generate_surface(
-                GRID, kind="gaussian", rms=rms, correlation_length=2e-6, seed=seed
-            )
-            off = restitutions(Contact(PAIR, surface, 750e6)) / reference - 1
-            table.append({"rms_m": rms, "seed": seed, "critical_m": critical(off)})
-            print(table[-1], flush=True)
+    for length in LENGTHS:
+        for rms in ROUGHNESS:
+            for seed in SEEDS:
+                surface = generate_surface(
+                    GRID, kind="gaussian", rms=rms, correlation_length=length, seed=seed
+                )
+                off = restitutions(Contact(PAIR, surface, 750e6)) / reference - 1
+                table.append({"correlation_length_m": length, "rms_m": rms, "seed": seed,
+                              "critical_m": critical(off)})  # fmt: skip
     with open(HERE / "critical_indentation.csv", "w", newline="") as file:
         writer = csv.DictWriter(file, list(table[0]), lineterminator="\n")
         writer.writeheader()
         writer.writerows(table)
-    x = np.array([row["rms_m"] for row in table]) / STEEL.radius
-    y = np.array([row["critical_m"] for row in table])
-    known = ~np.isnan(y)
-    line = linregress(x[known], y[known])
-    student = t.ppf(0.975, known.sum() - 2)
-    print(f"{known.sum()} of {known.size} reached; i_cr,max = a + b Rq/R with "
-          f"b = {1e6 * line.slope:.0f} ± {1e6 * student * line.stderr:.0f} um, "
-          f"a = {1e6 * line.intercept:.2f} ± {1e6 * student * line.intercept_stderr:.2f} um "
-          f"(95 %), r² = {line.rvalue**2:.3f}")  # fmt: skip
-    power = linregress(np.log(x[known]), np.log(y[known]))
-    print(f"power law: exponent {power.slope:.2f} ± {student * power.stderr:.2f}, "
-          f"r² = {power.rvalue**2:.3f}")  # fmt: skip
-    for rms in ROUGHNESS:
-        found = y[known & (x == rms / STEEL.radius)]
-        print(f"| {1e6 * rms:g} | {1e6 * found.mean():.2f} ± {1e6 * found.std(ddof=1):.2f} |")
     figure = Figure(figsize=(6.4, 4.4), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.add_subplot(
         xlabel="Rq/R (10⁻³)", ylabel="i_cr,max (µm)",
         title="Depth from which on a rough sphere bounces as a smooth one",
     )  # fmt: skip
-    axes.plot(1e3 * x, 1e6 * y, "o", ms=4, alpha=0.7, label="five surfaces each")
-    fine = np.array([0, x.max()])
-    axes.plot(1e3 * fine, 1e6 * (line.intercept + line.slope * fine), "-", color="0.4",
-              label="straight line")  # fmt: skip
+    for number, length in enumerate(LENGTHS):
+        these = [row for row in table if row["correlation_length_m"] == length]
+        x = np.array([row["rms_m"] for row in these]) / STEEL.radius
+        y = np.array([row["critical_m"] for row in these])
+        line = fit(length, x, y)
+        ends = np.array([0, x.max()])
+        axes.plot(1e3 * x, 1e6 * y, "o", ms=4, alpha=0.7, color=f"C{number}",
+                  label=f"β = {1e6 * length:g} µm")  # fmt: skip
+        axes.plot(1e3 * ends, 1e6 * (line.intercept + line.slope * ends), "-", color=f"C{number}")
     axes.grid(alpha=0.3)
     axes.legend()
     figure.savefig(HERE.parent / "images" / "critical-indentation.png", dpi=150)

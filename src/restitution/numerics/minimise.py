@@ -85,8 +85,8 @@ def minimise_quadratic(
     direction is not reset when nodes change sides (Polak–Ribière+ forgets by itself), and the
     residual is preconditioned by an approximate inverse of K masked to the free nodes.
 
-    `start` is overwritten. `tolerance` is on the violation, in the units of `b`; an item that has
-    come so far rests until all have. The gradient follows the steps with the products of `quick`,
+    `start` is overwritten. `tolerance` is on the violation, in the units of `b`; an item that is
+    there rests until all are. The gradient follows the steps with the products of `quick`,
     which may be K in single precision; it is computed anew with K whenever the violation has fallen
     to a thousandth, and the result is accepted only on such a gradient; or, if `rough`, on one that
     `quick` has led there, which will do for a large tolerance.
@@ -101,7 +101,8 @@ def minimise_quadratic(
     g = _gradient(K, p, b)
     free = free_nodes(p, g, lower, upper)
     r = g * free  # uphill, where there is a way down
-    residual = refresh = largest(r)
+    residual = largest(r)
+    low = _DRIFT * residual
     d, r_old, p_old, work = (np.zeros_like(p) for _ in range(4))
     rz_old, energy, exact = np.full_like(residual, np.inf), _energy(p, g, b), True
     stuck = np.zeros_like(residual, dtype=bool)
@@ -109,16 +110,15 @@ def minimise_quadratic(
     iteration = 0
 
     for iteration in range(1, max_iterations + 1):
-        if exact:
-            going = (residual > tolerance) & ~stuck
-            if not going.any():
+        going = ~stuck & (residual > (tolerance if exact else np.maximum(tolerance, low)))
+        if not going.any():
+            if exact:
                 iteration -= 1
                 break
-            if not going.all():
-                r *= going
-        if not exact and (~going | (residual <= np.maximum(tolerance, _DRIFT * refresh))).all():
             g, exact = _gradient(K, p, b, out=g), True
         else:
+            if not going.all():
+                r *= going
             z = precondition(r, out=work)
             z *= free
             rz = dot(r, z)
@@ -133,8 +133,7 @@ def minimise_quadratic(
             Kd = quick(d, out=work)
             curvature = dot(d, Kd)
             stuck |= going & ~((curvature > 0) & (curvature < np.inf))
-            going &= ~stuck
-            if not going.any():
+            if stuck.all():
                 break
             step = ratio(-slope, curvature)
             r, r_old, rz_old, exact = r_old, r, rz, rough
@@ -163,7 +162,7 @@ def minimise_quadratic(
         free = free_nodes(p, g, lower, upper)
         np.multiply(g, free, out=r)
         residual = largest(r)
-        refresh = residual if exact else refresh
+        low = _DRIFT * residual if exact else low
 
     if not exact:
         g = _gradient(K, p, b, out=g)
