@@ -219,6 +219,27 @@ def test_unresolved_depths_are_said(cli, case_text, tmp_path):
     assert not all(row["resolved"] for row in rows)
 
 
+@pytest.mark.parametrize(
+    "roughness",
+    [
+        'kind = "gaussian"\ncorrelation_length = ["6 um", "2 um"]\nlay = "30 deg"',
+        'kind = "self-affine"\nhurst = 0.8\nrolloff = "12 um"\nshortest = "2 um"\nperiodic = false',
+    ],
+)
+def test_skewed_surfaces_with_a_lay_or_a_power_law_run(cli, case_text, tmp_path, roughness):
+    text = case_text.replace('kind = "gaussian"', roughness + "\nskewness = -1.2\nkurtosis = 5.5")
+    (tmp_path / "case.toml").write_text(text.replace('\ncorrelation_length = "2 um"', ""))
+    for verb in ("check", "run", "surface"):
+        arguments = [] if verb == "check" else ["-o", tmp_path / verb]
+        assert cli(verb, tmp_path / "case.toml", *arguments)[0] == 0
+    summary = json.loads((tmp_path / "run" / "summary.json").read_text())
+    asked, found = summary["surface"], summary["surface_statistics"]
+    assert (asked["skewness"], asked["kurtosis"]) == (-1.2, 5.5)
+    assert (found["Ssk"], found["Sku"]) == pytest.approx((-1.2, 5.5), rel=0.05)
+    _, rows = rows_of(tmp_path / "run" / "curve.csv")
+    assert all(0 < row["restitution"] < 1 for row in rows)
+
+
 def test_a_refined_grid_resolves_more(cli, case_text, tmp_path):
     found = []
     for refine in (1, 2):
