@@ -6,19 +6,14 @@ docs/studies/adhesion_figures.csv. Takes some minutes: `python docs/studies/adhe
 
 from __future__ import annotations
 
-import csv
-from pathlib import Path
-
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from shared import IMAGES, PAIR, write_table
 
-from restitution import Body, Contact, Grid, Pair, collide, generate_surface, loading_path, smooth
+from restitution import Contact, Grid, collide, generate_surface, loading_path, smooth
 from restitution.contact.resolution import ADHESIVE_NODES, adhesive_nodes
 
-HERE = Path(__file__).parent
-STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25, density=7850)
-PAIR = Pair(STEEL, STEEL)
 ENERGIES = (0.01, 0.03, 0.09)
 SMOOTH_DEPTHS = np.geomspace(1e-9, 220e-9, 11)
 ROUGH_DEPTHS = np.geomspace(5e-9, 500e-9, 8)
@@ -90,16 +85,13 @@ def draw(rows, name, title):
     axes.set_ylim(-0.03, 1.03)
     axes.legend(frameon=False, fontsize="small")
     FigureCanvasAgg(figure)
-    figure.savefig(HERE.parent / "images" / name, dpi=150)
+    figure.savefig(IMAGES / name, dpi=150)
 
 
 def main():
     """Compute, store and draw."""
     rows = [*smooth_rows(), *rough_rows()]
-    with open(HERE / "adhesion_figures.csv", "w", newline="") as file:
-        writer = csv.DictWriter(file, rows[0], lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    write_table("adhesion_figures.csv", rows)
     draw([r for r in rows if r["surface"] == "smooth"], "adhesion-smooth.png", "Smooth spheres")
     draw([r for r in rows if r["surface"] == "rough"], "adhesion-rough.png",
          "Rough, Rq 0.1 µm; open: adhesion not resolved")  # fmt: skip

@@ -6,19 +6,14 @@ Writes docs/studies/critical_indentation.csv and docs/images/critical-indentatio
 
 from __future__ import annotations
 
-import csv
-from pathlib import Path
-
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from scipy.stats import linregress, t
+from shared import IMAGES, PAIR, STEEL, write_table
 
-from restitution import Body, Contact, Grid, Pair, collide, generate_surface, smooth, solve
+from restitution import Contact, Grid, collide, generate_surface, smooth, solve
 
-HERE = Path(__file__).parent
-STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25)
-PAIR = Pair(STEEL, STEEL)
 GRID = Grid((960, 960), (0.25e-6, 0.25e-6))
 ROUGHNESS = (0.1e-6, 0.2e-6, 0.5e-6, 1e-6)
 LENGTHS = (2e-6, 5e-6)  # correlation lengths
@@ -72,10 +67,7 @@ def main():
                 off = restitutions(Contact(PAIR, surface, 750e6)) / reference - 1
                 table.append({"correlation_length_m": length, "rms_m": rms, "seed": seed,
                               "critical_m": critical(off)})  # fmt: skip
-    with open(HERE / "critical_indentation.csv", "w", newline="") as file:
-        writer = csv.DictWriter(file, list(table[0]), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(table)
+    write_table("critical_indentation.csv", table)
     figure = Figure(figsize=(6.4, 4.4), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.add_subplot(
@@ -93,7 +85,7 @@ def main():
         axes.plot(1e3 * ends, 1e6 * (line.intercept + line.slope * ends), "-", color=f"C{number}")
     axes.grid(alpha=0.3)
     axes.legend()
-    figure.savefig(HERE.parent / "images" / "critical-indentation.png", dpi=150)
+    figure.savefig(IMAGES / "critical-indentation.png", dpi=150)
 
 
 if __name__ == "__main__":

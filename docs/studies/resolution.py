@@ -1,6 +1,6 @@
 """How many nodes a contact needs: restitution on one surface, refined, against its finest grid.
 
-Writes docs/studies/resolution.csv and docs/images/resolution.png. Some minutes:
+Writes docs/studies/resolution.csv and docs/images/resolution.png. Half a minute:
 `python docs/studies/resolution.py`.
 
 Every grid is pressed to the same depth below the highest point of the finest, so that what is
@@ -9,19 +9,14 @@ compared is the contact and not where its first touch lies between the nodes.
 
 from __future__ import annotations
 
-import csv
-from pathlib import Path
-
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from shared import IMAGES, PAIR, write_table
 
-from restitution import Body, Contact, Grid, Pair, collide, generate_surface, refine, solve
+from restitution import Contact, Grid, collide, generate_surface, refine, solve
 from restitution.contact.resolution import NODES_PER_PATCH, median_patch
 
-HERE = Path(__file__).parent
-STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25)
-PAIR = Pair(STEEL, STEEL)
 GRID = Grid((256, 256), (0.25e-6, 0.25e-6))
 FACTORS = (1, 2, 4, 8)
 DEPTHS = np.array([5, 8, 20, 50, 100, 200, 400]) * 1e-9
@@ -74,10 +69,7 @@ def errors(table):
 def main():
     """Compute, print and draw."""
     table = list(rows())
-    with open(HERE / "resolution.csv", "w", newline="") as file:
-        writer = csv.DictWriter(file, list(table[0]), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(table)
+    write_table("resolution.csv", table)
     largest, median, off = np.array(list(errors(table))).T
     print("| nodes | cases | rms | 90 % within | worst |\n|---|---|---|---|---|")
     for name, nodes in (("largest patch", largest), ("median patch", median)):
@@ -98,7 +90,7 @@ def main():
     axes.axhspan(-2, 2, color="0.9", zorder=0)
     axes.axvline(NODES_PER_PATCH, color="0.3", linewidth=1, linestyle="--")
     axes.grid(alpha=0.3)
-    figure.savefig(HERE.parent / "images" / "resolution.png", dpi=150)
+    figure.savefig(IMAGES / "resolution.png", dpi=150)
 
 
 if __name__ == "__main__":

@@ -1,24 +1,19 @@
 """Shallow depths on the paper's grid and on one eight times finer: its claims about 8 and 50 nm.
 
-Writes docs/studies/shallow.csv and docs/images/shallow.png. Some minutes:
+Writes docs/studies/shallow.csv and docs/images/shallow.png. Half a minute:
 `python docs/studies/shallow.py`.
 """
 
 from __future__ import annotations
 
-import csv
-from pathlib import Path
-
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from shared import IMAGES, PAIR, write_table
 
-from restitution import Body, Contact, Grid, Pair, collide, generate_surface, refine, solve
+from restitution import Contact, Grid, collide, generate_surface, refine, solve
 from restitution.contact.resolution import median_patch, resolves
 
-HERE = Path(__file__).parent
-STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25)
-PAIR = Pair(STEEL, STEEL)
 GRID = Grid((256, 256), (0.25e-6, 0.25e-6))
 ROUGHNESS = (0.1e-6, 0.2e-6, 0.5e-6, 1e-6)
 SEEDS = (1, 2, 3)
@@ -68,16 +63,13 @@ def draw(table):
         axes.grid(alpha=0.3)
     panels[0].set_ylabel("coefficient of restitution")
     panels[0].legend(fontsize=8)
-    figure.savefig(HERE.parent / "images" / "shallow.png", dpi=150)
+    figure.savefig(IMAGES / "shallow.png", dpi=150)
 
 
 def main():
     """Compute, print and draw."""
     table = list(rows())
-    with open(HERE / "shallow.csv", "w", newline="") as file:
-        writer = csv.DictWriter(file, list(table[0]), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(table)
+    write_table("shallow.csv", table)
     draw(table)
     print("| depth, nm | grid | one node | COR at Rq = 0.1, 0.2, 0.5, 1 µm (means of 3) |")
     print("|---|---|---|---|")

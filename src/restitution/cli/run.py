@@ -53,11 +53,7 @@ def run(
     )
     depths = len(read.depths())
     try:
-        with (
-            naming(case),
-            on_device(device.value),
-            Progress(*columns, console=errors, transient=True) as bar,
-        ):
+        with naming(case), Progress(*columns, console=errors, transient=True) as bar:
             task = bar.add_task("reading the surface", total=depths)
             summary = run_case(
                 read, text, case.parent, folder,

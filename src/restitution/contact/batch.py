@@ -1,7 +1,7 @@
 """Many contacts solved in one call: realisations of a surface, or depths.
 
 The contacts of a batch are solved together on one box, each with steps of its own. That keeps a GPU
-busy where one small contact cannot; on this machine it saves what calls cost on small boxes.
+busy where one small contact cannot; on two cores it is no faster than one by one (docs/speed.md).
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import (
     MAX_ITERATIONS,
     RESIDUAL,
+    not_converged,
     overlap,
     parted,
     reach,
@@ -25,7 +26,7 @@ from restitution.contact.equilibrium import (
     system_of,
 )
 from restitution.contact.state import State
-from restitution.errors import CaseError, NotConvergedError
+from restitution.errors import CaseError
 from restitution.numerics.device import current
 from restitution.numerics.nesting import minimise_nested
 from restitution.numerics.window import union
@@ -59,17 +60,13 @@ def solve_batch(
     reached = device.get(found.residual)[:, 0, 0] / scales
     if not found.converged.all():
         worst = int(reached.argmax())
-        raise NotConvergedError(
-            f"contact {worst + 1} of {len(contacts)} at an indentation of "
-            f"{1e9 * indentations[worst]:.6g} nm stopped at a residual of {reached[worst]:.1e} "
-            f"(asked: {residual:.0e}) after {found.iterations} iterations; ask for a larger "
-            "residual, or smooth or refine the surface"
-        )
+        raise not_converged(f"contact {worst + 1} of {len(contacts)}", indentations[worst],
+                            reached[worst], residual, found.iterations)  # fmt: skip
     states = [
-        settled(contact, depth, box, pressure, gradient, limit=contact.yield_pressure, history=None,
-                residual=float(its_residual), convolutions=convolutions)
-        for contact, depth, pressure, gradient, its_residual in zip(
-            contacts, indentations, device.get(found.point), device.get(found.gradient), reached,
+        settled(contact, depth, box, its_b, pressure, gradient, limit=contact.yield_pressure,
+                history=None, residual=float(its_residual), convolutions=convolutions)
+        for contact, depth, its_b, pressure, gradient, its_residual in zip(
+            contacts, indentations, b, device.get(found.point), device.get(found.gradient), reached,
             strict=True,
         )
     ]  # fmt: skip
@@ -88,8 +85,7 @@ def _refuse_unlike(contacts: Sequence[Contact], indentations: Sequence[float]) -
     for contact, depth in zip(contacts, indentations, strict=True):
         if not 0 < depth < math.inf:
             raise CaseError(f"indentation: {depth} m is not a positive depth")
-        cut = contact.plasticity == "truncated" and math.isfinite(contact.yield_pressure)
-        if contact.adhesive or cut:
+        if contact.adhesive or contact.cut:
             raise CaseError("a batch holds contacts without adhesion in the equilibrium model only")
         if (contact.grid, contact.pair.contact_modulus) != (first.grid, first.pair.contact_modulus):
             raise CaseError("the contacts of a batch have one grid and one contact modulus")

@@ -58,6 +58,11 @@ class Contact:
                 raise CaseError(f'{name}: "{value}" is not one of {", ".join(known)}')
 
     @property
+    def cut(self) -> bool:
+        """Whether the elastic pressure is cut at p_y (`truncated`)."""
+        return self.plasticity == "truncated" and math.isfinite(self.yield_pressure)
+
+    @property
     def adhesive(self) -> bool:
         """Whether nodes in contact can carry tension."""
         return self.work_of_adhesion > 0

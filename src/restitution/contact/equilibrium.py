@@ -81,14 +81,21 @@ def equilibrate(
         convolutions = K.count
     reached = float(found.residual.max()) / scale
     if not found.converged.all():
-        raise NotConvergedError(
-            f"the solve at an indentation of {1e9 * indentation:.6g} nm stopped at a residual of "
-            f"{reached:.1e} (asked: {residual:.0e}) after {found.iterations} iterations; "
-            "ask for a larger residual, or smooth or refine the surface"
-        )
-    return settled(contact, indentation, box, device.get(found.point), device.get(found.gradient),
-                   limit=limit, history=history, residual=reached,
+        raise not_converged("the solve", indentation, reached, residual, found.iterations)
+    return settled(contact, indentation, box, b, device.get(found.point),
+                   device.get(found.gradient), limit=limit, history=history, residual=reached,
                    convolutions=convolutions)  # fmt: skip
+
+
+def not_converged(
+    what: str, indentation: float, reached: float, asked: float, iterations: int
+) -> NotConvergedError:
+    """The refusal of a solve at `indentation` (m) that stopped at the residual `reached`."""
+    return NotConvergedError(
+        f"{what} at an indentation of {1e9 * indentation:.6g} nm stopped at a residual of "
+        f"{reached:.1e} (asked: {asked:.0e}) after {iterations} iterations; ask for a larger "
+        "residual, or smooth or refine the surface"
+    )
 
 
 def overlap(contact: Contact, indentation: float, box: Box, history: State | None = None) -> Array:
@@ -121,6 +128,7 @@ def settled(
     contact: Contact,
     indentation: float,
     box: Box,
+    b: Array,
     pressure: Array,
     gradient: Array,
     *,
@@ -129,17 +137,16 @@ def settled(
     residual: float,
     convolutions: int,
 ) -> State:
-    """The state with that pressure and deformed gap on `box`: what yields has given way."""
+    """The state with that overlap `b`, pressure and deformed gap: what yields has given way."""
     plastic, work, adhesive_work, work_error = _past(contact, history)
     yielding = (pressure >= limit) & (gradient < 0)
-    displacement = gradient + overlap(contact, indentation, box, history)
     if yielding.any():
         sinking = np.where(yielding, -gradient, 0.0)
         if history is not None:
             plastic = plastic.copy()
         plastic[box] += sinking
         work += limit * float(sinking.sum()) * contact.grid.cell_area
-    return State(contact, indentation, box, pressure, displacement, plastic,
+    return State(contact, indentation, box, pressure, gradient + b, plastic,
                  work, adhesive_work, work_error, residual, convolutions)  # fmt: skip
 
 

@@ -92,7 +92,7 @@ def load(contact: Contact, indentation: float, *, start: State | None, residual:
         state = replace(state, adhesive_work=0.0, virgin=True)
     else:
         state = _press(contact, indentation, limit_of(contact), residual)
-    if contact.plasticity == "truncated" and math.isfinite(contact.yield_pressure):
+    if contact.cut:
         state = _cut(state)
     return state
 
@@ -130,8 +130,7 @@ def _cut(elastic: State) -> State:
 
 
 def _work_is_integrated(contact: Contact) -> bool:
-    cut = contact.plasticity == "truncated" and math.isfinite(contact.yield_pressure)
-    return cut or (contact.adhesive and contact.approach != "hertzian")
+    return contact.cut or (contact.adhesive and contact.approach != "hertzian")
 
 
 def _integrate_work(state: State, start: State | None) -> State:
@@ -161,7 +160,7 @@ def _gain_hardly_matters(state: State) -> bool:
     contact = state.contact
     if not contact.adhesive or contact.approach != "equilibrium":
         return False
-    if contact.plasticity == "truncated" and math.isfinite(contact.yield_pressure):
+    if contact.cut:
         return False
     gain = contact.work_of_adhesion * state.contact_area
     return gain <= 2 * _ADHESIVE_TOLERANCE * (state.stored_energy + state.plastic_work)

@@ -58,12 +58,10 @@ def separate(state: State, *, tolerance: float = RESTITUTION_ERROR) -> Iterator[
         separation = separation_of(path)
         returned, given = separation.unloading_work, state.loading_work
         # e = sqrt(W_u/W_l) makes 2 de/e = dW_u/W_u + dW_l/W_l. A pair that sticks has no e.
-        if (
-            returned <= 0
-            or given <= 0
-            or separation.error / returned + state.work_error / given
-            <= (2 * tolerance / math.sqrt(returned / given))
-        ):
+        if returned <= 0 or given <= 0:
+            break
+        error = separation.error / returned + state.work_error / given
+        if 0.5 * math.sqrt(returned / given) * error <= tolerance:
             break
     yield from path
 

@@ -24,6 +24,7 @@ import xarray as xr
 from restitution.collision import Collision
 from restitution.contact.resolution import (
     ADHESIVE_NODES,
+    NODES_PER_PATCH,
     adhesive_nodes,
     median_patch,
     resolves,
@@ -51,9 +52,17 @@ COLUMNS: dict[str, tuple[str, str, str]] = {
     "separation_indentation_m": ("separation_indentation", "m", "where the bodies part"),
     "restitution_error": ("restitution_error", "1", "numerical error of the restitution"),
     "sticks": ("sticks", "1", "nothing is returned: the pair does not come apart by itself"),
-    "adhesion_resolved": ("adhesion_resolved", "1", "pull-off radius of at least 4 nodes"),
+    "adhesion_resolved": (
+        "adhesion_resolved",
+        "1",
+        f"pull-off radius of at least {ADHESIVE_NODES} nodes",
+    ),
     "median_patch_nodes": ("median_patch_nodes", "1", "nodes in the patch of the median node"),
-    "resolved": ("resolved", "1", "half of the contact in patches of at least 20 nodes"),
+    "resolved": (
+        "resolved",
+        "1",
+        f"half of the contact in patches of {NODES_PER_PATCH} nodes or more",
+    ),
 }
 UNLOADING_COLUMNS = ("indentation_max_m", "indentation_m", "force_N")
 

@@ -106,11 +106,7 @@ class SelfAffine:
         rolloff, shortest = self.rolloff, self.shortest or 2 * max(grid.spacing)
         if rolloff is None:
             return
-        if not (math.isfinite(rolloff) and rolloff > 0):
-            raise SurfaceError(
-                f"roughness.rolloff: {rolloff:g} m is not a positive wavelength; give one such as "
-                '"10 um", or leave it out for a power law up to the domain'
-            )
+        _check_positive("rolloff", rolloff)
         if not shortest < rolloff <= max(grid.size):
             raise SurfaceError(
                 f"roughness.rolloff: {rolloff * 1e6:g} um is not between the shortest wavelength, "
@@ -167,14 +163,18 @@ def _check_correlation_length(where: str, beta: float, spacing: float, size: flo
 def _check_shortest(shortest: float | None, grid: Grid) -> None:
     if shortest is None:
         return
-    if not (math.isfinite(shortest) and shortest > 0):
-        raise SurfaceError(
-            f"roughness.shortest: {shortest:g} m is not a positive wavelength; give one such as "
-            '"1 um", or leave it out'
-        )
+    _check_positive("shortest", shortest)
     if not 2 * max(grid.spacing) <= shortest < max(grid.size):
         raise SurfaceError(
             f"roughness.shortest: {shortest * 1e6:g} um is no wavelength that the grid can hold "
             f"({2e6 * max(grid.spacing):g} to {1e6 * max(grid.size):g} um); refine grid.spacing, "
             "or leave it out"
+        )
+
+
+def _check_positive(name: str, wavelength: float) -> None:
+    if not (math.isfinite(wavelength) and wavelength > 0):
+        raise SurfaceError(
+            f"roughness.{name}: {wavelength:g} m is not a positive wavelength; give one such as "
+            '"10 um", or leave it out'
         )

@@ -1,0 +1,21 @@
+"""What the studies share: two steel spheres, and how their numbers are kept."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+from restitution import Body, Pair
+
+HERE = Path(__file__).parent
+IMAGES = HERE.parent / "images"
+STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25, density=7850)
+PAIR = Pair(STEEL, STEEL)  # R* = 250 um, E* = 112 GPa
+
+
+def write_table(name: str, rows: list[dict]) -> None:
+    """Write `rows` as `name` beside the studies."""
+    with open(HERE / name, "w", newline="") as file:
+        writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
