@@ -16,12 +16,16 @@ if TYPE_CHECKING:
     from restitution.numerics.grid import Grid
     from restitution.surfaces import (
         Surface,
+        composite,
+        crop,
         describe,
+        extend,
         generate_surface,
         level,
         place_on_grid,
         read_surface,
         refine,
+        remove_outliers,
     )
 
 __all__ = [
@@ -34,7 +38,10 @@ __all__ = [
     "State",
     "Surface",
     "collide",
+    "composite",
+    "crop",
     "describe",
+    "extend",
     "generate_surface",
     "level",
     "loading_path",
@@ -42,6 +49,7 @@ __all__ = [
     "place_on_grid",
     "read_surface",
     "refine",
+    "remove_outliers",
     "smooth",
     "solve",
     "solve_at_force",
@@ -66,12 +74,16 @@ _HOMES = {
     "numerics.grid": ("Grid",),
     "surfaces": (
         "Surface",
+        "composite",
+        "crop",
         "describe",
+        "extend",
         "generate_surface",
         "level",
         "place_on_grid",
         "read_surface",
         "refine",
+        "remove_outliers",
     ),
 }
 

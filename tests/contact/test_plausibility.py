@@ -59,5 +59,5 @@ def test_a_yield_pressure_that_no_such_body_has(yield_pressure, said):
 def test_a_grid_coarser_than_the_scan():
     (line,) = implausible(measured(ROUGH, pixel_x_m=0.5e-6, pixel_y_m=0.2e-6), 1e-7)
     assert "spacing 0.5 um is coarser than the scan's pixel 0.2 um along y" in line
-    assert "shorter than 1 um are aliased" in line
+    assert "shorter than 1 um are taken out" in line
     assert implausible(measured(ROUGH, pixel_x_m=0.5e-6, pixel_y_m=0.7e-6), 1e-7) == []

@@ -55,10 +55,10 @@ def test_smooth_surfaces_are_interpolated_accurately(spacing):
 def test_interpolation_converges_with_fourth_order():
     grid = Grid((20, 20), (0.07e-6, 0.07e-6))
     errors = []
-    for n in (51, 101, 201):
+    for n in (51, 71, 101, 141):
         scan = wave(Grid((n, n), (10e-6 / n, 10e-6 / n)))
         errors.append(abs(place_on_grid(scan, grid).height - wave(grid).height).max())
-    orders = np.diff(-np.log(errors)) / np.diff(np.log([51, 101, 201]))
+    orders = np.diff(-np.log(errors)) / np.diff(np.log([51, 71, 101, 141]))
     assert orders.min() > 3.5
 
 
@@ -75,13 +75,32 @@ def test_rim_is_held_not_extrapolated():
     np.testing.assert_allclose(placed.height[:, 0], np.clip(fine.x, x.min(), x.max()), atol=1e-18)
 
 
-def test_coarser_grid_samples_and_says_what_aliases():
-    placed = place_on_grid(ROUGH, Grid((20, 15), (0.2e-6, 0.4e-6)))
-    # Node 10, 7 of the coarse grid is node 20, 15 of the fine one: the origin.
-    np.testing.assert_allclose(placed.height, ROUGH.height[::2, 1:31:2], atol=1e-19)
+def test_a_coarser_grid_gets_the_waves_it_can_carry_and_says_so():
+    scan = Grid((120, 96), (0.1e-6, 0.1e-6))
+    grid = Grid((40, 32), (0.3e-6, 0.3e-6))
+
+    def sines(on, *numbers):
+        # Waves that fit between the first and the last pixel: k half periods.
+        length = scan.x[-1] - scan.x[0]
+        wave = sum(np.sin(np.pi * k * (on.x - scan.x[0]) / length) for k in numbers)
+        return wave[:, None] + np.zeros((1, on.nodes[1]))
+
+    placed = place_on_grid(Surface(sines(scan, 10, 61), scan), grid)
+    np.testing.assert_allclose(placed.height, sines(grid, 10), atol=1e-3)
+    long = place_on_grid(Surface(sines(scan, 10), scan), grid)
+    np.testing.assert_allclose(placed.height, long.height, atol=1e-12)
     text = placed.provenance["placement"]
-    assert text.startswith("sampled every 0.2 x 0.4 um from pixels of 0.1 x 0.2 um")
-    assert "shorter than 0.4 x 0.8 um" in text
+    assert text.startswith("sampled every 0.3 x 0.3 um from pixels of 0.1 x 0.1 um")
+    assert "waves shorter than 0.6 x 0.6 um were taken out" in text
+
+
+def test_only_the_axis_that_is_coarser_loses_waves():
+    placed = place_on_grid(ROUGH, Grid((10, 31), (0.4e-6, 0.2e-6)))
+    again = place_on_grid(
+        Surface(ROUGH.height.T, Grid((31, 40), (0.2e-6, 0.1e-6))), Grid((31, 10), (0.2e-6, 0.4e-6))
+    )
+    np.testing.assert_allclose(placed.height, again.height.T, atol=1e-20)
+    assert placed.height.std() < ROUGH.height.std()
 
 
 def test_provenance_keeps_the_source_and_the_coarsest_pixel():
@@ -100,7 +119,8 @@ def test_grid_that_reaches_beyond_the_scan_is_refused():
         place_on_grid(ROUGH, Grid((10, 64), (0.1e-6, 0.1e-6)))
     assert str(caught.value) == (
         "grid: its 1 x 6.4 um reach beyond the surface of 4 x 6.2 um; use a smaller grid.nodes or "
-        "grid.spacing, or a larger scan"
+        "grid.spacing, a larger scan, or "
+        "roughness.extend"
     )
 
 

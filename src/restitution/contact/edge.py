@@ -64,5 +64,5 @@ def edge_advice(contact: Contact, indentation: float) -> str:
     if edges[0] <= scan[0] and edges[1] <= scan[1]:
         larger = f"a grid of about {size} (the scan has {1e6 * scan[0]:.3g} x {1e6 * scan[1]:.3g})"
     else:
-        larger = "a larger scan"
+        larger = "a larger scan, roughness.extend"
     return f"{where}use {detrend}{larger}, a smaller radius, or stop at a smaller indentation"

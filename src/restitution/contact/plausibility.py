@@ -22,16 +22,16 @@ def implausible(contact: Contact, indentation: float) -> list[str]:
     """What the input of `contact` says against loading it to `indentation` (m)."""
     checks = (
         _tilt(contact), _edge(contact, indentation), _steepness(contact),
-        _yield_pressure(contact), _coarse_grid(contact),
+        _yield_pressure(contact), _coarse_grid(contact), _made_up(contact),
     )  # fmt: skip
     return [line for line in checks if line]
 
 
 def _tilt(contact: Contact) -> str | None:
     surface = contact.surface
-    if surface.provenance.get("source") != "measured":
-        return None
-    if surface.provenance.get("levelling") not in ("none", "center"):
+    # Of a composite each part has its own.
+    levelled = {value for key, value in surface.provenance.items() if key.endswith("levelling")}
+    if not levelled & {"none", "center"}:
         return None
     variance = float(np.var(surface.height))
     explained = 1 - float(np.var(level(surface, "tilt").height)) / variance if variance else 0.0
@@ -91,6 +91,12 @@ def _coarse_grid(contact: Contact) -> str | None:
             return (
                 f"the grid spacing {1e6 * h:.3g} um is coarser than the scan's pixel "
                 f"{1e6 * pixel:.3g} um along {axis}: waves shorter than {2e6 * h:.3g} um are "
-                "aliased; use the pixel as grid.spacing"
+                "taken out of it; use the pixel as grid.spacing to keep them"
             )
     return None
+
+
+def _made_up(contact: Contact) -> str | None:
+    """What the surface says of itself where it is not what was measured."""
+    notice = contact.surface.provenance.get("notice")
+    return None if notice is None else str(notice)

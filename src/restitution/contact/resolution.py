@@ -88,7 +88,7 @@ def adhesion_warning(depths: Sequence[float], nodes: Sequence[float]) -> str | N
 def refuse_coarse_scan(contact: Contact, indentation: float) -> None:
     """Raise `SurfaceError` when one pixel of a scan is larger than the contact at `indentation`."""
     provenance = contact.surface.provenance
-    if provenance.get("source") != "measured":
+    if "file" not in provenance:
         return
     pixel = max(_coarsest_pixel(contact), *contact.grid.spacing)
     radius = foreseen_radius(contact.pair, indentation, contact.yield_pressure)
@@ -107,7 +107,7 @@ def foreseen_warnings(contact: Contact, indentation: float) -> list[str]:
     pixel = _coarsest_pixel(contact)
     half_width, coarsest = 0.5 * min(grid.size), max(pixel, *grid.spacing)
     found = []
-    larger = "a larger scan" if grid_of_a_scan(contact) else "more nodes"
+    larger = "a larger scan, roughness.extend" if grid_of_a_scan(contact) else "more nodes"
     if radius >= half_width:
         found.append(
             f"the contact is foreseen to reach {_um(radius)} from the centre at an indentation of "

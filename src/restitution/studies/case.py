@@ -1,4 +1,4 @@
-"""The case file: what it may say, checked, and turned into bodies, surface and contact."""
+"""The case file: its tables together, and what is said of one that is wrong."""
 
 from __future__ import annotations
 
@@ -8,206 +8,44 @@ import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any, Generic, Literal, Self, TypeVar, cast
+from typing import Annotated, Any, cast
 
-import numpy as np
-from pydantic import (
-    AfterValidator,
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
-    Field,
-    ValidationError,
-    model_validator,
-)
+from pydantic import BeforeValidator, ValidationError, model_validator
 
-from restitution.collision import UnloadingMethod
-from restitution.contact.bodies import Body, Pair
-from restitution.contact.contact import Approach, Contact, Plasticity, smooth
-from restitution.contact.detachment import Detachment
-from restitution.contact.separation import RESTITUTION_ERROR
+from restitution.contact.bodies import Pair
+from restitution.contact.contact import Contact, smooth
 from restitution.errors import CaseError, SurfaceError, shown
 from restitution.numerics.grid import Grid
-from restitution.studies.quantities import Angle, Density, Force, Length, Pressure, SurfaceEnergy
-from restitution.surfaces import (
-    Surface,
-    generate_surface,
-    level,
-    place_on_grid,
-    read_surface,
-    refine,
+from restitution.studies.quantities import Force, Length
+from restitution.studies.tables import (
+    MOST_STEPS,
+    BodyTable,
+    CropTable,
+    GeneratedRoughness,
+    GridTable,
+    InterfaceTable,
+    MeasuredRoughness,
+    Roughness,
+    Series,
+    Table,
+    UnloadingTable,
 )
-from restitution.surfaces.generate import RoughnessKind
-
-MOST_NODES = 2**27  # of a grid: more do not fit into the memory of common machines
-MOST_STEPS = 10_000  # of a curve
+from restitution.surfaces import Surface, composite, refine
 
 
-class _Table(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, populate_by_name=True)
+def _one_or_more(value: Any) -> Any:
+    """One table, or a list of them."""
+    return tuple(value) if isinstance(value, list) else (value,)
 
 
-def _two(value: Any) -> Any:
-    """One value for both axes, or a list of two."""
-    if not isinstance(value, list):
-        return value, value
-    if len(value) != 2:
-        raise ValueError(f"{shown(value)} should be one value, or a list of two (for x and y)")
-    return tuple(value)
-
-
-Nodes = Annotated[int, Field(gt=0)]
-PairOf = BeforeValidator(_two)
-
-
-def _few_enough(nodes: tuple[int, int]) -> tuple[int, int]:
-    if nodes[0] * nodes[1] > MOST_NODES:
-        raise ValueError(
-            f"{shown(nodes[0])} x {shown(nodes[1])} nodes are more than a grid may have "
-            f"({MOST_NODES} in all); give fewer, or a larger spacing"
-        )
-    return nodes
-
-
-def _flat_is_infinite(value: Any) -> Any:
-    return None if value == "flat" else value
-
-
-class BodyTable(_Table):
-    """`[first]` and `[second]`."""
-
-    radius: Annotated[Length | None, BeforeValidator(_flat_is_infinite)]
-    youngs_modulus: Pressure
-    poissons_ratio: Annotated[float, Field(gt=-1, le=0.5)]
-    density: Density | None = None
-
-    def body(self) -> Body:
-        """The body this table describes."""
-        radius = math.inf if self.radius is None else self.radius
-        return Body(radius, self.youngs_modulus, self.poissons_ratio, self.density)
-
-
-class InterfaceTable(_Table):
-    """`[interface]`; omitted: elastic."""
-
-    yield_pressure: Pressure | None = None
-    plasticity: Plasticity = "equilibrium"
-    work_of_adhesion: SurfaceEnergy = 0.0
-    approach: Approach = "equilibrium"
-    detachment: Detachment = "crack-closure"
-    equilibrium_separation: Length = 0.3e-9
-
-    @model_validator(mode="after")
-    def _truncated_at(self) -> Self:
-        if self.plasticity == "truncated" and self.yield_pressure is None:
-            raise ValueError(
-                'plasticity = "truncated" needs the pressure to cut at; give yield_pressure, or '
-                "leave plasticity out for elastic bodies"
-            )
-        return self
-
-
-class GeneratedRoughness(_Table):
-    """`[roughness]` with `kind` exponential, gaussian or self-affine."""
-
-    kind: RoughnessKind
-    rms: Length
-    seed: Annotated[int, Field(ge=0, lt=2**63)]
-    correlation_length: Annotated[tuple[Length, Length], PairOf] | None = None
-    lay: Angle = 0.0
-    hurst: float | None = None
-    rolloff: Length | None = None
-    shortest: Length | None = None
-    skewness: float = 0.0
-    kurtosis: float = 3.0
-    periodic: bool = True
-
-
-class MeasuredRoughness(_Table):
-    """`[roughness]` with `kind = "measured"`."""
-
-    kind: Literal["measured"]
-    file: Annotated[str, Field(min_length=1)]
-    channel: Annotated[int, Field(ge=0)] | None = None
-    detrend: Literal["none", "center", "tilt", "curvature"] = "none"
-    size: Annotated[tuple[Length, Length], PairOf] | None = None
-    undefined: Literal["error", "interpolate"] = "error"
-
-
-Roughness = Annotated[GeneratedRoughness | MeasuredRoughness, Field(discriminator="kind")]
-
-
-class GridTable(_Table):
-    """`[grid]`; may be omitted for a measured surface, which brings its own."""
-
-    nodes: Annotated[tuple[Nodes, Nodes], PairOf, AfterValidator(_few_enough)]
-    spacing: Annotated[tuple[Length, Length], PairOf]
-    refine: Literal[1, 2, 4, 8] = 1
-
-    @model_validator(mode="after")
-    def _not_too_fine(self) -> Self:
-        nx, ny = self.nodes
-        _few_enough((self.refine * nx, self.refine * ny))
-        return self
-
-
-Quantity = TypeVar("Quantity")
-
-
-class Series(_Table, Generic[Quantity]):
-    """`[indentation]` and `[load]`: a span with steps, or a list of values."""
-
-    from_: Annotated[Quantity | None, Field(alias="from")] = None
-    to: Quantity | None = None
-    steps: Annotated[int, Field(gt=0, le=MOST_STEPS)] | None = None
-    scale: Literal["log", "linear"] = "log"
-    values: Annotated[list[Quantity], Field(min_length=1, max_length=MOST_STEPS)] | None = None
-
-    @model_validator(mode="after")
-    def _one_way(self) -> Self:
-        span = (self.from_, self.to, self.steps)
-        if self.values is not None:
-            if span != (None, None, None):
-                raise ValueError("give either values or from, to and steps, not both")
-        elif None in span:
-            raise ValueError("give from, to and steps (or values = [...])")
-        elif self.from_ == self.to:
-            raise ValueError("from and to are the same; for one depth or load use values = [...]")
-        elif not cast(float, self.from_) < cast(float, self.to):
-            raise ValueError("from must be smaller than to")
-        elif self.steps == 1:
-            raise ValueError(
-                "steps = 1 does not reach from one to the other; give at least 2, or for one depth "
-                "or load use values = [...]"
-            )
-        return self
-
-    def series(self) -> list[float]:
-        """The values asked for, in SI units, increasing."""
-        if self.values is not None:
-            return sorted(cast(set[float], set(self.values)))
-        space = np.geomspace if self.scale == "log" else np.linspace
-        first, last = cast(float, self.from_), cast(float, self.to)
-        return [float(v) for v in space(first, last, cast(int, self.steps))]
-
-
-class UnloadingTable(_Table):
-    """`[unloading]`: which curves are written, and how unloading is computed."""
-
-    curves: Annotated[int, Field(ge=0, le=MOST_STEPS)] = 3
-    steps: Annotated[int, Field(ge=4, le=MOST_STEPS)] = 16
-    method: UnloadingMethod = "path"
-    restitution_error: Annotated[float, Field(gt=0, lt=1)] = RESTITUTION_ERROR
-
-
-class Case(_Table):
+class Case(Table):
     """A whole case file, in SI units."""
 
     title: str = ""
     first: BodyTable
     second: BodyTable | None = None
     interface: InterfaceTable = InterfaceTable()
-    roughness: Roughness | None = None
+    roughness: Annotated[tuple[Roughness, ...], BeforeValidator(_one_or_more)] = ()
     grid: GridTable | None = None
     indentation: Series[Length] | None = None
     load: Series[Force] | None = None
@@ -220,9 +58,47 @@ class Case(_Table):
             raise ValueError(
                 f"give one of the tables [indentation] and [load]; {which} in this case"
             )
-        if self.grid is None and not isinstance(self.roughness, MeasuredRoughness):
-            raise ValueError("the table [grid] is missing; only a measured surface brings its own")
+        if self._own_grid() is None:
+            self._check_scan_brings_grid()
+        if len({part.realisations for part in self.roughness} - {1}) > 1:
+            raise ValueError("roughness.realisations: differs between the tables; give one number")
         return self
+
+    def _check_scan_brings_grid(self) -> None:
+        if len(self.roughness) == 1 and isinstance(self.roughness[0], MeasuredRoughness):
+            if self.roughness[0].extend is None:
+                return
+            why = "roughness.extend says how a scan is continued, not how far"
+        elif self.roughness:
+            why = "only a single measured surface brings its own"
+        else:
+            why = "only a measured surface brings its own"
+        if self.grid is None:
+            raise ValueError(f"the table [grid] is missing; {why}")
+        raise ValueError(f"grid: nodes and spacing are missing; {why}")
+
+    def _own_grid(self) -> Grid | None:
+        return None if self.grid is None else self.grid.grid()
+
+    @property
+    def realisations(self) -> int:
+        """How many surfaces are to be made of this roughness."""
+        return max((part.realisations for part in self.roughness), default=1)
+
+    def realisation(self, number: int) -> Case:
+        """This case with one surface, the `number`th (from 0): so much is added to the seeds."""
+        parts = tuple(
+            part.model_copy(update={"seed": cast(int, part.seed) + number, "realisations": 1})
+            if part.realisations > 1
+            else part
+            for part in self.roughness
+        )
+        return self.model_copy(update={"roughness": parts})
+
+    def refined(self, factor: int) -> Case:
+        """This case on cells `factor` times as small as [grid] says, whatever its `refine`."""
+        grid = (self.grid or GridTable()).model_copy(update={"refine": factor})
+        return self.model_copy(update={"grid": grid})
 
     def pair(self) -> Pair:
         """The two bodies; `CaseError` when both are flat."""
@@ -236,27 +112,15 @@ class Case(_Table):
 
     def surface(self, folder: Path) -> Surface:
         """The composite roughness on the grid; files are relative to `folder`."""
-        if self.grid is None:
-            return self._scan(folder)
-        grid = Grid(self.grid.nodes, self.grid.spacing)
-        if self.roughness is None:
-            surface = smooth(grid)
-        elif isinstance(self.roughness, GeneratedRoughness):
-            surface = generate_surface(grid, **dict(self.roughness))
+        grid = self._own_grid()
+        if grid is None:
+            (scan,) = cast(tuple[MeasuredRoughness], self.roughness)  # _whole
+            surface = scan.scan(folder)
+        elif self.roughness:
+            surface = composite([part.surface(grid, folder) for part in self.roughness])
         else:
-            surface = place_on_grid(self._scan(folder), grid)
-        return refine(surface, self.grid.refine)
-
-    def _scan(self, folder: Path) -> Surface:
-        assert isinstance(self.roughness, MeasuredRoughness)  # _whole
-        scan = read_surface(
-            folder / self.roughness.file,
-            channel=self.roughness.channel,
-            size=self.roughness.size,
-            undefined=self.roughness.undefined,
-        )
-        # Levelled as a whole before any part is cut out: the form belongs to the scan.
-        return level(scan, self.roughness.detrend)
+            surface = smooth(grid)
+        return surface if self.grid is None else refine(surface, self.grid.factor)
 
     def contact(self, folder: Path) -> Contact:
         """Everything before the first solve; files are relative to `folder`."""
@@ -338,7 +202,7 @@ _WORDS = {
 
 def _keys(problem: Any) -> list[str]:
     # The tags of a union ("gaussian") and the places in a list are not keys of the file.
-    tags = {"exponential", "gaussian", "measured"}
+    tags = {"exponential", "gaussian", "self-affine", "measured"}
     return [str(k) for k in problem["loc"] if isinstance(k, str) and k not in tags]
 
 
@@ -371,7 +235,9 @@ def _in_words(problem: Any) -> str:
 
 def _keys_of(path: list[str], loc: tuple[Any, ...]) -> list[str]:
     """The keys that the table at `path` knows, as written in the file."""
-    tables: dict[str, type[_Table]] = {
+    if path[:2] == ["roughness", "crop"]:
+        return list(CropTable.model_fields)
+    tables: dict[str, type[Table]] = {
         "first": BodyTable, "second": BodyTable, "interface": InterfaceTable, "grid": GridTable,
         "indentation": Series[Length], "load": Series[Force], "unloading": UnloadingTable,
         "roughness": MeasuredRoughness if "measured" in loc else GeneratedRoughness,

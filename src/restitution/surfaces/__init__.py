@@ -1,6 +1,9 @@
-"""Height maps: generate them, read measured ones, level, place on a grid and describe them."""
+"""Height maps: generate or read them, clean, level, extend, place on a grid and describe them."""
 
+from restitution.surfaces.clean import crop, remove_outliers
+from restitution.surfaces.composite import composite
 from restitution.surfaces.describe import describe, rms_slope
+from restitution.surfaces.extend import extend
 from restitution.surfaces.generate import generate_surface
 from restitution.surfaces.level import level
 from restitution.surfaces.measured import read_surface
@@ -10,11 +13,15 @@ from restitution.surfaces.surface import Surface
 
 __all__ = [
     "Surface",
+    "composite",
+    "crop",
     "describe",
+    "extend",
     "generate_surface",
     "level",
     "place_on_grid",
     "read_surface",
     "refine",
+    "remove_outliers",
     "rms_slope",
 ]

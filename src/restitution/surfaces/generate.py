@@ -18,6 +18,7 @@ from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.surfaces.heights import adjusted, distribution, filtered, in_order
 from restitution.surfaces.johnson import LEAST_KURTOSIS, possible
+from restitution.surfaces.noise import white_noise
 from restitution.surfaces.spectra import Autocorrelated, SelfAffine, Spectrum
 from restitution.surfaces.surface import Surface
 
@@ -143,7 +144,7 @@ def _heights(
     from scipy.fft import irfft2, rfft2
 
     larger = grid if periodic else _enlarged(grid, spectrum.longest)
-    noise, H = _white_noise(larger.nodes, seed), spectrum.amplitude(larger)
+    noise, H = white_noise(larger.nodes, seed), spectrum.amplitude(larger)
     made: dict[str, str | float] = {"method": "Hu and Tonder 1992"}
     z: Array | None = None
     if wanted != (0.0, 3.0):
@@ -152,13 +153,13 @@ def _heights(
     if z is None:
         z = irfft2(H * rfft2(noise), s=larger.nodes)
         if wanted != (0.0, 3.0):
-            found = adjusted(z, *wanted)
-            if found is None:
+            heights = distribution(z.size, *wanted)
+            if heights is None:
                 raise SurfaceError(
                     f"roughness.kurtosis: no Johnson distribution was found with a skewness of "
                     f"{wanted[0]:g} and a kurtosis of {wanted[1]:g}; ask for a larger kurtosis"
                 )
-            z, made["amplitude_misfit"] = found
+            z, made["amplitude_misfit"] = adjusted(z, heights)
             made["method"] = "Schreiber and Schmitz 1996, adjusted amplitudes"
     z = z[: grid.nodes[0], : grid.nodes[1]].copy()
     if not periodic and wanted != (0.0, 3.0):  # a part has other moments than the whole
@@ -176,17 +177,3 @@ def _enlarged(grid: Grid, longest: float) -> Grid:
         for n, h, size in zip(grid.nodes, grid.spacing, grid.size, strict=True)
     )
     return Grid((nx, ny), grid.spacing)
-
-
-def _white_noise(shape: tuple[int, int], seed: int) -> Array:
-    """Independent standard normal numbers of the given shape."""
-    from scipy.special import ndtri
-
-    # numpy keeps the raw stream of a bit generator fixed for ever, but lets the methods of
-    # Generator (standard_normal and the like) change from release to release (NEP 19). So the
-    # raw 64-bit words are mapped here. 52 of their bits and a half keep u off 0 and 1, where
-    # the inverse distribution is infinite; a 53rd bit would round up to 1.
-    raw = np.random.PCG64(seed).random_raw(shape[0] * shape[1])
-    u = ((raw >> np.uint64(12)).astype(np.float64) + 0.5) * 2.0**-52
-    noise: Array = ndtri(u).reshape(shape)
-    return noise

@@ -31,7 +31,8 @@ _STRONGEST = 3.0, 40.0  # skewness and kurtosis of noise that is still worth tra
 _CLOSE = 0.02  # of the moments (of kurtosis: of it)
 _CORRECTIONS = 12
 _ADJUSTMENTS = 60
-_STANDSTILL = 0.02  # of the misfit of amplitudes, from one adjustment to the next
+_NEGLIGIBLE = 1e-3  # misfit of amplitudes
+_STANDSTILL = 0.05  # of the misfit of amplitudes, from one adjustment to the next
 
 
 def filtered(noise: Array, H: Array, skewness: float, kurtosis: float) -> Array | None:
@@ -61,25 +62,23 @@ def filtered(noise: Array, H: Array, skewness: float, kurtosis: float) -> Array 
     return None
 
 
-def adjusted(z: Array, skewness: float, kurtosis: float) -> tuple[Array, float] | None:
-    """Heights of that distribution with the amplitudes of z, and their misfit; None if none.
+def adjusted(z: Array, heights: Array) -> tuple[Array, float]:
+    """The ascending `heights` in the shape of z, with z's amplitudes, and their misfit.
 
-    The misfit is the root mean square difference of the amplitudes over their own.
+    Amplitudes are scaled to the mean square of `heights`; the misfit is the root mean square of
+    their difference over their own.
     """
     from scipy.fft import irfft2, rfft2
 
-    heights = distribution(z.size, skewness, kurtosis)
-    if heights is None:
-        return None
     modes = rfft2(z - z.mean())
-    wanted = np.abs(modes) * math.sqrt(z.size) / math.sqrt(float(((z - z.mean()) ** 2).sum()))
+    wanted = np.abs(modes) * math.sqrt(float(np.var(heights)) / float(np.var(z)))
     misfit = math.inf
     for _ in range(_ADJUSTMENTS):
         z = in_order(heights, z)
         modes = rfft2(z)
         size = np.abs(modes)
         last, misfit = misfit, float(np.linalg.norm(size - wanted) / np.linalg.norm(wanted))
-        if misfit > last * (1 - _STANDSTILL):
+        if misfit < _NEGLIGIBLE or misfit > last * (1 - _STANDSTILL):
             break
         modes *= wanted / np.maximum(size, np.finfo(float).tiny)
         z = irfft2(modes, s=z.shape)

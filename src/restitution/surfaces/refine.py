@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
-from restitution.surfaces.surface import Surface
+from restitution.surfaces.surface import Surface, is_periodic
 
 Array = NDArray[np.float64]
 
@@ -29,7 +29,7 @@ def refine(surface: Surface, factor: int) -> Surface:
         (factor * grid.nodes[0], factor * grid.nodes[1]),
         (grid.spacing[0] / factor, grid.spacing[1] / factor),
     )
-    periodic = str(surface.provenance.get("periodicity", "")).startswith("periodic")
+    periodic = is_periodic(surface)
     height = surface.height
     for _ in range(2):
         height = _between(height, factor, periodic=periodic).T

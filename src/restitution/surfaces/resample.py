@@ -21,8 +21,10 @@ def place_on_grid(surface: Surface, grid: Grid) -> Surface:
 
     Both keep their origin (see `Grid`). With equal spacings the cells coincide: pixels are cropped
     and no height changes. Otherwise a cubic spline through the pixel centres is evaluated at the
-    cell centres. Beyond the outermost pixel centres, where a grid as large as the scan has a rim
-    of cells less than a pixel wide, the height is held and not extrapolated.
+    cell centres. Along an axis with coarser cells the waves that these cannot carry (shorter than
+    two of them) are taken out first: they would come back as longer ones. Beyond the outermost
+    pixel centres, where a grid as large as the scan has a rim of cells less than a pixel wide, the
+    height is held and not extrapolated.
 
     The provenance gains `placement` (how), and `pixel_x_m`, `pixel_y_m`: the coarsest pixel the
     heights have passed through, so that a caller can tell a grid finer than its data.
@@ -39,27 +41,26 @@ def place_on_grid(surface: Surface, grid: Grid) -> Surface:
             else "pixels taken as they are"
         )
     else:
-        along_x = _interpolate_rows(surface.height, surface.grid.x, grid.x)
-        height = _interpolate_rows(along_x.T, surface.grid.y, grid.y).T
+        height, had = surface.height, surface.grid
+        for at, to in ((had.x, grid.x), (had.y, grid.y)):
+            height = _interpolate_rows(_carried(height, at, to), at, to).T
         placement = _describe_interpolation(surface.grid, grid)
     pixel = {
         key: max(h, float(surface.provenance.get(key, 0.0)))
         for key, h in zip(("pixel_x_m", "pixel_y_m"), surface.grid.spacing, strict=True)
     }
-    return replace(
-        surface,
-        height=np.ascontiguousarray(height),
-        grid=grid,
-        provenance={**surface.provenance, "placement": placement, **pixel},
-    )
+    provenance = {**surface.provenance, "placement": placement, **pixel}
+    if not np.allclose(grid.size, surface.grid.size, rtol=_ROUNDING, atol=0):
+        provenance.pop("periodicity", None)  # a part does not match at opposite edges
+    return replace(surface, height=np.ascontiguousarray(height), grid=grid, provenance=provenance)
 
 
 def _check_covers(scan: Grid, grid: Grid) -> None:
     if any(g > s * (1 + _ROUNDING) for g, s in zip(grid.size, scan.size, strict=True)):
         raise SurfaceError(
             f"grid: its {_micrometres(grid.size)} um reach beyond the surface of "
-            f"{_micrometres(scan.size)} um; use a smaller grid.nodes or grid.spacing, or a larger "
-            "scan"
+            f"{_micrometres(scan.size)} um; use a smaller grid.nodes or grid.spacing, a larger "
+            "scan, or roughness.extend"
         )
 
 
@@ -76,6 +77,26 @@ def _crop(height: NDArray[np.float64], nodes: tuple[int, int]) -> NDArray[np.flo
     return height[i : i + nodes[0], j : j + nodes[1]]
 
 
+def _carried(
+    height: NDArray[np.float64], at: NDArray[np.float64], to: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """What cells at coordinates `to` can carry of heights at `at` (m), along the first axis."""
+    from scipy.fft import dst, idst
+
+    n = at.size
+    if min(n, to.size) < 3 or to[1] - to[0] <= (at[1] - at[0]) * (1 + _ROUNDING):
+        return height
+    # Less the straight line from end to end, and continued with the opposite sign on either side,
+    # heights have neither steps nor kinks at the ends. Sine k then has a wave length of 2(n − 1)/k
+    # pixels.
+    line = height[:1] + (height[-1:] - height[:1]) * np.linspace(0.0, 1.0, n)[:, None]
+    modes = dst((height - line)[1:-1], type=1, axis=0)
+    modes[math.floor((n - 1) * (at[1] - at[0]) / (to[1] - to[0]) * (1 + _ROUNDING)) :] = 0.0
+    carried = line.copy()
+    carried[1:-1] += idst(modes, type=1, axis=0)
+    return carried
+
+
 def _interpolate_rows(
     height: NDArray[np.float64], at: NDArray[np.float64], to: NDArray[np.float64]
 ) -> NDArray[np.float64]:
@@ -90,15 +111,12 @@ def _interpolate_rows(
 
 
 def _describe_interpolation(scan: Grid, grid: Grid) -> str:
-    if any(g > s * (1 + _ROUNDING) for g, s in zip(grid.spacing, scan.spacing, strict=True)):
-        # Points are sampled rather than averaged over the cell: that keeps the distribution of
-        # heights, and with it Rq and the summits that touch first, where averaging would lower
-        # both without a word. The price is that waves the grid cannot carry appear as longer
-        # ones, so the text says where that begins.
+    coarser = any(g > s * (1 + _ROUNDING) for g, s in zip(grid.spacing, scan.spacing, strict=True))
+    if coarser:
         nyquist = _micrometres((2 * grid.spacing[0], 2 * grid.spacing[1]))
         return (
             f"sampled every {_micrometres(grid.spacing)} um from pixels of "
-            f"{_micrometres(scan.spacing)} um; waves shorter than {nyquist} um are aliased"
+            f"{_micrometres(scan.spacing)} um, once waves shorter than {nyquist} um were taken out"
         )
     return (
         f"interpolated from {_micrometres(scan.spacing)} um to {_micrometres(grid.spacing)} um "

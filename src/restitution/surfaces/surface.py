@@ -35,3 +35,8 @@ class Surface:
                 f"{undefined} of {self.height.size} heights are undefined (NaN or infinite); "
                 "fill or crop them first"
             )
+
+
+def is_periodic(surface: Surface) -> bool:
+    """Whether opposite edges of the surface match."""
+    return str(surface.provenance.get("periodicity", "")).startswith("periodic")

@@ -1,0 +1,292 @@
+"""The tables of a case file, each checked by itself and turned into what it describes."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Annotated, Any, Generic, Literal, Self, TypeVar, cast
+
+import numpy as np
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    model_validator,
+)
+
+from restitution.collision import UnloadingMethod
+from restitution.contact.bodies import Body
+from restitution.contact.contact import Approach, Plasticity
+from restitution.contact.detachment import Detachment
+from restitution.contact.separation import RESTITUTION_ERROR
+from restitution.errors import shown
+from restitution.numerics.grid import Grid
+from restitution.studies.quantities import (
+    Angle,
+    Density,
+    Length,
+    Position,
+    Pressure,
+    SurfaceEnergy,
+)
+from restitution.surfaces import (
+    Surface,
+    crop,
+    extend,
+    generate_surface,
+    level,
+    place_on_grid,
+    read_surface,
+    remove_outliers,
+)
+from restitution.surfaces.extend import Extension
+from restitution.surfaces.generate import RoughnessKind
+
+MOST_NODES = 2**27  # of a grid: more do not fit into the memory of common machines
+MOST_STEPS = 10_000  # of a curve
+MOST_REALISATIONS = 1000
+
+
+class Table(BaseModel):
+    """What all tables have in common: no key that is not known, no value of another type."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, populate_by_name=True)
+
+
+def _two(value: Any) -> Any:
+    """One value for both axes, or a list of two."""
+    if not isinstance(value, list):
+        return value, value
+    if len(value) != 2:
+        raise ValueError(f"{shown(value)} should be one value, or a list of two (for x and y)")
+    return tuple(value)
+
+
+Nodes = Annotated[int, Field(gt=0)]
+PairOf = BeforeValidator(_two)
+
+
+def _range(value: Any) -> Any:
+    """A list of two positions, the second above the first."""
+    if not isinstance(value, list) or len(value) != 2:
+        raise ValueError(f"{shown(value)} should be a list of two positions")
+    return tuple(value)
+
+
+def _ascending(value: tuple[float, float]) -> tuple[float, float]:
+    if not value[0] < value[1]:
+        raise ValueError("the first of the two positions must be below the second")
+    return value
+
+
+Range = Annotated[tuple[Position, Position], BeforeValidator(_range), AfterValidator(_ascending)]
+
+
+def _few_enough(nodes: tuple[int, int]) -> tuple[int, int]:
+    if nodes[0] * nodes[1] > MOST_NODES:
+        raise ValueError(
+            f"{shown(nodes[0])} x {shown(nodes[1])} nodes are more than a grid may have "
+            f"({MOST_NODES} in all); give fewer, or a larger spacing"
+        )
+    return nodes
+
+
+def _flat_is_infinite(value: Any) -> Any:
+    return None if value == "flat" else value
+
+
+class BodyTable(Table):
+    """`[first]` and `[second]`."""
+
+    radius: Annotated[Length | None, BeforeValidator(_flat_is_infinite)]
+    youngs_modulus: Pressure
+    poissons_ratio: Annotated[float, Field(gt=-1, le=0.5)]
+    density: Density | None = None
+
+    def body(self) -> Body:
+        """The body this table describes."""
+        radius = math.inf if self.radius is None else self.radius
+        return Body(radius, self.youngs_modulus, self.poissons_ratio, self.density)
+
+
+class InterfaceTable(Table):
+    """`[interface]`; omitted: elastic."""
+
+    yield_pressure: Pressure | None = None
+    plasticity: Plasticity = "equilibrium"
+    work_of_adhesion: SurfaceEnergy = 0.0
+    approach: Approach = "equilibrium"
+    detachment: Detachment = "crack-closure"
+    equilibrium_separation: Length = 0.3e-9
+
+    @model_validator(mode="after")
+    def _truncated_at(self) -> Self:
+        if self.plasticity == "truncated" and self.yield_pressure is None:
+            raise ValueError(
+                'plasticity = "truncated" needs the pressure to cut at; give yield_pressure, or '
+                "leave plasticity out for elastic bodies"
+            )
+        return self
+
+
+Realisations = Annotated[int, Field(ge=1, le=MOST_REALISATIONS)]
+Seed = Annotated[int, Field(ge=0, lt=2**63)]
+
+
+class GeneratedRoughness(Table):
+    """`[roughness]` with `kind` exponential, gaussian or self-affine."""
+
+    kind: RoughnessKind
+    rms: Length
+    seed: Seed
+    realisations: Realisations = 1
+    correlation_length: Annotated[tuple[Length, Length], PairOf] | None = None
+    lay: Angle = 0.0
+    hurst: float | None = None
+    rolloff: Length | None = None
+    shortest: Length | None = None
+    skewness: float = 0.0
+    kurtosis: float = 3.0
+    periodic: bool = True
+
+    def surface(self, grid: Grid, _: Path) -> Surface:
+        """The roughness on `grid`."""
+        return generate_surface(grid, **self.model_dump(exclude={"realisations"}))
+
+
+class CropTable(Table):
+    """`roughness.crop`: what part of a scan is used."""
+
+    x: Range | None = None
+    y: Range | None = None
+
+
+class MeasuredRoughness(Table):
+    """`[roughness]` with `kind = "measured"`."""
+
+    kind: Literal["measured"]
+    file: Annotated[str, Field(min_length=1)]
+    channel: Annotated[int, Field(ge=0)] | None = None
+    size: Annotated[tuple[Length, Length], PairOf] | None = None
+    undefined: Literal["error", "interpolate"] = "error"
+    crop: CropTable = CropTable()
+    outliers: Annotated[float, Field(gt=0)] | None = None
+    detrend: Literal["none", "center", "tilt", "curvature"] = "none"
+    extend: Extension | None = None
+    seed: Seed | None = None
+    realisations: Realisations = 1
+
+    @model_validator(mode="after")
+    def _twins(self) -> Self:
+        if self.extend == "twin" and self.seed is None:
+            raise ValueError('extend = "twin" draws a random surface and needs a seed; give one')
+        for name, given in (
+            ("seed", self.seed is not None),
+            ("realisations", self.realisations > 1),
+        ):
+            if given and self.extend != "twin":
+                raise ValueError(
+                    f'{name} belongs to extend = "twin"; a scan is one surface: leave it out'
+                )
+        return self
+
+    def scan(self, folder: Path) -> Surface:
+        """What was measured, cleaned and levelled; `file` is relative to `folder`."""
+        scan = read_surface(
+            folder / self.file, channel=self.channel, size=self.size, undefined=self.undefined
+        )
+        if self.crop != CropTable():
+            scan = crop(scan, x=self.crop.x, y=self.crop.y)
+        if self.outliers is not None:
+            scan = remove_outliers(scan, self.outliers)
+        # Levelled as a whole before a grid's part is cut out: the form belongs to the scan.
+        return level(scan, self.detrend)
+
+    def surface(self, grid: Grid, folder: Path) -> Surface:
+        """The roughness on `grid`."""
+        scan = self.scan(folder)
+        if self.extend is not None:
+            scan = extend(scan, grid.size, self.extend, seed=self.seed)
+        return place_on_grid(scan, grid)
+
+
+Roughness = Annotated[GeneratedRoughness | MeasuredRoughness, Field(discriminator="kind")]
+
+
+class GridTable(Table):
+    """`[grid]`; `nodes` and `spacing` may be omitted for a scan, which brings its own."""
+
+    nodes: Annotated[tuple[Nodes, Nodes], PairOf, AfterValidator(_few_enough)] | None = None
+    spacing: Annotated[tuple[Length, Length], PairOf] | None = None
+    refine: Literal[1, 2, 4, 8, 16, "auto"] = 1
+
+    @model_validator(mode="after")
+    def _whole(self) -> Self:
+        if (self.nodes is None) != (self.spacing is None):
+            missing = "nodes" if self.nodes is None else "spacing"
+            raise ValueError(f'the key "{missing}" is missing; nodes and spacing belong together')
+        if self.nodes is not None:
+            _few_enough((self.factor * self.nodes[0], self.factor * self.nodes[1]))
+        return self
+
+    @property
+    def factor(self) -> int:
+        """Cells along x and y that one is divided into; 1 where that is still to be found."""
+        return 1 if self.refine == "auto" else self.refine
+
+    def grid(self) -> Grid | None:
+        """The grid before it is refined, None if it is that of the scan."""
+        if self.nodes is None or self.spacing is None:
+            return None
+        return Grid(self.nodes, self.spacing)
+
+
+Quantity = TypeVar("Quantity")
+
+
+class Series(Table, Generic[Quantity]):
+    """`[indentation]` and `[load]`: a span with steps, or a list of values."""
+
+    from_: Annotated[Quantity | None, Field(alias="from")] = None
+    to: Quantity | None = None
+    steps: Annotated[int, Field(gt=0, le=MOST_STEPS)] | None = None
+    scale: Literal["log", "linear"] = "log"
+    values: Annotated[list[Quantity], Field(min_length=1, max_length=MOST_STEPS)] | None = None
+
+    @model_validator(mode="after")
+    def _one_way(self) -> Self:
+        span = (self.from_, self.to, self.steps)
+        if self.values is not None:
+            if span != (None, None, None):
+                raise ValueError("give either values or from, to and steps, not both")
+        elif None in span:
+            raise ValueError("give from, to and steps (or values = [...])")
+        elif self.from_ == self.to:
+            raise ValueError("from and to are the same; for one depth or load use values = [...]")
+        elif not cast(float, self.from_) < cast(float, self.to):
+            raise ValueError("from must be smaller than to")
+        elif self.steps == 1:
+            raise ValueError(
+                "steps = 1 does not reach from one to the other; give at least 2, or for one depth "
+                "or load use values = [...]"
+            )
+        return self
+
+    def series(self) -> list[float]:
+        """The values asked for, in SI units, increasing."""
+        if self.values is not None:
+            return sorted(cast(set[float], set(self.values)))
+        space = np.geomspace if self.scale == "log" else np.linspace
+        first, last = cast(float, self.from_), cast(float, self.to)
+        return [float(v) for v in space(first, last, cast(int, self.steps))]
+
+
+class UnloadingTable(Table):
+    """`[unloading]`: which curves are written, and how unloading is computed."""
+
+    curves: Annotated[int, Field(ge=0, le=MOST_STEPS)] = 3
+    steps: Annotated[int, Field(ge=4, le=MOST_STEPS)] = 16
+    method: UnloadingMethod = "path"
+    restitution_error: Annotated[float, Field(gt=0, lt=1)] = RESTITUTION_ERROR

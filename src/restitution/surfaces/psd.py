@@ -1,0 +1,81 @@
+"""Power spectral density of a surface, after Jacobs, Junge and Pastewka (2017).
+
+    C(q) = |∫ z exp(−iq·r) d²r|²/A,   Sq² = (2π)⁻² ∫ C d²q,   (Surf. Topogr. 5, 013001, eqs 2, 6)
+
+C in m⁴, A the area of the surface. A scan is not periodic: the jump between its opposite edges
+would put a spectrum of its own above that of the surface. So it is multiplied by sine tapers, nine
+in all, whose spectra are averaged (Riedel and Sidorenko 1995, IEEE Trans. Signal Process. 43,
+188–195): together they see all of the scan but its rim, and what leaks from long waves to short
+ones falls with the fourth power of the wave number. Waves are smeared over ±1.5/size.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.surfaces.surface import Surface, is_periodic
+
+Array = NDArray[np.float64]
+
+_TAPERS = 3  # along either axis
+_BANDS_PER_OCTAVE = 4
+
+
+class RadialSpectrum(NamedTuple):
+    """`wave_number` q (rad/m) and `density` C (m⁴), averaged over directions and bands of q."""
+
+    wave_number: Array
+    density: Array
+
+
+def power_spectral_density(surface: Surface) -> Array:
+    """C (m⁴), shape `grid.nodes`, at the wave vectors of `numpy.fft.fftfreq` times 2π.
+
+    Of a periodic surface it is exact, otherwise an estimate (see above).
+    """
+    from scipy.fft import fft2
+
+    z = surface.height - surface.height.mean()
+    power: Array = np.zeros(z.shape)
+    if is_periodic(surface):
+        power += np.abs(fft2(z)) ** 2
+    else:
+        across = [_tapers(n) for n in z.shape]
+        for a in across[0]:
+            for b in across[1]:
+                power += np.abs(fft2(z * a[:, None] * b[None, :])) ** 2 / _TAPERS**2
+    power *= surface.grid.cell_area / z.size
+    return power
+
+
+def radial_spectrum(surface: Surface, density: Array | None = None) -> RadialSpectrum:
+    """`power_spectral_density` (or `density`, if it is at hand), averaged over directions.
+
+    Bands are a quarter of an octave wide, up to the shortest wave that both axes carry.
+    """
+    C = power_spectral_density(surface) if density is None else density
+    q = wave_numbers(C.shape, surface.grid.spacing)
+    least, most = 2 * math.pi / min(surface.grid.size), math.pi / max(surface.grid.spacing)
+    count = max(1, round(_BANDS_PER_OCTAVE * math.log2(max(most / least, 1.0))))
+    edges = np.geomspace(0.999 * least, 1.001 * most, count + 1)
+    band = np.digitize(q.ravel(), edges)
+    size = np.bincount(band, minlength=count + 2)[1:-1]
+    sums = (np.bincount(band, v.ravel(), count + 2)[1:-1] for v in (q, C))
+    mean_q, mean_C = (values[size > 0] / size[size > 0] for values in sums)
+    return RadialSpectrum(mean_q, mean_C)
+
+
+def wave_numbers(nodes: tuple[int, ...], spacing: tuple[float, float]) -> Array:
+    """|q| (rad/m) of the modes of `fft2`, shape `nodes`."""
+    qx, qy = (2 * math.pi * np.fft.fftfreq(n, h) for n, h in zip(nodes, spacing, strict=True))
+    return np.asarray(np.hypot(qx[:, None], qy[None, :]))
+
+
+def _tapers(n: int) -> list[Array]:
+    """Sine tapers with a mean square of 1."""
+    at = (np.arange(n) + 1) * math.pi / (n + 1)
+    return [math.sqrt(2 * n / (n + 1)) * np.sin(k * at) for k in range(1, _TAPERS + 1)]

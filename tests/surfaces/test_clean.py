@@ -1,0 +1,66 @@
+import numpy as np
+import pytest
+
+from restitution.errors import SurfaceError
+from restitution.numerics.grid import Grid
+from restitution.surfaces import Surface, crop, generate_surface, remove_outliers
+
+GRID = Grid((96, 80), (0.1e-6, 0.2e-6))
+ROUGH = generate_surface(GRID, kind="gaussian", rms=50e-9, correlation_length=1.2e-6, seed=1)
+
+
+def test_a_part_is_cut_out_by_the_coordinates_of_the_map():
+    x, y = np.meshgrid(GRID.x, GRID.y, indexing="ij")
+    part = crop(Surface(1e3 * x + y, GRID), x=(-2e-6, 3e-6), y=(0.0, 4.05e-6))
+    assert part.grid.nodes == (51, 21)
+    assert part.height[0, 0] == pytest.approx(1e3 * -2e-6)
+    assert part.height[-1, -1] == pytest.approx(1e3 * 3e-6 + 4e-6)
+    assert part.provenance["cropped"] == "51 x 21 of 96 x 80 pixels"
+    assert part.provenance["size_x_m"] == pytest.approx(5.1e-6)
+
+
+def test_without_ranges_everything_stays():
+    assert np.array_equal(crop(ROUGH).height, ROUGH.height)
+
+
+def test_a_range_without_pixels_names_the_scan_s():
+    with pytest.raises(SurfaceError, match=r"crop: .* y between 20 and 30 um; .* -8 and 7.8 um"):
+        crop(ROUGH, y=(20e-6, 30e-6))
+
+
+def test_spikes_are_removed_and_nothing_else_changes():
+    random = np.random.default_rng(0)
+    spoiled, at = ROUGH.height.copy(), random.choice(ROUGH.height.size, 40, replace=False)
+    spoiled.ravel()[at] += random.choice([-1, 1], 40) * 1e-6
+    cleaned = remove_outliers(Surface(spoiled, GRID, {"source": "measured"}), 8)
+    assert cleaned.provenance["outliers"] == 40
+    assert cleaned.provenance["outlier_largest_step_m"] == pytest.approx(1e-6, rel=0.2)
+    assert cleaned.provenance["source"] == "measured"
+    others = np.ones(spoiled.size, bool)
+    others[at] = False
+    assert np.array_equal(cleaned.height.ravel()[others], ROUGH.height.ravel()[others])
+    assert np.abs(cleaned.height - ROUGH.height).max() < 0.5 * 50e-9
+
+
+def test_a_slipped_scan_line_is_removed():
+    spoiled = ROUGH.height.copy()
+    spoiled[20:70, 33] += 3e-7
+    cleaned = remove_outliers(Surface(spoiled, GRID), 6)
+    # and a few beside it, where the step is to a neighbour that slopes away
+    assert 50 <= cleaned.provenance["outliers"] < 60
+    assert np.all(cleaned.height[20:70, 33] != spoiled[20:70, 33])
+    assert np.abs(cleaned.height - ROUGH.height).max() < 50e-9
+
+
+def test_a_clean_surface_and_a_flat_one_stay():
+    assert np.array_equal(remove_outliers(ROUGH, 8).height, ROUGH.height)
+    flat = Surface(np.zeros(GRID.nodes), GRID)
+    assert remove_outliers(flat, 6).provenance["outliers"] == 0
+
+
+def test_a_threshold_that_takes_the_surface_is_refused():
+    with pytest.raises(SurfaceError, match=r"outliers: \d\d% of the pixels .* belong to the"):
+        remove_outliers(ROUGH, 0.5)
+    for bad in (0.0, -1.0, float("nan")):
+        with pytest.raises(SurfaceError, match="not a positive number"):
+            remove_outliers(ROUGH, bad)

@@ -1,0 +1,33 @@
+"""Twins of real scans: Rq, skewness, rms slope and spectrum within stated bounds."""
+
+import numpy as np
+import pytest
+
+from restitution import describe, extend, level, read_surface, remove_outliers
+
+
+@pytest.mark.parametrize(("name", "outliers"), [("di-3.di", None), ("mi-1.mi", 8.0)])
+def test_a_twin_of_a_scan(topographies, name, outliers):
+    scan = read_surface(topographies / name)
+    if outliers:  # slipped scan lines, which no spectrum describes
+        scan = remove_outliers(scan, outliers)
+    scan = level(scan, "tilt")
+    want, found = describe(scan), []
+    for seed in range(4):
+        twin = extend(scan, tuple(2 * edge for edge in scan.grid.size), "twin", seed=seed)
+        have = describe(twin)
+        assert have["Sq_m"] == pytest.approx(want["Sq_m"], rel=1e-6)
+        assert have["Ssk"] == pytest.approx(want["Ssk"], abs=0.01)
+        assert have["Sku"] == pytest.approx(want["Sku"], rel=0.01)
+        assert have["Sdq"] == pytest.approx(want["Sdq"], rel=0.06)
+        assert twin.provenance["spectrum_misfit"] < 0.35
+        found.append((have["Sdq"] / want["Sdq"], twin.provenance["spectrum_misfit"]))
+    slope, misfit = np.mean(found, axis=0)
+    assert slope == pytest.approx(1, abs=0.03)
+    assert misfit < 0.25
+
+
+def test_a_scan_that_no_spectrum_describes_is_said_to_be_one(topographies):
+    scan = level(read_surface(topographies / "nid-1.nid"), "curvature")
+    twin = extend(scan, (40e-6, 40e-6), "twin", seed=1)
+    assert "one spectrum does not describe this scan" in twin.provenance["notice"]
