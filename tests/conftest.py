@@ -33,7 +33,7 @@ steps = 6
 """
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def case_text():
     """The text of a small case; `str.replace` makes others of it."""
     return CASE

@@ -12,6 +12,7 @@ indentation_m force_N contact_area_m2 stored_energy_J plastic_work_J loading_wor
 unloading_work_J restitution impact_velocity_m_per_s contact_nodes contact_patches
 largest_patch_nodes residual convolutions pull_off_force_N separation_indentation_m
 restitution_error sticks adhesion_resolved median_patch_nodes resolved
+discretisation_error
 """.split()  # noqa: SIM905
 
 
@@ -32,7 +33,9 @@ def rows_of(path):
 
 
 def number(text):
-    return {"true": True, "false": False}[text] if text in ("true", "false") else float(text)
+    if text in ("true", "false"):
+        return text == "true"
+    return float(text or "nan")
 
 
 def test_run_writes_every_file(done):

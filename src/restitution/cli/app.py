@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from restitution.cli import check, run, surface
+from restitution.cli import check, converge, run, surface
 
 app = typer.Typer(
     name="restitution",
@@ -16,6 +16,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 app.command()(run.run)
+app.command()(converge.converge)
 app.command()(check.check)
 app.command()(surface.surface)
 

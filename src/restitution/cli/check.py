@@ -50,10 +50,13 @@ def check(
     table.add_column(justify="left")
     nx, ny = contact.grid.nodes
     hx, hy = contact.grid.spacing
-    table.add_row("grid", f"{nx} x {ny}", f"nodes of {1e6 * hx:.4g} um x {1e6 * hy:.4g} um")
+    auto = ", before refine" if read.grid is not None and read.grid.refine == "auto" else ""
+    table.add_row("grid", f"{nx} x {ny}", f"nodes of {1e6 * hx:.4g} um x {1e6 * hy:.4g} um{auto}")
     provenance = contact.surface.provenance
     kind = provenance.get("kind") or provenance["source"]
     table.add_row("surface", f"{1e6 * rms:.4g}", f"um Sq, {kind}")
+    if read.realisations > 1:
+        table.add_row("realisations", str(read.realisations), "surfaces; the first is described")
     for key, (label, scale, unit) in labels.items():
         if key not in quantities:
             continue

@@ -20,6 +20,7 @@ from restitution.theory import adhesive_thornton_ning, hertz, jkr, thornton_ning
 
 _SIZE = (6.4, 4.4)
 _WIDE = (10.4, 4.4)
+_DASHES = (":", "-.", "--", "-")  # of coarser grids, the coarsest first
 _SMOOTH = "smooth, same model"
 _THORNTON_NING = "smooth, Thornton–Ning (truncated pressure)"
 _UNRESOLVED = f"open: not resolved (patches below {NODES_PER_PATCH} nodes)"
@@ -54,7 +55,8 @@ def figures(results: xr.Dataset) -> Iterator[tuple[str, Figure]]:
     yield "restitution-indentation", restitution_against_indentation(results)
     if np.isfinite(results["impact_velocity"]).any():
         yield "restitution-velocity", restitution_against_velocity(results)
-    yield "pressure", pressure_map(results)
+    if "pressure" in results:  # not of the mean of several surfaces
+        yield "pressure", pressure_map(results)
 
 
 def load_displacement(results: xr.Dataset) -> Figure:
@@ -249,8 +251,23 @@ def _plot_smooth(axes: Axes, results: xr.Dataset, x: str, scale: float) -> None:
 def _plot_restitution(axes: Axes, results: xr.Dataset, x: NDArray[np.float64]) -> None:
     cor = results["restitution"].values
     resolved = results["resolved"].values.astype(bool)
+    label = "this contact"
+    if "restitution_std" in results:
+        std = results["restitution_std"].values
+        label = f"mean of {results['realisations'].values.max():.0f} surfaces"
+        axes.fill_between(x, results["restitution_low"], results["restitution_high"], color="C0",
+                          alpha=0.25, lw=0, label="95 % interval of the mean")  # fmt: skip
+        for sign, words in ((1, "± standard deviation"), (-1, None)):
+            axes.plot(x, cor + sign * std, ":", color="C0", lw=1, label=words)
+    for coarser, style in zip(results.get("coarser_restitution", ()), _DASHES, strict=False):
+        axes.plot(x, coarser, style, color="C1", lw=1,
+                  label=f"refine = {int(coarser['refine'])}")  # fmt: skip
+    error = results["discretisation_error"].values
+    if np.isfinite(error).any():
+        axes.errorbar(x, cor, yerr=error, fmt="none", ecolor="C0", elinewidth=1, capsize=2,
+                      label="discretisation error")  # fmt: skip
     axes.plot(x, cor, "-", color="C0", lw=1)
-    axes.plot(x[resolved], cor[resolved], "o", ms=4.5, color="C0", label="this contact")
+    axes.plot(x[resolved], cor[resolved], "o", ms=4.5, color="C0", label=label)
     if not resolved.all():
         axes.plot(x[~resolved], cor[~resolved], "o", ms=4.5, mfc="white", color="C0",
                   label=_UNRESOLVED)  # fmt: skip

@@ -13,7 +13,7 @@ import json
 import math
 import os
 import platform
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Any
@@ -63,6 +63,18 @@ COLUMNS: dict[str, tuple[str, str, str]] = {
         "1",
         f"half of the contact in patches of {NODES_PER_PATCH} nodes or more",
     ),
+    "discretisation_error": (
+        "discretisation_error",
+        "1",
+        "how far the restitution may be from that of finer grids",
+    ),
+}
+# What the curve of an ensemble has besides: its other columns are means.
+SPREAD_COLUMNS: dict[str, tuple[str, str, str]] = {
+    "realisations": ("realisations", "1", "surfaces that reached this depth"),
+    "restitution_std": ("restitution_std", "1", "standard deviation over the surfaces"),
+    "restitution_low": ("restitution_low", "1", "lower end of the 95 % interval of the mean"),
+    "restitution_high": ("restitution_high", "1", "upper end of the 95 % interval of the mean"),
 }
 UNLOADING_COLUMNS = ("indentation_max_m", "indentation_m", "force_N")
 
@@ -94,6 +106,7 @@ def curve_row(state: State, collision: Collision) -> dict[str, float]:
         adhesive_nodes(state) >= ADHESIVE_NODES,
         median,
         resolves(median),
+        math.nan,  # one grid cannot tell: see `convergence`
     )
     return dict(zip(COLUMNS, values, strict=True))
 
@@ -141,6 +154,15 @@ class ResultsFolder:
         self.rows.append(row)
         _write_row(self._curve, [_written(value) for value in row.values()])
 
+    def part(self, name: str) -> ResultsFolder:
+        """A folder of results within this one, for one of several runs."""
+        return ResultsFolder(self.path / name)
+
+    def put_curve(self, rows: list[dict[str, float]]) -> None:
+        """Write the whole of `curve.csv`: rows that follow from those of several runs."""
+        self.rows = rows
+        write_table(self.path / "curve.csv", rows)
+
     def add_unloading(self, path: list[State]) -> None:
         """Write one unloading curve, from its deepest state to separation."""
         deepest = path[0].indentation
@@ -158,8 +180,8 @@ class ResultsFolder:
 
     def write(self, dataset: xr.Dataset, summary: Mapping[str, Any]) -> None:
         """Write `results.nc` and `summary.json`."""
-        maps = ("height", "pressure", "plastic_displacement")
-        packed = {name: {"zlib": True, "complevel": 1} for name in maps}
+        maps = {"height", "pressure", "plastic_displacement"} & set(dataset)
+        packed = {str(name): {"zlib": True, "complevel": 1} for name in maps}
         replace_file(
             self.path / "results.nc",
             lambda to: dataset.to_netcdf(to, engine="netcdf4", encoding=packed),
@@ -171,6 +193,19 @@ def write_json(path: Path, content: Mapping[str, Any]) -> None:
     """Write `content` as JSON, all of it or nothing. Raises `OutputError`."""
     text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
     replace_file(path, lambda to: to.write_text(text, encoding="utf-8"))
+
+
+def write_table(path: Path, rows: Sequence[Mapping[str, float | str]]) -> None:
+    """Write `rows`, whose keys are the columns, as CSV, all of it or nothing."""
+
+    def write(to: Path) -> None:
+        with open(to, "w", newline="") as file:
+            if rows:
+                _write_row(file, list(rows[0]))
+            for row in rows:
+                _write_row(file, [_written(value) for value in row.values()])
+
+    replace_file(path, write)
 
 
 def replace_file(path: Path, write: Callable[[Path], object]) -> None:
@@ -186,11 +221,7 @@ def replace_file(path: Path, write: Callable[[Path], object]) -> None:
 
 def results_dataset(folder: ResultsFolder, deepest: State) -> xr.Dataset:
     """Everything that was computed, with units: curves, unloading curves and maps."""
-    data: dict[str, Any] = {}
-    for column, (name, unit, meaning) in COLUMNS.items():
-        values = np.array([row[column] for row in folder.rows])
-        attributes = {"units": unit, "long_name": meaning}
-        data[name] = ("indentation_max", values, attributes)
+    data = curve_variables(folder.rows)
     if folder.unloading:
         depths, curves = zip(*folder.unloading, strict=True)
         # Curves of different length end in NaN.
@@ -218,9 +249,21 @@ def results_dataset(folder: ResultsFolder, deepest: State) -> xr.Dataset:
     return xr.Dataset(data, coordinates)
 
 
-def _written(value: float) -> str:
+def curve_variables(rows: Sequence[Mapping[str, float]]) -> dict[str, Any]:
+    """The variables of `results.nc` for the rows of a curve."""
+    data: dict[str, Any] = {}
+    for column, (name, unit, meaning) in {**COLUMNS, **SPREAD_COLUMNS}.items():
+        if rows and column in rows[0]:
+            values = np.array([row[column] for row in rows])
+            data[name] = ("indentation_max", values, {"units": unit, "long_name": meaning})
+    return data
+
+
+def _written(value: float | str) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
+    if isinstance(value, str):
+        return value
     return "" if math.isnan(value) else repr(value)
 
 

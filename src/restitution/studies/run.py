@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -62,11 +62,14 @@ def run_case(
     out: ResultsFolder,
     progress: Callable[[str], None] = lambda _: None,
     warn: Callable[[str], None] = lambda _: None,
+    known: Sequence[str] = (),
 ) -> dict[str, Any]:
     """Run `case` (whose text was `text`, with files relative to `folder`) and return the summary.
 
-    `progress` is called with a few words after every depth, `warn` with every warning: what is
-    foreseen before the first solve, what the results show at the end, whichever end it is.
+    It has one surface and a number for `grid.refine` (see `ensemble` and `refinement`). `known` are
+    warnings that were said before and belong to the results. `progress` is called with a few words
+    after every depth, `warn` with every warning: what is foreseen before the first solve, what the
+    results show at the end, whichever end it is.
     Whatever stops the run is raised again once everything computed until then, and the reason, are
     in the folder; when nothing was, the folder is taken back.
     """
@@ -79,6 +82,7 @@ def run_case(
         run.warnings += foreseen_warnings(contact, foreseen) + implausible(contact, foreseen)
         for warning in run.warnings:
             warn(warning)
+        run.warnings[:0] = known
         with out.tables():
             _load_and_unload(contact, case, out, run, progress)
         run.status, run.reason = "complete", ""
@@ -103,6 +107,23 @@ def run_case(
             for warning in summary["warnings"][len(run.warnings) :]:
                 warn(warning)
     return summary
+
+
+def said_before(
+    part: ResultsFolder, warn: Callable[[str], None] | None, said: list[str]
+) -> Callable[[str], None]:
+    """A `warn` for one of several runs: what is foreseen of it goes to `said` and to `warn`.
+
+    What is foreseen of the first is foreseen of most: the others are given None. What results show
+    is not passed on: it is for the whole of the runs to say.
+    """
+
+    def say(warning: str) -> None:
+        if warn is not None and not part.rows:
+            said.append(warning)
+            warn(warning)
+
+    return say
 
 
 def _keep(
@@ -187,6 +208,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Progress)
             **_adhesion_of(contact, case),
             "half_space": "free, Love cells, zero-padded FFT",
             **asdict(contact.grid),
+            "refine": case.grid.factor if case.grid else 1,
         },
         "conventions": CONVENTIONS,
         "derived": derived_quantities(case, contact),

@@ -1,0 +1,32 @@
+"""`restitution converge`: a case on successively finer grids."""
+
+from functools import partial
+from typing import Annotated
+
+import typer
+
+from restitution.cli.running import CaseFile, Device, OnDevice, OutFolder, carry_out
+
+
+def converge(
+    context: typer.Context,
+    case: CaseFile,
+    out: OutFolder,
+    grids: Annotated[
+        int, typer.Option(min=2, max=5, help="How many, each with cells half as large.")
+    ] = 3,
+    device: OnDevice = Device.cpu,
+) -> None:
+    """Run CASE on its grid and finer ones; write COR with its discretisation error to OUT."""
+    from restitution.cli.console import answers
+    from restitution.studies.convergence import run_convergence
+
+    summary = carry_out(
+        context, case, out, device, lambda _: grids, partial(run_convergence, grids=grids)
+    )
+    order = summary["observed_order"]
+    answers.print(
+        "observed order "
+        + ("not defined: too few resolved depths" if order is None else f"{order:.2g}")
+        + f" on refine = {', '.join(map(str, summary['grids']))}"
+    )

@@ -1,0 +1,149 @@
+"""What the verbs that solve have in common: progress, warnings, results, and a polite end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from restitution.studies.case import Case
+    from restitution.studies.results import ResultsFolder
+
+
+class Device(StrEnum):
+    """What solves may run on."""
+
+    cpu = "cpu"
+    gpu = "gpu"
+    auto = "auto"
+
+
+CaseFile = Annotated[Path, typer.Argument(help="Case file (TOML).", show_default=False)]
+OutFolder = Annotated[
+    Path, typer.Option("-o", "--out", help="Folder for the results; new or empty.")
+]
+OnDevice = Annotated[
+    Device, typer.Option(help="Where to solve; auto is the GPU where one answers (needs CuPy).")
+]
+
+
+def carry_out(
+    context: typer.Context,
+    case: Path,
+    out: Path,
+    device: Device,
+    runs: Callable[[Case], int],
+    start: Callable[..., dict[str, Any]],
+) -> dict[str, Any]:
+    """Read the file `case`, let `start` compute into `out`, and say what came of it.
+
+    `runs(case)` is how many curves will be computed; `start` is called as `run_realisations`, and
+    its summary is returned. However it ends, what was computed is kept and drawn.
+    """
+    from rich.progress import (
+        BarColumn,
+        Progress,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
+
+    from restitution.cli.console import answers, errors, warn
+    from restitution.cli.signals import Stopped, received
+    from restitution.numerics.device import on_device
+    from restitution.reports.figures import write_figures
+    from restitution.studies.case import naming, read_case
+    from restitution.studies.results import ResultsFolder
+
+    read, text = read_case(case)
+    context.with_resource(on_device(device.value))
+    folder = ResultsFolder(out)
+    errors.print(f"Results go to {out}", markup=False, soft_wrap=True)
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+    )
+    depths = len(read.depths())
+    try:
+        with naming(case), Progress(*columns, console=errors, transient=True) as bar:
+            task = bar.add_task("reading the surface", total=depths * runs(read))
+            summary = start(
+                read, text, case.parent, folder,
+                progress=lambda words: bar.update(task, advance=1, description=words),
+                warn=warn,
+            )  # fmt: skip
+        _print_curve(answers, folder.rows)
+        many = f" of {runs(read)} curves" if runs(read) > 1 else ""
+        residual = summary["trust"]["largest_residual"]
+        answers.print(
+            f"{depths} depths{many}, {summary['convolutions']} convolutions, "
+            f"{summary['seconds']:.1f} s; largest residual {residual:.1e}",
+            markup=False,
+        )
+        figures = write_figures(out)
+    except KeyboardInterrupt as stop:
+        errors.print("Interrupted.", style="red")
+        _keep(folder, depths)
+        raise typer.Exit(stop.status if isinstance(stop, Stopped) else 130) from None
+    except BaseException:
+        if received:
+            errors.print("Interrupted.", style="red")
+        _keep(folder, depths)
+        raise
+    drawn = {figure.name for figure in figures}
+    names = [path.name for path in sorted(out.iterdir()) if path.name not in drawn]
+    answers.print(f"In {out}: {', '.join([*names, *sorted(drawn)])}", markup=False, soft_wrap=True)
+    return summary
+
+
+def _keep(folder: ResultsFolder, depths: int) -> None:
+    """Say what a run that ended early leaves, and draw it."""
+    from contextlib import suppress
+
+    from restitution.cli.console import errors
+    from restitution.reports.figures import write_figures
+
+    if not folder.rows:
+        return
+    of = " (means of the surfaces done)" if "realisations" in folder.rows[0] else ""
+    errors.print(
+        f"{len(folder.rows)} of {depths} depths were computed{of} and are kept in {folder.path}",
+        markup=False, soft_wrap=True,
+    )  # fmt: skip
+    with suppress(Exception):  # what ended the run is to be said, not that its figures fail, too
+        write_figures(folder.path)
+
+
+def _print_curve(console: Console, rows: list[dict[str, float]]) -> None:
+    from rich.table import Table
+
+    table = Table(box=None, header_style="bold")
+    for name in ("indentation (nm)", "force (N)", "velocity (m/s)", "COR", "nodes in contact"):
+        table.add_column(name, justify="right")
+    for row in rows:
+        velocity = row["impact_velocity_m_per_s"]
+        table.add_row(
+            f"{1e9 * row['indentation_m']:.4g}",
+            f"{row['force_N']:.4g}",
+            "-" if velocity != velocity else f"{velocity:.4g}",
+            f"{row['restitution']:.4f}{_uncertainty(row)}",
+            f"{row['contact_nodes']:.0f}",
+        )
+    console.print(table)
+
+
+def _uncertainty(row: dict[str, float]) -> str:
+    """Half of the confidence interval of an ensemble, or the error of a convergence."""
+    half = row["discretisation_error"]
+    if "restitution_std" in row:
+        half = max(row["restitution_high"] - row["restitution"],
+                   row["restitution"] - row["restitution_low"])  # fmt: skip
+    return "" if half != half else f" ± {half:.4f}"

@@ -1,0 +1,169 @@
+"""What a case may ask of a scan: a part of it, without spikes, larger, added to others."""
+
+import json
+
+import numpy as np
+import pytest
+
+from restitution import Grid, generate_surface
+
+HEAD = """
+title = "From a scan"
+[first]
+radius = "50 um"
+youngs_modulus = "70 GPa"
+poissons_ratio = 0.2
+density = "2500 kg/m^3"
+[interface]
+yield_pressure = "3 GPa"
+{tables}
+[indentation]
+from = "20 nm"
+to = "100 nm"
+steps = 2
+"""
+SCAN = """[roughness]
+kind = "measured"
+file = "scan.npy"
+size = "9.6 um"
+{more}
+{grid}
+"""
+GRID = '[grid]\nnodes = {nodes}\nspacing = "0.1 um"'
+
+
+@pytest.fixture
+def scan(tmp_path):
+    """The heights, and a file of them."""
+    surface = generate_surface(
+        Grid((128, 128), (0.1e-6, 0.1e-6)), kind="gaussian", rms=20e-9, correlation_length=1e-6,
+        seed=5,
+    )  # fmt: skip
+    height = surface.height[:96, :96]
+    np.save(tmp_path / "scan.npy", height)
+    return height
+
+
+@pytest.fixture
+def case(scan, tmp_path):
+    def write(more="", grid="", tables=None):
+        tables = SCAN.format(more=more, grid=grid) if tables is None else tables
+        (tmp_path / "case.toml").write_text(HEAD.format(tables=tables))
+        return tmp_path / "case.toml"
+
+    return write
+
+
+@pytest.fixture
+def surface(cli, case, tmp_path):
+    """Statistics and provenance of the surface of a case, and what was said."""
+
+    def call(*arguments, **more):
+        status, out, err = cli("surface", case(*arguments, **more), "-o", tmp_path / "out")
+        assert status == 0, err
+        return json.loads((tmp_path / "out" / "statistics.json").read_text()), out + err
+
+    return call
+
+
+def test_a_part_of_a_scan(surface, scan):
+    found, _ = surface('crop = { x = ["-2 um", "3.05 um"] }')
+    assert found["provenance"]["cropped"] == "51 x 96 of 96 x 96 pixels"
+    part = scan[28:79]
+    assert found["Sq_m"] == pytest.approx(part.std())
+
+
+def test_spikes_are_taken_out(surface, scan, tmp_path):
+    spoiled = scan.copy()
+    spoiled[40, 41] = 1e-6
+    np.save(tmp_path / "scan.npy", spoiled)
+    found, _ = surface("outliers = 8")
+    assert found["provenance"]["outliers"] == 1
+    assert found["Sz_m"] < 2e-7
+
+
+def test_a_twin_is_run_and_labelled(cli, case, tmp_path):
+    file = case('extend = "twin"\nseed = 3', GRID.format(nodes=200))
+    status, _, said = cli("run", file, "-o", tmp_path / "out")
+    assert status == 0
+    assert "statistical twin (seed 3) of the scan of 9.6 x 9.6 um, not the scan itself" in said
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text())
+    assert any("not the scan itself" in line for line in summary["warnings"])
+    assert summary["surface"]["extension"] == "statistical twin"
+    assert summary["surface"]["scan_Sq_m"] == pytest.approx(
+        summary["surface_statistics"]["Sq_m"], rel=0.1
+    )
+
+
+def test_twins_make_an_ensemble(cli, case, tmp_path):
+    file = case('extend = "twin"\nseed = 3\nrealisations = 2', GRID.format(nodes=200))
+    status, said, _ = cli("run", file, "-o", tmp_path / "out")
+    assert status == 0
+    assert "2 depths of 2 curves" in said
+    assert (tmp_path / "out" / "realisation-2" / "curve.csv").exists()
+
+
+def test_mirrored_tiles_are_labelled(cli, case):
+    status, _, said = cli("check", case('extend = "mirror"', GRID.format(nodes=200)))
+    assert status == 0
+    assert "2.08 x 2.08 tiles of the scan and its mirror images" in said
+
+
+def test_two_surfaces_are_added(surface, tmp_path, scan):
+    np.save(tmp_path / "other.npy", 2 * scan)
+    one = SCAN.format(more="", grid="").replace("[roughness]", "[[roughness]]")
+    found, _ = surface(tables=one + one.replace("scan.npy", "other.npy") + GRID.format(nodes=96))
+    assert found["Sq_m"] == pytest.approx(3 * scan.std())
+    assert found["provenance"]["file"].count("npy") == 2
+
+
+def test_a_scan_and_a_generated_surface_are_added(surface, scan):
+    one = SCAN.format(more="", grid="").replace("[roughness]", "[[roughness]]")
+    two = '[[roughness]]\nkind = "gaussian"\nrms = "30 nm"\nseed = 1\ncorrelation_length = "2 um"\n'
+    found, _ = surface(tables=one + two + GRID.format(nodes=96))
+    assert found["Sq_m"] == pytest.approx(np.hypot(scan.std(), 30e-9), rel=0.1)
+
+
+def test_a_scan_may_be_refined_on_its_own_pixels(surface, scan):
+    found, _ = surface(grid="[grid]\nrefine = 2")
+    assert found["provenance"]["refined"] == 2
+    assert found["Sq_m"] == pytest.approx(scan.std(), rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("more", "grid", "words"),
+    [
+        ('extend = "twin"', GRID.format(nodes=200), "needs a seed"),
+        ('extend = "wrap"', GRID.format(nodes=200), 'roughness.extend: "wrap" should be'),
+        ('extend = "mirror"\nseed = 1', GRID.format(nodes=200), 'seed belongs to extend = "twin"'),
+        ("realisations = 3", "", 'realisations belongs to extend = "twin"; a scan is one surface'),
+        ("realisations = 0", "", "roughness.realisations: 0 should be greater than or equal to 1"),
+        ('extend = "mirror"', "", "[grid] is missing; roughness.extend says how"),
+        ('extend = "mirror"', "[grid]\nrefine = 2", "grid: nodes and spacing are missing"),
+        ("", '[grid]\nspacing = "1 um"', 'the key "nodes" is missing'),
+        ("", GRID.format(nodes=200), "a larger scan, or roughness.extend"),
+        ("", "[grid]\nrefine = 3", "grid.refine: 3 should be 1, 2, 4, 8, 16 or 'auto'"),
+        ("outliers = -1", "", "roughness.outliers: -1 should be greater than 0"),
+        ("outliers = 0.1", "", "that many belong to the surface"),
+        ('crop = { x = ["1 um"] }', "", "roughness.crop.x: ['1 um'] should be a list of two"),
+        ('crop = { x = ["2 um", "1 um"] }', "", "the first of the two positions must be below"),
+        ('crop = { x = ["20 um", "30 um"] }', "", "no pixel of the scan has its x between 20 and"),
+        ('crop = { z = ["1 um", "2 um"] }', "", "roughness.crop.z: unknown key; known keys: x, y"),
+        ("crop = { x = [1, 2] }", "", "1 has no unit"),
+    ],
+)
+def test_what_cannot_be_asked_of_a_scan(refused, case, more, grid, words):
+    assert words in refused("check", case(more, grid))
+
+
+def test_several_surfaces_need_a_grid_and_one_number_of_realisations(refused, case):
+    one = SCAN.format(more="", grid="").replace("[roughness]", "[[roughness]]")
+    assert "only a single measured surface brings its own" in refused("check", case(tables=one * 2))
+    table = '[[roughness]]\nkind = "gaussian"\nrms = "30 nm"\nseed = 1\ncorrelation_length = "2 um"'
+    two = f"{table}\nrealisations = 2\n{table}\nrealisations = 3\n" + GRID.format(nodes=96)
+    assert "roughness.realisations: differs" in refused("check", case(tables=two))
+    file = case()
+    file.write_text(
+        file.read_text().replace("[first]", "roughness = 3\n[first]", 1).split("[rough")[0]
+    )
+    assert "roughness: 3 should be a table" in refused("check", file)
