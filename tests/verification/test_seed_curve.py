@@ -24,7 +24,8 @@ def curve(tmp_path_factory):
     peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * 1024
     with open(out / "curve.csv", newline="") as file:
         rows = list(csv.DictReader(file))
-    numbers = [{k: float(v) for k, v in row.items() if v not in ("true", "false")} for row in rows]
+    no_numbers = ("true", "false", "")
+    numbers = [{k: float(v) for k, v in row.items() if v not in no_numbers} for row in rows]
     return numbers, peak
 
 

@@ -10,21 +10,25 @@ def surface(
     case: Annotated[Path, typer.Argument(help="Case file (TOML).", show_default=False)],
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the results; new or empty.")],
 ) -> None:
-    """Write the surface of CASE to OUT: heights, ISO 25178 statistics and a picture."""
+    """Write the surface of CASE to OUT: heights, ISO 25178 statistics, a picture and a page."""
     import xarray as xr
     from rich.table import Table
 
     from restitution.cli.console import answers
     from restitution.reports.figures import surface_map, write_figure
+    from restitution.reports.surface_page import write_surface_page
     from restitution.studies.case import naming, read_case
     from restitution.studies.results import ResultsFolder, replace_file, write_json
     from restitution.surfaces import describe
+    from restitution.surfaces.texture import texture
 
     read, text = read_case(case)
     with naming(case):
         made = read.surface(case.parent)
     folder = ResultsFolder(out)
-    statistics = describe(made)
+    statistics = describe(made) | texture(made)
+    hx, hy = made.grid.spacing
+    provenance = {**made.provenance, "spacing_x_m": hx, "spacing_y_m": hy}
     height = xr.DataArray(
         made.height,
         {"x": ("x", made.grid.x, {"units": "m"}), "y": ("y", made.grid.y, {"units": "m"})},
@@ -33,17 +37,18 @@ def surface(
         attrs={"units": "m", "long_name": "composite roughness"},
     )
     dataset = height.to_dataset()
-    dataset.attrs = {"title": read.title, "case": text, **made.provenance}
+    dataset.attrs = {"title": read.title, "case": text, **provenance}
     replace_file(folder.path / "surface.nc", lambda to: dataset.to_netcdf(to, engine="netcdf4"))
-    write_json(folder.path / "statistics.json", {**statistics, "provenance": made.provenance})
+    write_json(folder.path / "statistics.json", {**statistics, "provenance": provenance})
     write_figure(
         folder.path / "surface.png",
         surface_map(height, read.title, str(made.provenance.get("y_axis", "up"))),
     )
+    write_surface_page(folder.path)
 
     table = Table(box=None, show_header=False)
     for key, value in statistics.items():
         table.add_row(key, "-" if value is None else f"{value:.5g}")
     answers.print(table)
-    answers.print(f"In {out}: surface.nc, statistics.json, surface.png", markup=False,
+    answers.print(f"In {out}: surface.nc, statistics.json, surface.png, surface.html", markup=False,
                   soft_wrap=True)  # fmt: skip

@@ -55,7 +55,8 @@ def power_spectral_density(surface: Surface) -> Array:
 def radial_spectrum(surface: Surface, density: Array | None = None) -> RadialSpectrum:
     """`power_spectral_density` (or `density`, if it is at hand), averaged over directions.
 
-    Bands are a quarter of an octave wide, up to the shortest wave that both axes carry.
+    Bands are a quarter of an octave wide, up to the shortest wave that both axes carry. Where
+    `density` is NaN, directions are left out.
     """
     C = power_spectral_density(surface) if density is None else density
     q = wave_numbers(C.shape, surface.grid.spacing)
@@ -63,8 +64,10 @@ def radial_spectrum(surface: Surface, density: Array | None = None) -> RadialSpe
     count = max(1, round(_BANDS_PER_OCTAVE * math.log2(max(most / least, 1.0))))
     edges = np.geomspace(0.999 * least, 1.001 * most, count + 1)
     band = np.digitize(q.ravel(), edges)
+    known = np.isfinite(C.ravel())
+    band = np.where(known, band, 0)
     size = np.bincount(band, minlength=count + 2)[1:-1]
-    sums = (np.bincount(band, v.ravel(), count + 2)[1:-1] for v in (q, C))
+    sums = (np.bincount(band, np.where(known, v.ravel(), 0), count + 2)[1:-1] for v in (q, C))
     mean_q, mean_C = (values[size > 0] / size[size > 0] for values in sums)
     return RadialSpectrum(mean_q, mean_C)
 

@@ -1,0 +1,278 @@
+"""The page of one surface, from what `restitution surface` stored."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+from plotly.graph_objects import Heatmap, Scatter
+
+from restitution.numerics.grid import Grid
+from restitution.reports.page import Cell, Drawing, Page, Table, new_plot, write_page
+from restitution.surfaces import Surface
+from restitution.surfaces.psd import power_spectral_density, radial_spectrum, wave_numbers
+from restitution.surfaces.surface import is_periodic
+from restitution.surfaces.texture import autocorrelation, material_ratio
+
+Array = NDArray[np.float64]
+
+_MOST_PIXELS = 320  # of the map, along either axis: more are skipped
+_BINS = 80
+_LAY = 0.5  # texture aspect ratio below which a surface has a lay
+_SECTOR = 15  # degrees on either side of an axis
+
+# Parameter → (name, clause of ISO 25178-2:2012, unit in the table, factor, provenance it answers).
+_PARAMETERS: dict[str, tuple[str, str, str, float, str]] = {
+    "Sq_m": ("root mean square height Sq", "4.1.1", "nm", 1e9, "rms_m"),
+    "Ssk": ("skewness Ssk", "4.1.2", "", 1, "skewness"),
+    "Sku": ("kurtosis Sku", "4.1.3", "", 1, "kurtosis"),
+    "Sp_m": ("maximum peak height Sp", "4.1.4", "nm", 1e9, ""),
+    "Sv_m": ("maximum pit height Sv", "4.1.5", "nm", 1e9, ""),
+    "Sz_m": ("maximum height Sz", "4.1.6", "nm", 1e9, ""),
+    "Sa_m": ("arithmetical mean height Sa", "4.1.7", "nm", 1e9, ""),
+    "Sal_m": ("autocorrelation length Sal", "4.2.1", "µm", 1e6, ""),
+    "Str": ("texture aspect ratio Str", "4.2.2", "", 1, ""),
+    "lay_deg": ("direction of slowest decay, from x", "–", "°", 1, "lay_rad"),
+    "Sdq": ("root mean square gradient Sdq", "4.3.1", "", 1, ""),
+    "Sdr": ("developed interfacial area ratio Sdr", "4.3.2", "%", 100, ""),
+    "Sk_m": ("core height Sk", "5.2", "nm", 1e9, ""),
+    "Spk_m": ("reduced peak height Spk", "5.3", "nm", 1e9, ""),
+    "Svk_m": ("reduced dale height Svk", "5.4", "nm", 1e9, ""),
+    "Smr1": ("peak material ratio Smr1", "5.5", "%", 100, ""),
+    "Smr2": ("dale material ratio Smr2", "5.5", "%", 100, ""),
+    "rms_curvature_per_m": ("rms curvature", "–", "1/µm", 1e-6, ""),
+    "correlation_length_x_m": (
+        "lag of 10 % autocorrelation along x", "–", "µm", 1e6, "correlation_length_x_m"
+    ),
+    "correlation_length_y_m": (
+        "lag of 10 % autocorrelation along y", "–", "µm", 1e6, "correlation_length_y_m"
+    ),
+}  # fmt: skip
+
+
+def write_surface_page(out: Path) -> Path:
+    """Write `surface.html` from the `surface.nc` and `statistics.json` in `out`."""
+    with xr.open_dataset(out / "surface.nc", engine="netcdf4") as stored:
+        dataset = stored.load()
+    statistics = json.loads((out / "statistics.json").read_text(encoding="utf-8"))
+    provenance = statistics["provenance"]
+    x, y = dataset["x"].values, dataset["y"].values
+    nodes = x.size, y.size
+    spacing = tuple(float(provenance[f"spacing_{axis}_m"]) for axis in ("x", "y"))
+    surface = Surface(dataset["height"].values, Grid(nodes, (spacing[0], spacing[1])), provenance)
+    size = " × ".join(f"{1e6 * edge:.4g}" for edge in surface.grid.size)
+    page = Page(
+        title=dataset.attrs.get("title") or "Surface",
+        intro=[
+            f"{nodes[0]} × {nodes[1]} nodes of {1e6 * spacing[0]:.4g} × {1e6 * spacing[1]:.4g} µm, "
+            f"{size} µm; {provenance.get('kind') or provenance.get('source', 'surface')}"
+        ],
+        warnings=[str(provenance["notice"])] if "notice" in provenance else [],
+        parts=[
+            _map(surface),
+            _parameters(statistics, provenance),
+            _heights(surface, statistics),
+            _autocorrelation(surface),
+            _spectrum(surface),
+            _made(provenance),
+            _methods(surface),
+        ],
+    )
+    write_page(out / "surface.html", page)
+    return out / "surface.html"
+
+
+def _map(surface: Surface) -> Drawing:
+    step = math.ceil(max(surface.grid.nodes) / _MOST_PIXELS)
+    x, y = 1e6 * surface.grid.x[::step], 1e6 * surface.grid.y[::step]
+    z = 1e9 * (surface.height - surface.height.mean())[::step, ::step]
+    plot = new_plot("x (µm)", "y (µm)")
+    plot.add_trace(
+        Heatmap(
+            x=x.astype(np.float32), y=y.astype(np.float32), z=z.T.astype(np.float32),
+            colorscale="Cividis", colorbar={"title": "nm"},
+            hovertemplate="x %{x:.4g} µm, y %{y:.4g} µm<br>%{z:.4g} nm<extra></extra>",
+        )
+    )  # fmt: skip
+    plot.update_yaxes(scaleanchor="x", constrain="domain")
+    plot.update_xaxes(constrain="domain")
+    if surface.provenance.get("y_axis") == "down":
+        plot.update_yaxes(autorange="reversed")
+    every = "" if step == 1 else f" One node in {step} along x and y is drawn."
+    low, high = z.min(), z.max()
+    across = [0, x.size // 4, x.size // 2, 3 * x.size // 4, x.size - 1]
+    return Drawing(
+        "Height map",
+        plot,
+        f"Map of heights from {low:.4g} to {high:.4g} nm about their mean",
+        f"Heights above their mean.{every} The table has a few profiles along y; all heights are "
+        "in surface.nc.",
+        Table(
+            "Profiles along y",
+            ["y (µm)", *(f"x = {x[i]:.4g} µm" for i in across)],
+            [[float(y[j]), *(float(z[i, j]) for i in across)] for j in range(0, y.size, 8)],
+        ),
+        square=True,
+    )
+
+
+def _parameters(statistics: Mapping[str, Any], provenance: Mapping[str, Any]) -> Table:
+    rows: list[list[Cell]] = []
+    for key, (name, clause, unit, factor, asked) in _PARAMETERS.items():
+        value, wanted = statistics.get(key), provenance.get(asked)
+        if key == "lay_deg":
+            # Without a lay the direction is one of chance.
+            value = value if (statistics.get("Str") or 1.0) < _LAY else None
+            wanted = None if value is None or wanted is None else math.degrees(float(wanted))
+        rows.append(
+            [name, _scaled(value, factor), unit, clause, _scaled(wanted, factor),
+             _scaled(provenance.get(f"scan_{key}"), factor)]
+        )  # fmt: skip
+    of_scan = any(row[-1] is not None for row in rows)
+    columns = ["parameter", "value", "unit", "ISO 25178-2", "asked for", "of the scan"]
+    return Table(
+        "Parameters",
+        columns if of_scan else columns[:-1],
+        rows if of_scan else [row[:-1] for row in rows],
+        ["On the surface as it is used: after what is listed under “How it was made”, without any "
+         "further filter."],
+    )  # fmt: skip
+
+
+def _scaled(value: object, factor: float) -> float | None:
+    return factor * float(value) if isinstance(value, (int, float)) else None
+
+
+def _heights(surface: Surface, statistics: Mapping[str, Any]) -> Drawing:
+    z = 1e9 * (surface.height - surface.height.mean())
+    density, edges = np.histogram(z, bins=_BINS, density=True)
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    Sq = 1e9 * statistics["Sq_m"]
+    normal = np.exp(-0.5 * (middle / Sq) ** 2) / (Sq * math.sqrt(2 * math.pi)) if Sq else 0 * middle
+    curve = material_ratio(surface, 201)
+    plot = new_plot("height above the mean (nm)", "probability density (1/nm)")
+    plot.add_trace(Scatter(x=middle, y=density, mode="lines", line_shape="hvh", name="heights"))
+    plot.add_trace(
+        Scatter(x=middle, y=normal, mode="lines", line_dash="dash", name="normal, same Sq")
+    )
+    plot.add_trace(
+        Scatter(x=1e9 * curve.height, y=100 * curve.ratio, mode="lines", yaxis="y2",
+                name="material ratio (right)")
+    )  # fmt: skip
+    plot.update_layout(
+        yaxis2={
+            "title": "material ratio (%)",
+            "overlaying": "y",
+            "side": "right",
+            "range": [0, 100],
+            "tickvals": [0, 20, 40, 60, 80, 100],
+            "showgrid": False,
+        },
+        margin_r=70,
+    )
+    return Drawing(
+        "Distribution of heights",
+        plot,
+        f"Histogram of heights with a skewness of {_number(statistics['Ssk'])} and a kurtosis of "
+        f"{_number(statistics['Sku'])} beside the normal distribution, and the material ratio",
+        "Heights beside the normal distribution of the same Sq, and (right axis) the material "
+        "ratio or Abbott curve: what part of the surface is higher.",
+        Table(
+            "Heights",
+            ["height (nm)", "density (1/nm)", "normal (1/nm)"],
+            np.column_stack([middle, density, normal]).tolist(),
+        ),
+    )
+
+
+def _autocorrelation(surface: Surface) -> Drawing:
+    R = autocorrelation(surface)
+    i, j = (n // 2 for n in surface.grid.nodes)
+    plot = new_plot("lag (µm)", "autocorrelation")
+    rows: list[list[Cell]] = []
+    for name, lag, values in (("x", R.x[i:], R.values[i:, j]), ("y", R.y[j:], R.values[i, j:])):
+        plot.add_trace(Scatter(x=1e6 * lag, y=values, mode="lines", name=f"along {name}"))
+        points = zip(1e6 * lag[:100], values[:100], strict=True)
+        rows += [[name, float(t), float(v)] for t, v in points]
+    for level, words in ((0.2, "0.2 (Sal)"), (0.1, "0.1 (Hu and Tonder)")):
+        plot.add_hline(level, line_dash="dot", line_width=1, annotation_text=words)
+    return Drawing(
+        "Autocorrelation",
+        plot,
+        "Autocorrelation of the heights against the lag along x and y",
+        "Along both axes, with the levels that define the autocorrelation length Sal and the "
+        "correlation length of the generators; "
+        + ("over the period." if is_periodic(surface) else "over the pairs of pixels there are."),
+        Table("Autocorrelation", ["along", "lag (µm)", "autocorrelation"], rows),
+    )
+
+
+def _spectrum(surface: Surface) -> Drawing:
+    C = power_spectral_density(surface)
+    qx, qy = (
+        2 * math.pi * np.fft.fftfreq(n, h)
+        for n, h in zip(surface.grid.nodes, surface.grid.spacing, strict=True)
+    )
+    q = wave_numbers(C.shape, surface.grid.spacing)
+    near = math.cos(math.radians(_SECTOR))
+    plot = new_plot("wave number q (1/µm)", "power spectral density C (µm⁴)")
+    plot.update_xaxes(type="log", exponentformat="power")
+    plot.update_yaxes(type="log", exponentformat="power")
+    rows: list[list[Cell]] = []
+    sectors = (
+        ("all directions", np.ones(C.shape, bool), "solid"),
+        (f"within {_SECTOR}° of x", np.abs(qx)[:, None] >= near * q, "dot"),
+        (f"within {_SECTOR}° of y", np.abs(qy)[None, :] >= near * q, "dash"),
+    )
+    for name, inside, dash in sectors:
+        spectrum = radial_spectrum(surface, np.where(inside, C, np.nan))
+        waves, density = 1e-6 * spectrum.wave_number, 1e24 * spectrum.density
+        plot.add_trace(Scatter(x=waves, y=density, mode="lines", line_dash=dash, name=name))
+        rows += [
+            [name, float(k), 2 * math.pi / float(k), float(c)]
+            for k, c in zip(waves, density, strict=True)
+        ]
+    return Drawing(
+        "Power spectral density",
+        plot,
+        "Power spectral density against wave number, averaged over all directions and near x and y",
+        "C(q) = |∫ z exp(−iq·r) d²r|²/A, so that Sq² = (2π)⁻²∫C d²q; averaged over bands of a "
+        "quarter of an octave. "
+        + ("Exact for this periodic surface." if is_periodic(surface)
+           else "An estimate with nine sine tapers: the surface is not periodic."),
+        Table("Spectrum", ["directions", "q (1/µm)", "wave length (µm)", "C (µm⁴)"], rows),
+    )  # fmt: skip
+
+
+def _made(provenance: Mapping[str, Any]) -> Table:
+    rows: list[list[Cell]] = [[k, value] for k, value in provenance.items() if k != "notice"]
+    return Table("How it was made", ["step or source", "value"], rows)
+
+
+def _methods(surface: Surface) -> Table:
+    spectrum = "" if is_periodic(surface) else ", sine tapers of Riedel and Sidorenko (1995)"
+    return Table(
+        "Methods",
+        ["what", "how", "source"],
+        [
+            ["height, hybrid parameters", "over all nodes, slopes from node to node",
+             "ISO 25178-2:2012, 4.1, 4.3"],
+            ["Sal, Str", "first lag of 0.2 in 180 directions", "ISO 25178-2:2012, 4.2"],
+            ["Sk, Spk, Svk, Smr1, Smr2", "flattest secant over 40 % of the material ratio curve",
+             "ISO 25178-2:2012, 5.2–5.5; ISO 13565-2"],
+            ["correlation length", "autocorrelation of 10 %",
+             "Hu and Tonder (1992), Int. J. Mach. Tools Manufact. 32, 83–90"],
+            ["power spectral density", "convention and radial average" + spectrum,
+             "Jacobs, Junge and Pastewka (2017), Surf. Topogr. 5, 013001"],
+        ],
+    )  # fmt: skip
+
+
+def _number(value: float | None) -> str:
+    return "–" if value is None else f"{value:.3g}"

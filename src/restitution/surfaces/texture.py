@@ -1,0 +1,156 @@
+"""How a surface is textured and what of it carries: areal parameters after ISO 25178-2.
+
+`describe` gives the parameters of heights and slopes; these need the whole autocorrelation or the
+material ratio curve. Clauses are those of ISO 25178-2:2012. Tilt and form are to be taken out
+first.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.surfaces.surface import Surface, is_periodic
+
+Array = NDArray[np.float64]
+
+_DECAY = 0.2  # of the autocorrelation, for Sal and Str (4.2)
+_DIRECTIONS = 180  # over a half turn
+_CORE = 0.4  # of the material ratio that the core's secant spans (5.2)
+
+
+class Autocorrelation(NamedTuple):
+    """Lags (m) along x and y, from −size/2 up, and the autocorrelation there, 1 at lag zero."""
+
+    x: Array
+    y: Array
+    values: Array
+
+
+class MaterialRatio(NamedTuple):
+    """Heights (m) above the mean, falling, at material ratios (0 to 1): the Abbott curve."""
+
+    ratio: Array
+    height: Array
+
+
+def texture(surface: Surface) -> dict[str, float | None]:
+    """Texture and material ratio parameters of `surface`, in SI units; None where undefined.
+
+    - `Sal_m`: autocorrelation length, the shortest lag at which the autocorrelation falls to 0.2
+      (4.2.1)
+    - `Str`: texture aspect ratio, that lag over the longest one; near 1 without a lay, near 0 with
+      one; None where no lag up to half of the domain is long enough (4.2.2)
+    - `lay_deg`: direction of the longest lag, from the x axis, 0 up to 180: the lay where Str is
+      small
+    - `Sdr`: developed interfacial area ratio, of the surface's triangles over their projection,
+      less 1 (4.3.2)
+    - `Sk_m`, `Spk_m`, `Svk_m`: core, reduced peak and reduced dale height; `Smr1`, `Smr2`: material
+      ratios where peaks and dales begin (5.2 to 5.4, after ISO 13565-2)
+    """
+    longest = shortest = direction = None
+    decays = _decay_lags(autocorrelation(surface))
+    if np.isfinite(decays).any():
+        shortest = float(np.nanmin(decays))
+    if np.isfinite(decays).all():
+        longest = float(decays.max())
+        direction = 180 * int(decays.argmax()) / _DIRECTIONS
+    return {
+        "Sal_m": shortest,
+        "Str": shortest / longest if shortest and longest else None,
+        "lay_deg": direction,
+        "Sdr": _developed_area(surface),
+        **_core(material_ratio(surface)),
+    }
+
+
+def autocorrelation(surface: Surface) -> Autocorrelation:
+    """Autocorrelation of the heights less their mean, shape (nx, ny), lag zero at (nx//2, ny//2).
+
+    Of a periodic surface over its period; otherwise each lag is the mean over the pairs of pixels
+    that there are, on which the ends of a scan have no hold.
+    """
+    from scipy.fft import irfft2, next_fast_len, rfft2
+
+    z = surface.height - surface.height.mean()
+    (nx, ny), (hx, hy) = z.shape, surface.grid.spacing
+    if is_periodic(surface):
+        R = irfft2(np.abs(rfft2(z)) ** 2, s=z.shape) / z.size
+    else:
+        padded = next_fast_len(2 * nx, real=True), next_fast_len(2 * ny, real=True)
+        R = irfft2(np.abs(rfft2(z, s=padded)) ** 2, s=padded)
+    lag_x, lag_y = np.arange(nx) - nx // 2, np.arange(ny) - ny // 2
+    R = R[np.ix_(lag_x, lag_y)]
+    if not is_periodic(surface):
+        R = R / ((nx - np.abs(lag_x))[:, None] * (ny - np.abs(lag_y))[None, :])
+    whole = R[nx // 2, ny // 2]
+    return Autocorrelation(lag_x * hx, lag_y * hy, R / whole if whole > 0 else np.zeros_like(R))
+
+
+def material_ratio(surface: Surface, points: int = 1001) -> MaterialRatio:
+    """The Abbott curve: what part of the surface is above each height."""
+    ratio = np.linspace(0.0, 1.0, points)
+    z = surface.height - surface.height.mean()
+    return MaterialRatio(ratio, np.quantile(z, 1 - ratio))
+
+
+def _decay_lags(R: Autocorrelation) -> Array:
+    """Lag (m) at which the autocorrelation first falls to 0.2 in each direction; NaN: nowhere."""
+    from scipy.ndimage import map_coordinates
+
+    reach = min(-R.x[0], -R.y[0])
+    hx, hy = (lags[1] - lags[0] if lags.size > 1 else math.inf for lags in (R.x, R.y))
+    if not (math.isfinite(hx) and math.isfinite(hy)):
+        return np.full(_DIRECTIONS, np.nan)
+    lag = np.arange(0.0, reach, 0.5 * min(hx, hy))
+    angle = np.arange(_DIRECTIONS) * math.pi / _DIRECTIONS
+    at = (
+        R.values.shape[0] // 2 + np.cos(angle)[:, None] * lag / hx,
+        R.values.shape[1] // 2 + np.sin(angle)[:, None] * lag / hy,
+    )
+    along = map_coordinates(R.values, at, order=1, mode="nearest")
+    fallen = along <= _DECAY
+    first = np.where(fallen.any(axis=1), fallen.argmax(axis=1), 0)
+    rows = np.arange(_DIRECTIONS)
+    above = along[rows, first - 1]
+    drop = np.where(first > 0, above - along[rows, first], 1.0)
+    lags = lag[first - 1] + (above - _DECAY) / drop * lag[1]
+    decays: Array = np.where(first > 0, lags, np.nan)
+    return decays
+
+
+def _developed_area(surface: Surface) -> float:
+    """Sdr: two triangles to a cell, their area over its projection, less 1."""
+    z, (hx, hy) = surface.height, surface.grid.spacing
+    if min(z.shape) < 2:
+        return 0.0
+    x_low, x_high = np.diff(z[:, :-1], axis=0) / hx, np.diff(z[:, 1:], axis=0) / hx
+    y_low, y_high = np.diff(z[:-1, :], axis=1) / hy, np.diff(z[1:, :], axis=1) / hy
+    lower, upper = np.sqrt(1 + x_low**2 + y_low**2), np.sqrt(1 + x_high**2 + y_high**2)
+    return float(0.5 * (lower + upper).mean() - 1)
+
+
+def _core(curve: MaterialRatio) -> dict[str, float | None]:
+    """Parameters of the straight line through the flattest 40 % of the Abbott curve."""
+    from scipy.integrate import trapezoid
+
+    ratio, height = curve
+    span = round(_CORE * (ratio.size - 1))
+    start = int(np.argmin(height[:-span] - height[span:]))
+    slope = (height[start + span] - height[start]) / _CORE
+    top = float(height[start] - slope * ratio[start])
+    bottom = top + float(slope)
+    above, below = np.maximum(height - top, 0.0), np.maximum(bottom - height, 0.0)
+    # Reached by so much of the surface; the triangles over these have the area of what is beyond.
+    Smr1, Smr2 = float(np.mean(height > top)), float(np.mean(height >= bottom))
+    peaks, dales = (float(trapezoid(part, ratio)) for part in (above, below))
+    return {
+        "Sk_m": top - bottom,
+        "Spk_m": 2 * peaks / Smr1 if Smr1 > 0 else 0.0,
+        "Svk_m": 2 * dales / (1 - Smr2) if Smr2 < 1 else 0.0,
+        "Smr1": Smr1,
+        "Smr2": Smr2,
+    }
