@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from restitution.cli import check, converge, run, surface
+from restitution.cli import check, converge, run, study, surface
 
 app = typer.Typer(
     name="restitution",
@@ -17,6 +17,7 @@ app = typer.Typer(
 )
 app.command()(run.run)
 app.command()(converge.converge)
+app.command()(study.study)
 app.command()(check.check)
 app.command()(surface.surface)
 

@@ -143,14 +143,19 @@ class Case(Table):
 
 def read_case(path: Path) -> tuple[Case, str]:
     """Read and check a case file; return it with its text. Raises `CaseError`, naming the key."""
+    text = read_text(path)
+    with naming(path):
+        return parse_case(text), text
+
+
+def read_text(path: Path) -> str:
+    """The text of a case file. Raises `CaseError`, naming the file."""
     try:
-        text = path.read_text(encoding="utf-8-sig")  # editors on Windows write a byte order mark
+        return path.read_text(encoding="utf-8-sig")  # editors on Windows write a byte order mark
     except UnicodeDecodeError:
         raise CaseError(f"{path}: is not a text file; a case file is TOML in UTF-8") from None
     except OSError as error:
         raise CaseError(f"{path}: cannot be read ({error.strerror}); name a case file") from None
-    with naming(path):
-        return parse_case(text), text
 
 
 @contextmanager
@@ -162,16 +167,21 @@ def naming(path: Path) -> Iterator[None]:
         raise type(error)(f"{path}: {error}") from error
 
 
-def parse_case(text: str) -> Case:
-    """Check the text of a case file. Raises `CaseError`, naming the key."""
+def parse_toml(text: str) -> dict[str, Any]:
+    """The tables of a TOML file. Raises `CaseError`."""
     try:
-        content = tomllib.loads(text)
+        return tomllib.loads(text)
     except RecursionError:
         raise CaseError("not valid TOML: nested too deeply; correct the brackets") from None
     except tomllib.TOMLDecodeError as error:
         raise CaseError(f"not valid TOML: {error}") from None
     except ValueError:  # Python refuses to read an integer of more than 4300 digits
         raise CaseError("holds a number of thousands of digits; correct it") from None
+
+
+def parse_case(text: str) -> Case:
+    """Check the text of a case file. Raises `CaseError`, naming the key."""
+    content = parse_toml(text)
     try:
         return Case.model_validate(content)
     except ValidationError as error:

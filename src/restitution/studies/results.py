@@ -126,7 +126,7 @@ class ResultsFolder:
         self.path = path
         self.rows: list[dict[str, float]] = []
         self.unloading: list[tuple[float, list[tuple[float, float]]]] = []
-        with _writing(path):
+        with writing(path):
             self._new = not path.exists()
             path.mkdir(parents=True, exist_ok=True)
             if any(path.iterdir()):
@@ -139,7 +139,7 @@ class ResultsFolder:
     def tables(self) -> Iterator[None]:
         """Keep the two tables open for `add` and `add_unloading`."""
         with (
-            _writing(self.path),
+            writing(self.path),
             open(self.path / "curve.csv", "w", newline="") as curve,
             open(self.path / "unloading.csv", "w", newline="") as unloading,
         ):
@@ -211,7 +211,7 @@ def write_table(path: Path, rows: Sequence[Mapping[str, float | str]]) -> None:
 def replace_file(path: Path, write: Callable[[Path], object]) -> None:
     """Let `write` fill a temporary file and rename it to `path`. Raises `OutputError`."""
     temporary = path.with_name(f".{path.name}.part")
-    with _writing(path.parent):
+    with writing(path.parent):
         try:
             write(temporary)
             os.replace(temporary, path)
@@ -273,7 +273,7 @@ def _write_row(file: IO[str], values: list[str]) -> None:
 
 
 @contextmanager
-def _writing(path: Path) -> Iterator[None]:
+def writing(path: Path) -> Iterator[None]:
     """Turn the system's refusals into one line."""
     try:
         yield

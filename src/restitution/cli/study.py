@@ -1,0 +1,97 @@
+"""`restitution study`: all cases of a sweep."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from restitution.cli.running import OutFolder
+
+
+def study(
+    file: Annotated[
+        Path,
+        typer.Argument(
+            help="Study file (TOML): a case and a table [sweep].",
+            metavar="STUDY",
+            show_default=False,
+        ),
+    ],
+    out: OutFolder,
+    workers: Annotated[
+        int | None,
+        typer.Option(min=1, help="Processes on this machine.", show_default="all cores"),
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(help="Address of a Dask scheduler, tcp://…, to compute on.")
+    ] = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Finish what is missing in OUT.")
+    ] = False,
+    retry_failed: Annotated[
+        bool, typer.Option("--retry-failed", help="With --resume: failed cases again, too.")
+    ] = False,
+) -> None:
+    """Run every case of STUDY and write a table of all of them to OUT."""
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
+
+    from restitution.cli.console import answers, errors, warn
+    from restitution.cli.signals import Stopped
+    from restitution.errors import CaseError
+    from restitution.studies.case import parse_case
+    from restitution.studies.store import StudyFolder
+    from restitution.studies.study import Tally, run_study
+    from restitution.studies.sweep import read_study
+    from restitution.studies.workers import cluster_workers, local_workers
+
+    if scheduler is not None and workers is not None:
+        raise CaseError("workers: belongs to this machine, and --scheduler to another; give one")
+    read = read_study(file)
+    folder = StudyFolder(out, read, resume=resume)
+    again = f"restitution study {file} -o {out} --resume"
+    errors.print(f"{len(read.cases)} cases. Results go to {out}; to resume: {again}", markup=False,
+                 soft_wrap=True)  # fmt: skip
+    first = parse_case(read.cases[0].text)
+    depths = len(first.depths()) * first.realisations
+    columns = (
+        TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(),
+        TimeRemainingColumn(),
+    )  # fmt: skip
+    try:
+        with folder.locked():
+            where = cluster_workers(scheduler) if scheduler else local_workers(workers)
+            with where as there, Progress(*columns, console=errors, transient=True) as bar:
+                task = bar.add_task("cases", total=len(read.cases))
+
+                def show(tally: Tally) -> None:
+                    within = sum(min(d / depths, 1.0) for d in tally.in_flight.values())
+                    words = ", ".join(
+                        f"case {number}: {done} of {depths}"
+                        for number, done in list(tally.in_flight.items())[:3]
+                    )
+                    bar.update(task, completed=round(tally.done + within, 2),
+                               description=words or "cases")  # fmt: skip
+
+                tally = run_study(
+                    read, file.parent.resolve(), folder, there, show, retry_failed=retry_failed
+                )
+    except KeyboardInterrupt as stop:
+        errors.print("Interrupted.", style="red")
+        errors.print(f"What is done is kept; go on with: {again}", markup=False, soft_wrap=True)
+        raise typer.Exit(stop.status if isinstance(stop, Stopped) else 130) from None
+    if tally.failed:
+        warn(
+            f"{tally.failed} of {tally.cases} cases failed; their reasons are in the column reason "
+            "of table.csv"
+        )
+    answers.print(f"{tally.done} of {tally.cases} cases. In {out}: cases, study.nc, study.toml, "
+                  "table.csv", markup=False, soft_wrap=True)  # fmt: skip
+    if tally.failed == tally.cases:
+        raise typer.Exit(1)
