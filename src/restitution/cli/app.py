@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from restitution.cli import check, converge, run, study, surface
+from restitution.cli import check, compare, converge, report, run, study, surface
 
 app = typer.Typer(
     name="restitution",
@@ -18,6 +18,8 @@ app = typer.Typer(
 app.command()(run.run)
 app.command()(converge.converge)
 app.command()(study.study)
+app.command()(report.report)
+app.command()(compare.compare)
 app.command()(check.check)
 app.command()(surface.surface)
 

@@ -33,6 +33,14 @@ class Table:
 
 
 @dataclass(frozen=True)
+class Listing:
+    """A text as it stands in a file."""
+
+    title: str
+    content: str
+
+
+@dataclass(frozen=True)
 class Drawing:
     """A figure: what it shows in words (`alt`), how to read it (`caption`), and its numbers."""
 
@@ -51,7 +59,7 @@ class Page:
     title: str
     intro: Sequence[str] = ()
     warnings: Sequence[str] = ()
-    parts: Sequence[Table | Drawing] = field(default_factory=list)
+    parts: Sequence[Table | Drawing | Listing] = field(default_factory=list)
 
 
 def write_page(path: Path, page: Page) -> None:

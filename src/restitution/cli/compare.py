@@ -1,0 +1,69 @@
+"""`restitution compare`: two results side by side."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def compare(
+    a: Annotated[Path, typer.Argument(help="Results folder of a run or study.", metavar="A")],
+    b: Annotated[Path, typer.Argument(help="Another of the same kind.", metavar="B")],
+    out: Annotated[
+        Path | None, typer.Option("-o", "--out", help="CSV file for the rows; new.")
+    ] = None,
+) -> None:
+    """Print what differs between the results in A and B, with the errors of the differences."""
+    from rich.table import Table
+
+    from restitution.cli.console import answers
+    from restitution.errors import OutputError
+    from restitution.studies.compare import compare as compared
+    from restitution.studies.results import write_table
+
+    found = compared(a, b)
+    if out is not None:
+        if out.exists():
+            raise OutputError(f"{out}: exists, and nothing is overwritten; name another file")
+        write_table(out, found.rows)
+    if found.inputs:
+        inputs = Table(box=None, header_style="bold")
+        for name in ("input", "A", "B"):
+            inputs.add_column(name, overflow="fold")
+        for differing in found.inputs:
+            inputs.add_row(*(_plain(cell) for cell in differing))
+        answers.print(inputs)
+        answers.print()
+    swept = [key for key in (found.rows[0] if found.rows else {}) if "." in key or key == "title"]
+    table = Table(box=None, header_style="bold")
+    for name in swept:
+        table.add_column(_plain(name))
+    for name in ("indentation (nm)", "COR A", "COR B", "difference", "error", "force B/A", ""):
+        table.add_column(name, justify="right")
+    for row in found.rows:
+        marks = ("" if row["significant"] else "within error") if row["resolved"] else "unresolved"
+        table.add_row(
+            *(_plain(row[key]) for key in swept),
+            f"{1e9 * row['indentation_m']:.4g}",
+            f"{row['restitution_a']:.4f}",
+            f"{row['restitution_b']:.4f}",
+            f"{row['difference']:+.4f}",
+            f"{row['error']:.4f}",
+            f"{row['force_ratio']:.4f}",
+            marks,
+        )
+    answers.print(table)
+    if found.rows:
+        worst = max(found.rows, key=lambda row: abs(row["difference"]))
+        answers.print(f"largest difference of COR {worst['difference']:+.4f}")
+    else:
+        answers.print("no depth in common")
+    for note in found.notes:
+        answers.print(f"Note: {note}", markup=False, soft_wrap=True)
+
+
+def _plain(text: str) -> str:
+    """A text of the user's where rich would read markup in it."""
+    from rich.markup import escape
+
+    return escape(text)

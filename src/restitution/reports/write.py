@@ -1,0 +1,34 @@
+"""The page that belongs to a results folder, whatever made it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from restitution.errors import OutputError
+from restitution.reports.run_page import write_run_page
+from restitution.reports.study_page import write_study_page
+from restitution.reports.surface_page import write_surface_page
+
+# The file that tells what a folder holds, and what makes its page.
+_PAGES = {
+    "study.nc": write_study_page,
+    "results.nc": write_run_page,
+    "surface.nc": write_surface_page,
+}
+
+
+def write_report(out: Path) -> Path:
+    """Write the page of the folder `out` and return its path. Raises `OutputError`."""
+    for name, write in _PAGES.items():
+        if (out / name).is_file():
+            try:
+                return write(out)
+            except (OSError, KeyError, ValueError) as error:
+                raise OutputError(
+                    f"{out}: its results cannot be read ({type(error).__name__}: {error}); compute "
+                    "them again"
+                ) from error
+    raise OutputError(
+        f"{out}: holds no results (none of {', '.join(_PAGES)}); name the folder that was given "
+        "with -o"
+    )
