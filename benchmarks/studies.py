@@ -1,7 +1,7 @@
 """How much faster a study is on two workers than on one.
 
-`python benchmarks/studies.py`: a study of 16 cases on 256² nodes, one and two local processes in
-turns, three times each; the ratio of medians, with starting the processes and without.
+`python benchmarks/studies.py`: a study of 40 cases on 256² nodes, one and two local processes in
+turns, twice each; the ratio of medians, with starting the processes and without.
 """
 
 from __future__ import annotations
@@ -53,13 +53,13 @@ def main() -> None:
     """Print medians and their ratio."""
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
-        (folder / "study.toml").write_text(STUDY.format(seeds=list(range(16))))
+        (folder / "study.toml").write_text(STUDY.format(seeds=list(range(40))))
         taken: dict[int, list[float]] = {1: [], 2: []}
-        for _ in range(3):
+        for _ in range(2):
             for workers, times in taken.items():
                 times.append(seconds(folder, workers))
     one, two = (statistics.median(taken[workers]) for workers in (1, 2))
-    print(f"16 cases: {one:.1f} s on one worker, {two:.1f} s on two: {one / two:.2f} times faster")
+    print(f"40 cases: {one:.1f} s on one worker, {two:.1f} s on two: {one / two:.2f} times faster")
 
 
 if __name__ == "__main__":

@@ -19,11 +19,11 @@ def test_a_twin_of_a_scan(topographies, name, outliers):
         assert have["Sq_m"] == pytest.approx(want["Sq_m"], rel=1e-6)
         assert have["Ssk"] == pytest.approx(want["Ssk"], abs=0.01)
         assert have["Sku"] == pytest.approx(want["Sku"], rel=0.01)
-        assert have["Sdq"] == pytest.approx(want["Sdq"], rel=0.06)
+        assert have["Sdq"] == pytest.approx(want["Sdq"], rel=0.02)
         assert twin.provenance["spectrum_misfit"] < 0.35
         found.append((have["Sdq"] / want["Sdq"], twin.provenance["spectrum_misfit"]))
     slope, misfit = np.mean(found, axis=0)
-    assert slope == pytest.approx(1, abs=0.03)
+    assert slope == pytest.approx(1, abs=0.01)
     assert misfit < 0.25
 
 

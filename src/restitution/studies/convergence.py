@@ -152,7 +152,7 @@ def _keep(
         [{"refine": factor, **row} for rows in depths for factor, row in rows.items()],
     )
     one = out.path / f"refine-{max(runs)}"
-    summary: dict[str, Any] = json.loads((one / "summary.json").read_text())
+    summary: dict[str, Any] = json.loads((one / "summary.json").read_text(encoding="utf-8"))
     summary |= {
         "status": ended["status"],
         "reason": ended["reason"],

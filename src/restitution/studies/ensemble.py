@@ -128,7 +128,7 @@ class _Ensemble:
             [{"realisation": k + 1, **row} for k, of in self.curves.items() for row in of],
         )
         one = self.out.path / f"realisation-{min(self.curves) + 1}"
-        self.summary = self._summary(json.loads((one / "summary.json").read_text()))
+        self.summary = self._summary(json.loads((one / "summary.json").read_text(encoding="utf-8")))
         with xr.open_dataset(one / "results.nc", engine="netcdf4") as first:
             smooth = [name for name in first if str(name).startswith("smooth_")]
             dataset = first[smooth].load().assign(curve_variables(rows))
