@@ -1,6 +1,8 @@
-"""What tests of the command line and of studies share."""
+"""What tests of the command line, of studies and of pages share."""
 
 import re
+import shutil
+import subprocess
 import sys
 from pathlib import Path
 
@@ -80,3 +82,29 @@ def topographies():
     if not folder.is_dir():
         pytest.skip("the folder shared/topographies is not beside this checkout")
     return folder
+
+
+# A real browser without a window.
+PROGRAMS = ("chromium", "chromium-browser", "google-chrome")
+
+
+@pytest.fixture
+def opened():
+    """Open a page: its elements once drawn, as HTML, and the messages of its console."""
+    return _opened
+
+
+def _opened(page, *, width=1000):
+    program = next(filter(None, map(shutil.which, PROGRAMS)), None)
+    if program is None:
+        pytest.skip("no Chromium is installed (Debian: apt install chromium)")
+    done = subprocess.run(
+        [
+            program, "--headless", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr",
+            "--virtual-time-budget=20000", f"--window-size={width},900", "--dump-dom",
+            f"--user-data-dir={page.parent / 'browser'}", page.as_uri(),
+        ],
+        capture_output=True, text=True, timeout=180, check=True,
+    )  # fmt: skip
+    console = re.findall(r"CONSOLE[^\"]*\"(.*)\", source", done.stderr)
+    return done.stdout, console

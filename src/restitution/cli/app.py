@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from restitution.cli import check, compare, converge, report, run, study, surface
+from restitution.cli import check, compare, converge, report, reproduce, run, study, surface
 
 app = typer.Typer(
     name="restitution",
@@ -20,6 +20,7 @@ app.command()(converge.converge)
 app.command()(study.study)
 app.command()(report.report)
 app.command()(compare.compare)
+app.command()(reproduce.reproduce)
 app.command()(check.check)
 app.command()(surface.surface)
 

@@ -1,0 +1,83 @@
+"""`restitution reproduce`: the figures of the paper the program grew from."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def reproduce(
+    out: Annotated[Path, typer.Option("-o", "--out", help="Folder for studies and report.")],
+    quick: Annotated[bool, typer.Option("--quick", help="Smaller: about three minutes.")] = False,
+    refined: Annotated[
+        bool, typer.Option("--refined", help="Rough contacts on a grid four times as fine.")
+    ] = False,
+    workers: Annotated[
+        int | None,
+        typer.Option(min=1, help="Processes on this machine.", show_default="all cores"),
+    ] = None,
+    resume: Annotated[bool, typer.Option("--resume", help="Finish what is missing.")] = False,
+) -> None:
+    """Compute Figures 5 to 14 of Ghanbarzadeh et al. (2019) and judge its claims."""
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
+    from rich.table import Table
+
+    from restitution.cli.console import answers, errors
+    from restitution.cli.signals import Stopped
+    from restitution.errors import CaseError, OutputError
+    from restitution.reproduce.report import write_reproduction
+    from restitution.reproduce.studies import NAMES, Size, bundled
+    from restitution.studies.store import StudyFolder
+    from restitution.studies.study import Tally, run_study
+    from restitution.studies.workers import local_workers
+
+    if quick and refined:
+        raise CaseError("--quick and --refined: are two sizes; give one")
+    size: Size = "quick" if quick else "refined" if refined else "paper"
+    if not resume and out.exists() and any(out.iterdir()):
+        raise OutputError(f"{out}: this folder is not empty; name another one, or give --resume")
+    again = f"restitution reproduce -o {out}{' --' + size if size != 'paper' else ''} --resume"
+    studies = {name: bundled(name, size) for name in NAMES}
+    total = sum(len(study.cases) for study in studies.values())
+    errors.print(f"{total} cases. Results go to {out}; to resume: {again}", markup=False,
+                 soft_wrap=True)  # fmt: skip
+    columns = (
+        TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(),
+        TimeRemainingColumn(),
+    )  # fmt: skip
+    done = 0
+    try:
+        with (
+            local_workers(workers) as there,
+            Progress(*columns, console=errors, transient=True) as bar,
+        ):
+            task = bar.add_task("starting", total=total)
+            for name, study in studies.items():
+
+                def show(tally: Tally, name: str = name, before: int = done) -> None:
+                    bar.update(task, completed=before + tally.done, description=name)
+
+                begun = (out / name / "study.toml").is_file()
+                folder = StudyFolder(out / name, study, resume=begun)
+                with folder.locked():
+                    run_study(study, Path(), folder, there, show)
+                done += len(study.cases)
+    except KeyboardInterrupt as stop:
+        errors.print("Interrupted.", style="red")
+        errors.print(f"What is done is kept; go on with: {again}", markup=False, soft_wrap=True)
+        raise typer.Exit(stop.status if isinstance(stop, Stopped) else 130) from None
+    page, findings = write_reproduction(out, size)
+    table = Table(box=None, header_style="bold")
+    for column in ("figure", "claim", "verdict"):
+        table.add_column(column, overflow="fold")
+    for finding in findings:
+        table.add_row(finding.figure, finding.claim, finding.verdict)
+    answers.print(table)
+    answers.print(f"Written: {page}", markup=False, soft_wrap=True)

@@ -1,0 +1,1 @@
+"""The figures of Ghanbarzadeh, Hassanpour and Neville (2019), computed and judged."""

@@ -1,0 +1,320 @@
+"""What the paper says of each figure, and what its study has found.
+
+Each function takes the studies by name and returns one `Finding`. Thresholds of agreement stand
+beside the claim they judge.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from restitution.theory import hertz, jkr, thornton_ning, yielding
+
+Array = NDArray[np.float64]
+Studies = Mapping[str, xr.Dataset]
+Verdict = Literal["agrees", "agrees in part", "does not agree", "not decided"]
+
+# Two steel spheres of the paper, R being taken as the radius of a particle.
+R, E_STAR, P_Y, RADIUS = 250e-6, 112e9, 750e6, 500e-6
+SMOOTH = "1 pm"  # the roughness that stands for none
+_VARIABLES = (
+    "indentation", "restitution", "force", "impact_velocity", "pull_off_force", "resolved"
+)  # fmt: skip
+_NEAR = 0.05  # of the smooth sphere's COR: within it a rough sphere is a smooth one
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A claim, what was found, the number that decides, and how many depths were resolved."""
+
+    figure: str
+    claim: str
+    found: str
+    number: float
+    verdict: Verdict
+    resolved: str
+
+
+@dataclass(frozen=True)
+class Curve:
+    """One case of a study, without the depths that it has not reached."""
+
+    label: str
+    depth: Array
+    cor: Array
+    force: Array
+    velocity: Array
+    pull_off: Array
+    resolved: NDArray[np.bool_]
+
+
+def curves(study: xr.Dataset) -> list[Curve]:
+    """The complete cases of a study, labelled by what is swept."""
+    dims = [str(dim) for dim in study["restitution"].dims if dim != "depth"]
+    stacked = study.stack(_case=dims).transpose("_case", "depth", ...)
+    found = []
+    for k in range(stacked.sizes["_case"]):
+        case = stacked.isel(_case=k)
+        if str(case["status"].item()) != "complete":
+            continue
+        keys = [str(key) for key in study.coords if str(key) != "case"]
+        label = ", ".join(str(case[key].item()) for key in keys)
+        have = np.isfinite(case["indentation"].values)
+        depth, cor, force, velocity, pull_off, resolved = (
+            case[name].values[have] for name in _VARIABLES
+        )
+        found.append(Curve(label, depth, cor, force, velocity, pull_off, resolved.astype(bool)))
+    return found
+
+
+def _resolved(*of: Curve) -> str:
+    flags = np.concatenate([curve.resolved for curve in of])
+    return f"{np.count_nonzero(flags)} of {flags.size}"
+
+
+def _figure_5(studies: Studies) -> Finding:
+    (curve,) = curves(studies["hertz"])
+    off = float(np.abs(curve.force / hertz.force(curve.depth, R, E_STAR) - 1).max())
+    return Finding(
+        "5", "The elastic solution agrees with Hertz's.",
+        f"Force within {off:.2%} of Hertz's at all depths.", off,
+        "agrees" if off < 0.01 else "does not agree", _resolved(curve),
+    )  # fmt: skip
+
+
+def _figure_6(studies: Studies) -> Finding:
+    off = {}
+    yielded = 2 * float(yielding.yield_indentation(R, E_STAR, P_Y))
+    found = curves(studies["thornton-ning"])
+    for curve in found:
+        deep = curve.depth > yielded
+        law = thornton_ning.loading_force(curve.depth[deep], R, E_STAR, P_Y)
+        off[curve.label] = float(np.max(np.abs(curve.force[deep] / law - 1)))
+    return Finding(
+        "6", "Loading and unloading with a yield cut-off agree with Thornton and Ning (1998).",
+        f"With the pressure cut at p_y as in their theory, force is within {off['truncated']:.1%}. "
+        "With pressure and surface in equilibrium, which the other figures use, it is up to "
+        f"{off['equilibrium']:.0%} larger: a difference of models, not of solutions.",
+        off["truncated"], "agrees" if off["truncated"] < 0.02 else "does not agree",
+        _resolved(*found),
+    )  # fmt: skip
+
+
+def _figure_7(studies: Studies) -> Finding:
+    (curve,) = curves(studies["jkr"])
+    loading = float(np.abs(curve.force / jkr.force(curve.depth, R, E_STAR, 0.09) - 1).max())
+    off = np.abs(curve.pull_off / jkr.pull_off_force(R, 0.09) - 1)
+    worst, deepest = max(loading, float(off.max())), float(off[-1])
+    verdict: Verdict = "agrees" if worst < 0.05 else "does not agree"
+    if verdict != "agrees" and max(loading, deepest) < 0.05:
+        verdict = "agrees in part"
+    return Finding(
+        "7", "Adhesive elastic contact agrees with the JKR theory.",
+        f"Loading within {loading:.1%} in force; pull-off within {deepest:.1%} of 3/2 π w R* from "
+        f"the deepest point, {off.max():.1%} at worst: where many small steps follow the way back "
+        "from a shallow depth, they meet the largest of the lattice's jumps.",
+        worst, verdict, _resolved(curve),
+    )  # fmt: skip
+
+
+def _figure_8(studies: Studies) -> Finding:
+    found = curves(studies["smooth-yield"])
+    tops = [int(curve.cor.argmax()) for curve in found]
+    inside = [0 < top < curve.cor.size - 1 for top, curve in zip(tops, found, strict=True)]
+    where = ", ".join(
+        f"{curve.label}: {curve.cor[top]:.3f} at {1e9 * curve.depth[top]:.3g} nm"
+        for top, curve in zip(tops, found, strict=True)
+    )
+    return Finding(
+        "8", "For both yield stresses COR first increases with indentation and then reduces.",
+        f"The largest COR ({where}) lies between the ends in {sum(inside)} of {len(inside)} cases.",
+        sum(inside) / len(inside), _share(inside), _resolved(*found),
+    )  # fmt: skip
+
+
+def _figure_9(studies: Studies) -> Finding:
+    found = curves(studies["smooth-energy"])
+    cor = np.array([curve.cor for curve in found])
+    spread = np.ptp(cor, axis=0)
+    deep = found[0].depth > 100e-9
+    shallow, left = float(spread.max()), float(spread[deep].max())
+    good = left < 0.05 < shallow
+    return Finding(
+        "9", "For smooth spheres interface energy affects COR at small indentations only.",
+        f"Between the energies COR differs by up to {shallow:.2f} below 100 nm and by up to "
+        f"{left:.3f} beyond.", left, "agrees" if good else "does not agree", _resolved(*found),
+    )  # fmt: skip
+
+
+def _stages(studies: Studies) -> Finding:
+    rough, _ = _rough_and_smooth(studies)
+    complete = []
+    for curve in rough:
+        low = int(curve.cor[:-1].argmin())
+        high = low + int(curve.cor[low:].argmax())
+        rises = curve.cor[high] > curve.cor[low] + 0.02
+        complete.append(low > 0 and rises and high < curve.cor.size - 1)
+    names = ", ".join(c.label for c, whole in zip(rough, complete, strict=True) if whole) or "none"
+    return Finding(
+        "10", "COR of rough spheres has three stages: it falls as asperities yield, rises as the "
+        "bulk takes over, and falls as the bulk yields.",
+        f"All three stages within the depths computed for Rq = {names} ({sum(complete)} of "
+        f"{len(complete)}). The rougher the surface, the deeper the last begins.",
+        sum(complete) / len(complete), _share(complete), _resolved(*rough),
+    )  # fmt: skip
+
+
+def _shallow_merging(studies: Studies) -> Finding:
+    rough, smooth = _rough_and_smooth(studies)
+    # Where the smooth sphere sticks there is nothing to be off by a part of.
+    shallow = (smooth.depth <= 8e-9) & (smooth.cor > 0)
+    off = max(float(np.abs(c.cor[shallow] / smooth.cor[shallow] - 1).max()) for c in rough)
+    flags = np.concatenate([c.resolved[shallow] for c in rough])
+    return Finding(
+        "10", "Below 8 nm COR merges with the smooth sphere's, for every roughness.",
+        f"Up to 8 nm COR is up to {off:.0%} off the smooth sphere's."
+        + _single_nodes(flags), off, "agrees" if off < _NEAR else "does not agree",
+        f"{np.count_nonzero(flags)} of {flags.size}",
+    )  # fmt: skip
+
+
+def _shallow_trend(studies: Studies) -> Finding:
+    rough, smooth = _rough_and_smooth(studies)
+    shallow = (smooth.depth >= 8e-9) & (smooth.depth <= 50e-9)
+    cor = np.array([curve.cor[shallow] for curve in rough])
+    off = float((np.ptp(cor, axis=0) / cor.mean(axis=0)).max())
+    flags = np.concatenate([c.resolved[shallow] for c in rough])
+    return Finding(
+        "10", "Below 50 nm COR follows the same trend for every roughness.",
+        f"Between 8 and 50 nm it differs between roughnesses by up to {off:.0%} of its mean."
+        + _single_nodes(flags), off, "agrees" if off < 0.1 else "does not agree",
+        f"{np.count_nonzero(flags)} of {flags.size}",
+    )  # fmt: skip
+
+
+def _single_nodes(flags: NDArray[np.bool_]) -> str:
+    if np.mean(flags) > 0.5:
+        return ""
+    return (
+        " Most of these contacts are a few nodes, which yield as a cell does, whatever the "
+        "surface: a common trend would belong to the grid (docs/resolution.md)."
+    )
+
+
+def critical_indentation(curve: Curve, smooth: Curve) -> float:
+    """Depth (m) from which on COR stays within 5 % of the smooth sphere's; NaN: not reached."""
+    apart = np.abs(curve.cor / smooth.cor - 1) > _NEAR
+    if apart[-1]:
+        return math.nan
+    last = int(np.flatnonzero(apart)[-1]) if apart.any() else -1
+    return float(curve.depth[last + 1])
+
+
+def _figure_11(studies: Studies) -> Finding:
+    from scipy.stats import linregress
+
+    cases = curves(studies["critical"])
+    smooth = next(curve for curve in cases if curve.label.startswith(SMOOTH))
+    found = [
+        (1e-6 * float(curve.label.split()[0]) / RADIUS, critical_indentation(curve, smooth))
+        for curve in cases
+        if not curve.label.startswith(SMOOTH)
+    ]
+    reached = np.array([pair for pair in found if not math.isnan(pair[1])])
+    count = f"{len(reached)} of {len(found)} surfaces"
+    claim = "The critical indentation i_cr,max depends linearly on Rq/R."
+    roughnesses = len(set(reached[:, 0])) if len(reached) else 0
+    if roughnesses < 3:
+        words = f"Reached by {count}, of {roughnesses} roughnesses: too few for a line. "
+        if len(reached):
+            means = ", ".join(
+                f"{1e6 * reached[reached[:, 0] == ratio, 1].mean():.2g} µm at Rq/R = {ratio:.2g}"
+                for ratio in sorted(set(reached[:, 0]))
+            )
+            words += f"Means: {means}."
+        return Finding("11", claim, words, math.nan, "not decided", _resolved(*cases))
+    line = linregress(reached[:, 0], reached[:, 1])
+    r2 = float(line.rvalue**2)
+    return Finding(
+        "11", claim,
+        f"i_cr,max = {1e3 * line.slope:.2g} mm · Rq/R {1e6 * line.intercept:+.2g} µm with "
+        f"r² = {r2:.2f}, standard error of the slope {1e3 * line.stderr:.2g} mm; reached by "
+        f"{count}.",
+        r2, "agrees" if r2 > 0.9 else "agrees in part" if r2 > 0.7 else "does not agree",
+        _resolved(*cases),
+    )  # fmt: skip
+
+
+def _figure_12(studies: Studies) -> Finding:
+    rough, smooth = _rough_and_smooth(studies)
+    carries = smooth.cor > 0
+    most = [float(((smooth.cor - c.cor) / np.where(carries, smooth.cor, 1))[carries].max())
+            for c in rough]  # fmt: skip
+    grows = bool(np.all(np.diff(most) > -0.02))
+    return Finding(
+        "12", "Rougher surfaces deviate more from the smooth one, and lose more energy.",
+        "Largest (COR_smooth − COR_rough)/COR_smooth: "
+        + ", ".join(f"{m:.0%} at {c.label}" for m, c in zip(most, rough, strict=True)) + ".",
+        max(most), "agrees" if grows else "agrees in part", _resolved(*rough),
+    )  # fmt: skip
+
+
+def _figure_13(studies: Studies) -> Finding:
+    soft, hard = sorted(curves(studies["rough-yield"]), key=lambda c: float(c.label.split()[0]))
+    deep = soft.depth > 50e-9
+    ratio = soft.cor / hard.cor
+    beyond = float(ratio[deep].mean())
+    return Finding(
+        "13", "Yield stress dramatically affects COR of rough spheres.",
+        f"At 150 MPa COR is {beyond:.0%} of that at 750 MPa beyond 50 nm (mean), and "
+        f"{float(np.nanmin(ratio[~deep])):.0%} to {float(np.nanmax(ratio[~deep])):.0%} below: the "
+        "curves differ there, too.", beyond,
+        "agrees" if beyond < 0.8 else "does not agree", _resolved(soft, hard),
+    )  # fmt: skip
+
+
+def _figure_14(studies: Studies) -> Finding:
+    rough = curves(studies["rough-energy"])
+    smooth = curves(studies["smooth-energy"])
+    # Where both are computed, and the smooth sphere does not stick.
+    depth = rough[0].depth
+    depth = depth[(depth >= smooth[0].depth[0]) & (depth <= smooth[0].depth[-1])]
+
+    def spread(of: list[Curve]) -> Array:
+        cor = [np.interp(np.log(depth), np.log(c.depth), c.cor) for c in (of[0], of[-1])]
+        return np.asarray(np.abs(cor[0] - cor[1]))
+
+    of_rough, of_smooth = spread(rough), spread(smooth)
+    return Finding(
+        "14", "Interface energy has less effect on COR of rough spheres than of smooth ones.",
+        f"From 0.01 to 0.09 J/m² COR changes by {of_rough.mean():.3f} on the average over the same "
+        f"depths (up to {of_rough.max():.2f}), for smooth spheres by {of_smooth.mean():.3f} (up to "
+        f"{of_smooth.max():.2f}).",
+        float(of_rough.mean() / of_smooth.mean()),
+        "agrees" if of_rough.mean() < of_smooth.mean() else "does not agree", _resolved(*rough),
+    )  # fmt: skip
+
+
+def _rough_and_smooth(studies: Studies) -> tuple[list[Curve], Curve]:
+    found = curves(studies["roughness"])
+    smooth = next(curve for curve in found if curve.label == SMOOTH)
+    return [curve for curve in found if curve.label != SMOOTH], smooth
+
+
+def _share(flags: list[bool]) -> Verdict:
+    if all(flags):
+        return "agrees"
+    return "agrees in part" if any(flags) else "does not agree"
+
+
+CLAIMS: tuple[Callable[[Studies], Finding], ...] = (
+    _figure_5, _figure_6, _figure_7, _figure_8, _figure_9, _stages, _shallow_merging,
+    _shallow_trend, _figure_11, _figure_12, _figure_13, _figure_14,
+)  # fmt: skip

@@ -1,0 +1,189 @@
+"""The page of the paper's figures, from the studies that were stored."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from plotly.graph_objects import Scatter
+
+from restitution.reports.methods import methods
+from restitution.reports.page import Cell, Drawing, Page, Table, new_plot, write_page
+from restitution.reproduce.claims import (
+    CLAIMS,
+    E_STAR,
+    P_Y,
+    RADIUS,
+    SMOOTH,
+    Array,
+    Curve,
+    Finding,
+    R,
+    critical_indentation,
+    curves,
+)
+from restitution.reproduce.studies import NAMES, Size
+from restitution.theory import hertz, jkr, thornton_ning
+
+PAPER = (
+    "Ghanbarzadeh, Hassanpour and Neville (2019), Powder Technology 345, 203–212, "
+    "doi:10.1016/j.powtec.2018.12.079"
+)
+_OPEN = (
+    ("radius of 500 µm", "of each particle, so that R* = 250 µm", "not said: it may be R*"),
+    ("autocorrelation of the surfaces", "Gaussian", "not said"),
+    ("correlation length", "2 µm (10 %)", "not said"),
+    ("yield stress", "largest contact pressure p_y", "called yield stress and yield pressure"),
+    ("yielding", "pressure and surface in equilibrium but for Figure 6",
+     "a yield cut-off of the pressure"),
+    ("detachment", "crack closure", "criterion of Pohrt and Popov (2015)"),
+    ("seeds", "1; Figure 11: see its study", "not said"),
+    ("smooth sphere of Figures 10 to 12", f"Rq = {SMOOTH} on the same grid", "smooth"),
+)  # fmt: skip
+
+
+def write_reproduction(out: Path, size: Size) -> tuple[Path, list[Finding]]:
+    """Write `report.html` from the studies in the folders of `out`; return it and its verdicts."""
+    studies = {}
+    for name in NAMES:
+        with xr.open_dataset(out / name / "study.nc", engine="netcdf4") as stored:
+            studies[name] = stored.load()
+    findings = [claim(studies) for claim in CLAIMS]
+    judged = ", ".join(
+        f"{sum(f.verdict == v for f in findings)} {v}"
+        for v in ("agrees", "agrees in part", "does not agree", "not decided")
+    )
+    summary = json.loads(
+        (out / "roughness" / "cases" / "case-00002" / "summary.json").read_text(encoding="utf-8")
+    )
+    page = Page(
+        title="The figures of Ghanbarzadeh, Hassanpour and Neville (2019)",
+        intro=[PAPER, f"Size: {size}. Claims: {judged}."],
+        warnings=_warnings(size),
+        parts=[
+            Table(
+                "Claims",
+                ["figure", "claim", "found", "number", "depths resolved", "verdict"],
+                [[f.figure, f.claim, f.found, f.number, f.resolved, f.verdict] for f in findings],
+            ),
+            Table("What the paper leaves open", ["input", "here", "in the paper"], _OPEN),
+            *_drawings(studies, findings),
+            methods(summary),
+        ],
+    )
+    write_page(out / "report.html", page)
+    return out / "report.html", findings
+
+
+def _warnings(size: Size) -> list[str]:
+    if size == "quick":
+        return [
+            "Quick size: coarser in depth, fewer surfaces and smaller domains than the paper's; "
+            "for its own size leave out --quick."
+        ]
+    if size == "paper":
+        return [
+            "On the paper's spacing of 0.25 µm rough contacts below some tens of nanometres are a "
+            "few nodes (open markers): their numbers belong to the grid. --refined resolves them."
+        ]
+    return []
+
+
+def _drawings(studies: dict[str, xr.Dataset], findings: list[Finding]) -> list[Drawing]:
+    by_figure: dict[str, list[Finding]] = {}
+    for finding in findings:
+        by_figure.setdefault(finding.figure, []).append(finding)
+
+    def words(figure: str) -> str:
+        return " ".join(f"{f.found} ({f.verdict})" for f in by_figure[figure])
+
+    smooth = next(c for c in curves(studies["roughness"]) if c.label == SMOOTH)
+    rough = [c for c in curves(studies["roughness"]) if c.label != SMOOTH]
+    return [
+        _lines("Figure 5: force on smooth elastic spheres", "force (N)", words("5"),
+               [(c, c.force) for c in curves(studies["hertz"])],
+               [("Hertz", lambda d: hertz.force(d, R, E_STAR))], log=True),
+        _lines("Figure 6: force on smooth elastic–plastic spheres", "force (N)", words("6"),
+               [(c, c.force) for c in curves(studies["thornton-ning"])],
+               [("Thornton and Ning", lambda d: thornton_ning.loading_force(d, R, E_STAR, P_Y))],
+               log=True),
+        _lines("Figure 7: force on smooth elastic adhesive spheres", "force (N)", words("7"),
+               [(c, c.force) for c in curves(studies["jkr"])],
+               [("JKR", lambda d: jkr.force(d, R, E_STAR, 0.09))]),
+        _lines("Figure 8: smooth adhesive spheres, yield pressure", "COR", words("8"),
+               [(c, c.cor) for c in curves(studies["smooth-yield"])]),
+        _lines("Figure 9: smooth adhesive spheres, interface energy", "COR", words("9"),
+               [(c, c.cor) for c in curves(studies["smooth-energy"])]),
+        _lines("Figure 10: rough adhesive spheres", "COR", words("10"),
+               [(c, c.cor) for c in (smooth, *rough)]),
+        _critical(studies["critical"], words("11")),
+        _lines("Figure 12: difference of COR from the smooth sphere", "difference (%)", words("12"),
+               [(c, 100 * (smooth.cor - c.cor) / np.where(smooth.cor > 0, smooth.cor, np.nan))
+                for c in rough]),
+        _lines("Figure 13: rough adhesive sphere, yield pressure", "COR", words("13"),
+               [(c, c.cor) for c in curves(studies["rough-yield"])]),
+        _lines("Figure 14: rough adhesive sphere, interface energy", "COR", words("14"),
+               [(c, c.cor) for c in curves(studies["rough-energy"])]),
+    ]  # fmt: skip
+
+
+def _lines(
+    title: str,
+    y: str,
+    caption: str,
+    lines: Sequence[tuple[Curve, Array]],
+    laws: Sequence[tuple[str, Callable[[Array], Array]]] = (),
+    *,
+    log: bool = False,
+) -> Drawing:
+    """Values of `y` of several curves against indentation, with theoretical laws dashed."""
+    plot = new_plot("indentation (nm)", y)
+    plot.update_xaxes(type="log", exponentformat="power")
+    if log:
+        plot.update_yaxes(type="log", exponentformat="power")
+    rows: list[list[Cell]] = []
+    for curve, values in lines:
+        label = "smooth" if curve.label == SMOOTH else curve.label
+        symbols = ["circle" if good else "circle-open" for good in curve.resolved]
+        plot.add_trace(
+            Scatter(x=1e9 * curve.depth, y=values, mode="lines+markers", name=label,
+                    marker={"symbol": symbols, "size": 7})
+        )  # fmt: skip
+        rows += [
+            [label, 1e9 * float(d), float(v), "yes" if good else "no"]
+            for d, v, good in zip(curve.depth, values, curve.resolved, strict=True)
+        ]
+    for name, law in laws:
+        depth = lines[0][0].depth
+        fine = np.geomspace(depth[0], depth[-1], 100)
+        plot.add_trace(Scatter(x=1e9 * fine, y=law(fine), mode="lines", name=name,
+                               line={"dash": "dash", "color": "#8c959f"}))  # fmt: skip
+    return Drawing(
+        title, plot, f"{title}: {y} against indentation for {len(lines)} cases",
+        caption + " Open markers: not resolved by the grid.",
+        Table(title, ["case", "indentation (nm)", y, "resolved"], rows),
+    )  # fmt: skip
+
+
+def _critical(study: xr.Dataset, caption: str) -> Drawing:
+    cases: list[Curve] = curves(study)
+    smooth = next(c for c in cases if c.label.startswith(SMOOTH))
+    points = [
+        (c.label, 1e-6 * float(c.label.split()[0]) / RADIUS, 1e6 * critical_indentation(c, smooth))
+        for c in cases
+        if not c.label.startswith(SMOOTH)
+    ]
+    title = "Figure 11: critical indentation"
+    plot = new_plot("Rq/R", "i_cr,max (µm)")
+    plot.add_trace(
+        Scatter(x=[p[1] for p in points], y=[p[2] for p in points], mode="markers",
+                text=[p[0] for p in points], name="one surface")
+    )  # fmt: skip
+    return Drawing(
+        title, plot, f"{title} against roughness over radius for {len(points)} surfaces",
+        caption + " Surfaces that did not come within 5 % of the smooth sphere are not drawn.",
+        Table(title, ["Rq, seed", "Rq/R", "i_cr,max (µm)"], [list(p) for p in points]),
+    )  # fmt: skip
