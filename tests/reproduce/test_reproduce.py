@@ -49,10 +49,11 @@ def curve(depth, cor):
     return Curve("x", depth, cor, cor, cor, cor, np.ones(cor.size, bool))
 
 
-def test_the_critical_indentation_is_the_first_depth_after_the_last_that_is_off():
+def test_the_critical_indentation_is_where_the_last_difference_falls_below_five_percent():
     depth = [1.0, 2.0, 3.0, 4.0, 5.0]
     smooth = curve(depth, [0.9, 0.8, 0.7, 0.6, 0.5])
-    assert critical_indentation(curve(depth, [0.5, 0.79, 0.6, 0.61, 0.5]), smooth) == 4.0
+    found = critical_indentation(curve(depth, [0.5, 0.79, 0.63, 0.6, 0.5]), smooth)
+    assert found == pytest.approx(3 * (4 / 3) ** 0.5)  # half way from 10 % to none
     assert critical_indentation(smooth, smooth) == 1.0
     assert np.isnan(critical_indentation(curve(depth, [0.9, 0.8, 0.7, 0.6, 0.4]), smooth))
 

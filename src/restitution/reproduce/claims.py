@@ -209,12 +209,19 @@ def _single_nodes(flags: NDArray[np.bool_]) -> str:
 
 
 def critical_indentation(curve: Curve, smooth: Curve) -> float:
-    """Depth (m) from which on COR stays within 5 % of the smooth sphere's; NaN: not reached."""
-    apart = np.abs(curve.cor / smooth.cor - 1) > _NEAR
-    if apart[-1]:
+    """Depth (m) from which on COR stays within 5 % of the smooth sphere's; NaN: not reached.
+
+    Between the last depth that is off and the next it is interpolated in the logarithm of depth.
+    """
+    off = np.abs(curve.cor / smooth.cor - 1)
+    apart = np.flatnonzero(off > _NEAR)
+    if apart.size == 0:
+        return float(curve.depth[0])
+    last = int(apart[-1])
+    if last == off.size - 1:
         return math.nan
-    last = int(np.flatnonzero(apart)[-1]) if apart.any() else -1
-    return float(curve.depth[last + 1])
+    share = (off[last] - _NEAR) / (off[last] - off[last + 1])
+    return float(curve.depth[last] * (curve.depth[last + 1] / curve.depth[last]) ** share)
 
 
 def _figure_11(studies: Studies) -> Finding:
