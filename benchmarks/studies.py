@@ -1,16 +1,20 @@
-"""How much faster a study is on two workers than on one.
+"""How much faster a study is on two workers than on one: local processes, and a Dask cluster.
 
-`python benchmarks/studies.py`: a study of 40 cases on 256² nodes, one and two local processes in
-turns, twice each; the ratio of medians, with starting the processes and without.
+`python benchmarks/studies.py`: a study of 40 cases on 256² nodes, one and two workers in turns,
+twice each; the ratio of medians of the whole command. Clusters are started before the clock.
 """
 
 from __future__ import annotations
 
+import os
+import re
 import statistics
 import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 STUDY = """
@@ -36,30 +40,69 @@ steps = 24
 [sweep]
 "roughness.seed" = {seeds}
 """
+ROUNDS = 2
 
 
-def seconds(folder: Path, workers: int) -> float:
+def seconds(folder: Path, *where: str) -> float:
     """Of the whole command."""
     began = time.perf_counter()
     subprocess.run(
         [sys.executable, "-m", "restitution", "study", folder / "study.toml", "-o",
-         folder / f"out-{time.time_ns()}", "--workers", str(workers)],
+         folder / f"out-{time.time_ns()}", *where],
         check=True, capture_output=True,
     )  # fmt: skip
     return time.perf_counter() - began
 
 
+@contextmanager
+def cluster(workers: int) -> Iterator[str]:
+    """The address of a scheduler on loopback with so many workers of one thread."""
+
+    def start(*arguments: str) -> subprocess.Popen[str]:
+        return subprocess.Popen(
+            [sys.executable, "-m", f"distributed.cli.{arguments[0]}", *arguments[1:],
+             "--no-dashboard"],
+            stderr=subprocess.PIPE, text=True, env={**os.environ, "DUCC0_NUM_THREADS": "1"},
+        )  # fmt: skip
+
+    def said(process: subprocess.Popen[str], words: str) -> str:
+        for line in process.stderr or ():
+            if found := re.search(words, line):
+                return found[0]
+        raise RuntimeError(f"a process of the cluster ended without saying {words!r}")
+
+    started = [start("dask_scheduler", "--host", "127.0.0.1", "--port", "0")]
+    address = said(started[0], r"tcp://127\.0\.0\.1:\d+")
+    started += [start("dask_worker", address, "--nthreads", "1") for _ in range(workers)]
+    for worker in started[1:]:
+        said(worker, "Registered to")
+    try:
+        yield address
+    finally:
+        for process in reversed(started):
+            process.terminate()
+            process.communicate(timeout=60)
+
+
 def main() -> None:
     """Print medians and their ratio."""
+    taken: dict[tuple[str, int], list[float]] = {}
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
         (folder / "study.toml").write_text(STUDY.format(seeds=list(range(40))))
-        taken: dict[int, list[float]] = {1: [], 2: []}
-        for _ in range(2):
-            for workers, times in taken.items():
-                times.append(seconds(folder, workers))
-    one, two = (statistics.median(taken[workers]) for workers in (1, 2))
-    print(f"40 cases: {one:.1f} s on one worker, {two:.1f} s on two: {one / two:.2f} times faster")
+        for _ in range(ROUNDS):
+            for workers in (1, 2):
+                local = seconds(folder, "--workers", str(workers))
+                taken.setdefault(("local processes", workers), []).append(local)
+                with cluster(workers) as address:
+                    far = seconds(folder, "--scheduler", address)
+                taken.setdefault(("Dask cluster", workers), []).append(far)
+    for kind in ("local processes", "Dask cluster"):
+        one, two = (statistics.median(taken[kind, workers]) for workers in (1, 2))
+        print(
+            f"40 cases, {kind}: {one:.1f} s on one worker, {two:.1f} s on two: "
+            f"{one / two:.2f} times faster"
+        )
 
 
 if __name__ == "__main__":
