@@ -112,15 +112,16 @@ def _levels(case: Case, folder: Path, grids: int) -> dict[int, float]:
         )
     coarsest = case.grid.factor if case.grid else 1
     factors = [coarsest * 2**k for k in range(grids)]
+    own = case.grid.grid() if case.grid else None
+    nx, ny = own.nodes if own else case.refined(1).surface(folder).grid.nodes
+    if nx * ny * factors[-1] ** 2 > MOST_NODES:
+        raise CaseError(
+            f"grids: the last of them, {nx * factors[-1]} x {ny * factors[-1]} nodes, would be "
+            f"larger than a grid may be ({MOST_NODES} nodes); give fewer, or a coarser first grid"
+        )
     R, touch = case.pair().radius, {}
     for factor in factors:
         surface = case.refined(factor).surface(folder)
-        nx, ny = surface.grid.nodes
-        if 4 * nx * ny > MOST_NODES and factor < factors[-1]:
-            raise CaseError(
-                f"grids: the next one after {nx} x {ny} nodes would be larger than a grid may be "
-                f"({MOST_NODES} nodes); give fewer, or a coarser first grid"
-            )
         x, y = surface.grid.x[:, None], surface.grid.y[None, :]
         touch[factor] = float(((x * x + y * y) / (2 * R) - surface.height).min())
     return {factor: touch[factor] - touch[factors[-1]] for factor in factors}
