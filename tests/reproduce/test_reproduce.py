@@ -46,7 +46,7 @@ def test_every_bundled_study_is_a_valid_one(size):
 
 def curve(depth, cor):
     depth, cor = np.asarray(depth), np.asarray(cor)
-    return Curve("x", depth, cor, cor, cor, cor, np.ones(cor.size, bool))
+    return Curve("x", depth, cor, cor, cor, np.ones(cor.size, bool))
 
 
 def test_the_critical_indentation_is_where_the_last_difference_falls_below_five_percent():

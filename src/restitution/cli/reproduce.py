@@ -19,18 +19,10 @@ def reproduce(
     resume: Annotated[bool, typer.Option("--resume", help="Finish what is missing.")] = False,
 ) -> None:
     """Compute Figures 5 to 14 of Ghanbarzadeh et al. (2019) and judge its claims."""
-    from rich.progress import (
-        BarColumn,
-        MofNCompleteColumn,
-        Progress,
-        TextColumn,
-        TimeElapsedColumn,
-        TimeRemainingColumn,
-    )
     from rich.table import Table
 
-    from restitution.cli.console import answers, errors
-    from restitution.cli.signals import Stopped
+    from restitution.cli.console import answers
+    from restitution.cli.many import many_cases
     from restitution.errors import CaseError, OutputError
     from restitution.reproduce.report import write_reproduction
     from restitution.reproduce.studies import NAMES, Size, bundled
@@ -46,33 +38,19 @@ def reproduce(
     again = f"restitution reproduce -o {out}{' --' + size if size != 'paper' else ''} --resume"
     studies = {name: bundled(name, size) for name in NAMES}
     total = sum(len(study.cases) for study in studies.values())
-    errors.print(f"{total} cases. Results go to {out}; to resume: {again}", markup=False,
-                 soft_wrap=True)  # fmt: skip
-    columns = (
-        TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(),
-        TimeRemainingColumn(),
-    )  # fmt: skip
     done = 0
-    try:
-        with (
-            local_workers(workers) as there,
-            Progress(*columns, console=errors, transient=True) as bar,
-        ):
-            task = bar.add_task("starting", total=total)
-            for name, study in studies.items():
+    with many_cases(total, out, again) as bar, local_workers(workers) as there:
+        task = bar.add_task("starting", total=total)
+        for name, study in studies.items():
 
-                def show(tally: Tally, name: str = name, before: int = done) -> None:
-                    bar.update(task, completed=before + tally.done, description=name)
+            def show(tally: Tally, name: str = name, before: int = done) -> None:
+                bar.update(task, completed=before + tally.done, description=name)
 
-                begun = (out / name / "study.toml").is_file()
-                folder = StudyFolder(out / name, study, resume=begun)
-                with folder.locked():
-                    run_study(study, Path(), folder, there, show)
-                done += len(study.cases)
-    except KeyboardInterrupt as stop:
-        errors.print("Interrupted.", style="red")
-        errors.print(f"What is done is kept; go on with: {again}", markup=False, soft_wrap=True)
-        raise typer.Exit(stop.status if isinstance(stop, Stopped) else 130) from None
+            begun = (out / name / "study.toml").is_file()
+            folder = StudyFolder(out / name, study, resume=begun)
+            with folder.locked():
+                run_study(study, Path(), folder, there, show)
+            done += len(study.cases)
     page, findings = write_reproduction(out, size)
     table = Table(box=None, header_style="bold")
     for column in ("figure", "claim", "verdict"):

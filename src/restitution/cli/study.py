@@ -33,17 +33,9 @@ def study(
     ] = False,
 ) -> None:
     """Run every case of STUDY and write a table of all of them to OUT."""
-    from rich.progress import (
-        BarColumn,
-        MofNCompleteColumn,
-        Progress,
-        TextColumn,
-        TimeElapsedColumn,
-        TimeRemainingColumn,
-    )
 
-    from restitution.cli.console import answers, errors, warn
-    from restitution.cli.signals import Stopped
+    from restitution.cli.console import answers, warn
+    from restitution.cli.many import many_cases
     from restitution.errors import CaseError
     from restitution.studies.case import parse_case
     from restitution.studies.store import StudyFolder
@@ -56,36 +48,24 @@ def study(
     read = read_study(file)
     folder = StudyFolder(out, read, resume=resume)
     again = f"restitution study {file} -o {out} --resume"
-    errors.print(f"{len(read.cases)} cases. Results go to {out}; to resume: {again}", markup=False,
-                 soft_wrap=True)  # fmt: skip
     first = parse_case(read.cases[0].text)
     depths = len(first.depths()) * first.realisations
-    columns = (
-        TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(),
-        TimeRemainingColumn(),
-    )  # fmt: skip
-    try:
-        with folder.locked():
-            where = cluster_workers(scheduler) if scheduler else local_workers(workers)
-            with where as there, Progress(*columns, console=errors, transient=True) as bar:
-                task = bar.add_task("cases", total=len(read.cases))
+    where = cluster_workers(scheduler) if scheduler else local_workers(workers)
+    with many_cases(len(read.cases), out, again) as bar, folder.locked(), where as there:
+        task = bar.add_task("cases", total=len(read.cases))
 
-                def show(tally: Tally) -> None:
-                    within = sum(min(d / depths, 1.0) for d in tally.in_flight.values())
-                    words = ", ".join(
-                        f"case {number}: {done} of {depths}"
-                        for number, done in list(tally.in_flight.items())[:3]
-                    )
-                    bar.update(task, completed=round(tally.done + within, 2),
-                               description=words or "cases")  # fmt: skip
+        def show(tally: Tally) -> None:
+            within = sum(min(d / depths, 1.0) for d in tally.in_flight.values())
+            words = ", ".join(
+                f"case {number}: {done} of {depths}"
+                for number, done in list(tally.in_flight.items())[:3]
+            )
+            bar.update(task, completed=round(tally.done + within, 2),
+                       description=words or "cases")  # fmt: skip
 
-                tally = run_study(
-                    read, file.parent.resolve(), folder, there, show, retry_failed=retry_failed
-                )
-    except KeyboardInterrupt as stop:
-        errors.print("Interrupted.", style="red")
-        errors.print(f"What is done is kept; go on with: {again}", markup=False, soft_wrap=True)
-        raise typer.Exit(stop.status if isinstance(stop, Stopped) else 130) from None
+        tally = run_study(
+            read, file.parent.resolve(), folder, there, show, retry_failed=retry_failed
+        )
     if tally.failed:
         warn(
             f"{tally.failed} of {tally.cases} cases failed; their reasons are in the column reason "

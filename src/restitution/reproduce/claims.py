@@ -25,7 +25,7 @@ Verdict = Literal["agrees", "agrees in part", "does not agree", "not decided"]
 R, E_STAR, P_Y, RADIUS = 250e-6, 112e9, 750e6, 500e-6
 SMOOTH = "1 pm"  # the roughness that stands for none
 _VARIABLES = (
-    "indentation", "restitution", "force", "impact_velocity", "pull_off_force", "resolved"
+    "indentation", "restitution", "force", "pull_off_force", "resolved"
 )  # fmt: skip
 _NEAR = 0.05  # of the smooth sphere's COR: within it a rough sphere is a smooth one
 
@@ -50,7 +50,6 @@ class Curve:
     depth: Array
     cor: Array
     force: Array
-    velocity: Array
     pull_off: Array
     resolved: NDArray[np.bool_]
 
@@ -67,10 +66,8 @@ def curves(study: xr.Dataset) -> list[Curve]:
         keys = [str(key) for key in study.coords if str(key) != "case"]
         label = ", ".join(str(case[key].item()) for key in keys)
         have = np.isfinite(case["indentation"].values)
-        depth, cor, force, velocity, pull_off, resolved = (
-            case[name].values[have] for name in _VARIABLES
-        )
-        found.append(Curve(label, depth, cor, force, velocity, pull_off, resolved.astype(bool)))
+        depth, cor, force, pull_off, resolved = (case[name].values[have] for name in _VARIABLES)
+        found.append(Curve(label, depth, cor, force, pull_off, resolved.astype(bool)))
     return found
 
 

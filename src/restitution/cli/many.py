@@ -1,0 +1,46 @@
+"""What the verbs that compute many cases have in common: a bar over them, and how to go on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rich.progress import Progress
+
+
+@contextmanager
+def many_cases(cases: int, out: object, again: str) -> Iterator[Progress]:
+    """Say where the results of so many `cases` go and that `again` resumes them; show progress.
+
+    Interruption ends the program as a shell expects it, with the same advice.
+    """
+    import typer
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
+
+    from restitution.cli.console import errors
+    from restitution.cli.signals import Stopped
+
+    def say(text: str) -> None:
+        errors.print(text, markup=False, soft_wrap=True)
+
+    say(f"{cases} cases. Results go to {out}; to resume: {again}")
+    columns = (
+        TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(),
+        TimeRemainingColumn(),
+    )  # fmt: skip
+    try:
+        with Progress(*columns, console=errors, transient=True) as bar:
+            yield bar
+    except KeyboardInterrupt as stop:
+        errors.print("Interrupted.", style="red")
+        say(f"What is done is kept; go on with: {again}")
+        raise typer.Exit(stop.status if isinstance(stop, Stopped) else 130) from None
