@@ -7,6 +7,7 @@ if TYPE_CHECKING:
     from restitution.contact.batch import solve_batch
     from restitution.contact.bodies import Body, Pair
     from restitution.contact.contact import Contact, smooth
+    from restitution.contact.impact import solve_at_velocity
     from restitution.contact.load import solve_at_force
     from restitution.contact.loading import solve, step
     from restitution.contact.path import loading_path, unloading_path
@@ -53,6 +54,7 @@ __all__ = [
     "smooth",
     "solve",
     "solve_at_force",
+    "solve_at_velocity",
     "solve_batch",
     "step",
     "unloading_path",
@@ -65,6 +67,7 @@ _HOMES = {
     "contact.batch": ("solve_batch",),
     "contact.bodies": ("Body", "Pair"),
     "contact.contact": ("Contact", "smooth"),
+    "contact.impact": ("solve_at_velocity",),
     "contact.load": ("solve_at_force",),
     "contact.loading": ("solve", "step"),
     "contact.path": ("loading_path", "unloading_path"),

@@ -7,7 +7,8 @@ import sys
 
 import pytest
 
-from restitution.studies import run as study
+from restitution.studies import case as case_module
+from restitution.studies import run
 
 CALL = "from restitution.cli import main; main()"
 
@@ -25,7 +26,7 @@ def call(*arguments, before="", **options):
 
 
 def fail_at_the_third_depth(monkeypatch, error):
-    real, calls = study.loading_path, []
+    real, calls = case_module.loading_path, []
 
     def path(*arguments, **options):
         for state in real(*arguments, **options):
@@ -34,7 +35,7 @@ def fail_at_the_third_depth(monkeypatch, error):
                 raise error
             yield state
 
-    monkeypatch.setattr(study, "loading_path", path)
+    monkeypatch.setattr(case_module, "loading_path", path)
 
 
 def test_an_unforeseen_error_is_recorded(cli, case, tmp_path, monkeypatch):
@@ -71,7 +72,7 @@ def test_an_interruption_after_the_last_depth_says_what_is_kept(cli, case, tmp_p
 def test_an_unloading_curve_that_misses_the_stored_energy_is_warned_of(
     cli, case, tmp_path, monkeypatch
 ):
-    monkeypatch.setattr(study, "_BALANCE", 1e-9)
+    monkeypatch.setattr(run, "_BALANCE", 1e-9)
     status, _, said = cli("run", case, "-o", tmp_path / "out")
     assert status == 0
     assert "2 of 2 unloading curves return another work than was stored, at worst" in said

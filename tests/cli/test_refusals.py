@@ -104,7 +104,12 @@ def refused_case(refused, case_text, tmp_path):
         ("steps = 4", "", "indentation", "give from, to and steps"),
         ('to = "300 nm"', 'to = "3 nm"', "indentation", "from must be smaller than to"),
         ("steps = 4", 'scale = "cubic"', "indentation.scale", "'log' or 'linear'"),
-        ("[unloading]", '[load]\nvalues = ["1 N"]\n[unloading]', "[load]", "both are"),
+        (
+            "[unloading]",
+            '[load]\nvalues = ["1 N"]\n[unloading]',
+            "[load]",
+            "[indentation] and [load] are",
+        ),
         ("[first]", "[first", "case.toml", "not valid TOML"),
     ],
 )
@@ -114,9 +119,32 @@ def test_a_key_that_is_wrong(refused_case, old, new, key, remedy):
     assert remedy in message
 
 
-def test_neither_load_nor_indentation(refused_case, case_text):
+def test_nothing_says_how_deep(refused_case, case_text):
     span = case_text[case_text.index("[indentation]") : case_text.index("[unloading]")]
-    assert "give one of the tables [indentation] and [load]" in refused_case((span, ""))
+    message = refused_case((span, ""))
+    assert "give one of the tables [indentation], [load] and [impact]; none of them is" in message
+
+
+@pytest.mark.parametrize(
+    ("impact", "remedy"),
+    [
+        ("velocity = [1.0]", '1.0 has no unit; write for example "0.5 m/s"'),
+        ('velocity = "1 m/h^2"', "is not a velocity"),
+        ('velocity = "-1 m/s"', "greater than zero"),
+        ("velocity = []", "impact.velocity"),
+        ('from = "1 m/s"', "give from, to and steps (or velocity = [...])"),
+        ('velocity = "90 m/s"', "grid"),
+    ],
+)
+def test_an_impact_that_is_wrong(refused_case, case_text, impact, remedy):
+    span = case_text[case_text.index("[indentation]") : case_text.index("[unloading]")]
+    assert remedy in refused_case((span, f"[impact]\n{impact}\n"))
+
+
+def test_an_impact_needs_masses(refused_case, case_text):
+    span = case_text[case_text.index("[indentation]") : case_text.index("[unloading]")]
+    impact = (span, '[impact]\nvelocity = "0.1 m/s"\n')
+    assert "first.density: is missing" in refused_case(impact, ('density = "7850 kg/m^3"', ""))
 
 
 @pytest.mark.parametrize("verb", ["check", "run"])

@@ -257,3 +257,21 @@ def test_a_refined_grid_resolves_more(cli, case_text, tmp_path):
         b["contact_nodes"] > 2 * a["contact_nodes"] for a, b in zip(coarse, fine, strict=True)
     )
     assert fine[-1]["restitution"] == pytest.approx(coarse[-1]["restitution"], rel=0.05)
+
+
+@pytest.mark.parametrize("also", ["", "work_of_adhesion = '0.02 J/m^2'\n"])
+def test_velocities_instead_of_depths(cli, case_text, tmp_path, also):
+    """Unequal spheres, their velocities from a table, and on two surfaces at once."""
+    span = case_text[case_text.index("[indentation]") : case_text.index("[unloading]")]
+    text = case_text.replace(span, '[impact]\nvelocity = ["2 mm/s", "1 cm/s"]\n')
+    text = text.replace("[interface]\n", f"[interface]\n{also}").replace(
+        "seed = 1", "seed = 1\nrealisations = 2"
+    )
+    text += '[second]\nradius = "200 um"\nyoungs_modulus = "70 GPa"\n'
+    text += 'poissons_ratio = 0.3\ndensity = "2500 kg/m^3"\n'
+    (tmp_path / "case.toml").write_text(text)
+    assert cli("run", tmp_path / "case.toml", "-o", tmp_path / "out")[0] == 0
+    for part in ("realisation-1", "realisation-2"):
+        _, rows = rows_of(tmp_path / "out" / part / "curve.csv")
+        velocities = [row["impact_velocity_m_per_s"] for row in rows]
+        assert velocities == pytest.approx([0.002, 0.01], rel=1e-4 if also else 1e-6)

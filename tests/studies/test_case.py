@@ -36,6 +36,10 @@ def test_depths(case_text):
         [10e-9, 50e-9]
     )
     assert depths('[load]\nvalues=["1 N", "0.5 N"]\n') == [0.5, 1.0]
+    assert depths('[impact]\nvelocity=["1 m/s", "50 cm/s"]\n') == [0.5, 1.0]
+    assert depths('[impact]\nvelocity="1 m/s"\n') == [1.0]
+    span_of = '[impact]\nfrom="0.1 m/s"\nto="10 m/s"\nsteps=3\n'
+    assert depths(span_of) == pytest.approx([0.1, 1.0, 10.0])
 
 
 def test_elastic_when_no_yield_pressure_is_given(case_text, tmp_path):

@@ -45,9 +45,7 @@ def solve(
         raise CaseError(f"indentation: {indentation} m is not a positive depth")
     if start is not None and start.contact.grid != contact.grid:
         raise CaseError("start: a state on another grid cannot start this contact")
-    state = load(contact, indentation, start=start, residual=residual)
-    if _work_is_integrated(contact):
-        state = _integrate_work(state, start)
+    state = with_work(load(contact, indentation, start=start, residual=residual), start)
     refuse_edge(state)
     return state
 
@@ -129,13 +127,16 @@ def _cut(elastic: State) -> State:
                    convolutions=elastic.convolutions + 1)  # fmt: skip
 
 
-def _work_is_integrated(contact: Contact) -> bool:
+def work_is_integrated(contact: Contact) -> bool:
+    """Whether the loading work of `contact` is an integral of its force, with an error."""
     return contact.cut or (contact.adhesive and contact.approach != "hertzian")
 
 
-def _integrate_work(state: State, start: State | None) -> State:
-    """The state with its work, ∫F dδ from `start` or from first touch."""
+def with_work(state: State, start: State | None) -> State:
+    """A state of `load` with its work; where that is ∫F dδ, from `start` or from first touch."""
     contact, indentation = state.contact, state.indentation
+    if not work_is_integrated(contact):
+        return state
     if start is None or not start.virgin or start.indentation >= indentation:
         start = None
     gain = contact.work_of_adhesion * state.contact_area

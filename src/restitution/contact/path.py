@@ -8,6 +8,7 @@ import numpy as np
 
 from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import RESIDUAL
+from restitution.contact.impact import solve_at_velocity
 from restitution.contact.load import solve_at_force
 from restitution.contact.loading import solve, step
 from restitution.contact.separation import RESTITUTION_ERROR, separate
@@ -20,21 +21,26 @@ def loading_path(
     indentations: Iterable[float] | None = None,
     *,
     forces: Iterable[float] | None = None,
+    velocities: Iterable[float] | None = None,
     residual: float = RESIDUAL,
 ) -> Iterator[State]:
-    """Yield the state at each of `indentations` (m) or `forces` (N), in the order given.
+    """Yield the state at each of `indentations` (m), `forces` (N) or impact `velocities` (m/s).
 
-    Work that has to be integrated is integrated from each state to the next. Raises as `solve` and
-    `solve_at_force`, and `CaseError` unless exactly one of the two is given.
+    They come in the order given. Work that has to be integrated is integrated from each state to
+    the next. Raises as `solve`, `solve_at_force` and `solve_at_velocity`, and `CaseError` unless
+    exactly one of the three is given.
     """
-    if (indentations is None) == (forces is None):
-        raise CaseError("a loading path takes either indentations or forces")
+    if [indentations, forces, velocities].count(None) != 2:
+        raise CaseError("a loading path takes one of indentations, forces and velocities")
     state: State | None = None
     for depth in () if indentations is None else indentations:
         state = solve(contact, depth, start=state, residual=residual)
         yield state
     for force in () if forces is None else forces:
         state = solve_at_force(contact, force, start=state)
+        yield state
+    for velocity in () if velocities is None else velocities:
+        state = solve_at_velocity(contact, velocity, start=state)
         yield state
 
 

@@ -14,6 +14,8 @@ from pydantic import BeforeValidator, ValidationError, model_validator
 
 from restitution.contact.bodies import Pair
 from restitution.contact.contact import Contact, smooth
+from restitution.contact.path import loading_path
+from restitution.contact.state import State
 from restitution.errors import CaseError, SurfaceError, shown
 from restitution.numerics.grid import Grid
 from restitution.studies.quantities import Force, Length
@@ -23,6 +25,7 @@ from restitution.studies.tables import (
     CropTable,
     GeneratedRoughness,
     GridTable,
+    ImpactTable,
     InterfaceTable,
     MeasuredRoughness,
     Roughness,
@@ -38,6 +41,9 @@ def _one_or_more(value: Any) -> Any:
     return tuple(value) if isinstance(value, list) else (value,)
 
 
+DEPTHS = ("indentation", "load", "impact")  # the tables that may say how deep
+
+
 class Case(Table):
     """A whole case file, in SI units."""
 
@@ -49,20 +55,29 @@ class Case(Table):
     grid: GridTable | None = None
     indentation: Series[Length] | None = None
     load: Series[Force] | None = None
+    impact: ImpactTable | None = None
     unloading: UnloadingTable = UnloadingTable()
 
     @model_validator(mode="after")
     def _whole(self) -> Case:
-        if (self.indentation is None) == (self.load is None):
-            which = "neither is" if self.load is None else "both are"
+        given = [name for name in DEPTHS if getattr(self, name) is not None]
+        if len(given) != 1:
+            which = f"[{'] and ['.join(given)}] are" if given else "none of them is"
             raise ValueError(
-                f"give one of the tables [indentation] and [load]; {which} in this case"
+                f"give one of the tables [indentation], [load] and [impact]; {which} in this case"
             )
+        if self.impact is not None:
+            self._check_masses()
         if self._own_grid() is None:
             self._check_scan_brings_grid()
         if len({part.realisations for part in self.roughness} - {1}) > 1:
             raise ValueError("roughness.realisations: differs between the tables; give one number")
         return self
+
+    def _check_masses(self) -> None:
+        for name, body in (("first", self.first), ("second", self.second)):
+            if body is not None and body.radius is not None and body.density is None:
+                raise ValueError(f"{name}.density: is missing; an impact velocity needs it")
 
     def _check_scan_brings_grid(self) -> None:
         if len(self.roughness) == 1 and isinstance(self.roughness[0], MeasuredRoughness):
@@ -135,10 +150,19 @@ class Case(Table):
         )
 
     def depths(self) -> list[float]:
-        """The indentations (m) or loads (N) asked for, increasing."""
-        table = self.indentation or self.load
+        """The indentations (m), loads (N) or impact velocities (m/s) asked for, increasing."""
+        table = self.indentation or self.load or self.impact
         assert table is not None  # _whole
         return table.series()
+
+    def loading(self, contact: Contact) -> Iterator[State]:
+        """The states of `contact` at these depths. Raises as `loading_path`."""
+        depths = self.depths()
+        if self.load is not None:
+            return loading_path(contact, forces=depths)
+        if self.impact is not None:
+            return loading_path(contact, velocities=depths)
+        return loading_path(contact, depths)
 
 
 def read_case(path: Path) -> tuple[Case, str]:
@@ -249,7 +273,8 @@ def _keys_of(path: list[str], loc: tuple[Any, ...]) -> list[str]:
         return list(CropTable.model_fields)
     tables: dict[str, type[Table]] = {
         "first": BodyTable, "second": BodyTable, "interface": InterfaceTable, "grid": GridTable,
-        "indentation": Series[Length], "load": Series[Force], "unloading": UnloadingTable,
+        "indentation": Series[Length], "load": Series[Force], "impact": ImpactTable,
+        "unloading": UnloadingTable,
         "roughness": MeasuredRoughness if "measured" in loc else GeneratedRoughness,
     }  # fmt: skip
     model = tables[path[0]] if path else Case

@@ -130,7 +130,7 @@ def _levels(case: Case, folder: Path, grids: int) -> dict[int, float]:
 def _pressed_less(case: Case, later: float) -> Case:
     """`case` with its depths less `later` (m), without those that do not make contact then."""
     if case.indentation is None:
-        return case  # a load is the same on every grid
+        return case  # a load or a velocity is the same on every grid
     depths = [depth - later for depth in case.depths() if depth > later]
     table = case.indentation.model_construct(values=depths)
     return case.model_copy(update={"indentation": table})
@@ -196,11 +196,11 @@ def _by_depth(case: Case, runs: dict[int, tuple[float, list[_Row]]]) -> list[dic
     found: list[dict[int, _Row]] = [{} for _ in asked]
     for factor, (later, rows) in sorted(runs.items()):
         # A coarse grid misses the shallowest depths; a run that was stopped, the deepest.
-        missed = 0 if case.load else sum(depth <= later for depth in asked)
+        missed = sum(depth <= later for depth in asked) if case.indentation else 0
         for number, row in enumerate(rows, missed):
             values = [other["restitution"] for other in found[number].values()]
             error, order = discretisation([*values, row["restitution"]])
-            indentation = row["indentation_m"] if case.load else asked[number]
+            indentation = asked[number] if case.indentation else row["indentation_m"]
             found[number][factor] = {
                 **row,
                 "indentation_m": indentation,

@@ -7,16 +7,28 @@ import math
 from restitution.contact.contact import Contact
 from restitution.contact.resolution import expected_pull_off_error, foreseen_radius
 from restitution.studies.case import Case
-from restitution.theory import hertz, jkr, sticking, yielding
+from restitution.theory import hertz, jkr, sticking, thornton_ning, yielding
 
 
 def deepest_indentation(case: Case) -> float:
-    """The deepest indentation, m; under a prescribed load, where smooth elastic bodies carry it."""
-    last = case.depths()[-1]
+    """The deepest indentation, m.
+
+    Under a prescribed load it is where smooth elastic bodies carry it; at a prescribed velocity,
+    where it takes smooth bodies (Thornton and Ning's, if they yield).
+    """
+    last, pair = case.depths()[-1], case.pair()
     if case.indentation is not None:
         return last
-    pair = case.pair()
-    return float(hertz.indentation_from_force(last, pair.radius, pair.contact_modulus))
+    if case.load is not None:
+        return float(hertz.indentation_from_force(last, pair.radius, pair.contact_modulus))
+    assert pair.mass is not None  # Case._check_masses
+    # As good as elastic: beyond any pressure of a contact.
+    p_y = case.interface.yield_pressure or pair.contact_modulus
+    return float(
+        thornton_ning.indentation_from_velocity(
+            last, pair.radius, pair.contact_modulus, p_y, pair.mass
+        )
+    )
 
 
 def derived_quantities(case: Case, contact: Contact) -> dict[str, float | None]:

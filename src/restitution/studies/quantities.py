@@ -27,6 +27,7 @@ _EXAMPLES = {
     "N": '"0.1 N"',
     "J/m^2": '"0.09 J/m^2"',
     "rad": '"30 deg"',
+    "m/s": '"0.5 m/s"',
 }
 _NAMES = {
     "m": "a length",
@@ -35,6 +36,7 @@ _NAMES = {
     "N": "a force",
     "J/m^2": "a work of adhesion",
     "rad": "an angle",
+    "m/s": "a velocity",
 }
 # Spellings of which one in the wrong case is recognised.
 _USUAL = {
@@ -44,6 +46,7 @@ _USUAL = {
     "N": ("N", "kN", "mN", "uN", "µN", "nN"),
     "J/m^2": ("J/m^2", "J/m2", "mJ/m^2", "mJ/m2", "N/m", "mN/m"),
     "rad": ("deg", "rad"),
+    "m/s": ("m/s", "cm/s", "mm/s", "um/s", "km/h"),
 }
 # Beyond these a number is a slip of the unit, and formulas would over- or underflow.
 _BOUNDS = {
@@ -52,6 +55,7 @@ _BOUNDS = {
     "kg/m^3": (1e-2, 1e6),
     "N": (1e-15, 1e12),
     "J/m^2": (1e-9, 1e4),
+    "m/s": (1e-9, 1e4),
 }
 
 
@@ -122,5 +126,6 @@ Pressure = Annotated[float, _positive("Pa")]
 Density = Annotated[float, _positive("kg/m^3")]
 SurfaceEnergy = Annotated[float, _positive("J/m^2", or_zero=True)]
 Force = Annotated[float, _positive("N")]
+Velocity = Annotated[float, _positive("m/s")]
 Angle = Annotated[float, BeforeValidator(lambda value: read_quantity(value, "rad"))]
 Position = Annotated[float, BeforeValidator(lambda value: read_quantity(value, "m"))]

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from restitution.contact.load import solve_at_force
-from restitution.contact.loading import solve
 from restitution.contact.resolution import NODES_PER_PATCH, median_patch, resolves
 from restitution.studies.case import Case
 
@@ -34,12 +32,13 @@ def settled(case: Case, folder: Path) -> tuple[Case, str | None]:
             why = f"the next grid would have {nx} x {ny} nodes"
             break
         finest = finer
-        state = (solve_at_force if case.load else solve)(contact, shallowest)
+        state = next(finer.loading(contact))
         patch = median_patch(state.patch_sizes())
         if resolves(patch):
             return finer, None
         why = f"{factor} is the largest refine"
-    depth = f"{shallowest:.3g} N" if case.load else f"{1e9 * shallowest:.4g} nm"
+    unit, scale = ("nm", 1e9) if case.indentation else ("N", 1) if case.load else ("m/s", 1)
+    depth = f"{scale * shallowest:.4g} {unit}"
     return finest, (
         f'grid.refine = "auto" ends at {finest.grid.factor if finest.grid else 1} ({why}) with the '
         f"contact at {depth} not resolved: half of it is in patches of {patch} nodes, fewer than "

@@ -12,7 +12,7 @@ from typing import Any
 
 from restitution.collision import Collision, collide
 from restitution.contact.contact import Contact
-from restitution.contact.path import loading_path, unloading_path
+from restitution.contact.path import unloading_path
 from restitution.contact.plausibility import implausible
 from restitution.contact.resolution import (
     adhesion_warning,
@@ -150,9 +150,8 @@ def _load_and_unload(
     depths, curves = case.depths(), case.unloading.curves
     # Evenly apart in number, the deepest among them.
     unloaded = {len(depths) - 1 - (k * len(depths)) // curves for k in range(curves)}
-    path = loading_path(contact, forces=depths) if case.load else loading_path(contact, depths)
     began = time.perf_counter()
-    for number, state in enumerate(path):
+    for number, state in enumerate(case.loading(contact)):
         followed = contact.adhesive and case.unloading.method == "path"
         back: list[State] = []
         if followed or number in unloaded:

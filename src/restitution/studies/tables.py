@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Annotated, Any, Generic, Literal, Self, TypeVar, cast
+from typing import Annotated, Any, ClassVar, Generic, Literal, Self, TypeVar, cast
 
 import numpy as np
 from pydantic import (
@@ -30,6 +30,7 @@ from restitution.studies.quantities import (
     Position,
     Pressure,
     SurfaceEnergy,
+    Velocity,
 )
 from restitution.surfaces import (
     Surface,
@@ -247,7 +248,7 @@ Quantity = TypeVar("Quantity")
 
 
 class Series(Table, Generic[Quantity]):
-    """`[indentation]` and `[load]`: a span with steps, or a list of values."""
+    """`[indentation]`, `[load]` and `[impact]`: a span with steps, or a list of values."""
 
     from_: Annotated[Quantity | None, Field(alias="from")] = None
     to: Quantity | None = None
@@ -255,22 +256,26 @@ class Series(Table, Generic[Quantity]):
     scale: Literal["log", "linear"] = "log"
     values: Annotated[list[Quantity], Field(min_length=1, max_length=MOST_STEPS)] | None = None
 
+    list_key: ClassVar[str] = "values"
+
     @model_validator(mode="after")
     def _one_way(self) -> Self:
         span = (self.from_, self.to, self.steps)
         if self.values is not None:
             if span != (None, None, None):
-                raise ValueError("give either values or from, to and steps, not both")
+                raise ValueError(f"give either {self.list_key} or from, to and steps, not both")
         elif None in span:
-            raise ValueError("give from, to and steps (or values = [...])")
+            raise ValueError(f"give from, to and steps (or {self.list_key} = [...])")
         elif self.from_ == self.to:
-            raise ValueError("from and to are the same; for one depth or load use values = [...]")
+            raise ValueError(
+                f"from and to are the same; for a single one use {self.list_key} = [...]"
+            )
         elif not cast(float, self.from_) < cast(float, self.to):
             raise ValueError("from must be smaller than to")
         elif self.steps == 1:
             raise ValueError(
-                "steps = 1 does not reach from one to the other; give at least 2, or for one depth "
-                "or load use values = [...]"
+                "steps = 1 does not reach from one to the other; give at least 2, or for a single "
+                f"one use {self.list_key} = [...]"
             )
         return self
 
@@ -281,6 +286,18 @@ class Series(Table, Generic[Quantity]):
         space = np.geomspace if self.scale == "log" else np.linspace
         first, last = cast(float, self.from_), cast(float, self.to)
         return [float(v) for v in space(first, last, cast(int, self.steps))]
+
+
+class ImpactTable(Series[Velocity]):
+    """`[impact]`: a span of velocities with steps, or the list `velocity`."""
+
+    values: Annotated[
+        list[Velocity] | None,
+        BeforeValidator(lambda value: value if isinstance(value, list) else [value]),
+        Field(alias="velocity", min_length=1, max_length=MOST_STEPS),
+    ] = None
+
+    list_key: ClassVar[str] = "velocity"
 
 
 class UnloadingTable(Table):
