@@ -57,6 +57,8 @@ def check(
     table.add_row("surface", f"{1e6 * rms:.4g}", f"um Sq, {kind}")
     if read.realisations > 1:
         table.add_row("realisations", str(read.realisations), "surfaces; the first is described")
+    if (from_where := read.yields()[1]) not in ("given", "elastic"):
+        table.add_row("yield pressure is", "", from_where)
     for key, (label, scale, unit) in labels.items():
         if key not in quantities:
             continue

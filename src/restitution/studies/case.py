@@ -18,19 +18,18 @@ from restitution.contact.path import loading_path
 from restitution.contact.state import State
 from restitution.errors import CaseError, SurfaceError, shown
 from restitution.numerics.grid import Grid
+from restitution.studies.particles import BodyTable, InterfaceTable
 from restitution.studies.quantities import Force, Length
+from restitution.studies.table import Table
 from restitution.studies.tables import (
     MOST_STEPS,
-    BodyTable,
     CropTable,
     GeneratedRoughness,
     GridTable,
     ImpactTable,
-    InterfaceTable,
     MeasuredRoughness,
     Roughness,
     Series,
-    Table,
     UnloadingTable,
 )
 from restitution.surfaces import Surface, composite, refine
@@ -68,6 +67,7 @@ class Case(Table):
             )
         if self.impact is not None:
             self._check_masses()
+        self.yields()
         if self._own_grid() is None:
             self._check_scan_brings_grid()
         if len({part.realisations for part in self.roughness} - {1}) > 1:
@@ -121,9 +121,14 @@ class Case(Table):
         if math.isinf(first.radius) and self.second is None:
             raise CaseError(
                 "first.radius: is flat, and the table [second] is left out and so defaults to "
-                "[first]: both are flat; one must be a sphere: write [second]"
+                "[first]: both are flat; one must be a sphere: write [second], or for [first] "
+                'radius = "500 um"'
             )
         return Pair(first, first if self.second is None else self.second.body())
+
+    def yields(self) -> tuple[float, str]:
+        """The yield pressure (Pa; inf if elastic), and where it is from. Raises `CaseError`."""
+        return self.interface.yields(self.first, self.second or self.first)
 
     def surface(self, folder: Path) -> Surface:
         """The composite roughness on the grid; files are relative to `folder`."""
@@ -142,7 +147,7 @@ class Case(Table):
         return Contact(
             self.pair(),
             self.surface(folder),
-            yield_pressure=self.interface.yield_pressure or math.inf,
+            yield_pressure=self.yields()[0],
             plasticity=self.interface.plasticity,
             work_of_adhesion=self.interface.work_of_adhesion,
             approach=self.interface.approach,

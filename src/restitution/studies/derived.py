@@ -23,7 +23,7 @@ def deepest_indentation(case: Case) -> float:
         return float(hertz.indentation_from_force(last, pair.radius, pair.contact_modulus))
     assert pair.mass is not None  # Case._check_masses
     # As good as elastic: beyond any pressure of a contact.
-    p_y = case.interface.yield_pressure or pair.contact_modulus
+    p_y = min(case.yields()[0], pair.contact_modulus)
     return float(
         thornton_ning.indentation_from_velocity(
             last, pair.radius, pair.contact_modulus, p_y, pair.mass

@@ -155,7 +155,10 @@ class _Ensemble:
             "depths_asked": len(self.case.depths()),
             "depths_computed": len(self.out.rows),
             "warnings": self.known + [warning for warning in warnings if warning],
-            **{key: one[key] for key in ("model", "conventions", "derived", "device", "versions")},
+            **{
+                key: one[key]
+                for key in ("model", "materials", "conventions", "derived", "device", "versions")
+            },
             "trust": {
                 f"largest_{name}": max(row[name] for row in whole)
                 for name in ("residual", "restitution_error")

@@ -99,26 +99,28 @@ def _other_case(name: str, unit: str) -> str | None:
     return None
 
 
-def _positive(unit: str, *, or_zero: bool = False) -> BeforeValidator:
-    def read(value: Any) -> float:
-        result = read_quantity(value, unit)
-        if or_zero and result == 0:
-            return 0.0
-        if result < 0 and or_zero:
-            raise ValueError(f"{shown(value)} must not be negative")
-        if result <= 0:
-            raise ValueError(f"{shown(value)} must be greater than zero")
-        low, high = _BOUNDS[unit]
-        if not low <= result <= high:
-            match = _QUANTITY.fullmatch(value)
-            hint = _other_case(match[2], unit) if match else None
-            raise ValueError(
-                f"{shown(value)} is outside what a contact can have ({low:g} to {high:g} {unit}); "
-                f"check the unit{f': {hint}' if hint else ''}"
-            )
-        return result
+def read_positive(value: Any, unit: str, *, or_zero: bool = False) -> float:
+    """The same for what must be greater than zero, or not less, and as large as in a contact."""
+    result = read_quantity(value, unit)
+    if or_zero and result == 0:
+        return 0.0
+    if result < 0 and or_zero:
+        raise ValueError(f"{shown(value)} must not be negative")
+    if result <= 0:
+        raise ValueError(f"{shown(value)} must be greater than zero")
+    low, high = _BOUNDS[unit]
+    if not low <= result <= high:
+        match = _QUANTITY.fullmatch(value)
+        hint = _other_case(match[2], unit) if match else None
+        raise ValueError(
+            f"{shown(value)} is outside what a contact can have ({low:g} to {high:g} {unit}); "
+            f"check the unit{f': {hint}' if hint else ''}"
+        )
+    return result
 
-    return BeforeValidator(read)
+
+def _positive(unit: str, *, or_zero: bool = False) -> BeforeValidator:
+    return BeforeValidator(lambda value: read_positive(value, unit, or_zero=or_zero))
 
 
 Length = Annotated[float, _positive("m")]

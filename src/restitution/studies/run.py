@@ -208,7 +208,9 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Progress)
             "half_space": "free, Love cells, zero-padded FFT",
             **asdict(contact.grid),
             "refine": case.grid.factor if case.grid else 1,
+            "yield_pressure": case.yields()[1],
         },
+        "materials": _materials(case),
         "conventions": CONVENTIONS,
         "derived": derived_quantities(case, contact),
         "surface": dict(contact.surface.provenance),
@@ -223,6 +225,19 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Progress)
         "convolutions": sum(int(row["convolutions"]) for row in out.rows),
         "seconds_by_depth": run.seconds,
         "versions": versions(),
+    }
+
+
+def _materials(case: Case) -> dict[str, Any]:
+    """The values of the bodies that are the library's, with their spread and source."""
+    bodies = {"first": case.first, "second": case.second or case.first}
+    return {
+        name: {
+            "material": body.material,
+            **{key: found.model_dump() for key, found in body.from_library().items()},
+        }
+        for name, body in bodies.items()
+        if body.material is not None
     }
 
 

@@ -2,36 +2,28 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Generic, Literal, Self, TypeVar, cast
 
 import numpy as np
 from pydantic import (
     AfterValidator,
-    BaseModel,
     BeforeValidator,
-    ConfigDict,
     Field,
     model_validator,
 )
 
 from restitution.collision import UnloadingMethod
-from restitution.contact.bodies import Body
-from restitution.contact.contact import Approach, Plasticity
-from restitution.contact.detachment import Detachment
 from restitution.contact.separation import RESTITUTION_ERROR
 from restitution.errors import shown
 from restitution.numerics.grid import Grid
 from restitution.studies.quantities import (
     Angle,
-    Density,
     Length,
     Position,
-    Pressure,
-    SurfaceEnergy,
     Velocity,
 )
+from restitution.studies.table import Table
 from restitution.surfaces import (
     Surface,
     crop,
@@ -48,12 +40,6 @@ from restitution.surfaces.generate import RoughnessKind
 MOST_NODES = 2**27  # of a grid: more do not fit into the memory of common machines
 MOST_STEPS = 10_000  # of a curve
 MOST_REALISATIONS = 1000
-
-
-class Table(BaseModel):
-    """What all tables have in common: no key that is not known, no value of another type."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, populate_by_name=True)
 
 
 def _two(value: Any) -> Any:
@@ -92,44 +78,6 @@ def _few_enough(nodes: tuple[int, int]) -> tuple[int, int]:
             f"({MOST_NODES} in all); give fewer, or a larger spacing"
         )
     return nodes
-
-
-def _flat_is_infinite(value: Any) -> Any:
-    return None if value == "flat" else value
-
-
-class BodyTable(Table):
-    """`[first]` and `[second]`."""
-
-    radius: Annotated[Length | None, BeforeValidator(_flat_is_infinite)]
-    youngs_modulus: Pressure
-    poissons_ratio: Annotated[float, Field(gt=-1, le=0.5)]
-    density: Density | None = None
-
-    def body(self) -> Body:
-        """The body this table describes."""
-        radius = math.inf if self.radius is None else self.radius
-        return Body(radius, self.youngs_modulus, self.poissons_ratio, self.density)
-
-
-class InterfaceTable(Table):
-    """`[interface]`; omitted: elastic."""
-
-    yield_pressure: Pressure | None = None
-    plasticity: Plasticity = "equilibrium"
-    work_of_adhesion: SurfaceEnergy = 0.0
-    approach: Approach = "equilibrium"
-    detachment: Detachment = "crack-closure"
-    equilibrium_separation: Length = 0.3e-9
-
-    @model_validator(mode="after")
-    def _truncated_at(self) -> Self:
-        if self.plasticity == "truncated" and self.yield_pressure is None:
-            raise ValueError(
-                'plasticity = "truncated" needs the pressure to cut at; give yield_pressure, or '
-                "leave plasticity out for elastic bodies"
-            )
-        return self
 
 
 Realisations = Annotated[int, Field(ge=1, le=MOST_REALISATIONS)]

@@ -1,0 +1,40 @@
+"""The tables of docs/materials.md, from the library of materials.
+
+`python docs/studies/materials.py` prints them.
+"""
+
+from __future__ import annotations
+
+from restitution.studies.materials import materials
+
+QUANTITIES = {
+    "youngs_modulus": ("Young's modulus E", "GPa", 1e9),
+    "poissons_ratio": ("Poisson's ratio ν", "", 1),
+    "density": ("Density ρ", "kg/m³", 1),
+    "yield_strength": ("Yield strength Y", "MPa", 1e6),
+    "hardness": ("Hardness H", "GPa", 1e9),
+}
+
+
+def table() -> str:
+    """One table of the materials, and one of each quantity; † marks what was not verified."""
+    lines = ["| name | aliases | what it is | beware |", "|---|---|---|---|"]
+    for each in materials().values():
+        aliases = ", ".join(f"`{alias}`" for alias in each.aliases)
+        lines.append(f"| `{each.key}` | {aliases} | {each.name} | {each.note} |")
+    for key, (title, unit, scale) in QUANTITIES.items():
+        lines += ["", f"## {title}{f', {unit}' if unit else ''}", ""]
+        lines += ["| material | value | spread | source |", "|---|---|---|---|"]
+        for each in materials().values():
+            if found := getattr(each, key):
+                value, low, high = (
+                    f"{v / scale:.6g}" for v in (found.value, found.low, found.high)
+                )
+                mark = "" if found.verified else " †"
+                spread = low if low == high else f"{low} to {high}"
+                lines.append(f"| {each.key} | {value}{mark} | {spread} | {found.source} |")
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    print(table())

@@ -1,0 +1,136 @@
+"""`[first]`, `[second]` and `[interface]`: what the bodies are made of, and where they yield."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from restitution.contact.bodies import Body
+from restitution.contact.contact import Approach, Plasticity
+from restitution.contact.detachment import Detachment
+from restitution.errors import CaseError, shown
+from restitution.studies.materials import Property, material
+from restitution.studies.quantities import Density, Length, Pressure, SurfaceEnergy, read_positive
+from restitution.studies.table import Table
+
+# What a library's material gives a body, with the unit of each.
+_FROM_LIBRARY = {
+    "youngs_modulus": "Pa",
+    "poissons_ratio": "",
+    "density": "kg/m^3",
+    "yield_strength": "Pa",
+    "hardness": "Pa",
+}
+_STRENGTHS = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*\*?\s*Y\s*")
+
+
+def _flat_is_infinite(value: Any) -> Any:
+    return None if value == "flat" else value
+
+
+class BodyTable(Table):
+    """`[first]` and `[second]`; the name of a material alone is a flat wall of it."""
+
+    material: str | None = None
+    radius: Annotated[Length | None, BeforeValidator(_flat_is_infinite)]
+    youngs_modulus: Pressure
+    poissons_ratio: Annotated[float, Field(gt=-1, le=0.5)]
+    density: Density | None = None
+    yield_strength: Pressure | None = None
+    hardness: Pressure | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_material(cls, value: Any) -> Any:
+        """Put in what the library knows and the table leaves out."""
+        table = {"material": value, "radius": "flat"} if isinstance(value, str) else value
+        if not isinstance(table, dict) or not isinstance(table.get("material"), str):
+            return table
+        known = material(table["material"])
+        taken = {
+            key: found.value if not unit else f"{found.value!r} {unit}"
+            for key, unit in _FROM_LIBRARY.items()
+            if (found := getattr(known, key)) is not None
+        }
+        return {**taken, **table, "material": known.key}
+
+    def body(self) -> Body:
+        """The body this table describes."""
+        radius = math.inf if self.radius is None else self.radius
+        return Body(radius, self.youngs_modulus, self.poissons_ratio, self.density)
+
+    def from_library(self) -> dict[str, Property[Any]]:
+        """The values that are the library's, with their spread and source."""
+        if self.material is None:
+            return {}
+        known = material(self.material)
+        found = {key: getattr(known, key) for key in _FROM_LIBRARY}
+        return {
+            key: each for key, each in found.items() if each and each.value == getattr(self, key)
+        }
+
+
+YieldRule = tuple[float, Literal["yield_strength", "hardness"]]
+
+
+def _pressure_or_rule(value: Any) -> float | YieldRule | None:
+    """A pressure in Pa; "2.8 Y" as (2.8, "yield_strength"), "hardness" as (1.0, "hardness")."""
+    if value is None:
+        return None
+    if value == "hardness":
+        return 1.0, "hardness"
+    match = _STRENGTHS.fullmatch(value) if isinstance(value, str) else None
+    if match is None:
+        return read_positive(value, "Pa")
+    if not 0.5 <= (factor := float(match[1])) <= 10:
+        raise ValueError(f"{shown(value)} is no contact pressure; it is 1.6 Y to about 3 Y")
+    return factor, "yield_strength"
+
+
+class InterfaceTable(Table):
+    """`[interface]`; omitted: elastic."""
+
+    yield_pressure: Annotated[float | YieldRule | None, BeforeValidator(_pressure_or_rule)] = None
+    plasticity: Plasticity = "equilibrium"
+    work_of_adhesion: SurfaceEnergy = 0.0
+    approach: Approach = "equilibrium"
+    detachment: Detachment = "crack-closure"
+    equilibrium_separation: Length = 0.3e-9
+
+    @model_validator(mode="after")
+    def _truncated_at(self) -> Self:
+        if self.plasticity == "truncated" and self.yield_pressure is None:
+            raise ValueError(
+                'plasticity = "truncated" needs the pressure to cut at; give yield_pressure, or '
+                "leave plasticity out for elastic bodies"
+            )
+        return self
+
+    def yields(self, first: BodyTable, second: BodyTable) -> tuple[float, str]:
+        """The yield pressure (Pa; inf if elastic) of two bodies, and in words where it is from.
+
+        Of two bodies the softer one yields. Raises `CaseError` when a body lacks what the rule asks
+        for.
+        """
+        rule = self.yield_pressure
+        if rule is None:
+            return math.inf, "elastic"
+        if isinstance(rule, float):
+            return rule, "given"
+        factor, quantity = rule
+        bodies = {"first": first, "second": second}
+        for name, body in bodies.items():
+            if getattr(body, quantity) is None:
+                raise CaseError(
+                    f"interface.yield_pressure: needs {name}.{quantity}, which is not given"
+                    + (f" and not known of {body.material}" if body.material else "")
+                    + "; give it, or the pressure itself"
+                )
+        softer = min(bodies, key=lambda name: getattr(bodies[name], quantity))
+        value = getattr(bodies[softer], quantity)
+        rule_in_words = "hardness" if quantity == "hardness" else f"{factor:g} Y"
+        of = bodies[softer].material or "its body"
+        return factor * value, f"{rule_in_words} of {softer} ({of}), {1e-6 * value:.6g} MPa"
