@@ -20,22 +20,38 @@ Shared by every function of this room:
 
 from . import (
     adhesive_thornton_ning,
+    brilliantov,
+    eepa,
     hertz,
     jackson_green,
+    jackson_green_marghitu,
     jkr,
+    johnson,
     kendall,
+    luding,
+    mdr,
     sticking,
     thornton_ning,
+    walton_braun,
+    wu_li_thornton,
     yielding,
 )
 
 __all__ = [
     "adhesive_thornton_ning",
+    "brilliantov",
+    "eepa",
     "hertz",
     "jackson_green",
+    "jackson_green_marghitu",
     "jkr",
+    "johnson",
     "kendall",
+    "luding",
+    "mdr",
     "sticking",
     "thornton_ning",
+    "walton_braun",
+    "wu_li_thornton",
     "yielding",
 ]

@@ -31,6 +31,25 @@ def positive(**quantities: Values) -> tuple[Array, ...]:
     return tuple(arrays)
 
 
+def between(low: Values, high: Values, **quantities: Values) -> tuple[Array, ...]:
+    """Return the named quantities as float arrays; `CaseError` unless finite and within bounds.
+
+    The keyword becomes the name in the message, so pass each under its public argument name.
+    """
+    arrays = []
+    for name, value in quantities.items():
+        array = np.asarray(value, dtype=np.float64)
+        bad = ~(np.isfinite(array) & (array >= low) & (array <= high))
+        if bad.any():
+            found, least, most = (np.broadcast_to(x, bad.shape)[bad][0] for x in (array, low, high))
+            raise CaseError(
+                f"{name}: {found:g} is not a finite number from {least:g} to {most:g}; "
+                f"give {name} in SI units, within that range"
+            )
+        arrays.append(array)
+    return tuple(arrays)
+
+
 def touching(value: Values) -> Array:
     """Return a state variable (indentation, force, velocity) with negative values set to zero."""
     return scalar_or_array(np.maximum(np.asarray(value, dtype=np.float64), 0.0))

@@ -1,0 +1,53 @@
+"""Viscoelastic Hertz contact (Brilliantov, Pöschel): restitution by Müller and Pöschel's Padé form.
+
+N. V. Brilliantov, F. Spahn, J.-M. Hertzsch, T. Pöschel, Phys. Rev. E 53 (1996) 5382–5392;
+R. Ramírez, T. Pöschel, N. V. Brilliantov, T. Schwager, Phys. Rev. E 60 (1999) 4465–4472; P. Müller,
+T. Pöschel, Phys. Rev. E 84 (2011) 021302, arXiv:1102.5247. The equation of motion of the approach x
+
+    ẍ + k x^{3/2} + γ x^½ ẋ = 0,   ẋ(0) = V,   until the force returns to zero (ẍ = 0, x > 0)
+
+depends on one number, v = β^½ V^{1/10} with β = γ/k^{3/5}:
+
+    k = 4E*R*^½/3m*,  γ = 3/2 A k,  β = 3/2 A k^{2/5}   (A: the dissipative constant, a time)
+    series   e = 1 − 1.153449 v² + 0.798267 v⁴ + 0.266666 v⁵ − …
+    Padé     e = (1 + 0.501086 v)/(1 + 0.501086 v + 1.15345 v² + 0.577977 v³ + 0.532178 v⁴)
+
+Against the equation itself, solved numerically, the Padé form is within 10⁻⁵ of e up to v = 0.2
+(e ≥ 0.95), 10⁻³ up to v = 0.6 (e ≥ 0.68) and 0.009 everywhere; for e < 0.2 that is over 5 % of e.
+
+Valid for a material that relaxes faster than the impact lasts, for smooth spheres with a ≪ R* that
+neither yield nor adhere. Ending the contact at x = 0 instead would give a lower e.
+Units, shapes and errors are those of `restitution.theory`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ._inputs import Array, Values, positive, scalar_or_array, touching
+
+_NUMERATOR = 0.501086, 1.0
+_DENOMINATOR = 0.532178, 0.577977, 1.15345, 0.501086, 1.0
+
+
+def dissipation_from_material(
+    radius: Values, contact_modulus: Values, dissipative_time: Values, mass: Values
+) -> Array:
+    """β = 3/2 A (4E*R*^½/3m*)^{2/5}, in (s/m)^{1/5}, of the dissipative constant A (s)."""
+    R, E_star, A, m = positive(
+        radius=radius,
+        contact_modulus=contact_modulus,
+        dissipative_time=dissipative_time,
+        mass=mass,
+    )
+    return 1.5 * A * (4 / 3 * E_star * R**0.5 / m) ** 0.4
+
+
+def restitution(velocity: Values, dissipation: Values) -> Array:
+    """Coefficient of restitution e after an impact at relative normal `velocity` (m/s).
+
+    `dissipation` is β = γ/k^{3/5} in (s/m)^{1/5}. 1 at and below zero velocity.
+    """
+    (beta,) = positive(dissipation=dissipation)
+    v = beta**0.5 * touching(velocity) ** 0.1
+    return scalar_or_array(np.polyval(_NUMERATOR, v) / np.polyval(_DENOMINATOR, v))
