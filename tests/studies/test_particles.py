@@ -68,6 +68,18 @@ def test_so_many_yield_strengths(rule, factor):
     assert case.yields()[1].startswith(f"{factor:g} Y of second (stainless-steel)")
 
 
+def test_a_body_without_a_yield_strength_yields_at_its_hardness():
+    steel = 'first = { material = "glass", radius = "1 mm" }\nsecond = "polystyrene"\n'
+    case = parsed(f'{steel}[interface]\nyield_pressure = "1.6 Y"\n')
+    assert case.yields() == (
+        1.6 * material("polystyrene").yield_strength.value,
+        "1.6 Y of second (polystyrene), Y = 90 MPa",
+    )
+    soft = 'first = { material = "sodium-chloride", radius = "1 mm" }\nsecond = "steel"\n'
+    case = parsed(f'{soft}[interface]\nyield_pressure = "1.6 Y"\n')
+    assert case.yields()[1] == "hardness of first (sodium-chloride), 216 MPa"
+
+
 def test_a_strength_of_ones_own():
     steel = 'first = { material = "steel", radius = "1 mm", yield_strength = "500 MPa" }\n'
     case = parsed(f'{steel}[interface]\nyield_pressure = "2 Y"\n')
@@ -77,7 +89,8 @@ def test_a_strength_of_ones_own():
 @pytest.mark.parametrize(
     ("pressure", "remedy"),
     [
-        ("2.8 Y", r"needs first\.yield_strength, .* not known of glass; give it"),
+        ("2.8 Y", r"needs first\.yield_strength, which is not given; give it"),
+        ("hardness", r"needs first\.hardness, which is not given; give it"),
         ("28 Y", "is no contact pressure"),
         ("Y", "is not one number followed by a unit"),
         ("hard", "is not one number followed by a unit"),
@@ -85,8 +98,9 @@ def test_a_strength_of_ones_own():
     ],
 )
 def test_a_rule_that_does_not_hold(pressure, remedy):
+    bare = 'first = { radius = "1 mm", youngs_modulus = "70 GPa", poissons_ratio = 0.2 }\n'
     with pytest.raises(CaseError, match=rf"interface\.yield_pressure: .*{remedy}"):
-        parsed(f'{GLASS}[interface]\nyield_pressure = "{pressure}"\n')
+        parsed(f'{bare}[interface]\nyield_pressure = "{pressure}"\n')
 
 
 def test_results_say_where_values_are_from(cli, tmp_path):

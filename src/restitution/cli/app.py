@@ -6,7 +6,20 @@ from typing import Annotated
 
 import typer
 
-from restitution.cli import check, compare, converge, report, reproduce, run, study, surface
+from restitution.cli import (
+    check,
+    collide,
+    compare,
+    converge,
+    export,
+    law,
+    report,
+    reproduce,
+    run,
+    study,
+    surface,
+    theory,
+)
 
 app = typer.Typer(
     name="restitution",
@@ -21,6 +34,10 @@ app.command()(study.study)
 app.command()(report.report)
 app.command()(compare.compare)
 app.command()(reproduce.reproduce)
+app.command()(law.law)
+app.command()(export.export)
+app.command()(theory.theory)
+app.command()(collide.collide)
 app.command()(check.check)
 app.command()(surface.surface)
 

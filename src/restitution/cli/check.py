@@ -57,14 +57,14 @@ def check(
     table.add_row("surface", f"{1e6 * rms:.4g}", f"um Sq, {kind}")
     if read.realisations > 1:
         table.add_row("realisations", str(read.realisations), "surfaces; the first is described")
-    if (from_where := read.yields()[1]) not in ("given", "elastic"):
-        table.add_row("yield pressure is", "", from_where)
     for key, (label, scale, unit) in labels.items():
         if key not in quantities:
             continue
         value = quantities[key]
         table.add_row(label, "-" if value is None else f"{scale * value:.5g}", unit)
     answers.print(table)
+    if (from_where := read.yields()[1]) not in ("given", "elastic"):
+        answers.print(f"The yield pressure is {from_where}.", markup=False, soft_wrap=True)
     deepest = deepest_indentation(read)
     refuse_coarse_scan(contact, deepest)
     warnings = foreseen_warnings(contact, deepest) + implausible(contact, deepest)

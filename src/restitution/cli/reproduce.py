@@ -10,7 +10,7 @@ def reproduce(
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder for studies and report.")],
     quick: Annotated[bool, typer.Option("--quick", help="Smaller: about three minutes.")] = False,
     refined: Annotated[
-        bool, typer.Option("--refined", help="Rough contacts on a grid four times as fine.")
+        bool, typer.Option("--refined", help="Rough contacts on a grid twice as fine.")
     ] = False,
     workers: Annotated[
         int | None,

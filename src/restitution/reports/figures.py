@@ -92,7 +92,7 @@ def load_displacement(results: xr.Dataset) -> Figure:
             axes.plot(1e6 * fine, thornton_ning.loading_force(fine, R, E_star, p_y), "--",
                       color="0.4", label=_THORNTON_NING)  # fmt: skip
         axes.set(xlabel="indentation (µm)", ylabel="normal force (N)")
-    linear.set_title(_plain(results.attrs.get("title", "")))
+    linear.set_title(plain(results.attrs.get("title", "")))
     if lowest >= 0:
         linear.set_xlim(left=0)
         linear.set_ylim(bottom=0)
@@ -172,7 +172,7 @@ def surface_map(height: xr.DataArray, title: str, y_axis: str = "up") -> Figure:
     """Heights of a surface, with a colour bar in micrometres; `y_axis` runs "up" or "down"."""
     figure = Figure(figsize=(5.6, 4.8), layout="constrained")
     axes = figure.add_subplot()
-    axes.set(xlabel="x (µm)", ylabel="y (µm)", title=_plain(title))
+    axes.set(xlabel="x (µm)", ylabel="y (µm)", title=plain(title))
     if y_axis == "down":
         axes.invert_yaxis()
     return _map(figure, axes, height, 1e6, "cividis", "height (µm)")
@@ -202,11 +202,11 @@ def _axes(
 ) -> tuple[Figure, Axes]:
     figure = Figure(figsize=size, layout="constrained")
     axes = figure.add_subplot()
-    axes.set(xlabel=x, ylabel=y, title=_plain(results.attrs.get("title", "")))
+    axes.set(xlabel=x, ylabel=y, title=plain(results.attrs.get("title", "")))
     return figure, axes
 
 
-def _plain(text: str) -> str:
+def plain(text: str) -> str:
     """A user's text as a title: at most two lines, and kept from being read as mathematics."""
     lines = textwrap.wrap(text, 55, max_lines=2, placeholder=" …")
     return "\n".join(lines).replace("$", r"\$")

@@ -34,7 +34,7 @@ _QUICK: dict[str, dict[str, Any]] = {
 }  # fmt: skip
 # The paper's spacing resolves no rough contact below some tens of nanometres.
 _REFINED: dict[str, dict[str, Any]] = {
-    name: {"grid.refine": 4} for name in ("roughness", "rough-yield", "rough-energy")
+    name: {"grid.refine": 2} for name in ("roughness", "rough-yield", "rough-energy")
 }
 
 

@@ -112,8 +112,8 @@ class InterfaceTable(Table):
     def yields(self, first: BodyTable, second: BodyTable) -> tuple[float, str]:
         """The yield pressure (Pa; inf if elastic) of two bodies, and in words where it is from.
 
-        Of two bodies the softer one yields. Raises `CaseError` when a body lacks what the rule asks
-        for.
+        Of two bodies the softer one yields. Where the rule asks for a yield strength, a body that
+        has none (glass) yields at its hardness. Raises `CaseError` when a body has neither.
         """
         rule = self.yield_pressure
         if rule is None:
@@ -121,16 +121,18 @@ class InterfaceTable(Table):
         if isinstance(rule, float):
             return rule, "given"
         factor, quantity = rule
-        bodies = {"first": first, "second": second}
-        for name, body in bodies.items():
-            if getattr(body, quantity) is None:
+        found = []
+        for name, body in (("first", first), ("second", second)):
+            of = f"of {name}" + (f" ({body.material})" if body.material else "")
+            if quantity == "yield_strength" and body.yield_strength is not None:
+                Y = body.yield_strength
+                found.append((factor * Y, f"{factor:g} Y {of}, Y = {1e-6 * Y:.6g} MPa"))
+            elif body.hardness is not None:
+                found.append((body.hardness, f"hardness {of}, {1e-6 * body.hardness:.6g} MPa"))
+            else:
                 raise CaseError(
                     f"interface.yield_pressure: needs {name}.{quantity}, which is not given"
                     + (f" and not known of {body.material}" if body.material else "")
                     + "; give it, or the pressure itself"
                 )
-        softer = min(bodies, key=lambda name: getattr(bodies[name], quantity))
-        value = getattr(bodies[softer], quantity)
-        rule_in_words = "hardness" if quantity == "hardness" else f"{factor:g} Y"
-        of = bodies[softer].material or "its body"
-        return factor * value, f"{rule_in_words} of {softer} ({of}), {1e-6 * value:.6g} MPa"
+        return min(found)

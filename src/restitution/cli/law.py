@@ -1,0 +1,81 @@
+"""`restitution law`: restitution against impact velocity, in the form that DEM codes take."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from restitution.dem.law import FittedLaw, Law
+
+
+def law(
+    results: Annotated[
+        Path,
+        typer.Argument(
+            metavar="OUT",
+            help="Results folder of a run, ensemble or convergence study.",
+            show_default=False,
+        ),
+    ],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the law; new or empty.")],
+) -> None:
+    """Write the restitution law of the results in OUT: table, compact fit, simpler laws."""
+    from restitution.cli.console import answers, warn
+    from restitution.dem.from_run import law_of
+    from restitution.dem.write import write_law
+
+    found = law_of(results)
+    for warning in found.warnings:
+        warn(warning)
+    written = write_law(found, out)
+    answers.print(
+        f"{found.pair}: {len(found.points)} velocities, {found.lowest:.4g} to "
+        f"{found.highest:.4g} m/s", markup=False, soft_wrap=True,
+    )  # fmt: skip
+    for line in _in_words(found):
+        answers.print(line, markup=False, soft_wrap=True)
+    if found.laws:
+        answers.print(_table(found.laws))
+    names = ", ".join(path.name for path in written)
+    answers.print(f"In {out}: {names}", markup=False, soft_wrap=True)
+    speed = f"{_middle(found):.2g} m/s"
+    answers.print(
+        f'Next: restitution export {out} --to lammps --velocity "{speed}" -o INPUT',
+        markup=False, soft_wrap=True,
+    )  # fmt: skip
+
+
+def _in_words(law: "Law") -> list[str]:
+    lines = []
+    if law.sticks_below is not None:
+        lines.append(f"sticks below {law.sticks_below:.4g} m/s")
+    if law.fit is None:
+        lines.append("no compact fit: too few velocities (four or more are needed)")
+    else:
+        lines.append(
+            f"compact fit: {len(law.fit.coefficients)} coefficients, within {law.fit.worst:.1g} of "
+            f"COR at the velocities, {law.fit.between:.1g} between them"
+        )
+    unresolved = sum(not point.resolved for point in law.points)
+    if unresolved:
+        lines.append(f"{unresolved} of {len(law.points)} velocities are not resolved by the grid")
+    return lines
+
+
+def _table(laws: "tuple[FittedLaw, ...]") -> object:
+    from rich.table import Table
+
+    table = Table(box=None, header_style="bold")
+    table.add_column("fitted law")
+    table.add_column("parameters", overflow="fold")
+    table.add_column("COR: rms", justify="right")
+    table.add_column("worst", justify="right")
+    for each in laws:
+        parameters = ", ".join(f"{name} {value:.4g}" for name, value in each.parameters.items())
+        table.add_row(each.name, parameters, f"{each.rms:.3f}", f"{each.worst:.3f}")
+    return table
+
+
+def _middle(law: "Law") -> float:
+    return float((law.lowest * law.highest) ** 0.5)

@@ -1,0 +1,89 @@
+"""`restitution theory`: what published closed forms say of the smooth bodies of a case."""
+
+import math
+import textwrap
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from restitution.dem.theories import Theory
+
+
+def theory(
+    case: Annotated[Path, typer.Argument(help="Case file (TOML).", show_default=False)],
+    out: Annotated[
+        Path | None,
+        typer.Option("-o", "--out", help="Folder for theory.csv and theory.png; new or empty."),
+    ] = None,
+    law: Annotated[
+        Path | None,
+        typer.Option("--law", help="Folder of `restitution law` for the same pair: its points."),
+    ] = None,
+) -> None:
+    """Print COR against velocity of every published closed form for the smooth bodies of CASE."""
+    from restitution.cli.console import answers
+    from restitution.dem import theories as room
+    from restitution.dem.law import read_law
+    from restitution.dem.theory_figure import write_theories
+    from restitution.studies.case import naming, read_case
+
+    read, _ = read_case(case)
+    points = None if law is None else read_law(law)
+    with naming(case):
+        if points is not None:
+            room.check_same_pair(read, points)
+        velocities = room.velocities_of(read, points)
+        found = room.theories(read, velocities, points)
+        missing = room.left_out(read, points)
+    written = [] if out is None else write_theories(read, velocities, found, out, points)
+
+    def say(line: str) -> None:
+        answers.print(line, markup=False, soft_wrap=True)
+
+    say("COR of the smooth bodies by impact velocity (m/s); - is outside of a theory's range")
+    for table in _tables(velocities.tolist(), found, answers.width):
+        answers.print(table)
+    for each in found:
+        say(f"{each.name}: {each.source}")
+        say(f"  holds: {each.holds}")
+        if each.parameters:
+            values = ", ".join(f"{name} {value:.4g}" for name, value in each.parameters.items())
+            say(f"  with: {values}")
+    for reason in dict.fromkeys(missing.values()):
+        names = ", ".join(name for name, why in missing.items() if why == reason)
+        say(f"left out: {names}: {reason}")
+    if {"sticking", "thornton-ning"} <= missing.keys():
+        say("Elastic and without adhesion: only Hertz applies, and he says that nothing is lost.")
+    if written:
+        say(f"In {out}: {', '.join(path.name for path in written)}")
+    if law is None:
+        say("Next: --law LAW, a folder of `restitution law`, puts computed points beside these")
+
+
+def _tables(velocities: list[float], found: "list[Theory]", width: int) -> Iterator[object]:
+    """One column a theory, in as many tables as the width of the terminal asks for."""
+    from rich.table import Table
+
+    heads = ["\n".join(textwrap.wrap(each.name, 9, break_long_words=False)) for each in found]
+    start = 0
+    while start < len(found):
+        end, left = start, width - 11  # of the velocities
+        while end < len(found) and (end == start or left >= _width(heads[end])):
+            left -= _width(heads[end])
+            end += 1
+        table = Table(box=None, header_style="bold", pad_edge=False)
+        table.add_column("m/s", justify="right", no_wrap=True)
+        for head in heads[start:end]:
+            table.add_column(head, justify="right", no_wrap=True)
+        for k, V in enumerate(velocities):
+            cells = (float(each.restitution[k]) for each in found[start:end])
+            table.add_row(f"{V:.4g}", *("-" if math.isnan(e) else f"{e:.4f}" for e in cells))
+        yield table
+        start = end
+
+
+def _width(head: str) -> int:
+    return max(map(len, head.split("\n"))) + 2

@@ -1,0 +1,367 @@
+"""The published closed forms for the smooth bodies of a case, each within its own range.
+
+The ranges are those that the modules of `restitution.theory` state. Outside of its range a theory
+has no answer here: NaN, even where its formula would give a number. Roughness is in none of them.
+
+Two quantities are called yield stress. p_y is the contact pressure of the case, and Hertz, sticking
+and Thornton–Ning take it. The others take the yield strength Y of a tensile test: that of the
+softer body where every body has a `yield_strength`, and p_y/2.8 where one lacks it.
+
+Velocities in m/s, one value of e for each; every other unit is SI, too.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.errors import CaseError
+from restitution.studies.case import Case
+from restitution.theory import (
+    adhesive_thornton_ning,
+    hertz,
+    jackson_green,
+    jackson_green_marghitu,
+    johnson,
+    mdr,
+    sticking,
+    thornton_ning,
+    wu_li_thornton,
+    yielding,
+)
+
+Array = NDArray[np.float64]
+
+STRENGTHS = 2.8
+"""p_y/Y where the bodies do not give Y."""
+
+_SMALL = 0.01  # δ/R* up to which Hertz holds
+_JOHNSON = 0.6  # e below which Johnson's formula holds
+_STEEL_LIKE = 0.001, 0.007  # Y/E* of Jackson, Green and Marghitu's fit
+
+SOURCES = {
+    "hertz": "H. Hertz, J. reine angew. Math. 92 (1882) 156-171",
+    "sticking": "JKR, elastic: C. Thornton, Z. Ning, Powder Technology 99 (1998) 154-162",
+    "thornton-ning": "C. Thornton, Z. Ning, Powder Technology 99 (1998) 154-162",
+    "johnson": "K. L. Johnson, Contact Mechanics (Cambridge, 1985), section 11.5",
+    "jackson-green-marghitu": "R. L. Jackson, I. Green, D. B. Marghitu, Nonlinear Dynamics 60 "
+    "(2010) 217-229; coefficients from memory, see docs/theory.md",
+    "wu-li-thornton-sphere": "C.-Y. Wu, L.-Y. Li, C. Thornton, Int. J. Impact Engineering 28 "
+    "(2003) 929-946; coefficients from memory, see docs/theory.md",
+    "wu-li-thornton-half-space": "C.-Y. Wu, L.-Y. Li, C. Thornton, Int. J. Impact Engineering 28 "
+    "(2003) 929-946; coefficients from memory, see docs/theory.md",
+    "mdr": "W. Zunker, K. Kamrin, J. Mech. Phys. Solids 183 (2024) 105492, as LAMMPS has it",
+    "brilliantov": "P. Mueller, T. Poeschel, Phys. Rev. E 84 (2011) 021302, of the viscoelastic "
+    "contact of N. V. Brilliantov et al., Phys. Rev. E 53 (1996) 5382-5392",
+}
+
+
+@dataclass(frozen=True)
+class Bodies:
+    """The smooth bodies of a case, as the theories take them."""
+
+    R: float
+    E: float
+    m: float
+    p_y: float  # infinite: elastic
+    w: float
+    walls: int
+    equal: bool  # two spheres that are the same
+    sphere_poisson: float
+    poissons: tuple[float, float]
+    strengths: tuple[float, float] | None  # of both bodies, or of none
+    labels: tuple[str, str]
+    sphere_is_first: bool
+    separation: float
+
+    @classmethod
+    def of(cls, case: Case) -> Bodies:
+        """Those of `case`. Raises `CaseError` where a density is missing."""
+        pair = case.pair()
+        for name, body in (("first", pair.first), ("second", pair.second)):
+            if body.mass is None:
+                raise CaseError(
+                    f"{name}.density: is missing; an impact velocity needs it, and so does every "
+                    f'theory of restitution: write for example density = "2500 kg/m^3" in [{name}]'
+                )
+        assert pair.mass is not None  # just checked
+        tables = case.first, case.second or case.first
+        Y_1, Y_2 = (table.yield_strength for table in tables)
+        walls = [math.isinf(body.radius) for body in (pair.first, pair.second)]
+        return cls(
+            R=pair.radius,
+            E=pair.contact_modulus,
+            m=pair.mass,
+            p_y=case.yields()[0],
+            w=case.interface.work_of_adhesion,
+            walls=sum(walls),
+            equal=not any(walls) and pair.first == pair.second and Y_1 == Y_2,
+            sphere_poisson=(pair.second if walls[0] else pair.first).poissons_ratio,
+            poissons=(pair.first.poissons_ratio, pair.second.poissons_ratio),
+            strengths=None if Y_1 is None or Y_2 is None else (Y_1, Y_2),
+            labels=(tables[0].material or "first", tables[1].material or "second"),
+            sphere_is_first=not walls[0],
+            separation=case.interface.equilibrium_separation,
+        )
+
+    @property
+    def elastic(self) -> bool:
+        """Whether nothing yields."""
+        return math.isinf(self.p_y)
+
+    @cached_property
+    def yield_velocity(self) -> float:
+        """V_y; infinite if elastic."""
+        if self.elastic:
+            return math.inf
+        return float(yielding.yield_velocity(self.R, self.E, self.p_y, self.m))
+
+    @cached_property
+    def sticking_velocity(self) -> float:
+        """V_s; zero without adhesion."""
+        if self.w == 0:
+            return 0.0
+        return float(sticking.sticking_velocity(self.R, self.E, self.w, self.m))
+
+    @cached_property
+    def small_velocity(self) -> float:
+        """V up to which a Hertz contact is small beside the spheres."""
+        W = float(hertz.stored_energy(_SMALL * self.R, self.R, self.E))
+        return math.sqrt(2 * W / self.m)
+
+    @property
+    def strength(self) -> float:
+        """Y of the softer body, or p_y/2.8."""
+        return self.p_y / STRENGTHS if self.strengths is None else min(self.strengths)
+
+    @property
+    def convention(self) -> str:
+        """Where `strength` is from, in words."""
+        if self.strengths is None:
+            return f"Y = p_y/{STRENGTHS:g} = {1e-6 * self.strength:.4g} MPa"
+        softer = self.labels[int(self.strengths[1] < self.strengths[0])]
+        return f"Y = {1e-6 * self.strength:.4g} MPa, the yield_strength of {softer}"
+
+    @property
+    def yielding_wall(self) -> bool | None:
+        """Whether the wall is softer than the sphere; None where that is not known, or no wall."""
+        if not self.walls or self.strengths is None or self.strengths[0] == self.strengths[1]:
+            return None
+        return (self.strengths[1] < self.strengths[0]) == self.sphere_is_first
+
+    def velocity(self, indentation: Array) -> Array:
+        """V (m/s) of the impact that reaches `indentation` (m)."""
+        if self.elastic:
+            return np.asarray(
+                np.sqrt(2 * hertz.stored_energy(indentation, self.R, self.E) / self.m)
+            )
+        return thornton_ning.impact_velocity(indentation, self.R, self.E, self.p_y, self.m)
+
+    def depth_under(self, force: Array) -> Array:
+        """Indentation (m) under `force` (N): Hertz, then the line f = (3x − 1)/2."""
+        if self.elastic:
+            return hertz.indentation_from_force(force, self.R, self.E)
+        f = force / float(yielding.yield_force(self.R, self.E, self.p_y))
+        d_y = float(yielding.yield_indentation(self.R, self.E, self.p_y))
+        return np.asarray(d_y * np.where(f <= 1, f ** (2 / 3), (2 * f + 1) / 3))
+
+
+@dataclass(frozen=True)
+class Form:
+    """What one closed form answers."""
+
+    restitution: Array
+    holds: str
+    parameters: dict[str, float] = field(default_factory=dict)
+    takes_strength: bool = False
+    with_adhesion: bool = False
+
+
+_ELASTIC = "the case is elastic: nothing yields"
+
+
+def _hertz(b: Bodies, V: Array) -> Form:
+    limit = min(b.yield_velocity, b.small_velocity)
+    return Form(
+        within(limit >= V, np.ones_like(V)),
+        f"nothing yields and the contact is small, {_elastic_range(b)}",
+        {} if b.elastic else {"yield_pressure_Pa": b.p_y},
+    )
+
+
+def _sticking(b: Bodies, V: Array) -> Form | str:
+    if b.w == 0:
+        return "the case has no work_of_adhesion"
+    V_s, V_y = b.sticking_velocity, b.yield_velocity
+    limit = min(V_y, b.small_velocity) if V_s < V_y else 0.0
+    failing = "" if V_s < V_y else ", so nowhere here"
+    return Form(
+        within(limit >= V, sticking.restitution(V, V_s)),
+        f"nothing yields and the contact is small, {_elastic_range(b)}; V_s = {speed(V_s)} below "
+        f"V_y{failing}; {_tabor(b)}",
+        {"sticking_velocity_m_per_s": V_s, "work_of_adhesion_J_per_m2": b.w},
+        with_adhesion=True,
+    )
+
+
+def _thornton_ning(b: Bodies, V: Array) -> Form | str:
+    if b.elastic:
+        return _ELASTIC
+    bodies = b.R, b.E, b.p_y
+    depth = thornton_ning.indentation_from_velocity(V, *bodies, b.m)
+    limit = float(thornton_ning.impact_velocity(b.R, *bodies, b.m))
+    deepest = math.sqrt(float(np.max(depth, initial=0.0)) / b.R)
+    small = f"a << R* (here a/R* up to {deepest:.2g}; no answer from a = R* on, {speed(limit)})"
+    inside = depth < b.R
+    parameters = {"yield_pressure_Pa": b.p_y}
+    if b.w == 0:
+        e = thornton_ning.restitution(V, *bodies, b.m)
+        return Form(within(inside, e), f"quasi-static impacts, {small}", parameters)
+    V_s, V_y = b.sticking_velocity, b.yield_velocity
+    additive = (
+        f"losses added, an upper estimate good for V_s << V_y ({speed(V_s)}, {speed(V_y)})"
+        if V_s <= V_y
+        else f"up to V_y = {speed(V_y)} only, for V_s = {speed(V_s)} lies above"
+    )
+    return Form(
+        within(inside, adhesive_thornton_ning.restitution(V, *bodies, b.w, b.m)),
+        f"{additive}; {small}; {_tabor(b)}",
+        {**parameters, "work_of_adhesion_J_per_m2": b.w, "sticking_velocity_m_per_s": V_s},
+        with_adhesion=True,
+    )
+
+
+def _johnson(b: Bodies, V: Array) -> Form | str:
+    if b.elastic:
+        return _ELASTIC
+    Y = b.strength
+    e = johnson.restitution(V, b.R, b.E, Y, b.m)
+    # ½m*V²/YR*³ where e is 0.6, and where a = R*: W = π 3Y a⁴/4R*.
+    lowest, highest = (
+        math.sqrt(2 * reduced * Y * b.R**3 / b.m)
+        for reduced in ((johnson.COEFFICIENT**2 * Y / b.E) ** 4 / _JOHNSON**8, 0.75 * math.pi)
+    )
+    return Form(
+        within((e < _JOHNSON) & (highest > V), e),
+        f"fully plastic, e < {_JOHNSON:g}: above {speed(lowest)}; a << R* (no answer from a = R* "
+        f"on, {speed(highest)}){'' if lowest < highest else ', so nowhere here'}; pressure 3 Y",
+        takes_strength=True,
+    )
+
+
+def _jackson_green_marghitu(b: Bodies, V: Array) -> Form | str:
+    if b.elastic:
+        return _ELASTIC
+    # Of two deformable bodies, Y and ν of the one with the smaller CY (`jackson_green`).
+    strengths = b.strengths or (b.strength, b.strength)
+    _, Y, nu = min(
+        (float(jackson_green.yield_coefficient(nu)) * Y, Y, nu)
+        for Y, nu in zip(strengths, b.poissons, strict=True)
+    )
+    V_c = float(jackson_green_marghitu.critical_velocity(b.R, b.E, Y, nu, b.m))
+    low, high = _STEEL_LIKE
+    steel_like = low <= Y / b.E <= high
+    e = jackson_green_marghitu.restitution(V, b.R, b.E, Y, nu, b.m)
+    limit = jackson_green_marghitu.LIMIT
+    return Form(
+        e if steel_like else within(V_c >= V, e),
+        f"steel-like bodies on a rigid flat, {low:g} <= Y/E* <= {high:g} (here {Y / b.E:.2g}"
+        + (f"), up to {limit:g} V_c = {speed(limit * V_c)}" if steel_like
+           else f", so only where e = 1), up to V_c = {speed(V_c)}"),
+        {"poissons_ratio": nu, "critical_velocity_m_per_s": V_c},
+        takes_strength=True,
+    )  # fmt: skip
+
+
+def _wu_li_thornton(b: Bodies, V: Array, plastic: str) -> Form | str:
+    if b.elastic:
+        return _ELASTIC
+    wall = plastic == "half-space"
+    if wall and not b.walls:
+        return "neither body is a wall"
+    if not b.walls and not b.equal:
+        return "of two spheres it knows two equal ones only (one on a rigid wall, mirrored)"
+    if b.yielding_wall not in (None, wall):
+        return f"the {'sphere' if wall else 'wall'} is the softer one"
+    # Two equal spheres are two impacts on a rigid wall, as in `mdr`.
+    n = 2 if b.equal else 1
+    Y, E, R, m = b.strength, n * b.E, n * b.R, n * b.m
+    V_y = n * float(yielding.yield_velocity(R, E, wu_li_thornton.YIELD_COEFFICIENT * Y, m))
+    c, s = wu_li_thornton.COEFFICIENTS[plastic], E / Y
+    lowest = V_y * max(wu_li_thornton.THRESHOLD * s**2, c**2 * s)
+    which = (
+        "both spheres yield alike, each as on a rigid wall at V/2" if b.equal
+        else "elastic sphere, plastic half-space" if wall
+        else "plastic sphere, rigid wall"
+    )  # fmt: skip
+    return Form(
+        wu_li_thornton.restitution(V / n, R, E, Y, m, plastic),
+        f"{which}; large plastic deformation, from {speed(lowest)}, and e = 1 up to "
+        f"{speed(V_y)} (V_y at {wu_li_thornton.YIELD_COEFFICIENT:g} Y)",
+        takes_strength=True,
+    )
+
+
+def _mdr(b: Bodies, V: Array) -> Form | str:
+    if b.elastic:
+        return _ELASTIC
+    if not b.walls and not b.equal:
+        return "of two spheres it knows two equal ones only"
+    if b.yielding_wall:
+        return "the wall is the softer one, and its flat does not yield"
+    nu = b.sphere_poisson
+    if nu < 0:
+        return "it takes no negative Poisson ratio"
+    n = 2 if b.equal else 1
+    E = n * b.E * (1 - nu**2)
+    sphere = n * b.R, E, nu, b.strength
+    limit = n * math.sqrt(2 * float(mdr.loading_work(n * b.R, *sphere)) / (n * b.m))
+    flat = (
+        "two equal spheres, a flat between them" if b.equal
+        else "a sphere on a rigid flat, the wall's compliance put into E"
+    )  # fmt: skip
+    return Form(
+        mdr.restitution(V / n, *sphere, n * b.m),
+        f"{flat}; up to {speed(limit)}, where the indentation is the radius",
+        {"youngs_modulus_Pa": E, "poissons_ratio": nu},
+        takes_strength=True,
+    )
+
+
+FORMS: dict[str, Callable[[Bodies, Array], Form | str]] = {
+    "hertz": _hertz,
+    "sticking": _sticking,
+    "thornton-ning": _thornton_ning,
+    "johnson": _johnson,
+    "jackson-green-marghitu": _jackson_green_marghitu,
+    "wu-li-thornton-sphere": lambda b, V: _wu_li_thornton(b, V, "sphere"),
+    "wu-li-thornton-half-space": lambda b, V: _wu_li_thornton(b, V, "half-space"),
+    "mdr": _mdr,
+}
+
+
+def _elastic_range(b: Bodies) -> str:
+    if b.yield_velocity < b.small_velocity:
+        return f"up to V_y = {speed(b.yield_velocity)}"
+    return f"up to {speed(b.small_velocity)} (indentation {_SMALL:g} R*)"
+
+
+def _tabor(b: Bodies) -> str:
+    mu = float(sticking.tabor_parameter(b.R, b.E, b.w, b.separation))
+    beside = f"here {mu:.2g}" + (", so it sticks less than this says" if mu < 5 else "")
+    return f"JKR, a Tabor parameter above 5 ({beside})"
+
+
+def within(inside: NDArray[np.bool_], e: Array) -> Array:
+    """`e` where it holds, NaN elsewhere."""
+    return np.where(inside, e, np.nan)
+
+
+def speed(V: float) -> str:
+    """A velocity in words."""
+    return f"{V:.3g} m/s"

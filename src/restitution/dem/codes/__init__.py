@@ -1,0 +1,1 @@
+"""One DEM code a module: `write(matrix, velocity)` returns its input as texts by file name."""

@@ -1,0 +1,102 @@
+"""EDEM: tables of interactions and materials, to be typed into its panels; EDEM was not run.
+
+Its Hertz–Mindlin model has Tsuji's damping with the coefficient of Antypov & Elliott (Altair's
+documentation). Its hysteretic spring model is Walton & Braun's with K1 = 5 R* min(Y1, Y2) and
+e = (K1/K2)^½ at every velocity, so K2 is the one at the velocity of the export.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Sequence
+
+from restitution.dem.codes.fragment import (
+    FRICTION,
+    PLACEHOLDER,
+    Pair,
+    commented,
+    header,
+    identifier,
+    number,
+    pairs_at,
+)
+from restitution.dem.matrix import Matrix
+
+CODE = "EDEM"
+INTERACTIONS, MATERIALS = "restitution_edem.csv", "restitution_edem_materials.csv"
+_ENDS = (
+    "in Hertz-Mindlin, by its formulas the overlap is back to zero (whether EDEM cuts off the pull "
+    "of the damping before is not documented); in the hysteretic spring model the force is back to "
+    "zero."
+)
+_NOTES = [
+    "",
+    "Tables to be typed into EDEM (not run here): Interactions, and Bulk Material.",
+    PLACEHOLDER + " So is rolling friction 0.",
+    "hysteretic_*: the hysteretic spring model fitted to the law, K2 at this velocity;",
+    "    its restitution is (K1/K2)^(1/2), and its yield strength K1/(5 R*) what EDEM makes K1 of.",
+]
+
+
+def write(matrix: Matrix, velocity: float) -> dict[str, str]:
+    """The two tables, as texts by file name. Raises `DomainError`."""
+    pairs = pairs_at(matrix, velocity, CODE, 0.0)
+    head = header(matrix, pairs, velocity, code=CODE, ends=_ENDS) + _NOTES
+    comments = commented(head, "#")
+    return {
+        INTERACTIONS: comments + _csv([_interaction(pair, velocity) for pair in pairs]),
+        MATERIALS: comments + _csv(_materials(matrix)),
+    }
+
+
+def _interaction(pair: Pair, velocity: float) -> dict[str, str]:
+    springs = _springs(pair, velocity)
+    return {
+        "material_1": identifier(pair.first, pair.i),
+        "material_2": identifier(pair.second, pair.j),
+        "coefficient_of_restitution": number(pair.restitution),
+        "restitution_error": f"{pair.law.at(velocity).error:.2g}",
+        "coefficient_of_static_friction": str(FRICTION),
+        "coefficient_of_rolling_friction": "0",
+        "hysteretic_K1_N_per_m": number(springs[0]) if springs else "",
+        "hysteretic_K2_N_per_m": number(springs[1]) if springs else "",
+        "hysteretic_restitution": number(math.sqrt(springs[0] / springs[1])) if springs else "",
+        "hysteretic_yield_strength_Pa": number(springs[0] / (5 * pair.law.radius))
+        if springs
+        else "",
+    }
+
+
+def _springs(pair: Pair, velocity: float) -> tuple[float, float] | None:
+    """K1 and K2 (N/m) of the fitted Walton–Braun law: K2 = k_u + S V (m* K1)^½."""
+    for fit in pair.law.laws:
+        if fit.name == "walton-braun":
+            k1 = fit.parameters["loading_stiffness_N_per_m"]
+            k_u = fit.parameters["unloading_stiffness_N_per_m"]
+            hardening = fit.parameters.get("hardening_per_m", 0.0)
+            return k1, k_u + hardening * velocity * math.sqrt(pair.law.mass * k1)
+    return None
+
+
+def _materials(matrix: Matrix) -> list[dict[str, str]]:
+    return [
+        {
+            "material": identifier(body, k),
+            "poissons_ratio": number(body.poissons_ratio),
+            "solids_density_kg_per_m3": "" if body.density is None else number(body.density),
+            "youngs_modulus_Pa": number(body.youngs_modulus),
+            "shear_modulus_Pa": number(body.youngs_modulus / (2 * (1 + body.poissons_ratio))),
+            "radius_m": "" if body.radius is None else number(body.radius),
+        }
+        for k, body in enumerate(matrix.particles, 1)
+    ]
+
+
+def _csv(rows: Sequence[dict[str, str]]) -> str:
+    text = io.StringIO()
+    table = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
+    table.writeheader()
+    table.writerows(rows)
+    return text.getvalue()

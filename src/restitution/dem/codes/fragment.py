@@ -1,0 +1,235 @@
+"""What all exports have in common: the pairs at one velocity, and the comments above them.
+
+DEM codes take one coefficient of restitution a pair and no law, so an export holds for one impact
+velocity; its comments say where e comes from, how far to trust it, and how wrong it is elsewhere.
+Comments are plain ASCII without quotes, braces or the signs that join lines, so that no name or
+title of the user's can leave its comment.
+"""
+
+from __future__ import annotations
+
+import re
+import textwrap
+import unicodedata
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, version
+
+from restitution.dem.law import Law, Particle
+from restitution.dem.matrix import Matrix
+from restitution.errors import CaseError, one_line
+
+FRICTION = 0.5
+PLACEHOLDER = f"Friction {FRICTION} is a placeholder: no friction was computed here, give yours."
+
+STEPS = 5000
+TIME_STEP = (
+    "the elastic contact time t_c = 2.87 (m*^2/(R* E*^2 V))^(1/5), so fine for the sake of e only"
+)
+
+_WIDTH = 98
+_SIGNS = str.maketrans({'"': "'", "`": "'", "\\": "/", "&": "+", "{": "(", "}": ")", "$": "%"})
+_PLAIN = str.maketrans("–—−‐‑’‘“”·×≈→µ", "-----''''.x~>u") | str.maketrans(
+    {"±": "+/-", "≤": "<=", "≥": ">=", "…": "...", "ß": "ss", "⁄": "/"}
+)
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Types `i` ≤ `j`, their bodies, their law, and its coefficient of restitution."""
+
+    i: int
+    j: int
+    first: Particle
+    second: Particle
+    law: Law
+    restitution: float
+
+    @property
+    def wall(self) -> bool:
+        """Whether the second body is a wall."""
+        return self.second.wall
+
+    @property
+    def shear_modulus(self) -> float:
+        """Mindlin's G* (Pa): 1/G* = Σ 2 (2 − ν)(1 + ν)/E."""
+        bodies = self.first, self.second
+        return 1 / sum(
+            2 * (2 - b.poissons_ratio) * (1 + b.poissons_ratio) / b.youngs_modulus for b in bodies
+        )
+
+    @property
+    def twin(self) -> tuple[float, float]:
+        """E (Pa) and ν of the material which, on both sides, has the E* and G* of this pair.
+
+        From E* = E/2(1 − ν²) and G* = E/4(2 − ν)(1 + ν): ν lies between those of the two bodies.
+        """
+        k = self.shear_modulus / self.law.contact_modulus
+        nu = min(max((1 - 4 * k) / (1 - 2 * k), 0.0), 0.5)
+        return 2 * (1 - nu**2) * self.law.contact_modulus, nu
+
+
+def pairs_at(matrix: Matrix, velocity: float, code: str, lowest: float) -> list[Pair]:
+    """All pairs of `matrix` with their e at `velocity` (m/s).
+
+    Raises `CaseError` where e is below `lowest`, the least that `code` reproduces, and
+    `DomainError` beyond the velocities that were computed.
+    """
+    found = []
+    for i, j, law in matrix.pairs():
+        e = law.at(velocity).restitution
+        if e < lowest:
+            raise CaseError(
+                f"{law.pair} {_failure(law, e)} at {velocity:.6g} m/s, and {code} takes no "
+                f"coefficient of restitution below {lowest:g}; export at a higher velocity, or "
+                "use an adhesive contact model there"
+            )
+        found.append(Pair(i, j, matrix.particles[i - 1], matrix.particles[j - 1], law, e))
+    return found
+
+
+def contact_time(law: Law, radius: float | None = None) -> float:
+    """Elastic contact time at 1 m/s, s: t_c = 2.87 (m*²/(R* E*² V))^⅕ (Johnson 1985, eq. 11.24)."""
+    R = law.radius if radius is None else radius
+    return float(2.87 * (law.mass**2 / (R * law.contact_modulus**2)) ** 0.2)
+
+
+def density_of(particle: Particle) -> float:
+    """Density of a sphere (kg/m³). Raises `CaseError` if it is not known."""
+    if particle.density is None:
+        raise CaseError(f"{particle}: has no density, and DEM needs one; give it in the case")
+    return particle.density
+
+
+def identifier(particle: Particle, number: int) -> str:
+    """A name for `particle` that is one in any language: letters, digits and `_`, with `number`."""
+    word = re.sub(r"[^A-Za-z0-9]+", "_", plain(particle.name)).strip("_")[:24].rstrip("_").lower()
+    word = word or "type"
+    return f"{word if word[0].isalpha() else f'p_{word}'}_{number}"
+
+
+def header(
+    matrix: Matrix, pairs: Sequence[Pair], velocity: float, *, code: str, ends: str
+) -> list[str]:
+    """Comment lines above the export for `code`, which takes `ends` as the end of a contact."""
+    lines = _origin(velocity, code, ends)
+    lines += ["", "Types:"]
+    lines += [f"  {k}: {particle}" for k, particle in enumerate(matrix.particles, 1)]
+    for pair in pairs:
+        lines += ["", *_about(pair, velocity)]
+    return _wrapped(lines)
+
+
+def summary(
+    pairs: Sequence[Pair], velocity: float, *, code: str, ends: str, fragment: str
+) -> list[str]:
+    """The shorter comments above a collision that shows the e of `fragment`: warnings in full."""
+    lines = [*_origin(velocity, code, ends), f"Where e comes from is told in {fragment}."]
+    for pair in pairs:
+        lines += _warnings(pair, velocity)
+    return _wrapped(lines)
+
+
+def commented(lines: Iterable[str], sign: str) -> str:
+    """`lines` as comments, each ended by a line break."""
+    return "".join(f"{sign} {line}".rstrip() + "\n" for line in lines)
+
+
+def plain(text: str) -> str:
+    """`text` in one line of ASCII that can leave no comment; signs that have a name get it."""
+    text = unicodedata.normalize("NFKD", one_line(text).translate(_PLAIN)).translate(_PLAIN)
+    text = "".join(map(_ascii, text)).translate(_SIGNS)
+    return text.replace("*/", "* /").replace("/*", "/ *").replace("??/", "?? /")
+
+
+def number(value: float) -> str:
+    """A number as every code reads it."""
+    return f"{value:.9g}"
+
+
+def program_version() -> str:
+    """The version of this program."""
+    try:
+        return version("restitution")
+    except PackageNotFoundError:  # run from the sources
+        return "(version unknown)"
+
+
+def _origin(velocity: float, code: str, ends: str) -> list[str]:
+    return [
+        f"Coefficients of restitution for {code}, written by restitution {program_version()}.",
+        f"They hold at the impact velocity {velocity:.6g} m/s only: {code} keeps e constant, the "
+        "pairs do not. Export again for another velocity.",
+        f"End of a contact in {code}: {ends}",
+        "SI units.",
+    ]
+
+
+def _about(pair: Pair, velocity: float) -> list[str]:
+    law, at = pair.law, pair.law.at(velocity)
+    p_y = "none (elastic)" if law.yield_pressure is None else f"{law.yield_pressure:.6g} Pa"
+    convention = law.conventions.get("yield_pressure", "not said")
+    lines = [
+        f"Pair {pair.i} {pair.j}: {pair.first} and {pair.second}",
+        f"  title: {law.title}",
+        f"  e = {at.restitution:.6g} +/- {at.error:.2g} at {velocity:.6g} m/s"
+        + _elsewhere(law, velocity),
+        f"  R* = {law.radius:.6g} m, E* = {law.contact_modulus:.6g} Pa, m* = {law.mass:.6g} kg",
+        f"  yield pressure p_y: {p_y}; convention: {convention}",
+        f"  end of contact in e: {law.conventions.get('end_of_contact', 'not said')}",
+        f"  computed from {law.lowest:.4g} to {law.highest:.4g} m/s; nothing is extrapolated",
+    ]
+    if law.work_of_adhesion > 0:
+        lines.append(
+            f"  adhesion {law.work_of_adhesion:.4g} J/m^2: e includes what it dissipates; the "
+            "pull-off force is not modelled below"
+        )
+    return lines + _warnings(pair, velocity)
+
+
+def _warnings(pair: Pair, velocity: float) -> list[str]:
+    lines = []
+    if not pair.law.at(velocity).resolved:
+        lines.append(
+            f"WARNING: unresolved at {velocity:.6g} m/s (pair {pair.i} {pair.j}): the grid was too "
+            "coarse there, and e may be off by more than its error says"
+        )
+    if pair.restitution == 0:
+        lines.append(
+            f"WARNING: pair {pair.i} {pair.j} sticks at {velocity:.6g} m/s, and e = 0 does not "
+            "hold it together"
+        )
+    return lines + [f"WARNING: pair {pair.i} {pair.j}: {text}" for text in pair.law.warnings]
+
+
+def _elsewhere(law: Law, velocity: float) -> str:
+    others = [V for V in (velocity / 2, velocity * 2) if law.lowest <= V <= law.highest]
+    said = ", ".join(f"{law.at(V).restitution:.4g} at {V:.6g} m/s" for V in others)
+    return f" (but {said})" if said else ""
+
+
+def _failure(law: Law, e: float) -> str:
+    if e > 0:
+        return f"has e = {e:.3g}"
+    begins = law.sticks_below
+    return "sticks (e = 0)" + ("" if begins is None else f" below {begins:.4g} m/s, so also")
+
+
+def _wrapped(lines: Iterable[str]) -> list[str]:
+    found = []
+    for line in map(plain, lines):
+        indent = " " * (len(line) - len(line.lstrip()) + 4)
+        found += textwrap.wrap(line, _WIDTH, subsequent_indent=indent) or [""]
+    return found
+
+
+def _ascii(c: str) -> str:
+    if c.isascii():
+        return c
+    if unicodedata.combining(c):
+        return ""
+    name = unicodedata.name(c, "")
+    if name.startswith("GREEK"):
+        word = name.split(" WITH ")[0].rsplit(" ", 1)[-1]
+        return word.lower() if "SMALL" in name else word.capitalize()
+    return "?"

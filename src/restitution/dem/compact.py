@@ -1,0 +1,106 @@
+"""A law in a few numbers: where the pair sticks, where adhesion counts, and the rest.
+
+    e² = Σ c_k L^k − s/V²,   L = ln(V/V₀)/w in [−1, 1]
+
+The last term is what adhesion takes from the approach, the same at every velocity (s = V_s² of an
+elastic pair: Thornton & Ning 1998); the polynomial is yielding, whatever the surface makes of it.
+Velocities up to which nothing is lost (e = 1) or the pair sticks (e = 0) are kept out of it. The
+fit is linear least squares in e². Its degree is the one whose fit to all points but one comes
+nearest to the one that was left out (PRESS, Allen 1974); that distance is the fit's error between
+the points.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.dem.law import CompactFit, Law
+
+Array = NDArray[np.float64]
+
+_HIGHEST_DEGREE = 8
+_FEWEST = 4  # points that are worth a fit
+_NO_LOSS = 1e-3  # of W_u/W_l
+_SIMPLER = 1.1  # so much larger may the error between points be for a lower degree
+_GOOD = 1e-3  # error of e between points below which a lower degree is always preferred
+_COUNTS = 0.01  # of e²: where adhesion takes more, it counts
+
+
+def compact_fit(law: Law) -> CompactFit | None:
+    """The compact form of `law`; None where fewer than four resolved points are left to fit."""
+    V, ratio = law.column("velocity", resolved=True), law.column("ratio", resolved=True)
+    lossless = law.work_of_adhesion == 0
+    first = 0
+    while lossless and first < V.size and ratio[first] > 1 - _NO_LOSS:
+        first += 1
+    # One point beyond the end of a range belongs to what comes after it, and anchors it there.
+    first = max(first - 1, 0)
+    sticks = law.sticks_below
+    used = slice(first, None)
+    if sticks is not None:
+        used = slice(max(int(np.searchsorted(V, sticks)) - 1, 0), None)
+    v, e2 = V[used], ratio[used]
+    if v.size < _FEWEST:
+        return None
+    centre = math.sqrt(v[0] * v[-1])
+    width = 0.5 * math.log(v[-1] / v[0])
+    degree, adhesion = _best(v, e2, centre, width, law.work_of_adhesion > 0)
+    solution = _solve(v, e2, centre, width, degree, adhesion)
+    s = float(solution[-1]) if adhesion else 0.0
+    fit = CompactFit(
+        coefficients=tuple(float(c) for c in solution[: degree + 1]),
+        centre=centre,
+        width=width,
+        adhesion=s,
+        sticks_below=sticks,
+        elastic_below=float(V[first]) if first else None,
+        adhesive_below=math.sqrt(s / _COUNTS) if s > 0 else None,
+        lowest=float(V[0]),
+        highest=float(V[-1]),
+        worst=0.0,
+        between=_left_out(v, e2, centre, width, degree, adhesion),
+    )
+    worst = np.abs(fit.restitution(V) - law.column("restitution", resolved=True)).max()
+    return fit.model_copy(update={"worst": float(worst)})
+
+
+def _best(v: Array, e2: Array, centre: float, width: float, adhesive: bool) -> tuple[int, bool]:
+    """Degree, and whether with the term of adhesion, of the smallest error between the points."""
+    errors = {
+        (degree, adhesion): _left_out(v, e2, centre, width, degree, adhesion)
+        for degree in range(min(_HIGHEST_DEGREE, v.size - 3) + 1)
+        for adhesion in ({False, adhesive} if degree + 2 < v.size else {False})
+        if _solve(v, e2, centre, width, degree, adhesion)[-1] >= 0 or not adhesion
+    }
+    good = max(_SIMPLER * min(errors.values()), _GOOD)
+    return min((key for key, error in errors.items() if error <= good), key=lambda k: k)
+
+
+def _basis(v: Array, centre: float, width: float, degree: int, adhesion: bool) -> Array:
+    L = np.log(v / centre) / width
+    basis = np.vander(L, degree + 1, increasing=True)
+    return np.column_stack([basis, -1 / v**2]) if adhesion else basis
+
+
+def _solve(v: Array, e2: Array, centre: float, width: float, degree: int, adhesion: bool) -> Array:
+    basis = _basis(v, centre, width, degree, adhesion)
+    scale = np.abs(basis).max(axis=0)
+    solution: Array = np.linalg.lstsq(basis / scale, e2, rcond=None)[0] / scale
+    return solution
+
+
+def _left_out(
+    v: Array, e2: Array, centre: float, width: float, degree: int, adhesion: bool
+) -> float:
+    """The largest error of e at an inner point that the fit does not know."""
+    worst = 0.0
+    for k in range(1, v.size - 1):
+        keep = np.arange(v.size) != k
+        solution = _solve(v[keep], e2[keep], centre, width, degree, adhesion)
+        e2_k = float((_basis(v[k : k + 1], centre, width, degree, adhesion) @ solution)[0])
+        miss = math.sqrt(min(max(e2_k, 0.0), 1.0)) - math.sqrt(min(max(float(e2[k]), 0.0), 1.0))
+        worst = max(worst, abs(miss))
+    return worst

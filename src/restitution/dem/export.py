@@ -1,0 +1,93 @@
+"""Laws as the input of a DEM code, or as one table."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Sequence
+from importlib import import_module
+from pathlib import Path
+
+from restitution.dem.law import Law
+from restitution.dem.matrix import Matrix, matrix_of
+from restitution.dem.write import table
+from restitution.errors import CaseError, OutputError
+from restitution.studies.results import replace_file, writing, written
+
+CODES = ("lammps", "liggghts", "yade", "mercurydpm", "edem", "csv")
+TABLE = "restitution.csv"
+# What belongs to the whole law.
+_WHOLE = (
+    "yield_velocity_smooth_m_per_s",
+    "sticking_velocity_smooth_m_per_s",
+    "sticks_below_m_per_s",
+    "reduced_radius_m",
+    "reduced_mass_kg",
+    "contact_modulus_Pa",
+    "yield_pressure_Pa",
+    "yield_pressure_is",
+    "end_of_contact",
+)
+
+
+def export(laws: Sequence[Law], code: str, velocity: float | None) -> dict[str, str]:
+    """The input of `code` (one of `CODES`) for the pairs of `laws`, as texts by file name.
+
+    All codes but `csv` take one coefficient of restitution a pair, and so a `velocity` (m/s).
+    Raises `CaseError` where they are not given one, for pairs that lack a law and for what a code
+    cannot take; `DomainError` for a velocity beyond those that were computed.
+    """
+    matrix = matrix_of(laws)
+    if code == "csv":
+        return {TABLE: _table(matrix, velocity)}
+    if velocity is None:
+        law = laws[0]
+        raise CaseError(
+            f"velocity: {code} takes one coefficient of restitution a pair, which holds at one "
+            f'velocity; give it with --velocity, such as "{law.lowest:.3g} m/s" to '
+            f'"{law.highest:.3g} m/s"'
+        )
+    texts: dict[str, str] = import_module(f"restitution.dem.codes.{code}").write(matrix, velocity)
+    return texts
+
+
+def write_export(texts: dict[str, str], out: Path) -> list[Path]:
+    """Write the files into `out`, over none that is there. Raises `OutputError`."""
+    with writing(out):
+        out.mkdir(parents=True, exist_ok=True)
+        there = [name for name in texts if (out / name).exists()]
+    if there:
+        raise OutputError(
+            f"{out / there[0]}: exists, and nothing is overwritten; name another folder with -o"
+        )
+    for name, text in texts.items():
+        replace_file(out / name, lambda to, text=text: to.write_text(text, encoding="utf-8"))  # type: ignore[misc]
+    return [out / name for name in texts]
+
+
+def _table(matrix: Matrix, velocity: float | None) -> str:
+    """The tables of all pairs, one below the other; or the estimates at one velocity."""
+    rows: list[dict[str, float | str]] = []
+    for i, j, law in matrix.pairs():
+        pair: dict[str, float | str] = {
+            "type_1": i,
+            "type_2": j,
+            "first": str(law.first),
+            "second": str(law.second),
+        }
+        if velocity is None:
+            rows += [{**pair, **row} for row in table(law)]
+            continue
+        estimate = law.at(velocity)
+        values: dict[str, float | str] = {
+            "velocity_m_per_s": velocity,
+            "restitution": estimate.restitution,
+            "restitution_error": estimate.error,
+            "resolved": estimate.resolved,
+        }
+        rows.append({**pair, **values, **{key: table(law)[0][key] for key in _WHOLE}})
+    text = io.StringIO()
+    writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
+    writer.writeheader()
+    writer.writerows({key: written(value) for key, value in row.items()} for row in rows)
+    return text.getvalue()

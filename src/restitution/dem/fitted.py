@@ -1,0 +1,300 @@
+"""The force laws that DEM codes have, with the parameters that come nearest to a law of ours.
+
+Each law is fitted to the coefficient of restitution, by least squares over the points that are
+resolved (which lie as the velocities that were computed do). Springs have a stiffness besides, on
+which e does not depend by itself: it is the one that gives the largest force at each impact (its
+geometric mean over the points), so that contacts are as long and as deep as ours on average. What a
+law gives beside ours, at every point, is kept with it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.dem.law import FittedLaw, Law
+from restitution.theory import eepa, luding, mdr, sticking, thornton_ning, walton_braun
+
+Array = NDArray[np.float64]
+Parameters = dict[str, float]
+
+_LOSS = 1e-3  # of e: below it nothing can be fitted
+_MOST = 1e6  # ratio of stiffnesses
+# The parameters of each set of springs, as its theory takes them.
+_WALTON_BRAUN = ("loading_stiffness_N_per_m", "unloading_stiffness_N_per_m", "hardening_per_m")
+_LUDING = (
+    "loading_stiffness_N_per_m",
+    "limit_stiffness_N_per_m",
+    "adhesive_stiffness_N_per_m",
+    "plasticity_depth",
+)
+_EEPA = (
+    "loading_stiffness_N_per_m_n",
+    "unloading_stiffness_N_per_m_n",
+    "adhesive_stiffness_N_per_m_n",
+    "constant_force_N",
+    "exponent",
+)
+_AT_FORCE_ZERO = "separation, where the force is back to zero"
+
+
+def fitted_laws(law: Law) -> tuple[FittedLaw, ...]:
+    """Every force law that can be fitted to `law`; none where it loses nothing or is unresolved."""
+    if _seen(law, "restitution").min(initial=1.0) > 1 - _LOSS:
+        return ()
+    return tuple(_all(law))
+
+
+def _all(law: Law) -> Iterator[FittedLaw]:
+    yield _constant(law)
+    if _seen(law, "restitution").max() < _LOSS:
+        return  # everything sticks, and that is all there is to say
+    yield from _thornton_ning(law)
+    yield _walton_braun(law)
+    yield _luding(law)
+    yield _eepa(law)
+    if (found := _mdr(law)) is not None:
+        yield found
+
+
+def _constant(law: Law) -> FittedLaw:
+    mean = float(_seen(law, "restitution").mean())
+    return _judged(
+        law, "constant", lambda V: np.full_like(V, mean), {"restitution": mean},
+        source="one coefficient of restitution, as most models take it",
+        ends="as the code takes it",
+    )  # fmt: skip
+
+
+def _thornton_ning(law: Law) -> Iterator[FittedLaw]:
+    """Twice: p_y from the largest forces, and from the restitution."""
+    smooth = law.radius, law.contact_modulus
+    V, force = _seen(law, "velocity"), _seen(law, "force")
+
+    def forces(x: Array) -> Array:
+        d = thornton_ning.indentation_from_velocity(V, *smooth, math.exp(x[0]), law.mass)
+        F = thornton_ning.loading_force(d, *smooth, math.exp(x[0]))
+        return np.asarray(np.log(F / np.maximum(force, 1e-300)))[force > 0]
+
+    def restitution(velocity: Array, p_y: float, V_s: float) -> Array:
+        e_p = thornton_ning.restitution(velocity, *smooth, p_y, law.mass)
+        return np.asarray(np.sqrt(np.maximum(e_p**2 - (V_s / velocity) ** 2, 0.0)))
+
+    source = "C. Thornton, Z. Ning, Powder Technology 99 (1998) 154-162"
+    begin = math.log(law.yield_pressure or 0.01 * law.contact_modulus)
+    V_s = law.sticks_below or law.sticking_velocity or 0.0
+
+    p_y = math.exp(_least_squares(forces, [begin])[0])
+    yield _judged(
+        law, "thornton-ning-force", lambda v: restitution(v, p_y, V_s),
+        {"yield_pressure_Pa": p_y, **_adhesion_of(law, V_s)},
+        source=source, ends=_AT_FORCE_ZERO, fitted_to="the largest force at each velocity",
+    )  # fmt: skip
+
+    scale = law.lowest
+    e = _seen(law, "restitution")
+    adhesive = V_s > 0
+
+    def misfit(x: Array) -> Array:
+        return restitution(V, math.exp(x[0]), scale * x[1] if adhesive else 0.0) - e
+
+    x = _least_squares(
+        misfit, [begin, V_s / scale][: 1 + adhesive], low=[-np.inf, 0.0][: 1 + adhesive]
+    )
+    found = scale * float(x[1]) if adhesive else 0.0
+    yield _judged(
+        law, "thornton-ning", lambda v: restitution(v, math.exp(x[0]), found),
+        {"yield_pressure_Pa": math.exp(x[0]), **_adhesion_of(law, found)},
+        source=source, ends=_AT_FORCE_ZERO,
+    )  # fmt: skip
+
+
+def _adhesion_of(law: Law, V_s: float) -> Parameters:
+    """The sticking velocity and the work of adhesion of the smooth elastic bodies that have it."""
+    if V_s <= 0:
+        return {}
+    unit = sticking.sticking_velocity(law.radius, law.contact_modulus, 1.0, law.mass)
+    return {
+        "sticking_velocity_m_per_s": V_s,
+        "work_of_adhesion_J_per_m2": float((V_s / unit) ** 1.2),
+    }
+
+
+def _walton_braun(law: Law) -> FittedLaw:
+    k1 = _stiffness(law, exponent=1.0)
+    scale = math.sqrt(k1 / law.mass) / law.highest  # k2 = 2 k1 at the highest velocity
+
+    def springs(x: Array) -> tuple[float, float, float]:
+        return k1, k1 * math.exp(x[0]), scale * float(x[1]) ** 2
+
+    def restitution(V: Array, x: Array) -> Array:
+        return walton_braun.restitution(V, *springs(x), law.mass)
+
+    x = _fit(law, restitution, [0.1, 1.0], [0.0, 0.0])
+    return _judged(
+        law, "walton-braun", lambda V: restitution(V, x),
+        dict(zip(_WALTON_BRAUN, springs(x), strict=True)),
+        source="O. R. Walton, R. L. Braun, J. Rheology 30 (1986) 949-980; k2 = k_u + S F_max",
+        ends=_AT_FORCE_ZERO,
+    )  # fmt: skip
+
+
+def _luding(law: Law) -> FittedLaw:
+    k1 = _stiffness(law, exponent=1.0)
+    deepest = law.highest * math.sqrt(law.mass / k1)
+
+    def springs(x: Array) -> tuple[float, float, float, float]:
+        k_c = k1 * float(x[2]) if adhesive else 0.0
+        return k1, k1 * math.exp(x[0]), k_c, deepest / (2 * law.radius) * math.exp(x[1])
+
+    def restitution(V: Array, x: Array) -> Array:
+        return luding.restitution(V, law.radius, *springs(x), law.mass)
+
+    adhesive = [0.1] if law.work_of_adhesion > 0 else []
+    stiff = -2 * math.log(max(float(_seen(law, "restitution").mean()), 0.05))
+    x = _fit(law, restitution, [stiff, -2.0, *adhesive], [1e-9, -15.0, *(0.0 for _ in adhesive)])
+    return _judged(
+        law, "luding", lambda V: restitution(V, x), dict(zip(_LUDING, springs(x), strict=True)),
+        source="S. Luding, Granular Matter 10 (2008) 235-246; plasticity depth of 2 R*",
+        ends="indentation zero" if adhesive else _AT_FORCE_ZERO,
+    )  # fmt: skip
+
+
+def _eepa(law: Law) -> FittedLaw:
+    n = 1.5
+    k1 = _stiffness(law, exponent=n)
+    force = float(np.abs(_seen(law, "force")).min()) or 1.0
+
+    def springs(x: Array) -> tuple[float, float, float, float, float]:
+        k_adh, f0 = (k1 * float(x[1]), -force * float(x[2])) if adhesive else (0.0, 0.0)
+        return k1, k1 * math.exp(x[0]), k_adh, f0, n
+
+    def restitution(V: Array, x: Array) -> Array:
+        return eepa.restitution(V, *springs(x), law.mass)
+
+    adhesive = [0.01, 0.01] if law.work_of_adhesion > 0 else []
+    x = _fit(law, restitution, [1.0, *adhesive], [0.0, *(0.0 for _ in adhesive)])
+    return _judged(
+        law, "eepa", lambda V: restitution(V, x), dict(zip(_EEPA, springs(x), strict=True)),
+        source="S. C. Thakur et al., Granular Matter 16 (2014) 383-400; exponent 3/2 given",
+        ends="indentation zero" if adhesive else _AT_FORCE_ZERO,
+        note="" if adhesive else "without adhesion its restitution is the same at every velocity",
+    )  # fmt: skip
+
+
+def _mdr(law: Law) -> FittedLaw | None:
+    """LAMMPS' mdr, which knows one sphere on a rigid flat, and two equal ones as two of those."""
+    sphere = law.second if law.first.wall else law.first
+    assert sphere.radius is not None  # of two bodies one is no wall
+    nu = max(sphere.poissons_ratio, 0.0)
+    E = law.contact_modulus * (1 - nu**2)
+    if law.first.wall or law.second.wall:
+        share, mass = 1.0, law.mass
+    elif law.first == law.second:
+        share, mass, E = 0.5, 2 * law.mass, 2 * E
+    else:
+        return None
+
+    def restitution(V: Array, x: Array) -> Array:
+        return mdr.restitution(share * V, sphere.radius or math.nan, E, nu, math.exp(x[0]), mass)
+
+    start = math.log((law.yield_pressure or 0.03 * law.contact_modulus) / 2.8)
+    x = _fit(law, restitution, [start], [start - 7], [start + 7])
+    return _judged(
+        law, "lammps-mdr", lambda V: restitution(V, x),
+        {"yield_strength_Pa": math.exp(x[0]), "youngs_modulus_Pa": E, "poissons_ratio": nu},
+        source="W. Zunker, K. Kamrin, J. Mech. Phys. Solids 183 (2024) 105492, as LAMMPS has it",
+        ends=_AT_FORCE_ZERO,
+        note="without its adhesion" if law.work_of_adhesion > 0 else "",
+    )  # fmt: skip
+
+
+def _seen(law: Law, name: str) -> Array:
+    """A column of the points that are fitted: those that are resolved."""
+    return law.column(name, resolved=True)
+
+
+def _stiffness(law: Law, exponent: float) -> float:
+    """k₁ of F = k₁δⁿ whose largest forces are the points' (their geometric mean), N/mⁿ.
+
+    F^{1+1/n} = (n + 1) k₁^{1/n} W for a spring that has taken the work W.
+    """
+    force, work, n = _seen(law, "force"), _seen(law, "loading_work"), exponent
+    some = (force > 0) & (work > 0)
+    k1 = (force[some] ** (1 + 1 / n) / ((n + 1) * work[some])) ** n
+    return float(np.exp(np.log(k1).mean()))
+
+
+def _fit(
+    law: Law,
+    restitution: Callable[[Array, Array], Array],
+    start: list[float],
+    low: list[float],
+    high: list[float] | None = None,
+) -> Array:
+    """The parameters x from `low` on whose restitution(V, x) is nearest to the points'."""
+    V, e = _seen(law, "velocity"), _seen(law, "restitution")
+
+    def misfit(x: Array) -> Array:
+        return np.asarray(np.nan_to_num(restitution(V, x)) - e)
+
+    return _least_squares(misfit, start, low, high)
+
+
+def _least_squares(
+    misfit: Callable[[Array], Array],
+    start: list[float],
+    low: list[float] | None = None,
+    high: list[float] | None = None,
+) -> Array:
+    """Where the squares are least: the best of several starts, for these misfits have kinks.
+
+    Of a single parameter restitution is a monotone function, and one start is enough.
+    """
+    from scipy.optimize import least_squares
+
+    low = [-np.inf] * len(start) if low is None else low
+    high = [math.log(_MOST) if bound > -20 else np.inf for bound in low] if high is None else high
+    best = None
+    ways = product((0.0, 1.5, 3.0), (0.0, -4.0, -2.0, 1.0, 2.0)) if len(start) > 1 else [(0.0,)]
+    for shift in ways:
+        others = np.zeros(len(start) - len(shift))
+        begin = np.clip(np.add(start, np.append(shift, others)), low, high)
+        found = least_squares(misfit, begin, bounds=(low, high), x_scale="jac", xtol=1e-10)
+        if best is None or found.cost < best.cost:
+            best = found
+    assert best is not None
+    x: Array = best.x
+    return x
+
+
+def _judged(
+    law: Law,
+    name: str,
+    restitution: Callable[[Array], Array],
+    parameters: Parameters,
+    *,
+    source: str,
+    ends: str,
+    fitted_to: str = "the coefficient of restitution",
+    note: str = "",
+) -> FittedLaw:
+    """The law with what it gives beside the points."""
+    found = restitution(law.column("velocity"))
+    miss = found - law.column("restitution")
+    miss = miss[np.isfinite(found) & law.column("resolved").astype(bool)]
+    return FittedLaw(
+        name=name,
+        source=source,
+        fitted_to=fitted_to,
+        parameters=parameters,
+        ends=ends,
+        restitution=tuple(None if math.isnan(e) else float(e) for e in found),
+        rms=float(np.sqrt(np.mean(miss**2))) if miss.size else math.nan,
+        worst=float(np.abs(miss).max(initial=0.0)),
+        note=note,
+    )

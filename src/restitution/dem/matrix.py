@@ -1,0 +1,78 @@
+"""Which law holds between which particles: the pair matrix that most DEM codes ask for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations_with_replacement, product
+
+from restitution.dem.law import Law, Particle
+from restitution.errors import CaseError
+
+
+@dataclass(frozen=True)
+class Matrix:
+    """Particle types, walls, and the law of every pair that was computed.
+
+    Types are numbered from 1 as DEM codes do; walls follow the spheres. Keys of `laws` are
+    (i, j), i ≤ j.
+    """
+
+    spheres: tuple[Particle, ...]
+    walls: tuple[Particle, ...]
+    laws: dict[tuple[int, int], Law]
+
+    @property
+    def particles(self) -> tuple[Particle, ...]:
+        """Spheres, then walls."""
+        return self.spheres + self.walls
+
+    def pairs(self) -> Iterator[tuple[int, int, Law]]:
+        """Numbers and law of every pair, in order."""
+        for (i, j), law in sorted(self.laws.items()):
+            yield i, j, law
+
+    def require_spheres(self, code: str) -> None:
+        """Raise `CaseError` unless there is a law for every pair of spheres, as `code` needs."""
+        numbers = range(1, len(self.spheres) + 1)
+        self._require(code, combinations_with_replacement(numbers, 2), "pair of particle types")
+
+    def require_walls(self, code: str) -> None:
+        """Raise `CaseError` unless there is a law of every sphere on every wall."""
+        spheres, last = len(self.spheres), len(self.particles)
+        pairs = product(range(1, spheres + 1), range(spheres + 1, last + 1))
+        self._require(code, pairs, "sphere on every wall")
+
+    def _require(self, code: str, pairs: Iterable[tuple[int, int]], what: str) -> None:
+        missing = [
+            f"{self.particles[i - 1]} and {self.particles[j - 1]}"
+            for i, j in pairs
+            if (i, j) not in self.laws
+        ]
+        if missing:
+            more = f" (and {len(missing) - 1} more)" if len(missing) > 1 else ""
+            raise CaseError(
+                f"{code} needs a law for every {what}, and there is none for "
+                f"{missing[0]}{more}; the law of one pair is not that of another: compute it "
+                "(`restitution run`, `restitution law`) and give it, too"
+            )
+
+
+def matrix_of(laws: Sequence[Law]) -> Matrix:
+    """The matrix of `laws`. Bodies with the same values are one type.
+
+    Raises `CaseError` for two laws of one pair.
+    """
+    bodies = list(dict.fromkeys(body for law in laws for body in (law.first, law.second)))
+    spheres = tuple(body for body in bodies if not body.wall)
+    walls = tuple(body for body in bodies if body.wall)
+    number = {body: k for k, body in enumerate(spheres + walls, 1)}
+    found: dict[tuple[int, int], Law] = {}
+    for law in laws:
+        i, j = sorted((number[law.first], number[law.second]))
+        if (i, j) in found:
+            raise CaseError(
+                f"two laws are given for {law.pair}; give one, or let the particles differ in name"
+            )
+        found[i, j] = law
+    return Matrix(spheres, walls, found)

@@ -1,0 +1,317 @@
+"""A reference collision: two particles run through the stored force law, in time.
+
+    m₁ x₁'' = −F(δ),  m₂ x₂'' = F(δ),  δ = x₁ − x₂ (0 at first touch),  e = (v₂' − v₁')/(v₁ − v₂)
+
+F is the loading curve until the particles stop approaching, and from there the unloading curve of
+that depth. Between the depths the loading force is the slope of a Hermite cubic through the stored
+works (ln W against ln δ where all push), whose slopes at the depths are the stored forces; so the
+particles turn where the energies say, and e checks the unloading curve's forces against the stored
+energy W_u, and the energies' formula against an equation of motion. Unloading curves are monotone
+cubics (PCHIP). They were stored from some depths only; between two of them, curves are blended in
+the form F/F_max against (δ − δ_s)/(δ_max − δ_s), with δ_s (separation) and F_max those of the depth
+itself.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from restitution.contact.bodies import Pair
+from restitution.errors import CaseError, DomainError, NotConvergedError, OutputError
+from restitution.studies.case import parse_case
+
+Array = NDArray[np.float64]
+Force = Callable[[float], float]
+
+_RTOL = 1e-10
+_SLACK = 1e-3  # of the deepest depth: how far beyond it rounding and integration may lead
+_SAME = 1e-5  # relative difference of depths whose unloading curves have one shape
+
+
+@dataclass(frozen=True)
+class ReferenceCollision:
+    """One collision in time: what it came to, and its course (s, m, N, m/s)."""
+
+    velocity: float
+    restitution: float
+    duration: float
+    largest_indentation: float
+    largest_force: float
+    rebound_first: float
+    rebound_second: float
+    blended: bool
+    time: Array
+    indentation: Array
+    force: Array
+    closing_velocity: Array
+
+
+@dataclass(frozen=True)
+class StoredForce:
+    """The force law of one pair as it was stored: loading, and unloading from some depths.
+
+    `deepest` is the depth (m) down to which forces are known, `highest` its impact velocity (m/s).
+    """
+
+    pair: Pair
+    deepest: float
+    highest: float
+    loading: Force
+    separation: Callable[[float], float]
+    unloading_from: Array
+    unloading: tuple[tuple[Array, Array], ...]
+
+    def __post_init__(self) -> None:
+        if self.pair.mass is None:
+            raise CaseError("density: is missing; a collision in time needs the masses")
+
+    def branch(self, deepest: float) -> tuple[Force, float, bool]:
+        """Force and separation of unloading from `deepest` (m), and whether it was blended.
+
+        Raises `DomainError` where no unloading curve was stored on both sides of that depth.
+        """
+        depths = self.unloading_from
+        near = np.flatnonzero(np.abs(depths / deepest - 1) < _SAME)
+        after = int(near[0]) if near.size else int(np.searchsorted(depths, deepest))
+        if after == depths.size or (after == 0 and not near.size):
+            raise DomainError(
+                f"the particles turn at {1e9 * deepest:.4g} nm, and unloading curves were stored "
+                f"from {1e9 * depths[0]:.4g} to {1e9 * depths[-1]:.4g} nm only; nothing is "
+                "extrapolated: raise unloading.curves, or choose another velocity"
+            )
+        end, largest = self.separation(deepest), self.loading(deepest)
+        upper = lower = _shape(*self.unloading[after])
+        share = 1.0
+        if not near.size:
+            lower = _shape(*self.unloading[after - 1])
+            between = math.log(depths[after] / depths[after - 1])
+            share = math.log(deepest / depths[after - 1]) / between
+
+        def force(x: float) -> float:
+            s = (x - end) / (deepest - end)
+            return largest * ((1 - share) * lower(s) + share * upper(s))
+
+        return force, end, not near.size
+
+
+def stored_force(out: Path) -> StoredForce:
+    """The force law in the folder `out` of a run. Raises `OutputError`, `CaseError`."""
+    try:
+        with xr.open_dataset(out / "results.nc", engine="netcdf4") as stored:
+            results = stored.load()
+    except (OSError, ValueError):
+        raise OutputError(
+            f"{out}: holds no results of a run; name the folder of -o of `restitution run`"
+        ) from None
+    if "unloading_from" not in results:
+        raise OutputError(
+            f"{out}: holds no unloading curves; run the case with unloading.curves of 1 or more "
+            "(of an ensemble, name the folder of one realisation)"
+        )
+    depth, force = results["indentation"].values, results["force"].values
+    curves = []
+    for x, F in zip(
+        results["unloading_indentation"].values, results["unloading_force"].values, strict=True
+    ):
+        known = np.isfinite(x)
+        curves.append((x[known][::-1], F[known][::-1]))
+    order = np.argsort(results["unloading_from"].values)
+    return StoredForce(
+        pair=parse_case(str(results.attrs["case"])).pair(),
+        deepest=float(depth[-1]),
+        highest=float(np.nanmax(results["impact_velocity"].values)),
+        loading=_loading(depth, force, results["loading_work"].values),
+        separation=_separation(results, depth),
+        unloading_from=results["unloading_from"].values[order],
+        unloading=tuple(curves[k] for k in order),
+    )
+
+
+def collide_in_time(law: StoredForce, velocity: float) -> ReferenceCollision:
+    """Let the two particles of `law` meet at the relative `velocity` (m/s), head on.
+
+    They start at first touch, in the frame of their centre of mass (that of the wall, if one is).
+    Raises `DomainError` where forces of that depth are not known, `NotConvergedError` when the
+    integration fails.
+    """
+    if not 0 < velocity <= law.highest * (1 + 1e-9):
+        raise DomainError(
+            f"velocity: {velocity:.6g} m/s is not within what was computed (up to "
+            f"{law.highest:.4g} m/s); compute further, or choose a lower one"
+        )
+    m1, m2 = law.pair.first.mass, law.pair.second.mass
+    assert m1 is not None  # StoredForce
+    assert m2 is not None
+    share = 1.0 if math.isinf(m2) else 0.0 if math.isinf(m1) else m2 / (m1 + m2)
+    start = np.array([0.0, 0.0, share * velocity, (share - 1) * velocity])
+    scale = law.deepest
+
+    def stop(t: float, y: Array) -> float:
+        return float(y[2] - y[3])
+
+    def too_deep(t: float, y: Array) -> float:
+        return float(y[0] - y[1]) - scale * (1 + _SLACK)
+
+    down = _integrate(law.loading, m1, m2, start, scale, velocity, (stop, too_deep))
+    if down.t_events[1].size:
+        raise NotConvergedError(
+            f"velocity: at {velocity:.6g} m/s the stored forces do not take up the approach; "
+            "this is no curve of loading: run the case again"
+        )
+    turn = down.y[:, -1]
+    deepest = float(turn[0] - turn[1])
+    back, end, blended = law.branch(min(deepest, scale))
+
+    def parted(t: float, y: Array) -> float:
+        return float(y[0] - y[1]) - end
+
+    def held(t: float, y: Array) -> float:
+        return float(y[2] - y[3]) - 1e-9 * velocity
+
+    held.direction = 1.0  # type: ignore[attr-defined]
+    up = _integrate(back, m1, m2, turn, scale, velocity, (parted, held))
+    sticks = up.t_events[1].size > 0
+    closing = np.concatenate([down.y[2] - down.y[3], up.y[2] - up.y[3]])
+    depth = np.concatenate([down.y[0] - down.y[1], up.y[0] - up.y[1]])
+    force = [law.loading(x) for x in down.y[0] - down.y[1]]
+    force += [back(x) for x in up.y[0] - up.y[1]]
+    return ReferenceCollision(
+        velocity=velocity,
+        restitution=0.0 if sticks else float(-closing[-1] / velocity),
+        duration=float(down.t[-1] + up.t[-1]),
+        largest_indentation=deepest,
+        largest_force=max(force),
+        rebound_first=float(up.y[2, -1]),
+        rebound_second=float(up.y[3, -1]),
+        blended=blended,
+        time=np.concatenate([down.t, down.t[-1] + up.t]),
+        indentation=depth,
+        force=np.array(force),
+        closing_velocity=closing,
+    )
+
+
+def course(collision: ReferenceCollision) -> list[dict[str, float | str]]:
+    """The course of a collision as rows of a table."""
+    columns = zip(collision.time, collision.indentation, collision.force,
+                  collision.closing_velocity, strict=True)  # fmt: skip
+    return [
+        {
+            "impact_velocity_m_per_s": collision.velocity,
+            "time_s": float(time),
+            "indentation_m": float(depth),
+            "force_N": float(force),
+            "closing_velocity_m_per_s": float(closing),
+        }
+        for time, depth, force, closing in columns
+    ]
+
+
+def _integrate(
+    force: Force,
+    m1: float,
+    m2: float,
+    start: Array,
+    scale: float,
+    velocity: float,
+    events: tuple[Callable[[float, Array], float], ...],
+) -> Any:
+    from scipy.integrate import solve_ivp
+
+    def rates(t: float, y: Array) -> list[float]:
+        F = force(float(y[0] - y[1]))
+        return [y[2], y[3], -F / m1, F / m2]
+
+    for event in events:
+        event.terminal = True  # type: ignore[attr-defined]
+    long = 1e3 * scale / velocity
+    absolute = [_RTOL * scale] * 2 + [_RTOL * velocity] * 2
+    found = solve_ivp(rates, (0.0, long), start, method="DOP853", events=events, rtol=_RTOL,
+                      atol=absolute, max_step=scale / velocity)  # fmt: skip
+    if found.status != 1:
+        raise NotConvergedError(
+            f"velocity: the collision at {velocity:.6g} m/s did not end ({found.message}); "
+            "choose another velocity"
+        )
+    return found
+
+
+def _loading(depth: Array, force: Array, work: Array) -> Force:
+    """The force on first loading, m → N: the slope of the stored work, which F is at the depths."""
+    if (force > 0).all() and (work > 0).all():
+        # Powers of the depth are straight lines in logarithms; below the first depth it is one.
+        L, slope = np.log(depth), force * depth / work
+        log_work = _hermite(L, np.log(work), slope)
+        first = float(L[0])
+
+        def pushing(x: float) -> float:
+            if x <= 0:
+                return 0.0
+            at = math.log(x)
+            if at <= first:
+                return float(slope[0] * work[0] / x * math.exp(slope[0] * (at - first)))
+            value, its_slope = log_work(at)
+            return math.exp(value) / x * its_slope
+
+        return pushing
+    # Adhesion pulls at first: a force that changes evenly up to the first depth and its work.
+    jump_in = 2 * work[0] / depth[0] - force[0]
+    curve = _hermite(np.append(0.0, depth), np.append(0.0, work), np.append(jump_in, force))
+    return lambda x: curve(max(x, 0.0))[1]
+
+
+def _hermite(x: Array, y: Array, slope: Array) -> Callable[[float], tuple[float, float]]:
+    """The piecewise cubic with these values and slopes, and its slope; straight beyond the end."""
+    from scipy.interpolate import CubicHermiteSpline
+
+    if x.size == 1:
+        return lambda at: (float(y[0] + slope[0] * (at - x[0])), float(slope[0]))
+    curve = CubicHermiteSpline(x, y, slope)
+    rate = curve.derivative()
+    last = float(x[-1])
+
+    def at(where: float) -> tuple[float, float]:
+        inside = min(where, last)
+        its_slope = float(rate(inside))
+        return float(curve(inside)) + its_slope * (where - inside), its_slope
+
+    return at
+
+
+def _separation(results: xr.Dataset, depth: Array) -> Callable[[float], float]:
+    ratio = results["separation_indentation"].values / depth
+    known = np.isfinite(ratio)
+    if known.sum() < 2:
+        only: float = ratio[known][0]
+        return lambda x: only * x
+    share = _pchip(np.log(depth[known]), ratio[known])
+    return lambda x: share(math.log(x)) * x
+
+
+def _shape(x: Array, F: Array) -> Force:
+    """F/F_max against (δ − δ_s)/(δ_max − δ_s)."""
+    return _pchip((x - x[0]) / (x[-1] - x[0]), F / F[-1])
+
+
+def _pchip(x: Array, y: Array) -> Force:
+    from scipy.interpolate import PchipInterpolator
+
+    if x.size == 1:
+        return lambda _: float(y[0])
+    curve = PchipInterpolator(x, y)
+    low, high = float(x[0]), float(x[-1])
+    # An integrator tries points beyond the ends of a step, and no further.
+
+    def at(where: float) -> float:
+        value: float = curve(min(max(where, low), high))
+        return value
+
+    return at

@@ -1,0 +1,218 @@
+"""What the closed forms, and laws fitted to a law of ours, say at the velocities of a case."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.dem.closed_forms import FORMS, SOURCES, Bodies, speed, within
+from restitution.dem.law import FittedLaw, Law
+from restitution.errors import CaseError
+from restitution.studies.case import Case
+from restitution.theory import brilliantov
+
+Array = NDArray[np.float64]
+
+STEPS = 25
+"""How many velocities a span has."""
+COMPUTED = "computed"
+"""The name of our own points among the theories."""
+
+_SAME = 1e-6  # of R*, E*, m*
+_LOSS = 1e-3  # of e: below it there is nothing to fit
+_FITTED = ("constant", "walton-braun", "luding", "eepa")  # what only a fit gives parameters to
+
+
+@dataclass(frozen=True)
+class Theory:
+    """One theory at some velocities.
+
+    `holds` is its range in words; `parameters` are keyed with their units; `restitution` is NaN
+    outside of the range.
+    """
+
+    name: str
+    source: str
+    holds: str
+    parameters: Mapping[str, float]
+    restitution: Array
+
+
+def velocities_of(case: Case, law: Law | None = None) -> Array:
+    """The velocities (m/s) to tabulate: the law's own, or the span of the case.
+
+    Of indentations and loads it is the span that smooth bodies have there: Thornton and Ning's, or
+    Hertz's if nothing yields. Raises `CaseError`.
+    """
+    if law is not None:
+        return law.column("velocity")
+    bodies, depths = Bodies.of(case), case.depths()
+    ends = np.array([depths[0], depths[-1]])
+    if case.impact is None:
+        ends = bodies.velocity(bodies.depth_under(ends) if case.load is not None else ends)
+    return np.geomspace(ends[0], ends[1], STEPS) if ends[0] < ends[1] else ends[:1]
+
+
+def theories(case: Case, velocities: Array, law: Law | None = None) -> list[Theory]:
+    """Every theory that applies to `case`, at `velocities`; with `law` also those fitted to it.
+
+    What is from the law has values at its own points only. Raises `CaseError`: a density is
+    missing, the law is of another pair.
+    """
+    V = np.asarray(velocities, dtype=float)
+    found = [answer for answer in _answers(case, V) if isinstance(answer, Theory)]
+    if law is not None:
+        check_same_pair(case, law)
+        found += _of_law(Bodies.of(case), law, V)
+    return found
+
+
+def left_out(case: Case, law: Law | None = None) -> dict[str, str]:
+    """The theories that do not apply to `case`, each with the reason."""
+    reasons = dict(
+        answer for answer in _answers(case, np.ones(1)) if not isinstance(answer, Theory)
+    )
+    if law is not None and (why := _cannot_fit(law)):
+        reasons |= dict.fromkeys((*_FITTED[0 if not law.laws else 1 :], "brilliantov"), why)
+    return reasons
+
+
+def marks(case: Case) -> dict[str, float]:
+    """V_y and V_s (m/s) of the smooth bodies, where there is yield, or adhesion."""
+    bodies = Bodies.of(case)
+    found = {"V_y": bodies.yield_velocity, "V_s": bodies.sticking_velocity}
+    return {name: value for name, value in found.items() if 0 < value < math.inf}
+
+
+def check_same_pair(case: Case, law: Law) -> None:
+    """Raise `CaseError` unless R*, E* and m* of the two agree to 1e-6, naming what differs."""
+    bodies = Bodies.of(case)
+    quantities = {
+        "R*": (law.radius, bodies.R, "m"),
+        "E*": (law.contact_modulus, bodies.E, "Pa"),
+        "m*": (law.mass, bodies.m, "kg"),
+    }
+    differing = [
+        f"{name} is {of_law:.7g} {unit} (the case's {of_case:.7g} {unit})"
+        for name, (of_law, of_case, unit) in quantities.items()
+        if not abs(of_law / of_case - 1) <= _SAME
+    ]
+    if differing:
+        raise CaseError(
+            f"the law of {law.pair} is of another pair: its {', its '.join(differing)}; name the "
+            "case it was computed from, or another law"
+        )
+
+
+def _answers(case: Case, V: Array) -> Iterator[Theory | tuple[str, str]]:
+    """Each closed form at V, or its name and why it does not apply."""
+    bodies = Bodies.of(case)
+    for name, form in FORMS.items():
+        answer = form(bodies, V)
+        if isinstance(answer, str):
+            yield name, answer
+            continue
+        holds, parameters = answer.holds, answer.parameters
+        if answer.takes_strength:
+            holds += f"; {bodies.convention}"
+            parameters = {"yield_strength_Pa": bodies.strength, **parameters}
+        if bodies.w > 0 and not answer.with_adhesion:
+            holds += "; the adhesion of this pair is left out"
+        yield Theory(name, SOURCES[name], holds, parameters, answer.restitution)
+
+
+def _of_law(bodies: Bodies, law: Law, V: Array) -> Iterator[Theory]:
+    """Our own points, and the theories whose parameters are fitted to them."""
+    own = law.column("velocity")
+    equal = np.isclose(V[:, np.newaxis], own, rtol=1e-9, atol=0.0)
+    at, here = equal.argmax(axis=1), np.asarray(equal.any(axis=1))
+
+    def values(of_points: Array) -> Array:
+        return within(here, of_points[at])
+
+    parameters = {}
+    if law.yield_pressure is not None:
+        parameters["yield_pressure_Pa"] = law.yield_pressure
+    if law.work_of_adhesion > 0:
+        parameters["work_of_adhesion_J_per_m2"] = law.work_of_adhesion
+    yield Theory(
+        COMPUTED,
+        f"this program, {law.title or law.pair}",
+        f"at its {own.size} velocities{_unresolved(law)}{_other_interface(bodies, law)}",
+        parameters,
+        values(law.column("restitution")),
+    )
+    span = f"fitted to the computed e from {law.lowest:.3g} to {speed(law.highest)}"
+    for name in _FITTED:
+        for each in law.laws:
+            if each.name == name:
+                yield Theory(name, each.source, f"{span}, {_judged(each)}", each.parameters,
+                             values(_restitution_of(each)))  # fmt: skip
+    if not _cannot_fit(law):
+        beta = _dissipation(law)
+        e = brilliantov.restitution(own, beta)
+        miss = e - law.column("restitution")
+        yield Theory(
+            "brilliantov",
+            SOURCES["brilliantov"],
+            f"{span}, rms {np.sqrt(np.mean(miss**2)):.2g}, worst {np.abs(miss).max():.2g}; ends "
+            "where the force is back to zero; bodies that neither yield nor adhere, a << R*",
+            {"dissipation_s_per_m_power_1_5": beta},
+            values(e),
+        )
+
+
+def _unresolved(law: Law) -> str:
+    count = sum(not point.resolved for point in law.points)
+    return f", {count} of them not resolved by the grid" if count else ""
+
+
+def _other_interface(bodies: Bodies, law: Law) -> str:
+    """What the law was computed with, if that is not the case's."""
+    differing = []
+    p_y = math.inf if law.yield_pressure is None else law.yield_pressure
+    if not math.isclose(p_y, bodies.p_y, rel_tol=_SAME):
+        differing.append("elastic" if math.isinf(p_y) else f"p_y = {1e-6 * p_y:.4g} MPa")
+    if not math.isclose(law.work_of_adhesion, bodies.w, rel_tol=_SAME):
+        differing.append(f"w = {law.work_of_adhesion:.4g} J/m^2")
+    return f"; computed with another interface than the case's: {', '.join(differing)}" * bool(
+        differing
+    )
+
+
+def _judged(each: FittedLaw) -> str:
+    note = f"; {each.note}" if each.note else ""
+    return f"rms {each.rms:.2g}, worst {each.worst:.2g}; ends: {each.ends}{note}"
+
+
+def _restitution_of(each: FittedLaw) -> Array:
+    return np.array([math.nan if e is None else e for e in each.restitution])
+
+
+def _cannot_fit(law: Law) -> str:
+    """Why nothing can be fitted to `law`; empty if it can."""
+    e = law.column("restitution")
+    if e.min() > 1 - _LOSS:
+        return "the law loses nothing, and there is nothing to fit"
+    return "all of the law sticks, and there is nothing to fit" if e.max() < _LOSS else ""
+
+
+def _dissipation(law: Law) -> float:
+    """β of `brilliantov` whose restitution is nearest to the law's, by least squares."""
+    from scipy.optimize import minimize_scalar
+
+    V, e = (law.column(name, resolved=True) for name in ("velocity", "restitution"))
+
+    def misfit(log_beta: float) -> float:
+        return float(np.sum((brilliantov.restitution(V, math.exp(log_beta)) - e) ** 2))
+
+    # e is nearly 1 at every velocity at the one end, nearly 0 at the other.
+    first, last = math.log(1e-6 / law.highest**0.2), math.log(1e6 / law.lowest**0.2)
+    steps = np.linspace(first, last, 200)
+    best = int(np.argmin([misfit(step) for step in steps]))
+    near = steps[max(best - 1, 0)], steps[min(best + 1, steps.size - 1)]
+    return math.exp(minimize_scalar(misfit, bounds=near, options={"xatol": 1e-10}).x)

@@ -1,0 +1,107 @@
+"""A law as files: `law.json` (all of it), `table.csv`, `laws.csv` and a figure."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from restitution.dem.law import LAW_FILE, Law
+from restitution.errors import OutputError
+from restitution.reports.figures import plain, write_figure
+from restitution.studies.results import replace_file, write_table, writing
+
+_FINE = 400
+
+
+def write_law(law: Law, out: Path) -> list[Path]:
+    """Write every file of `law` into `out`, which must be new or empty. Raises `OutputError`."""
+    with writing(out):
+        out.mkdir(parents=True, exist_ok=True)
+        if any(out.iterdir()):
+            raise OutputError(
+                f"{out}: this folder is not empty, and nothing in it is overwritten; name another"
+            )
+    text = law.model_dump_json(indent=2) + "\n"
+    replace_file(out / LAW_FILE, lambda to: to.write_text(text, encoding="utf-8"))
+    write_table(out / "table.csv", table(law))
+    names = [LAW_FILE, "table.csv"]
+    if law.laws:
+        write_table(out / "laws.csv", _laws(law))
+        names.append("laws.csv")
+    write_figure(out / "law.png", figure(law))
+    return [out / name for name in (*names, "law.png")]
+
+
+def table(law: Law) -> list[dict[str, float | str]]:
+    """The points, with what belongs to the whole law in every row, so that a row stands alone."""
+    fit = [math.nan] * len(law.points)
+    if law.fit is not None:
+        fit = [float(e) for e in law.fit.restitution(law.column("velocity"))]
+    return [
+        {
+            "velocity_m_per_s": point.velocity,
+            "restitution": point.restitution,
+            "restitution_error": point.error,
+            "resolved": point.resolved,
+            "compact_fit": fitted,
+            "loading_work_J": point.loading_work,
+            "indentation_m": point.indentation,
+            "largest_force_N": point.force,
+            "pull_off_force_N": _or_nan(point.pull_off_force),
+            "yield_velocity_smooth_m_per_s": _or_nan(law.yield_velocity),
+            "sticking_velocity_smooth_m_per_s": _or_nan(law.sticking_velocity),
+            "sticks_below_m_per_s": _or_nan(law.sticks_below),
+            "reduced_radius_m": law.radius,
+            "reduced_mass_kg": law.mass,
+            "contact_modulus_Pa": law.contact_modulus,
+            "yield_pressure_Pa": _or_nan(law.yield_pressure),
+            "yield_pressure_is": law.conventions["yield_pressure"],
+            "end_of_contact": law.conventions["end_of_contact"],
+        }
+        for point, fitted in zip(law.points, fit, strict=True)
+    ]
+
+
+def figure(law: Law) -> Figure:
+    """Ours with its error, the compact form, and what simpler laws make of it."""
+    drawing = Figure(figsize=(7.6, 4.8), layout="constrained")
+    axes = drawing.add_subplot()
+    V, e = law.column("velocity"), law.column("restitution")
+    axes.errorbar(V, e, yerr=law.column("error"), fmt="o", ms=4, color="C0", zorder=3,
+                  label="computed")  # fmt: skip
+    unresolved = ~law.column("resolved").astype(bool)
+    if unresolved.any():
+        axes.plot(V[unresolved], e[unresolved], "o", ms=4, mfc="white", mec="C0", zorder=4,
+                  ls="none", label="not resolved")  # fmt: skip
+    if law.fit is not None:
+        fine = np.geomspace(law.lowest, law.highest, _FINE)
+        axes.plot(fine, law.fit.restitution(fine), "-", color="C0", lw=1,
+                  label=f"compact fit (within {law.fit.worst:.1g})")  # fmt: skip
+    for k, other in enumerate(law.laws):
+        values = [math.nan if value is None else value for value in other.restitution]
+        axes.plot(V, values, "--", lw=1, color=f"C{k + 1}",
+                  label=f"{other.name} ({other.worst:.2g})")  # fmt: skip
+    axes.set(xscale="log", ylim=(0, 1.05), xlabel="impact velocity (m/s)",
+             ylabel="coefficient of restitution", title=plain(law.title))  # fmt: skip
+    axes.legend(fontsize="small", loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False,
+                title="largest difference in brackets")  # fmt: skip
+    return drawing
+
+
+def _laws(law: Law) -> list[dict[str, float | str]]:
+    return [
+        {
+            "velocity_m_per_s": point.velocity,
+            "restitution": point.restitution,
+            "restitution_error": point.error,
+            **{other.name: _or_nan(other.restitution[k]) for other in law.laws},
+        }
+        for k, point in enumerate(law.points)
+    ]
+
+
+def _or_nan(value: float | None) -> float:
+    return math.nan if value is None else value

@@ -1,0 +1,76 @@
+"""The tables for EDEM, which was not run."""
+
+import csv
+
+import pytest
+
+from restitution.dem.codes.edem import write
+from restitution.dem.law import FittedLaw
+from restitution.dem.matrix import matrix_of
+
+SPRINGS = FittedLaw(
+    name="walton-braun",
+    source="",
+    fitted_to="",
+    parameters={
+        "loading_stiffness_N_per_m": 1e6,
+        "unloading_stiffness_N_per_m": 1.5e6,
+        "hardening_per_m": 2e5,
+    },
+    ends="",
+    restitution=(),
+    rms=0.0,
+    worst=0.0,
+)
+
+
+def rows(text):
+    lines = text.splitlines()
+    return list(csv.DictReader(line for line in lines if not line.startswith("#")))
+
+
+def test_every_pair_has_its_row(mixed):
+    table = rows(write(mixed, 1.0)["restitution_edem.csv"])
+    assert len(table) == 5
+    for row, (_, _, law) in zip(table, mixed.pairs(), strict=True):
+        assert float(row["coefficient_of_restitution"]) == pytest.approx(law.at(1.0).restitution)
+        assert float(row["restitution_error"]) == pytest.approx(law.at(1.0).error, rel=0.05)
+        assert row["hysteretic_K1_N_per_m"] == ""
+    assert [table[1]["material_1"], table[1]["material_2"]] == ["glass_1", "steel_2"]
+
+
+def test_materials_have_both_moduli(mixed):
+    glass, _, plate = rows(write(mixed, 1.0)["restitution_edem_materials.csv"])
+    assert float(glass["youngs_modulus_Pa"]) == 70e9
+    assert float(glass["shear_modulus_Pa"]) == pytest.approx(28e9)
+    assert plate["radius_m"] == plate["solids_density_kg_per_m3"] == ""
+
+
+def test_springs_are_those_at_the_velocity(law):
+    from restitution.theory import walton_braun
+
+    found = law(laws=(SPRINGS,))
+    (row,) = rows(write(matrix_of([found]), 0.7)["restitution_edem.csv"])
+    e = walton_braun.restitution(0.7, 1e6, 1.5e6, 2e5, found.mass)
+    assert float(row["hysteretic_restitution"]) == pytest.approx(e)
+    ratio = float(row["hysteretic_K1_N_per_m"]) / float(row["hysteretic_K2_N_per_m"])
+    assert ratio == pytest.approx(e**2)
+    assert float(row["hysteretic_yield_strength_Pa"]) == pytest.approx(1e6 / (5 * 0.5e-3))
+
+
+def test_laws_with_walls_only_are_enough(on_wall):
+    (row,) = rows(write(on_wall, 1.0)["restitution_edem.csv"])
+    assert row["material_2"] == "plate_2"
+
+
+def test_pairs_that_stick_are_named(law, constant):
+    said = write(matrix_of([constant(law(), 0.0)]), 1.0)["restitution_edem.csv"]
+    assert "# WARNING: pair 1 1 sticks at 1" in said
+
+
+def test_names_are_escaped_and_warnings_carried(hostile, law):
+    files = write(matrix_of([law(hostile, hostile, warnings=("coarse\n=1+1",))]), 1.0)
+    for text in files.values():
+        assert text.isascii()
+        assert "# WARNING: pair 1 1: coarse/n=1+1" in text
+        assert len(rows(text)) == 1

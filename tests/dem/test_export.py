@@ -1,0 +1,136 @@
+"""From a run to a law to the input of a DEM code, as a user types it."""
+
+import csv
+
+import numpy as np
+import pytest
+
+from restitution.dem.export import CODES, export
+from restitution.dem.law import read_law
+from restitution.dem.write import write_law
+
+CASE = """
+title = "Rough glass on rough glass"
+[first]
+material = "glass"
+radius = "300 um"
+[interface]
+yield_pressure = "1 GPa"
+[roughness]
+kind = "gaussian"
+rms = "10 nm"
+correlation_length = "8 um"
+seed = 1
+[grid]
+nodes = 64
+spacing = "0.8 um"
+[impact]
+from = "0.05 m/s"
+to = "2 m/s"
+steps = 7
+[unloading]
+curves = 1
+"""
+
+
+@pytest.fixture
+def folder(cli, tmp_path):
+    """The folder of a law that was computed and made as a user would."""
+    (tmp_path / "case.toml").write_text(CASE)
+    assert cli("run", tmp_path / "case.toml", "-o", tmp_path / "out")[0] == 0
+    status, said, _ = cli("law", tmp_path / "out", "-o", tmp_path / "law")
+    assert status == 0
+    assert "7 velocities, 0.05 to 2 m/s" in said
+    assert "restitution export" in said
+    return tmp_path / "law"
+
+
+@pytest.fixture
+def stored(law, tmp_path):
+    """Store a law made by hand; return its folder."""
+
+    def make(name, *arguments, **values):
+        write_law(law(*arguments, **values), tmp_path / name)
+        return tmp_path / name
+
+    return make
+
+
+def test_lammps_rebounds_as_the_law_of_the_run_says(folder, cli, lammps, tmp_path):
+    found = read_law(folder)
+    for k, V in enumerate(np.geomspace(found.lowest * 1.001, found.highest * 0.999, 5)):
+        out = tmp_path / f"lammps-{k}"
+        status, said, _ = cli(
+            "export", folder, "--to", "lammps", "--velocity", f"{V} m/s", "-o", out
+        )
+        assert status == 0
+        asked = found.at(V).restitution
+        assert f"COR {asked:.4f} ± " in said
+        assert lammps.pair(out, 1, 1) == pytest.approx(asked, rel=0.01)
+
+
+def test_the_table_of_all_pairs(stored, law, cli, tmp_path):
+    small = law().first.model_copy(update={"radius": 2e-4})
+    folders = [stored("a"), stored("b", small), stored("c", small, small)]
+    status, _, _ = cli("export", *folders, "--to", "csv", "-o", tmp_path / "all")
+    assert status == 0
+    with open(tmp_path / "all" / "restitution.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert {(row["type_1"], row["type_2"]) for row in rows} == {("1", "1"), ("1", "2"), ("2", "2")}
+    assert len(rows) == 3 * len(law().points)
+    cli("export", *folders, "--to", "csv", "--velocity", "1 m/s", "-o", tmp_path / "one")
+    with open(tmp_path / "one" / "restitution.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [float(row["restitution"]) for row in rows] == pytest.approx(
+        [law().at(1.0).restitution] * 3
+    )
+    assert all(row["end_of_contact"] and row["yield_pressure_is"] for row in rows)
+    assert all(float(row["restitution_error"]) > 0 for row in rows)
+
+
+@pytest.mark.parametrize("code", CODES)
+def test_nothing_is_exported_beyond_the_velocities_computed(law, code):
+    from restitution.errors import DomainError
+
+    for velocity in (0.001, 11.0):
+        with pytest.raises(DomainError, match="nothing is extrapolated"):
+            export([law()], code, velocity)
+
+
+@pytest.mark.parametrize("code", [code for code in CODES if code != "csv"])
+def test_what_is_not_resolved_is_said_in_the_files(law, code):
+    base = law()
+    points = tuple(point.model_copy(update={"resolved": False}) for point in base.points)
+    warning = "13 of 13 depths are not resolved; refine the grid"
+    coarse = base.model_copy(update={"points": points, "warnings": (warning,)})
+    for name, text in export([coarse], code, 1.0).items():
+        assert "WARNING: unresolved" in text, name
+        joined = " ".join(line.lstrip("#/ ") for line in text.splitlines())
+        assert warning in joined, name
+
+
+def test_refusals(stored, law, refused, cli, tmp_path):
+    small = law().first.model_copy(update={"radius": 2e-4})
+    one, unlike = stored("one"), stored("unlike", small)
+
+    def said(*arguments):
+        return refused("export", *arguments, "-o", tmp_path / "x")
+
+    assert "takes one coefficient of restitution a pair" in said(one, "--to", "lammps")
+    assert "has no unit" in said(one, "--to", "yade", "--velocity", "1")
+    assert "not a velocity" in said(one, "--to", "yade", "--velocity", "1 m")
+    assert "nothing is extrapolated" in said(one, "--to", "edem", "--velocity", "20 m/s")
+    message = said(unlike, "--to", "lammps", "--velocity", "1 m/s")
+    assert "the law of one pair is not that of another" in message
+    assert "two laws are given" in said(one, one, "--to", "csv")
+    assert "holds no law" in said(tmp_path, "--to", "csv")
+    assert not (tmp_path / "x").exists()
+    assert cli("export", one, "--to", "csv", "-o", tmp_path / "y")[0] == 0
+    assert "nothing is overwritten" in refused("export", one, "--to", "csv", "-o", tmp_path / "y")
+
+
+def test_an_unresolved_velocity_is_warned_of(stored, law, cli, tmp_path):
+    points = tuple(point.model_copy(update={"resolved": False}) for point in law().points)
+    folder = stored("coarse", points=points)
+    _, _, said = cli("export", folder, "--to", "edem", "--velocity", "1 m/s", "-o", tmp_path / "e")
+    assert "not resolved by the grid" in said

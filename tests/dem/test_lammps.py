@@ -1,0 +1,150 @@
+"""LAMMPS gives back the restitution that was exported."""
+
+import re
+
+import pytest
+
+from restitution.dem.codes.lammps import LOWEST, write
+from restitution.dem.law import FittedLaw
+from restitution.dem.matrix import matrix_of
+from restitution.errors import CaseError, DomainError
+
+VELOCITIES = (0.01, 0.07, 0.5, 2.0, 10.0)
+MDR = FittedLaw(
+    name="lammps-mdr",
+    source="",
+    fitted_to="the coefficient of restitution",
+    parameters={"yield_strength_Pa": 3e8, "youngs_modulus_Pa": 7e10, "poissons_ratio": 0.25},
+    ends="separation",
+    restitution=(),
+    rms=0.05,
+    worst=0.123,
+)
+
+
+@pytest.mark.parametrize("V", VELOCITIES)
+def test_equal_spheres_rebound_as_exported(equal, lammps, texts, V):
+    asked = equal.laws[1, 1].at(V).restitution
+    assert lammps.pair(texts(write(equal, V)), 1, 1) == pytest.approx(asked, rel=5e-4)
+
+
+@pytest.mark.parametrize("V", VELOCITIES)
+def test_unlike_spheres_and_walls_rebound_as_exported(mixed, lammps, texts, V):
+    folder = texts(write(mixed, V))
+    for i, j, law in mixed.pairs():
+        asked = law.at(V).restitution
+        assert lammps.pair(folder, i, j) == pytest.approx(asked, rel=5e-4), (i, j)
+
+
+def test_sphere_on_a_wall_needs_no_law_between_spheres(on_wall, lammps, texts):
+    files = write(on_wall, 1.0)
+    assert "pair_style granular" not in files["restitution.lmp"]
+    asked = on_wall.laws[1, 2].at(1.0).restitution
+    assert lammps.pair(texts(files), 1, 2) == pytest.approx(asked, rel=5e-4)
+
+
+def test_e_is_that_of_the_velocity_of_the_export_at_any_other(equal, lammps, texts):
+    asked = equal.laws[1, 1].at(0.1).restitution
+    assert lammps.pair(texts(write(equal, 0.1)), 1, 1, V=5.0) == pytest.approx(asked, rel=5e-4)
+
+
+@pytest.mark.parametrize(("e", "rel"), [(1.0, 1e-6), (0.05, 1e-3), (LOWEST, 0.01)])
+def test_restitution_is_reproduced_from_the_least_to_one(lammps, law, constant, texts, e, rel):
+    matrix = matrix_of([constant(law(), e)])
+    assert lammps.pair(texts(write(matrix, 1.0)), 1, 1) == pytest.approx(e, rel=rel)
+
+
+def test_contact_has_the_stiffness_of_the_law(lammps, mixed, constant, texts):
+    """The least distance of an elastic collision is Hertz's: δ = (15 m* V²/16 E* R*^½)^⅖."""
+    elastic = matrix_of([constant(found, 1.0) for _, _, found in mixed.pairs()])
+    files = write(elastic, 1.0)
+    deepest = "variable depth equal -v_gap\nfix deepest all ave/time 1 1 1 v_depth mode scalar"
+    files["collision.in"] = files["collision.in"].replace(
+        "fix move all nve/sphere", f"{deepest} file depth.txt\nfix move all nve/sphere"
+    )
+    folder = texts(files)
+    for i, j, found in elastic.pairs():
+        lammps.pair(folder, i, j)
+        lines = (folder / "depth.txt").read_text().splitlines()
+        depths = [line.split()[1] for line in lines if line[0] != "#"]
+        hertz = (15 * found.mass / (16 * found.contact_modulus * found.radius**0.5)) ** 0.4
+        assert max(map(float, depths)) == pytest.approx(hertz, rel=1e-4), (i, j)
+
+
+def test_names_and_titles_stay_in_their_comments(hostile, lammps, law, texts):
+    bad = law(hostile, hostile, title='a &\n"""\nquit 1', warnings=('too & \n"""quit 1 &',))
+    files = write(matrix_of([bad]), 1.0)
+    assert all(text.isascii() for text in files.values())
+    asked = bad.at(1.0).restitution
+    assert lammps.pair(texts(files), 1, 1) == pytest.approx(asked, rel=5e-4)
+
+
+def test_comments_tell_where_e_comes_from_and_how_far_to_trust_it(law):
+    said = " ".join(write(matrix_of([law()]), 1.0)["restitution.lmp"].replace("#", "").split())
+    assert "written by restitution" in said
+    assert "e = 0.516667 +/- 0.004 at 1 m/s" in said
+    assert "0.5819 at 0.5 m/s" in said
+    assert "0.4515 at 2 m/s" in said
+    assert "glass (R = 0.001 m)" in said
+    assert "R* = 0.0005 m, E* = 3.73333e+10 Pa" in said
+    assert "yield pressure p_y: 1e+09 Pa; convention: mean pressure of a plastic contact" in said
+    assert "end of contact in e: the force is back to zero" in said
+    assert "computed from 0.01 to 10 m/s" in said
+    assert "End of a contact in LAMMPS: the overlap is back to zero" in said
+    assert "Friction 0.5 is a placeholder" in said
+    assert "WARNING" not in said
+
+
+def test_velocities_beyond_the_law_are_not_named(law):
+    said = write(matrix_of([law()]), 10.0)["restitution.lmp"]
+    assert "at 5 m/s" in said
+    assert "20 m/s" not in said
+
+
+def test_warnings_are_carried_into_every_file(law):
+    point = law().points[0].model_copy(update={"resolved": False})
+    found = law(warnings=("the grid is coarse",), work_of_adhesion=0.2)
+    found = found.model_copy(update={"points": (point, *found.points[1:])})
+    files = write(matrix_of([found]), 0.012)
+    for text in files.values():
+        assert re.search("^# WARNING: unresolved at 0.012 m/s", text, re.MULTILINE)
+        assert "# WARNING: pair 1 1: the grid is coarse" in text
+    assert "pull-off force is not modelled" in files["restitution.lmp"].replace("\n#    ", "")
+    assert "unresolved" not in write(matrix_of([found]), 1.0)["restitution.lmp"]
+
+
+def test_the_fitted_mdr_is_offered_as_a_comment(law):
+    files = write(matrix_of([law(laws=(MDR,))]), 1.0)
+    said = files["restitution.lmp"]
+    assert "# pair_coeff 1 1 mdr 7e+10 0.25 300000000 0.0 0.5 0.0 tangential" in said
+    assert "worst difference in e is 0.12" in said
+
+
+def test_the_fitted_mdr_runs_when_its_comment_is_opened(law, lammps, texts):
+    from restitution.theory import mdr
+
+    files = write(matrix_of([law(laws=(MDR,))]), 1.0)
+    files["restitution.lmp"] = (
+        re.sub("^pair_coeff.*\n", "", files["restitution.lmp"], flags=re.MULTILINE)
+    ).replace("# pair_coeff", "pair_coeff")
+    files["collision.in"] = files["collision.in"].replace("style sphere", "style sphere 1")
+    mass = 2 * law().mass
+    expected = mdr.restitution(0.5, 1e-3, 7e10, 0.25, 3e8, mass)
+    assert lammps.pair(texts(files), 1, 1) == pytest.approx(expected, abs=0.01)
+
+
+def test_pairs_that_stick_are_refused(law, constant):
+    sticking = constant(law(sticks_below=0.3), 0.0)
+    with pytest.raises(CaseError, match=r"sticks \(e = 0\) below 0.3 m/s.*LAMMPS.*0.001"):
+        write(matrix_of([sticking]), 0.1)
+
+
+def test_velocities_that_were_not_computed_are_refused(equal):
+    with pytest.raises(DomainError, match="nothing is extrapolated"):
+        write(equal, 20.0)
+
+
+def test_missing_pairs_are_named(mixed):
+    some = [law for i, j, law in mixed.pairs() if (i, j) != (1, 2)]
+    with pytest.raises(CaseError, match=r"LAMMPS needs a law for every pair.*glass.*steel"):
+        write(matrix_of(some), 1.0)

@@ -1,0 +1,231 @@
+"""The law of a run: what it holds, what it refuses, and what lies between its points."""
+
+import csv
+import json
+import math
+
+import numpy as np
+import pytest
+
+from restitution.dem.from_run import bare_law, law_of
+from restitution.dem.law import Law, crossing, read_law
+from restitution.dem.write import write_law
+from restitution.errors import CaseError, DomainError, OutputError
+
+HEAD = """
+title = "A small pair"
+[first]
+radius = "500 um"
+youngs_modulus = "210 GPa"
+poissons_ratio = 0.25
+density = "7850 kg/m^3"
+"""
+GRID = """
+[grid]
+nodes = 96
+spacing = "0.8 um"
+[unloading]
+curves = 1
+"""
+PLASTIC = '[interface]\nyield_pressure = "750 MPa"\n'
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory):
+    """Run a case once; return its results folder."""
+    from restitution.studies.case import parse_case
+    from restitution.studies.ensemble import run_realisations
+    from restitution.studies.results import ResultsFolder
+
+    known = {}
+
+    def run(text):
+        if text not in known:
+            out = tmp_path_factory.mktemp("run") / "out"
+            run_realisations(parse_case(text), text, out.parent, ResultsFolder(out))
+            known[text] = out
+        return known[text]
+
+    return run
+
+
+@pytest.fixture(scope="module")
+def truncated(runs):
+    """A smooth pair with Thornton and Ning's pressure, far beyond yield."""
+    plastic = '[interface]\nyield_pressure = "750 MPa"\nplasticity = "truncated"\n'
+    impact = '[impact]\nfrom = "0.02 m/s"\nto = "1 m/s"\nsteps = 8\n'
+    return runs(HEAD + plastic + impact + GRID)
+
+
+@pytest.fixture(scope="module")
+def rough(runs):
+    roughness = (
+        '[roughness]\nkind = "gaussian"\nrms = "0.1 um"\ncorrelation_length = "8 um"\nseed = 1\n'
+    )
+    depths = '[indentation]\nfrom = "20 nm"\nto = "2 um"\nsteps = 7\n'
+    return runs(HEAD + PLASTIC + roughness + depths + GRID)
+
+
+def test_the_points_are_those_of_the_run(rough):
+    law = bare_law(rough)
+    with open(rough / "curve.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    for name, column in (
+        ("velocity", "impact_velocity_m_per_s"),
+        ("restitution", "restitution"),
+        ("loading_work", "loading_work_J"),
+        ("force", "force_N"),
+    ):
+        assert law.column(name).tolist() == [float(row[column]) for row in rows]
+    assert [point.resolved for point in law.points] == [row["resolved"] == "true" for row in rows]
+    assert (law.lowest, law.highest) == (law.points[0].velocity, law.points[-1].velocity)
+    summary = json.loads((rough / "summary.json").read_text())
+    assert law.warnings == tuple(summary["warnings"])
+    assert law.conventions == summary["conventions"]
+
+
+def test_at_a_point_the_law_is_the_point_and_between_points_it_is_between(rough):
+    law = bare_law(rough)
+    for before, point in zip(law.points, law.points[1:], strict=False):
+        at = law.at(point.velocity)
+        assert (at.restitution, at.error) == (point.restitution, point.error)
+        middle = law.at(math.sqrt(before.velocity * point.velocity))
+        ends = sorted((before.restitution, point.restitution))
+        assert ends[0] <= middle.restitution <= ends[1]
+        assert middle.error >= max(before.error, point.error)
+        assert middle.resolved == (before.resolved and point.resolved)
+
+
+@pytest.mark.parametrize("factor", [0.5, 0.999, 1.001, 2.0])
+def test_nothing_is_extrapolated(rough, factor):
+    law = bare_law(rough)
+    velocity = factor * (law.lowest if factor < 1 else law.highest)
+    with pytest.raises(DomainError, match="outside what was computed"):
+        law.at(velocity)
+
+
+def test_a_law_is_read_as_it_was_written(rough, tmp_path):
+    law = law_of(rough)
+    names = {path.name for path in write_law(law, tmp_path / "law")}
+    assert names == {"law.json", "table.csv", "laws.csv", "law.png"}
+    assert read_law(tmp_path / "law") == law
+    with open(tmp_path / "law" / "table.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [float(row["restitution"]) for row in rows] == law.column("restitution").tolist()
+    assert {row["end_of_contact"] for row in rows} == {law.conventions["end_of_contact"]}
+    assert {row["yield_pressure_is"] for row in rows} == {law.conventions["yield_pressure"]}
+    assert all(float(row["yield_velocity_smooth_m_per_s"]) > 0 for row in rows)
+    with open(tmp_path / "law" / "laws.csv", newline="") as file:
+        columns = next(csv.reader(file))
+    assert columns[3:] == [each.name for each in law.laws]
+    with pytest.raises(OutputError, match="not empty"):
+        write_law(law, tmp_path / "law")
+
+
+def test_what_is_no_law(tmp_path, rough):
+    with pytest.raises(OutputError, match="holds no law"):
+        read_law(rough)
+    (tmp_path / "law.json").write_text('{"title": 1}')
+    with pytest.raises(CaseError, match="is not a law of this version"):
+        read_law(tmp_path)
+    with pytest.raises(OutputError, match="holds no results of a run"):
+        law_of(tmp_path)
+    (tmp_path / "table.csv").write_text("")
+    with pytest.raises(OutputError, match="is a study of many cases"):
+        law_of(tmp_path)
+
+
+def test_without_density_there_is_no_law(runs):
+    text = (HEAD + PLASTIC + '[indentation]\nvalues = ["1 um"]\n' + GRID).replace(
+        'density = "7850 kg/m^3"\n', ""
+    )
+    with pytest.raises(CaseError, match="a density is not given"):
+        law_of(runs(text))
+
+
+def test_unresolved_points_are_kept_but_not_fitted(runs):
+    """One node carries the shallowest contacts of a surface that is too rough for its grid."""
+    roughness = (
+        '[roughness]\nkind = "gaussian"\nrms = "0.3 um"\ncorrelation_length = "2 um"\nseed = 1\n'
+    )
+    depths = '[indentation]\nfrom = "5 nm"\nto = "3 um"\nsteps = 9\n'
+    law = law_of(runs(HEAD + PLASTIC + roughness + depths + GRID))
+    unresolved = [point for point in law.points if not point.resolved]
+    assert unresolved
+    assert not law.at(unresolved[0].velocity).resolved
+    assert any("not resolved" in warning for warning in law.warnings)
+    assert law.fit is None or law.fit.lowest > unresolved[0].velocity
+
+
+def test_the_fitted_yield_pressure_is_that_which_went_in(truncated):
+    """Thornton and Ning's force is that of the cut pressure; their unloading is not quite."""
+    laws = {each.name: each for each in law_of(truncated).laws}
+    by_force = laws["thornton-ning-force"].parameters["yield_pressure_Pa"]
+    assert by_force == pytest.approx(750e6, rel=0.01)
+    by_restitution = laws["thornton-ning"].parameters["yield_pressure_Pa"]
+    assert by_restitution == pytest.approx(750e6, rel=0.08)
+    assert laws["thornton-ning"].rms < laws["thornton-ning-force"].rms < 0.03
+
+
+def test_every_fitted_law_is_judged_by_its_own_numbers(truncated):
+    law = law_of(truncated)
+    assert [each.name for each in law.laws] == [
+        "constant", "thornton-ning-force", "thornton-ning", "walton-braun", "luding", "eepa",
+        "lammps-mdr",
+    ]  # fmt: skip
+    e = law.column("restitution")
+    for each in law.laws:
+        miss = np.array(each.restitution, dtype=float) - e
+        assert each.worst == pytest.approx(np.abs(miss).max(), rel=1e-9)
+        assert each.rms == pytest.approx(np.sqrt(np.mean(miss**2)), rel=1e-9)
+        assert each.source
+        assert each.ends
+    rms = {each.name: each.rms for each in law.laws}
+    # What cannot vary with velocity is no better than a constant, what can is.
+    assert rms["eepa"] == pytest.approx(rms["constant"], rel=0.01)
+    assert rms["walton-braun"] < 0.5 * rms["constant"]
+    assert rms["luding"] < 0.5 * rms["constant"]
+
+
+def test_an_elastic_pair_has_nothing_to_fit(runs):
+    law = law_of(runs(HEAD + '[impact]\nvelocity = ["0.1 m/s", "0.3 m/s"]\n' + GRID))
+    assert law.laws == ()
+    assert law.column("restitution") == pytest.approx(1.0, abs=1e-6)
+    assert law.yield_velocity is None
+
+
+def test_the_mean_of_several_surfaces_has_their_interval_in_its_error(runs):
+    roughness = (
+        '[roughness]\nkind = "gaussian"\nrms = "0.1 um"\ncorrelation_length = "8 um"\nseed = 1\n'
+        "realisations = 3\n"
+    )
+    out = runs(HEAD + PLASTIC + roughness + '[indentation]\nvalues = ["0.5 um", "1 um"]\n' + GRID)
+    law = bare_law(out)
+    with open(out / "curve.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    for point, row in zip(law.points, rows, strict=True):
+        half = float(row["restitution_high"]) - float(row["restitution"])
+        assert point.error >= half > 0
+
+
+@pytest.mark.parametrize(
+    ("ratios", "found"),
+    [
+        ([0.1, 0.5, 0.9], None),
+        ([-0.5, -0.2, -0.1], 4.0),
+        ([0.0, 0.5, 0.9], 1.0),
+    ],
+)
+def test_where_sticking_ends(ratios, found):
+    assert crossing([1.0, 2.0, 4.0], ratios) == found
+
+
+def test_the_sticking_velocity_lies_where_the_ratio_is_zero():
+    """e² = 1 − (V_s/V)² of an elastic adhesive pair, at 16 velocities."""
+    V = np.geomspace(0.5, 8, 16)
+    assert crossing(list(V), list(1 - (1.234 / V) ** 2)) == pytest.approx(1.234, rel=0.002)
+
+
+def test_a_law_needs_a_point():
+    with pytest.raises(ValueError, match="points"):
+        Law.model_validate({"points": []})

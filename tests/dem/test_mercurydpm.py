@@ -1,0 +1,75 @@
+"""The header for MercuryDPM, which was not run: its text, and its syntax beside stand-ins."""
+
+import re
+import shutil
+import subprocess
+
+import pytest
+
+from restitution.dem.codes.mercurydpm import write
+from restitution.dem.matrix import matrix_of
+from restitution.errors import CaseError
+
+# What the header uses of MercuryDPM, as its sources declare it.
+DPM_BASE = """
+#pragma once
+using Mdouble = double;
+struct SpeciesHandler {
+    template <typename U> U* copyAndAddObject(const U& object) { return new U(object); }
+    template <typename U> typename U::MixedSpeciesType* getMixedObject(const U*, const U*)
+    { static typename U::MixedSpeciesType mixed; return &mixed; }
+};
+struct DPMBase { SpeciesHandler speciesHandler; };
+"""
+SPECIES = """
+#pragma once
+struct Mixed {
+    void setEffectiveElasticModulusAndRestitutionCoefficient(Mdouble E, Mdouble e);
+    void setEffectiveShearModulus(Mdouble G);
+    void setSlidingFrictionCoefficient(Mdouble mu);
+};
+struct HertzianViscoelasticMindlinSpecies : Mixed {
+    using MixedSpeciesType = Mixed;
+    void setDensity(Mdouble rho);
+};
+"""
+
+
+def test_types_and_pairs_get_their_moduli_and_restitution(mixed):
+    text = write(mixed, 1.0)["restitution_mercury.h"]
+    calls = re.findall(r"setRestitution\((.*), (\S+), (\S+), (\S+)\);", text)
+    by_target = {target.split(".")[-1]: values for target, *values in calls}
+    law = mixed.laws[1, 2]
+    modulus, shear, e = map(float, by_target["getMixedObject(species[0], species[1])"])
+    assert modulus == pytest.approx(law.contact_modulus, rel=1e-8)
+    assert e == pytest.approx(law.at(1.0).restitution, rel=1e-8)
+    assert shear == pytest.approx(1 / (2 * 1.75 * 1.25 / 70e9 + 2 * 1.7 * 1.3 / 200e9))
+    assert len(calls) == 3 + 3  # three types, three mixed pairs
+    assert text.count("copyAndAddObject(type)") == 3
+    assert "Not compiled or run with MercuryDPM here" in text
+
+
+def test_it_is_valid_beside_stand_ins(mixed, hostile, law, texts):
+    compiler = shutil.which("g++") or pytest.skip("g++ is not installed")
+    bad = law(hostile, hostile, title="*/ x \\", warnings=("??/\nint y; \\",))
+    for number, matrix in enumerate((mixed, matrix_of([bad]))):
+        main = '#include "restitution_mercury.h"\nvoid f(DPMBase& d) { addRestitutionSpecies(d); }'
+        folder = texts({**write(matrix, 1.0), "DPMBase.h": DPM_BASE, "f.cc": main}, str(number))
+        (folder / "Species").mkdir()
+        (folder / "Species" / "HertzianViscoelasticMindlinSpecies.h").write_text(SPECIES)
+        command = [compiler, "-std=c++17", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-I."]
+        done = subprocess.run([*command, "f.cc"], cwd=folder, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+
+
+def test_warnings_are_carried(law):
+    text = write(matrix_of([law(warnings=("the grid is coarse",))]), 1.0)["restitution_mercury.h"]
+    assert "// WARNING: pair 1 1: the grid is coarse" in text
+
+
+def test_missing_pairs_are_named(mixed):
+    laws = {(i, j): law for i, j, law in mixed.pairs()}
+    with pytest.raises(CaseError, match=r"MercuryDPM needs a law for every pair"):
+        write(matrix_of([law for pair, law in laws.items() if pair != (1, 2)]), 1.0)
+    with pytest.raises(CaseError, match=r"MercuryDPM needs .* steel .* and plate"):
+        write(matrix_of([law for pair, law in laws.items() if pair != (2, 3)]), 1.0)

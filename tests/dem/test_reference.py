@@ -1,0 +1,194 @@
+"""Collisions in time, against closed forms and against the energies."""
+
+import csv
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from restitution.contact.bodies import Body, Pair
+from restitution.dem.from_run import bare_law
+from restitution.dem.reference import StoredForce, collide_in_time, course, stored_force
+from restitution.errors import CaseError, DomainError, OutputError
+from restitution.studies.case import parse_case
+from restitution.studies.ensemble import run_realisations
+from restitution.studies.results import ResultsFolder
+from restitution.theory import thornton_ning
+
+STEEL = Body(500e-6, 210e9, 0.25, 7850.0)
+SMALL = Body(100e-6, 70e9, 0.2, 2500.0)
+WALL = Body(math.inf, 70e9, 0.3)
+P_Y = 750e6
+
+
+def closed_form(pair, p_y, depths):
+    """Thornton and Ning's force law, as exact as it is stored."""
+    material = pair.radius, pair.contact_modulus, p_y
+    curves = []
+    for deepest in depths:
+        end = float(thornton_ning.residual_indentation(deepest, *material))
+        x = end + (deepest - end) * np.linspace(0, 1, 60) ** 2
+        curves.append((x, thornton_ning.unloading_force(x, deepest, *material)))
+    return StoredForce(
+        pair=pair,
+        deepest=float(depths[-1]),
+        highest=float(thornton_ning.impact_velocity(depths[-1], *material, pair.mass)),
+        loading=lambda x: float(thornton_ning.loading_force(max(x, 0.0), *material)),
+        separation=lambda x: float(thornton_ning.residual_indentation(x, *material)),
+        unloading_from=np.asarray(depths),
+        unloading=tuple(curves),
+    )
+
+
+@pytest.mark.parametrize("second", [STEEL, SMALL, WALL])
+def test_thornton_and_nings_spheres(second):
+    pair = Pair(STEEL, second)
+    material = pair.radius, pair.contact_modulus, P_Y
+    depths = np.geomspace(20e-9, 2e-6, 6)
+    law = closed_form(pair, P_Y, depths)
+    for deepest in depths[1:]:
+        velocity = float(thornton_ning.impact_velocity(deepest, *material, pair.mass))
+        found = collide_in_time(law, velocity)
+        assert found.largest_indentation == pytest.approx(deepest, rel=1e-6)
+        exact = thornton_ning.restitution(velocity, *material, pair.mass)
+        assert found.restitution == pytest.approx(float(exact), abs=2e-4)
+        assert not found.blended
+
+
+def test_an_elastic_collision_lasts_as_long_as_hertz_says():
+    """t_c = 2.9432 (m*²/(k² V))^⅕ with F = kδ^1.5 (Johnson 1985, eq. 11.24), and e = 1."""
+    pair = Pair(STEEL, STEEL)
+    law = closed_form(pair, 1e12, np.array([1e-7, 1e-6]))
+    k = 4 / 3 * pair.contact_modulus * math.sqrt(pair.radius)
+    velocity = 0.999 * law.highest
+    found = collide_in_time(law, velocity)
+    exact = 2.9432 * (15 / 16 * pair.mass / (math.sqrt(pair.radius) * pair.contact_modulus)) ** 0.4
+    assert found.duration == pytest.approx(exact * velocity**-0.2, rel=2e-4)
+    assert found.restitution == pytest.approx(1, abs=2e-4)
+    assert found.largest_force == pytest.approx(k * found.largest_indentation**1.5, rel=1e-9)
+
+
+def test_momentum_is_kept_and_a_wall_stays():
+    pair = Pair(STEEL, SMALL)
+    found = collide_in_time(closed_form(pair, P_Y, np.geomspace(1e-8, 1e-6, 5)), 0.1)
+    momentum = STEEL.mass * found.rebound_first + SMALL.mass * found.rebound_second
+    assert abs(momentum) < 1e-6 * SMALL.mass * 0.1
+    assert found.rebound_second - found.rebound_first == pytest.approx(
+        0.1 * found.restitution, rel=1e-9
+    )
+    assert found.blended
+    wall = collide_in_time(closed_form(Pair(STEEL, WALL), P_Y, np.geomspace(1e-8, 1e-6, 5)), 0.05)
+    assert wall.rebound_second == 0
+
+
+CASE = """
+[first]
+radius = "500 um"
+youngs_modulus = "210 GPa"
+poissons_ratio = 0.25
+density = "7850 kg/m^3"
+[interface]
+yield_pressure = "750 MPa"
+{adhesion}
+[roughness]
+kind = "gaussian"
+rms = "{rms}"
+correlation_length = "3 um"
+seed = 3
+[grid]
+nodes = {nodes}
+spacing = "{spacing}"
+[indentation]
+from = "{first}"
+to = "{last}"
+steps = {steps}
+[unloading]
+curves = {steps}
+"""
+ROUGH = {"rms": "20 nm", "nodes": 96, "spacing": "0.6 um", "first": "50 nm", "last": "1 um"}
+ADHESIVE = {"rms": "1 nm", "nodes": 64, "spacing": "0.12 um", "first": "10 nm", "last": "40 nm"}
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    def make(**values):
+        text = CASE.format(**values)
+        out = tmp_path_factory.mktemp("run") / "out"
+        run_realisations(parse_case(text), text, out.parent, ResultsFolder(out))
+        return out
+
+    return make
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {**ROUGH, "adhesion": "", "steps": 6},
+        {**ROUGH, "adhesion": 'plasticity = "truncated"', "steps": 4},
+        {**ADHESIVE, "adhesion": 'work_of_adhesion = "0.5 J/m^2"', "steps": 2},
+    ],
+)
+def test_restitution_in_time_is_that_of_the_energies(run, values):
+    out = run(**values)
+    force, law = stored_force(out), bare_law(out)
+    assert len(law.points) == values["steps"]
+    for point in law.points:
+        found = collide_in_time(force, point.velocity)
+        assert found.restitution == pytest.approx(point.restitution, abs=1e-3)
+        assert found.largest_indentation == pytest.approx(point.indentation, rel=1e-6)
+        assert found.largest_force == pytest.approx(point.force, rel=1e-4)
+
+
+def test_between_stored_curves_it_is_near_and_beyond_them_refused(run):
+    out = run(**ROUGH, adhesion="", steps=8)
+    force, law = stored_force(out), bare_law(out)
+    between = math.sqrt(law.points[-2].velocity * law.points[-1].velocity)
+    found = collide_in_time(force, between)
+    assert found.blended
+    assert found.restitution == pytest.approx(law.at(between).restitution, abs=0.01)
+    with pytest.raises(DomainError, match="not within what was computed"):
+        collide_in_time(force, 1.01 * law.highest)
+    with pytest.raises(DomainError, match="nothing is extrapolated"):
+        collide_in_time(force, 0.5 * law.lowest)
+    for velocity in (0.0, -1.0, math.nan):
+        with pytest.raises(DomainError):
+            collide_in_time(force, velocity)
+
+
+def test_the_verb(run, cli, refused, tmp_path):
+    out = run(**ROUGH, adhesion="", steps=4)
+    status, said, _ = cli("collide", out, "-o", tmp_path / "courses.csv")
+    assert status == 0
+    assert len(said.splitlines()) == 1 + 4 + 1
+    with open(tmp_path / "courses.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    velocities = {row["impact_velocity_m_per_s"] for row in rows}
+    assert len(velocities) == 4
+    last = [row for row in rows if row["impact_velocity_m_per_s"] == max(velocities, key=float)]
+    assert float(last[0]["closing_velocity_m_per_s"]) == pytest.approx(
+        float(max(velocities, key=float))
+    )
+    assert float(last[-1]["closing_velocity_m_per_s"]) < 0
+    assert "exists" in refused("collide", out, "-o", tmp_path / "courses.csv")
+    assert "has no unit" in refused("collide", out, "--velocity", "1")
+    assert "nothing" in refused("collide", out, "--velocity", "1e-6 m/s")
+    assert "holds no results" in refused("collide", tmp_path)
+
+
+def test_what_cannot_collide(run, tmp_path):
+    with pytest.raises(OutputError, match="holds no results of a run"):
+        stored_force(tmp_path)
+    bare = Pair(Body(1e-3, 1e9, 0.3), WALL)
+    law = closed_form(Pair(STEEL, WALL), P_Y, np.array([1e-7, 1e-6]))
+    with pytest.raises(CaseError, match="density"):
+        replace(law, pair=bare)
+
+
+def test_the_course_is_a_table_of_floats():
+    law = closed_form(Pair(STEEL, STEEL), P_Y, np.geomspace(1e-8, 1e-6, 4))
+    rows = course(collide_in_time(law, 0.1))
+    assert rows[0]["indentation_m"] == 0
+    assert all(type(value) is float for row in rows for value in row.values())
+    times = [row["time_s"] for row in rows]
+    assert times == sorted(times)

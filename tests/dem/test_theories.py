@@ -1,0 +1,401 @@
+"""Theories beside one another: each is its own module's, and silent outside of its range."""
+
+import csv
+import math
+
+import numpy as np
+import pytest
+
+from restitution.dem import theories as room
+from restitution.dem import theory_figure as drawn
+from restitution.dem.closed_forms import FORMS
+from restitution.dem.fitted import fitted_laws
+from restitution.dem.law import Particle
+from restitution.errors import CaseError, OutputError
+from restitution.studies.case import parse_case
+from restitution.theory import (
+    adhesive_thornton_ning,
+    brilliantov,
+    hertz,
+    jackson_green_marghitu,
+    johnson,
+    mdr,
+    sticking,
+    thornton_ning,
+    wu_li_thornton,
+    yielding,
+)
+
+SPHERE = 'radius = "1 mm"\nyoungs_modulus = "70 GPa"\npoissons_ratio = 0.25\n'
+WALL = 'radius = "flat"\nyoungs_modulus = "200 GPa"\npoissons_ratio = 0.3\n'
+LIGHT = 'density = "2500 kg/m^3"\n'
+PLASTIC = 'yield_pressure = "560 MPa"\n'
+IMPACT = '[impact]\nfrom = "1 mm/s"\nto = "100 m/s"\nsteps = 3\n'
+V = np.geomspace(1e-4, 3000, 200)
+YIELDING = {
+    "thornton-ning", "johnson", "jackson-green-marghitu", "wu-li-thornton-sphere",
+    "wu-li-thornton-half-space", "mdr",
+}  # fmt: skip
+
+
+def case_of(first=SPHERE + LIGHT, second=None, interface=PLASTIC, depths=IMPACT):
+    tables = f"[first]\n{first}" + ("" if second is None else f"[second]\n{second}")
+    grid = '[grid]\nnodes = 64\nspacing = "1 um"\n'
+    return parse_case(f"{tables}[interface]\n{interface}{grid}{depths}")
+
+
+def by_name(case, velocities=V, law=None):
+    return {each.name: each for each in room.theories(case, velocities, law)}
+
+
+def bodies(case):
+    pair = case.pair()
+    return pair.radius, pair.contact_modulus, pair.mass
+
+
+def same_within(found, expected, inside):
+    """The module's values where `inside`, NaN elsewhere; both of them occur."""
+    assert 0 < inside.sum() < inside.size
+    np.testing.assert_allclose(found[inside], expected[inside], rtol=1e-12)
+    assert np.isnan(found[~inside]).all()
+
+
+def test_a_sphere_on_a_wall_has_every_theory():
+    assert set(by_name(case_of(second=WALL))) == {"hertz", *YIELDING}
+    with_adhesion = case_of(second=WALL, interface=PLASTIC + 'work_of_adhesion = "0.1 J/m^2"\n')
+    assert set(by_name(with_adhesion)) == {"hertz", "sticking", *YIELDING}
+
+
+def test_hertz_loses_nothing_until_something_yields():
+    case = case_of(second=WALL)
+    R, E, m = bodies(case)
+    V_y = yielding.yield_velocity(R, E, 560e6, m)
+    same_within(by_name(case)["hertz"].restitution, np.ones_like(V), V_y >= V)
+
+
+def test_hertz_ends_where_the_contact_is_no_longer_small():
+    case = case_of(interface="")
+    R, E, m = bodies(case)
+    limit = math.sqrt(2 * hertz.stored_energy(0.01 * R, R, E) / m)
+    found = by_name(case)["hertz"]
+    same_within(found.restitution, np.ones_like(V), limit >= V)
+    assert f"{limit:.3g} m/s (indentation 0.01 R*)" in found.holds
+
+
+def test_thornton_ning_takes_the_pressure_of_the_case():
+    case = case_of(second=WALL)
+    R, E, m = bodies(case)
+    depth = thornton_ning.indentation_from_velocity(V, R, E, 560e6, m)
+    expected = thornton_ning.restitution(V, R, E, 560e6, m)
+    found = by_name(case)["thornton-ning"]
+    assert found.parameters == {"yield_pressure_Pa": pytest.approx(560e6)}
+    same_within(found.restitution, expected, depth < R)
+
+
+def test_johnson_answers_only_in_fully_plastic_impacts():
+    case = case_of(second=WALL)
+    R, E, m = bodies(case)
+    expected = johnson.restitution(V, R, E, 200e6, m)
+    small = 0.5 * m * V**2 < 0.75 * np.pi * 200e6 * R**3
+    found = by_name(case)["johnson"]
+    same_within(found.restitution, expected, (expected < 0.6) & small)
+    assert "Y = p_y/2.8 = 200 MPa" in found.holds
+    lowest = float(found.holds.split("above ")[1].split(" m/s")[0])
+    assert johnson.restitution(lowest, R, E, 200e6, m) == pytest.approx(0.6, rel=2e-3)
+    highest = float(found.holds.split("on, ")[1].split(" m/s")[0])
+    assert highest == pytest.approx(V[small][-1], rel=0.1)
+
+
+def test_jackson_green_marghitu_ends_where_its_fit_does():
+    case = case_of(second=WALL)
+    R, E, m = bodies(case)
+    V_c = jackson_green_marghitu.critical_velocity(R, E, 200e6, 0.25, m)
+    expected = jackson_green_marghitu.restitution(V, R, E, 200e6, 0.25, m)
+    same_within(by_name(case)["jackson-green-marghitu"].restitution, expected, 1000 * V_c >= V)
+
+
+def test_jackson_green_marghitu_is_silent_about_soft_strong_bodies():
+    case = case_of(first=SPHERE.replace("70 GPa", "3 GPa") + LIGHT, second=WALL)
+    R, E, m = bodies(case)
+    V_c = jackson_green_marghitu.critical_velocity(R, E, 200e6, 0.25, m)
+    found = by_name(case)["jackson-green-marghitu"]
+    same_within(found.restitution, np.ones_like(V), V_c >= V)
+    assert "so only where e = 1" in found.holds
+
+
+@pytest.mark.parametrize("plastic", ["sphere", "half-space"])
+def test_wu_li_thornton_on_a_wall(plastic):
+    case = case_of(second=WALL)
+    R, E, m = bodies(case)
+    found = by_name(case)[f"wu-li-thornton-{plastic}"]
+    expected = wu_li_thornton.restitution(V, R, E, 200e6, m, plastic)
+    same_within(found.restitution, expected, np.isfinite(expected))
+    begins = float(found.holds.split("from ")[1].split(" m/s")[0])
+    formula = np.isfinite(expected) & (expected < 1)
+    assert V[formula][0] / (V[1] / V[0]) < begins * 1.01
+    assert begins < V[formula][0] * 1.01
+
+
+def test_mdr_on_a_wall_and_between_equal_spheres():
+    case = case_of(second=WALL)
+    R, E, m = bodies(case)
+    expected = mdr.restitution(V, R, E * (1 - 0.25**2), 0.25, 200e6, m)
+    same_within(by_name(case)["mdr"].restitution, expected, np.isfinite(expected))
+
+    equal = case_of()
+    found = by_name(equal)["mdr"]
+    expected = mdr.restitution(V / 2, 1e-3, 70e9, 0.25, 200e6, 2 * bodies(equal)[2])
+    same_within(found.restitution, expected, np.isfinite(expected))
+    last = float(found.holds.split("up to ")[1].split(" m/s")[0])
+    assert last == pytest.approx(V[np.isfinite(expected)][-1], rel=0.1)
+
+
+def test_two_equal_spheres_are_one_on_a_rigid_wall_at_half_the_velocity():
+    equal = by_name(case_of())
+    rigid = case_of(second=WALL.replace("200 GPa", "900000 GPa"))
+    wall = by_name(rigid, V / 2)
+    for name in ("wu-li-thornton-sphere", "mdr"):
+        np.testing.assert_allclose(
+            equal[name].restitution, wall[name].restitution, rtol=1e-3, err_msg=name
+        )
+    assert "wu-li-thornton-half-space" not in equal
+
+
+def test_unequal_spheres_are_left_out_where_a_theory_knows_equal_ones_only():
+    case = case_of(second=SPHERE.replace("1 mm", "2 mm") + LIGHT)
+    gone = {"wu-li-thornton-sphere", "wu-li-thornton-half-space", "mdr"}
+    assert set(by_name(case)) == {"hertz"} | YIELDING - gone
+    reasons = room.left_out(case)
+    assert gone <= set(reasons)
+    assert "equal" in reasons["mdr"]
+    R, E, m = bodies(case)
+    expected = thornton_ning.restitution(1.0, R, E, 560e6, m)
+    (found,) = by_name(case, np.ones(1))["thornton-ning"].restitution
+    assert found == pytest.approx(expected, rel=1e-12)
+
+
+def test_the_yield_strength_is_the_softer_bodys_where_both_give_one():
+    strong = 'yield_strength = "400 MPa"\n'
+    weak = 'yield_strength = "150 MPa"\n'
+    soft_sphere = case_of(first=SPHERE + LIGHT + weak, second=WALL + strong)
+    found = by_name(soft_sphere)
+    for name in ("johnson", "jackson-green-marghitu", "wu-li-thornton-sphere", "mdr"):
+        assert found[name].parameters["yield_strength_Pa"] == pytest.approx(150e6)
+        assert "Y = 150 MPa, the yield_strength of first" in found[name].holds
+    assert found["thornton-ning"].parameters == {"yield_pressure_Pa": pytest.approx(560e6)}
+    assert room.left_out(soft_sphere)["wu-li-thornton-half-space"] == "the sphere is the softer one"
+
+    soft_wall = case_of(first=SPHERE + LIGHT + strong, second=WALL + weak)
+    gone = room.left_out(soft_wall)
+    assert "wu-li-thornton-half-space" not in gone
+    assert gone["wu-li-thornton-sphere"] == "the wall is the softer one"
+    assert "does not yield" in gone["mdr"]
+
+    one = by_name(case_of(first=SPHERE + LIGHT + weak, second=WALL))
+    assert one["johnson"].parameters["yield_strength_Pa"] == pytest.approx(200e6)
+
+
+@pytest.mark.parametrize("wall_first", [False, True])
+def test_the_order_of_the_bodies_does_not_matter(wall_first):
+    strong, weak = SPHERE + LIGHT + 'yield_strength = "400 MPa"\n', WALL
+    weak += 'yield_strength = "150 MPa"\n'
+    case = case_of(weak, strong) if wall_first else case_of(strong, weak)
+    assert "wu-li-thornton-sphere" in room.left_out(case)
+    assert "mdr" in room.left_out(case)
+
+
+def test_adhesion_adds_its_loss_to_thornton_ning_and_is_said_to_be_left_out_elsewhere():
+    case = case_of(second=WALL, interface=PLASTIC + 'work_of_adhesion = "0.1 J/m^2"\n')
+    R, E, m = bodies(case)
+    V_s, V_y = room.marks(case)["V_s"], room.marks(case)["V_y"]
+    assert V_s == pytest.approx(sticking.sticking_velocity(R, E, 0.1, m))
+    found = by_name(case)
+    elastic = sticking.restitution(V, V_s)
+    same_within(found["sticking"].restitution, elastic, V_y >= V)
+    depth = thornton_ning.indentation_from_velocity(V, R, E, 560e6, m)
+    expected = adhesive_thornton_ning.restitution(V, R, E, 560e6, 0.1, m)
+    same_within(found["thornton-ning"].restitution, expected, depth < R)
+    for name, each in found.items():
+        assert ("adhesion of this pair is left out" in each.holds) == (
+            name not in ("sticking", "thornton-ning")
+        )
+    assert "Tabor parameter above 5" in found["sticking"].holds
+
+
+def test_a_pair_that_yields_before_it_can_rebound_has_no_adhesive_answer_above():
+    case = case_of(second=WALL, interface=PLASTIC + 'work_of_adhesion = "50 J/m^2"\n')
+    V_s, V_y = room.marks(case)["V_s"], room.marks(case)["V_y"]
+    assert V_s > V_y
+    found = by_name(case)
+    assert np.isnan(found["sticking"].restitution).all()
+    assert "nowhere here" in found["sticking"].holds
+    same_within(found["thornton-ning"].restitution, np.zeros_like(V), V_y >= V)
+
+
+def test_an_elastic_case_has_hertz_and_with_adhesion_sticking():
+    assert set(by_name(case_of(interface=""))) == {"hertz"}
+    assert set(room.left_out(case_of(interface=""))) == {"sticking", *YIELDING}
+    sticky = case_of(interface='work_of_adhesion = "0.1 J/m^2"\n')
+    found = by_name(sticky)
+    assert set(found) == {"hertz", "sticking"}
+    assert np.nanmin(found["sticking"].restitution) == 0
+    assert set(room.marks(sticky)) == {"V_s"}
+
+
+def test_velocities_are_the_span_of_the_case():
+    V = room.velocities_of(case_of())
+    assert pytest.approx(np.geomspace(1e-3, 100, 25)) == V
+
+    case = case_of(depths='[indentation]\nfrom = "10 nm"\nto = "5 um"\nsteps = 4\n')
+    R, E, m = bodies(case)
+    V = room.velocities_of(case)
+    assert V.size == 25
+    assert V[[0, -1]] == pytest.approx(
+        thornton_ning.impact_velocity(np.array([1e-8, 5e-6]), R, E, 560e6, m)
+    )
+
+
+def test_velocities_of_loads_are_those_of_the_smooth_bodies_that_carry_them():
+    case = case_of(depths='[load]\nfrom = "1 mN"\nto = "50 N"\nsteps = 4\n')
+    R, E, m = bodies(case)
+    depth = thornton_ning.indentation_from_velocity(room.velocities_of(case), R, E, 560e6, m)
+    force = thornton_ning.loading_force(depth[[0, -1]], R, E, 560e6)
+    assert force == pytest.approx([1e-3, 50])
+
+    elastic = case_of(interface="", depths='[load]\nfrom = "1 mN"\nto = "50 N"\nsteps = 4\n')
+    work = 0.5 * m * room.velocities_of(elastic)[-1] ** 2
+    assert work == pytest.approx(hertz.stored_energy(hertz.indentation_from_force(50, R, E), R, E))
+
+
+def test_a_single_depth_is_a_single_velocity():
+    case = case_of(depths='[impact]\nvelocity = ["2 m/s"]\n')
+    assert room.velocities_of(case).tolist() == [2.0]
+
+
+def test_a_case_without_density_is_refused():
+    depths = '[indentation]\nvalues = ["10 nm"]\n'
+    with pytest.raises(CaseError, match=r"^first\.density: is missing"):
+        room.velocities_of(case_of(first=SPHERE, depths=depths))
+    with pytest.raises(CaseError, match=r"^second\.density: is missing"):
+        room.theories(case_of(second=SPHERE, depths=depths), V)
+
+
+@pytest.fixture(scope="module")
+def points(law):
+    """The law of two glass spheres, with what is fitted to it."""
+    found = law(yield_pressure=560e6)
+    return found.model_copy(update={"laws": fitted_laws(found)})
+
+
+def test_a_law_adds_its_points_and_what_is_fitted_to_them(points):
+    case = case_of()
+    V = room.velocities_of(case, points)
+    assert V.tolist() == points.column("velocity").tolist()
+    found = by_name(case, V, points)
+    new = ("computed", "constant", "walton-braun", "luding", "eepa", "brilliantov")
+    assert tuple(found)[-6:] == new
+    assert found["computed"].restitution.tolist() == points.column("restitution").tolist()
+    for each in points.laws:
+        if each.name in new:
+            assert found[each.name].restitution.tolist() == list(each.restitution)
+            assert found[each.name].parameters == each.parameters
+
+
+def test_brilliantov_is_the_best_there_is(points):
+    V, e = points.column("velocity"), points.column("restitution")
+    found = by_name(case_of(), V, points)["brilliantov"]
+    (beta,) = found.parameters.values()
+    assert found.restitution.tolist() == brilliantov.restitution(V, beta).tolist()
+
+    def misfit(beta):
+        return np.sum((brilliantov.restitution(V, beta) - e) ** 2)
+
+    assert misfit(beta) <= min(map(misfit, beta * np.geomspace(1e-6, 1e6, 2001)))
+
+
+def test_brilliantov_is_found_again(law):
+    V = law().column("velocity")
+    e = brilliantov.restitution(V, 0.3)
+    exact = law(
+        points=tuple(
+            point.model_copy(update={"restitution": float(value)})
+            for point, value in zip(law().points, e, strict=True)
+        )
+    )
+    found = by_name(case_of(), V, exact)["brilliantov"]
+    assert found.parameters["dissipation_s_per_m_power_1_5"] == pytest.approx(0.3, rel=1e-6)
+
+
+def test_nothing_of_a_law_is_interpolated(points):
+    found = by_name(case_of(), np.array([0.02, *points.column("velocity")[:2]]), points)
+    for name in ("computed", "constant", "luding", "brilliantov"):
+        assert np.isnan(found[name].restitution).tolist() == [True, False, False]
+
+
+def test_a_law_that_loses_nothing_has_nothing_to_fit(law):
+    lossless = tuple(
+        point.model_copy(update={"restitution": 1.0, "ratio": 1.0}) for point in law().points
+    )
+    elastic = law(points=lossless, yield_pressure=None)
+    case = case_of(interface="")
+    assert list(by_name(case, V, elastic)) == ["hertz", "computed"]
+    assert "loses nothing" in room.left_out(case, elastic)["brilliantov"]
+
+
+def test_a_law_of_another_pair_is_refused(law):
+    steel = Particle(
+        name="steel", radius=1e-3, youngs_modulus=200e9, poissons_ratio=0.3, density=7800.0
+    )
+    with pytest.raises(CaseError, match=r"its E\* is .* Pa \(the case's .*, its m\* is") as said:
+        room.theories(case_of(), V, law(steel, steel))
+    assert "R*" not in str(said.value)
+    room.check_same_pair(case_of(), law(radius=0.5e-3 * (1 + 5e-7)))
+    with pytest.raises(CaseError, match=r"R\*"):
+        room.check_same_pair(case_of(), law(radius=0.5e-3 * (1 + 2e-6)))
+
+
+def test_a_law_with_another_interface_says_so(points, law):
+    assert "another interface" not in by_name(case_of(), V, points)["computed"].holds
+    other = law(yield_pressure=2e9, work_of_adhesion=0.3)
+    said = by_name(case_of(), V, other)["computed"].holds
+    assert "p_y = 2000 MPa, w = 0.3 J/m^2" in said
+
+
+def test_the_files(points, tmp_path):
+    case = case_of()
+    V = room.velocities_of(case, points)
+    found = room.theories(case, V, points)
+    written = drawn.write_theories(case, V, found, tmp_path / "out", points)
+    assert [path.name for path in written] == ["theory.csv", "theory.png"]
+    with open(written[0], newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert list(rows[0]) == ["velocity_m_per_s", *(each.name for each in found)]
+    for each in found:
+        column = [float(row[each.name] or "nan") for row in rows]
+        np.testing.assert_array_equal(column, each.restitution)
+    assert rows[0]["johnson"] == ""
+    with pytest.raises(OutputError, match="not empty"):
+        drawn.write_theories(case, V, found, tmp_path / "out")
+
+
+def test_the_figure_draws_what_has_an_answer_and_marks_yield_and_sticking(points):
+    case = case_of(second=WALL, interface=PLASTIC + 'work_of_adhesion = "0.01 J/m^2"\n')
+    V = np.geomspace(1e-5, 1, 25)
+    (axes,) = drawn.figure(case, V, room.theories(case, V)).axes
+    names = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert "sticking" in names
+    assert {text.get_text() for text in axes.texts} == {"$V_y$", "$V_s$"}
+    nowhere = {each.name for each in room.theories(case, V) if np.isnan(each.restitution).all()}
+    assert not nowhere & set(names)
+
+    V = points.column("velocity")
+    (axes,) = drawn.figure(case_of(), V, room.theories(case_of(), V, points), points).axes
+    names = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert names[0] == "computed"
+    assert "luding (fit)" in names
+
+
+def test_every_theory_has_a_line_of_its_own(points):
+    names = {*FORMS, *(each.name for each in room.theories(case_of(), V, points))}
+    lines = [drawn._LINES[name] for name in names - {"computed"}]
+    assert len(set(lines)) == len(lines)
