@@ -41,7 +41,7 @@ def test_every_bundled_study_is_a_valid_one(size):
         study = bundled(name, size)
         assert study.title.startswith("Figure")
         assert study.cases
-    assert bundled("roughness", "refined").text.count("refine = 4") == 1
+    assert bundled("roughness", "refined").text.count("refine = 2") == 1
 
 
 def curve(depth, cor):

@@ -30,7 +30,7 @@ def loading_path(
     the next. Raises as `solve`, `solve_at_force` and `solve_at_velocity`, and `CaseError` unless
     exactly one of the three is given.
     """
-    if [indentations, forces, velocities].count(None) != 2:
+    if sum(given is not None for given in (indentations, forces, velocities)) != 1:
         raise CaseError("a loading path takes one of indentations, forces and velocities")
     state: State | None = None
     for depth in () if indentations is None else indentations:

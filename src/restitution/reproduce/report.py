@@ -66,8 +66,8 @@ def write_reproduction(out: Path, size: Size) -> tuple[Path, list[Finding]]:
         parts=[
             Table(
                 "Claims",
-                ["figure", "claim", "found", "number", "depths resolved", "verdict"],
-                [[f.figure, f.claim, f.found, f.number, f.resolved, f.verdict] for f in findings],
+                ["figure", "verdict", "claim", "found", "number", "depths resolved"],
+                [[f.figure, f.verdict, f.claim, f.found, f.number, f.resolved] for f in findings],
             ),
             Table("What the paper leaves open", ["input", "here", "in the paper"], _OPEN),
             *_drawings(studies, findings),
@@ -84,12 +84,11 @@ def _warnings(size: Size) -> list[str]:
             "Quick size: coarser in depth, fewer surfaces and smaller domains than the paper's; "
             "for its own size leave out --quick."
         ]
-    if size == "paper":
-        return [
-            "On the paper's spacing of 0.25 µm rough contacts below some tens of nanometres are a "
-            "few nodes (open markers): their numbers belong to the grid. --refined resolves them."
-        ]
-    return []
+    spacing, more = ("0.25 µm", "; --refined halves it") if size == "paper" else ("0.125 µm", "")
+    return [
+        f"On a spacing of {spacing}{more} rough contacts below some tens of nanometres are a few "
+        "nodes (open markers): their numbers belong to the grid."
+    ]
 
 
 def _drawings(studies: dict[str, xr.Dataset], findings: list[Finding]) -> list[Drawing]:
