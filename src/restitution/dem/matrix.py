@@ -37,8 +37,9 @@ class Matrix:
         numbers = range(1, len(self.spheres) + 1)
         self._require(code, combinations_with_replacement(numbers, 2), "pair of particle types")
 
-    def require_walls(self, code: str) -> None:
-        """Raise `CaseError` unless there is a law of every sphere on every wall."""
+    def require_all(self, code: str) -> None:
+        """The same, and of every sphere on every wall."""
+        self.require_spheres(code)
         spheres, last = len(self.spheres), len(self.particles)
         pairs = product(range(1, spheres + 1), range(spheres + 1, last + 1))
         self._require(code, pairs, "sphere on every wall")

@@ -40,8 +40,7 @@ def write(matrix: Matrix, velocity: float) -> dict[str, str]:
 
     Raises `CaseError`, `DomainError`.
     """
-    matrix.require_spheres(CODE)
-    matrix.require_walls(CODE)
+    matrix.require_all(CODE)
     pairs = pairs_at(matrix, velocity, CODE, LOWEST)
     head = header(matrix, pairs, velocity, code=CODE, ends=_ENDS)
     short = summary(pairs, velocity, code=CODE, ends=_ENDS, fragment=FRAGMENT)

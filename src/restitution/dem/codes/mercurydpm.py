@@ -63,8 +63,7 @@ _AFTER = """    return species;
 
 def write(matrix: Matrix, velocity: float) -> dict[str, str]:
     """The header to include, as text by file name. Raises `CaseError`, `DomainError`."""
-    matrix.require_spheres(CODE)
-    matrix.require_walls(CODE)
+    matrix.require_all(CODE)
     pairs = pairs_at(matrix, velocity, CODE, 0.0)
     head = header(matrix, pairs, velocity, code=CODE, ends=_ENDS)
     own = {pair.i: pair for pair in pairs if pair.i == pair.j}
