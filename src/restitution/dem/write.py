@@ -47,6 +47,7 @@ def table(law: Law) -> list[dict[str, float | str]]:
             "restitution_error": point.error,
             "resolved": point.resolved,
             "compact_fit": fitted,
+            "compact_fit_error": abs(fitted - point.restitution),
             "loading_work_J": point.loading_work,
             "indentation_m": point.indentation,
             "largest_force_N": point.force,
