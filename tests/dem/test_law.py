@@ -130,7 +130,7 @@ def test_what_is_no_law(tmp_path, rough):
         read_law(tmp_path)
     with pytest.raises(OutputError, match="holds no results of a run"):
         law_of(tmp_path)
-    (tmp_path / "table.csv").write_text("")
+    (tmp_path / "study.toml").write_text("")
     with pytest.raises(OutputError, match="is a study of many cases"):
         law_of(tmp_path)
 

@@ -80,7 +80,7 @@ def bare_law(out: Path) -> Law:
 
 
 def _read(out: Path) -> tuple[list[_Row], dict[str, Any]]:
-    if (out / "table.csv").is_file() and not (out / "curve.csv").is_file():
+    if (out / "study.toml").is_file():
         raise OutputError(
             f"{out}: is a study of many cases, and a law is that of one pair; run the case by "
             "itself (`restitution run`) and name its folder"
