@@ -59,6 +59,9 @@ def law_of(first=GLASS, second=GLASS, at=1.0, **changes):
         "conventions": {
             "yield_pressure": "mean pressure of a plastic contact",
             "end_of_contact": "the force is back to zero",
+            "indentation_zero": "first touch",
+            "restitution": "by hand",
+            "restitution_error": "numerical error",
         },
         "yield_velocity": 0.001,
         "sticking_velocity": None,

@@ -112,8 +112,8 @@ ADHESIVE = {"rms": "1 nm", "nodes": 64, "spacing": "0.12 um", "first": "10 nm", 
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
-    def make(**values):
-        text = CASE.format(**values)
+    def make(text=CASE, **values):
+        text = text.format(**values)
         out = tmp_path_factory.mktemp("run") / "out"
         run_realisations(parse_case(text), text, out.parent, ResultsFolder(out))
         return out
@@ -174,6 +174,26 @@ def test_the_verb(run, cli, refused, tmp_path):
     assert "has no unit" in refused("collide", out, "--velocity", "1")
     assert "nothing" in refused("collide", out, "--velocity", "1e-6 m/s")
     assert "holds no results" in refused("collide", tmp_path)
+
+
+def test_a_pair_that_sticks_is_held(run):
+    """Slow enough that adhesion nearly cancels the work of the approach."""
+    values = {**ADHESIVE, "first": "6 nm", "last": "7.5 nm"}
+    out = run(**values, adhesion='work_of_adhesion = "0.5 J/m^2"', steps=3)
+    law, force = bare_law(out), stored_force(out)
+    assert law.sticks_everywhere
+    assert any("sticks at every velocity" in warning for warning in law.warnings)
+    for point in law.points:
+        assert collide_in_time(force, point.velocity).restitution == 0
+
+
+def test_what_was_not_followed_to_separation_cannot_collide(run):
+    adhesion = 'work_of_adhesion = "0.5 J/m^2"'
+    text = CASE.replace("curves = {steps}", 'curves = {steps}\nmethod = "energy-estimate"')
+    out = run(text=text, **ADHESIVE, adhesion=adhesion, steps=2)
+    assert any("is an estimate" in warning for warning in bare_law(out).warnings)
+    with pytest.raises(OutputError, match=r'unloading\.method = "path"'):
+        stored_force(out)
 
 
 def test_what_cannot_collide(run, tmp_path):

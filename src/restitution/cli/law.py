@@ -39,6 +39,9 @@ def law(
         answers.print(_table(found.laws))
     names = ", ".join(path.name for path in written)
     answers.print(f"In {out}: {names}", markup=False, soft_wrap=True)
+    answers.print(f"Its error is: {found.conventions.restitution_error}.", soft_wrap=True)
+    if found.sticks_everywhere:
+        return
     speed = f"{_middle(found):.2g} m/s"
     answers.print(
         f'Next: restitution export {out} --to lammps --velocity "{speed}" -o INPUT',
@@ -50,8 +53,10 @@ def _in_words(law: "Law") -> list[str]:
     lines = []
     if law.sticks_below is not None:
         lines.append(f"sticks below {law.sticks_below:.4g} m/s")
-    if law.fit is None:
-        lines.append("no compact fit: too few velocities (four or more are needed)")
+    if law.fit is None and law.column("restitution").min() > 1 - 1e-3:
+        lines.append("nothing is lost at any of these velocities, and nothing is fitted")
+    elif law.fit is None:
+        lines.append("no compact fit: too few resolved velocities (four or more are needed)")
     else:
         lines.append(
             f"compact fit: {len(law.fit.coefficients)} coefficients, within {law.fit.worst:.1g} of "
@@ -78,4 +83,4 @@ def _table(laws: "tuple[FittedLaw, ...]") -> object:
 
 
 def _middle(law: "Law") -> float:
-    return float((law.lowest * law.highest) ** 0.5)
+    return float((max(law.lowest, law.sticks_below or 0.0) * law.highest) ** 0.5)

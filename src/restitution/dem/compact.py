@@ -5,9 +5,9 @@
 The last term is what adhesion takes from the approach, the same at every velocity (s = V_s² of an
 elastic pair: Thornton & Ning 1998); the polynomial is yielding, whatever the surface makes of it.
 Velocities up to which nothing is lost (e = 1) or the pair sticks (e = 0) are kept out of it. The
-fit is linear least squares in e². Its degree is the one whose fit to all points but one comes
-nearest to the one that was left out (PRESS, Allen 1974); that distance is the fit's error between
-the points.
+fit is linear least squares in e². Its degree is the one that comes nearest to all points, and when
+fitted to all but one, to the one that was left out (as PRESS, Allen 1974, but the worst of them);
+that distance is the fit's error between the points.
 """
 
 from __future__ import annotations
@@ -64,13 +64,16 @@ def compact_fit(law: Law) -> CompactFit | None:
         between=_left_out(v, e2, centre, width, degree, adhesion),
     )
     worst = np.abs(fit.restitution(V) - law.column("restitution", resolved=True)).max()
-    return fit.model_copy(update={"worst": float(worst)})
+    return fit.model_copy(update={"worst": float(worst), "between": max(fit.between, float(worst))})
 
 
 def _best(v: Array, e2: Array, centre: float, width: float, adhesive: bool) -> tuple[int, bool]:
     """Degree, and whether with the term of adhesion, of the smallest error between the points."""
     errors = {
-        (degree, adhesion): _left_out(v, e2, centre, width, degree, adhesion)
+        (degree, adhesion): max(
+            _left_out(v, e2, centre, width, degree, adhesion),
+            _misfit(v, e2, centre, width, degree, adhesion),
+        )
         for degree in range(min(_HIGHEST_DEGREE, v.size - 3) + 1)
         for adhesion in ({False, adhesive} if degree + 2 < v.size else {False})
         if _solve(v, e2, centre, width, degree, adhesion)[-1] >= 0 or not adhesion
@@ -90,6 +93,14 @@ def _solve(v: Array, e2: Array, centre: float, width: float, degree: int, adhesi
     scale = np.abs(basis).max(axis=0)
     solution: Array = np.linalg.lstsq(basis / scale, e2, rcond=None)[0] / scale
     return solution
+
+
+def _misfit(v: Array, e2: Array, centre: float, width: float, degree: int, adhesion: bool) -> float:
+    """The largest difference of e at the points."""
+    fitted = _basis(v, centre, width, degree, adhesion) @ _solve(
+        v, e2, centre, width, degree, adhesion
+    )
+    return float(np.abs(np.sqrt(np.clip(fitted, 0, 1)) - np.sqrt(np.clip(e2, 0, 1))).max())
 
 
 def _left_out(

@@ -27,6 +27,7 @@ _WHOLE = (
     "yield_pressure_Pa",
     "yield_pressure_is",
     "end_of_contact",
+    "restitution_error_is",
 )
 
 

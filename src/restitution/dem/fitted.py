@@ -287,6 +287,8 @@ def _judged(
     found = restitution(law.column("velocity"))
     miss = found - law.column("restitution")
     miss = miss[np.isfinite(found) & law.column("resolved").astype(bool)]
+    if not miss.size:
+        miss, note = np.ones(1), "has no answer at these velocities"
     return FittedLaw(
         name=name,
         source=source,
@@ -294,7 +296,7 @@ def _judged(
         parameters=parameters,
         ends=ends,
         restitution=tuple(None if math.isnan(e) else float(e) for e in found),
-        rms=float(np.sqrt(np.mean(miss**2))) if miss.size else math.nan,
-        worst=float(np.abs(miss).max(initial=0.0)),
+        rms=float(np.sqrt(np.mean(miss**2))),
+        worst=float(np.abs(miss).max()),
         note=note,
     )

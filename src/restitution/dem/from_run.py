@@ -13,7 +13,7 @@ import xarray as xr
 
 from restitution.dem.compact import compact_fit
 from restitution.dem.fitted import fitted_laws
-from restitution.dem.law import Law, Particle, Point, crossing
+from restitution.dem.law import LAW_FILE, Conventions, Law, Particle, Point
 from restitution.errors import CaseError, OutputError
 from restitution.studies.case import parse_case
 from restitution.studies.particles import BodyTable
@@ -35,9 +35,7 @@ def bare_law(out: Path) -> Law:
     whose impact velocity does not exist (adhesion has done more work than the approach) are left
     out. Raises `OutputError` where the folder holds no run, `CaseError` where it has no velocities.
     """
-    rows, summary = _read(out)
-    with xr.open_dataset(out / "results.nc", engine="netcdf4") as stored:
-        text = str(stored.attrs["case"])
+    rows, summary, text = _read(out)
     case = parse_case(text)
     derived, model = summary["derived"], summary["model"]
     if derived["reduced_mass_kg"] is None:
@@ -48,17 +46,20 @@ def bare_law(out: Path) -> Law:
     points = _points(rows)
     if not points:
         raise CaseError(f"{out}: has no depth that an impact reaches; compute deeper ones")
-    velocities = [point.velocity for point in points]
     warnings = list(summary["warnings"])
     if summary["status"] != "complete":
         warnings.insert(0, f"the run is not complete ({summary['status']}: {summary['reason']})")
+    if case.interface.work_of_adhesion > 0 and case.unloading.method == "energy-estimate":
+        warnings.append(
+            'COR is an estimate (unloading.method = "energy-estimate"), and pull-off is not known'
+        )
     if left := len(rows) - len(points):
         warnings.append(
             f"{left} of {len(rows)} depths are left out: no impact turns back there, because "
             "adhesion has done more work than the approach, or no force was found"
         )
     pair = case.pair()
-    return Law(
+    law = Law(
         title=case.title,
         first=_particle("first", case.first),
         second=_particle("second", case.second) if case.second else _particle("first", case.first),
@@ -68,32 +69,68 @@ def bare_law(out: Path) -> Law:
         yield_pressure=derived["yield_pressure_Pa"],
         work_of_adhesion=case.interface.work_of_adhesion,
         model={key: str(value) for key, value in model.items()},
-        conventions=summary["conventions"],
+        conventions=Conventions(
+            **summary["conventions"],
+            restitution_error=_error_is(rows, case.realisations, bool(case.roughness)),
+        ),
         yield_velocity=derived["yield_velocity_m_per_s"],
         sticking_velocity=derived.get("sticking_velocity_m_per_s"),
-        sticks_below=crossing(velocities, [point.ratio for point in points]),
+        sticks_below=None,
         points=tuple(points),
         warnings=tuple(warnings),
         case=text,
         versions=summary["versions"],
     )
+    if law.sticks_everywhere:
+        warnings.append(
+            f"the pair sticks at every velocity that was computed (up to {law.highest:.4g} m/s); "
+            "where it begins to rebound is above"
+        )
+    return law.model_copy(
+        update={"sticks_below": law.curve().begins(), "warnings": tuple(warnings)}
+    )
 
 
-def _read(out: Path) -> tuple[list[_Row], dict[str, Any]]:
+def _read(out: Path) -> tuple[list[_Row], dict[str, Any], str]:
     if (out / "study.toml").is_file():
         raise OutputError(
             f"{out}: is a study of many cases, and a law is that of one pair; run the case by "
             "itself (`restitution run`) and name its folder"
         )
+    if (out / LAW_FILE).is_file():
+        raise OutputError(f"{out}: is a law already; name the folder of the run it was made of")
+    if (out / "curve.csv").is_file() and not (out / "summary.json").is_file():
+        raise OutputError(f"{out}: this run has not ended, or was killed; run it (again)")
     try:
         with open(out / "curve.csv", newline="", encoding="utf-8") as file:
             rows: list[_Row] = list(csv.DictReader(file))
         summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+        with xr.open_dataset(out / "results.nc", engine="netcdf4") as stored:
+            text = str(stored.attrs["case"])
+        whole = len(rows) == summary["depths_computed"]
+    except (OSError, ValueError, KeyError):
         raise OutputError(
             f"{out}: holds no results of a run; name the folder of -o of `restitution run`"
         ) from None
-    return rows, summary
+    if not whole:
+        raise OutputError(
+            f"{out}: curve.csv has {len(rows)} depths, and the run computed "
+            f"{summary['depths_computed']}; the file is damaged: run the case again"
+        )
+    return rows, summary, text
+
+
+def _error_is(rows: list[_Row], surfaces: int, rough: bool) -> str:
+    """What the error of a point includes, and what it does not."""
+    included = ["numerical error"]
+    missing: list[str] = []
+    (included if rows[0].get("discretisation_error") else missing).append("error of the grid")
+    if rough:
+        if surfaces > 1:
+            included.append(f"95 % interval of the mean of {surfaces} surfaces")
+        else:
+            missing.append("scatter from one surface to another")
+    return ", ".join(included) + (f"; not the {' or the '.join(missing)}" if missing else "")
 
 
 def _points(rows: list[_Row]) -> list[Point]:

@@ -1,43 +1,47 @@
 """The restitution law of one pair: what was found at each impact velocity, and how far to trust it.
 
-Between the velocities that were computed W_u/W_l is interpolated by a monotone cubic (PCHIP) in
-ln V. Unlike e, the ratio passes smoothly through zero where the pair begins to stick (W_u < 0
-below), so that velocity is found as well. Beyond the velocities that were computed there is no
-answer.
+Between the velocities that were computed it is interpolated (`interpolation`); beyond them there
+is no answer.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
+from restitution.dem.interpolation import RatioCurve
 from restitution.errors import CaseError, DomainError, OutputError
 from restitution.studies.quantities import read_positive
 
 Array = NDArray[np.float64]
 
 LAW_FILE = "law.json"
+_SAME = 1e-9  # relative difference of velocities that are the same
+
+
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+Share = Annotated[float, Field(ge=0, le=1)]
 
 
 class _Stored(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
 
 class Particle(_Stored):
     """One body of the pair. `radius` in m, None for a flat wall; other units are SI, too."""
 
     name: str
-    radius: float | None
-    youngs_modulus: float
-    poissons_ratio: float
-    density: float | None
+    radius: Positive | None
+    youngs_modulus: Positive
+    poissons_ratio: Annotated[float, Field(gt=-1, le=0.5)]
+    density: Positive | None
 
     @property
     def wall(self) -> bool:
@@ -56,15 +60,21 @@ class Point(_Stored):
     `ratio` is W_u/W_l, negative where the pair sticks; `error` is that of `restitution`.
     """
 
-    velocity: float
-    restitution: float
-    error: float
+    velocity: Positive
+    restitution: Share
+    error: NotNegative
     ratio: float
-    loading_work: float
+    loading_work: Positive
     indentation: float
     force: float
     pull_off_force: float | None
     resolved: bool
+
+    @model_validator(mode="after")
+    def _one_number(self) -> Self:
+        if abs(self.restitution - _root(self.ratio)) > 1e-6:
+            raise ValueError("restitution is not the root of ratio")
+        return self
 
 
 class CompactFit(_Stored):
@@ -120,6 +130,16 @@ class FittedLaw(_Stored):
     note: str = ""
 
 
+class Conventions(_Stored):
+    """What the numbers of a law mean, in words."""
+
+    end_of_contact: str
+    indentation_zero: str
+    restitution: str
+    yield_pressure: str
+    restitution_error: str
+
+
 @dataclass(frozen=True)
 class Estimate:
     """The coefficient of restitution at one velocity, its error, and whether it was resolved."""
@@ -133,19 +153,20 @@ class Law(_Stored):
     """Coefficient of restitution against impact velocity for one pair, in SI units.
 
     `radius`, `contact_modulus`, `mass` are R*, E*, m*; `yield_velocity` and `sticking_velocity`
-    those of the smooth bodies; `sticks_below` the velocity at which this pair begins to rebound.
+    those of the smooth bodies; `sticks_below` the velocity at which this pair begins to rebound,
+    None where it does at all velocities of the points, or at none.
     """
 
     title: str
     first: Particle
     second: Particle
-    radius: float
-    contact_modulus: float
-    mass: float
-    yield_pressure: float | None
-    work_of_adhesion: float
+    radius: Positive
+    contact_modulus: Positive
+    mass: Positive
+    yield_pressure: Positive | None
+    work_of_adhesion: NotNegative
     model: dict[str, str]
-    conventions: dict[str, str]
+    conventions: Conventions
     yield_velocity: float | None
     sticking_velocity: float | None
     sticks_below: float | None
@@ -155,6 +176,19 @@ class Law(_Stored):
     warnings: tuple[str, ...] = ()
     case: str = ""
     versions: dict[str, str] = {}
+
+    @model_validator(mode="after")
+    def _holds_together(self) -> Self:
+        V = self.column("velocity")
+        if not (np.diff(V) > 0).all():
+            raise ValueError("points: velocities must increase")
+        if self.first.wall and self.second.wall:
+            raise ValueError("first, second: both are flat")
+        radii = [body.radius for body in (self.first, self.second) if body.radius is not None]
+        R = 1 / sum(1 / radius for radius in radii)
+        if abs(self.radius / R - 1) > 1e-6:
+            raise ValueError("radius: is not that of the two bodies")
+        return self
 
     @property
     def lowest(self) -> float:
@@ -174,67 +208,46 @@ class Law(_Stored):
     def at(self, velocity: float) -> Estimate:
         """The estimate at `velocity` (m/s).
 
-        Its error is the larger of those of the neighbouring points, and what a straight line
-        between them would give instead of the cubic. Raises `DomainError` beyond the velocities
-        that were computed.
+        Between points its error is what interpolation may be off by, and the larger error of the
+        two neighbours. Raises `DomainError` beyond the velocities that were computed.
         """
-        if not self.lowest * (1 - 1e-9) <= velocity <= self.highest * (1 + 1e-9):
+        if not self.lowest * (1 - _SAME) <= velocity <= self.highest * (1 + _SAME):
             raise DomainError(
                 f"velocity: {velocity:.6g} m/s is outside what was computed for {self.pair} "
                 f"({self.lowest:.4g} to {self.highest:.4g} m/s), and nothing is extrapolated; "
                 "compute the law further, or ask for a velocity within"
             )
         V = self.column("velocity")
-        velocity = min(max(velocity, V[0]), V[-1])
-        ratio, line = interpolate_ratio(V, self.column("ratio"), velocity)
-        k = min(max(int(np.searchsorted(V, velocity)), 1), max(V.size - 1, 1))
-        near = self.points[k - 1 : k + 1] if V.size > 1 else self.points
-        on = [point for point in near if abs(point.velocity / velocity - 1) < 1e-9]
-        if on:
-            return Estimate(on[0].restitution, on[0].error, on[0].resolved)
-        between = abs(_root(ratio) - _root(line))
+        nearest = self.points[int(np.abs(V / velocity - 1).argmin())]
+        if abs(nearest.velocity / velocity - 1) <= _SAME:
+            return Estimate(nearest.restitution, nearest.error, nearest.resolved)
+        curve = self.curve()
+        ratio, off = curve.at(velocity), curve.error(velocity)
+        after = int(np.searchsorted(V, velocity))
+        near = self.points[after - 1 : after + 1]
+        e = _root(ratio)
+        between = max(abs(_root(ratio + off) - e), abs(e - _root(ratio - off)))
         return Estimate(
-            _root(ratio),
+            e,
             max(point.error for point in near) + between,
             all(point.resolved for point in near),
         )
+
+    def curve(self) -> RatioCurve:
+        """W_u/W_l against velocity."""
+        return RatioCurve(
+            self.column("velocity"), self.column("ratio"), adhesive=self.work_of_adhesion > 0
+        )
+
+    @property
+    def sticks_everywhere(self) -> bool:
+        """Whether the pair sticks at every velocity that was computed."""
+        return all(point.ratio <= 0 for point in self.points)
 
     @property
     def pair(self) -> str:
         """The names of the two bodies."""
         return f"{self.first} and {self.second}"
-
-
-def interpolate_ratio(velocities: Array, ratios: Array, velocity: float) -> tuple[float, float]:
-    """W_u/W_l at `velocity` by a monotone cubic in ln V, and by straight lines."""
-    from scipy.interpolate import PchipInterpolator
-
-    if velocities.size == 1:
-        return float(ratios[0]), float(ratios[0])
-    L, at = np.log(velocities), math.log(velocity)
-    return float(PchipInterpolator(L, ratios)(at)), float(np.interp(at, L, ratios))
-
-
-def crossing(velocities: Sequence[float], ratios: Sequence[float]) -> float | None:
-    """The velocity (m/s) below which the pair sticks: where the ratio last rises through zero.
-
-    None where no computed impact sticks, the highest velocity where all do.
-    """
-    sticking = [k for k, ratio in enumerate(ratios) if ratio <= 0]
-    if not sticking:
-        return None
-    last = sticking[-1]
-    if last == len(ratios) - 1:
-        return velocities[last]
-    from scipy.optimize import brentq
-
-    V, r = np.array(velocities), np.array(ratios)
-
-    def ratio(L: float) -> float:
-        return interpolate_ratio(V, r, math.exp(L))[0]
-
-    ends = math.log(velocities[last]), math.log(velocities[last + 1])
-    return math.exp(brentq(ratio, *ends)) if ratio(ends[0]) < 0 else velocities[last]
 
 
 def read_law(folder: Path) -> Law:
@@ -249,9 +262,10 @@ def read_law(folder: Path) -> Law:
     try:
         return Law.model_validate_json(text)
     except ValidationError as error:
-        where = ".".join(map(str, error.errors()[0]["loc"])) or "the whole"
+        first = error.errors()[0]
+        where = ".".join(map(str, first["loc"])) or "the whole"
         raise CaseError(
-            f"{path}: is not a law of this version ({where} is wrong); make it again with "
+            f"{path}: is not a law of this version ({where}: {first['msg']}); make it again with "
             "`restitution law`"
         ) from None
 

@@ -4,12 +4,12 @@
 
 F is the loading curve until the particles stop approaching, and from there the unloading curve of
 that depth. Between the depths the loading force is the slope of a Hermite cubic through the stored
-works (ln W against ln δ where all push), whose slopes at the depths are the stored forces; so the
-particles turn where the energies say, and e checks the unloading curve's forces against the stored
-energy W_u, and the energies' formula against an equation of motion. Unloading curves are monotone
-cubics (PCHIP). They were stored from some depths only; between two of them, curves are blended in
-the form F/F_max against (δ − δ_s)/(δ_max − δ_s), with δ_s (separation) and F_max those of the depth
-itself.
+works (ln W against ln δ where W is like a power of it), whose slopes at the depths are the stored
+forces; so the particles turn where the energies say, and e checks the unloading curve's forces
+against the stored energy W_u, and the energies' formula against an equation of motion. Unloading
+curves are monotone cubics (PCHIP). They were stored from some depths only; between two of them,
+curves are blended in the form F/F_max against (δ − δ_s)/(δ_max − δ_s), with δ_s (separation) and
+F_max those of the depth itself.
 """
 
 from __future__ import annotations
@@ -33,6 +33,7 @@ Force = Callable[[float], float]
 
 _RTOL = 1e-10
 _SLACK = 1e-3  # of the deepest depth: how far beyond it rounding and integration may lead
+_STEEPEST = 6.0  # power of the depth: above it adhesion has nearly cancelled the work
 _SAME = 1e-5  # relative difference of depths whose unloading curves have one shape
 
 
@@ -246,9 +247,11 @@ def _integrate(
 
 def _loading(depth: Array, force: Array, work: Array) -> Force:
     """The force on first loading, m → N: the slope of the stored work, which F is at the depths."""
-    if (force > 0).all() and (work > 0).all():
+    with np.errstate(divide="ignore", invalid="ignore"):
+        powers = force * depth / work
+    if (work > 0).all() and (powers > 0.5).all() and (powers < _STEEPEST).all():
         # Powers of the depth are straight lines in logarithms; below the first depth it is one.
-        L, slope = np.log(depth), force * depth / work
+        L, slope = np.log(depth), powers
         log_work = _hermite(L, np.log(work), slope)
         first = float(L[0])
 
@@ -289,6 +292,11 @@ def _hermite(x: Array, y: Array, slope: Array) -> Callable[[float], tuple[float,
 def _separation(results: xr.Dataset, depth: Array) -> Callable[[float], float]:
     ratio = results["separation_indentation"].values / depth
     known = np.isfinite(ratio)
+    if not known.any():
+        raise OutputError(
+            "the results have no unloading that was followed to separation; run the case with "
+            'unloading.method = "path"'
+        )
     if known.sum() < 2:
         only: float = ratio[known][0]
         return lambda x: only * x

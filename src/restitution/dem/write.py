@@ -45,6 +45,7 @@ def table(law: Law) -> list[dict[str, float | str]]:
             "velocity_m_per_s": point.velocity,
             "restitution": point.restitution,
             "restitution_error": point.error,
+            "restitution_error_is": law.conventions.restitution_error,
             "resolved": point.resolved,
             "compact_fit": fitted,
             "compact_fit_error": abs(fitted - point.restitution),
@@ -59,8 +60,8 @@ def table(law: Law) -> list[dict[str, float | str]]:
             "reduced_mass_kg": law.mass,
             "contact_modulus_Pa": law.contact_modulus,
             "yield_pressure_Pa": _or_nan(law.yield_pressure),
-            "yield_pressure_is": law.conventions["yield_pressure"],
-            "end_of_contact": law.conventions["end_of_contact"],
+            "yield_pressure_is": law.conventions.yield_pressure,
+            "end_of_contact": law.conventions.end_of_contact,
         }
         for point, fitted in zip(law.points, fit, strict=True)
     ]

@@ -38,6 +38,7 @@ CONVENTIONS = {
     "yield_pressure": "largest contact pressure, a hardness: about 2.8 times the yield strength",
 }
 
+_VELOCITY = 1e-3  # difference of an impact velocity from that asked for that is worth a warning
 _BALANCE = 0.01  # difference of unloading work and stored energy that is worth a warning
 
 
@@ -191,7 +192,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Progress)
     patches = [row["median_patch_nodes"] for row in out.rows]
     depths = [row["indentation_m"] for row in out.rows]
     found = [unresolved_warning(depths, patches), adhesion_warning(depths, run.adhesive_nodes)]
-    found.append(_imprecise(out, case))
+    found += [_imprecise(out, case), _velocities_missed(out, case)]
     if not contact.adhesive:
         found.append(_unbalanced(run.unloading_checks))
     elastic = math.isinf(contact.yield_pressure)
@@ -252,6 +253,22 @@ def _imprecise(out: ResultsFolder, case: Case) -> str | None:
         f"restitution_error is above {asked:g} at {len(missed)} of {len(out.rows)} depths, at "
         f"worst {worst['restitution_error']:.2g} at {1e9 * worst['indentation_m']:.4g} nm: contact "
         "comes and goes in jumps there; use a finer grid"
+    )
+
+
+def _velocities_missed(out: ResultsFolder, case: Case) -> str | None:
+    """One line on impact velocities that are not those asked for, or None."""
+    if case.impact is None:
+        return None
+    pairs = zip((row["impact_velocity_m_per_s"] for row in out.rows), case.depths(), strict=False)
+    off = {asked: abs(met / asked - 1) for met, asked in pairs}
+    missed = [asked for asked, miss in off.items() if not miss <= _VELOCITY]
+    if not missed:
+        return None
+    worst = max(missed, key=lambda asked: off[asked])
+    return (
+        f"{len(missed)} of {len(off)} impact velocities are met only within the error of the work, "
+        f"at worst {worst:g} m/s within {off[worst]:.1%}: curve.csv has those that were met"
     )
 
 

@@ -29,6 +29,7 @@ from restitution.dem.matrix import Matrix
 
 CODE = "LAMMPS"
 LOWEST = 0.001  # reproduced within 0.5 % with `STEPS` steps a contact
+_FAR = 0.1  # of e: a fitted law that is further off is not offered
 FRAGMENT, COLLISION = "restitution.lmp", "collision.in"
 _ENDS = (
     "the overlap is back to zero. The damping pulls shortly before; do not add limit_damping, "
@@ -68,8 +69,9 @@ def _fragment(pairs: list[Pair]) -> str:
         lines.append("# Laws with walls only: no pair_style, give your own between spheres.")
     if walls:
         lines += [
-            "# Walls: one fix for each type of sphere, on the group of that type, such as",
+            "# Walls: one fix for each type of sphere and each wall, on the group of that type, as",
             *(
+                f"#   group type_{p.i} type {p.i}\n"
                 f"#   fix floor_{p.i}_{p.j} type_{p.i} wall/gran "
                 f"${{wall_{p.i}_{p.j}}} zplane 0.0 NULL"
                 for p in walls
@@ -78,7 +80,7 @@ def _fragment(pairs: list[Pair]) -> str:
         ]
     for pair in pairs:
         for fit in pair.law.laws:
-            if fit.name == "lammps-mdr":
+            if fit.name == "lammps-mdr" and fit.worst <= _FAR:
                 lines += _mdr(pair, fit)
     return "\n".join(lines) + "\n"
 
