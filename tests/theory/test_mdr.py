@@ -1,8 +1,6 @@
-import os
 import shutil
 import subprocess
-import sys
-from pathlib import Path
+from functools import partial
 
 import numpy as np
 import pytest
@@ -166,21 +164,21 @@ def test_a_sphere_driven_in_by_more_than_its_radius_has_no_answer():
 
 
 @pytest.mark.parametrize("V", [0.25, 0.27, 1.0, 5.0])  # yield: 0.2611 m/s
-def test_the_restitution_of_lammps_on_a_wall(V, tmp_path):
-    path = lammps(ONE_SPHERE + WALL.replace("{V}", str(V)), V, tmp_path)
+def test_the_restitution_of_lammps_on_a_wall(V, lammps):
+    path = lammps(ONE_SPHERE + WALL.replace("{V}", str(V)), V)
     assert path[-1, 1] / V == pytest.approx(mdr.restitution(V, *MATERIAL, MASS), abs=3e-4)
 
 
 @pytest.mark.parametrize(("V", "published"), [(0.5, 0.908), (2.5, 0.613)])
-def test_the_restitution_of_lammps_of_two_equal_spheres(V, published, tmp_path):
-    path = lammps(ONE_SPHERE + PAIR.replace("{V}", str(V)), V, tmp_path)
+def test_the_restitution_of_lammps_of_two_equal_spheres(V, published, lammps):
+    path = lammps(ONE_SPHERE + PAIR.replace("{V}", str(V)), V)
     e = mdr.restitution(V, *MATERIAL, MASS)
     assert path[-1, 1] / V == pytest.approx(e, abs=3e-4)
     assert round(float(e), 3) == published
 
 
-def test_the_force_of_lammps(tmp_path):
-    path = lammps(ONE_SPHERE + WALL.replace("{V}", "5"), 5, tmp_path)
+def test_the_force_of_lammps(lammps):
+    path = lammps(ONE_SPHERE + WALL.replace("{V}", "5"), 5)
     d, F = (R - path[:, 0]), path[:, 2]
     turn = np.argmax(d)
     ours = np.concatenate(
@@ -193,13 +191,16 @@ def test_the_force_of_lammps(tmp_path):
     assert np.count_nonzero(F) > 50
 
 
-def lammps(script, V, folder):
-    """Rows of height, velocity and force while LAMMPS runs `script`, at least until separation."""
-    program = shutil.which("lmp")
+@pytest.fixture
+def lammps(lammps_environment, tmp_path):
+    """Run a script in LAMMPS; rows of height, velocity and force at least until separation."""
+    program = shutil.which("lmp", path=lammps_environment["PATH"])
     if program is None:
         pytest.skip("LAMMPS (lmp) is not installed")
-    libraries = [str(Path(sys.prefix) / "lib"), os.environ.get("LD_LIBRARY_PATH", "")]
-    environment = os.environ | {"LD_LIBRARY_PATH": ":".join(filter(None, libraries))}
+    return partial(run_lammps, program, lammps_environment, tmp_path)
+
+
+def run_lammps(program, environment, folder, script, V):
     steps = int(4e-5 / V**0.2 / 1e-9)
     (folder / "in.lmp").write_text(f"{script}\nthermo 50\nrun {steps}\n")
     result = subprocess.run(
