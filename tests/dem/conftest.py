@@ -7,6 +7,7 @@ import subprocess
 import numpy as np
 import pytest
 
+from restitution.dem.fitted import fitted_laws
 from restitution.dem.law import Law, Particle, Point
 from restitution.dem.matrix import Matrix, matrix_of
 
@@ -72,6 +73,13 @@ def law_of(first=GLASS, second=GLASS, at=1.0, **changes):
 def law():
     """The maker of laws, `law_of`."""
     return law_of
+
+
+@pytest.fixture(scope="session")
+def points(law):
+    """The law of two glass spheres, with what is fitted to it."""
+    found = law(yield_pressure=560e6)
+    return found.model_copy(update={"laws": fitted_laws(found)})
 
 
 @pytest.fixture(scope="session")

@@ -1,17 +1,13 @@
 """Theories beside one another: each is its own module's, and silent outside of its range."""
 
-import csv
 import math
 
 import numpy as np
 import pytest
 
 from restitution.dem import theories as room
-from restitution.dem import theory_figure as drawn
-from restitution.dem.closed_forms import FORMS
-from restitution.dem.fitted import fitted_laws
 from restitution.dem.law import Particle
-from restitution.errors import CaseError, OutputError
+from restitution.errors import CaseError
 from restitution.studies.case import parse_case
 from restitution.theory import (
     adhesive_thornton_ning,
@@ -280,13 +276,6 @@ def test_a_case_without_density_is_refused():
         room.theories(case_of(second=SPHERE, depths=depths), V)
 
 
-@pytest.fixture(scope="module")
-def points(law):
-    """The law of two glass spheres, with what is fitted to it."""
-    found = law(yield_pressure=560e6)
-    return found.model_copy(update={"laws": fitted_laws(found)})
-
-
 def test_a_law_adds_its_points_and_what_is_fitted_to_them(points):
     case = case_of()
     V = room.velocities_of(case, points)
@@ -361,41 +350,8 @@ def test_a_law_with_another_interface_says_so(points, law):
     assert "p_y = 2000 MPa, w = 0.3 J/m^2" in said
 
 
-def test_the_files(points, tmp_path):
-    case = case_of()
-    V = room.velocities_of(case, points)
-    found = room.theories(case, V, points)
-    written = drawn.write_theories(case, V, found, tmp_path / "out", points)
-    assert [path.name for path in written] == ["theory.csv", "theory.png"]
-    with open(written[0], newline="") as file:
-        rows = list(csv.DictReader(file))
-    assert list(rows[0]) == ["velocity_m_per_s", *(each.name for each in found)]
-    for each in found:
-        column = [float(row[each.name] or "nan") for row in rows]
-        np.testing.assert_array_equal(column, each.restitution)
-    assert rows[0]["johnson"] == ""
-    with pytest.raises(OutputError, match="not empty"):
-        drawn.write_theories(case, V, found, tmp_path / "out")
-
-
-def test_the_figure_draws_what_has_an_answer_and_marks_yield_and_sticking(points):
-    case = case_of(second=WALL, interface=PLASTIC + 'work_of_adhesion = "0.01 J/m^2"\n')
-    V = np.geomspace(1e-5, 1, 25)
-    (axes,) = drawn.figure(case, V, room.theories(case, V)).axes
-    names = [text.get_text() for text in axes.get_legend().get_texts()]
-    assert "sticking" in names
-    assert {text.get_text() for text in axes.texts} == {"$V_y$", "$V_s$"}
-    nowhere = {each.name for each in room.theories(case, V) if np.isnan(each.restitution).all()}
-    assert not nowhere & set(names)
-
-    V = points.column("velocity")
-    (axes,) = drawn.figure(case_of(), V, room.theories(case_of(), V, points), points).axes
-    names = [text.get_text() for text in axes.get_legend().get_texts()]
-    assert names[0] == "computed"
-    assert "luding (fit)" in names
-
-
-def test_every_theory_has_a_line_of_its_own(points):
-    names = {*FORMS, *(each.name for each in room.theories(case_of(), V, points))}
-    lines = [drawn._LINES[name] for name in names - {"computed"}]
-    assert len(set(lines)) == len(lines)
+def test_nothing_is_fitted_to_what_is_not_resolved(law):
+    coarse = tuple(point.model_copy(update={"resolved": False}) for point in law().points)
+    found = law(points=coarse)
+    assert "brilliantov" not in by_name(case_of(), V, found)
+    assert "no velocity of the law is resolved" in room.left_out(case_of(), found)["brilliantov"]

@@ -50,10 +50,12 @@ def law(
 
 
 def _in_words(law: "Law") -> list[str]:
+    from restitution.dem.law import LOSS
+
     lines = []
     if law.sticks_below is not None:
         lines.append(f"sticks below {law.sticks_below:.4g} m/s")
-    if law.fit is None and law.column("restitution").min() > 1 - 1e-3:
+    if law.fit is None and law.column("restitution").min() > 1 - LOSS:
         lines.append("nothing is lost at any of these velocities, and nothing is fitted")
     elif law.fit is None:
         lines.append("no compact fit: too few resolved velocities (four or more are needed)")

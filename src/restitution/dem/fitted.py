@@ -16,13 +16,12 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.dem.law import FittedLaw, Law
+from restitution.dem.law import LOSS, FittedLaw, Law
 from restitution.theory import eepa, luding, mdr, sticking, thornton_ning, walton_braun
 
 Array = NDArray[np.float64]
 Parameters = dict[str, float]
 
-_LOSS = 1e-3  # of e: below it nothing can be fitted
 _MOST = 1e6  # ratio of stiffnesses
 # The parameters of each set of springs, as its theory takes them.
 _WALTON_BRAUN = ("loading_stiffness_N_per_m", "unloading_stiffness_N_per_m", "hardening_per_m")
@@ -44,14 +43,14 @@ _AT_FORCE_ZERO = "separation, where the force is back to zero"
 
 def fitted_laws(law: Law) -> tuple[FittedLaw, ...]:
     """Every force law that can be fitted to `law`; none where it loses nothing or is unresolved."""
-    if _seen(law, "restitution").min(initial=1.0) > 1 - _LOSS:
+    if _seen(law, "restitution").min(initial=1.0) > 1 - LOSS:
         return ()
     return tuple(_all(law))
 
 
 def _all(law: Law) -> Iterator[FittedLaw]:
     yield _constant(law)
-    if _seen(law, "restitution").max() < _LOSS:
+    if _seen(law, "restitution").max() < LOSS:
         return  # everything sticks, and that is all there is to say
     yield from _thornton_ning(law)
     yield _walton_braun(law)

@@ -22,6 +22,8 @@ from restitution.studies.quantities import read_positive
 Array = NDArray[np.float64]
 
 LAW_FILE = "law.json"
+LOSS = 1e-3
+"""Of e: a law that loses less is not fitted, nor is one that returns less."""
 _SAME = 1e-9  # relative difference of velocities that are the same
 
 

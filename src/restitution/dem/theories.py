@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.dem.closed_forms import FORMS, SOURCES, Bodies, speed, within
-from restitution.dem.law import FittedLaw, Law
+from restitution.dem.law import LOSS, FittedLaw, Law
 from restitution.errors import CaseError
 from restitution.studies.case import Case
 from restitution.theory import brilliantov
@@ -23,7 +23,6 @@ COMPUTED = "computed"
 """The name of our own points among the theories."""
 
 _SAME = 1e-6  # of R*, E*, m*
-_LOSS = 1e-3  # of e: below it there is nothing to fit
 _FITTED = ("constant", "walton-braun", "luding", "eepa")  # what only a fit gives parameters to
 
 
@@ -155,7 +154,7 @@ def _of_law(bodies: Bodies, law: Law, V: Array) -> Iterator[Theory]:
     if not _cannot_fit(law):
         beta = _dissipation(law)
         e = brilliantov.restitution(own, beta)
-        miss = e - law.column("restitution")
+        miss = (e - law.column("restitution"))[law.column("resolved").astype(bool)]
         yield Theory(
             "brilliantov",
             SOURCES["brilliantov"],
@@ -195,10 +194,12 @@ def _restitution_of(each: FittedLaw) -> Array:
 
 def _cannot_fit(law: Law) -> str:
     """Why nothing can be fitted to `law`; empty if it can."""
-    e = law.column("restitution")
-    if e.min() > 1 - _LOSS:
+    e = law.column("restitution", resolved=True)
+    if not e.size:
+        return "no velocity of the law is resolved by its grid, and there is nothing to fit to"
+    if e.min() > 1 - LOSS:
         return "the law loses nothing, and there is nothing to fit"
-    return "all of the law sticks, and there is nothing to fit" if e.max() < _LOSS else ""
+    return "all of the law sticks, and there is nothing to fit" if e.max() < LOSS else ""
 
 
 def _dissipation(law: Law) -> float:
