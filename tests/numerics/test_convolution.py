@@ -165,4 +165,4 @@ def test_a_filter_is_symmetric_and_keeps_the_sign_of_its_symbol(shape, seed):
 
 def test_small_transforms_take_one_thread_and_large_ones_what_there_is():
     assert threads_for(100 * 100) == 1
-    assert threads_for(512 * 512) == 0
+    assert threads_for(800 * 800) == 0

@@ -121,6 +121,43 @@ def test_it_agrees_with_least_squares_on_the_cholesky_factor(n, preconditioned, 
     assert found.residual == approx(kkt_violation(A, b, found.point, lower, upper), abs=1e-12 * n)
 
 
+@settings(deadline=None, max_examples=30)
+@given(st.integers(2, 30), seeds)
+def test_the_energy_falls_at_every_iteration(n, seed):
+    rng = np.random.default_rng(seed)
+    A, b = random_matrix(rng, n, condition=1e3), 3 * rng.normal(size=n)
+    lower, upper = random_bounds(rng, n)
+    start = 5 * rng.normal(size=n)
+    points = [minimise(A, b, lower, upper, start=start.copy(), max_iterations=k)[0].point
+              for k in range(20)]  # fmt: skip
+    energies = np.array([0.5 * p @ A @ p - b @ p for p in points])
+    assert (np.diff(energies) <= 1e-12 * np.abs(energies).max()).all()
+
+
+@settings(deadline=None, max_examples=30)
+@given(st.integers(5, 40), seeds)
+def test_an_iteration_takes_one_product(n, seed):
+    """Whether or not it meets a bound; an iteration that computes the gradient anew is one, too."""
+    rng = np.random.default_rng(seed)
+    A, b = random_matrix(rng, n), 3 * rng.normal(size=n)
+    found, applied = minimise(A, b, *random_bounds(rng, n))
+    assert found.converged
+    assert len(applied) <= found.iterations + 2  # the first gradient, and the one believed
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1e6])
+def test_a_preconditioner_of_another_scale_costs_some_iterations(scale):
+    """The length of the first trial step is that of the preconditioner, and wrong here."""
+    rng = np.random.default_rng(13)
+    A, b = random_matrix(rng, 20), 3 * rng.normal(size=20)
+    lower, upper = random_bounds(rng, 20)
+    right, _ = minimise(A, b, lower, upper)
+    wrong, _ = minimise(A, b, lower, upper, inverse=scale * np.eye(20))
+    assert wrong.converged
+    assert_allclose(wrong.point, right.point, atol=1e-9)
+    assert wrong.iterations <= right.iterations + 25
+
+
 def test_without_bounds_it_is_conjugate_gradients():
     """At most n steps in exact arithmetic, and one with the exact inverse."""
     rng = np.random.default_rng(3)

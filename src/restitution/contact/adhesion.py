@@ -17,7 +17,7 @@ from restitution.numerics.window import Box, bounding_box, reframe, union, widen
 Array = NDArray[np.float64]
 
 # While nodes are let go the contact is solved this well, in parts of the opening at its edge.
-_RELEASING = 0.05
+_RELEASING = 0.01
 
 
 def peel(

@@ -16,22 +16,29 @@ steps and residuals of its own (`items`).
 
 from __future__ import annotations
 
-from collections import deque
 from dataclasses import dataclass
-from functools import reduce
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.numerics.items import dot, largest, ratio
+from restitution.numerics.items import (
+    Flag,
+    Number,
+    anywhere,
+    choose,
+    dot,
+    largest,
+    ratio,
+)
 
 Array = NDArray[np.float64]
 Bound = Array | float
 
-_MEMORY = 8  # iterations over which the energy must fall
-_HALVINGS = 30
-_DRIFT = 1e-3  # of the violation, after which the gradient is computed anew
+_DRIFT = 1e-4  # of the violation, after which the gradient is computed anew
+_NEARLY = 0.8  # of what was projected: where this much is best, all of it is taken
+# The best step changes between long and short; the length of the trials follows half-heartedly.
+_SHORTER, _LONGER, _DAMPED = 0.1, 3.0, 0.8
 
 
 class Operator(Protocol):
@@ -45,20 +52,22 @@ class Operator(Protocol):
 class Minimum:
     """Where the minimiser stopped: the point, its gradient, and how far both can be trusted.
 
-    `residual` and `converged` are of shape (*batch, 1, 1).
+    `residual` and `converged` are numbers, one for each item.
     """
 
     point: Array
     gradient: Array
-    residual: Array
+    residual: Number
     iterations: int
-    converged: NDArray[np.bool_]
+    converged: Flag
 
 
 def free_nodes(p: Array, g: Array, lower: Bound, upper: Bound) -> NDArray[np.bool_]:
     """Nodes that may go downhill: between the bounds, or on one and pushed off it."""
     free = p > lower
     free |= g < 0
+    if _is_absent(upper):
+        return free
     below = p < upper
     below |= g > 0
     free &= below
@@ -80,33 +89,31 @@ def minimise_quadratic(
 ) -> Minimum:
     """Projected conjugate gradients, Polak–Ribière+, preconditioned on the free nodes.
 
-    The structure is that of Polonsky and Keer (1999, Wear 231, 206–219) with bounds on both sides:
-    search among the free nodes, exact step, project onto the bounds. Two changes make it fast: the
-    direction is not reset when nodes change sides (Polak–Ribière+ forgets by itself), and the
-    residual is preconditioned by an approximate inverse of K masked to the free nodes.
+    The search among the free nodes is that of Polonsky and Keer (1999, Wear 231, 206–219) with
+    bounds on both sides, changed in three ways. The direction, as long as the last steps suggest,
+    is projected onto the bounds before the product with K, not after it; the step is the best part
+    of that, so an iteration takes one product and the energy always falls. The direction is not
+    reset when nodes change sides (Polak–Ribière+ forgets by itself). And the residual is
+    preconditioned by an approximate inverse of K.
 
     `start` is overwritten. `tolerance` is on the violation, in the units of `b`; an item that is
     there rests until all are. The gradient follows the steps with the products of `quick`,
     which may be K in single precision; it is computed anew with K whenever the violation has fallen
-    to a thousandth, and the result is accepted only on such a gradient; or, if `rough`, on one that
-    `quick` has led there, which will do for a large tolerance.
-    Projecting after an exact step may raise the energy; where it has not fallen below the highest
-    of the last few iterations, a descending step is taken instead, so that no cycle can last
-    (Grippo, Lampariello and Lucidi 1986, SIAM J. Numer. Anal. 23, 707–716). Not converging is
-    reported in the result, never raised.
+    by `_DRIFT`, and the result is accepted only on such a gradient; or, if `rough`, on one that
+    `quick` has led there, which will do for a large tolerance. Not converging is reported in the
+    result, never raised.
     """
     quick = K if quick is None else quick
     K = quick if rough else K
     p = np.clip(start, lower, upper, out=start)
-    g = _gradient(K, p, b)
+    g, exact = _gradient(quick, p, b), quick is K
     free = free_nodes(p, g, lower, upper)
     r = g * free  # uphill, where there is a way down
     residual = largest(r)
-    low = _DRIFT * residual
-    d, r_old, p_old, work = (np.zeros_like(p) for _ in range(4))
-    rz_old, energy, exact = np.full_like(residual, np.inf), _energy(p, g, b), True
-    stuck = np.zeros_like(residual, dtype=bool)
-    energies: deque[Array] = deque(maxlen=_MEMORY)
+    low = _DRIFT * residual  # where the gradient is computed anew
+    d, r_old, trial, work = (np.zeros_like(p) for _ in range(4))
+    rz_old, stuck = np.zeros_like(residual), residual < 0
+    length = stretch = np.ones_like(residual)  # of the next trial step, and its last change
     iteration = 0
 
     for iteration in range(1, max_iterations + 1):
@@ -120,45 +127,41 @@ def minimise_quadratic(
             if not going.all():
                 r *= going
             z = precondition(r, out=work)
-            z *= free
             rz = dot(r, z)
-            d *= np.maximum(0.0, ratio(rz - dot(r_old, z), rz_old))
+            kept = ratio(rz - dot(r_old, z), rz_old)
+            d *= choose(kept > 0, kept, 0.0) * stretch
+            z *= length
             d -= z
             d *= free
-            slope = dot(r, d)
-            uphill = going & (slope >= 0)
-            if uphill.any():
-                d = np.where(uphill, -z, d)
-                slope = np.where(uphill, -rz, slope)
+            np.add(p, d, out=trial)
+            cut = _outside(trial, lower, upper)
+            if cut.any():
+                np.clip(trial, lower, upper, out=trial)
+                np.subtract(trial, p, out=d)
             Kd = quick(d, out=work)
-            curvature = dot(d, Kd)
-            stuck |= going & ~((curvature > 0) & (curvature < np.inf))
+            slope, curvature = dot(r, d), dot(d, Kd)
+            stuck |= ~(curvature < np.inf) | ((slope < 0) & (curvature <= 0))
             if stuck.all():
                 break
             step = ratio(-slope, curvature)
-            r, r_old, rz_old, exact = r_old, r, rz, rough
-            np.multiply(d, step, out=p_old)
-            p_old += p
-            p, p_old = p_old, p
-            if ((p < lower) | (p > upper)).any():
-                np.clip(p, lower, upper, out=p)
-                np.subtract(p, p_old, out=work)
-                g += quick(work, out=work)
-                energy = _energy(p, g, b)
-                recent = reduce(np.maximum, energies) if len(energies) == _MEMORY else np.inf
-                rising = going & (energy >= recent)
-                if rising.any():
-                    lower_p, lower_g = _descend(K, b, lower, upper, p_old, r_old, rising)
-                    p, g = np.where(rising, lower_p, p), np.where(rising, lower_g, g)
-                    energy = _energy(p, g, b)
-                    d *= ~rising
-                    r_old *= ~rising
-                    rz_old = np.where(rising, np.inf, rz_old)
-            else:
-                Kd *= step
-                g += Kd
-                energy = energy + 0.5 * step * slope
-            energies.append(energy)
+            taken = choose(cut & (step > _NEARLY), 1.0, np.maximum(step, 0.0))
+            r, r_old, exact = r_old, r, rough
+            if (taken > 1).any():
+                np.multiply(d, taken, out=r)
+                r += p
+                taken = choose(_outside(r, lower, upper), 1.0, taken)
+            if not (taken == 1).all():
+                np.multiply(d, taken, out=r)
+                r += p
+                np.copyto(r, trial, where=taken == 1)  # exactly on the bounds
+                trial, r = r, trial
+                Kd *= taken
+            p, trial = trial, p
+            g += Kd
+            rz_old = choose(step > 0, rz, 0.0)
+            stretch = np.minimum(np.maximum(step, _SHORTER), _LONGER) ** _DAMPED
+            stretch = choose(going, stretch, 1.0)
+            length = length * stretch
         free = free_nodes(p, g, lower, upper)
         np.multiply(g, free, out=r)
         residual = largest(r)
@@ -170,7 +173,20 @@ def minimise_quadratic(
     return Minimum(p, g, residual, iteration, converged=residual <= tolerance)
 
 
-def violation(p: Array, g: Array, lower: Bound, upper: Bound) -> Array:
+def _outside(p: Array, lower: Bound, upper: Bound) -> Flag:
+    """Whether each item leaves its bounds somewhere."""
+    outside = p < lower
+    if not _is_absent(upper):
+        outside |= p > upper
+    return anywhere(outside)
+
+
+def _is_absent(upper: Bound) -> bool:
+    """Whether there is no upper bound, so that nothing needs to be compared with it."""
+    return isinstance(upper, float) and upper == np.inf
+
+
+def violation(p: Array, g: Array, lower: Bound, upper: Bound) -> Number:
     """Largest violation of the optimality conditions, in the units of the gradient."""
     return largest(g * free_nodes(p, g, lower, upper))
 
@@ -179,29 +195,3 @@ def _gradient(K: Operator, p: Array, b: Array, out: Array | None = None) -> Arra
     g = K(p, out=out) if p.any() else np.zeros_like(p)
     g -= b
     return g
-
-
-def _descend(
-    K: Operator,
-    b: Array,
-    lower: Bound,
-    upper: Bound,
-    p: Array,
-    uphill: Array,
-    wanted: NDArray[np.bool_],
-) -> tuple[Array, Array]:
-    """Projected steepest descent from p, shortened until the energy of the items `wanted` falls."""
-    g = _gradient(K, p, b)
-    step = ratio(dot(uphill, uphill), dot(uphill, K(uphill)))
-    for _ in range(_HALVINGS):
-        trial = np.clip(p - step * uphill, lower, upper)
-        g_trial = _gradient(K, trial, b)
-        falls = dot(g + g_trial, trial - p) < 0  # twice the change of a quadratic
-        if (falls | ~wanted).all():
-            break
-        step = np.where(falls, step, 0.5 * step)
-    return trial, g_trial
-
-
-def _energy(p: Array, g: Array, b: Array) -> Array:
-    return 0.5 * (dot(p, g) - dot(p, b))

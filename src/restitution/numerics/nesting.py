@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.numerics.convolution import FreeConvolution, SpectralFilter
-from restitution.numerics.items import somewhere
+from restitution.numerics.items import highest, somewhere
 from restitution.numerics.minimise import Bound, Minimum, minimise_quadratic, violation
 from restitution.numerics.window import Box, bounding_box, shape_of, union, widen
 
@@ -100,7 +100,8 @@ def _first_guess(system: System, b: Array, upper: Bound, level: int) -> Array:
         start=_first_guess(system, coarse, upper, level + 1),
         precondition=inverse,
         quick=K.quick,
-        tolerance=_COARSE_ACCURACY * np.maximum(b.max(axis=(-2, -1), keepdims=True), 0.0),
+        rough=True,
+        tolerance=_COARSE_ACCURACY * np.maximum(highest(b), 0.0),
         max_iterations=_COARSE_ITERATIONS,
     )
     rows, columns = b.shape[-2:]
