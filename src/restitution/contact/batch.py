@@ -28,6 +28,7 @@ from restitution.contact.equilibrium import (
 from restitution.contact.state import State
 from restitution.errors import CaseError
 from restitution.numerics.device import current
+from restitution.numerics.items import every
 from restitution.numerics.nesting import minimise_nested
 from restitution.numerics.window import union
 
@@ -58,7 +59,7 @@ def solve_batch(
         max_iterations=MAX_ITERATIONS,
     )
     reached = device.get(found.residual)[:, 0, 0] / scales
-    if not found.converged.all():
+    if not every(found.converged):
         worst = int(reached.argmax())
         raise not_converged(f"contact {worst + 1} of {len(contacts)}", indentations[worst],
                             reached[worst], residual, found.iterations)  # fmt: skip

@@ -24,6 +24,7 @@ from restitution.contact.state import State
 from restitution.errors import DomainError, NotConvergedError
 from restitution.numerics.convolution import FreeConvolution, SpectralFilter
 from restitution.numerics.device import current
+from restitution.numerics.items import every
 from restitution.numerics.minimise import minimise_quadratic
 from restitution.numerics.nesting import System, minimise_nested
 from restitution.numerics.window import NOWHERE, Box, bounding_box, shape_of, widen
@@ -80,7 +81,7 @@ def equilibrate(
         )
         convolutions = K.count
     reached = float(found.residual.max()) / scale
-    if not found.converged.all():
+    if not every(found.converged):
         raise not_converged("the solve", indentation, reached, residual, found.iterations)
     return settled(contact, indentation, box, b, device.get(found.point),
                    device.get(found.gradient), limit=limit, history=history, residual=reached,

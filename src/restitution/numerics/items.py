@@ -65,6 +65,16 @@ def choose(condition: Flag, a: Number | float, b: Number | float) -> Number:
     return np.where(condition, a, b)
 
 
+def some(flags: Flag) -> bool:
+    """Whether any item is true."""
+    return bool(flags if flags.ndim == 0 else flags.any())
+
+
+def every(flags: Flag) -> bool:
+    """Whether all items are true."""
+    return bool(flags if flags.ndim == 0 else flags.all())
+
+
 def somewhere(mask: Mask) -> Mask:
     """The nodes that are true in any item, of shape (nx, ny)."""
     nodes = mask if mask.ndim == 2 else mask.any(axis=0)

@@ -28,8 +28,10 @@ from restitution.numerics.items import (
     anywhere,
     choose,
     dot,
+    every,
     largest,
     ratio,
+    some,
 )
 
 Array = NDArray[np.float64]
@@ -118,13 +120,13 @@ def minimise_quadratic(
 
     for iteration in range(1, max_iterations + 1):
         going = ~stuck & (residual > (tolerance if exact else np.maximum(tolerance, low)))
-        if not going.any():
+        if not some(going):
             if exact:
                 iteration -= 1
                 break
             g, exact = _gradient(K, p, b, out=g), True
         else:
-            if not going.all():
+            if not every(going):
                 r *= going
             z = precondition(r, out=work)
             rz = dot(r, z)
@@ -135,22 +137,22 @@ def minimise_quadratic(
             d *= free
             np.add(p, d, out=trial)
             cut = _outside(trial, lower, upper)
-            if cut.any():
+            if some(cut):
                 np.clip(trial, lower, upper, out=trial)
                 np.subtract(trial, p, out=d)
             Kd = quick(d, out=work)
             slope, curvature = dot(r, d), dot(d, Kd)
             stuck |= ~(curvature < np.inf) | ((slope < 0) & (curvature <= 0))
-            if stuck.all():
+            if every(stuck):
                 break
             step = ratio(-slope, curvature)
             taken = choose(cut & (step > _NEARLY), 1.0, np.maximum(step, 0.0))
             r, r_old, exact = r_old, r, rough
-            if (taken > 1).any():
+            if some(taken > 1):
                 np.multiply(d, taken, out=r)
                 r += p
                 taken = choose(_outside(r, lower, upper), 1.0, taken)
-            if not (taken == 1).all():
+            if not every(taken == 1):
                 np.multiply(d, taken, out=r)
                 r += p
                 np.copyto(r, trial, where=taken == 1)  # exactly on the bounds

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.numerics.convolution import FreeConvolution, SpectralFilter
-from restitution.numerics.items import highest, somewhere
+from restitution.numerics.items import every, highest, somewhere
 from restitution.numerics.minimise import Bound, Minimum, minimise_quadratic, violation
 from restitution.numerics.window import Box, bounding_box, shape_of, union, widen
 
@@ -69,13 +69,13 @@ def minimise_nested(
             return found, products
         p[...] = 0.0
         p[inside] = found.point
-        iterations, converged = found.iterations, found.converged.all()
+        iterations, converged = found.iterations, every(found.converged)
         del K, inverse, found  # their arrays make room for those of the check
         g = K_everywhere(p)
         g -= b
         products += 1
         residual = violation(p, g, 0.0, upper)
-        if (residual <= tolerance).all() or not converged:
+        if every(residual <= tolerance) or not converged:
             return Minimum(p, g, residual, iterations, residual <= tolerance), products
         wider = union(window, bounding_box(somewhere(g < -tolerance)))
         # The same window again: what the last digits of the check leave, all nodes mend.
