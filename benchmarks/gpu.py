@@ -33,14 +33,14 @@ def seconds(work, repeats: int) -> tuple[float, object]:
     return statistics.median(times), answer
 
 
-def least_seconds(n: int, products: int, iterations: int) -> float:
+def least_seconds(n: int, products: int) -> float:
     """What moving the arrays of a solve on n × n nodes takes, at the device's bandwidth.
 
     A product in single precision reads and writes the padded half-complex array (8n² bytes times
-    two) eight times (rows, columns in two passes, spectrum, and back); an iteration reads or
-    writes some 40 arrays of n² in double precision.
+    two) eight times (rows, columns in two passes, spectrum, and back); an iteration, one for each,
+    reads or writes some 40 arrays of n² in double precision.
     """
-    return (products * 8 * 2 * 16 * n**2 + iterations * 40 * 8 * n**2) / BANDWIDTH
+    return products * (8 * 2 * 16 + 40 * 8) * n**2 / BANDWIDTH
 
 
 def large(device: str, n: int) -> None:
@@ -50,7 +50,7 @@ def large(device: str, n: int) -> None:
     assert contact.gap.shape == (n, n)
     with on_device(device):
         t, state = seconds(lambda: solve(contact, depth), 3)
-    limit = least_seconds(n, state.convolutions, state.convolutions // 2)
+    limit = least_seconds(n, state.convolutions)
     print(f"{n} x {n} rough, elastic, a = 20 um: {t:.3f} s on {device}, {state.convolutions} "
           f"products, residual {state.residual:.1e}; bandwidth alone {limit:.3f} s")  # fmt: skip
     if device != "cpu":

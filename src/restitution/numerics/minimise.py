@@ -155,7 +155,8 @@ def minimise_quadratic(
             if not every(taken == 1):
                 np.multiply(d, taken, out=r)
                 r += p
-                np.copyto(r, trial, where=taken == 1)  # exactly on the bounds
+                if some(taken == 1):  # of the items: those are exactly on their bounds
+                    np.copyto(r, trial, where=taken == 1)
                 trial, r = r, trial
                 Kd *= taken
             p, trial = trial, p
