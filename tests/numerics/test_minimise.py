@@ -165,7 +165,7 @@ def test_without_bounds_it_is_conjugate_gradients():
     free = np.full(12, np.inf)
     found, _ = minimise(A, b, -free, free)
     assert_allclose(found.point, np.linalg.solve(A, b), atol=1e-9)
-    assert found.iterations <= 12 + 5  # and a new gradient for each thousandth of the violation
+    assert found.iterations <= 12 + 5  # and a new gradient for each ten-thousandth of the violation
     at_once, applied = minimise(A, b, -free, free, inverse=np.linalg.inv(A))
     assert_allclose(at_once.point, np.linalg.solve(A, b), atol=1e-9)
     assert len(applied) <= 3  # the step, and the gradient that is believed

@@ -73,8 +73,10 @@ class FreeConvolution:
         rows = min(nx, max(1, self._device.row_buffer // (items * py)))
         self.count = 0
         self._threads = threads_for(items * nx * ny)
-        self._rows = self._device.empty((*batch, rows, py), np.float64)
-        self._modes = self._device.empty((*batch, px, py // 2 + 1), np.complex128)
+        padded = self._device.empty((*batch, rows, py), np.float64)
+        modes = self._device.empty((*batch, px, py // 2 + 1), np.complex128)
+        self._buffers = padded, modes
+        self._single_buffers = _as_single(padded), _as_single(modes)  # in the same memory
 
     def fresh(self, batch: tuple[int, ...] = ()) -> Self:
         """The same operator with buffers and a count of its own, for another user or a batch."""
@@ -84,13 +86,11 @@ class FreeConvolution:
 
     def __call__(self, p: Array, out: Array | None = None) -> Array:
         """Return K * p, same shape as `p`: in a new array, or in `out`."""
-        return self._apply(p, self._rows, self._modes, self._spectrum, out)
+        return self._apply(p, *self._buffers, self._spectrum, out)
 
     def quick(self, p: Array, out: Array | None = None) -> Array:
         """The same in single precision: an error of about 5e-7 of the largest value."""
-        # The buffers of double precision serve.
-        rows, modes = (_as_single(buffer) for buffer in (self._rows, self._modes))
-        return self._apply(p, rows, modes, self._single_spectrum, out)
+        return self._apply(p, *self._single_buffers, self._single_spectrum, out)
 
     def _apply(
         self,

@@ -148,13 +148,12 @@ def minimise_quadratic(
             step = ratio(-slope, curvature)
             taken = choose(cut & (step > _NEARLY), 1.0, np.maximum(step, 0.0))
             r, r_old, exact = r_old, r, rough
-            if some(taken > 1):
-                np.multiply(d, taken, out=r)
-                r += p
-                taken = choose(_outside(r, lower, upper), 1.0, taken)
             if not every(taken == 1):
                 np.multiply(d, taken, out=r)
                 r += p
+                if some(taken > 1):
+                    taken = choose(_outside(r, lower, upper), 1.0, taken)
+            if not every(taken == 1):
                 if some(taken == 1):  # of the items: those are exactly on their bounds
                     np.copyto(r, trial, where=taken == 1)
                 trial, r = r, trial
