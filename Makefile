@@ -19,9 +19,10 @@ lint: $(VENV)/test.installed  ## style, format and types
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
 
-bench: $(VENV)/test.installed  ## time whole curves, and one solve against the size of the grid
+bench: $(VENV)/test.installed  ## time whole curves, one solve against the size of the grid, and the start
 	$(BIN)/python benchmarks/curves.py
 	$(BIN)/python benchmarks/scaling.py
+	$(BIN)/python benchmarks/start.py
 
 PEERS := $(patsubst benchmarks/peers/%.txt,.venv-peers/%/installed,$(wildcard benchmarks/peers/*.txt))
 

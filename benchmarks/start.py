@@ -1,0 +1,68 @@
+"""Time to import the package and to print its help, over that of numpy and scipy.fft.
+
+Writes docs/benchmarks/start.md. The three take turns; times are of whole processes.
+"""
+
+from __future__ import annotations
+
+import statistics
+import subprocess
+import sys
+from pathlib import Path
+
+from unit import machine, seconds, today
+
+OUT = Path(__file__).parents[1] / "docs" / "benchmarks" / "start.md"
+TURNS = 15
+BASE = "numpy and scipy.fft"
+COMMANDS = {
+    BASE: ["-c", "import numpy, scipy.fft"],
+    "`import restitution`": ["-c", "import restitution"],
+    "`import restitution`, and the solver": ["-c", "from restitution import Contact, solve"],
+    "`restitution --help`": ["-m", "restitution", "--help"],
+}
+
+REPORT = """\
+# Time to start
+
+{date}, {machine}. Written by `make bench`.
+
+Whole processes of this Python, in turns, medians of {turns} (least and largest); the process
+itself, {bare:.3f} s without any import, is in them.
+
+| what | time, s | over {base} |
+|---|---|---|
+{rows}
+"""
+
+
+def start(arguments: list[str]) -> float:
+    """Seconds of a process."""
+    return seconds(lambda: subprocess.run([sys.executable, *arguments], check=True,
+                                          stdout=subprocess.DEVNULL))  # fmt: skip
+
+
+def main() -> None:
+    """Time them and write the report."""
+    where = machine()
+    times: dict[str, list[float]] = {name: [] for name in COMMANDS}
+    for arguments in COMMANDS.values():
+        start(arguments)
+    for _ in range(TURNS):
+        for name, arguments in COMMANDS.items():
+            times[name].append(start(arguments))
+    bare = statistics.median(start(["-c", ""]) for _ in range(TURNS))
+    base = statistics.median(times[BASE])
+    rows = "\n".join(
+        f"| {name} | {statistics.median(its):.3f} ({min(its):.3f} to {max(its):.3f}) | "
+        f"{statistics.median(its) / base:.2f} |"
+        for name, its in times.items()
+    )
+    report = REPORT.format(date=today(), machine=where, turns=TURNS, bare=bare, base=BASE,
+                           rows=rows)  # fmt: skip
+    OUT.write_text(report)
+    print(report)
+
+
+if __name__ == "__main__":
+    main()
