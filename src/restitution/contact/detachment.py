@@ -42,7 +42,7 @@ _FACES = np.array([(1, 0), (-1, 0), (0, 1), (0, -1)])
 _AROUND = np.array([(-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1), (0, 0)])
 _SMOOTHING_STEPS = 32  # each spreads by ⅔ cell² along an edge: some five cells in all
 _RELEASE_RADIUS = 3  # cells around a released node that wait for the next solve
-_ALIKE = 1e-6  # of the largest tension: a smaller difference is rounding
+_ALIKE = 1e-3  # of the largest tension: a smaller difference is what a rough solve leaves
 _TINY = float(np.finfo(float).tiny)
 
 
@@ -88,7 +88,7 @@ class CrackClosure:
 
         edge, G = energy_release_rate(p, u, h, touching)
         # Releasing neighbours at once would overshoot: each relieves the others. Of nodes that are
-        # equal but for rounding the first goes, so that the last digits decide nothing.
+        # alike the first goes, so that the last digits decide nothing.
         ready = np.where((self.work_of_adhesion <= G) & (p[edge] < 0), p[edge], 0.0)
         ready = np.round(ready / (_ALIKE * max(-float(ready.min(initial=0.0)), _TINY)))
         ready = np.where(ready < 0, ready + 0.5 * np.arange(ready.size) / ready.size, 0.0)

@@ -22,8 +22,8 @@ import ducc0
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.numerics import passes
 from restitution.numerics.device import CPU, Device
-from restitution.numerics.items import largest
 
 Array = NDArray[np.float64]
 
@@ -100,24 +100,23 @@ class FreeConvolution:
         spectrum: NDArray[Any],
         out: Array | None,
     ) -> Array:
-        (nx, ny), px = self.shape, self._padded[0]
+        nx, px = self.shape[0], self._padded[0]
         device, threads = self._device, self._threads
         result = np.empty_like(p, dtype=np.float64, order="C") if out is None else out
         self.count += 1
 
         for some, rows in _blocks(nx, padded):
-            rows[..., :ny] = p[..., some, :]
-            rows[..., ny:] = 0.0
+            passes.pad(p[..., some, :], 1.0, rows)
             device.forward(rows, (-1,), modes[..., some, :], threads)
         modes[..., nx:, :] = 0.0
         device.along_columns(modes, forward=True, threads=threads)
         half = px // 2 + 1
-        modes[..., :half, :] *= spectrum
-        modes[..., half:, :] *= spectrum[px // 2 - 1 : 0 : -1]
+        passes.weigh(modes[..., :half, :], spectrum)
+        passes.weigh(modes[..., half:, :], spectrum[px // 2 - 1 : 0 : -1])
         device.along_columns(modes, forward=False, threads=threads)
         for some, rows in _blocks(nx, padded):
             device.backward(modes[..., some, :], (-1,), rows, threads)
-            result[..., some, :] = rows[..., :ny]
+            passes.crop(rows, 1.0, result[..., some, :])
         return result
 
 
@@ -172,15 +171,14 @@ class SpectralFilter:
 
     def __call__(self, r: Array, out: Array | None = None) -> Array:
         """Return the filtered array, same shape as `r`: in a new array, or in `out`."""
-        nx, ny = self.shape
         padded, modes, device = self._padded, self._modes, self._device
+        result = np.empty_like(r, dtype=np.float64, order="C") if out is None else out
         # What is far below the largest value is lost in single precision, wherever that lies.
-        scale = largest(r)
+        scale = passes.peak(r)
         scale += scale == 0
-        np.divide(r, scale, out=padded[..., :nx, :ny])
-        padded[..., nx:, :] = 0.0
-        padded[..., :nx, ny:] = 0.0
+        passes.pad(r, 1 / scale, padded)
         device.forward(padded, (-2, -1), modes, self._threads)
-        modes *= self._symbol
+        passes.weigh(modes, self._symbol)
         device.backward(modes, (-2, -1), padded, self._threads)
-        return np.multiply(padded[..., :nx, :ny], scale, out=out, dtype=np.float64)
+        passes.crop(padded, scale, result)
+        return result

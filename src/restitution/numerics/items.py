@@ -40,7 +40,7 @@ def largest(values: Array) -> Number:
 def dot(a: Array, b: Array) -> Number:
     """Σ a b over each item."""
     # Not np.vdot: its threads wait for each other longer than these products take.
-    product = np.einsum("...ij,...ij->...", a, b)
+    product = np.einsum("...ij,...ij->...", a, b, dtype=np.float64)
     return cast("Number", product if a.ndim == 2 else product[..., None, None])
 
 

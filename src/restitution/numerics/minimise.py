@@ -17,25 +17,16 @@ steps and residuals of its own (`items`).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.numerics.items import (
-    Flag,
-    Number,
-    anywhere,
-    choose,
-    dot,
-    every,
-    largest,
-    ratio,
-    some,
-)
+from restitution.numerics import passes
+from restitution.numerics.items import Flag, Number, choose, every, ratio, some
+from restitution.numerics.passes import Bound
 
 Array = NDArray[np.float64]
-Bound = Array | float
 
 _DRIFT = 1e-4  # of the violation, after which the gradient is computed anew
 _NEARLY = 0.8  # of what was projected: where this much is best, all of it is taken
@@ -62,18 +53,6 @@ class Minimum:
     residual: Number
     iterations: int
     converged: Flag
-
-
-def free_nodes(p: Array, g: Array, lower: Bound, upper: Bound) -> NDArray[np.bool_]:
-    """Nodes that may go downhill: between the bounds, or on one and pushed off it."""
-    free = p > lower
-    free |= g < 0
-    if _is_absent(upper):
-        return free
-    below = p < upper
-    below |= g > 0
-    free &= below
-    return free
 
 
 def minimise_quadratic(
@@ -105,15 +84,16 @@ def minimise_quadratic(
     `quick` has led there, which will do for a large tolerance. Not converging is reported in the
     result, never raised.
     """
+    kind: Any = np.float64 if quick is None else np.float32
     quick = K if quick is None else quick
     K = quick if rough else K
     p = np.clip(start, lower, upper, out=start)
+    lower, upper = passes.spread(lower, p), passes.spread(upper, p)
     g, exact = _gradient(quick, p, b), quick is K
-    free = free_nodes(p, g, lower, upper)
-    r = g * free  # uphill, where there is a way down
-    residual = largest(r)
+    d = np.zeros_like(p)
+    r, r_old, z, Kd = (np.zeros_like(p, dtype=kind) for _ in range(4))
+    residual = passes.downhill(p, g, lower, upper, r)
     low = _DRIFT * residual  # where the gradient is computed anew
-    d, r_old, trial, work = (np.zeros_like(p) for _ in range(4))
     rz_old, stuck = np.zeros_like(residual), residual < 0
     length = stretch = np.ones_like(residual)  # of the next trial step, and its last change
     iteration = 0
@@ -125,48 +105,31 @@ def minimise_quadratic(
                 iteration -= 1
                 break
             g, exact = _gradient(K, p, b, out=g), True
+            residual = passes.downhill(p, g, lower, upper, r)
         else:
             if not every(going):
                 r *= going
-            z = precondition(r, out=work)
-            rz = dot(r, z)
-            kept = ratio(rz - dot(r_old, z), rz_old)
-            d *= choose(kept > 0, kept, 0.0) * stretch
-            z *= length
-            d -= z
-            d *= free
-            np.add(p, d, out=trial)
-            cut = _outside(trial, lower, upper)
-            if some(cut):
-                np.clip(trial, lower, upper, out=trial)
-                np.subtract(trial, p, out=d)
-            Kd = quick(d, out=work)
-            slope, curvature = dot(r, d), dot(d, Kd)
+            z = precondition(r, out=z)
+            rz, overlap = passes.products(z, r, r_old)
+            kept = ratio(rz - overlap, rz_old)
+            kept = choose(kept > 0, kept, 0.0) * stretch
+            slope, cut = passes.direct(d, kept, z, length, p, g, r, lower, upper)
+            Kd = quick(d, out=Kd)
+            curvature = passes.dot(d, Kd)
             stuck |= ~(curvature < np.inf) | ((slope < 0) & (curvature <= 0))
             if every(stuck):
                 break
             step = ratio(-slope, curvature)
             taken = choose(cut & (step > _NEARLY), 1.0, np.maximum(step, 0.0))
+            if some(taken > 1):
+                outside = passes.leaves(p, d, taken, lower, upper)
+                taken = choose((taken > 1) & outside, 1.0, taken)
             r, r_old, exact = r_old, r, rough
-            if not every(taken == 1):
-                np.multiply(d, taken, out=r)
-                r += p
-                if some(taken > 1):
-                    taken = choose(_outside(r, lower, upper), 1.0, taken)
-            if not every(taken == 1):
-                if some(taken == 1):  # of the items: those are exactly on their bounds
-                    np.copyto(r, trial, where=taken == 1)
-                trial, r = r, trial
-                Kd *= taken
-            p, trial = trial, p
-            g += Kd
+            residual = passes.advance(p, g, d, Kd, taken, lower, upper, r)
             rz_old = choose(step > 0, rz, 0.0)
             stretch = np.minimum(np.maximum(step, _SHORTER), _LONGER) ** _DAMPED
             stretch = choose(going, stretch, 1.0)
             length = length * stretch
-        free = free_nodes(p, g, lower, upper)
-        np.multiply(g, free, out=r)
-        residual = largest(r)
         low = _DRIFT * residual if exact else low
 
     if not exact:
@@ -175,22 +138,10 @@ def minimise_quadratic(
     return Minimum(p, g, residual, iteration, converged=residual <= tolerance)
 
 
-def _outside(p: Array, lower: Bound, upper: Bound) -> Flag:
-    """Whether each item leaves its bounds somewhere."""
-    outside = p < lower
-    if not _is_absent(upper):
-        outside |= p > upper
-    return anywhere(outside)
-
-
-def _is_absent(upper: Bound) -> bool:
-    """Whether there is no upper bound, so that nothing needs to be compared with it."""
-    return isinstance(upper, float) and upper == np.inf
-
-
 def violation(p: Array, g: Array, lower: Bound, upper: Bound) -> Number:
     """Largest violation of the optimality conditions, in the units of the gradient."""
-    return largest(g * free_nodes(p, g, lower, upper))
+    lower, upper = passes.spread(lower, p), passes.spread(upper, p)
+    return passes.downhill(p, g, lower, upper, np.empty_like(p))
 
 
 def _gradient(K: Operator, p: Array, b: Array, out: Array | None = None) -> Array:

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from restitution.numerics.convolution import FreeConvolution, SpectralFilter
 from restitution.numerics.items import every, highest, somewhere
-from restitution.numerics.minimise import Bound, Minimum, minimise_quadratic, violation
+from restitution.numerics.minimise import Minimum, minimise_quadratic, violation
+from restitution.numerics.passes import Bound
 from restitution.numerics.window import Box, bounding_box, shape_of, union, widen
 
 Array = NDArray[np.float64]

@@ -1,0 +1,22 @@
+"""The part that is compiled. Where that fails NumPy does its work, more slowly."""
+
+import sys
+
+from pybind11.setup_helpers import Pybind11Extension, build_ext
+from setuptools import setup
+
+# Products and sums are not fused, so that what should be equal is; no error numbers, no traps.
+FLAGS = ["-O3", "-fopenmp-simd", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=off"]
+
+setup(
+    ext_modules=[
+        Pybind11Extension(
+            "restitution.numerics.loops",
+            ["src/restitution/numerics/loops.cpp"],
+            cxx_std=17,
+            extra_compile_args=[] if sys.platform == "win32" else FLAGS,
+            optional=True,
+        )
+    ],
+    cmdclass={"build_ext": build_ext},
+)

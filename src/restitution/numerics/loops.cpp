@@ -1,0 +1,262 @@
+// Loops over the nodes of one problem: several steps of the solver in one pass over memory.
+//
+// They do what the expressions of the same names in passes.py do, which say what that is. Arrays are
+// (nx, ny), of double or single precision, each row in one piece; bounds are arrays, whose rows may
+// all be the same one. Sums are in no fixed order, so that the compiler may use vectors.
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+
+namespace py = pybind11;
+using Index = py::ssize_t;
+
+// An array of two dimensions.
+template <class T>
+struct Rows {
+    T* first;
+    Index count, length, stride;
+
+    T* operator[](Index i) const { return first + i * stride; }
+};
+
+namespace pybind11::detail {
+// Arrays are taken as they are, or refused: results in a converted copy would be lost.
+template <class T>
+struct type_caster<Rows<T>> {
+    PYBIND11_TYPE_CASTER(Rows<T>, const_name("numpy.ndarray"));
+
+    bool load(handle source, bool) {
+        using Value = std::remove_const_t<T>;
+        if (!array_t<Value, 0>::check_(source)) return false;
+        const auto a = reinterpret_borrow<array>(source);
+        constexpr Index size = sizeof(Value);
+        if (a.ndim() != 2 || (a.shape(1) > 1 && a.strides(1) != size)) return false;
+        if (!std::is_const_v<T> && !a.writeable()) return false;
+        value = {static_cast<T*>(const_cast<void*>(a.data())), a.shape(0), a.shape(1),
+                 a.strides(0) / size};
+        return true;
+    }
+};
+}  // namespace pybind11::detail
+
+template <class First, class... Others>
+void expect_one_shape(const First& a, const Others&... others) {
+    if (((others.count != a.count || others.length != a.length) || ...))
+        throw std::invalid_argument("arrays of different shapes");
+}
+
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__)
+#define RESTITUTION_AVX2
+#pragma GCC push_options
+#pragma GCC target("avx2")
+#endif
+
+inline double downhill_at(double p, double g, double low, double high) {
+    const bool falls = (p > low) | (g < 0), rises = (p < high) | (g > 0);
+    return falls & rises ? g : 0.0;
+}
+
+template <class T>
+double largest_of(const T* values, Index length) {
+    T most = 0;
+#pragma omp simd reduction(max : most)
+    for (Index j = 0; j < length; ++j) most = std::max(most, std::abs(values[j]));
+    return most;
+}
+
+template <class T>
+double downhill(Rows<const double> p, Rows<const double> g, Rows<const double> lower,
+                Rows<const double> upper, Rows<T> out) {
+    expect_one_shape(p, g, lower, upper, out);
+    double most = 0;
+    for (Index i = 0; i < p.count; ++i) {
+        const double *pi = p[i], *gi = g[i], *low = lower[i], *high = upper[i];
+        T* result = out[i];
+#pragma omp simd
+        for (Index j = 0; j < p.length; ++j)
+            result[j] = T(downhill_at(pi[j], gi[j], low[j], high[j]));
+        most = std::max(most, largest_of(result, p.length));
+    }
+    return most;
+}
+
+template <class T>
+std::pair<double, double> products(Rows<const T> z, Rows<const T> r, Rows<const T> r_old) {
+    expect_one_shape(z, r, r_old);
+    double now = 0, before = 0;
+    for (Index i = 0; i < z.count; ++i) {
+        const T *zi = z[i], *ri = r[i], *old = r_old[i];
+#pragma omp simd reduction(+ : now, before)
+        for (Index j = 0; j < z.length; ++j) {
+            now += double(ri[j]) * zi[j];
+            before += double(old[j]) * zi[j];
+        }
+    }
+    return {now, before};
+}
+
+template <class T>
+double dot(Rows<const double> a, Rows<const T> b) {
+    expect_one_shape(a, b);
+    double total = 0;
+    for (Index i = 0; i < a.count; ++i) {
+        const double* ai = a[i];
+        const T* bi = b[i];
+#pragma omp simd reduction(+ : total)
+        for (Index j = 0; j < a.length; ++j) total += ai[j] * bi[j];
+    }
+    return total;
+}
+
+template <class T>
+std::pair<double, bool> direct(Rows<double> d, double kept, Rows<const T> z, double length,
+                               Rows<const double> p, Rows<const double> g, Rows<const T> r,
+                               Rows<const double> lower, Rows<const double> upper) {
+    expect_one_shape(d, z, p, g, r, lower, upper);
+    double slope = 0, cut = 0;
+    for (Index i = 0; i < p.count; ++i) {
+        double* di = d[i];
+        const double *pi = p[i], *gi = g[i], *low = lower[i], *high = upper[i];
+        const T *zi = z[i], *ri = r[i];
+        // Without branches, and all that may be needed is computed: else it takes no vectors.
+#pragma omp simd reduction(+ : slope, cut)
+        for (Index j = 0; j < p.length; ++j) {
+            const bool falls = (pi[j] > low[j]) | (gi[j] < 0), rises = (pi[j] < high[j]) | (gi[j] > 0);
+            const double to_low = low[j] - pi[j], to_high = high[j] - pi[j];
+            double step = kept * di[j] - length * zi[j];
+            step = falls & rises ? step : 0.0;
+            const double end = pi[j] + step;
+            const bool below = end < low[j], above = end > high[j];
+            step = below ? to_low : step;
+            step = above ? to_high : step;
+            di[j] = step;
+            slope += ri[j] * step;
+            cut += below | above ? 1.0 : 0.0;
+        }
+    }
+    return {slope, cut > 0};
+}
+
+inline bool leaves(Rows<const double> p, Rows<const double> d, double taken, Rows<const double> lower,
+                   Rows<const double> upper) {
+    expect_one_shape(p, d, lower, upper);
+    for (Index i = 0; i < p.count; ++i) {
+        const double *pi = p[i], *di = d[i], *low = lower[i], *high = upper[i];
+        double outside = 0;
+#pragma omp simd reduction(+ : outside)
+        for (Index j = 0; j < p.length; ++j) {
+            const double end = pi[j] + taken * di[j];
+            outside += (end < low[j]) | (end > high[j]) ? 1.0 : 0.0;
+        }
+        if (outside > 0) return true;
+    }
+    return false;
+}
+
+template <class T>
+double advance(Rows<double> p, Rows<double> g, Rows<const double> d, Rows<const T> Kd, double taken,
+               Rows<const double> lower, Rows<const double> upper, Rows<T> out) {
+    expect_one_shape(p, g, d, Kd, lower, upper, out);
+    const bool whole = taken == 1;
+    double most = 0;
+    for (Index i = 0; i < p.count; ++i) {
+        double *pi = p[i], *gi = g[i];
+        const double *di = d[i], *low = lower[i], *high = upper[i];
+        const T* Kdi = Kd[i];
+        T* result = out[i];
+#pragma omp simd
+        for (Index j = 0; j < p.length; ++j) {
+            const double to_low = low[j] - pi[j], to_high = high[j] - pi[j];
+            double end = pi[j] + taken * di[j];
+            end = (end < low[j]) | (whole & (di[j] == to_low)) ? low[j] : end;
+            end = (end > high[j]) | (whole & (di[j] == to_high)) ? high[j] : end;
+            const double gradient = gi[j] + taken * Kdi[j];
+            pi[j] = end;
+            gi[j] = gradient;
+            result[j] = T(downhill_at(end, gradient, low[j], high[j]));
+        }
+        most = std::max(most, largest_of(result, p.length));
+    }
+    return most;
+}
+
+template <class T>
+double peak(Rows<const T> values) {
+    double most = 0;
+    for (Index i = 0; i < values.count; ++i)
+        most = std::max(most, largest_of(values[i], values.length));
+    return most;
+}
+
+template <class From, class To>
+void scale(const From* from, double factor, To* to, Index length) {
+#pragma omp simd
+    for (Index j = 0; j < length; ++j) to[j] = To(factor * from[j]);
+}
+
+template <class From, class To>
+void pad(Rows<const From> values, double factor, Rows<To> padded) {
+    if (padded.count < values.count || padded.length < values.length)
+        throw std::invalid_argument("no room for the values");
+    for (Index i = 0; i < padded.count; ++i) {
+        const Index filled = i < values.count ? values.length : 0;
+        if (filled) scale(values[i], factor, padded[i], filled);
+        std::fill(padded[i] + filled, padded[i] + padded.length, To(0));
+    }
+}
+
+template <class From, class To>
+void crop(Rows<const From> padded, double factor, Rows<To> out) {
+    if (padded.count < out.count || padded.length < out.length)
+        throw std::invalid_argument("more is asked than there is");
+    for (Index i = 0; i < out.count; ++i) scale(padded[i], factor, out[i], out.length);
+}
+
+template <class T>
+void weigh(Rows<std::complex<T>> modes, Rows<const T> weights) {
+    expect_one_shape(modes, weights);
+    for (Index i = 0; i < modes.count; ++i) {
+        T* mode = reinterpret_cast<T*>(modes[i]);
+        const T* weight = weights[i];
+#pragma omp simd
+        for (Index j = 0; j < modes.length; ++j) {
+            mode[2 * j] *= weight[j];
+            mode[2 * j + 1] *= weight[j];
+        }
+    }
+}
+
+#ifdef RESTITUTION_AVX2
+#pragma GCC pop_options
+#endif
+
+template <class T>
+void define(py::module_& module) {
+    module.def("downhill", &downhill<T>);
+    module.def("products", &products<T>);
+    module.def("dot", &dot<T>);
+    module.def("direct", &direct<T>);
+    module.def("advance", &advance<T>);
+    module.def("peak", &peak<T>);
+    module.def("pad", &pad<double, T>);
+    module.def("pad", &pad<float, T>);
+    module.def("crop", &crop<T, double>);
+    module.def("crop", &crop<T, float>);
+    module.def("weigh", &weigh<T>);
+}
+
+PYBIND11_MODULE(loops, module) {
+#ifdef RESTITUTION_AVX2
+    if (!__builtin_cpu_supports("avx2")) throw py::import_error("this processor has no AVX2");
+#endif
+    define<float>(module);
+    define<double>(module);
+    module.def("leaves", &leaves);
+}

@@ -1,0 +1,187 @@
+"""What the solver does at the nodes between its transforms, several steps at a time.
+
+Each function is written here as an expression of whole arrays, which holds for batches and on any
+device (`device`). For one problem on this machine the loop of the same name in `loops` does the
+same in one pass over memory; the tests hold one to the other. The bounds `lower` and `upper` are
+numbers or arrays that go with p.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import wraps
+from typing import Any, ParamSpec, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.numerics import items
+from restitution.numerics.items import Flag, Number, anywhere, largest
+
+try:
+    from restitution.numerics import loops  # type: ignore[attr-defined]
+except ImportError:  # there was no compiler, or it was one for another processor
+    loops = None
+
+Array = NDArray[Any]  # of double or single precision
+Bound = NDArray[np.float64] | float
+Arguments = ParamSpec("Arguments")
+Result = TypeVar("Result")
+
+
+def _by_loop(expression: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
+    """Let the loop of that name do what the expression would, where the first array is plain."""
+    loop = getattr(loops, expression.__name__, None)
+    if loop is None:
+        return expression
+
+    @wraps(expression)
+    def either(*args: Any) -> Any:
+        if not _is_plain(args[0]):
+            return expression(*args)  # type: ignore[call-arg]
+        found = loop(*args)
+        return tuple(map(_number, found)) if isinstance(found, tuple) else _number(found)
+
+    return either  # type: ignore[return-value]
+
+
+def _is_plain(values: Any) -> bool:
+    """Whether these are values of one problem, on this machine, and each row in one piece."""
+    if type(values) is not np.ndarray or values.ndim != 2:
+        return False
+    return values.strides[1] == values.itemsize or values.shape[1] < 2
+
+
+def _number(found: Any) -> Any:
+    """What a loop returns as a number of `items`."""
+    if found is None:
+        return None
+    return np.bool_(found) if isinstance(found, bool) else np.float64(found)
+
+
+def spread(bound: Bound, p: Array) -> Bound:
+    """The bound as loops take it: a number as an array like p whose rows are all the same one."""
+    if loops is None or not _is_plain(p) or isinstance(bound, np.ndarray):
+        return bound
+    return np.broadcast_to(np.full(p.shape[1], bound), p.shape)
+
+
+@_by_loop
+def downhill(p: Array, g: Array, lower: Bound, upper: Bound, out: Array) -> Number:
+    """The gradient where one may follow it down within the bounds, else zero; its largest value."""
+    np.multiply(g, _free(p, g, lower, upper), out=out)
+    return largest(out)
+
+
+@_by_loop
+def products(z: Array, r: Array, r_old: Array) -> tuple[Number, Number]:
+    """r·z and r_old·z."""
+    return items.dot(r, z), items.dot(r_old, z)
+
+
+@_by_loop
+def dot(a: Array, b: Array) -> Number:
+    """a·b."""
+    return items.dot(a, b)
+
+
+@_by_loop
+def direct(
+    d: Array,
+    kept: Number,
+    z: Array,
+    length: Number,
+    p: Array,
+    g: Array,
+    r: Array,
+    lower: Bound,
+    upper: Bound,
+) -> tuple[Number, Flag]:
+    """Turn the step d at p to `kept` d − `length` z on the free nodes, and end it at the bounds.
+
+    Returns r·d and whether some of it was cut off.
+    """
+    d *= kept
+    d -= length * z
+    d *= _free(p, g, lower, upper)
+    end = p + d
+    cut = _outside(end, lower, upper)
+    np.clip(end, lower, upper, out=end)
+    np.subtract(end, p, out=d)
+    return items.dot(r, d), cut
+
+
+@_by_loop
+def leaves(p: Array, d: Array, taken: Number, lower: Bound, upper: Bound) -> Flag:
+    """Whether p + `taken` d lies outside the bounds somewhere."""
+    return _outside(p + taken * d, lower, upper)
+
+
+@_by_loop
+def advance(
+    p: Array, g: Array, d: Array, Kd: Array, taken: Number, lower: Bound, upper: Bound, out: Array
+) -> Number:
+    """Go to p + `taken` d, where the gradient is g + `taken` Kd; `out` and result of `downhill`.
+
+    A step that ended at a bound, and is taken whole, gets there without a rounding.
+    """
+    whole = taken == 1
+    low, high = whole & (d == lower - p), whole & (d == upper - p)
+    p += taken * d
+    np.clip(p, np.where(high, upper, lower), np.where(low, lower, upper), out=p)
+    g += taken * Kd
+    np.multiply(g, _free(p, g, lower, upper), out=out)
+    return largest(out)
+
+
+@_by_loop
+def peak(values: Array) -> Number:
+    """The largest magnitude."""
+    return largest(values)
+
+
+@_by_loop
+def pad(values: Array, factor: Number | float, padded: Array) -> None:
+    """`factor` times the values, with zeros after them along both axes."""
+    rows, columns = values.shape[-2:]
+    np.multiply(values, factor, out=padded[..., :rows, :columns])
+    padded[..., :rows, columns:] = 0.0
+    padded[..., rows:, :] = 0.0
+
+
+@_by_loop
+def crop(padded: Array, factor: Number | float, out: Array) -> None:
+    """The undoing of `pad`: `factor` times what is at the beginning of both axes."""
+    rows, columns = out.shape[-2:]
+    np.multiply(padded[..., :rows, :columns], factor, out=out, dtype=out.dtype)
+
+
+@_by_loop
+def weigh(modes: Array, weights: Array) -> None:
+    """Multiply by real weights."""
+    modes *= weights
+
+
+def _free(p: Array, g: Array, lower: Bound, upper: Bound) -> NDArray[np.bool_]:
+    """Nodes that may go downhill: between the bounds, or on one and pushed off it."""
+    free = p > lower
+    free |= g < 0
+    if _is_absent(upper):
+        return free
+    below = p < upper
+    below |= g > 0
+    free &= below
+    return free
+
+
+def _outside(p: Array, lower: Bound, upper: Bound) -> Flag:
+    """Whether each item leaves its bounds somewhere."""
+    outside = p < lower
+    if not _is_absent(upper):
+        outside |= p > upper
+    return anywhere(outside)
+
+
+def _is_absent(upper: Bound) -> bool:
+    """Whether there is no upper bound, so that nothing needs to be compared with it."""
+    return isinstance(upper, float) and upper == np.inf

@@ -1,0 +1,152 @@
+"""The compiled loops against the expressions that say what they do."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose, assert_array_equal
+
+from restitution.numerics import passes
+
+pytest.importorskip("restitution.numerics.loops", reason="built without a compiler")
+
+seeds = st.integers(0, 2**32 - 1)
+shapes = st.tuples(st.integers(1, 9), st.integers(1, 40))
+
+
+def bounds(rng, kind, shape):
+    """None above and zero below, numbers, or arrays that also are absent in places."""
+    if kind == "contact":
+        return 0.0, np.inf
+    if kind == "numbers":
+        return -0.3, 0.7
+    lower = np.where(rng.random(shape) < 0.3, -np.inf, rng.uniform(-1, 0.2, shape))
+    return lower, np.where(rng.random(shape) < 0.3, np.inf, rng.uniform(0.3, 1, shape))
+
+
+def point(rng, lower, upper, shape):
+    """A point with many nodes on the bounds."""
+    return np.clip(2 * rng.normal(size=shape), lower, upper)
+
+
+def both(name, *args):
+    """What the expression and the loop return, with the arguments that they have left."""
+    outcomes = []
+    for function in (getattr(passes, name).__wrapped__, getattr(passes, name)):
+        mine = [a.copy() if isinstance(a, np.ndarray) else a for a in args]
+        outcomes.append((function(*mine), mine))
+    return outcomes
+
+
+@pytest.mark.parametrize("kind", ["contact", "numbers", "arrays"])
+@pytest.mark.parametrize("single", [np.float32, np.float64])
+@settings(deadline=None, max_examples=25)
+@given(shapes, seeds, st.sampled_from([0.0, 0.4, 1.0, 1.7]))
+def test_a_step_is_that_of_the_expressions(single, kind, shape, seed, taken):
+    rng = np.random.default_rng(seed)
+    lower, upper = bounds(rng, kind, shape)
+    p, g, d = point(rng, lower, upper, shape), rng.normal(size=shape), rng.normal(size=shape)
+    lower, upper = passes.spread(lower, p), passes.spread(upper, p)
+    g[rng.random(shape) < 0.2] = 0.0
+    r, z, Kd, out = (rng.normal(size=shape).astype(single) for _ in range(4))
+
+    (most, (_, _, _, _, left)), (its_most, (_, _, _, _, its_left)) = both(
+        "downhill", p, g, lower, upper, out
+    )
+    assert most == its_most
+    assert_array_equal(left, its_left)
+
+    (found, (its_d, *_)), (compiled, (compiled_d, *_)) = both(
+        "direct", d, 0.3, z, 0.8, p, g, r, lower, upper
+    )
+    assert_allclose(compiled_d, its_d, atol=2e-7)
+    assert compiled[0] == pytest.approx(found[0], abs=1e-5)
+    assert compiled[1] == found[1]
+
+    ends = [bool(outcome) for outcome, _ in both("leaves", p, compiled_d, taken, lower, upper)]
+    assert ends[0] == ends[1]
+
+    (most, its), (its_most, compiled) = both(
+        "advance", p, g, compiled_d, Kd, taken, lower, upper, out
+    )
+    assert its_most == pytest.approx(most, rel=1e-6)
+    for which in (0, 1, -1):
+        assert_allclose(compiled[which], its[which], atol=1e-6)
+
+
+@pytest.mark.parametrize("batch", [(), (3,)])
+@settings(deadline=None, max_examples=25)
+@given(shapes, seeds)
+def test_a_step_to_a_bound_ends_on_it(batch, shape, seed):
+    """Not a rounding away, where the next iteration would find it free."""
+    rng = np.random.default_rng(seed)
+    shape = (*batch, *shape)
+    lower, upper = bounds(rng, "arrays", shape)
+    p, g = point(rng, lower, upper, shape), rng.normal(size=shape)
+    d, z, r, Kd = np.zeros(shape), 5 * rng.normal(size=shape), g.copy(), rng.normal(size=shape)
+    free = passes._free(p, g, lower, upper)
+    wanted = np.where(free, p - z, p)
+    one = np.ones((*batch, 1, 1)) if batch else 1.0
+    passes.direct(d, one, z, one, p, g, r, lower, upper)
+    passes.advance(p, g, d, Kd, one, lower, upper, r)
+    assert_array_equal(p[wanted <= lower], lower[wanted <= lower])
+    assert_array_equal(p[wanted >= upper], upper[wanted >= upper])
+
+
+@pytest.mark.parametrize("single", [np.float32, np.float64])
+@settings(deadline=None, max_examples=25)
+@given(shapes, st.integers(0, 5), st.integers(0, 5), seeds)
+def test_what_goes_around_a_transform_is_that_of_the_expressions(single, shape, more, wider, seed):
+    rng = np.random.default_rng(seed)
+    a, b, c = (rng.normal(size=shape).astype(single) for _ in range(3))
+    padded = rng.normal(size=(shape[0] + more, shape[1] + wider)).astype(single)
+    modes = (padded + 1j * rng.normal(size=padded.shape)).astype(np.result_type(single, 1j))
+    for name, *args in (
+        ("peak", a), ("dot", a.astype(float), b), ("products", a, b, c), ("pad", a, 0.3, padded),
+        ("crop", padded, 0.3, rng.normal(size=shape)), ("weigh", modes, padded),
+    ):  # fmt: skip
+        (found, its), (compiled, its_own) = both(name, *args)
+        if found is not None:
+            assert_allclose(compiled, found, rtol=1e-6, atol=1e-5)
+        for expected, have in zip(its, its_own, strict=True):
+            assert_allclose(have, expected, rtol=1e-6)
+
+
+def test_a_loop_refuses_arrays_whose_results_would_be_lost():
+    rows = np.zeros((4, 6))
+    for values, padded in (
+        (rows, np.zeros((4, 6), np.float16)),  # converted
+        (rows, np.zeros((4, 12))[:, ::2]),  # not in one piece
+        (rows, np.broadcast_to(np.zeros(6), (4, 6))),  # read only
+    ):
+        with pytest.raises(TypeError, match="incompatible function arguments"):
+            passes.pad(values, 1.0, padded)
+    for name, *args in (("dot", rows, np.zeros((4, 7))), ("pad", rows, 1.0, np.zeros((3, 6))),
+                        ("crop", np.zeros((4, 5)), 1.0, rows)):  # fmt: skip
+        with pytest.raises(ValueError, match=r"shape|room|than there is"):
+            getattr(passes, name)(*args)
+
+
+def test_without_a_compiler_expressions_do_it():
+    """The same force, from a process that finds no loops."""
+    program = """
+import sys
+{}
+from restitution import Body, Contact, Grid, Pair, generate_surface, solve
+from restitution.numerics import passes
+grid = Grid((64, 64), (0.25e-6, 0.25e-6))
+body = Body(500e-6, 210e9, 0.25)
+surface = generate_surface(grid, kind="gaussian", rms=2e-8, correlation_length=1e-6, seed=1)
+print(passes.loops is None, solve(Contact(Pair(body, body), surface, 4e9), 60e-9).force)
+"""
+    hidden = "sys.modules['restitution.numerics.loops'] = None"
+    found = [
+        subprocess.run([sys.executable, "-c", program.format(line)], capture_output=True, text=True,
+                       check=True).stdout.split()
+        for line in (hidden, "")
+    ]  # fmt: skip
+    assert [each[0] for each in found] == ["True", "False"]
+    assert float(found[0][1]) == pytest.approx(float(found[1][1]), rel=1e-7)
