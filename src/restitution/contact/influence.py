@@ -125,6 +125,7 @@ def _kept(build: _lru_cache_wrapper[Operator], shape: tuple[int, int]) -> Callab
 _known: dict[tuple[float, Device], Array] = {}
 _MOST_KNOWN = 2**22  # coefficients: 32 MiB
 _MOST_KEPT = 2**21  # nodes of an operator that is kept: 16 MiB
+_NODES_WORTH_SPLITTING = 300 * 300  # making the kernel's parts costs some products of smaller ones
 
 
 def _unit_coefficients(lags: tuple[int, int], aspect: float, device: Device) -> Array:
@@ -157,9 +158,16 @@ def _compute_coefficients(
 def _half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float, device: Device
 ) -> FreeConvolution:
-    return FreeConvolution(
-        lambda i, j: influence_coefficients(i, j, spacing, contact_modulus, device), shape, device
-    )
+    def kernel(i: NDArray[np.int64], j: NDArray[np.int64]) -> Array:
+        return influence_coefficients(i, j, spacing, contact_modulus, device)
+
+    approximation = None
+    if device is CPU and shape[0] * shape[1] > _NODES_WORTH_SPLITTING:
+        from restitution.numerics.split import SplitConvolution
+
+        strength = spacing[0] * spacing[1] / (np.pi * contact_modulus)
+        approximation = SplitConvolution(kernel, strength, spacing, shape)
+    return FreeConvolution(kernel, shape, device, approximation)
 
 
 @lru_cache(maxsize=8)

@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from copy import copy
-from typing import Any, Self
+from typing import Any, Protocol, Self
 
 import ducc0
 import numpy as np
@@ -26,6 +26,8 @@ from restitution.numerics import passes
 from restitution.numerics.device import CPU, Device
 
 Array = NDArray[np.float64]
+# Values at lags i (a column of integers) and j (a row of integers), of the broadcast shape.
+Kernel = Callable[[NDArray[np.int64], NDArray[np.int64]], Array]
 
 # Two threads cost more than they save on smaller transforms (measured on two cores).
 _NODES_WORTH_THREADS = 600 * 600
@@ -42,18 +44,29 @@ def _even_fast_size(minimum: int) -> int:
     return 2 * int(ducc0.fft.good_size((minimum + 1) // 2, True))
 
 
+class Approximation(Protocol):
+    """A cheaper convolution with the same kernel, good enough between exact ones."""
+
+    def __call__(self, p: Array, out: Array) -> Array:
+        """K * p, in `out`."""
+
+    def fresh(self) -> Self:
+        """The same with buffers of its own."""
+
+
 class FreeConvolution:
     """Convolution of arrays of one shape with one kernel; `count` tells how often it was applied.
 
-    `kernel(i, j)` returns the kernel at lags i (column of integers) and j (row of integers), as an
-    array of the broadcast shape. What is convolved may be a batch: arrays (*batch, nx, ny).
+    What is convolved may be a batch: arrays (*batch, nx, ny). Of single arrays `approximation`
+    does what is asked for in single precision.
     """
 
     def __init__(
         self,
-        kernel: Callable[[NDArray[np.int64], NDArray[np.int64]], Array],
+        kernel: Kernel,
         shape: tuple[int, int],
         device: Device = CPU,
+        approximation: Approximation | None = None,
     ) -> None:
         nx, ny = shape
         px, py = _even_fast_size(2 * nx - 1), _even_fast_size(2 * ny - 1)
@@ -65,6 +78,7 @@ class FreeConvolution:
         spectrum = device.even_spectrum(lags, threads_for(nx * ny))
         spectrum /= px * py
         self._spectrum, self._single_spectrum = spectrum, spectrum.astype(np.float32)
+        self._approximation = approximation
         self._make_room(())
 
     def _make_room(self, batch: tuple[int, ...]) -> None:
@@ -82,6 +96,8 @@ class FreeConvolution:
         """The same operator with buffers and a count of its own, for another user or a batch."""
         other = copy(self)
         other._make_room(batch)
+        if self._approximation is not None:
+            other._approximation = None if batch else self._approximation.fresh()
         return other
 
     def __call__(self, p: Array, out: Array | None = None) -> Array:
@@ -89,7 +105,10 @@ class FreeConvolution:
         return self._apply(p, *self._buffers, self._spectrum, out)
 
     def quick(self, p: Array, out: Array | None = None) -> Array:
-        """The same in single precision: an error of about 5e-7 of the largest value."""
+        """The same for work in single precision: an error of about 5e-7 of the largest value."""
+        if self._approximation is not None:
+            self.count += 1
+            return self._approximation(p, np.empty(p.shape) if out is None else out)
         return self._apply(p, *self._single_buffers, self._single_spectrum, out)
 
     def _apply(
