@@ -68,13 +68,15 @@ def test_the_smooth_kernel_is_its_integral():
         assert split._sharpened(np.array([r]))[0] == pytest.approx(expected, rel=3e-7)
 
 
-def test_two_users_do_not_meet():
+@pytest.mark.parametrize("size", [10, 10**6])
+def test_two_users_do_not_meet(size):
+    """Whether or not there is room enough for it in the memory that it is given."""
     _, one = pair((90, 70), (1e-7, 1e-7))
     rng = np.random.default_rng(0)
     p, other_p = rng.random((90, 70)), rng.random((90, 70))
     out, other_out = np.empty_like(p), np.empty_like(p)
     one(p, out)
-    other = one.fresh()
+    other = one.within(np.empty(size))
     other(other_p, other_out)
     again = np.empty_like(p)
     one(p, again)

@@ -124,6 +124,7 @@ def _kept(build: _lru_cache_wrapper[Operator], shape: tuple[int, int]) -> Callab
 # the last: the largest block so far is kept, by the aspect ratio of the cells and the device.
 _known: dict[tuple[float, Device], Array] = {}
 _MOST_KNOWN = 2**22  # coefficients: 32 MiB
+_COEFFICIENTS_AT_ONCE = 2**20
 _MOST_KEPT = 2**21  # nodes of an operator that is kept: 16 MiB
 _NODES_WORTH_SPLITTING = 300 * 300  # making the kernel's parts costs some products of smaller ones
 
@@ -147,9 +148,14 @@ def _compute_coefficients(
     x: Array = hx * device.arange(lags[0])[:, None]
     y: Array = hy * device.arange(lags[1])[None, :]
     near_i, near_j = (math.ceil(_FAR * math.hypot(hx, hy) / h) for h in spacing)
-    # The origin is always in the near block, which Love's formula overwrites.
+    # The origin is always in the near block, which Love's formula overwrites. Some rows at a time:
+    # the series takes ten arrays.
+    u = device.empty((lags[0], lags[1]), np.float64)
+    rows = max(1, _COEFFICIENTS_AT_ONCE // lags[1])
     with np.errstate(divide="ignore", invalid="ignore"):
-        u = far_displacement(x, y, hx, hy, 1.0)
+        for first in range(0, lags[0], rows):
+            some = slice(first, first + rows)
+            u[some] = far_displacement(x[some], y, hx, hy, 1.0)
     u[:near_i, :near_j] = love_displacement(x[:near_i], y[:, :near_j], hx, hy, 1.0)
     return u
 

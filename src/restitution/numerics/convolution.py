@@ -50,8 +50,8 @@ class Approximation(Protocol):
     def __call__(self, p: Array, out: Array) -> Array:
         """K * p, in `out`."""
 
-    def fresh(self) -> Self:
-        """The same with buffers of its own."""
+    def within(self, room: NDArray[Any]) -> Self:
+        """The same for another user, whose memory this is."""
 
 
 class FreeConvolution:
@@ -77,8 +77,8 @@ class FreeConvolution:
         # The normalisation of the inverse transform rides along with the kernel.
         spectrum = device.even_spectrum(lags, threads_for(nx * ny))
         spectrum /= px * py
-        self._spectrum, self._single_spectrum = spectrum, spectrum.astype(np.float32)
-        self._approximation = approximation
+        self._spectrum, self._approximation = spectrum, approximation
+        self._single_spectrum = spectrum.astype(np.float32) if approximation is None else None
         self._make_room(())
 
     def _make_room(self, batch: tuple[int, ...]) -> None:
@@ -91,13 +91,16 @@ class FreeConvolution:
         modes = self._device.empty((*batch, px, py // 2 + 1), np.complex128)
         self._buffers = padded, modes
         self._single_buffers = _as_single(padded), _as_single(modes)  # in the same memory
+        if batch and self._approximation is not None:
+            self._approximation = None
+            self._single_spectrum = self._spectrum.astype(np.float32)
+        elif self._approximation is not None:
+            self._approximation = self._approximation.within(modes)
 
     def fresh(self, batch: tuple[int, ...] = ()) -> Self:
         """The same operator with buffers and a count of its own, for another user or a batch."""
         other = copy(self)
         other._make_room(batch)
-        if self._approximation is not None:
-            other._approximation = None if batch else self._approximation.fresh()
         return other
 
     def __call__(self, p: Array, out: Array | None = None) -> Array:
@@ -109,6 +112,7 @@ class FreeConvolution:
         if self._approximation is not None:
             self.count += 1
             return self._approximation(p, np.empty(p.shape) if out is None else out)
+        assert self._single_spectrum is not None  # made where there is no approximation
         return self._apply(p, *self._single_buffers, self._single_spectrum, out)
 
     def _apply(
@@ -198,6 +202,8 @@ class SpectralFilter:
         passes.pad(r, 1 / scale, padded)
         device.forward(padded, (-2, -1), modes, self._threads)
         passes.weigh(modes, self._symbol)
-        device.backward(modes, (-2, -1), padded, self._threads)
+        # One axis after the other, in place: both at once take a copy of the modes.
+        device.along_columns(modes, forward=False, threads=self._threads)
+        device.backward(modes, (-1,), padded, self._threads)
         passes.crop(padded, scale, result)
         return result

@@ -85,20 +85,28 @@ class SplitConvolution:
         mean = (2 + np.cos(0.5 * hx * qx)) / 3 * (2 + np.cos(0.5 * hy * qy)) / 3
         self._down = (G * mean / (mx * my)).astype(np.float32)
         self._up = (G / (few[0] * few[1])).astype(np.float32)
-        self._make_room()
+        self._make_room(np.empty(0, np.float32))
 
-    def _make_room(self) -> None:
+    def _make_room(self, room: NDArray[Any]) -> None:
         (mx, my), (cx, cy) = self._size, self._few
-        self._padded = np.empty((self.shape[0], my), np.float32)
-        self._modes = np.empty((mx, my // 2 + 1), np.complex64)
-        self._coarse: NDArray[Any] = np.empty((cx, cy), np.float32)
-        self._coarse_modes = np.empty((cx, cy // 2 + 1), np.complex64)
+        waves, few = (mx, my // 2 + 1), (cx, cy // 2 + 1)
+        shapes = [(*waves, 2), (*few, 2), (self.shape[0], my), (cx, cy)]
+        ends = np.cumsum([math.prod(shape) for shape in shapes])
+        floats = room.reshape(-1).view(np.float32)
+        if floats.size < ends[-1]:  # long and narrow ones are padded to more than twice
+            floats = np.empty(ends[-1], np.float32)
+        buffers = [
+            part.reshape(shape) for part, shape in zip(np.split(floats, ends), shapes, strict=False)
+        ]
+        self._modes, self._coarse_modes = (part.view(np.complex64)[..., 0] for part in buffers[:2])
+        self._padded: NDArray[Any] = buffers[2]
+        self._coarse: NDArray[Any] = buffers[3]
 
-    def fresh(self) -> Self:
-        """The same operator with buffers of its own, for another user."""
+    def within(self, room: NDArray[Any]) -> Self:
+        """The same operator for another user, in this memory as far as that is large enough."""
         other = copy(self)
         other._far = self._far.fresh()
-        other._make_room()
+        other._make_room(room)
         return other
 
     def __call__(self, p: Array, out: Array) -> Array:
@@ -128,7 +136,8 @@ class SplitConvolution:
         for its, mine in _shared(modes, waves):
             mine[...] = its
         passes.weigh(waves, self._down)
-        CPU.backward(waves, (-2, -1), coarse, threads)
+        CPU.along_columns(waves, forward=False, threads=threads)
+        CPU.backward(waves, (-1,), coarse, threads)
         self._far.quick(coarse, out=coarse)
         CPU.forward(coarse, (-2, -1), waves, threads)
         passes.weigh(waves, self._up)
