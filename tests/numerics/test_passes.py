@@ -49,7 +49,7 @@ def test_a_step_is_that_of_the_expressions(single, kind, shape, seed, taken):
     rng = np.random.default_rng(seed)
     lower, upper = bounds(rng, kind, shape)
     p, g, d = point(rng, lower, upper, shape), rng.normal(size=shape), rng.normal(size=shape)
-    lower, upper = passes.spread(lower, p), passes.spread(upper, p)
+    lower, upper = passes.as_rows(lower, p), passes.as_rows(upper, p)
     g[rng.random(shape) < 0.2] = 0.0
     r, z, Kd, out = (rng.normal(size=shape).astype(single) for _ in range(4))
 
@@ -115,6 +115,17 @@ def test_what_goes_around_a_transform_is_that_of_the_expressions(single, shape, 
             assert_allclose(have, expected, rtol=1e-6)
 
 
+@settings(deadline=None, max_examples=25)
+@given(st.integers(1, 30), st.integers(0, 5), seeds)
+def test_spreading_is_that_of_the_expression(nodes, steps, seed):
+    rng = np.random.default_rng(seed)
+    neighbours, weights = rng.integers(0, nodes, (nodes, 9)), rng.random((nodes, 9)) / 5
+    (_, (*_, expected)), (_, (*_, have)) = both(
+        "spread", neighbours, weights, steps, rng.random((nodes, 2))
+    )
+    assert_allclose(have, expected, rtol=1e-12)
+
+
 def test_a_loop_refuses_arrays_whose_results_would_be_lost():
     rows = np.zeros((4, 6))
     for values, padded in (
@@ -128,6 +139,13 @@ def test_a_loop_refuses_arrays_whose_results_would_be_lost():
                         ("crop", np.zeros((4, 5)), 1.0, rows)):  # fmt: skip
         with pytest.raises(ValueError, match=r"shape|room|than there is"):
             getattr(passes, name)(*args)
+
+
+@pytest.mark.parametrize("stranger", [-1, 3])
+def test_a_neighbour_that_is_none_is_refused(stranger):
+    neighbours = np.array([[0], [1], [stranger]])
+    with pytest.raises(IndexError, match="none of the nodes"):
+        passes.spread(neighbours, np.ones((3, 1)), 1, np.ones((3, 2)))
 
 
 def test_without_a_compiler_expressions_do_it():

@@ -29,10 +29,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Literal, Protocol
+from typing import Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+
+from restitution.numerics import passes
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -139,24 +141,25 @@ def energy_release_rate(
     opened = np.bincount(node, weights=np.maximum(opening, 0.0), minlength=i.size)
     faces = np.bincount(node, minlength=i.size)
     sums = np.column_stack([-0.5 * p[i, j] * opened, faces])
-    spread = _diffusion(i, j, touching.shape)
-    for _ in range(_SMOOTHING_STEPS):
-        sums = spread @ sums
+    passes.spread(*_diffusion(i, j, touching.shape), _SMOOTHING_STEPS, sums)
     return (i, j), sums[:, 0] / sums[:, 1]
 
 
-def _diffusion(i: NDArray[np.intp], j: NDArray[np.intp], shape: tuple[int, ...]) -> Any:
-    """Matrix of one step of diffusion along the edge that conserves the sum (Metropolis)."""
-    from scipy.sparse import csr_array
+def _diffusion(
+    i: NDArray[np.intp], j: NDArray[np.intp], shape: tuple[int, ...]
+) -> tuple[NDArray[np.intp], Array]:
+    """Neighbours of each node and their weights, of shape (nodes, 9), in a step of diffusion.
 
-    n = i.size
+    It goes along the edge and conserves the sum (Metropolis). Who has fewer is its own neighbour.
+    """
+    here = np.arange(i.size)
     number = np.full((shape[0] + 2, shape[1] + 2), -1)
-    number[i + 1, j + 1] = np.arange(n)
+    number[i + 1, j + 1] = here
     # One row for each node: its eight neighbours, and last itself.
     neighbours = number[i[:, None] + 1 + _AROUND[:, 0], j[:, None] + 1 + _AROUND[:, 1]]
     joined = neighbours >= 0
+    neighbours = np.where(joined, neighbours, here[:, None])
     degree = joined.sum(axis=1) - 1
-    weight = np.where(joined, 1.0 / (1 + np.maximum(degree[:, None], degree[neighbours])), 0.0)
+    weight = joined / (1 + np.maximum(degree[:, None], degree[neighbours]))
     weight[:, -1] = 1.0 - weight[:, :-1].sum(axis=1)
-    ends = np.concatenate([[0], np.cumsum(degree + 1)])
-    return csr_array((weight[joined], neighbours[joined], ends), shape=(n, n))
+    return neighbours, weight

@@ -8,11 +8,13 @@
 #include <pybind11/pybind11.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 namespace py = pybind11;
 using Index = py::ssize_t;
@@ -233,6 +235,30 @@ void weigh(Rows<std::complex<T>> modes, Rows<const T> weights) {
     }
 }
 
+inline void spread(Rows<const Index> neighbours, Rows<const double> weights, int steps,
+                   Rows<double> sums) {
+    expect_one_shape(neighbours, weights);
+    if (sums.count != weights.count || sums.length != 2)
+        throw std::invalid_argument("arrays of different shapes");
+    for (Index i = 0; i < neighbours.count; ++i)
+        for (Index k = 0; k < neighbours.length; ++k)
+            if (neighbours[i][k] < 0 || neighbours[i][k] >= sums.count)
+                throw std::out_of_range("a neighbour that is none of the nodes");
+    std::vector<std::array<double, 2>> next(sums.count);
+    for (; steps > 0; --steps) {
+        for (Index i = 0; i < sums.count; ++i) {
+            const Index* node = neighbours[i];
+            const double* weight = weights[i];
+            next[i] = {};
+            for (Index k = 0; k < weights.length; ++k) {
+                next[i][0] += weight[k] * sums[node[k]][0];
+                next[i][1] += weight[k] * sums[node[k]][1];
+            }
+        }
+        for (Index i = 0; i < sums.count; ++i) std::copy(next[i].begin(), next[i].end(), sums[i]);
+    }
+}
+
 #ifdef RESTITUTION_AVX2
 #pragma GCC pop_options
 #endif
@@ -259,4 +285,5 @@ PYBIND11_MODULE(loops, module) {
     define<float>(module);
     define<double>(module);
     module.def("leaves", &leaves);
+    module.def("spread", &spread);
 }

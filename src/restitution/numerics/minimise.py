@@ -88,7 +88,7 @@ def minimise_quadratic(
     quick = K if quick is None else quick
     K = quick if rough else K
     p = np.clip(start, lower, upper, out=start)
-    lower, upper = passes.spread(lower, p), passes.spread(upper, p)
+    lower, upper = passes.as_rows(lower, p), passes.as_rows(upper, p)
     g, exact = _gradient(quick, p, b), quick is K
     d = np.zeros_like(p)
     r, r_old, z, Kd = (np.zeros_like(p, dtype=kind) for _ in range(4))
@@ -140,7 +140,7 @@ def minimise_quadratic(
 
 def violation(p: Array, g: Array, lower: Bound, upper: Bound) -> Number:
     """Largest violation of the optimality conditions, in the units of the gradient."""
-    lower, upper = passes.spread(lower, p), passes.spread(upper, p)
+    lower, upper = passes.as_rows(lower, p), passes.as_rows(upper, p)
     return passes.downhill(p, g, lower, upper, np.empty_like(p))
 
 

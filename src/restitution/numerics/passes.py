@@ -59,7 +59,7 @@ def _number(found: Any) -> Any:
     return np.bool_(found) if isinstance(found, bool) else np.float64(found)
 
 
-def spread(bound: Bound, p: Array) -> Bound:
+def as_rows(bound: Bound, p: Array) -> Bound:
     """The bound as loops take it: a number as an array like p whose rows are all the same one."""
     if loops is None or not _is_plain(p) or isinstance(bound, np.ndarray):
         return bound
@@ -160,6 +160,16 @@ def crop(padded: Array, factor: Number | float, out: Array) -> None:
 def weigh(modes: Array, weights: Array) -> None:
     """Multiply by real weights."""
     modes *= weights
+
+
+@_by_loop
+def spread(neighbours: NDArray[np.intp], weights: Array, steps: int, sums: Array) -> None:
+    """Replace two sums at each node, `steps` times, by those of its neighbours, weighted.
+
+    `neighbours` and `weights` are of shape (nodes, neighbours), `sums` of (nodes, 2).
+    """
+    for _ in range(steps):
+        sums[...] = np.einsum("ij,ijk->ik", weights, sums[neighbours])
 
 
 def _free(p: Array, g: Array, lower: Bound, upper: Bound) -> NDArray[np.bool_]:
