@@ -169,6 +169,7 @@ def _half_space(
 
     approximation = None
     if device is CPU and shape[0] * shape[1] > _NODES_WORTH_SPLITTING:
+        # SciPy's functions take longer to import than a small solve.
         from restitution.numerics.split import SplitConvolution
 
         strength = spacing[0] * spacing[1] / (np.pi * contact_modulus)
