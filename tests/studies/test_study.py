@@ -7,7 +7,11 @@ import signal
 import subprocess
 import sys
 import time
-from concurrent.futures import ThreadPoolExecutor
+from collections import deque
+from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 import xarray as xr
@@ -15,8 +19,9 @@ import xarray as xr
 from restitution.errors import OutputError
 from restitution.studies import study as module
 from restitution.studies.store import StudyFolder
-from restitution.studies.study import run_study
+from restitution.studies.study import Tally, _compute_all, run_study
 from restitution.studies.sweep import parse_study
+from restitution.studies.work import Outcome
 from restitution.studies.workers import Workers
 
 SWEEP = """
@@ -288,3 +293,37 @@ def test_interruption_says_how_to_go_on(whole, text, tmp_path):
     process.communicate(timeout=300)
     assert process.returncode == 0
     assert table(tmp_path / "out") == table(whole)
+
+
+def test_a_worker_that_dies_between_two_cases_is_replaced():
+    """Then the executor says so when the next case is handed to it, not by a result."""
+
+    class Dead:
+        def submit(self, *_):
+            raise BrokenProcessPool
+
+    class Alive:
+        def submit(self, _, text, *__):
+            future = Future()
+            future.set_result(Outcome({}, f"not computed: {text}"))
+            return future
+
+    class Renewed:
+        executor, places, threads, channel, renewals = Dead(), 2, 1, None, 0
+
+        def renewed(self, _):
+            self.renewals += 1
+            return Alive()
+
+        def heard(self):
+            return []
+
+    class Kept(list):
+        def put(self, case, outcome):
+            self.append((case.number, outcome.reason))
+
+    cases = deque(SimpleNamespace(number=n, text=f"case {n}") for n in (1, 2, 3))
+    kept, tally, workers = Kept(), Tally(3), Renewed()
+    _compute_all(cases, Path(), kept, workers, tally, lambda _: None)
+    assert sorted(kept) == [(n, f"not computed: case {n}") for n in (1, 2, 3)]
+    assert workers.renewals == 1

@@ -79,11 +79,15 @@ def _compute_all(
             executor, size, broken = workers.renewed(places), places, False
         source = suspects or waiting
         while source and len(running) < min(places, size):
-            case = source.popleft()
-            future = executor.submit(
-                compute, case.text, str(folder), case.number, workers.threads, workers.channel
-            )
-            running[future] = case
+            case = source[0]
+            try:
+                future = executor.submit(
+                    compute, case.text, str(folder), case.number, workers.threads, workers.channel
+                )
+            except BrokenExecutor:  # a worker has died since the last look
+                broken = True
+                break
+            running[future] = source.popleft()
             tally.in_flight[case.number] = 0
         done, _ = wait(running, timeout=_POLL, return_when=FIRST_COMPLETED)
         for future in done:
