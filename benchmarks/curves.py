@@ -15,10 +15,13 @@ import subprocess
 import sys
 import tempfile
 import time
+import tomllib
 from dataclasses import dataclass
+from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
+import tomli_w
 from unit import convolution, machine, seconds, today
 
 from restitution import (
@@ -37,6 +40,7 @@ from restitution.studies.case import read_case
 ROOT = Path(__file__).parents[1]
 EXAMPLE = ROOT / "examples" / "steel.toml"
 OUT = ROOT / "docs" / "benchmarks" / "curves.md"
+FIG_10 = files("restitution.reproduce") / "studies" / "roughness.toml"
 NODES = 512
 STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25)
 GRID = Grid((NODES, NODES), (0.25e-6, 0.25e-6))
@@ -61,32 +65,6 @@ Fig. 10 is that of Ghanbarzadeh et al. (2019): smooth, and Rq = 0.1, 0.2, 0.5 an
 correlation length 2 µm), w = 0.09 J/m², 24 depths from 10 nm to 1 µm each, every one loaded and
 followed back to separation. As a study it is one command, with its start and its tables; its cases,
 the surfaces, are shared out among processes ("smooth" is Rq = 1 pm there).
-"""
-
-STUDY = """
-[first]
-radius = "500 um"
-youngs_modulus = "210 GPa"
-poissons_ratio = 0.25
-[interface]
-yield_pressure = "750 MPa"
-work_of_adhesion = "0.09 J/m^2"
-[roughness]
-kind = "gaussian"
-rms = "0.1 um"
-correlation_length = "2 um"
-seed = 1
-[grid]
-nodes = 512
-spacing = "0.25 um"
-[indentation]
-from = "10 nm"
-to = "1 um"
-steps = 24
-[unloading]
-curves = 0
-[sweep]
-"roughness.rms" = ["1 pm", "0.1 um", "0.2 um", "0.5 um", "1 um"]
 """
 
 
@@ -131,10 +109,12 @@ def curve(contacts: list[Contact], depths) -> Tally:
 
 def study() -> Tally:
     """Fig. 10 by `restitution study`, as its users run it: the whole command."""
+    case = tomllib.loads(FIG_10.read_text())  # which goes on to deeper ones, for Fig. 12
+    case["indentation"] = {"from": "10 nm", "to": "1 um", "steps": len(DEPTHS)}
     with tempfile.TemporaryDirectory() as folder:
-        case, out = Path(folder, "fig10.toml"), Path(folder, "out")
-        case.write_text(STUDY)
-        subprocess.run([sys.executable, "-m", "restitution", "study", case, "-o", out],
+        path, out = Path(folder, "fig10.toml"), Path(folder, "out")
+        path.write_text(tomli_w.dumps(case))
+        subprocess.run([sys.executable, "-m", "restitution", "study", path, "-o", out],
                        check=True, capture_output=True)  # fmt: skip
         with (out / "table.csv").open() as table:
             rows = list(csv.DictReader(table))

@@ -115,6 +115,26 @@ def test_what_goes_around_a_transform_is_that_of_the_expressions(single, shape, 
             assert_allclose(have, expected, rtol=1e-6)
 
 
+@pytest.mark.parametrize("single", [np.float32, np.float64])
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+@settings(deadline=None, max_examples=25)
+@given(shapes, seeds)
+def test_what_is_not_finite_is_no_small_violation(single, bad, shape, seed):
+    """A maximum that passes over NaN would call such a solve converged."""
+    rng = np.random.default_rng(seed)
+    p, g, d = rng.random(shape) + 1, rng.normal(size=shape), np.zeros(shape)
+    out, Kd = np.empty(shape, single), np.zeros(shape, single)
+    lower, upper = (passes.as_rows(bound, p) for bound in (0.0, np.inf))
+    g[tuple(rng.integers(0, shape))] = bad
+    values = g.astype(single)
+    for largest in (
+        passes.downhill(p, g, lower, upper, out),
+        passes.advance(p, g, d, Kd, 1.0, lower, upper, out),
+        passes.peak(values),
+    ):
+        assert not largest < np.inf
+
+
 @settings(deadline=None, max_examples=25)
 @given(st.integers(1, 30), st.integers(0, 5), seeds)
 def test_spreading_is_that_of_the_expression(nodes, steps, seed):

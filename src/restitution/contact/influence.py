@@ -124,7 +124,7 @@ def _kept(build: _lru_cache_wrapper[Operator], shape: tuple[int, int]) -> Callab
 # the last: the largest block so far is kept, by the aspect ratio of the cells and the device.
 _known: dict[tuple[float, Device], Array] = {}
 _MOST_KNOWN = 2**22  # coefficients: 32 MiB
-_COEFFICIENTS_AT_ONCE = 2**20
+_COEFFICIENTS_AT_ONCE = 2**20  # 8 MiB an array
 _MOST_KEPT = 2**21  # nodes of an operator that is kept: 16 MiB
 _NODES_WORTH_SPLITTING = 300 * 300  # making the kernel's parts costs some products of smaller ones
 

@@ -65,28 +65,39 @@ inline double downhill_at(double p, double g, double low, double high) {
     return falls & rises ? g : 0.0;
 }
 
-template <class T>
-double largest_of(const T* values, Index length) {
-    T most = 0;
-#pragma omp simd reduction(max : most)
-    for (Index j = 0; j < length; ++j) most = std::max(most, std::abs(values[j]));
-    return most;
-}
+// The largest magnitude of what it has seen; NaN where something was not finite, which a maximum
+// would pass over.
+struct Largest {
+    double most = 0, doubt = 0;
+
+    template <class T>
+    void see(const T* values, Index length) {
+        T row = 0, not_finite = 0;
+#pragma omp simd reduction(max : row) reduction(+ : not_finite)
+        for (Index j = 0; j < length; ++j) {
+            row = std::max(row, std::abs(values[j]));
+            not_finite += 0 * values[j];
+        }
+        most = std::max(most, double(row));
+        doubt += not_finite;
+    }
+    double value() const { return most + doubt; }
+};
 
 template <class T>
 double downhill(Rows<const double> p, Rows<const double> g, Rows<const double> lower,
                 Rows<const double> upper, Rows<T> out) {
     expect_one_shape(p, g, lower, upper, out);
-    double most = 0;
+    Largest most;
     for (Index i = 0; i < p.count; ++i) {
         const double *pi = p[i], *gi = g[i], *low = lower[i], *high = upper[i];
         T* result = out[i];
 #pragma omp simd
         for (Index j = 0; j < p.length; ++j)
             result[j] = T(downhill_at(pi[j], gi[j], low[j], high[j]));
-        most = std::max(most, largest_of(result, p.length));
+        most.see(result, p.length);
     }
-    return most;
+    return most.value();
 }
 
 template <class T>
@@ -167,7 +178,7 @@ double advance(Rows<double> p, Rows<double> g, Rows<const double> d, Rows<const 
                Rows<const double> lower, Rows<const double> upper, Rows<T> out) {
     expect_one_shape(p, g, d, Kd, lower, upper, out);
     const bool whole = taken == 1;
-    double most = 0;
+    Largest most;
     for (Index i = 0; i < p.count; ++i) {
         double *pi = p[i], *gi = g[i];
         const double *di = d[i], *low = lower[i], *high = upper[i];
@@ -184,17 +195,16 @@ double advance(Rows<double> p, Rows<double> g, Rows<const double> d, Rows<const 
             gi[j] = gradient;
             result[j] = T(downhill_at(end, gradient, low[j], high[j]));
         }
-        most = std::max(most, largest_of(result, p.length));
+        most.see(result, p.length);
     }
-    return most;
+    return most.value();
 }
 
 template <class T>
 double peak(Rows<const T> values) {
-    double most = 0;
-    for (Index i = 0; i < values.count; ++i)
-        most = std::max(most, largest_of(values[i], values.length));
-    return most;
+    Largest most;
+    for (Index i = 0; i < values.count; ++i) most.see(values[i], values.length);
+    return most.value();
 }
 
 template <class From, class To>

@@ -84,6 +84,7 @@ def minimise_quadratic(
     `quick` has led there, which will do for a large tolerance. Not converging is reported in the
     result, never raised.
     """
+    # What only leads to the next step need not be more exact than what makes it.
     kind: Any = np.float64 if quick is None else np.float32
     quick = K if quick is None else quick
     K = quick if rough else K
