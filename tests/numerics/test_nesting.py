@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from restitution.contact.influence import half_space, inverse_half_space
-from restitution.numerics import nesting
+from restitution.numerics import nesting, passes
 from restitution.numerics.minimise import minimise_quadratic
 from restitution.numerics.nesting import minimise_nested
 
@@ -90,13 +90,16 @@ def test_not_converging_is_reported():
     assert found.residual > TOLERANCE
 
 
-def test_a_guess_on_finer_cells_keeps_straight_lines():
-    coarse = np.add.outer(np.arange(9.0), 3 * np.arange(7.0))
-    b = np.repeat(np.repeat(coarse, 2, axis=0), 2, axis=1)
-    assert_allclose(nesting._average(b), coarse)
-    fine = nesting._interpolate(nesting._interpolate(coarse, 18).T, 14).T
+@pytest.mark.parametrize("batch", [(), (1,)])
+def test_a_guess_on_finer_cells_keeps_straight_lines(batch):
+    coarse = np.add.outer(np.arange(9.0), 3 * np.arange(7.0)).reshape(*batch, 9, 7)
+    b = np.repeat(np.repeat(coarse, 2, axis=-2), 2, axis=-1)
+    found = np.empty_like(coarse)
+    passes.coarsen(b, found)
+    assert_allclose(found, coarse)
+    passes.refine(coarse, b)
     expected = np.add.outer(np.arange(18) / 2 - 0.25, 3 * (np.arange(14) / 2 - 0.25))
-    assert_allclose(fine[1:-1, 1:-1], expected[1:-1, 1:-1], atol=1e-12)
-    odd = nesting._average(np.ones((5, 3)))
-    assert odd.shape == (3, 2)
+    assert_allclose(b[..., 1:-1, 1:-1], expected[1:-1, 1:-1].reshape(*batch, 16, 12), atol=1e-12)
+    odd = np.zeros((*batch, 3, 2))
+    passes.coarsen(np.ones((*batch, 5, 3)), odd)
     assert_allclose(odd, 1.0)

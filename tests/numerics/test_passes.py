@@ -137,6 +137,16 @@ def test_what_is_not_finite_is_no_small_violation(single, bad, shape, seed):
 
 
 @settings(deadline=None, max_examples=25)
+@given(shapes, seeds)
+def test_going_between_grids_is_that_of_the_expressions(shape, seed):
+    rng = np.random.default_rng(seed)
+    fine, coarse = rng.normal(size=shape), rng.normal(size=[(n + 1) // 2 for n in shape])
+    for name, *args in (("coarsen", fine, coarse), ("refine", coarse, fine)):
+        (_, (_, expected)), (_, (_, found)) = both(name, *args)
+        assert_allclose(found, expected, rtol=1e-14, atol=1e-15)
+
+
+@settings(deadline=None, max_examples=25)
 @given(st.integers(1, 30), st.integers(0, 5), seeds)
 def test_spreading_is_that_of_the_expression(nodes, steps, seed):
     rng = np.random.default_rng(seed)

@@ -14,14 +14,15 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.numerics.convolution import FreeConvolution, SpectralFilter
+from restitution.numerics.convolution import Convolution, FreeConvolution, SpectralFilter
 from restitution.numerics.device import CPU, Device, current
+from restitution.numerics.split import SplitConvolution
 
 if TYPE_CHECKING:
     from functools import _lru_cache_wrapper
 
 Array = NDArray[np.float64]
-Operator = TypeVar("Operator", FreeConvolution, SpectralFilter)
+Operator = TypeVar("Operator", FreeConvolution | SplitConvolution, SpectralFilter)
 
 # Beyond this distance (in cell diagonals) the series below differs from Love's formula by less than
 # 2e-12 of the value, while the formula itself loses digits to cancellation as (r/h)².
@@ -96,7 +97,7 @@ def half_space(
     spacing: tuple[float, float],
     contact_modulus: float,
     batch: tuple[int, ...] = (),
-) -> FreeConvolution:
+) -> Convolution:
     """The operator p ↦ u on a block of nodes of the free (non-periodic) half-space.
 
     Arrays are of shape (*batch, *shape), on the current device.
@@ -124,9 +125,9 @@ def _kept(build: _lru_cache_wrapper[Operator], shape: tuple[int, int]) -> Callab
 # the last: the largest block so far is kept, by the aspect ratio of the cells and the device.
 _known: dict[tuple[float, Device], Array] = {}
 _MOST_KNOWN = 2**22  # coefficients: 32 MiB
-_COEFFICIENTS_AT_ONCE = 2**20  # 8 MiB an array
 _MOST_KEPT = 2**21  # nodes of an operator that is kept: 16 MiB
-_NODES_WORTH_SPLITTING = 300 * 300  # making the kernel's parts costs some products of smaller ones
+# Along each edge, in long sides of a cell; on smaller blocks the parts cost more than they save.
+_CELLS_WORTH_SPLITTING = 190
 
 
 def _unit_coefficients(lags: tuple[int, int], aspect: float, device: Device) -> Array:
@@ -148,14 +149,9 @@ def _compute_coefficients(
     x: Array = hx * device.arange(lags[0])[:, None]
     y: Array = hy * device.arange(lags[1])[None, :]
     near_i, near_j = (math.ceil(_FAR * math.hypot(hx, hy) / h) for h in spacing)
-    # The origin is always in the near block, which Love's formula overwrites. Some rows at a time:
-    # the series takes ten arrays.
-    u = device.empty((lags[0], lags[1]), np.float64)
-    rows = max(1, _COEFFICIENTS_AT_ONCE // lags[1])
+    # The origin is always in the near block, which Love's formula overwrites.
     with np.errstate(divide="ignore", invalid="ignore"):
-        for first in range(0, lags[0], rows):
-            some = slice(first, first + rows)
-            u[some] = far_displacement(x[some], y, hx, hy, 1.0)
+        u = far_displacement(x, y, hx, hy, 1.0)
     u[:near_i, :near_j] = love_displacement(x[:near_i], y[:, :near_j], hx, hy, 1.0)
     return u
 
@@ -163,18 +159,15 @@ def _compute_coefficients(
 @lru_cache(maxsize=8)
 def _half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float, device: Device
-) -> FreeConvolution:
+) -> FreeConvolution | SplitConvolution:
     def kernel(i: NDArray[np.int64], j: NDArray[np.int64]) -> Array:
         return influence_coefficients(i, j, spacing, contact_modulus, device)
 
-    approximation = None
-    if device is CPU and shape[0] * shape[1] > _NODES_WORTH_SPLITTING:
-        # SciPy's functions take longer to import than a small solve.
-        from restitution.numerics.split import SplitConvolution
-
-        strength = spacing[0] * spacing[1] / (np.pi * contact_modulus)
-        approximation = SplitConvolution(kernel, strength, spacing, shape)
-    return FreeConvolution(kernel, shape, device, approximation)
+    size = min(n * h for n, h in zip(shape, spacing, strict=True))
+    if size < _CELLS_WORTH_SPLITTING * max(spacing):
+        return FreeConvolution(kernel, shape, device)
+    strength = spacing[0] * spacing[1] / (np.pi * contact_modulus)
+    return SplitConvolution(kernel, strength, spacing, shape, device)
 
 
 @lru_cache(maxsize=8)

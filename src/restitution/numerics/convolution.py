@@ -44,30 +44,25 @@ def _even_fast_size(minimum: int) -> int:
     return 2 * int(ducc0.fft.good_size((minimum + 1) // 2, True))
 
 
-class Approximation(Protocol):
-    """A cheaper convolution with the same kernel, good enough between exact ones."""
+class Convolution(Protocol):
+    """A convolution of arrays of one shape; `count` tells how often it was applied."""
 
-    def __call__(self, p: Array, out: Array) -> Array:
-        """K * p, in `out`."""
+    count: int
 
-    def within(self, room: NDArray[Any]) -> Self:
-        """The same for another user, whose memory this is."""
+    def __call__(self, p: Array, out: Array | None = None) -> Array:
+        """K ∗ p, same shape as `p`: in a new array, or in `out`."""
+
+    def quick(self, p: Array, out: Array | None = None) -> Array:
+        """The same for work in single precision: an error of about 5e-7 of the largest value."""
 
 
 class FreeConvolution:
     """Convolution of arrays of one shape with one kernel; `count` tells how often it was applied.
 
-    What is convolved may be a batch: arrays (*batch, nx, ny). Of single arrays `approximation`
-    does what is asked for in single precision.
+    What is convolved may be a batch: arrays (*batch, nx, ny).
     """
 
-    def __init__(
-        self,
-        kernel: Kernel,
-        shape: tuple[int, int],
-        device: Device = CPU,
-        approximation: Approximation | None = None,
-    ) -> None:
+    def __init__(self, kernel: Kernel, shape: tuple[int, int], device: Device = CPU) -> None:
         nx, ny = shape
         px, py = _even_fast_size(2 * nx - 1), _even_fast_size(2 * ny - 1)
         lags = kernel(device.arange(px // 2 + 1)[:, None], device.arange(py // 2 + 1)[None, :])
@@ -77,8 +72,7 @@ class FreeConvolution:
         # The normalisation of the inverse transform rides along with the kernel.
         spectrum = device.even_spectrum(lags, threads_for(nx * ny))
         spectrum /= px * py
-        self._spectrum, self._approximation = spectrum, approximation
-        self._single_spectrum = spectrum.astype(np.float32) if approximation is None else None
+        self._spectrum, self._single_spectrum = spectrum, spectrum.astype(np.float32)
         self._make_room(())
 
     def _make_room(self, batch: tuple[int, ...]) -> None:
@@ -91,11 +85,6 @@ class FreeConvolution:
         modes = self._device.empty((*batch, px, py // 2 + 1), np.complex128)
         self._buffers = padded, modes
         self._single_buffers = _as_single(padded), _as_single(modes)  # in the same memory
-        if batch and self._approximation is not None:
-            self._approximation = None
-            self._single_spectrum = self._spectrum.astype(np.float32)
-        elif self._approximation is not None:
-            self._approximation = self._approximation.within(modes)
 
     def fresh(self, batch: tuple[int, ...] = ()) -> Self:
         """The same operator with buffers and a count of its own, for another user or a batch."""
@@ -109,10 +98,6 @@ class FreeConvolution:
 
     def quick(self, p: Array, out: Array | None = None) -> Array:
         """The same for work in single precision: an error of about 5e-7 of the largest value."""
-        if self._approximation is not None:
-            self.count += 1
-            return self._approximation(p, np.empty(p.shape) if out is None else out)
-        assert self._single_spectrum is not None  # made where there is no approximation
         return self._apply(p, *self._single_buffers, self._single_spectrum, out)
 
     def _apply(
@@ -128,7 +113,7 @@ class FreeConvolution:
         result = np.empty_like(p, dtype=np.float64, order="C") if out is None else out
         self.count += 1
 
-        for some, rows in _blocks(nx, padded):
+        for some, rows in blocks(nx, padded):
             passes.pad(p[..., some, :], 1.0, rows)
             device.forward(rows, (-1,), modes[..., some, :], threads)
         modes[..., nx:, :] = 0.0
@@ -137,7 +122,7 @@ class FreeConvolution:
         passes.weigh(modes[..., :half, :], spectrum)
         passes.weigh(modes[..., half:, :], spectrum[px // 2 - 1 : 0 : -1])
         device.along_columns(modes, forward=False, threads=threads)
-        for some, rows in _blocks(nx, padded):
+        for some, rows in blocks(nx, padded):
             device.backward(modes[..., some, :], (-1,), rows, threads)
             passes.crop(rows, 1.0, result[..., some, :])
         return result
@@ -149,7 +134,7 @@ def _as_single(buffer: NDArray[Any]) -> NDArray[Any]:
     return buffer.reshape(-1).view(single)[: buffer.size].reshape(buffer.shape)
 
 
-def _blocks(rows: int, buffer: NDArray[Any]) -> Iterator[tuple[slice, NDArray[Any]]]:
+def blocks(rows: int, buffer: NDArray[Any]) -> Iterator[tuple[slice, NDArray[Any]]]:
     """Rows of an array, some at a time, with as much of the buffer for them."""
     some = buffer.shape[-2]
     for first in range(0, rows, some):

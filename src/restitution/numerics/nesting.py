@@ -14,7 +14,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.numerics.convolution import FreeConvolution, SpectralFilter
+from restitution.numerics import passes
+from restitution.numerics.convolution import Convolution, SpectralFilter
 from restitution.numerics.items import every, highest, somewhere
 from restitution.numerics.minimise import Minimum, minimise_quadratic, violation
 from restitution.numerics.passes import Bound
@@ -23,7 +24,7 @@ from restitution.numerics.window import Box, bounding_box, shape_of, union, wide
 Array = NDArray[np.float64]
 
 # The operator and its approximate inverse on a block of so many nodes 2ⁿ as wide as the finest.
-System = Callable[[tuple[int, int], int], tuple[FreeConvolution, SpectralFilter]]
+System = Callable[[tuple[int, int], int], tuple[Convolution, SpectralFilter]]
 
 _COARSEST = 80  # nodes along the shorter edge below which a guess costs more than it saves
 _COARSE_ACCURACY = 1e-2  # of the largest b; finer is lost in going to the finer grid
@@ -91,8 +92,11 @@ def _first_guess(system: System, b: Array, upper: Bound, level: int) -> Array:
     """The solution on the next coarser grid, itself begun on one coarser; zero on the coarsest."""
     if min(b.shape[-2:]) < _COARSEST:
         return np.zeros_like(b)
-    coarse = _average(b)
-    K, inverse = system((coarse.shape[-2], coarse.shape[-1]), level)
+    *batch, rows, columns = b.shape
+    size = (rows + 1) // 2, (columns + 1) // 2
+    coarse = np.empty_like(b, shape=(*batch, *size), order="C")
+    passes.coarsen(b, coarse)
+    K, inverse = system(size, level)
     found = minimise_quadratic(
         K,
         coarse,
@@ -105,28 +109,6 @@ def _first_guess(system: System, b: Array, upper: Bound, level: int) -> Array:
         tolerance=_COARSE_ACCURACY * np.maximum(highest(b), 0.0),
         max_iterations=_COARSE_ITERATIONS,
     )
-    rows, columns = b.shape[-2:]
-    taller = _interpolate(found.point, rows).swapaxes(-1, -2)
-    return _interpolate(taller, columns).swapaxes(-1, -2).copy()
-
-
-def _average(b: Array) -> Array:
-    """Means over 2 × 2 nodes; a last odd row or column counts twice."""
-    rows, columns = (n % 2 for n in b.shape[-2:])
-    b = np.pad(b, [(0, 0)] * (b.ndim - 2) + [(0, rows), (0, columns)], mode="edge")
-    total: Array = b[..., ::2, ::2] + b[..., 1::2, ::2]
-    total += b[..., ::2, 1::2]
-    total += b[..., 1::2, 1::2]
-    total *= 0.25
-    return total
-
-
-def _interpolate(coarse: Array, rows: int) -> Array:
-    """Linear interpolation from cells twice as long onto `rows` cells; constant at the ends."""
-    before = np.concatenate([coarse[..., :1, :], coarse[..., :-1, :]], axis=-2)
-    after = np.concatenate([coarse[..., 1:, :], coarse[..., -1:, :]], axis=-2)
-    *batch, n, columns = coarse.shape
-    fine = np.empty_like(coarse, shape=(*batch, 2 * n, columns), order="C")
-    fine[..., ::2, :] = 0.75 * coarse + 0.25 * before
-    fine[..., 1::2, :] = 0.75 * coarse + 0.25 * after
-    return fine[..., :rows, :]
+    guess = np.empty_like(b, order="C")
+    passes.refine(found.point, guess)
+    return guess

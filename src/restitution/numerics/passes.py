@@ -163,6 +163,25 @@ def weigh(modes: Array, weights: Array) -> None:
 
 
 @_by_loop
+def coarsen(fine: Array, coarse: Array) -> None:
+    """Means over 2 × 2 nodes, in `coarse`; a last odd row or column counts twice."""
+    rows, columns = (n % 2 for n in fine.shape[-2:])
+    fine = np.pad(fine, [(0, 0)] * (fine.ndim - 2) + [(0, rows), (0, columns)], mode="edge")
+    np.add(fine[..., ::2, ::2], fine[..., 1::2, ::2], out=coarse)
+    coarse += fine[..., ::2, 1::2]
+    coarse += fine[..., 1::2, 1::2]
+    coarse *= 0.25
+
+
+@_by_loop
+def refine(coarse: Array, fine: Array) -> None:
+    """Linear interpolation of what `coarsen` makes, in `fine`; constant at the ends."""
+    rows, columns = fine.shape[-2:]
+    taller = _refined(coarse)[..., :rows, :].swapaxes(-1, -2)
+    fine[...] = _refined(taller)[..., :columns, :].swapaxes(-1, -2)
+
+
+@_by_loop
 def spread(neighbours: NDArray[np.intp], weights: Array, steps: int, sums: Array) -> None:
     """Replace two sums at each node, `steps` times, by those of its neighbours, weighted.
 
@@ -170,6 +189,17 @@ def spread(neighbours: NDArray[np.intp], weights: Array, steps: int, sums: Array
     """
     for _ in range(steps):
         sums[...] = np.einsum("ij,ijk->ik", weights, sums[neighbours])
+
+
+def _refined(coarse: Array) -> Array:
+    """Linear interpolation from rows twice as wide; constant at the ends."""
+    before = np.concatenate([coarse[..., :1, :], coarse[..., :-1, :]], axis=-2)
+    after = np.concatenate([coarse[..., 1:, :], coarse[..., -1:, :]], axis=-2)
+    *batch, n, columns = coarse.shape
+    fine = np.empty_like(coarse, shape=(*batch, 2 * n, columns), order="C")
+    fine[..., ::2, :] = 0.75 * coarse + 0.25 * before
+    fine[..., 1::2, :] = 0.75 * coarse + 0.25 * after
+    return fine
 
 
 def _free(p: Array, g: Array, lower: Bound, upper: Bound) -> NDArray[np.bool_]:
