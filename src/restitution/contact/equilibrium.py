@@ -142,11 +142,12 @@ def settled(
     plastic, work, adhesive_work, work_error = _past(contact, history)
     yielding = (pressure >= limit) & (gradient < 0)
     if yielding.any():
-        sinking = np.where(yielding, -gradient, 0.0)
+        rising = np.where(yielding, gradient, 0.0)
         if history is not None:
             plastic = plastic.copy()
-        plastic[box] += sinking
-        work += limit * float(sinking.sum()) * contact.grid.cell_area
+        plastic[box] -= rising
+        work -= limit * float(rising.sum()) * contact.grid.cell_area
+        del rising  # large grids need the memory for the displacement
     return State(contact, indentation, box, pressure, gradient + b, plastic,
                  work, adhesive_work, work_error, residual, convolutions)  # fmt: skip
 

@@ -108,8 +108,7 @@ class FreeConvolution:
         spectrum: NDArray[Any],
         out: Array | None,
     ) -> Array:
-        nx, px = self.shape[0], self._padded[0]
-        device, threads = self._device, self._threads
+        nx, device, threads = self.shape[0], self._device, self._threads
         result = np.empty_like(p, dtype=np.float64, order="C") if out is None else out
         self.count += 1
 
@@ -118,14 +117,21 @@ class FreeConvolution:
             device.forward(rows, (-1,), modes[..., some, :], threads)
         modes[..., nx:, :] = 0.0
         device.along_columns(modes, forward=True, threads=threads)
-        half = px // 2 + 1
-        passes.weigh(modes[..., :half, :], spectrum)
-        passes.weigh(modes[..., half:, :], spectrum[px // 2 - 1 : 0 : -1])
+        weigh_evenly(modes, spectrum)
         device.along_columns(modes, forward=False, threads=threads)
         for some, rows in blocks(nx, padded):
             device.backward(modes[..., some, :], (-1,), rows, threads)
             passes.crop(rows, 1.0, result[..., some, :])
         return result
+
+
+def weigh_evenly(modes: NDArray[Any], weights: NDArray[Any]) -> None:
+    """Multiply half-complex modes by a quadrant of weights that are even along both axes."""
+    last = modes.shape[-2] // 2
+    passes.weigh(modes[..., : last + 1, :], weights)
+    # The negative waves; of an odd number of rows the largest, too, has a negative one.
+    negative = modes.shape[-2] - last - 1
+    passes.weigh(modes[..., last + 1 :, :], weights[negative:0:-1])
 
 
 def _as_single(buffer: NDArray[Any]) -> NDArray[Any]:
@@ -145,9 +151,9 @@ def blocks(rows: int, buffer: NDArray[Any]) -> Iterator[tuple[slice, NDArray[Any
 class SpectralFilter:
     """Multiplication by a real, even symbol of the wave vector; a cheap approximate operator.
 
-    `symbol(qx, qy)` takes the angular wave numbers (rad per cell) as a column and a row. The array
-    is padded only to a fast size, so the filter is periodic, and works in single precision: good
-    enough for a preconditioner.
+    `symbol(qx, qy)` takes the angular wave numbers (rad per cell, ≥ 0) as a column and a row. The
+    array is padded only to a fast size, so the filter is periodic, and works in single precision:
+    good enough for a preconditioner.
     """
 
     def __init__(
@@ -157,8 +163,8 @@ class SpectralFilter:
         device: Device = CPU,
     ) -> None:
         mx, my = (int(ducc0.fft.good_size(n, True)) for n in shape)
-        i, j = device.arange(mx)[:, None], device.arange(my // 2 + 1)[None, :]
-        values = symbol(2 * np.pi / mx * (i - mx * (2 * i > mx)), 2 * np.pi / my * j)
+        i, j = device.arange(mx // 2 + 1)[:, None], device.arange(my // 2 + 1)[None, :]
+        values = symbol(2 * np.pi / mx * i, 2 * np.pi / my * j)
         self.shape = shape
         self._device = device
         self._symbol = (values / (mx * my)).astype(np.float32)
@@ -186,7 +192,7 @@ class SpectralFilter:
         scale += scale == 0
         passes.pad(r, 1 / scale, padded)
         device.forward(padded, (-2, -1), modes, self._threads)
-        passes.weigh(modes, self._symbol)
+        weigh_evenly(modes, self._symbol)
         # One axis after the other, in place: both at once take a copy of the modes.
         device.along_columns(modes, forward=False, threads=self._threads)
         device.backward(modes, (-1,), padded, self._threads)

@@ -91,8 +91,8 @@ def minimise_quadratic(
     p = np.clip(start, lower, upper, out=start)
     lower, upper = passes.as_rows(lower, p), passes.as_rows(upper, p)
     g, exact = _gradient(quick, p, b), quick is K
-    d = np.zeros_like(p)
-    r, r_old, z, Kd = (np.zeros_like(p, dtype=kind) for _ in range(4))
+    d, r_old = np.zeros_like(p), np.zeros_like(p, dtype=kind)
+    r, z, Kd = (np.empty_like(p, dtype=kind) for _ in range(3))
     residual = passes.downhill(p, g, lower, upper, r)
     low = _DRIFT * residual  # where the gradient is computed anew
     rz_old, stuck = np.zeros_like(residual), residual < 0

@@ -32,7 +32,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.numerics import passes
-from restitution.numerics.convolution import FreeConvolution, Kernel, blocks, threads_for
+from restitution.numerics.convolution import (
+    FreeConvolution,
+    Kernel,
+    blocks,
+    threads_for,
+    weigh_evenly,
+)
 from restitution.numerics.device import CPU, Device
 
 Array = NDArray[np.float64]
@@ -146,13 +152,12 @@ class _Split:
             few,
             device,
         )
-        k = device.arange(few[0])
-        qx = 2 * np.pi / (mx * hx) * (k - few[0] * (2 * k >= few[0]))[:, None]
+        qx = 2 * np.pi / (mx * hx) * device.arange(few[0] // 2 + 1)[:, None]
         qy = 2 * np.pi / (my * hy) * device.arange(few[1] // 2 + 1)[None, :]
         G = np.exp(-0.5 * (precision.g * cell) ** 2 * (qx * qx + qy * qy))
         mean = _mean(lambda a: np.cos(a * hx * qx)) * _mean(lambda a: np.cos(a * hy * qy))
-        self._down = (G * mean / (mx * my)).astype(precision.real)
-        self._up = (G / (few[0] * few[1])).astype(precision.real)
+        self._down: Array = (G * mean / (mx * my)).astype(precision.real)
+        self._up: Array = (G / (few[0] * few[1])).astype(precision.real)
 
     def _buffers(self, batch: tuple[int, ...]) -> list[tuple[tuple[int, ...], type]]:
         """Shapes and types of what is needed to work on a batch."""
@@ -193,7 +198,7 @@ class _Split:
     def __call__(self, p: Array, out: Array | None) -> Array:
         """K ∗ p, in `out` or in a new array."""
         result = np.empty_like(p, dtype=np.float64, order="C") if out is None else out
-        (fx, fy), nx, middle = self._first, self._shape[0], self._size[0] // 2 + 1
+        (fx, fy), nx = self._first, self._shape[0]
         modes, device, threads = self._modes, self._device, self._threads
         here = modes[..., fx : fx + nx, :]
         for some, rows in blocks(nx, self._padded):
@@ -204,8 +209,7 @@ class _Split:
         modes[..., fx + nx :, :] = 0.0
         device.along_columns(modes, forward=True, threads=threads)
         smooth = self._smooth(modes)
-        passes.weigh(modes[..., :middle, :], self._near)
-        passes.weigh(modes[..., middle:, :], self._near[middle - 2 : 0 : -1])
+        weigh_evenly(modes, self._near)
         for mine, its in _shared(modes, smooth):
             mine += its
         device.along_columns(modes, forward=False, threads=threads)
@@ -220,13 +224,13 @@ class _Split:
         device, threads = self._device, self._coarse_threads
         for its, mine in _shared(modes, waves):
             mine[...] = its
-        passes.weigh(waves, self._down)
+        weigh_evenly(waves, self._down)
         device.along_columns(waves, forward=False, threads=threads)
         device.backward(waves, (-1,), coarse, threads)
         convolve = self._far if self._precision is _DOUBLE else self._far.quick
         convolve(coarse, out=coarse)
         device.forward(coarse, (-2, -1), waves, threads)
-        passes.weigh(waves, self._up)
+        weigh_evenly(waves, self._up)
         return waves
 
 
