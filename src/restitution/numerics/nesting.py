@@ -44,7 +44,6 @@ def minimise_nested(
     """Minimise with 0 ≤ p ≤ `upper`; the result and the products with K on the finest grid."""
     size = b.shape[-2:]
     everywhere: Box = (slice(0, size[0]), slice(0, size[1]))
-    K_everywhere, _ = system(shape_of(everywhere), 0)
     p = _first_guess(system, b, upper, level=1)
     window = bounding_box(somewhere(p > 0))
     window = everywhere if window is None else widen(window, _MARGIN, shape_of(everywhere))
@@ -73,7 +72,8 @@ def minimise_nested(
         p[inside] = found.point
         iterations, converged = found.iterations, every(found.converged)
         del K, inverse, found  # their arrays make room for those of the check
-        g = K_everywhere(p)
+        K, _ = system(shape_of(everywhere), 0)
+        g = K(p)
         g -= b
         products += 1
         residual = violation(p, g, 0.0, upper)
