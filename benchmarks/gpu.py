@@ -37,8 +37,8 @@ def least_seconds(n: int, products: int) -> float:
     """What moving the arrays of a solve on n × n nodes takes, at the device's bandwidth.
 
     A product in single precision reads and writes the half-complex array, 4n² bytes, eight times
-    (rows, columns in two passes, spectrum, and back), and that of the coarser grid, a quarter of it;
-    an iteration, one for each, reads or writes some 40 arrays of n² in double precision.
+    (rows, columns in two passes, spectrum, and back), and that of the coarser grid, a quarter of
+    it; an iteration, one for each, reads or writes some 40 arrays of n² in double precision.
     """
     return products * (1.25 * 8 * 2 * 4 + 40 * 8) * n**2 / BANDWIDTH
 

@@ -23,6 +23,7 @@ import scipy.fft
 from unit import machine, measure_unit, today
 
 from restitution import Body, Contact, Grid, Pair, Surface, generate_surface, solve
+from restitution.contact import influence
 
 OUT = Path(__file__).parents[1] / "docs" / "benchmarks"
 COARSEST = 256
@@ -109,6 +110,7 @@ def forget() -> None:
             for value in vars(module).values():
                 if hasattr(value, "cache_clear"):
                     value.cache_clear()
+    influence._known.clear()
 
 
 def in_its_own_process(*arguments: object) -> dict:

@@ -55,27 +55,52 @@ def test_the_answer_is_that_of_the_plain_solve(shape, rough, upper):
     assert_allclose(found.gradient, K(found.point) - b, atol=1e-12 * np.abs(b).max())
 
 
-def test_what_the_guess_does_not_see_widens_the_window(monkeypatch):
-    """A spike of one node far from the rest, lost in the means over 2 x 2 nodes."""
-    windows = []
+@pytest.fixture
+def windows(monkeypatch):
+    """The shapes that are solved on, in order."""
+    seen = []
 
     def watched(K, b, *bounds, **options):
-        windows.append(b.shape)
+        seen.append(b.shape)
         return minimise_quadratic(K, b, *bounds, **options)
 
     monkeypatch.setattr(nesting, "minimise_quadratic", watched)
+    return seen
+
+
+def bowl_and_spike():
+    """And a spike of one node far from it, lost in the means over 2 x 2 nodes."""
     b = bowl((200, 200), depth=0.2) - 0.1
     b[10, 15] = 0.15
+    return b
+
+
+def test_the_window_holds_what_the_guess_leaves_closed(windows):
+    b = bowl_and_spike()
     found, _ = nested(b, np.inf)
     assert found.converged
     assert found.point[10, 15] > 0
-    assert len(windows) >= 3
-    assert max(windows[-2][0], windows[-2][1]) < max(windows[-1])
+    assert windows[:2] == [(50, 50), (100, 100)]
+    assert len(windows) == 3
+    assert_allclose(found.point, plain(b, np.inf).point, atol=1e-6 * found.point.max())
+
+
+def test_what_the_guess_does_not_see_widens_the_window(windows, monkeypatch):
+    """Too much pressure in the middle opens the gap at the spike."""
+    b = bowl_and_spike()
+    guess = np.zeros_like(b)
+    guess[90:110, 90:110] = 10 * plain(b, np.inf).point.max()
+    monkeypatch.setattr(nesting, "_first_guess", lambda *_, **__: guess)
+    found, _ = nested(b, np.inf)
+    assert found.converged
+    assert found.point[10, 15] > 0
+    assert windows[0] == (26, 26)
+    assert len(windows) >= 2
     assert_allclose(found.point, plain(b, np.inf).point, atol=1e-6 * found.point.max())
 
 
 def test_the_window_and_the_coarse_grids_save_products():
-    b = bowl((240, 240))
+    b = bowl((480, 480), rough=0.3)  # where there is something to save
     found, products = nested(b, np.inf)
     assert found.converged
     K, inverse = system(b.shape, 0)

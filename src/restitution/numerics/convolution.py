@@ -38,10 +38,16 @@ def threads_for(nodes: int) -> int:
     return 0 if nodes > _NODES_WORTH_THREADS else 1
 
 
-def _even_fast_size(minimum: int) -> int:
-    """The smallest even FFT size with factors 2, 3 and 5 only, at least `minimum`."""
-    # Sizes with 7 and 11 are nearer, but cost up to a third more.
-    return 2 * int(ducc0.fft.good_size((minimum + 1) // 2, True))
+def fast_size(minimum: int) -> int:
+    """The smallest size of a fast FFT, at least `minimum`.
+
+    Its factors are 2, 3 and 5, or it is 7 or 21 times a power of 2: these take 0.8 to 0.95 times as
+    long as the next of the others, where other sizes with 7 or 11 take up to a third more.
+    """
+    sizes = [int(ducc0.fft.good_size(minimum, True))]
+    for factor in (7, 21):
+        sizes.append(factor << (-(-minimum // factor) - 1).bit_length())
+    return min(sizes)
 
 
 class Convolution(Protocol):
@@ -64,7 +70,7 @@ class FreeConvolution:
 
     def __init__(self, kernel: Kernel, shape: tuple[int, int], device: Device = CPU) -> None:
         nx, ny = shape
-        px, py = _even_fast_size(2 * nx - 1), _even_fast_size(2 * ny - 1)
+        px, py = 2 * fast_size(nx), 2 * fast_size(ny)
         lags = kernel(device.arange(px // 2 + 1)[:, None], device.arange(py // 2 + 1)[None, :])
         self.shape = shape
         self._device = device
@@ -162,7 +168,7 @@ class SpectralFilter:
         shape: tuple[int, int],
         device: Device = CPU,
     ) -> None:
-        mx, my = (int(ducc0.fft.good_size(n, True)) for n in shape)
+        mx, my = (fast_size(n) for n in shape)
         i, j = device.arange(mx // 2 + 1)[:, None], device.arange(my // 2 + 1)[None, :]
         values = symbol(2 * np.pi / mx * i, 2 * np.pi / my * j)
         self.shape = shape

@@ -3,8 +3,9 @@
 The problem is that of `minimise` with lower = 0 on a uniform grid. Averaged over 2 × 2 nodes it is
 the same problem on half as many nodes each way, whose solution is a first guess for all but the
 shortest waves (nested iteration; Venner and Lubrecht 2000, *Multilevel Methods in Lubrication*).
-The guess also shows where the pressure is: the fine problem is solved on that window, and the
-conditions are checked on all nodes, where they may widen the window. The items of a batch share it.
+The guess also shows where the pressure is and where it is missing: the fine problem is solved on
+that window, and the conditions are checked on all nodes, where they may widen it. The items of a
+batch share it.
 """
 
 from __future__ import annotations
@@ -26,7 +27,8 @@ Array = NDArray[np.float64]
 # The operator and its approximate inverse on a block of so many nodes 2ⁿ as wide as the finest.
 System = Callable[[tuple[int, int], int], tuple[Convolution, SpectralFilter]]
 
-_COARSEST = 80  # nodes along the shorter edge below which a guess costs more than it saves
+# Nodes along the shorter edge below which a guess costs more than it saves, and one for a guess.
+_WORTH_A_GUESS, _COARSEST = 120, 80
 _COARSE_ACCURACY = 1e-2  # of the largest b; finer is lost in going to the finer grid
 _COARSE_ITERATIONS = 60
 _MARGIN = 3  # nodes around the guess
@@ -42,15 +44,23 @@ def minimise_nested(
     max_iterations: int,
 ) -> tuple[Minimum, int]:
     """Minimise with 0 ≤ p ≤ `upper`; the result and the products with K on the finest grid."""
-    size = b.shape[-2:]
-    everywhere: Box = (slice(0, size[0]), slice(0, size[1]))
-    p = _first_guess(system, b, upper, level=1)
+    everywhere: Box = (slice(0, b.shape[-2]), slice(0, b.shape[-1]))
+    size = shape_of(everywhere)
+    p, products = np.zeros_like(b), 0
+    if min(size) >= _WORTH_A_GUESS:
+        p = _first_guess(system, b, upper, level=1)
     window = bounding_box(somewhere(p > 0))
-    window = everywhere if window is None else widen(window, _MARGIN, shape_of(everywhere))
-    products = 0
+    if window is not None and _saves(window, size):
+        # The coarser grids do not see all that touches: what the guess leaves closed may, too.
+        K, _ = system(size, 0)
+        g = K.quick(p)
+        g -= b
+        products += 1
+        window = bounding_box(somewhere((p > 0) | (g < 0)))
+        del K, g
+    window = everywhere if window is None else widen(window, _MARGIN, size)
     while True:
-        rows, columns = shape_of(window)
-        if rows * columns > _WORTH_A_WINDOW * size[0] * size[1]:
+        if not _saves(window, size):
             window = everywhere
         K, inverse = system(shape_of(window), 0)
         inside = (..., *window)
@@ -72,7 +82,7 @@ def minimise_nested(
         p[inside] = found.point
         iterations, converged = found.iterations, every(found.converged)
         del K, inverse, found  # their arrays make room for those of the check
-        K, _ = system(shape_of(everywhere), 0)
+        K, _ = system(size, 0)
         g = K(p)
         g -= b
         products += 1
@@ -81,11 +91,13 @@ def minimise_nested(
             return Minimum(p, g, residual, iterations, residual <= tolerance), products
         wider = union(window, bounding_box(somewhere(g < -tolerance)))
         # The same window again: what the last digits of the check leave, all nodes mend.
-        window = (
-            everywhere
-            if wider is None or wider == window
-            else widen(wider, _MARGIN, shape_of(everywhere))
-        )
+        window = everywhere if wider is None or wider == window else widen(wider, _MARGIN, size)
+
+
+def _saves(window: Box, size: tuple[int, int]) -> bool:
+    """Whether a window on arrays of that size is small enough to be worth its check."""
+    rows, columns = shape_of(window)
+    return rows * columns <= _WORTH_A_WINDOW * size[0] * size[1]
 
 
 def _first_guess(system: System, b: Array, upper: Bound, level: int) -> Array:

@@ -27,7 +27,6 @@ from collections.abc import Callable
 from copy import copy
 from typing import Any, NamedTuple, Self
 
-import ducc0
 import numpy as np
 from numpy.typing import NDArray
 
@@ -36,6 +35,7 @@ from restitution.numerics.convolution import (
     FreeConvolution,
     Kernel,
     blocks,
+    fast_size,
     threads_for,
     weigh_evenly,
 )
@@ -247,7 +247,7 @@ def _shared(modes: NDArray[Any], waves: NDArray[Any]) -> list[tuple[NDArray[Any]
 
 def _size(minimum: int) -> int:
     """A fast FFT size, at least `minimum`, that holds an even number of coarse cells."""
-    return 2 * _COARSE * int(ducc0.fft.good_size(-(-minimum // (2 * _COARSE)), True))
+    return 2 * _COARSE * fast_size(-(-minimum // (2 * _COARSE)))
 
 
 def _mean(values: Callable[[float], Array]) -> Array:

@@ -1,0 +1,152 @@
+"""What each trick of the solver is worth: whole solves with it and without, in turns, in one run.
+
+A trick is taken out by patching the package. Writes docs/benchmarks/tricks.md; `--rounds 3` is
+quicker.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import statistics
+from contextlib import ExitStack
+from pathlib import Path
+from unittest import mock
+
+import numpy as np
+from curves import GRID, STEEL, adhesive, curve, one
+from scaling import forget, surface_of
+from scaling import indentation as depth_of
+from unit import machine, seconds, today
+
+from restitution import Contact, Pair, generate_surface, smooth, solve
+from restitution.contact import adhesion, equilibrium, influence, loading, separation
+from restitution.errors import NotConvergedError
+from restitution.numerics import nesting, passes
+from restitution.numerics.convolution import FreeConvolution
+from restitution.numerics.split import SplitConvolution
+
+OUT = Path(__file__).parents[1] / "docs" / "benchmarks" / "tricks.md"
+
+REPORT = """\
+# What each trick is worth
+
+{date}, {machine}. Written by `make bench`.
+
+Time without the trick over time with it, everything else as it is: medians of {rounds} turns. Every
+solve or curve starts from empty caches, so that set-up and kernels count. R* = 250 µm,
+E* = 112 GPa, 512² nodes of 0.25 µm but for "filling" (1024², contact all over the grid of
+[scaling.md](scaling.md)); rough: Gaussian, Rq = 0.1 µm, correlation length 2 µm; plastic:
+p ≤ 750 MPa; adhesive: w = 0.09 J/m², one coefficient of restitution at 600 nm; 24 depths: plastic,
+rough, 2 nm to 5 µm. "fails" where the solve does not converge without the trick.
+
+{table}
+"""
+
+PAIR = Pair(STEEL, STEEL)
+ROUGH = generate_surface(GRID, kind="gaussian", rms=0.1e-6, correlation_length=2e-6, seed=1)
+
+
+def pressed(contact: Contact, a: float):
+    """A solve at δ = a²/R*."""
+    return lambda: solve(contact, a * a / PAIR.radius)
+
+
+LARGE = Contact(PAIR, surface_of(1024))
+JOBS = {
+    "smooth, a = 10 µm": pressed(Contact(PAIR, smooth(GRID)), 10e-6),
+    "rough, a = 10 µm": pressed(Contact(PAIR, ROUGH), 10e-6),
+    "rough, a = 20 µm": pressed(Contact(PAIR, ROUGH), 20e-6),
+    "plastic, a = 20 µm": pressed(Contact(PAIR, ROUGH, 750e6), 20e-6),
+    "filling": lambda: solve(LARGE, depth_of("filling")),
+    "24 depths": lambda: curve([Contact(PAIR, ROUGH, 750e6)], np.geomspace(2e-9, 5e-6, 24)),
+    "adhesive": lambda: one(adhesive(0.1e-6), 600e-9),
+}
+
+
+class Unchanged:
+    """What takes the place of the preconditioner."""
+
+    def __init__(self, *_: object) -> None:
+        pass
+
+    def __call__(self, r, out):
+        """The residual itself."""
+        out[...] = r
+        return out
+
+
+def everything(contact: Contact, *_: object):
+    """What takes the place of the box {h₀ < δ}."""
+    nx, ny = contact.grid.nodes
+    return slice(0, nx), slice(0, ny)
+
+
+PASSES = [name for name, value in vars(passes).items() if hasattr(value, "__wrapped__")]
+# What is given which value so that the trick is out.
+TRICKS = {
+    "solve on the box {h₀ < δ}": [(module, "reach", everything) for module in (loading, adhesion)],
+    "coarser grids first, and a window around their pressure": [
+        (nesting, "_WORTH_A_GUESS", math.inf)
+    ],
+    "the window alone": [(nesting, "_WORTH_A_WINDOW", 0.0)],
+    "preconditioner \\|q\\|E*/2": [(equilibrium, "inverse_half_space", Unchanged)],
+    "products in single precision": [
+        (kind, "quick", kind.__call__) for kind in (FreeConvolution, SplitConvolution)
+    ],
+    "the kernel split in two": [(influence, "_CELLS_WORTH_SPLITTING", math.inf)],
+    "compiled loops": [(passes, "loops", None)]
+    + [(passes, name, getattr(passes, name).__wrapped__) for name in PASSES],
+    "operators and coefficients kept": [
+        (influence, "_MOST_KEPT", 0),
+        (influence, "_MOST_KNOWN", 0),
+    ],
+    "nodes let go on rough solves": [(adhesion, "_RELEASING", 0.0)],
+    "the way back extrapolated": [(separation, "_predict", lambda *_: None)],
+}
+
+
+def timed(job, patches) -> float:
+    """Seconds of a job with these patches, from empty caches; infinite if it does not converge."""
+    with ExitStack() as stack:
+        for patch in patches:
+            stack.enter_context(mock.patch.object(*patch))
+        forget()
+        try:
+            return seconds(job)
+        except NotConvergedError:
+            return math.inf
+
+
+def gain(job, patches, rounds: int) -> float:
+    """Time without over time with, of a job."""
+    timed(job, patches)
+    ratios = []
+    for turn in range(rounds):
+        both = [timed(job, its) for its in ((patches, []) if turn % 2 else ([], patches))]
+        without, with_it = both if turn % 2 else both[::-1]
+        ratios.append(without / with_it)
+    return statistics.median(ratios)
+
+
+def main() -> None:
+    """Take out every trick of every job, and write the report."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--rounds", type=int, default=7)
+    parser.add_argument("--out", type=Path, default=OUT)
+    options = parser.parse_args()
+    where = machine()
+    rows = []
+    for name, patches in TRICKS.items():
+        gains = [gain(job, patches, options.rounds) for job in JOBS.values()]
+        cells = [f"{its:.2g}" if its < math.inf else "fails" for its in gains]
+        rows.append(f"| {name} | " + " | ".join(cells) + " |")
+        print(rows[-1], flush=True)
+    table = [f"| without | {' | '.join(JOBS)} |", "|---" * (len(JOBS) + 1) + "|", *rows]
+    options.out.write_text(
+        REPORT.format(date=today(), machine=where, rounds=options.rounds, table="\n".join(table))
+    )
+
+
+if __name__ == "__main__":
+    main()
