@@ -20,7 +20,7 @@ from scaling import indentation as depth_of
 from unit import machine, seconds, today
 
 from restitution import Contact, Pair, generate_surface, smooth, solve
-from restitution.contact import adhesion, equilibrium, influence, loading, separation
+from restitution.contact import adhesion, equilibrium, influence, loading
 from restitution.errors import NotConvergedError
 from restitution.numerics import nesting, passes
 from restitution.numerics.convolution import FreeConvolution
@@ -102,7 +102,6 @@ TRICKS = {
         (influence, "_MOST_KNOWN", 0),
     ],
     "nodes let go on rough solves": [(adhesion, "_RELEASING", 0.0)],
-    "the way back extrapolated": [(separation, "_predict", lambda *_: None)],
 }
 
 

@@ -176,7 +176,10 @@ def _punch_force(state: State) -> float:
 
 
 def _predict(previous: State | None, state: State, step: float) -> NDArray[np.float64] | None:
-    """Linear continuation of the pressure, on the nodes that are still in contact."""
+    """Linear continuation of the pressure, on the nodes that are still in contact.
+
+    Not for speed: a step is solved loosely, and ends nearer to the solution from a guess that is.
+    """
     if previous is None:
         return None
     slope = step / (previous.indentation - state.indentation)

@@ -87,7 +87,9 @@ class State:
     @property
     def separation_indentation(self) -> float:
         """Indentation at which the bodies part on unloading: min(h₀ + u_p), m (no adhesion)."""
-        return float((self.contact.gap + self.plastic_displacement).min())
+        # What is in contact lies lower than all that is outside the box.
+        box = self.box if self.contact_nodes else ...
+        return float((self.contact.gap[box] + self.plastic_displacement[box]).min())
 
     def patch_sizes(self) -> NDArray[np.int64]:
         """Nodes in each contact patch (nodes joined by an edge), largest first."""
