@@ -245,28 +245,33 @@ void weigh(Rows<std::complex<T>> modes, Rows<const T> weights) {
     }
 }
 
-inline void expect_halves(Rows<const double> coarse, Rows<const double> fine) {
+template <class Coarse, class Fine>
+void expect_halves(const Coarse& coarse, const Fine& fine) {
     if (coarse.count != (fine.count + 1) / 2 || coarse.length != (fine.length + 1) / 2)
         throw std::invalid_argument("one array is not half as long as the other");
 }
 
 inline void coarsen(Rows<const double> fine, Rows<double> coarse) {
-    expect_halves({coarse.first, coarse.count, coarse.length, coarse.stride}, fine);
+    expect_halves(coarse, fine);
     for (Index i = 0; i < coarse.count; ++i) {
         const double *one = fine[2 * i], *two = fine[std::min(2 * i + 1, fine.count - 1)];
         double* mean = coarse[i];
         for (Index j = 0; j < fine.length / 2; ++j)
             mean[j] = 0.25 * (one[2 * j] + two[2 * j] + one[2 * j + 1] + two[2 * j + 1]);
-        if (fine.length % 2) mean[coarse.length - 1] = 0.5 * (one[fine.length - 1] + two[fine.length - 1]);
+        if (fine.length % 2) {
+            const Index last = fine.length - 1;
+            mean[last / 2] = 0.5 * (one[last] + two[last]);
+        }
     }
 }
 
 inline void refine(Rows<const double> coarse, Rows<double> fine) {
-    expect_halves(coarse, {fine.first, fine.count, fine.length, fine.stride});
+    expect_halves(coarse, fine);
     const Index last = coarse.length - 1;
     std::vector<double> row(coarse.length);
     for (Index i = 0; i < fine.count; ++i) {
-        const Index beside = i % 2 ? std::min(i / 2 + 1, coarse.count - 1) : std::max(i / 2 - 1, Index(0));
+        const Index beside =
+            i % 2 ? std::min(i / 2 + 1, coarse.count - 1) : std::max(i / 2 - 1, Index(0));
         const double *near = coarse[i / 2], *far = coarse[beside];
         for (Index j = 0; j <= last; ++j) row[j] = 0.75 * near[j] + 0.25 * far[j];
         double* out = fine[i];

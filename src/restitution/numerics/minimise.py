@@ -114,7 +114,7 @@ def minimise_quadratic(
                 r *= going
             z = precondition(r, out=z)
             rz, overlap = passes.products(z, r, r_old)
-            kept = np.minimum(ratio(rz - overlap, rz_old), ratio(rz, rz_old))
+            kept = ratio(rz - np.maximum(overlap, 0.0), rz_old)
             kept = choose(kept > 0, kept, 0.0) * stretch
             slope, cut = passes.direct(d, kept, z, length, p, g, r, lower, upper)
             Kd = quick(d, out=Kd)

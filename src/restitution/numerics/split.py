@@ -140,9 +140,9 @@ class _Split:
         lags = device.empty((mx // 2 + 1, my // 2 + 1), np.float64)
         lags[...] = 0.0
         i, j = device.arange(min(2 * fx, mx // 2 + 1)), device.arange(min(2 * fy, my // 2 + 1))
-        near = lags[: i.size, : j.size]
-        near += kernel(i[:, None], j[None, :])
-        near -= _smooth_part(i, j, strength, spacing, precision.s * cell, device)
+        lags[: i.size, : j.size] = kernel(i[:, None], j[None, :]) - _smooth_part(
+            i, j, strength, spacing, precision.s * cell, device
+        )
         near = device.even_spectrum(lags, threads_for(lags.size)) / (mx * my)
         self._near: Array = near.astype(precision.real)
 
