@@ -3,7 +3,7 @@ PYTHON ?= python3
 PEER_PYTHON ?= python3.11
 VENV := .venv
 BIN := $(VENV)/bin
-BUILD := pyproject.toml setup.py src/restitution/numerics/loops.cpp
+BUILD := pyproject.toml setup.py $(wildcard src/restitution/numerics/*.cpp src/restitution/numerics/*.h)
 
 .PHONY: demo test lint bench bench-peers clean
 

@@ -5,6 +5,7 @@ import sys
 from pybind11.setup_helpers import Pybind11Extension, build_ext
 from setuptools import setup
 
+FOLDER = "src/restitution/numerics"
 # Products and sums are not fused, so that what should be equal is; no error numbers, no traps.
 FLAGS = ["-O3", "-fopenmp-simd", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=off"]
 
@@ -12,7 +13,8 @@ setup(
     ext_modules=[
         Pybind11Extension(
             "restitution.numerics.loops",
-            ["src/restitution/numerics/loops.cpp"],
+            [f"{FOLDER}/loops.cpp", f"{FOLDER}/convolve.cpp"],
+            depends=[f"{FOLDER}/rows.h", f"{FOLDER}/convolve.h"],
             cxx_std=17,
             extra_compile_args=[] if sys.platform == "win32" else FLAGS,
             optional=True,

@@ -36,11 +36,12 @@ def seconds(work, repeats: int) -> tuple[float, object]:
 def least_seconds(n: int, products: int) -> float:
     """What moving the arrays of a solve on n × n nodes takes, at the device's bandwidth.
 
-    A product in single precision reads and writes the half-complex array, 4n² bytes, eight times
-    (rows, columns in two passes, spectrum, and back), and that of the coarser grid, a quarter of
-    it; an iteration, one for each, reads or writes some 40 arrays of n² in double precision.
+    In single precision the padded half-complex array is 16n² bytes. A product fills it, transforms
+    it twice and weighs it, each time in and out: 110n²; the rows and what is converted take 60n².
+    The preconditioner, once for each, is not padded: 60n². An iteration reads or writes some 40
+    arrays of n² in double precision.
     """
-    return products * (1.25 * 8 * 2 * 4 + 40 * 8) * n**2 / BANDWIDTH
+    return products * (110 + 60 + 60 + 40 * 8) * n**2 / BANDWIDTH
 
 
 def large(device: str, n: int) -> None:

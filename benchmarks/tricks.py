@@ -10,10 +10,12 @@ import argparse
 import math
 import statistics
 from contextlib import ExitStack
+from contextvars import ContextVar
 from pathlib import Path
 from unittest import mock
 
 import numpy as np
+import scipy.fft
 from curves import GRID, adhesive, curve, one
 from scaling import PAIR, forget, indentation, surface_of
 from unit import machine, seconds, today
@@ -21,9 +23,8 @@ from unit import machine, seconds, today
 from restitution import Contact, generate_surface, smooth, solve
 from restitution.contact import adhesion, equilibrium, influence, loading
 from restitution.errors import NotConvergedError
-from restitution.numerics import nesting, passes
+from restitution.numerics import device, nesting, passes
 from restitution.numerics.convolution import FreeConvolution
-from restitution.numerics.split import SplitConvolution
 
 OUT = Path(__file__).parents[1] / "docs" / "benchmarks" / "tricks.md"
 
@@ -82,6 +83,7 @@ def everything(contact: Contact, *_: object):
     return slice(0, nx), slice(0, ny)
 
 
+PLAIN = device.accelerator("cpu", np, scipy.fft)
 PASSES = [name for name, value in vars(passes).items() if hasattr(value, "__wrapped__")]
 # What is given which value so that the trick is out.
 TRICKS = {
@@ -91,10 +93,8 @@ TRICKS = {
     ],
     "the window alone": [(nesting, "_WORTH_A_WINDOW", 0.0)],
     "preconditioner \\|q\\|E*/2": [(equilibrium, "inverse_half_space", Unchanged)],
-    "products in single precision": [
-        (kind, "quick", kind.__call__) for kind in (FreeConvolution, SplitConvolution)
-    ],
-    "the kernel split in two": [(influence, "_CELLS_WORTH_SPLITTING", math.inf)],
+    "products in single precision": [(FreeConvolution, "quick", FreeConvolution.__call__)],
+    "compiled convolution": [(device, "_current", ContextVar("device", default=PLAIN))],
     "compiled loops": [(passes, "loops", None)]
     + [(passes, name, getattr(passes, name).__wrapped__) for name in PASSES],
     "operators and coefficients kept": [

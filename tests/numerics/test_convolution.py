@@ -2,13 +2,17 @@
 
 from functools import partial
 
+import ducc0
 import numpy as np
 import pytest
+import scipy.fft
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
-from restitution.numerics.convolution import FreeConvolution, SpectralFilter, threads_for
+from restitution.numerics import device
+from restitution.numerics.convolution import FreeConvolution, SpectralFilter
+from restitution.numerics.device import _threads_for, accelerator
 
 approx = partial(pytest.approx, abs=0.0)  # whose own 1e-12 is more than these energies
 
@@ -113,7 +117,7 @@ def test_the_memory_layout_of_the_input_does_not_matter():
 @settings(deadline=None, max_examples=20)
 @given(shapes, seeds)
 def test_single_precision_is_quick_and_nearly_right(shape, seed):
-    """Also in blocks of rows, and between exact products in the same buffers."""
+    """Also between exact products in the same memory."""
     p = np.random.default_rng(seed).normal(size=shape)
     K = FreeConvolution(point_load((1.0, 2.0)), shape)
     exact, scale = K(p), np.abs(K(np.abs(p))).max()
@@ -164,5 +168,85 @@ def test_a_filter_is_symmetric_and_keeps_the_sign_of_its_symbol(shape, seed):
 
 
 def test_small_transforms_take_one_thread_and_large_ones_what_there_is():
-    assert threads_for(100 * 100) == 1
-    assert threads_for(800 * 800) == 0
+    assert _threads_for(100 * 100) == 1
+    assert _threads_for(800 * 800) == ducc0.misc.thread_pool_size()
+
+
+def test_two_users_do_not_meet():
+    one = FreeConvolution(point_load((1.0, 2.0)), (90, 70))
+    rng = np.random.default_rng(0)
+    p, other_p = rng.random((90, 70)), rng.random((90, 70))
+    other = one.fresh()
+    for apply in (lambda K, p: K(p), lambda K, p: K.quick(p)):
+        out = apply(one, p)
+        other_out = apply(other, other_p)
+        assert_array_equal(apply(one, p), out)
+        assert not np.array_equal(out, other_out)
+    assert (one.count, other.count) == (4, 2)
+
+
+def test_a_batch_is_one_after_the_other():
+    p = np.random.default_rng(3).normal(size=(4, 60, 50)) * 10.0 ** np.arange(4)[:, None, None]
+    K = FreeConvolution(point_load((1.0, 2.0)), (60, 50))
+    assert_array_equal(K(p), [K(item) for item in p])
+    assert_array_equal(K.quick(p), [K.quick(item) for item in p])
+    steep = SpectralFilter(lambda qx, qy: 1 + qx + qy, (60, 50))
+    assert_array_equal(steep(p), [steep(item) for item in p])
+
+
+def loops():
+    return pytest.importorskip("restitution.numerics.loops", reason="built without a compiler")
+
+
+# Sizes of any factors that are transformed, of vectors' lengths and one more, even and odd.
+periods = st.sampled_from(
+    [1, 2, 3, 4, 5, 7, 8, 14, 15, 16, 21, 25, 30, 32, 42, 48, 60, 63, 80, 90, 128]
+)
+
+
+@pytest.mark.parametrize("widest", [True, False])
+@pytest.mark.parametrize("kinds", ["ddd", "ddf", "dff", "dfd", "fff", "ffd", "fdd", "fdf"])
+@settings(deadline=None, max_examples=40)
+@given(st.tuples(periods, periods), st.data(), st.sampled_from([1e-3, 1.0, 7.0]), seeds)
+def test_compiled_convolution_is_that_of_whole_arrays(kinds, widest, both, data, scale, seed):
+    """In any period, padded or not, for any even spectrum, all kinds of numbers and vectors."""
+    shape = tuple(data.draw(st.integers(1, n)) for n in both)
+    rng = np.random.default_rng(seed)
+    given_kind, kind, result_kind = kinds
+    values = rng.normal(size=shape).astype(given_kind)
+    spectrum = rng.normal(size=(both[1] // 2 + 1, both[0] // 2 + 1)).astype(kind)
+    room = np.empty((shape[1], both[0] // 2 + 1), "F" if kind == "f" else "D")
+    found, expected = np.empty(shape, result_kind), np.empty(shape)
+    loops().convolve(values, 1 / scale, spectrum, *both, room, scale, found, 1, widest=widest)
+    plain = accelerator("plain", np, scipy.fft)
+    plain.convolve(values.astype("d"), spectrum.astype("d"), both, scale, room, expected)
+    # No value is larger than all waves together.
+    largest = np.abs(values).sum() * np.abs(spectrum).max() * both[0] * both[1]
+    assert_allclose(found, expected, atol=(1e-15 if kinds == "ddd" else 5e-7) * largest)
+
+
+@pytest.mark.parametrize("threads", [1, 2, 3, 40])
+def test_threads_share_the_columns(threads, monkeypatch):
+    monkeypatch.setattr(device, "_threads_for", lambda nodes: threads)
+    p = np.random.default_rng(4).normal(size=(70, 90))
+    K = FreeConvolution(point_load((1.0, 2.0)), (70, 90))
+    found = K(p)
+    monkeypatch.undo()
+    assert_array_equal(found, K(p))
+
+
+def test_what_does_not_go_together_is_refused():
+    convolve = loops().convolve
+    p, spectrum, out = np.ones((6, 5)), np.ones((6, 7)), np.empty((6, 5))
+    room = np.empty((5, 7), complex)
+    convolve(p, 1.0, spectrum, 12, 10, room, 1.0, out, 1)
+    for change, message in (
+        ({"px": 14}, "go with each other"), ({"out": np.empty((5, 5))}, "go with each other"),
+        ({"room": np.empty((6, 7), complex)}, "go with each other"),
+        ({"spectrum": np.ones((6, 6))}, "go with each other"),
+        ({"px": 4, "spectrum": np.ones((6, 3)), "room": np.empty((5, 3), complex)}, "more values"),
+        ({"px": 22, "spectrum": np.ones((6, 12)), "room": np.empty((5, 12), complex)}, "factors"),
+    ):  # fmt: skip
+        its = {"px": 12, "out": out, "room": room, "spectrum": spectrum} | change
+        with pytest.raises(ValueError, match=message):
+            convolve(p, 1.0, its["spectrum"], its["px"], 10, its["room"], 1.0, its["out"], 1)

@@ -47,12 +47,12 @@ def solve_batch(
     box = reduce(union, boxes)
     if box is None:
         return [parted(*pair) for pair in zip(contacts, indentations, strict=True)]
-    device, batch = current(), (len(contacts),)
+    device = current()
     b = np.stack([overlap(*pair, box) for pair in zip(contacts, indentations, strict=True)])
     scales = np.array([scale_of(*each) for each in zip(contacts, indentations, b, strict=True)])
     limits = np.array([contact.yield_pressure for contact in contacts])
     found, convolutions = minimise_nested(
-        system_of(contacts[0], batch),
+        system_of(contacts[0]),
         device.put(b),
         device.put(limits[:, None, None]),
         tolerance=device.put((residual * scales)[:, None, None]),

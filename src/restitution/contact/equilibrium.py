@@ -22,7 +22,7 @@ from restitution.contact.edge import edge_advice
 from restitution.contact.influence import half_space, inverse_half_space
 from restitution.contact.state import State
 from restitution.errors import DomainError, NotConvergedError
-from restitution.numerics.convolution import Convolution, SpectralFilter
+from restitution.numerics.convolution import FreeConvolution, SpectralFilter
 from restitution.numerics.device import current
 from restitution.numerics.items import every
 from restitution.numerics.minimise import minimise_quadratic
@@ -112,15 +112,13 @@ def scale_of(contact: Contact, indentation: float, b: Array) -> float:
     return contact.length_at(indentation) if contact.adhesive else float(b.max())
 
 
-def system_of(contact: Contact, batch: tuple[int, ...] = ()) -> System:
-    """The half-space of a contact and its approximate inverse, for a batch of such contacts."""
+def system_of(contact: Contact) -> System:
+    """The half-space of a contact and its approximate inverse."""
     E_star, (hx, hy) = contact.pair.contact_modulus, contact.grid.spacing
 
-    def system(shape: tuple[int, int], level: int) -> tuple[Convolution, SpectralFilter]:
+    def system(shape: tuple[int, int], level: int) -> tuple[FreeConvolution, SpectralFilter]:
         cells = 2**level * hx, 2**level * hy
-        return half_space(shape, cells, E_star, batch), inverse_half_space(
-            shape, cells, E_star, batch
-        )
+        return half_space(shape, cells, E_star), inverse_half_space(shape, cells, E_star)
 
     return system
 

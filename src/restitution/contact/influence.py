@@ -14,15 +14,14 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.numerics.convolution import Convolution, FreeConvolution, SpectralFilter
+from restitution.numerics.convolution import FreeConvolution, SpectralFilter
 from restitution.numerics.device import CPU, Device, current
-from restitution.numerics.split import SplitConvolution
 
 if TYPE_CHECKING:
     from functools import _lru_cache_wrapper
 
 Array = NDArray[np.float64]
-Operator = TypeVar("Operator", FreeConvolution | SplitConvolution, SpectralFilter)
+Operator = TypeVar("Operator", FreeConvolution, SpectralFilter)
 
 # Beyond this distance (in cell diagonals) the series below differs from Love's formula by less than
 # 2e-12 of the value, while the formula itself loses digits to cancellation as (r/h)².
@@ -93,27 +92,21 @@ def influence_coefficients(
 
 
 def half_space(
-    shape: tuple[int, int],
-    spacing: tuple[float, float],
-    contact_modulus: float,
-    batch: tuple[int, ...] = (),
-) -> Convolution:
+    shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
+) -> FreeConvolution:
     """The operator p ↦ u on a block of nodes of the free (non-periodic) half-space.
 
     Arrays are of shape (*batch, *shape), on the current device.
     """
-    return _kept(_half_space, shape)(shape, spacing, contact_modulus, current()).fresh(batch)
+    return _kept(_half_space, shape)(shape, spacing, contact_modulus, current()).fresh()
 
 
 def inverse_half_space(
-    shape: tuple[int, int],
-    spacing: tuple[float, float],
-    contact_modulus: float,
-    batch: tuple[int, ...] = (),
+    shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
 ) -> SpectralFilter:
     """An approximate inverse, u ↦ |q| E*/2 u: exact on a periodic half-space (Johnson 1985)."""
     build = _kept(_inverse_half_space, shape)
-    return build(shape, spacing, contact_modulus, current()).fresh(batch)
+    return build(shape, spacing, contact_modulus, current()).fresh()
 
 
 def _kept(build: _lru_cache_wrapper[Operator], shape: tuple[int, int]) -> Callable[..., Operator]:
@@ -126,8 +119,6 @@ def _kept(build: _lru_cache_wrapper[Operator], shape: tuple[int, int]) -> Callab
 _known: dict[tuple[float, Device], Array] = {}
 _MOST_KNOWN = 2**22  # coefficients: 32 MiB
 _MOST_KEPT = 2**21  # nodes of an operator that is kept: 16 MiB
-# Along each edge, in long sides of a cell; on smaller blocks the parts cost more than they save.
-_CELLS_WORTH_SPLITTING = 190
 
 
 def _unit_coefficients(lags: tuple[int, int], aspect: float, device: Device) -> Array:
@@ -159,15 +150,11 @@ def _compute_coefficients(
 @lru_cache(maxsize=8)
 def _half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float, device: Device
-) -> FreeConvolution | SplitConvolution:
+) -> FreeConvolution:
     def kernel(i: NDArray[np.int64], j: NDArray[np.int64]) -> Array:
         return influence_coefficients(i, j, spacing, contact_modulus, device)
 
-    size = min(n * h for n, h in zip(shape, spacing, strict=True))
-    if size < _CELLS_WORTH_SPLITTING * max(spacing):
-        return FreeConvolution(kernel, shape, device)
-    strength = spacing[0] * spacing[1] / (np.pi * contact_modulus)
-    return SplitConvolution(kernel, strength, spacing, shape, device)
+    return FreeConvolution(kernel, shape, device)
 
 
 @lru_cache(maxsize=8)

@@ -1,8 +1,8 @@
-"""Where arrays live and who transforms them: this machine and ducc0, or a GPU and CuPy.
+"""Where arrays live and who convolves them: this machine's compiled loops, or a GPU and CuPy.
 
 The solver is written for any arrays that follow NumPy's protocols (`__array_ufunc__`, NEP 13, and
 `__array_function__`, NEP 18), as CuPy's do; what has no such protocol, making arrays and
-transforming them, is a method of a `Device`. Solves run on the `current` one:
+convolving them, is a method of a `Device`. Solves run on the `current` one:
 
     with on_device("gpu"):
         state = solve(contact, 1e-6)
@@ -21,19 +21,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.errors import CaseError
+from restitution.numerics import passes
 
 Array = NDArray[Any]
 DeviceName = Literal["cpu", "gpu", "auto"]
 
+# Two threads cost more than they save on smaller arrays (measured on two cores).
+_NODES_WORTH_THREADS = 400 * 400
+
 
 class Device(Protocol):
-    """Makes arrays, and transforms them without normalisation; `threads` is a hint.
-
-    Of rows that are half padding no more than `row_buffer` numbers are transformed at once.
-    """
+    """Makes arrays, and convolves them."""
 
     name: str
-    row_buffer: int
 
     def put(self, values: Array) -> Array:
         """An array of this machine's memory, on the device."""
@@ -41,30 +41,35 @@ class Device(Protocol):
     def get(self, values: Array) -> Array:
         """An array of the device, in this machine's memory."""
 
-    def empty(self, shape: tuple[int, ...], dtype: Any) -> Array:
-        """An array whose values do not matter yet."""
-
     def arange(self, n: int) -> Array:
         """0 … n − 1."""
 
-    def even_spectrum(self, quadrant: Array, threads: int) -> Array:
+    def even_spectrum(self, quadrant: Array) -> Array:
         """Spectrum of a real array that is even along both axes, of which this is one quadrant."""
 
-    def forward(self, values: Array, axes: tuple[int, ...], out: Array, threads: int) -> None:
-        """Real to half-complex, the last of `axes` halved."""
+    def room(self, shape: tuple[int, int], periods: tuple[int, int]) -> Array:
+        """The memory that `convolve` needs for arrays of that shape."""
 
-    def along_columns(self, modes: Array, *, forward: bool, threads: int) -> None:
-        """Complex to complex along the last axis but one, in place."""
+    def convolve(
+        self, values: Array, spectrum: Array, periods: tuple[int, int], scale: Any, room: Array,
+        out: Array,
+    ) -> None:  # fmt: skip
+        """Multiply the waves of values, (*batch, nx, ny), by a real and even spectrum, in `out`.
 
-    def backward(self, modes: Array, axes: tuple[int, ...], out: Array, threads: int) -> None:
-        """Half-complex to real, the inverse of `forward` but for its scale."""
+        The values are filled up with zeros to `periods`. `spectrum` is a quadrant as
+        `even_spectrum` makes it but transposed, and without normalisation; its precision is that of
+        the work. Values are divided by `scale`, one for each item, and what comes out is multiplied
+        by it.
+        """
 
 
-class _Host:
-    """NumPy arrays, transformed by ducc0."""
+class _Compiled:
+    """NumPy arrays, convolved by the compiled `loops`."""
 
     name = "cpu"
-    row_buffer = 2**22  # 32 MiB
+
+    def __init__(self, loops: Any) -> None:
+        self._loops = loops
 
     def put(self, values: Array) -> Array:
         return values
@@ -72,31 +77,34 @@ class _Host:
     def get(self, values: Array) -> Array:
         return values
 
-    def empty(self, shape: tuple[int, ...], dtype: Any) -> Array:
-        return np.empty(shape, dtype)
-
     def arange(self, n: int) -> Array:
         return np.arange(n)
 
-    def even_spectrum(self, quadrant: Array, threads: int) -> Array:
-        spectrum: Array = ducc0.fft.dct(quadrant, type=1, nthreads=threads)
+    def even_spectrum(self, quadrant: Array) -> Array:
+        spectrum: Array = ducc0.fft.dct(quadrant, type=1, nthreads=_threads_for(quadrant.size))
         return spectrum
 
-    def forward(self, values: Array, axes: tuple[int, ...], out: Array, threads: int) -> None:
-        ducc0.fft.r2c(values, axes=axes, out=out, nthreads=threads)
+    def room(self, shape: tuple[int, int], periods: tuple[int, int]) -> Array:
+        return np.empty((shape[1], periods[0] // 2 + 1), np.complex128)
 
-    def along_columns(self, modes: Array, *, forward: bool, threads: int) -> None:
-        ducc0.fft.c2c(modes, axes=[-2], forward=forward, out=modes, nthreads=threads)
+    def convolve(
+        self, values: Array, spectrum: Array, periods: tuple[int, int], scale: Any, room: Array,
+        out: Array,
+    ) -> None:  # fmt: skip
+        if spectrum.dtype == np.float32:  # work in the first half of the room
+            room = room.reshape(-1).view(np.complex64)[: room.size].reshape(room.shape)
+        if values.strides[-1] != values.itemsize:
+            values = np.ascontiguousarray(values)
+        *batch, rows, columns = values.shape
+        threads = _threads_for(rows * columns)
+        for item in np.ndindex(*batch):
+            of_item = scale[item].item() if batch and np.ndim(scale) else float(scale)
+            self._loops.convolve(values[item], 1 / of_item, spectrum, *periods, room,
+                                  of_item, out[item], threads)  # fmt: skip
 
-    def backward(self, modes: Array, axes: tuple[int, ...], out: Array, threads: int) -> None:
-        ducc0.fft.c2r(modes, axes=axes, lastsize=out.shape[-1], forward=False, out=out,
-                      nthreads=threads)  # fmt: skip
 
-
-class _Accelerator:
+class _Arrays:
     """Arrays of a library like NumPy, `arrays`, transformed by one like scipy.fft, `fft`."""
-
-    row_buffer = 2**30  # calls cost more than memory there
 
     def __init__(self, name: str, arrays: Any, fft: Any) -> None:
         self.name = name
@@ -106,15 +114,13 @@ class _Accelerator:
         return self._arrays.asarray(values)  # type: ignore[no-any-return]
 
     def get(self, values: Array) -> Array:
-        return self._arrays.asnumpy(values)  # type: ignore[no-any-return]
-
-    def empty(self, shape: tuple[int, ...], dtype: Any) -> Array:
-        return self._arrays.empty(shape, dtype)  # type: ignore[no-any-return]
+        here: Array = getattr(self._arrays, "asnumpy", np.asarray)(values)
+        return here
 
     def arange(self, n: int) -> Array:
         return self._arrays.arange(n)  # type: ignore[no-any-return]
 
-    def even_spectrum(self, quadrant: Array, threads: int) -> Array:
+    def even_spectrum(self, quadrant: Array) -> Array:
         # CuPy has no DCT-I: the transform of the whole even array, which is real.
         columns = np.concatenate([quadrant, quadrant[:, -2:0:-1]], axis=1)
         modes = self._fft.rfft(columns, axis=1).real
@@ -122,26 +128,46 @@ class _Accelerator:
         half = quadrant.shape[0]
         return self._fft.rfft(rows, axis=0).real[:half].copy()  # type: ignore[no-any-return]
 
-    def forward(self, values: Array, axes: tuple[int, ...], out: Array, threads: int) -> None:
-        out[...] = self._fft.rfftn(values, axes=axes)
+    def room(self, shape: tuple[int, int], periods: tuple[int, int]) -> Array:
+        return np.empty(0)  # transforms find their own
 
-    def along_columns(self, modes: Array, *, forward: bool, threads: int) -> None:
-        if forward:
-            modes[...] = self._fft.fft(modes, axis=-2)
-        else:
-            modes[...] = self._fft.ifft(modes, axis=-2, norm="forward")
+    def convolve(
+        self, values: Array, spectrum: Array, periods: tuple[int, int], scale: Any, room: Array,
+        out: Array,
+    ) -> None:  # fmt: skip
+        nx, ny = values.shape[-2:]
+        px, py = periods
+        # One axis after the other: the rows that are padding are not transformed.
+        modes = self._fft.rfft((values / scale).astype(spectrum.dtype), n=py, axis=-1)
+        modes = self._fft.fft(modes, n=px, axis=-2)
+        weights, last = spectrum.T, px // 2
+        modes[..., : last + 1, :] *= weights
+        # The negative waves; of an odd period the largest, too, has a negative one.
+        modes[..., last + 1 :, :] *= weights[px - last - 1 : 0 : -1]
+        modes = self._fft.ifft(modes, axis=-2, norm="forward", overwrite_x=True)[..., :nx, :]
+        padded = self._fft.irfft(modes, n=py, axis=-1, norm="forward")
+        np.multiply(padded[..., :ny], scale, out=out, dtype=out.dtype)
 
-    def backward(self, modes: Array, axes: tuple[int, ...], out: Array, threads: int) -> None:
-        sizes = [out.shape[axis] for axis in axes]
-        out[...] = self._fft.irfftn(modes, s=sizes, axes=axes, norm="forward")
+
+def _threads_for(nodes: int) -> int:
+    """Threads for a convolution of so many nodes, at most those of ducc0 (`DUCC0_NUM_THREADS`)."""
+    return ducc0.misc.thread_pool_size() if nodes > _NODES_WORTH_THREADS else 1
 
 
 def accelerator(name: str, arrays: Any, fft: Any) -> Device:
     """A device whose arrays are those of a library like CuPy (`arrays`) and of its scipy.fft."""
-    return _Accelerator(name, arrays, fft)
+    return _Arrays(name, arrays, fft)
 
 
-CPU: Device = _Host()
+def _host() -> Device:
+    if passes.loops is not None:
+        return _Compiled(passes.loops)
+    import scipy.fft
+
+    return _Arrays("cpu", np, scipy.fft)
+
+
+CPU = _host()
 _current: ContextVar[Device] = ContextVar("device", default=CPU)
 
 

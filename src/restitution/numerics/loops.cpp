@@ -4,49 +4,15 @@
 // (nx, ny), of double or single precision, each row in one piece; bounds are arrays, whose rows may
 // all be the same one. Sums are in no fixed order, so that the compiler may use vectors.
 
-#include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
+#include "rows.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <complex>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
 #include <vector>
-
-namespace py = pybind11;
-using Index = py::ssize_t;
-
-// An array of two dimensions.
-template <class T>
-struct Rows {
-    T* first;
-    Index count, length, stride;
-
-    T* operator[](Index i) const { return first + i * stride; }
-};
-
-namespace pybind11::detail {
-// Arrays are taken as they are, or refused: results in a converted copy would be lost.
-template <class T>
-struct type_caster<Rows<T>> {
-    PYBIND11_TYPE_CASTER(Rows<T>, const_name("numpy.ndarray"));
-
-    bool load(handle source, bool) {
-        using Value = std::remove_const_t<T>;
-        if (!array_t<Value, 0>::check_(source)) return false;
-        const auto a = reinterpret_borrow<array>(source);
-        constexpr Index size = sizeof(Value);
-        if (a.ndim() != 2 || (a.shape(1) > 1 && a.strides(1) != size)) return false;
-        if (!std::is_const_v<T> && !a.writeable()) return false;
-        value = {static_cast<T*>(const_cast<void*>(a.data())), a.shape(0), a.shape(1),
-                 a.strides(0) / size};
-        return true;
-    }
-};
-}  // namespace pybind11::detail
 
 template <class First, class... Others>
 void expect_one_shape(const First& a, const Others&... others) {
@@ -207,44 +173,6 @@ double peak(Rows<const T> values) {
     return most.value();
 }
 
-template <class From, class To>
-void scale(const From* from, double factor, To* to, Index length) {
-#pragma omp simd
-    for (Index j = 0; j < length; ++j) to[j] = To(factor * from[j]);
-}
-
-template <class From, class To>
-void pad(Rows<const From> values, double factor, Rows<To> padded) {
-    if (padded.count < values.count || padded.length < values.length)
-        throw std::invalid_argument("no room for the values");
-    for (Index i = 0; i < padded.count; ++i) {
-        const Index filled = i < values.count ? values.length : 0;
-        if (filled) scale(values[i], factor, padded[i], filled);
-        std::fill(padded[i] + filled, padded[i] + padded.length, To(0));
-    }
-}
-
-template <class From, class To>
-void crop(Rows<const From> padded, double factor, Rows<To> out) {
-    if (padded.count < out.count || padded.length < out.length)
-        throw std::invalid_argument("more is asked than there is");
-    for (Index i = 0; i < out.count; ++i) scale(padded[i], factor, out[i], out.length);
-}
-
-template <class T>
-void weigh(Rows<std::complex<T>> modes, Rows<const T> weights) {
-    expect_one_shape(modes, weights);
-    for (Index i = 0; i < modes.count; ++i) {
-        T* mode = reinterpret_cast<T*>(modes[i]);
-        const T* weight = weights[i];
-#pragma omp simd
-        for (Index j = 0; j < modes.length; ++j) {
-            mode[2 * j] *= weight[j];
-            mode[2 * j + 1] *= weight[j];
-        }
-    }
-}
-
 template <class Coarse, class Fine>
 void expect_halves(const Coarse& coarse, const Fine& fine) {
     if (coarse.count != (fine.count + 1) / 2 || coarse.length != (fine.length + 1) / 2)
@@ -318,11 +246,6 @@ void define(py::module_& module) {
     module.def("direct", &direct<T>);
     module.def("advance", &advance<T>);
     module.def("peak", &peak<T>);
-    module.def("pad", &pad<double, T>);
-    module.def("pad", &pad<float, T>);
-    module.def("crop", &crop<T, double>);
-    module.def("crop", &crop<T, float>);
-    module.def("weigh", &weigh<T>);
 }
 
 PYBIND11_MODULE(loops, module) {
@@ -335,4 +258,5 @@ PYBIND11_MODULE(loops, module) {
     module.def("coarsen", &coarsen);
     module.def("refine", &refine);
     module.def("spread", &spread);
+    define_convolve(module);
 }

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.numerics import passes
-from restitution.numerics.convolution import Convolution, SpectralFilter
+from restitution.numerics.convolution import FreeConvolution, SpectralFilter
 from restitution.numerics.items import every, highest, somewhere
 from restitution.numerics.minimise import Minimum, minimise_quadratic, violation
 from restitution.numerics.passes import Bound
@@ -25,7 +25,7 @@ from restitution.numerics.window import Box, bounding_box, shape_of, union, wide
 Array = NDArray[np.float64]
 
 # The operator and its approximate inverse on a block of so many nodes 2ⁿ as wide as the finest.
-System = Callable[[tuple[int, int], int], tuple[Convolution, SpectralFilter]]
+System = Callable[[tuple[int, int], int], tuple[FreeConvolution, SpectralFilter]]
 
 # Nodes along the shorter edge below which a guess costs more than it saves, and one for a guess.
 _WORTH_A_GUESS, _COARSEST = 120, 80

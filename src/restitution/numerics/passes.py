@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
+from importlib import import_module
 from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
@@ -19,7 +20,7 @@ from restitution.numerics import items
 from restitution.numerics.items import Flag, Number, anywhere, largest
 
 try:
-    from restitution.numerics import loops  # type: ignore[attr-defined]
+    loops: Any = import_module("restitution.numerics.loops")
 except ImportError:  # there was no compiler, or it was one for another processor
     loops = None
 
@@ -138,28 +139,6 @@ def advance(
 def peak(values: Array) -> Number:
     """The largest magnitude."""
     return largest(values)
-
-
-@_by_loop
-def pad(values: Array, factor: Number | float, padded: Array) -> None:
-    """`factor` times the values, with zeros after them along both axes."""
-    rows, columns = values.shape[-2:]
-    np.multiply(values, factor, out=padded[..., :rows, :columns])
-    padded[..., :rows, columns:] = 0.0
-    padded[..., rows:, :] = 0.0
-
-
-@_by_loop
-def crop(padded: Array, factor: Number | float, out: Array) -> None:
-    """The undoing of `pad`: `factor` times what is at the beginning of both axes."""
-    rows, columns = out.shape[-2:]
-    np.multiply(padded[..., :rows, :columns], factor, out=out, dtype=out.dtype)
-
-
-@_by_loop
-def weigh(modes: Array, weights: Array) -> None:
-    """Multiply by real weights."""
-    modes *= weights
 
 
 @_by_loop

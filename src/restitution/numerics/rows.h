@@ -1,0 +1,43 @@
+// Arrays of two dimensions as the compiled loops take them: each row in one piece.
+
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <stdexcept>
+#include <type_traits>
+
+namespace py = pybind11;
+using Index = py::ssize_t;
+
+template <class T>
+struct Rows {
+    T* first;
+    Index count, length, stride;
+
+    T* operator[](Index i) const { return first + i * stride; }
+};
+
+namespace pybind11::detail {
+// Arrays are taken as they are, or refused: results in a converted copy would be lost.
+template <class T>
+struct type_caster<Rows<T>> {
+    PYBIND11_TYPE_CASTER(Rows<T>, const_name("numpy.ndarray"));
+
+    bool load(handle source, bool) {
+        using Value = std::remove_const_t<T>;
+        if (!array_t<Value, 0>::check_(source)) return false;
+        const auto a = reinterpret_borrow<array>(source);
+        constexpr Index size = sizeof(Value);
+        if (a.ndim() != 2 || (a.shape(1) > 1 && a.strides(1) != size)) return false;
+        if (!std::is_const_v<T> && !a.writeable()) return false;
+        value = {static_cast<T*>(const_cast<void*>(a.data())), a.shape(0), a.shape(1),
+                 a.strides(0) / size};
+        return true;
+    }
+};
+}  // namespace pybind11::detail
+
+// What convolve.cpp adds to the module of loops.cpp.
+void define_convolve(py::module_& module);
