@@ -14,7 +14,7 @@ setup(
         Pybind11Extension(
             "restitution.numerics.loops",
             [f"{FOLDER}/loops.cpp", f"{FOLDER}/convolve.cpp"],
-            depends=[f"{FOLDER}/rows.h", f"{FOLDER}/convolve.h"],
+            depends=[f"{FOLDER}/{name}.h" for name in ("rows", "each_processor", "loops", "convolve")],
             cxx_std=17,
             extra_compile_args=[] if sys.platform == "win32" else FLAGS,
             optional=True,

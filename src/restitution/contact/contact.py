@@ -94,8 +94,9 @@ class Contact:
     @cached_property
     def gap(self) -> NDArray[np.float64]:
         """Initial gap h₀ = (x² + y²)/(2R*) − z, shifted to min h₀ = 0; shape `grid.nodes`, m."""
-        x, y = self.grid.x[:, None], self.grid.y[None, :]
-        gap: NDArray[np.float64] = (x * x + y * y) / (2 * self.pair.radius) - self.surface.height
+        x, y = (along**2 / (2 * self.pair.radius) for along in (self.grid.x, self.grid.y))
+        gap: NDArray[np.float64] = np.add.outer(x, y)
+        gap -= self.surface.height  # in place: other arrays of this size would take as long
         gap -= gap.min()
         return gap
 

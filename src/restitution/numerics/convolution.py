@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from copy import copy
+from functools import cached_property
 from itertools import count
 from typing import Any, Self
 
@@ -36,19 +37,22 @@ def fast_size(minimum: int) -> int:
 class _Spectral:
     """Multiplication of the waves of an array by a real and even spectrum, in a period of its own.
 
-    Arrays are (*batch, *shape). The memory that takes is kept: see `fresh`.
+    Arrays are (*batch, *shape). The memory that takes is kept from its first use on: see `fresh`.
     """
 
     def __init__(self, shape: tuple[int, int], periods: tuple[int, int], device: Device) -> None:
         self.shape = shape
         self._periods = periods
         self._device = device
-        self._room = device.room(shape, periods)
+
+    @cached_property
+    def _room(self) -> NDArray[Any]:
+        return self._device.room(self.shape, self._periods)
 
     def fresh(self) -> Self:
         """The same operator with memory and a count of its own, for another user."""
         other = copy(self)
-        other._room = self._device.room(self.shape, self._periods)
+        other.__dict__.pop("_room", None)
         return other
 
     def _convolve(

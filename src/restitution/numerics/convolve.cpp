@@ -1,4 +1,5 @@
-// Convolution of an array with an even kernel: transforms along both axes, weights, and back.
+// Convolution of an array with an even kernel: transforms along both axes, weights, and back. What
+// depends on the processor is in convolve.h.
 //
 // Transforms are made of some columns at a time, which stay in the cache, and zeros that only pad are
 // neither stored nor transformed: n values in a period of 2 m ≥ 2 n have as their even waves those of
@@ -143,67 +144,10 @@ inline std::unique_ptr<void, Free> room_for(std::size_t bytes) {
     return room;
 }
 
+#define LOOPS "convolve.h"
+#include "each_processor.h"
+
+void define_narrow_convolve(py::module_& module) { narrow::define_convolve(module); }
 #if defined(__x86_64__)
-#pragma GCC push_options
-#pragma GCC target("avx2")
-namespace narrow {
-#define LANE_BYTES 32
-#include "convolve.h"
-#undef LANE_BYTES
-}  // namespace narrow
-#pragma GCC pop_options
-#pragma GCC push_options
-#pragma GCC target("avx512f,avx512dq,avx512bw,avx512vl,prefer-vector-width=512")
-namespace wide {
-#define LANE_BYTES 64
-#include "convolve.h"
-#undef LANE_BYTES
-}  // namespace wide
-#pragma GCC pop_options
-#else
-namespace narrow {
-#define LANE_BYTES 16
-#include "convolve.h"
-#undef LANE_BYTES
-}  // namespace narrow
+void define_wide_convolve(py::module_& module) { wide::define_convolve(module); }
 #endif
-
-// `out` = `factor_back` K ∗ (`factor` `values`), circular in (px, py). `weights` (py/2 + 1, px/2 + 1)
-// are a quadrant of the spectrum of K, real, even and transposed; `modes` (ny, px/2 + 1) is room. The
-// widest vectors of the processor are used, or the next.
-template <class From, class T, class To>
-void convolve(Rows<const From> values, double factor, Rows<const T> weights, Index px, Index py,
-              Rows<std::complex<T>> modes, double factor_back, Rows<To> out, int threads,
-              bool widest) {
-    if (out.count != values.count || out.length != values.length || modes.count != values.length ||
-        modes.length != px / 2 + 1 || weights.count != py / 2 + 1 || weights.length != px / 2 + 1)
-        throw std::invalid_argument("arrays that do not go with each other");
-    const auto along_x = plan_for<T>(values.count, px), along_y = plan_for<T>(values.length, py);
-    auto how = &narrow::convolve<From, T, To>;
-#if defined(__x86_64__)
-    if (widest && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
-        how = &wide::convolve<From, T, To>;
-#endif
-    how(values, factor, *along_x, *along_y, weights, modes, out, factor_back, threads);
-}
-
-template <class From, class T, class To>
-void define_one(py::module_& module) {
-    module.def("convolve", &convolve<From, T, To>, py::call_guard<py::gil_scoped_release>(),
-               py::arg("values"), py::arg("factor"), py::arg("weights"), py::arg("px"),
-               py::arg("py"), py::arg("modes"), py::arg("factor_back"), py::arg("out"),
-               py::arg("threads"), py::arg("widest") = true);
-}
-
-template <class From, class To>
-void define_both(py::module_& module) {
-    define_one<From, float, To>(module);
-    define_one<From, double, To>(module);
-}
-
-void define_convolve(py::module_& module) {
-    define_both<double, float>(module);
-    define_both<float, float>(module);
-    define_both<double, double>(module);
-    define_both<float, double>(module);
-}

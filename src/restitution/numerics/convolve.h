@@ -1,6 +1,6 @@
 // Convolving an array with an even kernel, by vectors: each lane belongs to a column of its own, so
 // transforms are those of one column. convolve.cpp, where the method is described, includes this
-// once for each kind of processor, in a namespace, with LANE_BYTES the size of its vectors.
+// once for each kind of processor, with LANE_BYTES the size of its vectors.
 
 template <class T, int n>
 struct VectorOf {
@@ -306,14 +306,19 @@ struct Convolution {
     }
 };
 
+// `out` = `factor_back` K ∗ (`factor` `values`), circular in (px, py). `weights` (py/2 + 1, px/2 + 1)
+// are a quadrant of the spectrum of K, real, even and transposed; `modes` (ny, px/2 + 1) is room.
 template <class From, class T, class To>
-void convolve(Rows<const From> values, double factor, const Plan<T>& along_x, const Plan<T>& along_y,
-              Rows<const T> weights, Rows<std::complex<T>> modes, Rows<To> out, double factor_back,
-              int threads) {
-    const Convolution<T> convolution{along_x, along_y, weights, modes};
+void convolve(Rows<const From> values, double factor, Rows<const T> weights, Index px, Index py,
+              Rows<std::complex<T>> modes, double factor_back, Rows<To> out, int threads) {
+    if (out.count != values.count || out.length != values.length || modes.count != values.length ||
+        modes.length != px / 2 + 1 || weights.count != py / 2 + 1 || weights.length != px / 2 + 1)
+        throw std::invalid_argument("arrays that do not go with each other");
+    const auto along_x = plan_for<T>(values.count, px), along_y = plan_for<T>(values.length, py);
+    const Convolution<T> convolution{*along_x, *along_y, weights, modes};
     constexpr int count = Lanes<T>::count;
     threads = std::max(threads, 1);
-    const Index each = std::max(along_x.period, along_y.period);
+    const Index each = std::max(px, py);
     const auto memory = room_for(threads * each * sizeof(Lanes<T>));
     Crew crew;
     crew.run(threads, [&](int k) {
@@ -326,4 +331,18 @@ void convolve(Rows<const From> values, double factor, const Plan<T>& along_x, co
             convolution.out_of_waves(out, factor_back, first, room);
         });
     });
+}
+
+template <class From, class To>
+void define_between(py::module_& module) {
+    const py::call_guard<py::gil_scoped_release> without_lock;
+    module.def("convolve", &convolve<From, float, To>, without_lock);
+    module.def("convolve", &convolve<From, double, To>, without_lock);
+}
+
+inline void define_convolve(py::module_& module) {
+    define_between<double, float>(module);
+    define_between<float, float>(module);
+    define_between<double, double>(module);
+    define_between<float, double>(module);
 }

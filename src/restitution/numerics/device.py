@@ -91,16 +91,18 @@ class _Compiled:
         self, values: Array, spectrum: Array, periods: tuple[int, int], scale: Any, room: Array,
         out: Array,
     ) -> None:  # fmt: skip
+        if values.ndim > 2:
+            for item, its_values in enumerate(values):
+                its_scale = scale[item] if np.ndim(scale) else scale
+                self.convolve(its_values, spectrum, periods, its_scale, room, out[item])
+            return
         if spectrum.dtype == np.float32:  # work in the first half of the room
             room = room.reshape(-1).view(np.complex64)[: room.size].reshape(room.shape)
         if values.strides[-1] != values.itemsize:
             values = np.ascontiguousarray(values)
-        *batch, rows, columns = values.shape
-        threads = _threads_for(rows * columns)
-        for item in np.ndindex(*batch):
-            of_item = scale[item].item() if batch and np.ndim(scale) else float(scale)
-            self._loops.convolve(values[item], 1 / of_item, spectrum, *periods, room,
-                                  of_item, out[item], threads)  # fmt: skip
+        factor = float(scale.item() if isinstance(scale, np.ndarray) else scale)
+        self._loops.convolve(values, 1 / factor, spectrum, *periods, room, factor, out,
+                             _threads_for(values.size))  # fmt: skip
 
 
 class _Arrays:

@@ -1,8 +1,5 @@
-// Loops over the nodes of one problem: several steps of the solver in one pass over memory.
-//
-// They do what the expressions of the same names in passes.py do, which say what that is. Arrays are
-// (nx, ny), of double or single precision, each row in one piece; bounds are arrays, whose rows may
-// all be the same one. Sums are in no fixed order, so that the compiler may use vectors.
+// The compiled module: loops and convolutions, by the widest vectors of the processor at hand, and
+// in `narrow` by the next.
 
 #include "rows.h"
 
@@ -20,243 +17,21 @@ void expect_one_shape(const First& a, const Others&... others) {
         throw std::invalid_argument("arrays of different shapes");
 }
 
-#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__)
-#define RESTITUTION_AVX2
-#pragma GCC push_options
-#pragma GCC target("avx2")
-#endif
-
-inline double downhill_at(double p, double g, double low, double high) {
-    const bool falls = (p > low) | (g < 0), rises = (p < high) | (g > 0);
-    return falls & rises ? g : 0.0;
-}
-
-// The largest magnitude of what it has seen; NaN where something was not finite, which a maximum
-// would pass over.
-struct Largest {
-    double most = 0, doubt = 0;
-
-    template <class T>
-    void see(const T* values, Index length) {
-        T row = 0, not_finite = 0;
-#pragma omp simd reduction(max : row) reduction(+ : not_finite)
-        for (Index j = 0; j < length; ++j) {
-            row = std::max(row, std::abs(values[j]));
-            not_finite += 0 * values[j];
-        }
-        most = std::max(most, double(row));
-        doubt += not_finite;
-    }
-    double value() const { return most + doubt; }
-};
-
-template <class T>
-double downhill(Rows<const double> p, Rows<const double> g, Rows<const double> lower,
-                Rows<const double> upper, Rows<T> out) {
-    expect_one_shape(p, g, lower, upper, out);
-    Largest most;
-    for (Index i = 0; i < p.count; ++i) {
-        const double *pi = p[i], *gi = g[i], *low = lower[i], *high = upper[i];
-        T* result = out[i];
-#pragma omp simd
-        for (Index j = 0; j < p.length; ++j)
-            result[j] = T(downhill_at(pi[j], gi[j], low[j], high[j]));
-        most.see(result, p.length);
-    }
-    return most.value();
-}
-
-template <class T>
-std::pair<double, double> products(Rows<const T> z, Rows<const T> r, Rows<const T> r_old) {
-    expect_one_shape(z, r, r_old);
-    double now = 0, before = 0;
-    for (Index i = 0; i < z.count; ++i) {
-        const T *zi = z[i], *ri = r[i], *old = r_old[i];
-#pragma omp simd reduction(+ : now, before)
-        for (Index j = 0; j < z.length; ++j) {
-            now += double(ri[j]) * zi[j];
-            before += double(old[j]) * zi[j];
-        }
-    }
-    return {now, before};
-}
-
-template <class T>
-double dot(Rows<const double> a, Rows<const T> b) {
-    expect_one_shape(a, b);
-    double total = 0;
-    for (Index i = 0; i < a.count; ++i) {
-        const double* ai = a[i];
-        const T* bi = b[i];
-#pragma omp simd reduction(+ : total)
-        for (Index j = 0; j < a.length; ++j) total += ai[j] * bi[j];
-    }
-    return total;
-}
-
-template <class T>
-std::pair<double, bool> direct(Rows<double> d, double kept, Rows<const T> z, double length,
-                               Rows<const double> p, Rows<const double> g, Rows<const T> r,
-                               Rows<const double> lower, Rows<const double> upper) {
-    expect_one_shape(d, z, p, g, r, lower, upper);
-    double slope = 0, cut = 0;
-    for (Index i = 0; i < p.count; ++i) {
-        double* di = d[i];
-        const double *pi = p[i], *gi = g[i], *low = lower[i], *high = upper[i];
-        const T *zi = z[i], *ri = r[i];
-        // Without branches, and all that may be needed is computed: else it takes no vectors.
-#pragma omp simd reduction(+ : slope, cut)
-        for (Index j = 0; j < p.length; ++j) {
-            const bool falls = (pi[j] > low[j]) | (gi[j] < 0), rises = (pi[j] < high[j]) | (gi[j] > 0);
-            const double to_low = low[j] - pi[j], to_high = high[j] - pi[j];
-            double step = kept * di[j] - length * zi[j];
-            step = falls & rises ? step : 0.0;
-            const double end = pi[j] + step;
-            const bool below = end < low[j], above = end > high[j];
-            step = below ? to_low : step;
-            step = above ? to_high : step;
-            di[j] = step;
-            slope += ri[j] * step;
-            cut += below | above ? 1.0 : 0.0;
-        }
-    }
-    return {slope, cut > 0};
-}
-
-inline bool leaves(Rows<const double> p, Rows<const double> d, double taken, Rows<const double> lower,
-                   Rows<const double> upper) {
-    expect_one_shape(p, d, lower, upper);
-    for (Index i = 0; i < p.count; ++i) {
-        const double *pi = p[i], *di = d[i], *low = lower[i], *high = upper[i];
-        double outside = 0;
-#pragma omp simd reduction(+ : outside)
-        for (Index j = 0; j < p.length; ++j) {
-            const double end = pi[j] + taken * di[j];
-            outside += (end < low[j]) | (end > high[j]) ? 1.0 : 0.0;
-        }
-        if (outside > 0) return true;
-    }
-    return false;
-}
-
-template <class T>
-double advance(Rows<double> p, Rows<double> g, Rows<const double> d, Rows<const T> Kd, double taken,
-               Rows<const double> lower, Rows<const double> upper, Rows<T> out) {
-    expect_one_shape(p, g, d, Kd, lower, upper, out);
-    const bool whole = taken == 1;
-    Largest most;
-    for (Index i = 0; i < p.count; ++i) {
-        double *pi = p[i], *gi = g[i];
-        const double *di = d[i], *low = lower[i], *high = upper[i];
-        const T* Kdi = Kd[i];
-        T* result = out[i];
-#pragma omp simd
-        for (Index j = 0; j < p.length; ++j) {
-            const double to_low = low[j] - pi[j], to_high = high[j] - pi[j];
-            double end = pi[j] + taken * di[j];
-            end = (end < low[j]) | (whole & (di[j] == to_low)) ? low[j] : end;
-            end = (end > high[j]) | (whole & (di[j] == to_high)) ? high[j] : end;
-            const double gradient = gi[j] + taken * Kdi[j];
-            pi[j] = end;
-            gi[j] = gradient;
-            result[j] = T(downhill_at(end, gradient, low[j], high[j]));
-        }
-        most.see(result, p.length);
-    }
-    return most.value();
-}
-
-template <class T>
-double peak(Rows<const T> values) {
-    Largest most;
-    for (Index i = 0; i < values.count; ++i) most.see(values[i], values.length);
-    return most.value();
-}
-
-template <class Coarse, class Fine>
-void expect_halves(const Coarse& coarse, const Fine& fine) {
-    if (coarse.count != (fine.count + 1) / 2 || coarse.length != (fine.length + 1) / 2)
-        throw std::invalid_argument("one array is not half as long as the other");
-}
-
-inline void coarsen(Rows<const double> fine, Rows<double> coarse) {
-    expect_halves(coarse, fine);
-    for (Index i = 0; i < coarse.count; ++i) {
-        const double *one = fine[2 * i], *two = fine[std::min(2 * i + 1, fine.count - 1)];
-        double* mean = coarse[i];
-        for (Index j = 0; j < fine.length / 2; ++j)
-            mean[j] = 0.25 * (one[2 * j] + two[2 * j] + one[2 * j + 1] + two[2 * j + 1]);
-        if (fine.length % 2) {
-            const Index last = fine.length - 1;
-            mean[last / 2] = 0.5 * (one[last] + two[last]);
-        }
-    }
-}
-
-inline void refine(Rows<const double> coarse, Rows<double> fine) {
-    expect_halves(coarse, fine);
-    const Index last = coarse.length - 1;
-    std::vector<double> row(coarse.length);
-    for (Index i = 0; i < fine.count; ++i) {
-        const Index beside =
-            i % 2 ? std::min(i / 2 + 1, coarse.count - 1) : std::max(i / 2 - 1, Index(0));
-        const double *near = coarse[i / 2], *far = coarse[beside];
-        for (Index j = 0; j <= last; ++j) row[j] = 0.75 * near[j] + 0.25 * far[j];
-        double* out = fine[i];
-        for (Index j = 0; j < fine.length; ++j) {
-            const Index next = j % 2 ? std::min(j / 2 + 1, last) : std::max(j / 2 - 1, Index(0));
-            out[j] = 0.75 * row[j / 2] + 0.25 * row[next];
-        }
-    }
-}
-
-inline void spread(Rows<const Index> neighbours, Rows<const double> weights, int steps,
-                   Rows<double> sums) {
-    expect_one_shape(neighbours, weights);
-    if (sums.count != weights.count || sums.length != 2)
-        throw std::invalid_argument("arrays of different shapes");
-    for (Index i = 0; i < neighbours.count; ++i)
-        for (Index k = 0; k < neighbours.length; ++k)
-            if (neighbours[i][k] < 0 || neighbours[i][k] >= sums.count)
-                throw std::out_of_range("a neighbour that is none of the nodes");
-    std::vector<std::array<double, 2>> next(sums.count);
-    for (; steps > 0; --steps) {
-        for (Index i = 0; i < sums.count; ++i) {
-            const Index* node = neighbours[i];
-            const double* weight = weights[i];
-            next[i] = {};
-            for (Index k = 0; k < weights.length; ++k) {
-                next[i][0] += weight[k] * sums[node[k]][0];
-                next[i][1] += weight[k] * sums[node[k]][1];
-            }
-        }
-        for (Index i = 0; i < sums.count; ++i) std::copy(next[i].begin(), next[i].end(), sums[i]);
-    }
-}
-
-#ifdef RESTITUTION_AVX2
-#pragma GCC pop_options
-#endif
-
-template <class T>
-void define(py::module_& module) {
-    module.def("downhill", &downhill<T>);
-    module.def("products", &products<T>);
-    module.def("dot", &dot<T>);
-    module.def("direct", &direct<T>);
-    module.def("advance", &advance<T>);
-    module.def("peak", &peak<T>);
-}
+#define LOOPS "loops.h"
+#include "each_processor.h"
 
 PYBIND11_MODULE(loops, module) {
-#ifdef RESTITUTION_AVX2
+    auto next = module.def_submodule("narrow");
+    narrow::define_loops(next);
+    define_narrow_convolve(next);
+#if defined(__x86_64__)
     if (!__builtin_cpu_supports("avx2")) throw py::import_error("this processor has no AVX2");
+    if (__builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl")) {
+        wide::define_loops(module);
+        define_wide_convolve(module);
+        return;
+    }
 #endif
-    define<float>(module);
-    define<double>(module);
-    module.def("leaves", &leaves);
-    module.def("coarsen", &coarsen);
-    module.def("refine", &refine);
-    module.def("spread", &spread);
-    define_convolve(module);
+    narrow::define_loops(module);
+    define_narrow_convolve(module);
 }

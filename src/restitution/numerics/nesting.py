@@ -47,22 +47,23 @@ def minimise_nested(
     everywhere: Box = (slice(0, b.shape[-2]), slice(0, b.shape[-1]))
     size = shape_of(everywhere)
     p, products = np.zeros_like(b), 0
+    whole, its_inverse = system(size, 0)  # first: smaller blocks have the same coefficients
     if min(size) >= _WORTH_A_GUESS:
         p = _first_guess(system, b, upper, level=1)
     window = bounding_box(somewhere(p > 0))
     if window is not None and _saves(window, size):
         # The coarser grids do not see all that touches: what the guess leaves closed may, too.
-        K, _ = system(size, 0)
-        g = K.quick(p)
+        g = whole.fresh().quick(p)
         g -= b
         products += 1
         window = bounding_box(somewhere((p > 0) | (g < 0)))
-        del K, g
+        del g
     window = everywhere if window is None else widen(window, _MARGIN, size)
     while True:
         if not _saves(window, size):
             window = everywhere
-        K, inverse = system(shape_of(window), 0)
+        shape = shape_of(window)
+        K, inverse = (whole, its_inverse) if window == everywhere else system(shape, 0)
         inside = (..., *window)
         found = minimise_quadratic(
             K,
@@ -82,8 +83,7 @@ def minimise_nested(
         p[inside] = found.point
         iterations, converged = found.iterations, every(found.converged)
         del K, inverse, found  # their arrays make room for those of the check
-        K, _ = system(size, 0)
-        g = K(p)
+        g = whole.fresh()(p)
         g -= b
         products += 1
         residual = violation(p, g, 0.0, upper)

@@ -40,4 +40,5 @@ struct type_caster<Rows<T>> {
 }  // namespace pybind11::detail
 
 // What convolve.cpp adds to the module of loops.cpp.
-void define_convolve(py::module_& module);
+void define_narrow_convolve(py::module_& module);
+void define_wide_convolve(py::module_& module);
