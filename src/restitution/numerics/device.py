@@ -31,9 +31,10 @@ _NODES_WORTH_THREADS = 400 * 400
 
 
 class Device(Protocol):
-    """Makes arrays, and convolves them."""
+    """Makes arrays, and convolves them. Expressions are quickest on `at_once` numbers at a time."""
 
     name: str
+    at_once: int
 
     def put(self, values: Array) -> Array:
         """An array of this machine's memory, on the device."""
@@ -67,6 +68,7 @@ class _Compiled:
     """NumPy arrays, convolved by the compiled `loops`."""
 
     name = "cpu"
+    at_once = 12_000  # which stay in the cache; of larger arrays the first touch costs more
 
     def __init__(self, loops: Any) -> None:
         self._loops = loops
@@ -107,6 +109,8 @@ class _Compiled:
 
 class _Arrays:
     """Arrays of a library like NumPy, `arrays`, transformed by one like scipy.fft, `fft`."""
+
+    at_once = 2**30  # calls cost more
 
     def __init__(self, name: str, arrays: Any, fft: Any) -> None:
         self.name = name
