@@ -12,8 +12,8 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <cstdint>
 #include <complex>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <map>
@@ -40,7 +40,7 @@ struct Plan {
 
     Plan(Index period, int parts)
         : period(period), parts(parts), length(period / parts), places(period) {
-        Index rest = length;
+        Index rest = length;  // what the stages so far have left of it
         for (int radix : {4, 2, 3, 5, 7})  // in this order the fastest of five that were tried
             for (; rest % radix == 0; rest /= radix) radices.push_back(radix);
         if (rest != 1) throw std::invalid_argument("only factors 2, 3, 5 and 7 are transformed");
@@ -144,6 +144,9 @@ inline std::unique_ptr<void, Free> room_for(std::size_t bytes) {
     return room;
 }
 
+#ifndef __has_builtin
+#define __has_builtin(name) 0
+#endif
 #define LOOPS "convolve.h"
 #include "each_processor.h"
 

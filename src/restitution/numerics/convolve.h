@@ -88,7 +88,8 @@ void join(int radix, Lanes<T>* x, Index length, const std::complex<T>* twiddle) 
 }
 
 // In place, and the waves are left in the order in which the stages part them (decimation in
-// frequency; Gentleman and Sande 1966); `backward` goes the same way back. One part after the other, down to the last stage: what is at hand stays in the cache.
+// frequency; Gentleman and Sande 1966); `backward` goes the same way back. One part is finished before
+// the next: what is at hand stays in the cache.
 template <class T>
 void forward(const Plan<T>& plan, Lanes<T>* x, Index length, std::size_t stage = 0) {
     if (length == 1) return;
@@ -107,16 +108,20 @@ void backward(const Plan<T>& plan, Lanes<T>* x, Index length, std::size_t stage 
     join<false>(radix, x, part, plan.twiddles[stage].data());
 }
 
-// The values of a after or between those of b, as `place(k)` says for the k-th.
-template <class Vector, class Place, int... k>
-inline Vector chosen(Vector a, Vector b, Place, std::integer_sequence<int, k...>) {
+// The vector whose k-th value is that at `Order::of(k)` among those of a and, after them, of b.
+template <class Order, class Vector, int... k>
+inline Vector shuffle(Vector a, Vector b, std::integer_sequence<int, k...>) {
 #if __has_builtin(__builtin_shufflevector)
-    return __builtin_shufflevector(a, b, Place::of(k, sizeof...(k))...);
+    return __builtin_shufflevector(a, b, Order::of(k, sizeof...(k))...);
 #else
     using Whole = std::conditional_t<sizeof(a[0]) == 4, std::int32_t, std::int64_t>;
-    const typename VectorOf<Whole, sizeof...(k)>::type places{Place::of(k, sizeof...(k))...};
+    const typename VectorOf<Whole, sizeof...(k)>::type places{Order::of(k, sizeof...(k))...};
     return __builtin_shuffle(a, b, places);
 #endif
+}
+template <class Order, class Vector>
+inline Vector shuffle(Vector a, Vector b) {
+    return shuffle<Order>(a, b, std::make_integer_sequence<int, sizeof(a) / sizeof(a[0])>{});
 }
 
 struct Low {  // a0 b0 a1 b1 …
@@ -131,10 +136,6 @@ struct Even {  // a0 a2 … b0 b2 …
 struct Odd {
     static constexpr int of(int k, int) { return 2 * k + 1; }
 };
-template <class Place, class T>
-inline T shuffle(T a, T b) {
-    return chosen(a, b, Place{}, std::make_integer_sequence<int, sizeof(a) / sizeof(a[0])>{});
-}
 
 // As many vectors as each has lanes.
 template <int n, class Vector>
