@@ -168,8 +168,8 @@ def test_a_filter_is_symmetric_and_keeps_the_sign_of_its_symbol(shape, seed):
 
 
 def test_small_transforms_take_one_thread_and_large_ones_what_there_is():
-    assert _threads_for(100 * 100) == 1
-    assert _threads_for(800 * 800) == ducc0.misc.thread_pool_size()
+    assert _threads_for(4 * 100 * 100) == 1
+    assert _threads_for(4 * 800 * 800) == ducc0.misc.thread_pool_size()
 
 
 def test_two_users_do_not_meet():
@@ -228,7 +228,7 @@ def test_compiled_convolution_is_that_of_whole_arrays(kinds, vectors, both, data
 
 @pytest.mark.parametrize("threads", [1, 2, 3, 40])
 def test_threads_share_the_columns(threads, monkeypatch):
-    monkeypatch.setattr(device, "_threads_for", lambda nodes: threads)
+    monkeypatch.setattr(device, "_threads_for", lambda size: threads)
     p = np.random.default_rng(4).normal(size=(70, 90))
     K = FreeConvolution(point_load((1.0, 2.0)), (70, 90))
     found = K(p)

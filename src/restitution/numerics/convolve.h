@@ -245,12 +245,14 @@ struct Convolution {
         columns.transform(values.count);
         for (Index k0 = 0; k0 < modes.length; k0 += count) {
             const Index waves = std::min<Index>(count, modes.length - k0);
-            Vector re[2][count]{}, im[2][count]{};
+            Vector re[2][count], im[2][count];
             for (Index k = 0; k < waves; ++k) {
                 const Lanes<T> a = columns.wave(k0 + k), b = columns.negative_wave(k0 + k);
                 re[0][k] = T(0.5) * (a.re + b.re), im[0][k] = T(0.5) * (a.im - b.im);
                 re[1][k] = T(0.5) * (a.im + b.im), im[1][k] = T(0.5) * (b.re - a.re);
             }
+            for (Index k = waves; k < count; ++k)
+                re[0][k] = im[0][k] = re[1][k] = im[1][k] = Vector{};
             for (int block = 0; block < 2; ++block) {
                 const Index column = first + block * count;
                 transpose<count>(re[block]);
@@ -266,13 +268,15 @@ struct Convolution {
         Columns<T> columns{along_x, room};
         for (Index k0 = 0; k0 < modes.length; k0 += count) {
             const Index waves = std::min<Index>(count, modes.length - k0);
-            Vector re[2][count]{}, im[2][count]{};
+            Vector re[2][count], im[2][count];
             for (int block = 0; block < 2; ++block) {
                 const Index column = first + block * count;
-                for (Index l = 0; l < std::min<Index>(count, modes.count - column); ++l) {
+                const Index filled = std::clamp<Index>(modes.count - column, 0, count);
+                for (Index l = 0; l < filled; ++l) {
                     const Lanes<T> x = load_modes(modes[column + l] + k0, waves);
                     re[block][l] = x.re, im[block][l] = x.im;
                 }
+                for (Index l = filled; l < count; ++l) re[block][l] = im[block][l] = Vector{};
                 transpose<count>(re[block]);
                 transpose<count>(im[block]);
             }

@@ -26,8 +26,8 @@ from restitution.numerics import passes
 Array = NDArray[Any]
 DeviceName = Literal["cpu", "gpu", "auto"]
 
-# Two threads cost more than they save on smaller arrays (measured on two cores).
-_NODES_WORTH_THREADS = 400 * 400
+# Two threads cost more than they save on less (measured on two cores).
+_BYTES_WORTH_THREADS = 4 * 350 * 350
 
 
 class Device(Protocol):
@@ -83,7 +83,7 @@ class _Compiled:
         return np.arange(n)
 
     def even_spectrum(self, quadrant: Array) -> Array:
-        spectrum: Array = ducc0.fft.dct(quadrant, type=1, nthreads=_threads_for(quadrant.size))
+        spectrum: Array = ducc0.fft.dct(quadrant, type=1, nthreads=_threads_for(quadrant.nbytes))
         return spectrum
 
     def room(self, shape: tuple[int, int], periods: tuple[int, int]) -> Array:
@@ -104,7 +104,7 @@ class _Compiled:
             values = np.ascontiguousarray(values)
         factor = float(scale.item() if isinstance(scale, np.ndarray) else scale)
         self._loops.convolve(values, 1 / factor, spectrum, *periods, room, factor, out,
-                             _threads_for(values.size))  # fmt: skip
+                             _threads_for(values.size * spectrum.itemsize))  # fmt: skip
 
 
 class _Arrays:
@@ -155,9 +155,9 @@ class _Arrays:
         np.multiply(padded[..., :ny], scale, out=out, dtype=out.dtype)
 
 
-def _threads_for(nodes: int) -> int:
-    """Threads for a convolution of so many nodes, at most those of ducc0 (`DUCC0_NUM_THREADS`)."""
-    return ducc0.misc.thread_pool_size() if nodes > _NODES_WORTH_THREADS else 1
+def _threads_for(size: int) -> int:
+    """Threads for a convolution of so many bytes, at most those of ducc0 (`DUCC0_NUM_THREADS`)."""
+    return ducc0.misc.thread_pool_size() if size > _BYTES_WORTH_THREADS else 1
 
 
 def accelerator(name: str, arrays: Any, fft: Any) -> Device:
