@@ -6,6 +6,7 @@ from pybind11.setup_helpers import Pybind11Extension, build_ext
 from setuptools import setup
 
 FOLDER = "src/restitution/numerics"
+HEADERS = ("rows", "each_processor", "loops", "convolve")
 # Products and sums are not fused, so that what should be equal is; no error numbers, no traps.
 FLAGS = ["-O3", "-fopenmp-simd", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=off"]
 
@@ -14,7 +15,7 @@ setup(
         Pybind11Extension(
             "restitution.numerics.loops",
             [f"{FOLDER}/loops.cpp", f"{FOLDER}/convolve.cpp"],
-            depends=[f"{FOLDER}/{name}.h" for name in ("rows", "each_processor", "loops", "convolve")],
+            depends=[f"{FOLDER}/{name}.h" for name in HEADERS],
             cxx_std=17,
             extra_compile_args=[] if sys.platform == "win32" else FLAGS,
             optional=True,

@@ -86,8 +86,12 @@ def influence_coefficients(
     """Displacement at lag (i, j) cells, i as a column (from 0) and j as a row (from 0), m/Pa."""
     # Lengths scale: u/h depends on the shape of the cells and on the lag alone.
     hx, hy = spacing
-    unit = _unit_coefficients((i.size, j.size), hy / hx, device)
-    scaled: Array = unit * (hx / contact_modulus)
+    lags, aspect, scale = (i.size, j.size), hy / hx, hx / contact_modulus
+    if i.size * j.size <= _MOST_KNOWN:
+        scaled: Array = _unit_coefficients(lags, aspect, device) * scale
+    else:
+        scaled = _compute_coefficients(lags, (1.0, aspect), device)
+        scaled *= scale
     return scaled
 
 
@@ -156,7 +160,8 @@ def _half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float, device: Device
 ) -> FreeConvolution:
     def kernel(i: NDArray[np.int64], j: NDArray[np.int64]) -> Array:
-        return influence_coefficients(i, j, spacing, contact_modulus, device)
+        # It comes as a row of i and a column of j.
+        return influence_coefficients(j, i, spacing[::-1], contact_modulus, device)
 
     return FreeConvolution(kernel, shape, device)
 

@@ -25,7 +25,7 @@ from restitution.numerics import passes
 from restitution.numerics.device import CPU, Device
 
 Array = NDArray[np.float64]
-# Values at lags i (a column of integers) and j (a row of integers), of the broadcast shape.
+# Values at lags i and j, integers of shapes that broadcast, in an array that is then overwritten.
 Kernel = Callable[[NDArray[np.int64], NDArray[np.int64]], Array]
 
 
@@ -69,8 +69,9 @@ class FreeConvolution(_Spectral):
     def __init__(self, kernel: Kernel, shape: tuple[int, int], device: Device = CPU) -> None:
         px, py = (2 * fast_size(n) for n in shape)
         super().__init__(shape, (px, py), device)
-        lags = kernel(device.arange(px // 2 + 1)[:, None], device.arange(py // 2 + 1)[None, :])
-        spectrum = device.even_spectrum(lags.T)
+        # Transposed, as `Device.convolve` wants it.
+        lags = kernel(device.arange(px // 2 + 1)[None, :], device.arange(py // 2 + 1)[:, None])
+        spectrum = device.even_spectrum(lags)
         # The normalisation of the inverse transform rides along with the kernel.
         spectrum /= px * py
         self._spectrum, self._single_spectrum = spectrum, spectrum.astype(np.float32)

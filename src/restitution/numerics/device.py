@@ -46,7 +46,10 @@ class Device(Protocol):
         """0 … n − 1."""
 
     def even_spectrum(self, quadrant: Array) -> Array:
-        """Spectrum of a real array that is even along both axes, of which this is one quadrant."""
+        """Spectrum of a real array that is even along both axes, of which this is one quadrant.
+
+        The quadrant may be overwritten.
+        """
 
     def room(self, shape: tuple[int, int], periods: tuple[int, int]) -> Array:
         """The memory that `convolve` needs for arrays of that shape."""
@@ -83,8 +86,8 @@ class _Compiled:
         return np.arange(n)
 
     def even_spectrum(self, quadrant: Array) -> Array:
-        spectrum: Array = ducc0.fft.dct(quadrant, type=1, nthreads=_threads_for(quadrant.nbytes))
-        return spectrum
+        ducc0.fft.dct(quadrant, type=1, out=quadrant, nthreads=_threads_for(quadrant.nbytes))
+        return quadrant
 
     def room(self, shape: tuple[int, int], periods: tuple[int, int]) -> Array:
         return np.empty((shape[1], periods[0] // 2 + 1), np.complex128)
