@@ -136,7 +136,10 @@ def settled(
     residual: float,
     convolutions: int,
 ) -> State:
-    """The state with that overlap `b`, pressure and deformed gap: what yields has given way."""
+    """The state with that overlap `b`, pressure and deformed gap: what yields has given way.
+
+    The displacement takes the place of the `gradient`.
+    """
     plastic, work, adhesive_work, work_error = _past(contact, history)
     yielding = (pressure >= limit) & (gradient < 0)
     if yielding.any():
@@ -145,8 +148,8 @@ def settled(
             plastic = plastic.copy()
         plastic[box] -= rising
         work -= limit * float(rising.sum()) * contact.grid.cell_area
-        del rising  # large grids need the memory for the displacement
-    return State(contact, indentation, box, pressure, gradient + b, plastic,
+    displacement = np.add(gradient, b, out=gradient)
+    return State(contact, indentation, box, pressure, displacement, plastic,
                  work, adhesive_work, work_error, residual, convolutions)  # fmt: skip
 
 

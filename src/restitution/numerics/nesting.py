@@ -46,18 +46,15 @@ def minimise_nested(
     """Minimise with 0 ≤ p ≤ `upper`; the result and the products with K on the finest grid."""
     everywhere: Box = (slice(0, b.shape[-2]), slice(0, b.shape[-1]))
     size = shape_of(everywhere)
-    p, products = np.zeros_like(b), 0
+    p, g, products = np.zeros_like(b), np.empty_like(b), 0
     whole, its_inverse = system(size, 0)  # first: smaller blocks have the same coefficients
     if min(size) >= _WORTH_A_GUESS:
         p = _first_guess(system, b, upper, level=1)
     window = bounding_box(somewhere(p > 0))
     if window is not None and _saves(window, size):
         # The coarser grids do not see all that touches: what the guess leaves closed may, too.
-        g = whole.fresh().quick(p)
-        g -= b
-        products += 1
-        window = bounding_box(somewhere((p > 0) | (g < 0)))
-        del g
+        whole.quick(p, out=g)
+        window = bounding_box(somewhere((p > 0) | (g < b)))
     window = everywhere if window is None else widen(window, _MARGIN, size)
     while True:
         if not _saves(window, size):
@@ -70,25 +67,25 @@ def minimise_nested(
             b[inside],
             0.0,
             upper,
-            start=p if window == everywhere else p[inside].copy(),
+            start=p[inside],
             precondition=inverse,
             quick=K.quick,
             tolerance=tolerance,
             max_iterations=max_iterations,
         )
-        products += K.count
         if window == everywhere:
-            return found, products
-        p[...] = 0.0
-        p[inside] = found.point
+            return found, products + whole.count
+        products += K.count
         iterations, converged = found.iterations, every(found.converged)
         del K, inverse, found  # their arrays make room for those of the check
-        g = whole.fresh()(p)
+        whole(p, out=g)
         g -= b
-        products += 1
         residual = violation(p, g, 0.0, upper)
         if every(residual <= tolerance) or not converged:
-            return Minimum(p, g, residual, iterations, residual <= tolerance), products
+            return (
+                Minimum(p, g, residual, iterations, residual <= tolerance),
+                products + whole.count,
+            )
         wider = union(window, bounding_box(somewhere(g < -tolerance)))
         # The same window again: what the last digits of the check leave, all nodes mend.
         window = everywhere if wider is None or wider == window else widen(wider, _MARGIN, size)
