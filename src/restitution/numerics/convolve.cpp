@@ -96,7 +96,7 @@ std::shared_ptr<const Plan<T>> plan_for(Index values, Index period) {
     return plan;
 }
 
-// Threads that do the same steps, each its share.
+// Threads that do the same steps together.
 class Crew {
   public:
     // Let `work(k)` run in `threads` threads, or in as many as there are to be had.
@@ -116,14 +116,15 @@ class Crew {
         for (auto& other : others) other.join();
     }
 
-    // `step(i)` for the k-th share of i = 0, every, 2 every, … below n; then wait for the others.
+    // `step(i)` for i = 0, every, 2 every, … below n, by whoever is free; then wait for the others.
     template <class Step>
-    void share(int k, Index n, Index every, Step step) {
+    void share(Index n, Index every, Step step) {
         const Index steps = (n + every - 1) / every;
-        for (Index i = steps * k / count_; i < steps * (k + 1) / count_; ++i) step(i * every);
+        for (Index i = next_++; i < steps; i = next_++) step(i * every);
         const int round = round_;
         if (++arrived_ == count_) {
             arrived_ = 0;
+            next_ = 0;
             ++round_;
         }
         while (round_ == round) std::this_thread::yield();
@@ -131,6 +132,7 @@ class Crew {
 
   private:
     std::atomic<int> count_{0}, arrived_{0}, round_{0};
+    std::atomic<Index> next_{0};
 };
 
 // Memory in lines of the cache.

@@ -328,11 +328,11 @@ void convolve(Rows<const From> values, double factor, Rows<const T> weights, Ind
     Crew crew;
     crew.run(threads, [&](int k) {
         Lanes<T>* room = static_cast<Lanes<T>*>(memory.get()) + k * each;
-        crew.share(k, values.length, 2 * count, [&](Index first) {
+        crew.share(values.length, 2 * count, [&](Index first) {
             convolution.into_waves(values, factor, first, room);
         });
-        crew.share(k, modes.length, count, [&](Index first) { convolution.weigh(first, room); });
-        crew.share(k, values.length, 2 * count, [&](Index first) {
+        crew.share(modes.length, count, [&](Index first) { convolution.weigh(first, room); });
+        crew.share(values.length, 2 * count, [&](Index first) {
             convolution.out_of_waves(out, factor_back, first, room);
         });
     });
