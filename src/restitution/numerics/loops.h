@@ -7,7 +7,7 @@
 
 inline double downhill_at(double p, double g, double low, double high) {
     const bool falls = (p > low) | (g < 0), rises = (p < high) | (g > 0);
-    return falls & rises ? g : 0.0;
+    return (falls & rises) ? g : 0.0;
 }
 
 // The largest magnitude of what was seen: `most`, or NaN where `doubt` is, which sums up zero times
@@ -77,7 +77,7 @@ std::pair<double, bool> direct(Rows<double> d, double kept, Rows<const T> z, dou
             const bool falls = (pi[j] > low[j]) | (gi[j] < 0), rises = (pi[j] < high[j]) | (gi[j] > 0);
             const double to_low = low[j] - pi[j], to_high = high[j] - pi[j];
             double wanted = kept * di[j] - length * zi[j];
-            wanted = falls & rises ? wanted : 0.0;
+            wanted = (falls & rises) ? wanted : 0.0;
             double step = wanted > to_low ? wanted : to_low;
             step = step < to_high ? step : to_high;
             di[j] = step;
@@ -97,7 +97,7 @@ inline bool leaves(Rows<const double> p, Rows<const double> d, double taken, Row
 #pragma omp simd reduction(+ : outside)
         for (Index j = 0; j < p.length; ++j) {
             const double end = pi[j] + taken * di[j];
-            outside += (end < low[j]) | (end > high[j]) ? 1.0 : 0.0;
+            outside += ((end < low[j]) | (end > high[j])) ? 1.0 : 0.0;
         }
         if (outside > 0) return true;
     }
