@@ -64,7 +64,7 @@ def many(device: str, realisations: int) -> None:
     """The 24 depths of the example on many surfaces, one depth after the other."""
     case, _ = read_case(EXAMPLE)
     example = case.contact(EXAMPLE.parent)
-    rough = case.roughness
+    (rough,) = case.roughness
     contacts = [
         Contact(example.pair, generate_surface(
             Grid(example.grid.nodes, example.grid.spacing), kind=rough.kind, rms=rough.rms,

@@ -5,8 +5,10 @@ themselves, so that code which would copy them back unasked, or hand them to a f
 not know them, fails here as it would there.
 """
 
+import subprocess
 import sys
 from contextlib import suppress
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -193,6 +195,16 @@ def test_a_gpu_that_does_not_answer_is_said_so(monkeypatch):
         on_device("gpu"),
     ):
         pass
+
+
+def test_what_measures_a_gpu_runs():
+    """Here on this machine, and small: where there is a GPU it must not fail."""
+    script = Path(__file__).parents[2] / "benchmarks" / "gpu.py"
+    options = ["--device", "cpu", "--nodes", "256", "--realisations", "2"]
+    found = subprocess.run([sys.executable, script, *options], capture_output=True, text=True)
+    assert found.returncode == 0, found.stderr
+    assert "256 x 256 rough" in found.stdout
+    assert "2 realisations of 24 depths" in found.stdout
 
 
 def test_cupy_answers_as_this_machine(rough_contact):
