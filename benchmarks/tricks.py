@@ -85,6 +85,9 @@ def everything(contact: Contact, *_: object):
 
 PLAIN = device.accelerator("cpu", np, scipy.fft)
 PASSES = [name for name, value in vars(passes).items() if hasattr(value, "__wrapped__")]
+CONVOLUTION = [(device, "_current", ContextVar("device", default=PLAIN))]
+LOOPS = [(passes, "loops", None)]
+LOOPS += [(passes, name, getattr(passes, name).__wrapped__) for name in PASSES]
 # What is given which value so that the trick is out.
 TRICKS = {
     "solve on the box {h₀ < δ}": [(module, "reach", everything) for module in (loading, adhesion)],
@@ -94,9 +97,9 @@ TRICKS = {
     "the window alone": [(nesting, "_WORTH_A_WINDOW", 0.0)],
     "preconditioner \\|q\\|E*/2": [(equilibrium, "inverse_half_space", Unchanged)],
     "products in single precision": [(FreeConvolution, "quick", FreeConvolution.__call__)],
-    "compiled convolution": [(device, "_current", ContextVar("device", default=PLAIN))],
-    "compiled loops": [(passes, "loops", None)]
-    + [(passes, name, getattr(passes, name).__wrapped__) for name in PASSES],
+    "compiled convolution": CONVOLUTION,
+    "compiled loops": LOOPS,
+    "both: no compiler": CONVOLUTION + LOOPS,
     "operators and coefficients kept": [
         (influence, "_MOST_KEPT", 0),
         (influence, "_MOST_KNOWN", 0),

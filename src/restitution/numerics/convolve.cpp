@@ -103,6 +103,7 @@ class Crew {
     template <class Work>
     void run(int threads, Work work) {
         std::vector<std::thread> others;
+        others.reserve(threads);
         const auto begin = [&](int k) {
             while (count_ == 0) std::this_thread::yield();
             work(k);

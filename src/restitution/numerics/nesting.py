@@ -59,8 +59,9 @@ def minimise_nested(
     while True:
         if not _saves(window, size):
             window = everywhere
-        shape = shape_of(window)
-        K, inverse = (whole, its_inverse) if window == everywhere else system(shape, 0)
+        K, inverse = whole, its_inverse
+        if window != everywhere:
+            K, inverse = system(shape_of(window), 0)
         inside = (..., *window)
         found = minimise_quadratic(
             K,
@@ -82,10 +83,8 @@ def minimise_nested(
         g -= b
         residual = violation(p, g, 0.0, upper)
         if every(residual <= tolerance) or not converged:
-            return (
-                Minimum(p, g, residual, iterations, residual <= tolerance),
-                products + whole.count,
-            )
+            checked = Minimum(p, g, residual, iterations, residual <= tolerance)
+            return checked, products + whole.count
         wider = union(window, bounding_box(somewhere(g < -tolerance)))
         # The same window again: what the last digits of the check leave, all nodes mend.
         window = everywhere if wider is None or wider == window else widen(wider, _MARGIN, size)
