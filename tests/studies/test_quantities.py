@@ -2,7 +2,7 @@ import contextlib
 import math
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from restitution.studies.quantities import read_quantity
@@ -59,6 +59,8 @@ def test_a_unit_in_the_wrong_case(text, unit, meant):
 
 
 @given(st.text(max_size=30))
+@example("0¼")
+@example("1 m⁰")
 def test_no_text_does_anything_but_read_or_refuse(text):
     with contextlib.suppress(ValueError):
         assert math.isfinite(read_quantity(text, "m"))

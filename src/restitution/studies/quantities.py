@@ -82,7 +82,8 @@ def read_quantity(value: object, unit: str) -> float:
     except pint.DimensionalityError:
         remedy = _other_case(match[2], unit) or example
         raise ValueError(f"{shown(value)} is not {_NAMES[unit]}; {remedy}") from None
-    except (pint.PintError, ValueError, TypeError, AttributeError):
+    except (pint.PintError, ValueError, TypeError, AttributeError, AssertionError, KeyError):
+        # The last two are how pint meets "¼" and "m⁰".
         remedy = _other_case(match[2], unit) or example
         raise ValueError(f"{shown(value)} has a unit that is not known; {remedy}") from None
     result = number * factor
