@@ -48,10 +48,10 @@ def both(name, *args):
 def test_a_step_is_that_of_the_expressions(single, kind, shape, seed, taken):
     rng = np.random.default_rng(seed)
     lower, upper = bounds(rng, kind, shape)
-    p, g, d = point(rng, lower, upper, shape), rng.normal(size=shape), rng.normal(size=shape)
+    p, g = point(rng, lower, upper, shape), rng.normal(size=shape)
     lower, upper = passes.as_rows(lower, p), passes.as_rows(upper, p)
     g[rng.random(shape) < 0.2] = 0.0
-    r, z, Kd, out = (rng.normal(size=shape).astype(single) for _ in range(4))
+    d, r, z, Kd, out = (rng.normal(size=shape).astype(single) for _ in range(5))
 
     (most, (_, _, _, _, left)), (its_most, (_, _, _, _, its_left)) = both(
         "downhill", p, g, lower, upper, out
@@ -103,9 +103,32 @@ def test_a_step_to_a_bound_ends_on_it(batch, shape, seed):
 def test_sums_and_peaks_are_those_of_the_expressions(single, shape, seed):
     rng = np.random.default_rng(seed)
     a, b, c = (rng.normal(size=shape).astype(single) for _ in range(3))
-    for name, *args in (("peak", a), ("dot", a.astype(float), b), ("products", a, b, c)):
+    for name, *args in (("peak", a), ("dot", a, b), ("products", a, b, c)):
         (found, _), (compiled, _) = both(name, *args)
         assert_allclose(compiled, found, rtol=1e-6, atol=1e-5)
+
+
+def test_threads_share_the_rows_and_change_nothing(threads):
+    """Not the last digit of a sum, either."""
+    rng = np.random.default_rng(5)
+    shape = (901, 800)
+    p, g = rng.random(shape), rng.normal(size=shape)
+    d, r, z, r_old, Kd = rng.normal(size=(5, *shape)).astype(np.float32)
+    lower, upper = (passes.as_rows(bound, p) for bound in (0.0, 0.9))
+
+    def everything():
+        its_p, its_g, its_d, its_r = p.copy(), g.copy(), d.copy(), r.copy()
+        return [
+            passes.downhill(p, g, lower, upper, its_r), its_r.copy(), passes.products(z, r, r_old),
+            passes.direct(its_d, 0.3, z, 0.8, p, g, r, lower, upper), its_d,
+            passes.dot(its_d, Kd), passes.peak(g),
+            passes.advance(its_p, its_g, its_d, Kd, 1.0, lower, upper, its_r), its_p, its_g, its_r,
+        ]  # fmt: skip
+
+    found = everything()
+    passes.loops.use_threads(1)
+    for one, other in zip(found, everything(), strict=True):
+        assert_array_equal(one, other)
 
 
 @pytest.mark.parametrize("single", [np.float32, np.float64])
@@ -115,8 +138,8 @@ def test_sums_and_peaks_are_those_of_the_expressions(single, shape, seed):
 def test_what_is_not_finite_is_no_small_violation(single, bad, shape, seed):
     """A maximum that passes over NaN would call such a solve converged."""
     rng = np.random.default_rng(seed)
-    p, g, d = rng.random(shape) + 1, rng.normal(size=shape), np.zeros(shape)
-    out, Kd = np.empty(shape, single), np.zeros(shape, single)
+    p, g = rng.random(shape) + 1, rng.normal(size=shape)
+    out, d, Kd = np.empty(shape, single), np.zeros(shape, single), np.zeros(shape, single)
     lower, upper = (passes.as_rows(bound, p) for bound in (0.0, np.inf))
     g[tuple(rng.integers(0, shape))] = bad
     values = g.astype(single)

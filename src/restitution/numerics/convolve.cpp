@@ -6,11 +6,11 @@
 // a transform of length m, and as their odd ones those of the same transform of the values turned by
 // half a turn over the m.
 
+#include "crew.h"
 #include "rows.h"
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <complex>
 #include <cstdint>
@@ -20,11 +20,13 @@
 #include <memory>
 #include <mutex>
 #include <new>
-#include <system_error>
-#include <thread>
 #include <type_traits>
 #include <utility>
 #include <vector>
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
 
 // How to transform a period, on any processor. One of which at least half is padding is transformed
 // in two parts, the even waves and the odd ones.
@@ -96,56 +98,37 @@ std::shared_ptr<const Plan<T>> plan_for(Index values, Index period) {
     return plan;
 }
 
-// Threads that do the same steps together.
-class Crew {
-  public:
-    // Let `work(k)` run in `threads` threads, or in as many as there are to be had.
-    template <class Work>
-    void run(int threads, Work work) {
-        std::vector<std::thread> others;
-        others.reserve(threads);
-        const auto begin = [&](int k) {
-            while (count_ == 0) std::this_thread::yield();
-            work(k);
-        };
-        try {
-            for (int k = 1; k < threads; ++k) others.emplace_back(begin, k);
-        } catch (const std::system_error&) {
-        }
-        count_ = int(others.size()) + 1;
-        work(0);
-        for (auto& other : others) other.join();
-    }
-
-    // `step(i)` for i = 0, every, 2 every, … below n, by whoever is free; then wait for the others.
-    template <class Step>
-    void share(Index n, Index every, Step step) {
-        const Index steps = (n + every - 1) / every;
-        for (Index i = next_++; i < steps; i = next_++) step(i * every);
-        const int round = round_;
-        if (++arrived_ == count_) {
-            arrived_ = 0;
-            next_ = 0;
-            ++round_;
-        }
-        while (round_ == round) std::this_thread::yield();
-    }
-
-  private:
-    std::atomic<int> count_{0}, arrived_{0}, round_{0};
-    std::atomic<Index> next_{0};
-};
-
 // Memory in lines of the cache.
+constexpr Index LINE = 64;
+
 struct Free {
     void operator()(void* memory) const { std::free(memory); }
 };
-inline std::unique_ptr<void, Free> room_for(std::size_t bytes) {
-    constexpr std::size_t line = 64;
-    std::unique_ptr<void, Free> room(std::aligned_alloc(line, (bytes + line - 1) / line * line));
+inline std::unique_ptr<void, Free> room_for(Index bytes) {
+    std::unique_ptr<void, Free> room(std::aligned_alloc(LINE, (bytes + LINE - 1) / LINE * LINE));
     if (!room) throw std::bad_alloc();
     return room;
 }
+
+// Rows that begin with a line, an odd number of lines apart: at a power of two they would drive each
+// other out of the cache.
+inline Index bytes_of_row(Index bytes) { return ((bytes + LINE - 1) / LINE | 1) * LINE; }
+
+template <class T>
+Index bytes_of_room(Index rows, Index length) {
+    return rows * bytes_of_row(length * Index(sizeof(std::complex<T>))) + LINE;
+}
+
+template <class T>
+Rows<T> rows_in(Rows<unsigned char> room, Index rows, Index length) {
+    void* first = room.first;
+    std::size_t bytes = room.length;
+    return {static_cast<T*>(std::align(LINE, 1, first, bytes)), rows, length,
+            bytes_of_row(length * Index(sizeof(T))) / Index(sizeof(T))};
+}
+
+// Of so many bytes enough still lie in the cache when they are wanted again (measured, 32 MiB of it).
+constexpr Index MOST_CACHED = 12 << 20;
 
 #ifndef __has_builtin
 #define __has_builtin(name) 0

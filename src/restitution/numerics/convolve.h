@@ -150,6 +150,20 @@ inline void transpose(Vector* x) {
     }
 }
 
+// Whole vectors to a place that is aligned to them, not by way of the cache where there is such a way.
+template <class Vector, int n>
+inline void store_past_cache(void* to, const Vector (&values)[n]) {
+#if defined(__x86_64__)
+    for (std::size_t i = 0; i < sizeof(values); i += sizeof(__m128i)) {
+        __m128i part;
+        std::memcpy(&part, reinterpret_cast<const char*>(values) + i, sizeof part);
+        _mm_stream_si128(reinterpret_cast<__m128i*>(static_cast<char*>(to) + i), part);
+    }
+#else
+    std::memcpy(to, values, sizeof(values));
+#endif
+}
+
 // Copy `some` values, at most `most`. A copy whose size is known is no call.
 template <class T, Index most>
 inline void copy_some(void* to, const void* from, Index some) {
@@ -189,10 +203,14 @@ inline Lanes<T> load_modes(const std::complex<T>* from, Index some) {
     return {shuffle<Even>(pairs[0], pairs[1]), shuffle<Odd>(pairs[0], pairs[1])};
 }
 
+// `past_cache` is for what is wanted again only when other things have taken its place there.
 template <class T>
-inline void store_modes(const Lanes<T>& x, std::complex<T>* to, Index some) {
+inline void store_modes(const Lanes<T>& x, std::complex<T>* to, Index some, bool past_cache = false) {
     const typename Lanes<T>::Vector pairs[2] = {shuffle<Low>(x.re, x.im), shuffle<High>(x.re, x.im)};
-    copy_some<std::complex<T>, Lanes<T>::count>(to, pairs, some);
+    if (past_cache && some >= Lanes<T>::count)
+        store_past_cache(to, pairs);
+    else
+        copy_some<std::complex<T>, Lanes<T>::count>(to, pairs, some);
 }
 
 // The transforms of some columns; the rest of their period is filled up with zeros.
@@ -232,6 +250,7 @@ struct Convolution {
     const Plan<T>&along_x, &along_y;
     Rows<const T> weights;
     Rows<std::complex<T>> modes;
+    const bool past_cache = modes.count * modes.stride * Index(sizeof(std::complex<T>)) > MOST_CACHED;
 
     // Two blocks of real columns are transformed as the real and the imaginary part of one.
     template <class From>
@@ -258,7 +277,8 @@ struct Convolution {
                 transpose<count>(re[block]);
                 transpose<count>(im[block]);
                 for (Index l = 0; l < std::min<Index>(count, modes.count - column); ++l)
-                    store_modes<T>({re[block][l], im[block][l]}, modes[column + l] + k0, waves);
+                    store_modes<T>({re[block][l], im[block][l]}, modes[column + l] + k0, waves,
+                                   past_cache);
             }
         }
     }
@@ -312,19 +332,20 @@ struct Convolution {
 };
 
 // `out` = `factor_back` K ∗ (`factor` `values`), circular in (px, py). `weights` (py/2 + 1, px/2 + 1)
-// are a quadrant of the spectrum of K, real, even and transposed; `modes` (ny, px/2 + 1) is room.
+// are a quadrant of the spectrum of K, real, even and transposed; `room` is that of `bytes_of_room`.
 template <class From, class T, class To>
 void convolve(Rows<const From> values, double factor, Rows<const T> weights, Index px, Index py,
-              Rows<std::complex<T>> modes, double factor_back, Rows<To> out, int threads) {
-    if (out.count != values.count || out.length != values.length || modes.count != values.length ||
-        modes.length != px / 2 + 1 || weights.count != py / 2 + 1 || weights.length != px / 2 + 1)
+              Rows<unsigned char> room, double factor_back, Rows<To> out) {
+    if (out.count != values.count || out.length != values.length || weights.count != py / 2 + 1 ||
+        weights.length != px / 2 + 1 || room.length < bytes_of_room<T>(values.length, px / 2 + 1))
         throw std::invalid_argument("arrays that do not go with each other");
+    const auto modes = rows_in<std::complex<T>>(room, values.length, px / 2 + 1);
     const auto along_x = plan_for<T>(values.count, px), along_y = plan_for<T>(values.length, py);
     const Convolution<T> convolution{*along_x, *along_y, weights, modes};
     constexpr int count = Lanes<T>::count;
-    threads = std::max(threads, 1);
+    const int threads = threads_for(values.count * values.length * Index(sizeof(T)));
     const Index each = std::max(px, py);
-    const auto memory = room_for(threads * each * sizeof(Lanes<T>));
+    const auto memory = room_for(threads * each * Index(sizeof(Lanes<T>)));
     Crew crew;
     crew.run(threads, [&](int k) {
         Lanes<T>* room = static_cast<Lanes<T>*>(memory.get()) + k * each;
@@ -350,4 +371,5 @@ inline void define_convolve(py::module_& module) {
     define_between<float, float>(module);
     define_between<double, double>(module);
     define_between<float, double>(module);
+    module.def("bytes_of_room", &bytes_of_room<double>);
 }

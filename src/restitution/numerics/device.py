@@ -26,9 +26,6 @@ from restitution.numerics import passes
 Array = NDArray[Any]
 DeviceName = Literal["cpu", "gpu", "auto"]
 
-# Two threads cost more than they save on less (measured on two cores).
-_BYTES_WORTH_THREADS = 4 * 350 * 350
-
 
 class Device(Protocol):
     """Makes arrays, and convolves them. Expressions are quickest on `at_once` numbers at a time."""
@@ -75,6 +72,8 @@ class _Compiled:
 
     def __init__(self, loops: Any) -> None:
         self._loops = loops
+        # As many as ducc0's, which `DUCC0_NUM_THREADS` sets.
+        loops.use_threads(ducc0.misc.thread_pool_size())
 
     def put(self, values: Array) -> Array:
         return values
@@ -86,11 +85,13 @@ class _Compiled:
         return np.arange(n)
 
     def even_spectrum(self, quadrant: Array) -> Array:
-        ducc0.fft.dct(quadrant, type=1, out=quadrant, nthreads=_threads_for(quadrant.nbytes))
+        ducc0.fft.dct(
+            quadrant, type=1, out=quadrant, nthreads=self._loops.threads_for(quadrant.nbytes)
+        )
         return quadrant
 
     def room(self, shape: tuple[int, int], periods: tuple[int, int]) -> Array:
-        return np.empty((shape[1], periods[0] // 2 + 1), np.complex128)
+        return np.empty((1, self._loops.bytes_of_room(shape[1], periods[0] // 2 + 1)), np.uint8)
 
     def convolve(
         self, values: Array, spectrum: Array, periods: tuple[int, int], scale: Any, room: Array,
@@ -101,13 +102,10 @@ class _Compiled:
                 its_scale = scale[item] if np.ndim(scale) else scale
                 self.convolve(its_values, spectrum, periods, its_scale, room, out[item])
             return
-        if spectrum.dtype == np.float32:  # work in the first half of the room
-            room = room.reshape(-1).view(np.complex64)[: room.size].reshape(room.shape)
         if values.strides[-1] != values.itemsize:
             values = np.ascontiguousarray(values)
         factor = float(scale.item() if isinstance(scale, np.ndarray) else scale)
-        self._loops.convolve(values, 1 / factor, spectrum, *periods, room, factor, out,
-                             _threads_for(values.size * spectrum.itemsize))  # fmt: skip
+        self._loops.convolve(values, 1 / factor, spectrum, *periods, room, factor, out)
 
 
 class _Arrays:
@@ -156,11 +154,6 @@ class _Arrays:
         modes = self._fft.ifft(modes, axis=-2, norm="forward", overwrite_x=True)[..., :nx, :]
         padded = self._fft.irfft(modes, n=py, axis=-1, norm="forward")
         np.multiply(padded[..., :ny], scale, out=out, dtype=out.dtype)
-
-
-def _threads_for(size: int) -> int:
-    """Threads for a convolution of so many bytes, at most those of ducc0 (`DUCC0_NUM_THREADS`)."""
-    return ducc0.misc.thread_pool_size() if size > _BYTES_WORTH_THREADS else 1
 
 
 def accelerator(name: str, arrays: Any, fft: Any) -> Device:

@@ -1,6 +1,7 @@
 // The compiled module: loops and convolutions, by the widest vectors of the processor at hand, and
 // in `narrow` by the next.
 
+#include "crew.h"
 #include "rows.h"
 
 #include <algorithm>
@@ -21,6 +22,8 @@ void expect_one_shape(const First& a, const Others&... others) {
 #include "each_processor.h"
 
 PYBIND11_MODULE(loops, module) {
+    module.def("use_threads", [](int most) { most_threads = std::max(most, 1); });
+    module.def("threads_for", &threads_for);
     auto next = module.def_submodule("narrow");
     narrow::define_loops(next);
     define_narrow_convolve(next);

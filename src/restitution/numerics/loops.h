@@ -10,89 +10,123 @@ inline double downhill_at(double p, double g, double low, double high) {
     return (falls & rises) ? g : 0.0;
 }
 
-// The largest magnitude of what was seen: `most`, or NaN where `doubt` is, which sums up zero times
-// each; a maximum would pass over what is not finite.
-inline double largest(double most, double doubt) { return most + doubt; }
+// The largest magnitude of what was seen, or NaN where `doubt` is, which sums up zero times each: a
+// maximum would pass over what is not finite.
+template <class T>
+struct Peak {
+    T most = 0, doubt = 0;
+
+    void add(const Peak& other) {
+        most = std::max(most, other.most);
+        doubt += other.doubt;
+    }
+    double value() const { return most + doubt; }
+};
+
+struct Sums {
+    double first = 0, second = 0;
+
+    void add(const Sums& other) {
+        first += other.first;
+        second += other.second;
+    }
+};
 
 template <class T>
 double downhill(Rows<const double> p, Rows<const double> g, Rows<const double> lower,
                 Rows<const double> upper, Rows<T> out) {
     expect_one_shape(p, g, lower, upper, out);
-    T most = 0, doubt = 0;
-    for (Index i = 0; i < p.count; ++i) {
-        const double *pi = p[i], *gi = g[i], *low = lower[i], *high = upper[i];
-        T* result = out[i];
+    const auto some = [&](Index begin, Index end) {
+        T most = 0, doubt = 0;
+        for (Index i = begin; i < end; ++i) {
+            const double *pi = p[i], *gi = g[i], *low = lower[i], *high = upper[i];
+            T* result = out[i];
 #pragma omp simd reduction(max : most) reduction(+ : doubt)
-        for (Index j = 0; j < p.length; ++j) {
-            const T slope = T(downhill_at(pi[j], gi[j], low[j], high[j]));
-            result[j] = slope;
-            most = std::max(most, std::abs(slope));
-            doubt += 0 * slope;
+            for (Index j = 0; j < p.length; ++j) {
+                const T slope = T(downhill_at(pi[j], gi[j], low[j], high[j]));
+                result[j] = slope;
+                most = std::max(most, std::abs(slope));
+                doubt += 0 * slope;
+            }
         }
-    }
-    return largest(most, doubt);
+        return Peak<T>{most, doubt};
+    };
+    return over_rows(p, some).value();
 }
 
 template <class T>
 std::pair<double, double> products(Rows<const T> z, Rows<const T> r, Rows<const T> r_old) {
     expect_one_shape(z, r, r_old);
-    double now = 0, before = 0;
-    for (Index i = 0; i < z.count; ++i) {
-        const T *zi = z[i], *ri = r[i], *old = r_old[i];
+    const auto some = [&](Index begin, Index end) {
+        double now = 0, before = 0;
+        for (Index i = begin; i < end; ++i) {
+            const T *zi = z[i], *ri = r[i], *old = r_old[i];
 #pragma omp simd reduction(+ : now, before)
-        for (Index j = 0; j < z.length; ++j) {
-            now += double(ri[j]) * zi[j];
-            before += double(old[j]) * zi[j];
+            for (Index j = 0; j < z.length; ++j) {
+                now += double(ri[j]) * zi[j];
+                before += double(old[j]) * zi[j];
+            }
         }
-    }
-    return {now, before};
+        return Sums{now, before};
+    };
+    const Sums sums = over_rows(z, some);
+    return {sums.first, sums.second};
 }
 
 template <class T>
-double dot(Rows<const double> a, Rows<const T> b) {
+double dot(Rows<const T> a, Rows<const T> b) {
     expect_one_shape(a, b);
-    double total = 0;
-    for (Index i = 0; i < a.count; ++i) {
-        const double* ai = a[i];
-        const T* bi = b[i];
+    const auto some = [&](Index begin, Index end) {
+        double total = 0;
+        for (Index i = begin; i < end; ++i) {
+            const T *ai = a[i], *bi = b[i];
 #pragma omp simd reduction(+ : total)
-        for (Index j = 0; j < a.length; ++j) total += ai[j] * bi[j];
-    }
-    return total;
+            for (Index j = 0; j < a.length; ++j) total += double(ai[j]) * bi[j];
+        }
+        return Sums{total};
+    };
+    return over_rows(a, some).first;
 }
 
 template <class T>
-std::pair<double, bool> direct(Rows<double> d, double kept, Rows<const T> z, double length,
+std::pair<double, bool> direct(Rows<T> d, double kept, Rows<const T> z, double length,
                                Rows<const double> p, Rows<const double> g, Rows<const T> r,
                                Rows<const double> lower, Rows<const double> upper) {
     expect_one_shape(d, z, p, g, r, lower, upper);
-    double slope = 0, cut = 0;
-    for (Index i = 0; i < p.count; ++i) {
-        double* di = d[i];
-        const double *pi = p[i], *gi = g[i], *low = lower[i], *high = upper[i];
-        const T *zi = z[i], *ri = r[i];
-        // Without branches, and all that may be needed is computed: else it takes no vectors.
+    const auto some = [&](Index begin, Index end) {
+        double slope = 0, cut = 0;
+        for (Index i = begin; i < end; ++i) {
+            T* di = d[i];
+            const double *pi = p[i], *gi = g[i], *low = lower[i], *high = upper[i];
+            const T *zi = z[i], *ri = r[i];
+            // Without branches, and all that may be needed is computed: else it takes no vectors.
 #pragma omp simd reduction(+ : slope, cut)
-        for (Index j = 0; j < p.length; ++j) {
-            const bool falls = (pi[j] > low[j]) | (gi[j] < 0), rises = (pi[j] < high[j]) | (gi[j] > 0);
-            const double to_low = low[j] - pi[j], to_high = high[j] - pi[j];
-            double wanted = kept * di[j] - length * zi[j];
-            wanted = (falls & rises) ? wanted : 0.0;
-            double step = wanted > to_low ? wanted : to_low;
-            step = step < to_high ? step : to_high;
-            di[j] = step;
-            cut += step == wanted ? 0.0 : 1.0;
-            slope += ri[j] * step;
+            for (Index j = 0; j < p.length; ++j) {
+                const bool falls = (pi[j] > low[j]) | (gi[j] < 0);
+                const bool rises = (pi[j] < high[j]) | (gi[j] > 0);
+                const double to_low = low[j] - pi[j], to_high = high[j] - pi[j];
+                double wanted = kept * di[j] - length * zi[j];
+                wanted = (falls & rises) ? wanted : 0.0;
+                double step = wanted > to_low ? wanted : to_low;
+                step = step < to_high ? step : to_high;
+                cut += step == wanted ? 0.0 : 1.0;
+                di[j] = T(step);
+                slope += double(ri[j]) * di[j];
+            }
         }
-    }
-    return {slope, cut > 0};
+        return Sums{slope, cut};
+    };
+    const Sums sums = over_rows(p, some);
+    return {sums.first, sums.second > 0};
 }
 
-inline bool leaves(Rows<const double> p, Rows<const double> d, double taken, Rows<const double> lower,
-                   Rows<const double> upper) {
+template <class T>
+bool leaves(Rows<const double> p, Rows<const T> d, double taken, Rows<const double> lower,
+            Rows<const double> upper) {
     expect_one_shape(p, d, lower, upper);
     for (Index i = 0; i < p.count; ++i) {
-        const double *pi = p[i], *di = d[i], *low = lower[i], *high = upper[i];
+        const double *pi = p[i], *low = lower[i], *high = upper[i];
+        const T* di = d[i];
         double outside = 0;
 #pragma omp simd reduction(+ : outside)
         for (Index j = 0; j < p.length; ++j) {
@@ -105,38 +139,41 @@ inline bool leaves(Rows<const double> p, Rows<const double> d, double taken, Row
 }
 
 template <bool whole, class T>
-double advance_by(Rows<double> p, Rows<double> g, Rows<const double> d, Rows<const T> Kd, double taken,
+double advance_by(Rows<double> p, Rows<double> g, Rows<const T> d, Rows<const T> Kd, double taken,
                   Rows<const double> lower, Rows<const double> upper, Rows<T> out) {
-    T most = 0, doubt = 0;
-    for (Index i = 0; i < p.count; ++i) {
-        double *pi = p[i], *gi = g[i];
-        const double *di = d[i], *low = lower[i], *high = upper[i];
-        const T* Kdi = Kd[i];
-        T* result = out[i];
+    const auto some = [&](Index begin, Index end) {
+        T most = 0, doubt = 0;
+        for (Index i = begin; i < end; ++i) {
+            double *pi = p[i], *gi = g[i];
+            const double *low = lower[i], *high = upper[i];
+            const T *di = d[i], *Kdi = Kd[i];
+            T* result = out[i];
 #pragma omp simd reduction(max : most) reduction(+ : doubt)
-        for (Index j = 0; j < p.length; ++j) {
-            double end = pi[j] + taken * di[j];
-            bool at_low = end < low[j], at_high = end > high[j];
-            if (whole) {
-                at_low |= di[j] == low[j] - pi[j];
-                at_high |= di[j] == high[j] - pi[j];
+            for (Index j = 0; j < p.length; ++j) {
+                double end = pi[j] + taken * di[j];
+                bool at_low = end < low[j], at_high = end > high[j];
+                if (whole) {
+                    at_low |= di[j] == T(low[j] - pi[j]);
+                    at_high |= di[j] == T(high[j] - pi[j]);
+                }
+                end = at_low ? low[j] : end;
+                end = at_high ? high[j] : end;
+                const double gradient = gi[j] + taken * Kdi[j];
+                pi[j] = end;
+                gi[j] = gradient;
+                const T slope = T(downhill_at(end, gradient, low[j], high[j]));
+                result[j] = slope;
+                most = std::max(most, std::abs(slope));
+                doubt += 0 * slope;
             }
-            end = at_low ? low[j] : end;
-            end = at_high ? high[j] : end;
-            const double gradient = gi[j] + taken * Kdi[j];
-            pi[j] = end;
-            gi[j] = gradient;
-            const T slope = T(downhill_at(end, gradient, low[j], high[j]));
-            result[j] = slope;
-            most = std::max(most, std::abs(slope));
-            doubt += 0 * slope;
         }
-    }
-    return largest(most, doubt);
+        return Peak<T>{most, doubt};
+    };
+    return over_rows(p, some).value();
 }
 
 template <class T>
-double advance(Rows<double> p, Rows<double> g, Rows<const double> d, Rows<const T> Kd, double taken,
+double advance(Rows<double> p, Rows<double> g, Rows<const T> d, Rows<const T> Kd, double taken,
                Rows<const double> lower, Rows<const double> upper, Rows<T> out) {
     expect_one_shape(p, g, d, Kd, lower, upper, out);
     return taken == 1 ? advance_by<true>(p, g, d, Kd, taken, lower, upper, out)
@@ -145,16 +182,19 @@ double advance(Rows<double> p, Rows<double> g, Rows<const double> d, Rows<const 
 
 template <class T>
 double peak(Rows<const T> values) {
-    T most = 0, doubt = 0;
-    for (Index i = 0; i < values.count; ++i) {
-        const T* its = values[i];
+    const auto some = [&](Index begin, Index end) {
+        T most = 0, doubt = 0;
+        for (Index i = begin; i < end; ++i) {
+            const T* its = values[i];
 #pragma omp simd reduction(max : most) reduction(+ : doubt)
-        for (Index j = 0; j < values.length; ++j) {
-            most = std::max(most, std::abs(its[j]));
-            doubt += 0 * its[j];
+            for (Index j = 0; j < values.length; ++j) {
+                most = std::max(most, std::abs(its[j]));
+                doubt += 0 * its[j];
+            }
         }
-    }
-    return largest(most, doubt);
+        return Peak<T>{most, doubt};
+    };
+    return over_rows(values, some).value();
 }
 
 template <class Coarse, class Fine>
@@ -224,6 +264,7 @@ void define_for(py::module_& module) {
     module.def("products", &products<T>);
     module.def("dot", &dot<T>);
     module.def("direct", &direct<T>);
+    module.def("leaves", &leaves<T>);
     module.def("advance", &advance<T>);
     module.def("peak", &peak<T>);
 }
@@ -231,7 +272,6 @@ void define_for(py::module_& module) {
 inline void define_loops(py::module_& module) {
     define_for<float>(module);
     define_for<double>(module);
-    module.def("leaves", &leaves);
     module.def("coarsen", &coarsen);
     module.def("refine", &refine);
     module.def("spread", &spread);

@@ -93,7 +93,7 @@ def minimise_quadratic(
     p = np.clip(start, lower, upper, out=start)
     lower, upper = passes.as_rows(lower, p), passes.as_rows(upper, p)
     g, exact = _gradient(quick, p, b), quick is K
-    d, r_old = np.zeros_like(p), np.zeros_like(p, dtype=kind)
+    d, r_old = (np.zeros_like(p, dtype=kind) for _ in range(2))
     r, z, Kd = (np.empty_like(p, dtype=kind) for _ in range(3))
     residual = passes.downhill(p, g, lower, upper, r)
     low = _DRIFT * residual  # where the gradient is computed anew

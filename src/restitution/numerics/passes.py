@@ -126,8 +126,9 @@ def advance(
 
     A step that ended at a bound, and is taken whole, gets there without a rounding.
     """
-    whole = taken == 1
-    low, high = whole & (d == lower - p), whole & (d == upper - p)
+    low, high = (
+        (taken == 1) & (d == (bound - p).astype(d.dtype, copy=False)) for bound in (lower, upper)
+    )
     p += taken * d
     np.clip(p, np.where(high, upper, lower), np.where(low, lower, upper), out=p)
     g += taken * Kd
