@@ -104,7 +104,6 @@ TRICKS = {
         (influence, "_MOST_KEPT", 0),
         (influence, "_MOST_KNOWN", 0),
     ],
-    "nodes let go on rough solves": [(adhesion, "_RELEASING", 0.0)],
 }
 
 

@@ -49,10 +49,7 @@ def test_elastic_and_plastic(seed, p_y):
 
 @pytest.mark.parametrize("seed", range(4))
 def test_adhesive(seed, monkeypatch):
-    """Loaded, then drawn back past where nodes let go.
-
-    Between releases the solves are rough, so a node may go a step earlier or later.
-    """
+    """Loaded, then drawn back past where nodes let go: the same ones."""
     contact = rough(seed, work_of_adhesion=0.5, yield_pressure=2e9, approach="hertzian")
 
     def pulled():
@@ -66,9 +63,7 @@ def test_adhesive(seed, monkeypatch):
     monkeypatch.setattr(FreeConvolution, "quick", FreeConvolution.__call__)
     plain = pulled()
     assert fast[1].contact_nodes < fast[0].contact_nodes
-    assert np.array_equal(fast[0].pressure != 0, plain[0].pressure != 0)
-    assert fast[0].force == pytest.approx(plain[0].force, rel=1e-7)
-    changed = (fast[1].pressure != 0) != (plain[1].pressure != 0)
-    assert changed.sum() <= 0.01 * plain[1].contact_nodes
-    assert fast[1].force == pytest.approx(plain[1].force, rel=1e-3)
-    assert fast[1].stored_energy == pytest.approx(plain[1].stored_energy, rel=1e-3)
+    for state, expected in zip(fast, plain, strict=True):
+        assert np.array_equal(state.pressure != 0, expected.pressure != 0)
+        assert state.force == pytest.approx(expected.force, rel=1e-7)
+        assert state.stored_energy == pytest.approx(expected.stored_energy, rel=1e-7)

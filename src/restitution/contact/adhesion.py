@@ -16,9 +16,6 @@ from restitution.numerics.window import Box, bounding_box, reframe, union, widen
 
 Array = NDArray[np.float64]
 
-# While nodes are let go the contact is solved this well, in parts of the opening at its edge.
-_RELEASING = 0.01
-
 
 def peel(
     contact: Contact,
@@ -53,8 +50,6 @@ def peel(
     )
     # No node keeps more than the tension limit, so twice that is as good as no bound, and easier.
     tension = 2 * tension_limit(pair.contact_modulus, contact.work_of_adhesion, grid.spacing)
-    rough = max(residual, _RELEASING * contact.opening / contact.length_at(indentation))
-    accuracy = residual
     pulled: State | None = None
     convolutions = 0
     while True:
@@ -67,8 +62,7 @@ def peel(
             held=held,
             tension=tension,
             first_guess=first_guess,
-            residual=accuracy,
-            rough=accuracy > residual,
+            residual=residual,
         )
         convolutions += state.convolutions
         state = replace(state, convolutions=convolutions)
@@ -78,11 +72,7 @@ def peel(
         held |= pressure > 0
         released = rule.releases(pressure, state.box_displacement, gap, held)
         if not released.any():
-            if accuracy == residual:
-                return pulled, state
-            accuracy, first_guess = residual, pressure
-            continue
-        accuracy = rough
+            return pulled, state
         held &= ~released
         first_guess = np.where(released, 0.0, pressure)
 

@@ -44,7 +44,7 @@ _FACES = np.array([(1, 0), (-1, 0), (0, 1), (0, -1)])
 _AROUND = np.array([(-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1), (0, 0)])
 _SMOOTHING_STEPS = 32  # each spreads by ⅔ cell² along an edge: some five cells in all
 _RELEASE_RADIUS = 3  # cells around a released node that wait for the next solve
-_ALIKE = 1e-3  # of the largest tension: a smaller difference is what a rough solve leaves
+_ALIKE = 1e-3  # of the largest tension: a smaller difference is what a solve leaves
 _TINY = float(np.finfo(float).tiny)
 
 

@@ -47,15 +47,13 @@ def equilibrate(
     tension: float = 0.0,
     first_guess: Array | None = None,
     residual: float = RESIDUAL,
-    rough: bool = False,
 ) -> State:
     """Solve for p ≤ `limit` on the surface `history` left; p ≥ 0, or ≥ −`tension` where `held`.
 
     `box` has to hold the `reach` and all nodes that are held; `held` and `first_guess`, where to
-    begin with nodes held, are arrays on it. A `rough` solve is one whose state only leads to the
-    next. The violation of the contact conditions is measured against the overlap δ − min h, with
-    adhesion against the indentation or the length scale of adhesion. Raises `NotConvergedError`.
-    Contact at the rim is let pass.
+    begin with nodes held, are arrays on it. The violation of the contact conditions is measured
+    against the overlap δ − min h, with adhesion against the indentation or the length scale of
+    adhesion. Raises `NotConvergedError`. Contact at the rim is let pass.
     """
     device, shape = current(), shape_of(box)
     b = overlap(contact, indentation, box, history)
@@ -75,7 +73,6 @@ def equilibrate(
             start=device.put(np.zeros(shape) if first_guess is None else first_guess.copy()),
             precondition=inverse,
             quick=K.quick,
-            rough=rough,
             tolerance=residual * scale,
             max_iterations=MAX_ITERATIONS,
         )
