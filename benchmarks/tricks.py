@@ -19,6 +19,7 @@ import scipy.fft
 from curves import GRID, adhesive, curve, one
 from scaling import PAIR, forget, indentation, surface_of
 from unit import machine, seconds, today
+from variants import changed
 
 from restitution import Contact, generate_surface, smooth, solve
 from restitution.contact import adhesion, equilibrium, influence, loading
@@ -35,7 +36,7 @@ REPORT = """\
 
 Time without the trick over time with it, everything else as it is: medians of {rounds} turns. Every
 solve or curve starts from empty caches, so that set-up and kernels count. R* = 250 µm,
-E* = 112 GPa, 512² nodes of 0.25 µm but for "filling" (1024², contact all over the grid of
+E* = 112 GPa, 512² nodes of 0.25 µm but for "filling" (1024² and 2048², contact all over the grid of
 [scaling.md](scaling.md)); rough: Gaussian, Rq = 0.1 µm, correlation length 2 µm; plastic:
 p ≤ 750 MPa; adhesive: w = 0.09 J/m², one coefficient of restitution at 600 nm; 24 depths: plastic,
 rough, 2 nm to 5 µm. "fails" where the solve does not converge without the trick.
@@ -52,14 +53,16 @@ def pressed(contact: Contact, a: float):
 
 
 # Made here, not in what is timed.
-LARGE, FILLING = Contact(PAIR, surface_of(1024)), indentation("filling")
+FILLING = indentation("filling")
+LARGE, LARGER = (Contact(PAIR, surface_of(n)) for n in (1024, 2048))
 ADHESIVE = adhesive(0.1e-6)
 JOBS = {
     "smooth, a = 10 µm": pressed(Contact(PAIR, smooth(GRID)), 10e-6),
     "rough, a = 10 µm": pressed(Contact(PAIR, ROUGH), 10e-6),
     "rough, a = 20 µm": pressed(Contact(PAIR, ROUGH), 20e-6),
     "plastic, a = 20 µm": pressed(Contact(PAIR, ROUGH, 750e6), 20e-6),
-    "filling": lambda: solve(LARGE, FILLING),
+    "filling, 1024²": lambda: solve(LARGE, FILLING),
+    "filling, 2048²": lambda: solve(LARGER, FILLING),
     "24 depths": lambda: curve([Contact(PAIR, ROUGH, 750e6)], np.geomspace(2e-9, 5e-6, 24)),
     "adhesive": lambda: one(ADHESIVE, 600e-9),
 }
@@ -88,18 +91,37 @@ PASSES = [name for name, value in vars(passes).items() if hasattr(value, "__wrap
 CONVOLUTION = [(device, "_current", ContextVar("device", default=PLAIN))]
 LOOPS = [(passes, "loops", None)]
 LOOPS += [(passes, name, getattr(passes, name).__wrapped__) for name in PASSES]
-# What is given which value so that the trick is out.
+BY_PRESSURE = [("(p > 0) | (g < b)", "p > 0"), ("whole.quick(p, out=g)", "pass")]
+
+
+class OneThread:
+    """While it is entered, nothing is shared among threads."""
+
+    def __enter__(self) -> None:
+        self._before = passes.loops.threads_for(2**40)
+        passes.loops.use_threads(1)
+
+    def __exit__(self, *_: object) -> None:
+        passes.loops.use_threads(self._before)
+
+
+# What is given which value, or entered, so that the trick is out.
 TRICKS = {
     "solve on the box {h₀ < δ}": [(module, "reach", everything) for module in (loading, adhesion)],
     "coarser grids first, and a window around their pressure": [
         (nesting, "_WORTH_A_GUESS", math.inf)
     ],
     "the window alone": [(nesting, "_WORTH_A_WINDOW", 0.0)],
+    "the window as wide as what the guess leaves closed, too": [
+        (equilibrium, "minimise_nested", changed(nesting.minimise_nested, *BY_PRESSURE))
+    ],
     "preconditioner \\|q\\|E*/2": [(equilibrium, "inverse_half_space", Unchanged)],
     "products in single precision": [(FreeConvolution, "quick", FreeConvolution.__call__)],
     "compiled convolution": CONVOLUTION,
     "compiled loops": LOOPS,
     "both: no compiler": CONVOLUTION + LOOPS,
+    "threads": [OneThread()],
+    "coefficients some rows at a time": [(device.CPU, "at_once", 2**40)],
     "operators and coefficients kept": [
         (influence, "_MOST_KEPT", 0),
         (influence, "_MOST_KNOWN", 0),
@@ -111,7 +133,7 @@ def timed(job, patches) -> float:
     """Seconds of a job with these patches, from empty caches; infinite if it does not converge."""
     with ExitStack() as stack:
         for patch in patches:
-            stack.enter_context(mock.patch.object(*patch))
+            stack.enter_context(mock.patch.object(*patch) if isinstance(patch, tuple) else patch)
         forget()
         try:
             return seconds(job)
