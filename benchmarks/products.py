@@ -67,6 +67,9 @@ PARTS = {
     "all that was projected taken, where most of it is best": [WHOLE],
     "steps beyond what was projected": [WITHIN],
     "the last three": [*STEADY, WHOLE, WITHIN],
+    "no more kept of a direction than Fletcher and Reeves would": [
+        ("np.maximum(overlap, 0.0)", "overlap")
+    ],
 }
 
 
