@@ -225,6 +225,23 @@ def test_compiled_convolution_is_that_of_whole_arrays(kinds, vectors, both, data
     assert_allclose(found, expected, atol=(1e-15 if kinds == "ddd" else 5e-7) * largest)
 
 
+@pytest.mark.parametrize("vectors", ["wide", "narrow"])
+@pytest.mark.parametrize("kind", ["f", "d"])
+def test_waves_too_many_for_the_cache(kind, vectors):
+    """They are stored in another way; the last rows and waves are parts of a vector."""
+    shape, periods = (1001, 1703), (2016, 3430)
+    rng = np.random.default_rng(6)
+    values = rng.normal(size=shape)
+    spectrum = rng.random((periods[1] // 2 + 1, periods[0] // 2 + 1)).astype(kind)
+    module = loops() if vectors == "wide" else loops().narrow
+    room = np.empty((1, module.bytes_of_room(shape[1], periods[0] // 2 + 1)), np.uint8)
+    found, expected = np.empty(shape), np.empty(shape)
+    module.convolve(values, 1.0, spectrum, *periods, room, 1.0, found)
+    plain = accelerator("plain", np, scipy.fft)
+    plain.convolve(values, spectrum.astype("d"), periods, 1.0, room, expected)
+    assert_allclose(found, expected, atol=(1e-14 if kind == "d" else 2e-6) * np.abs(expected).max())
+
+
 def test_threads_share_the_columns(threads):
     p = np.random.default_rng(4).normal(size=(360, 350))
     K = FreeConvolution(point_load((1.0, 2.0)), p.shape)

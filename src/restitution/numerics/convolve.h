@@ -150,7 +150,8 @@ inline void transpose(Vector* x) {
     }
 }
 
-// Whole vectors to a place that is aligned to them, not by way of the cache where there is such a way.
+// Whole vectors to a place that is aligned to them, not by way of the cache where there is such a way;
+// other threads see them after `settle_stores`.
 template <class Vector, int n>
 inline void store_past_cache(void* to, const Vector (&values)[n]) {
 #if defined(__x86_64__)
@@ -161,6 +162,12 @@ inline void store_past_cache(void* to, const Vector (&values)[n]) {
     }
 #else
     std::memcpy(to, values, sizeof(values));
+#endif
+}
+
+inline void settle_stores() {
+#if defined(__x86_64__)
+    _mm_sfence();
 #endif
 }
 
@@ -281,6 +288,7 @@ struct Convolution {
                                    past_cache);
             }
         }
+        settle_stores();
     }
 
     template <class To>
@@ -348,13 +356,13 @@ void convolve(Rows<const From> values, double factor, Rows<const T> weights, Ind
     const auto memory = room_for(threads * each * Index(sizeof(Lanes<T>)));
     Crew crew;
     crew.run(threads, [&](int k) {
-        Lanes<T>* room = static_cast<Lanes<T>*>(memory.get()) + k * each;
+        Lanes<T>* its_room = static_cast<Lanes<T>*>(memory.get()) + k * each;
         crew.share(values.length, 2 * count, [&](Index first) {
-            convolution.into_waves(values, factor, first, room);
+            convolution.into_waves(values, factor, first, its_room);
         });
-        crew.share(modes.length, count, [&](Index first) { convolution.weigh(first, room); });
+        crew.share(modes.length, count, [&](Index first) { convolution.weigh(first, its_room); });
         crew.share(values.length, 2 * count, [&](Index first) {
-            convolution.out_of_waves(out, factor_back, first, room);
+            convolution.out_of_waves(out, factor_back, first, its_room);
         });
     });
 }
