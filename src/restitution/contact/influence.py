@@ -144,13 +144,9 @@ def _compute_coefficients(
     x: Array = hx * device.arange(lags[0])[:, None]
     y: Array = hy * device.arange(lags[1])[None, :]
     near_i, near_j = (math.ceil(_FAR * math.hypot(hx, hy) / h) for h in spacing)
-    u = np.empty_like(x, shape=lags)
-    some = max(1, device.at_once // lags[1])
-    for first in range(0, lags[0], some):
-        rows = slice(first, first + some)
-        # The origin is always in the near block, which Love's formula overwrites.
-        with np.errstate(divide="ignore", invalid="ignore"):
-            u[rows] = far_displacement(x[rows], y, hx, hy, 1.0)
+    # The origin is always in the near block, which Love's formula overwrites.
+    with np.errstate(divide="ignore", invalid="ignore"):
+        u = far_displacement(x, y, hx, hy, 1.0)
     u[:near_i, :near_j] = love_displacement(x[:near_i], y[:, :near_j], hx, hy, 1.0)
     return u
 

@@ -28,10 +28,9 @@ DeviceName = Literal["cpu", "gpu", "auto"]
 
 
 class Device(Protocol):
-    """Makes arrays, and convolves them. Expressions are quickest on `at_once` numbers at a time."""
+    """Makes arrays, and convolves them."""
 
     name: str
-    at_once: int
 
     def put(self, values: Array) -> Array:
         """An array of this machine's memory, on the device."""
@@ -68,7 +67,6 @@ class _Compiled:
     """NumPy arrays, convolved by the compiled `loops`."""
 
     name = "cpu"
-    at_once = 12_000  # which stay in the cache; of larger arrays the first touch costs more
 
     def __init__(self, loops: Any) -> None:
         self._loops = loops
@@ -110,8 +108,6 @@ class _Compiled:
 
 class _Arrays:
     """Arrays of a library like NumPy, `arrays`, transformed by one like scipy.fft, `fft`."""
-
-    at_once = 2**30  # calls cost more
 
     def __init__(self, name: str, arrays: Any, fft: Any) -> None:
         self.name = name
