@@ -17,6 +17,7 @@ from unittest import mock
 import numpy as np
 import scipy.fft
 from curves import GRID, adhesive, curve, one
+from products import BY_PRESSURE
 from scaling import PAIR, forget, indentation, surface_of
 from unit import machine, seconds, today
 from variants import changed
@@ -39,8 +40,8 @@ solve or curve starts from empty caches, so that set-up and kernels count. R* = 
 E* = 112 GPa, 512² nodes of 0.25 µm but for "filling" (1024², contact all over the grid of
 [scaling.md](scaling.md)); rough: Gaussian, Rq = 0.1 µm, correlation length 2 µm; plastic:
 p ≤ 750 MPa; adhesive: w = 0.09 J/m², one coefficient of restitution at 600 nm; 24 depths: plastic,
-rough, 2 nm to 5 µm; narrow guess: exponential autocorrelation, 0.125 µm, a = 22 µm, one of the 6 %
-of contacts (8 of 141 that were tried) which the coarser grids show too small. "fails" where the
+rough, 2 nm to 5 µm; narrow guess: exponential autocorrelation, 0.125 µm, a = 22 µm, one of the few
+contacts which the coarser grids show too small ([products.md](products.md)). "fails" where the
 solve does not converge without the trick.
 
 {table}
@@ -94,7 +95,6 @@ PASSES = [name for name, value in vars(passes).items() if hasattr(value, "__wrap
 CONVOLUTION = [(device, "_current", ContextVar("device", default=PLAIN))]
 LOOPS = [(passes, "loops", None)]
 LOOPS += [(passes, name, getattr(passes, name).__wrapped__) for name in PASSES]
-BY_PRESSURE = [("(p > 0) | (g < b)", "p > 0"), ("whole.quick(p, out=g)", "pass")]
 
 
 class OneThread:
