@@ -370,6 +370,33 @@ def test_interruption_keeps_what_was_computed(case_text, tmp_path, sent, status)
     assert not list(out.glob(".*.part"))
 
 
+@pytest.mark.parametrize("where", ["adhesive_nodes", "add"])
+def test_interruption_between_what_belongs_to_a_row(case_text, tmp_path, monkeypatch, where):
+    """The third depth is computed, and is either kept or not."""
+    import xarray as xr
+
+    from restitution.studies import run
+    from restitution.studies.case import parse_case
+    from restitution.studies.results import ResultsFolder
+
+    owner = run if where == "adhesive_nodes" else ResultsFolder
+    calls, real = [], getattr(owner, where)
+
+    def interrupted(*args):
+        calls.append(args)
+        if len(calls) == 3:
+            raise KeyboardInterrupt
+        return real(*args)
+
+    monkeypatch.setattr(owner, where, interrupted)
+    out = ResultsFolder(tmp_path / "out")
+    with pytest.raises(KeyboardInterrupt):
+        run.run_case(parse_case(case_text), case_text, tmp_path, out)
+    with xr.open_dataset(tmp_path / "out" / "results.nc") as results:
+        assert results.sizes["indentation_max"] == len(out.rows) == 2
+        assert results.attrs["status"] == "interrupted"
+
+
 def test_interruption_while_results_are_written_loses_nothing(case_text, tmp_path, monkeypatch):
     from restitution.studies.case import parse_case
     from restitution.studies.results import ResultsFolder

@@ -162,10 +162,11 @@ def _load_and_unload(
                 )
             )
         collision = collide(state, back if followed else None, method=case.unloading.method)
-        out.add(state, collision)
-        run.deepest = state
+        # A row comes last of what belongs to it: an interruption leaves none without.
         run.adhesive_nodes.append(adhesive_nodes(state))
         run.loading_work_errors.append(state.work_error / max(abs(state.loading_work), 1e-300))
+        out.add(state, collision)
+        run.deepest = state
         if number in unloaded:
             out.add_unloading(back)
             run.unloading_checks.append(_check(state, back, collision))
@@ -191,7 +192,8 @@ def _check(state: State, back: list[State], collision: Collision) -> dict[str, f
 def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Progress) -> dict[str, Any]:
     patches = [row["median_patch_nodes"] for row in out.rows]
     depths = [row["indentation_m"] for row in out.rows]
-    found = [unresolved_warning(depths, patches), adhesion_warning(depths, run.adhesive_nodes)]
+    nodes = run.adhesive_nodes[: len(depths)]  # interrupted, there may be one more
+    found = [unresolved_warning(depths, patches), adhesion_warning(depths, nodes)]
     found += [_imprecise(out, case), _velocities_missed(out, case)]
     if not contact.adhesive:
         found.append(_unbalanced(run.unloading_checks))
