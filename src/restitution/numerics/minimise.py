@@ -30,8 +30,9 @@ Array = NDArray[np.float64]
 
 _DRIFT = 1e-4  # of the violation, after which the gradient is computed anew
 _NEARLY = 0.8  # of what was projected: where this much is best, all of it is taken
-# The best step changes between long and short; the length of the trials follows half-heartedly.
-_SHORTER, _LONGER, _DAMPED = 0.1, 3.0, 0.5
+# Trials begin as long as they mostly end up, for bounds cut off much of them. The best step changes
+# between long and short; their length follows half-heartedly.
+_FIRST, _SHORTER, _LONGER, _DAMPED = 0.3, 0.1, 3.0, 0.5
 
 
 class Operator(Protocol):
@@ -98,7 +99,8 @@ def minimise_quadratic(
     residual = passes.downhill(p, g, lower, upper, r)
     low = _DRIFT * residual  # where the gradient is computed anew
     rz_old, stuck = np.zeros_like(residual), residual < 0
-    length = stretch = np.ones_like(residual)  # of the next trial step, and its last change
+    stretch = np.ones_like(residual)  # the last change of
+    length = _FIRST * stretch  # the next trial step
     iteration = 0
 
     for iteration in range(1, max_iterations + 1):
