@@ -1,4 +1,4 @@
-"""What the parts of the minimiser save: products and time of many contacts, with and without each.
+"""What parts of the minimiser save: products and time of many contacts, with and without each.
 
 A part is taken out by changing the source of the function that it is in. Writes
 docs/benchmarks/products.md; `--seeds 1` is quicker.
@@ -9,13 +9,15 @@ from __future__ import annotations
 import argparse
 import math
 import statistics
+import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 from unittest import mock
 
-from scaling import PAIR, forget
-from unit import machine, seconds, today
+from scaling import PAIR, forget, indentation, surface_of
+from unit import machine, today
 from variants import changed
 
 from restitution import Contact, Grid, generate_surface, solve
@@ -35,7 +37,8 @@ REPORT = """\
 
 R* = 250 µm, E* = 112 GPa, δ = a²/R*. Products are counted by their nodes, those of coarser grids,
 too. Ratios are without the part over with it, of each contact where both converge: the mean, the
-smallest and the largest, and how many are 1.2 or more. "time" is that of all of them together,
+smallest and the largest, and how many are 1.2 or more. "most" is the most products on the finest
+grid that a contact takes, without the part and with it. "time" is that of all of them together,
 from empty caches.
 
 {minimiser} contacts on 256² nodes of 0.25 µm: Gaussian roughness of Rq = 0.02, 0.1 and 0.3 µm, and
@@ -50,12 +53,19 @@ Gaussian (Rq = 0.1 and 0.3 µm), exponential (0.1 µm) and self-affine (0.1 µm,
 alone, some are solved twice:
 
 {windows}
+
+{large} contacts of [scaling.md](scaling.md) that fill 1024² to 4096² nodes, elastic and
+p ≤ 750 MPa:
+
+{larges}
 """
 
 STEADY = [("length = length * stretch", "pass"), ("kept, 0.0) * stretch", "kept, 0.0)")]
+FIRST = ("_FIRST * stretch", "stretch")
 # The iteration of Polonsky and Keer (1999): a best step among the free nodes, then projected; the
 # direction is forgotten when nodes come in.
 PROJECTED_AFTER = [
+    FIRST,
     STEADY[0],
     ("kept, 0.0) * stretch", "kept, 0.0) * (iteration > 1 and not coming)"),
     (
@@ -71,25 +81,25 @@ PROJECTED_AFTER = [
     ),
 ]
 WHOLE = ("step > _NEARLY", "step > 1")
+FLETCHER_REEVES = ("np.maximum(overlap, 0.0)", "overlap")
 WITHIN = ("np.maximum(step, 0.0))\n", "np.clip(step, 0.0, 1.0))\n")
 # What takes the place of which parts of the minimiser.
 PARTS = {
     "steps projected onto the bounds before the product": PROJECTED_AFTER,
+    "trial steps shorter from the first": [FIRST],
     "trial steps as long as the last ones suggest": STEADY,
     "all that was projected taken, where most of it is best": [WHOLE],
     "steps beyond what was projected": [WITHIN],
-    "the last three": [*STEADY, WHOLE, WITHIN],
-    "no more kept of a direction than Fletcher and Reeves would": [
-        ("np.maximum(overlap, 0.0)", "overlap")
-    ],
+    "the last four: how long steps are": [FIRST, *STEADY, WHOLE, WITHIN],
+    "no more kept of a direction than Fletcher and Reeves would": [FLETCHER_REEVES],
 }
 
 
 # The window around the pressure of the guess, whatever the guess leaves closed.
 BY_PRESSURE = [("(p > 0) | (g < b)", "p > 0"), ("whole.quick(p, out=g)", "pass")]
 HEAD = """\
-| without | products | 1.2 or more | time | contacts that do not converge |
-|---|---|---|---|---|
+| without | products | 1.2 or more | most | time | contacts that do not converge |
+|---|---|---|---|---|---|
 """
 
 
@@ -107,6 +117,16 @@ def of_the_window(seeds: int) -> list[tuple[Contact, float]]:
     limits = math.inf, 750e6
     small = contacts(256, 0.125e-6, kinds, limits, (4e-6, 8e-6), seeds)
     return small + contacts(512, 0.125e-6, kinds, limits, (8e-6, 14e-6, 20e-6), seeds)
+
+
+def of_large_grids() -> list[tuple[Contact, float]]:
+    """Contacts and indentations (m)."""
+    delta = indentation("filling")
+    return [
+        (Contact(PAIR, surface, p_y), delta)
+        for surface in map(surface_of, (1024, 2048, 4096))
+        for p_y in (math.inf, 750e6)
+    ]
 
 
 def gaussian(rms: float, length: float) -> dict:
@@ -134,8 +154,20 @@ def contacts(
     ]
 
 
-def solved(contact: Contact, indentation: float) -> tuple[float, float]:
-    """Nodes that went through products, and seconds; infinite where the solve does not converge."""
+@dataclass
+class Cost:
+    """Of a solve: nodes that went through products, products on the finest grid, and seconds.
+
+    Infinite where it does not converge.
+    """
+
+    nodes: float = math.inf
+    products: float = math.inf
+    seconds: float = math.inf
+
+
+def solved(contact: Contact, delta: float) -> Cost:
+    """What a solve costs, from empty caches."""
     nodes = 0
     convolve = FreeConvolution._convolve
 
@@ -145,12 +177,13 @@ def solved(contact: Contact, indentation: float) -> tuple[float, float]:
         return convolve(self, p, *others)
 
     forget()
+    began = time.perf_counter()
     with mock.patch.object(FreeConvolution, "_convolve", counting):
         try:
-            taken = seconds(lambda: solve(contact, indentation))
+            state = solve(contact, delta)
         except NotConvergedError:
-            return math.inf, math.inf
-    return nodes, taken
+            return Cost()
+    return Cost(nodes, state.convolutions, time.perf_counter() - began)
 
 
 def row(name: str, module: ModuleType, function: Callable, part: list, cases: list) -> str:
@@ -161,12 +194,14 @@ def row(name: str, module: ModuleType, function: Callable, part: list, cases: li
         with_it.append(solved(*case))
         with mock.patch.object(module, function.__name__, other):
             without.append(solved(*case))
-    pairs = [pair for pair in zip(without, with_it, strict=True) if math.isfinite(pair[0][0])]
-    products = [a[0] / b[0] for a, b in pairs]
-    time = sum(a[1] for a, _ in pairs) / sum(b[1] for _, b in pairs)
+    pairs = [pair for pair in zip(without, with_it, strict=True) if math.isfinite(pair[0].nodes)]
+    products = [a.nodes / b.nodes for a, b in pairs]
+    most = [max(cost.products for cost in costs) for costs in zip(*pairs, strict=True)]
+    taken = [sum(cost.seconds for cost in costs) for costs in zip(*pairs, strict=True)]
     cells = (
         f"| {name} | {statistics.mean(products):.2f} ({min(products):.2f} to {max(products):.2f}) "
-        f"| {sum(ratio >= 1.2 for ratio in products)} | {time:.2f} | {len(cases) - len(pairs)} |"
+        f"| {sum(ratio >= 1.2 for ratio in products)} | {most[0]}, {most[1]} "
+        f"| {taken[0] / taken[1]:.2f} | {len(cases) - len(pairs)} |"
     )
     print(cells, flush=True)
     return cells
@@ -180,14 +215,17 @@ def main() -> None:
     options = parser.parse_args()
     where = machine()
     minimiser, window = of_the_minimiser(options.seeds), of_the_window(options.seeds)
+    large = of_large_grids()
     parts = [row(name, nesting, minimise_quadratic, part, minimiser)
              for name, part in PARTS.items()]  # fmt: skip
     name = "a window as wide as what the guess leaves closed"
     windows = row(name, equilibrium, minimise_nested, BY_PRESSURE, window)
+    name = "no more kept of a direction than Fletcher and Reeves would"
+    larges = row(name, nesting, minimise_quadratic, PARTS[name], large)
     options.out.write_text(
         REPORT.format(date=today(), machine=where, seeds=options.seeds, minimiser=len(minimiser),
-                      window=len(window), parts=HEAD + "\n".join(parts),
-                      windows=HEAD + windows)
+                      window=len(window), large=len(large), parts=HEAD + "\n".join(parts),
+                      windows=HEAD + windows, larges=HEAD + larges)
     )  # fmt: skip
 
 
