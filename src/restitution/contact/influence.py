@@ -121,7 +121,7 @@ def _kept(build: _lru_cache_wrapper[Operator], shape: tuple[int, int]) -> Callab
 # Boxes follow the contact, so that most solves want coefficients of a block larger or smaller than
 # the last: the largest block so far is kept, by the aspect ratio of the cells and the device.
 _known: dict[tuple[float, Device], Array] = {}
-_MOST_KNOWN = 2**22  # coefficients: 32 MiB
+_MOST_KNOWN = 2**25  # coefficients: 256 MiB, for 4096² nodes half of that
 _MOST_KEPT = 2**21  # nodes of an operator that is kept: 16 MiB
 
 
