@@ -9,6 +9,25 @@ from pathlib import Path
 
 import pytest
 
+from restitution.numerics import passes
+
+SOURCES = Path(__file__).parents[1] / "src" / "restitution" / "numerics"
+
+
+def pytest_sessionstart():
+    """Refuse to test compiled loops that are older than their sources."""
+    if passes.loops is None:
+        return
+    built = Path(passes.loops.__file__).stat().st_mtime
+    sources = [*SOURCES.glob("*.cpp"), *SOURCES.glob("*.h")]
+    newer = [path.name for path in sources if path.stat().st_mtime > built]
+    if newer:
+        raise pytest.UsageError(
+            f"{', '.join(newer)} changed since the loops were compiled; make test compiles them, "
+            "and so does pip install -e ."
+        )
+
+
 CASE = """
 title = "A small rough contact"
 [first]
