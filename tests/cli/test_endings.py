@@ -2,8 +2,10 @@
 
 import json
 import os
+import signal
 import subprocess
 import sys
+import time
 
 import pytest
 
@@ -115,3 +117,107 @@ sys.meta_path.insert(0, Stop)
     done = call("check", case, before=before)
     assert done.returncode == 130
     assert not done.stderr
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")
+def test_a_full_disk(monkeypatch, case_text, cli, tmp_path):
+    """The table cannot be written: said, with the folder."""
+    import builtins
+
+    (tmp_path / "case.toml").write_text(case_text)
+    real = builtins.open
+
+    def open_full(file, *args, **kwargs):
+        full = str(file).endswith("curve.csv")
+        return real("/dev/full" if full else file, *args, **kwargs)
+
+    monkeypatch.setattr(builtins, "open", open_full)
+    status, _, said = cli("run", tmp_path / "case.toml", "-o", tmp_path / "out")
+    assert status == 1
+    assert "cannot be written (No space left on device)" in said
+    assert "Traceback" not in said
+
+
+@pytest.mark.parametrize(
+    ("sent", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)]
+)
+def test_interruption_keeps_what_was_computed(case_text, tmp_path, sent, status):
+    """Ctrl-C while a case runs: one line, its status, and a readable folder of what was done."""
+    text = case_text.replace("steps = 4", "steps = 400").replace("curves = 2", "curves = 400")
+    (tmp_path / "case.toml").write_text(text)
+    out = tmp_path / "out"
+    command = [sys.executable, "-m", "restitution", "run", tmp_path / "case.toml", "-o", out]
+    # Tests started in the background pass on that the signal is to be ignored.
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True,
+                               preexec_fn=lambda: signal.signal(sent, signal.SIG_DFL))  # fmt: skip
+    deadline = time.monotonic() + 120
+    while time.monotonic() < deadline:
+        curve = out / "curve.csv"
+        if curve.exists() and curve.read_text().count("\n") > 5:
+            break
+        time.sleep(0.02)
+    process.send_signal(sent)
+    said = process.communicate(timeout=180)[1]
+    assert process.returncode == status
+    assert "Interrupted" in said
+    assert "depths were computed and are kept" in said
+    assert "Traceback" not in said
+
+    import xarray as xr
+
+    rows = (out / "curve.csv").read_text().splitlines()[1:]
+    with xr.open_dataset(out / "results.nc") as results:
+        assert results.sizes["indentation_max"] == len(rows) > 4
+        assert results.attrs["status"] == "interrupted"
+    assert '"status": "interrupted"' in (out / "summary.json").read_text()
+    assert (out / "restitution-indentation.png").exists()
+    assert not list(out.glob(".*.part"))
+
+
+@pytest.mark.parametrize("where", ["adhesive_nodes", "add"])
+def test_interruption_between_what_belongs_to_a_row(case_text, tmp_path, monkeypatch, where):
+    """The third depth is computed, and is either kept or not."""
+    import xarray as xr
+
+    from restitution.studies import run
+    from restitution.studies.case import parse_case
+    from restitution.studies.results import ResultsFolder
+
+    owner = run if where == "adhesive_nodes" else ResultsFolder
+    calls, real = [], getattr(owner, where)
+
+    def interrupted(*args):
+        calls.append(args)
+        if len(calls) == 3:
+            raise KeyboardInterrupt
+        return real(*args)
+
+    monkeypatch.setattr(owner, where, interrupted)
+    out = ResultsFolder(tmp_path / "out")
+    with pytest.raises(KeyboardInterrupt):
+        run.run_case(parse_case(case_text), case_text, tmp_path, out)
+    with xr.open_dataset(tmp_path / "out" / "results.nc") as results:
+        assert results.sizes["indentation_max"] == len(out.rows) == 2
+        assert results.attrs["status"] == "interrupted"
+
+
+def test_interruption_while_results_are_written_loses_nothing(case_text, tmp_path, monkeypatch):
+    from restitution.studies.case import parse_case
+    from restitution.studies.results import ResultsFolder
+    from restitution.studies.run import run_case
+
+    write, calls = ResultsFolder.write, []
+
+    def interrupted(self, dataset, summary):
+        calls.append(summary["status"])
+        if len(calls) == 1:
+            raise KeyboardInterrupt
+        write(self, dataset, summary)
+
+    monkeypatch.setattr(ResultsFolder, "write", interrupted)
+    out = ResultsFolder(tmp_path / "out")
+    with pytest.raises(KeyboardInterrupt):
+        run_case(parse_case(case_text), case_text, tmp_path, out)
+    assert calls == ["complete", "complete"]
+    assert (tmp_path / "out" / "results.nc").exists()
+    assert (tmp_path / "out" / "summary.json").exists()

@@ -241,3 +241,11 @@ def test_a_block_that_is_too_large_is_not_kept(monkeypatch):
     influence._known.clear()
     influence_coefficients(*lags(20, 20), (1.0, 1.0), 1.0)
     assert not influence._known
+
+
+def test_blocks_that_are_long_both_ways_make_no_larger_one(monkeypatch):
+    monkeypatch.setattr(influence, "_MOST_KNOWN", 1000)
+    influence._known.clear()
+    for n in ((100, 10), (10, 100)):
+        influence_coefficients(*lags(*n), (1.0, 1.0), 1.0)
+        assert [known.shape for known in influence._known.values()] == [n]

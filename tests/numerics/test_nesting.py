@@ -100,18 +100,18 @@ def test_what_the_guess_does_not_see_widens_the_window(windows, monkeypatch):
 
 
 def test_the_window_and_the_coarse_grids_save_products():
-    directly = in_all = 0
-    for n in (300, 480):  # where there is something to save
-        K, inverse = system((n, n), 0)
-        for rough in (0.1, 0.3, 0.5):
-            b = bowl((n, n), rough=rough)
-            found, products = nested(b, np.inf)
-            assert found.converged
-            in_all += products
-            minimise_quadratic(K, b, 0.0, np.inf, start=np.zeros_like(b), precondition=inverse,
-                               tolerance=TOLERANCE, max_iterations=500)  # fmt: skip
-        directly += K.count
-    assert in_all < 0.9 * directly
+    """Over five surfaces: on one, chance decides about as much."""
+    ours = theirs = 0
+    for seed in range(5):
+        b = bowl((480, 480), rough=0.3, seed=seed)  # where there is something to save
+        found, products = nested(b, np.inf)
+        assert found.converged
+        K, inverse = system(b.shape, 0)
+        minimise_quadratic(K, b, 0.0, np.inf, start=np.zeros_like(b), precondition=inverse,
+                           tolerance=TOLERANCE, max_iterations=500)  # fmt: skip
+        ours += products
+        theirs += K.count
+    assert ours < 0.9 * theirs
 
 
 def test_not_converging_is_reported():

@@ -130,10 +130,10 @@ def _unit_coefficients(lags: tuple[int, int], aspect: float, device: Device) -> 
     known = _known.get((aspect, device), np.empty((0, 0)))
     if known.shape[0] < lags[0] or known.shape[1] < lags[1]:
         rows, columns = (max(*pair) for pair in zip(known.shape, lags, strict=True))
-        known = _compute_coefficients((rows, columns), (1.0, aspect), device)
-        if known.size <= _MOST_KNOWN:
-            _known.clear()
-            _known[aspect, device] = known
+        both = (rows, columns) if rows * columns <= _MOST_KNOWN else lags
+        known = _compute_coefficients(both, (1.0, aspect), device)
+        _known.clear()
+        _known[aspect, device] = known
     return known[: lags[0], : lags[1]]
 
 
