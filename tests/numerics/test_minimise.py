@@ -158,6 +158,17 @@ def test_a_preconditioner_of_another_scale_costs_some_iterations(scale):
     assert wrong.iterations <= right.iterations + 25
 
 
+def test_a_preconditioner_that_points_up_is_followed_down():
+    """One that only approximates an inverse may do so."""
+    rng = np.random.default_rng(17)
+    A, b = random_matrix(rng, 20), 3 * rng.normal(size=20)
+    bounds = random_bounds(rng, 20)
+    right, _ = minimise(A, b, *bounds)
+    found, _ = minimise(A, b, *bounds, inverse=-np.eye(20))
+    assert found.converged
+    assert_allclose(found.point, right.point, atol=1e-9)
+
+
 def test_without_bounds_it_is_conjugate_gradients():
     """At most n steps in exact arithmetic, and one with the exact inverse."""
     rng = np.random.default_rng(3)

@@ -114,6 +114,45 @@ def test_the_window_and_the_coarse_grids_save_products():
     assert ours < 0.9 * theirs
 
 
+def disc(n):
+    """Where a disc two thirds as wide as n × n nodes is."""
+    x = np.linspace(-1, 1, n)
+    return x[:, None] ** 2 + x**2 < (2 / 3) ** 2
+
+
+def stiffness(n, precondition):
+    """What a constant on a disc becomes, over the constant, by an inverse of K and then K."""
+    K, inverse = system((n, n), 0)
+    constant = 1.0 * disc(n)
+    back = K(precondition(inverse)(constant.astype(np.float32)) * constant)
+    return back[disc(n)].mean()
+
+
+def test_the_inverse_of_a_constant_does_not_grow_with_the_grid():
+    plain_growth = stiffness(512, lambda inverse: inverse) / stiffness(64, lambda inverse: inverse)
+    assert plain_growth == pytest.approx(1.3, abs=0.05)  # by as much at every doubling
+    growth = stiffness(512, nesting._with_less_mean) / stiffness(64, nesting._with_less_mean)
+    assert 0.7 < growth < 1
+
+
+def test_less_of_the_mean_is_taken_of_many_nodes_and_of_each_item():
+    _, inverse = system((40, 30), 0)
+    less = nesting._with_less_mean(inverse)
+    few = np.zeros((40, 30), np.float32)
+    few[10:15, 10:15] = 2.0
+    assert_allclose(less(few), inverse(few))
+    rng = np.random.default_rng(3)
+    many = rng.normal(1, 1, (40, 30)).astype(np.float32) * (rng.random((40, 30)) < 0.6)
+    balanced = np.where(many == 0, 0, many - many[many != 0].mean()).astype(np.float32)
+    share = np.log(50) / np.log(np.count_nonzero(many))  # of the mean that is left
+    expected = share * inverse(many) + (1 - share) * inverse(balanced)
+    assert_allclose(less(many), expected, atol=1e-5 * np.abs(expected).max())
+    both = np.stack([few, many])
+    kept = both.copy()
+    assert_allclose(less(both), np.stack([less(few), less(many)]), atol=2e-6)
+    assert_allclose(both, kept)
+
+
 def test_not_converging_is_reported():
     found, _ = nested(bowl((200, 200), rough=0.05), np.inf, max_iterations=3)
     assert not found.converged

@@ -103,15 +103,28 @@ def test_a_step_to_a_bound_ends_on_it(batch, shape, seed):
 def test_sums_and_peaks_are_those_of_the_expressions(single, shape, seed):
     rng = np.random.default_rng(seed)
     a, b, c = (rng.normal(size=shape).astype(single) for _ in range(3))
-    for name, *args in (("peak", a), ("dot", a, b), ("products", a, b, c)):
+    a[rng.random(shape) < 0.3] = 0.0
+    for name, *args in (("peak", a), ("dot", a, b), ("products", a, b, c), ("level", a)):
         (found, _), (compiled, _) = both(name, *args)
         assert_allclose(compiled, found, rtol=1e-6, atol=1e-5)
+
+
+@pytest.mark.parametrize("single", [np.float32, np.float64])
+@settings(deadline=None, max_examples=25)
+@given(shapes, seeds)
+def test_what_is_not_zero_is_lowered(single, shape, seed):
+    rng = np.random.default_rng(seed)
+    r = rng.normal(size=shape).astype(single)
+    r[rng.random(shape) < 0.3] = 0.0
+    (_, (_, _, its)), (_, (_, _, compiled)) = both("lower", r, 0.3, np.full_like(r, np.nan))
+    assert_allclose(compiled, its, atol=2e-7)
+    assert_allclose(its, np.where(r == 0, 0, r - 0.3), atol=2e-7)
 
 
 def test_threads_share_the_rows_and_change_nothing(threads):
     """Not the last digit of a sum, either."""
     rng = np.random.default_rng(5)
-    shape = (901, 800)
+    shape = (1701, 1300)  # one array in single precision is worth threads
     p, g = rng.random(shape), rng.normal(size=shape)
     d, r, z, r_old, Kd = rng.normal(size=(5, *shape)).astype(np.float32)
     lower, upper = (passes.as_rows(bound, p) for bound in (0.0, 0.9))
@@ -121,7 +134,7 @@ def test_threads_share_the_rows_and_change_nothing(threads):
         return [
             passes.downhill(p, g, lower, upper, its_r), its_r.copy(), passes.products(z, r, r_old),
             passes.direct(its_d, 0.3, z, 0.8, p, g, r, lower, upper), its_d,
-            passes.dot(its_d, Kd), passes.peak(g),
+            passes.dot(its_d, Kd), passes.peak(g), passes.level(r), passes.lower(r, 0.1, its_r),
             passes.advance(its_p, its_g, its_d, Kd, 1.0, lower, upper, its_r), its_p, its_g, its_r,
         ]  # fmt: skip
 

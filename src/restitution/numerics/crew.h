@@ -13,8 +13,14 @@
 // What a step is shared among at most; one, until somebody says how many there are to be.
 inline std::atomic<int> most_threads{1};
 
-// Nodes of a loop, and bytes of a transform, below which threads cost more than they save (two cores).
-constexpr Index NODES_WORTH_THREADS = 800 * 800, BYTES_WORTH_THREADS = 4 * 350 * 350;
+// Bytes of what a loop goes through, and of a transform, below which threads cost more than they save
+// (measured on two cores).
+constexpr Index LOOP_WORTH_THREADS = 8 << 20, BYTES_WORTH_THREADS = 4 * 350 * 350;
+
+template <class T>
+Index bytes_of(const Rows<T>& rows) {
+    return (rows.stride ? rows.count : 1) * rows.length * Index(sizeof(T));
+}
 
 inline int threads_for(Index bytes) { return bytes > BYTES_WORTH_THREADS ? most_threads.load() : 1; }
 
@@ -58,11 +64,12 @@ class Crew {
     std::atomic<Index> next_{0};
 };
 
-// What `some(begin, end)` finds in a few rows at a time, added up in their order: it does not depend on
-// the number of threads.
-template <class T, class Some>
-auto over_rows(const Rows<T>& rows, Some some) {
-    if (rows.count * rows.length < NODES_WORTH_THREADS) return some(0, rows.count);
+// What `some(begin, end)` finds in a few rows of these arrays at a time, added up in their order: it
+// does not depend on the number of threads.
+template <class Some, class First, class... Others>
+auto over_rows(Some some, const First& rows, const Others&... others) {
+    expect_one_shape(rows, others...);
+    if ((bytes_of(rows) + ... + bytes_of(others)) < LOOP_WORTH_THREADS) return some(0, rows.count);
     constexpr Index parts = 16;
     std::array<decltype(some(0, 0)), parts> found;
     Crew crew;

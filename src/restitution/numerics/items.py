@@ -37,6 +37,12 @@ def largest(values: Array) -> Number:
     return np.maximum(highest(values), -lowest(values))
 
 
+def total(values: Array | Mask) -> Number:
+    """Σ values over each item."""
+    axes = None if values.ndim == 2 else (-2, -1)
+    return cast("Number", values.sum(axis=axes, dtype=np.float64, keepdims=axes is not None))
+
+
 def dot(a: Array, b: Array) -> Number:
     """Σ a b over each item."""
     # Not np.vdot: its threads wait for each other longer than these products take.

@@ -12,12 +12,6 @@
 #include <utility>
 #include <vector>
 
-template <class First, class... Others>
-void expect_one_shape(const First& a, const Others&... others) {
-    if (((others.count != a.count || others.length != a.length) || ...))
-        throw std::invalid_argument("arrays of different shapes");
-}
-
 #define LOOPS "loops.h"
 #include "each_processor.h"
 

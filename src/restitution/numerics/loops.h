@@ -35,7 +35,6 @@ struct Sums {
 template <class T>
 double downhill(Rows<const double> p, Rows<const double> g, Rows<const double> lower,
                 Rows<const double> upper, Rows<T> out) {
-    expect_one_shape(p, g, lower, upper, out);
     const auto some = [&](Index begin, Index end) {
         T most = 0, doubt = 0;
         for (Index i = begin; i < end; ++i) {
@@ -51,12 +50,46 @@ double downhill(Rows<const double> p, Rows<const double> g, Rows<const double> l
         }
         return Peak<T>{most, doubt};
     };
-    return over_rows(p, some).value();
+    return over_rows(some, p, g, lower, upper, out).value();
+}
+
+template <class T>
+std::pair<double, double> level(Rows<const T> r) {
+    const auto some = [&](Index begin, Index end) {
+        double total = 0, nodes = 0;
+        for (Index i = begin; i < end; ++i) {
+            const T* ri = r[i];
+#pragma omp simd reduction(+ : total, nodes)
+            for (Index j = 0; j < r.length; ++j) {
+                total += ri[j];
+                nodes += ri[j] != 0 ? 1.0 : 0.0;
+            }
+        }
+        return Sums{total, nodes};
+    };
+    const Sums sums = over_rows(some, r);
+    return {sums.first, sums.second};
+}
+
+template <class T>
+void lower(Rows<const T> r, double by, Rows<T> out) {
+    const auto some = [&, less = T(by)](Index begin, Index end) {
+        for (Index i = begin; i < end; ++i) {
+            const T* ri = r[i];
+            T* result = out[i];
+#pragma omp simd
+            for (Index j = 0; j < r.length; ++j) {
+                const T lowered = ri[j] - less;
+                result[j] = ri[j] != 0 ? lowered : T(0);
+            }
+        }
+        return Sums{};
+    };
+    over_rows(some, r, out);
 }
 
 template <class T>
 std::pair<double, double> products(Rows<const T> z, Rows<const T> r, Rows<const T> r_old) {
-    expect_one_shape(z, r, r_old);
     const auto some = [&](Index begin, Index end) {
         double now = 0, before = 0;
         for (Index i = begin; i < end; ++i) {
@@ -69,13 +102,12 @@ std::pair<double, double> products(Rows<const T> z, Rows<const T> r, Rows<const 
         }
         return Sums{now, before};
     };
-    const Sums sums = over_rows(z, some);
+    const Sums sums = over_rows(some, z, r, r_old);
     return {sums.first, sums.second};
 }
 
 template <class T>
 double dot(Rows<const T> a, Rows<const T> b) {
-    expect_one_shape(a, b);
     const auto some = [&](Index begin, Index end) {
         double total = 0;
         for (Index i = begin; i < end; ++i) {
@@ -85,14 +117,13 @@ double dot(Rows<const T> a, Rows<const T> b) {
         }
         return Sums{total};
     };
-    return over_rows(a, some).first;
+    return over_rows(some, a, b).first;
 }
 
 template <class T>
 std::pair<double, bool> direct(Rows<T> d, double kept, Rows<const T> z, double length,
                                Rows<const double> p, Rows<const double> g, Rows<const T> r,
                                Rows<const double> lower, Rows<const double> upper) {
-    expect_one_shape(d, z, p, g, r, lower, upper);
     const auto some = [&](Index begin, Index end) {
         double slope = 0, cut = 0;
         for (Index i = begin; i < end; ++i) {
@@ -116,7 +147,7 @@ std::pair<double, bool> direct(Rows<T> d, double kept, Rows<const T> z, double l
         }
         return Sums{slope, cut};
     };
-    const Sums sums = over_rows(p, some);
+    const Sums sums = over_rows(some, d, z, p, g, r, lower, upper);
     return {sums.first, sums.second > 0};
 }
 
@@ -169,13 +200,12 @@ double advance_by(Rows<double> p, Rows<double> g, Rows<const T> d, Rows<const T>
         }
         return Peak<T>{most, doubt};
     };
-    return over_rows(p, some).value();
+    return over_rows(some, p, g, d, Kd, lower, upper, out).value();
 }
 
 template <class T>
 double advance(Rows<double> p, Rows<double> g, Rows<const T> d, Rows<const T> Kd, double taken,
                Rows<const double> lower, Rows<const double> upper, Rows<T> out) {
-    expect_one_shape(p, g, d, Kd, lower, upper, out);
     return taken == 1 ? advance_by<true>(p, g, d, Kd, taken, lower, upper, out)
                       : advance_by<false>(p, g, d, Kd, taken, lower, upper, out);
 }
@@ -194,7 +224,7 @@ double peak(Rows<const T> values) {
         }
         return Peak<T>{most, doubt};
     };
-    return over_rows(values, some).value();
+    return over_rows(some, values).value();
 }
 
 template <class Coarse, class Fine>
@@ -261,6 +291,8 @@ inline void spread(Rows<const Index> neighbours, Rows<const double> weights, int
 template <class T>
 void define_for(py::module_& module) {
     module.def("downhill", &downhill<T>);
+    module.def("level", &level<T>);
+    module.def("lower", &lower<T>);
     module.def("products", &products<T>);
     module.def("dot", &dot<T>);
     module.def("direct", &direct<T>);

@@ -118,7 +118,9 @@ def minimise_quadratic(
             rz, overlap = passes.products(z, r, r_old)
             kept = ratio(rz - np.maximum(overlap, 0.0), rz_old)
             kept = choose(kept > 0, kept, 0.0) * stretch
-            slope, cut = passes.direct(d, kept, z, length, p, g, r, lower, upper)
+            # What only approximates an inverse may point up.
+            down = np.copysign(length, rz)
+            slope, cut = passes.direct(d, kept, z, down, p, g, r, lower, upper)
             Kd = quick(d, out=Kd)
             curvature = passes.dot(d, Kd)
             stuck |= ~(curvature < np.inf) | ((slope < 0) & (curvature <= 0))

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from restitution.numerics import passes
 from restitution.numerics.convolution import FreeConvolution, SpectralFilter
-from restitution.numerics.items import every, highest, somewhere
-from restitution.numerics.minimise import Minimum, minimise_quadratic, violation
+from restitution.numerics.items import every, highest, ratio, somewhere
+from restitution.numerics.minimise import Minimum, Operator, minimise_quadratic, violation
 from restitution.numerics.passes import Bound
 from restitution.numerics.window import Box, bounding_box, shape_of, union, widen
 
@@ -33,6 +33,7 @@ _COARSE_ACCURACY = 1e-2  # of the largest b; finer is lost in going to the finer
 _COARSE_ITERATIONS = 60
 _MARGIN = 3  # nodes around the guess
 _WORTH_A_WINDOW = 0.7  # of all nodes: checking a larger window would cost more than it saves
+_FEW = 50  # nodes: the mean over so many is inverted no worse than the rest
 
 
 def minimise_nested(
@@ -69,7 +70,7 @@ def minimise_nested(
             0.0,
             upper,
             start=p[inside],
-            precondition=inverse,
+            precondition=_with_less_mean(inverse),
             quick=K.quick,
             tolerance=tolerance,
             max_iterations=max_iterations,
@@ -88,6 +89,26 @@ def minimise_nested(
         wider = union(window, bounding_box(somewhere(g < -tolerance)))
         # The same window again: what the last digits of the check leave, all nodes mend.
         window = everywhere if wider is None or wider == window else widen(wider, _MARGIN, size)
+
+
+def _with_less_mean(inverse: Operator) -> Operator:
+    """`inverse` on a part of the nodes, those where an array is not zero, with less of its mean.
+
+    A constant on a part of the nodes ends in steps. The inverse of a smoothing operator weighs the
+    short waves of a step, the more the finer the grid, and what it makes of the constant is too
+    large by the logarithm of the number of nodes (McLean and Steinbach 1999, Adv. Comput. Math. 11,
+    271–286): by far the worst of all that it inverts, and conjugate gradients would have to mend it
+    anew whenever nodes change sides.
+    """
+
+    def less(r: Array, out: Array | None = None) -> Array:
+        lowered = np.empty_like(r) if out is None else out
+        total, nodes = passes.level(r)
+        kept = np.log(_FEW) / np.log(np.maximum(nodes, _FEW))
+        passes.lower(r, (1.0 - kept) * ratio(total, nodes), lowered)
+        return inverse(lowered, out=lowered)
+
+    return less
 
 
 def _saves(window: Box, size: tuple[int, int]) -> bool:
@@ -111,7 +132,7 @@ def _first_guess(system: System, b: Array, upper: Bound, level: int) -> Array:
         0.0,
         upper,
         start=_first_guess(system, coarse, upper, level + 1),
-        precondition=inverse,
+        precondition=_with_less_mean(inverse),
         quick=K.quick,
         rough=True,
         tolerance=_COARSE_ACCURACY * np.maximum(highest(b), 0.0),

@@ -75,6 +75,18 @@ def downhill(p: Array, g: Array, lower: Bound, upper: Bound, out: Array) -> Numb
 
 
 @_by_loop
+def level(r: Array) -> tuple[Number, Number]:
+    """The sum of r, and at how many nodes it is not zero."""
+    return items.total(r), items.total(r != 0)
+
+
+@_by_loop
+def lower(r: Array, by: Number, out: Array) -> None:
+    """r − `by` where r is not zero, and zero elsewhere, in `out`."""
+    np.multiply(r - by, r != 0, out=out)
+
+
+@_by_loop
 def products(z: Array, r: Array, r_old: Array) -> tuple[Number, Number]:
     """r·z and r_old·z."""
     return items.dot(r, z), items.dot(r_old, z)

@@ -19,6 +19,12 @@ struct Rows {
     T* operator[](Index i) const { return first + i * stride; }
 };
 
+template <class First, class... Others>
+void expect_one_shape(const First& a, const Others&... others) {
+    if (((others.count != a.count || others.length != a.length) || ...))
+        throw std::invalid_argument("arrays of different shapes");
+}
+
 namespace pybind11::detail {
 // Arrays are taken as they are, or refused: results in a converted copy would be lost.
 template <class T>
