@@ -69,7 +69,7 @@ PROJECTED_AFTER = [
     STEADY[0],
     ("kept, 0.0) * stretch", "kept, 0.0) * (iteration > 1 and not coming)"),
     (
-        "slope, cut = passes.direct(d, kept, z, length, p, g, r, lower, upper)",
+        "slope, cut = passes.direct(d, kept, z, down, p, g, r, lower, upper)",
         "d *= kept; d -= z; d *= r != 0; slope, cut = passes.dot(r, d), False",
     ),
     ("if some(taken > 1):", "if False:"),

@@ -123,6 +123,7 @@ def _kept(build: _lru_cache_wrapper[Operator], shape: tuple[int, int]) -> Callab
 _known: dict[tuple[float, Device], Array] = {}
 _MOST_KNOWN = 2**25  # coefficients: 256 MiB, for 4096² nodes half of that
 _MOST_KEPT = 2**21  # nodes of an operator that is kept: 16 MiB
+_AT_ONCE = 2**14  # coefficients whose intermediate results stay in the cache
 
 
 def _unit_coefficients(lags: tuple[int, int], aspect: float, device: Device) -> Array:
@@ -144,9 +145,12 @@ def _compute_coefficients(
     x: Array = hx * device.arange(lags[0])[:, None]
     y: Array = hy * device.arange(lags[1])[None, :]
     near_i, near_j = (math.ceil(_FAR * math.hypot(hx, hy) / h) for h in spacing)
+    u: Array = np.empty_like(x, shape=lags, dtype=np.float64)
+    rows = _AT_ONCE // lags[1] + 1
     # The origin is always in the near block, which Love's formula overwrites.
     with np.errstate(divide="ignore", invalid="ignore"):
-        u = far_displacement(x, y, hx, hy, 1.0)
+        for i in range(0, lags[0], rows):
+            u[i : i + rows] = far_displacement(x[i : i + rows], y, hx, hy, 1.0)
     u[:near_i, :near_j] = love_displacement(x[:near_i], y[:, :near_j], hx, hy, 1.0)
     return u
 
@@ -168,7 +172,7 @@ def _inverse_half_space(
 ) -> SpectralFilter:
 
     def symbol(qx: Array, qy: Array) -> Array:
-        q: Array = np.hypot(qx / spacing[0], qy / spacing[1])
+        q: Array = np.sqrt((qx / spacing[0]) ** 2 + (qy / spacing[1]) ** 2)
         # The mean mode has no inverse on a periodic half-space; half of the longest wave serves.
         longest = [2 * np.pi / min(spacing)]
         longest += [float(q[1, 0])] if q.shape[0] > 1 else []
