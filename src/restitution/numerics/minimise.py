@@ -116,7 +116,7 @@ def minimise_quadratic(
                 r *= going
             z = precondition(r, out=z)
             rz, overlap = passes.products(z, r, r_old)
-            kept = ratio(rz - np.maximum(overlap, 0.0), rz_old)
+            kept = ratio(rz - overlap, rz_old)
             kept = choose(kept > 0, kept, 0.0) * stretch
             # What only approximates an inverse may point up.
             down = np.copysign(length, rz)
