@@ -103,22 +103,40 @@ def test_a_step_to_a_bound_ends_on_it(batch, shape, seed):
 def test_sums_and_peaks_are_those_of_the_expressions(single, shape, seed):
     rng = np.random.default_rng(seed)
     a, b, c = (rng.normal(size=shape).astype(single) for _ in range(3))
-    a[rng.random(shape) < 0.3] = 0.0
-    for name, *args in (("peak", a), ("dot", a, b), ("products", a, b, c), ("level", a)):
+    for name, *args in (("peak", a), ("dot", a, b), ("products", a, b, c)):
         (found, _), (compiled, _) = both(name, *args)
         assert_allclose(compiled, found, rtol=1e-6, atol=1e-5)
 
 
 @pytest.mark.parametrize("single", [np.float32, np.float64])
-@settings(deadline=None, max_examples=25)
-@given(shapes, seeds)
-def test_what_is_not_zero_is_lowered(single, shape, seed):
+@settings(deadline=None, max_examples=40)
+@given(shapes, st.sampled_from([(2, 2), (3, 5), (8, 8)]), seeds)
+def test_means_around_places_are_those_of_the_expressions(single, shape, places, seed):
     rng = np.random.default_rng(seed)
     r = rng.normal(size=shape).astype(single)
     r[rng.random(shape) < 0.3] = 0.0
-    (_, (_, _, its)), (_, (_, _, compiled)) = both("lower", r, 0.3, np.full_like(r, np.nan))
-    assert_allclose(compiled, its, atol=2e-7)
-    assert_allclose(its, np.where(r == 0, 0, r - 0.3), atol=2e-7)
+    (_, (_, sums, nodes)), (_, (_, its_sums, its_nodes)) = both(
+        "levels", r, np.empty(places), np.empty(places)
+    )
+    assert_allclose(its_sums, sums, atol=1e-4)
+    assert_allclose(its_nodes, nodes, atol=1e-4)
+    assert sums.sum() == pytest.approx(r.sum(), abs=1e-4)
+    assert nodes.sum() == pytest.approx(np.count_nonzero(r))
+    (_, (*_, lowered)), (_, (*_, compiled)) = both("lower", r, 0.6, sums, nodes, np.full_like(r, 9))
+    assert_allclose(compiled, lowered, atol=1e-4)
+    assert_array_equal(lowered == 0, r == 0)
+
+
+@pytest.mark.parametrize("batch", [(), (3,)])
+def test_a_constant_on_a_part_is_lowered_to_a_share_of_it(batch):
+    """Whatever the part; and of what is linear only its means around the places."""
+    rng = np.random.default_rng(11)
+    r = 2.0 * (rng.random((*batch, 60, 45)) < 0.4)
+    sums, nodes = np.empty((2, *batch, 8, 8))
+    passes.levels(r, sums, nodes)
+    found = np.empty_like(r)
+    passes.lower(r, np.full((*batch, 1, 1), 0.75) if batch else 0.75, sums, nodes, found)
+    assert_allclose(found, 0.25 * r, atol=1e-12)
 
 
 def test_threads_share_the_rows_and_change_nothing(threads):
@@ -128,13 +146,16 @@ def test_threads_share_the_rows_and_change_nothing(threads):
     p, g = rng.random(shape), rng.normal(size=shape)
     d, r, z, r_old, Kd = rng.normal(size=(5, *shape)).astype(np.float32)
     lower, upper = (passes.as_rows(bound, p) for bound in (0.0, 0.9))
+    sums, nodes = np.empty((2, 8, 8))
 
     def everything():
         its_p, its_g, its_d, its_r = p.copy(), g.copy(), d.copy(), r.copy()
         return [
             passes.downhill(p, g, lower, upper, its_r), its_r.copy(), passes.products(z, r, r_old),
             passes.direct(its_d, 0.3, z, 0.8, p, g, r, lower, upper), its_d,
-            passes.dot(its_d, Kd), passes.peak(g), passes.level(r), passes.lower(r, 0.1, its_r),
+            passes.dot(its_d, Kd), passes.peak(g),
+            passes.levels(r, sums, nodes), sums.copy(), nodes.copy(),
+            passes.lower(r, 0.1, sums, nodes, its_r), its_r.copy(),
             passes.advance(its_p, its_g, its_d, Kd, 1.0, lower, upper, its_r), its_p, its_g, its_r,
         ]  # fmt: skip
 

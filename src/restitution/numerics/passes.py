@@ -75,15 +75,23 @@ def downhill(p: Array, g: Array, lower: Bound, upper: Bound, out: Array) -> Numb
 
 
 @_by_loop
-def level(r: Array) -> tuple[Number, Number]:
-    """The sum of r, and at how many nodes it is not zero."""
-    return items.total(r), items.total(r != 0)
+def levels(r: Array, sums: Array, nodes: Array) -> None:
+    """Σ r, and at how many nodes it is not zero, around places all over, in `sums` and `nodes`.
+
+    Both are of shape (*batch, places, places); between the middles of two places a node counts to
+    either of them, linearly.
+    """
+    over_x, over_y = _hats(r, sums)
+    sums[...] = over_x.T @ r @ over_y
+    nodes[...] = over_x.T @ (r != 0).astype(np.float64) @ over_y
 
 
 @_by_loop
-def lower(r: Array, by: Number, out: Array) -> None:
-    """r − `by` where r is not zero, and zero elsewhere, in `out`."""
-    np.multiply(r - by, r != 0, out=out)
+def lower(r: Array, share: Number, sums: Array, nodes: Array, out: Array) -> None:
+    """r less `share` of its mean around each node, where it is not zero, else zero, in `out`."""
+    over_x, over_y = _hats(r, sums)
+    total, count = (over_x @ at_places @ over_y.T for at_places in (sums, nodes))
+    np.multiply(r - share * total / (count + (r == 0)), r != 0, out=out)
 
 
 @_by_loop
@@ -181,6 +189,16 @@ def spread(neighbours: NDArray[np.intp], weights: Array, steps: int, sums: Array
     """
     for _ in range(steps):
         sums[...] = np.einsum("ij,ijk->ik", weights, sums[neighbours])
+
+
+def _hats(r: Array, places: Array) -> list[Array]:
+    """How much each row, and each column, of `r` counts to each of the places."""
+    hats = []
+    for n, m in zip(r.shape[-2:], places.shape[-2:], strict=True):
+        node, place = (np.cumsum(np.ones_like(places, shape=k)) for k in (n, m))
+        middle = np.clip((node - 0.5) * m / n + 0.5, 1, m)
+        hats.append(np.maximum(0.0, 1.0 - np.abs(middle[:, None] - place)))
+    return hats
 
 
 def _refined(coarse: Array) -> Array:
