@@ -17,7 +17,7 @@ from unittest import mock
 import numpy as np
 import scipy.fft
 from curves import DEPTHS, GRID, adhesive, curve, one
-from products import BY_PRESSURE, FLETCHER_REEVES
+from products import ALL_OF_THE_MEAN, BY_PRESSURE
 from scaling import PAIR, forget, indentation, surface_of
 from unit import machine, seconds, today
 from variants import changed, recompiled
@@ -137,6 +137,8 @@ ALL_CACHED = device._Compiled(
     recompiled("convolve.cpp", ("MOST_CACHED = 12 << 20", "MOST_CACHED = Index(1) << 60"))
 )
 
+LESS_MEAN = [(nesting, "_with_less_mean", changed(nesting._with_less_mean, ALL_OF_THE_MEAN))]
+
 # What is given which value, or entered, so that the trick is out.
 TRICKS = {
     "solve on the box {h₀ < δ}": [(module, "reach", everything) for module in (loading, adhesion)],
@@ -148,6 +150,7 @@ TRICKS = {
         (equilibrium, "minimise_nested", changed(nesting.minimise_nested, *BY_PRESSURE))
     ],
     "preconditioner \\|q\\|E*/2": [(equilibrium, "inverse_half_space", Unchanged)],
+    "less of the mean where its inverse is too much": LESS_MEAN,
     "products in single precision": [(FreeConvolution, "quick", FreeConvolution.__call__)],
     "compiled convolution": CONVOLUTION,
     "compiled loops": LOOPS,
@@ -161,9 +164,7 @@ TRICKS = {
 LARGE_TRICKS = {
     "threads": [OneThread()],
     "waves stored past the cache": [(device, "_current", ContextVar("device", default=ALL_CACHED))],
-    "no more kept of a direction than Fletcher and Reeves would": [
-        (nesting, "minimise_quadratic", changed(nesting.minimise_quadratic, FLETCHER_REEVES))
-    ],
+    "less of the mean where its inverse is too much": LESS_MEAN,
 }
 APPROACH_TRICKS = {
     "work of the approach to 1.5e-3, not 5e-4": [(loading, "_ADHESIVE_TOLERANCE", 5e-4)],

@@ -75,10 +75,10 @@ def minimise_quadratic(
     bounds on both sides, changed in three ways. The direction, as long as the last steps suggest,
     is projected onto the bounds before the product with K, not after it; the step is the best part
     of that, so an iteration takes one product and the energy always falls. The direction is not
-    reset when nodes change sides: Polak–Ribière's formula forgets by itself, between nothing and
-    what Fletcher and Reeves keep (Gilbert and Nocedal 1992, SIAM J. Optim. 2, 21–42), since steps
-    that end at a bound are not the best ones. And the residual is preconditioned by an approximate
-    inverse of K.
+    reset when nodes change sides: Polak–Ribière's formula forgets by itself, since steps that end
+    at a bound are not the best ones, and keeps nothing rather than less (Gilbert and Nocedal 1992,
+    SIAM J. Optim. 2, 21–42). And the residual is preconditioned by an approximate inverse of K,
+    which need not be symmetric, or point down.
 
     `start` is overwritten. `tolerance` is on the violation, in the units of `b`; an item that is
     there rests until all are. The gradient follows the steps with the products of `quick`,
