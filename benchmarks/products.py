@@ -81,6 +81,7 @@ PROJECTED_AFTER = [
     ),
 ]
 WHOLE = ("step > _NEARLY", "step > 1")
+FLETCHER_REEVES = ("np.maximum(overlap, 0.0)", "overlap")
 WITHIN = ("np.maximum(step, 0.0))\n", "np.clip(step, 0.0, 1.0))\n")
 # What takes the place of which parts of the minimiser.
 PARTS = {
@@ -90,11 +91,12 @@ PARTS = {
     "all that was projected taken, where most of it is best": [WHOLE],
     "steps beyond what was projected": [WITHIN],
     "the last four: how long steps are": [FIRST, *STEADY, WHOLE, WITHIN],
+    "no more kept of a direction than Fletcher and Reeves would": [FLETCHER_REEVES],
 }
 
 
 # The whole residual through the preconditioner, whatever becomes of its mean.
-ALL_OF_THE_MEAN = ("if not p.any():", "if True:")
+ALL_OF_THE_MEAN = ("if every(total(free) <= 0.5 * total(touching)):", "if True:")
 # The window around the pressure of the guess, whatever the guess leaves closed.
 BY_PRESSURE = [("(p > 0) | (g < b)", "p > 0"), ("whole.quick(p, out=g)", "pass")]
 HEAD = """\

@@ -75,10 +75,10 @@ def minimise_quadratic(
     bounds on both sides, changed in three ways. The direction, as long as the last steps suggest,
     is projected onto the bounds before the product with K, not after it; the step is the best part
     of that, so an iteration takes one product and the energy always falls. The direction is not
-    reset when nodes change sides: Polak–Ribière's formula forgets by itself, since steps that end
-    at a bound are not the best ones, and keeps nothing rather than less (Gilbert and Nocedal 1992,
-    SIAM J. Optim. 2, 21–42). And the residual is preconditioned by an approximate inverse of K,
-    which need not be symmetric, or point down.
+    reset when nodes change sides: Polak–Ribière's formula forgets by itself, between nothing and
+    what Fletcher and Reeves keep (Gilbert and Nocedal 1992, SIAM J. Optim. 2, 21–42), since steps
+    that end at a bound are not the best ones. And the residual is preconditioned by an approximate
+    inverse of K, which need not be symmetric, or point down.
 
     `start` is overwritten. `tolerance` is on the violation, in the units of `b`; an item that is
     there rests until all are. The gradient follows the steps with the products of `quick`,
@@ -116,7 +116,7 @@ def minimise_quadratic(
                 r *= going
             z = precondition(r, out=z)
             rz, overlap = passes.products(z, r, r_old)
-            kept = ratio(rz - overlap, rz_old)
+            kept = ratio(rz - np.maximum(overlap, 0.0), rz_old)
             kept = choose(kept > 0, kept, 0.0) * stretch
             # What only approximates an inverse may point up.
             down = np.copysign(length, rz)

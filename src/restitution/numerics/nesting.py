@@ -104,11 +104,12 @@ def _with_less_mean(inverse: Operator, p: Array, b: Array, upper: Bound) -> Oper
     sides. How much too much, the guess `p` tells, for on its nodes K makes `b` of it. Means around
     8 × 8 places stand for what is nearly constant.
     """
-    if not p.any():
+    touching, free = p > 0, (p > 0) & (p < upper)
+    if every(total(free) <= 0.5 * total(touching)):  # no guess, or where most yields: edges
         return inverse
-    constant: Any = ((p > 0) & (p < upper)).astype(np.float32)
+    constant: Any = free.astype(np.float32)
     made = inverse(constant, out=np.empty_like(constant))
-    flexible, stiff = ratio(dot(b, constant), total(p)), ratio(dot(made, constant), total(p > 0))
+    flexible, stiff = ratio(dot(b, constant), total(p)), ratio(dot(made, constant), total(touching))
     kept = _USUAL / np.maximum(np.multiply(flexible, stiff), _USUAL)
     if every(kept > _WORTH_LESS):
         return inverse
