@@ -20,7 +20,7 @@ from curves import DEPTHS, GRID, adhesive, curve, one
 from products import ALL_OF_THE_MEAN, BY_PRESSURE
 from scaling import PAIR, forget, indentation, surface_of
 from unit import machine, seconds, today
-from variants import changed, recompiled
+from variants import changed
 
 from restitution import Contact, Grid, generate_surface, smooth, solve
 from restitution.contact import adhesion, equilibrium, influence, loading
@@ -132,11 +132,6 @@ class OneThread:
         passes.loops.use_threads(self._before)
 
 
-# The compiled loops, but taking any transform for a small one.
-ALL_CACHED = device._Compiled(
-    recompiled("convolve.cpp", ("MOST_CACHED = 12 << 20", "MOST_CACHED = Index(1) << 60"))
-)
-
 LESS_MEAN = [(nesting, "_with_less_mean", changed(nesting._with_less_mean, ALL_OF_THE_MEAN))]
 
 # What is given which value, or entered, so that the trick is out.
@@ -163,7 +158,6 @@ TRICKS = {
 }
 LARGE_TRICKS = {
     "threads": [OneThread()],
-    "waves stored past the cache": [(device, "_current", ContextVar("device", default=ALL_CACHED))],
     "less of the mean where its inverse is too much": LESS_MEAN,
 }
 APPROACH_TRICKS = {

@@ -24,10 +24,6 @@
 #include <utility>
 #include <vector>
 
-#if defined(__x86_64__)
-#include <immintrin.h>
-#endif
-
 // How to transform a period, on any processor. One of which at least half is padding is transformed
 // in two parts, the even waves and the odd ones.
 template <class T>
@@ -126,9 +122,6 @@ Rows<T> rows_in(Rows<unsigned char> room, Index rows, Index length) {
     return {static_cast<T*>(std::align(LINE, 1, first, bytes)), rows, length,
             bytes_of_row(length * Index(sizeof(T))) / Index(sizeof(T))};
 }
-
-// Of so many bytes enough still lie in the cache when they are wanted again (measured, 32 MiB of it).
-constexpr Index MOST_CACHED = 12 << 20;
 
 #ifndef __has_builtin
 #define __has_builtin(name) 0

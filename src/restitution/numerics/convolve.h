@@ -150,27 +150,6 @@ inline void transpose(Vector* x) {
     }
 }
 
-// Whole vectors to a place that is aligned to them, not by way of the cache where there is such a way;
-// other threads see them after `settle_stores`.
-template <class Vector, int n>
-inline void store_past_cache(void* to, const Vector (&values)[n]) {
-#if defined(__x86_64__)
-    for (std::size_t i = 0; i < sizeof(values); i += sizeof(__m128i)) {
-        __m128i part;
-        std::memcpy(&part, reinterpret_cast<const char*>(values) + i, sizeof part);
-        _mm_stream_si128(reinterpret_cast<__m128i*>(static_cast<char*>(to) + i), part);
-    }
-#else
-    std::memcpy(to, values, sizeof(values));
-#endif
-}
-
-inline void settle_stores() {
-#if defined(__x86_64__)
-    _mm_sfence();
-#endif
-}
-
 // Copy `some` values, at most `most`. A copy whose size is known is no call.
 template <class T, Index most>
 inline void copy_some(void* to, const void* from, Index some) {
@@ -210,14 +189,10 @@ inline Lanes<T> load_modes(const std::complex<T>* from, Index some) {
     return {shuffle<Even>(pairs[0], pairs[1]), shuffle<Odd>(pairs[0], pairs[1])};
 }
 
-// `past_cache` is for what is wanted again only when other things have taken its place there.
 template <class T>
-inline void store_modes(const Lanes<T>& x, std::complex<T>* to, Index some, bool past_cache = false) {
+inline void store_modes(const Lanes<T>& x, std::complex<T>* to, Index some) {
     const typename Lanes<T>::Vector pairs[2] = {shuffle<Low>(x.re, x.im), shuffle<High>(x.re, x.im)};
-    if (past_cache && some >= Lanes<T>::count)
-        store_past_cache(to, pairs);
-    else
-        copy_some<std::complex<T>, Lanes<T>::count>(to, pairs, some);
+    copy_some<std::complex<T>, Lanes<T>::count>(to, pairs, some);
 }
 
 // The transforms of some columns; the rest of their period is filled up with zeros.
@@ -257,7 +232,6 @@ struct Convolution {
     const Plan<T>&along_x, &along_y;
     Rows<const T> weights;
     Rows<std::complex<T>> modes;
-    const bool past_cache = modes.count * modes.stride * Index(sizeof(std::complex<T>)) > MOST_CACHED;
 
     // Two blocks of real columns are transformed as the real and the imaginary part of one.
     template <class From>
@@ -284,11 +258,9 @@ struct Convolution {
                 transpose<count>(re[block]);
                 transpose<count>(im[block]);
                 for (Index l = 0; l < std::min<Index>(count, modes.count - column); ++l)
-                    store_modes<T>({re[block][l], im[block][l]}, modes[column + l] + k0, waves,
-                                   past_cache);
+                    store_modes<T>({re[block][l], im[block][l]}, modes[column + l] + k0, waves);
             }
         }
-        settle_stores();
     }
 
     template <class To>
