@@ -70,7 +70,7 @@ PROJECTED_AFTER = [
     ("kept, 0.0) * stretch", "kept, 0.0) * (iteration > 1 and not coming)"),
     (
         "slope, cut = passes.direct(d, kept, z, down, p, g, r, lower, upper)",
-        "d *= kept; d -= z; d *= r != 0; slope, cut = passes.dot(r, d), False",
+        "d *= kept; d -= z; d *= r != 0; slope, cut = passes.products(d, r, r)[0], False",
     ),
     ("if some(taken > 1):", "if False:"),
     (
@@ -98,7 +98,7 @@ PARTS = {
 # The whole residual through the preconditioner, whatever becomes of its mean.
 ALL_OF_THE_MEAN = ("if every(total(free) <= 0.5 * total(touching)):", "if True:")
 # The window around the pressure of the guess, whatever the guess leaves closed.
-BY_PRESSURE = [("(p > 0) | (g < b)", "p > 0"), ("whole.quick(p, out=g)", "pass")]
+BY_PRESSURE = [("(p > 0) | (Kp < b)", "p > 0"), ("Kp = whole.quick(p)", "pass")]
 HEAD = """\
 | without | products | 1.2 or more | most | time | contacts that do not converge |
 |---|---|---|---|---|---|

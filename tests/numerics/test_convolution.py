@@ -10,8 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
+from restitution.contact.influence import half_space
 from restitution.numerics.convolution import FreeConvolution, SpectralFilter
 from restitution.numerics.device import accelerator
+from restitution.numerics.minimise import _ROUNDING
 
 approx = partial(pytest.approx, abs=0.0)  # whose own 1e-12 is more than these energies
 
@@ -111,6 +113,27 @@ def test_the_memory_layout_of_the_input_does_not_matter():
     wide[::2, ::3] = p
     for other in (np.asfortranarray(p), wide[::2, ::3]):
         assert_array_equal(K(other), K(p))
+
+
+@pytest.mark.parametrize("n", [32, 181, 1024])
+@pytest.mark.parametrize("kind", ["random", "positive", "one side", "checkers", "one node"])
+def test_single_precision_errs_by_as_much_as_the_minimiser_counts_on(kind, n):
+    """Of the largest value, however much of the array cancels."""
+    rng = np.random.default_rng(n)
+    p = rng.normal(size=(n, n))
+    if kind == "positive":
+        p = np.abs(p)
+    elif kind == "one side":
+        p[:, n // 8 :] = 0
+    elif kind == "checkers":
+        p = (-1.0) ** np.add.outer(np.arange(n), np.arange(n))
+    elif kind == "one node":
+        p = np.where(p == p.max(), 1.0, 0.0)
+    p = p.astype(np.float32)
+    K = half_space((n, n), (1.0, 1.0), 1.0).fresh()
+    exact = K(p)
+    error = np.abs(K.quick(p) - exact).max() / np.abs(exact).max()
+    assert 0 < error < _ROUNDING * np.finfo(np.float32).eps
 
 
 @settings(deadline=None, max_examples=20)

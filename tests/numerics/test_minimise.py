@@ -191,6 +191,47 @@ def test_the_answer_is_believed_on_a_gradient_computed_there():
     assert_allclose(found.gradient, A @ found.point - b, atol=1e-14)
 
 
+def rounded(A, applied):
+    """A in single precision, as an operator."""
+    single = A.astype(np.float32)
+
+    def apply(p, out=None):
+        applied.append(p[:, 0].copy())
+        product = single @ p.astype(np.float32)
+        return product.astype(p.dtype) if out is None else np.positive(product, out=out)
+
+    return apply
+
+
+@settings(deadline=None, max_examples=30)
+@given(st.integers(5, 40), st.sampled_from([1e-3, 1e-5, 1e-7, 1e-9]), seeds)
+def test_what_rounding_does_to_the_gradient_is_part_of_a_rough_residual(n, tolerance, seed):
+    """However often the gradient has to be computed anew for that."""
+    rng = np.random.default_rng(seed)
+    A, b = random_matrix(rng, n), 3 * rng.normal(size=n)
+    bounds = random_bounds(rng, n)
+    found, exact = minimise(A, b, *bounds, quick=rounded(A, []), rough=True, tolerance=tolerance)
+    assert found.converged
+    assert found.residual <= tolerance
+    assert kkt_violation(A, b, found.point, *bounds) <= (1 + 1e-6) * found.residual
+    assert len(exact) > 0 or tolerance > 1e-6
+    found, exact = minimise(A, b, *bounds, quick=rounded(A, []), tolerance=tolerance)
+    assert_array_equal(exact[-1], found.point)
+    assert found.residual <= tolerance
+    assert found.residual == approx(kkt_violation(A, b, found.point, *bounds), rel=1e-6, abs=1e-14)
+
+
+def test_a_product_that_is_known_is_not_computed():
+    rng = np.random.default_rng(11)
+    A, b = random_matrix(rng, 30), 3 * rng.normal(size=30)
+    bounds = random_bounds(rng, 30)
+    start = np.clip(rng.normal(size=30), *bounds)
+    found, products = minimise(A, b, *bounds, start=start.copy())
+    known, fewer = minimise(A, b, *bounds, start=start.copy(), product=(A @ start)[:, None])
+    assert_array_equal(fewer, products[1:])
+    assert_array_equal(known.point, found.point)
+
+
 @pytest.mark.parametrize("start", [-100.0, 0.5, 100.0, 1e12])
 def test_a_start_outside_the_bounds_is_put_onto_them(start):
     rng = np.random.default_rng(4)

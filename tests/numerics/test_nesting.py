@@ -6,6 +6,7 @@ from numpy.testing import assert_allclose
 
 from restitution.contact.influence import half_space, inverse_half_space
 from restitution.numerics import nesting, passes
+from restitution.numerics.convolution import FreeConvolution
 from restitution.numerics.minimise import minimise_quadratic
 from restitution.numerics.nesting import minimise_nested
 
@@ -83,6 +84,29 @@ def test_the_window_holds_what_the_guess_leaves_closed(windows):
     assert windows[:2] == [(50, 50), (100, 100)]
     assert len(windows) == 3
     assert_allclose(found.point, plain(b, np.inf).point, atol=1e-6 * found.point.max())
+
+
+def test_a_window_takes_no_product_that_another_tells(windows, monkeypatch):
+    """The one that finds it is its first gradient; the check is its last, in double precision."""
+    products = []
+
+    def watched(method):
+        def product(self, p, out=None):
+            products.append((p.shape, method.__name__))
+            return method(self, p, out)
+
+        return product
+
+    for method in (FreeConvolution.__call__, FreeConvolution.quick):
+        monkeypatch.setattr(FreeConvolution, method.__name__, watched(method))
+    found, _ = nested(bowl((200, 200)), np.inf)
+    assert found.converged
+    assert len(windows) == 3
+    finest = products[products.index(((200, 200), "quick")) :]
+    assert finest[0] == ((200, 200), "quick")
+    assert finest[-1] == ((200, 200), "__call__")
+    assert {shape for shape, _ in finest[1:-1]} == {windows[-1]}
+    assert [name for _, name in finest[1:-1]].count("__call__") == 1
 
 
 def test_what_the_guess_does_not_see_widens_the_window(windows, monkeypatch):

@@ -103,7 +103,7 @@ def test_a_step_to_a_bound_ends_on_it(batch, shape, seed):
 def test_sums_and_peaks_are_those_of_the_expressions(single, shape, seed):
     rng = np.random.default_rng(seed)
     a, b, c = (rng.normal(size=shape).astype(single) for _ in range(3))
-    for name, *args in (("peak", a), ("dot", a, b), ("products", a, b, c)):
+    for name, *args in (("peak", a), ("curvature", a, b), ("products", a, b, c)):
         (found, _), (compiled, _) = both(name, *args)
         assert_allclose(compiled, found, rtol=1e-6, atol=1e-5)
 
@@ -153,7 +153,7 @@ def test_threads_share_the_rows_and_change_nothing(threads):
         return [
             passes.downhill(p, g, lower, upper, its_r), its_r.copy(), passes.products(z, r, r_old),
             passes.direct(its_d, 0.3, z, 0.8, p, g, r, lower, upper), its_d,
-            passes.dot(its_d, Kd), passes.peak(g),
+            passes.curvature(its_d, Kd), passes.peak(g),
             passes.levels(r, sums, nodes), sums.copy(), nodes.copy(),
             passes.lower(r, 0.1, sums, nodes, its_r), its_r.copy(),
             passes.advance(its_p, its_g, its_d, Kd, 1.0, lower, upper, its_r), its_p, its_g, its_r,
@@ -181,6 +181,7 @@ def test_what_is_not_finite_is_no_small_violation(single, bad, shape, seed):
         passes.downhill(p, g, lower, upper, out),
         passes.advance(p, g, d, Kd, 1.0, lower, upper, out),
         passes.peak(values),
+        passes.curvature(d, values)[1],
     ):
         assert not largest < np.inf
 
@@ -215,7 +216,7 @@ def test_a_loop_refuses_arrays_whose_results_would_be_lost():
     ):
         with pytest.raises(TypeError, match="incompatible function arguments"):
             passes.coarsen(fine, coarse)
-    for name, *args in (("dot", fine, np.zeros((8, 13))), ("coarsen", fine, np.zeros((3, 6))),
+    for name, *args in (("curvature", fine, np.zeros((8, 13))), ("coarsen", fine, np.zeros((3, 6))),
                         ("refine", np.zeros((4, 5)), fine)):  # fmt: skip
         with pytest.raises(ValueError, match=r"shape|half as long"):
             getattr(passes, name)(*args)

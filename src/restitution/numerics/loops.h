@@ -23,6 +23,17 @@ struct Peak {
     double value() const { return most + doubt; }
 };
 
+template <class T>
+struct SumAndPeak {
+    double sum = 0;
+    Peak<T> peak{};
+
+    void add(const SumAndPeak& other) {
+        sum += other.sum;
+        peak.add(other.peak);
+    }
+};
+
 struct Sums {
     double first = 0, second = 0;
 
@@ -182,17 +193,23 @@ std::pair<double, double> products(Rows<const T> z, Rows<const T> r, Rows<const 
 }
 
 template <class T>
-double dot(Rows<const T> a, Rows<const T> b) {
+std::pair<double, double> curvature(Rows<const T> d, Rows<const T> Kd) {
     const auto some = [&](Index begin, Index end) {
         double total = 0;
+        T most = 0, doubt = 0;
         for (Index i = begin; i < end; ++i) {
-            const T *ai = a[i], *bi = b[i];
-#pragma omp simd reduction(+ : total)
-            for (Index j = 0; j < a.length; ++j) total += double(ai[j]) * bi[j];
+            const T *di = d[i], *Kdi = Kd[i];
+#pragma omp simd reduction(+ : total, doubt) reduction(max : most)
+            for (Index j = 0; j < d.length; ++j) {
+                total += double(di[j]) * Kdi[j];
+                most = std::max(most, std::abs(Kdi[j]));
+                doubt += 0 * Kdi[j];
+            }
         }
-        return Sums{total};
+        return SumAndPeak<T>{total, {most, doubt}};
     };
-    return over_rows(some, a, b).first;
+    const auto found = over_rows(some, d, Kd);
+    return {found.sum, found.peak.value()};
 }
 
 template <class T>
@@ -369,7 +386,7 @@ void define_for(py::module_& module) {
     module.def("levels", &levels<T>);
     module.def("lower", &lower<T>);
     module.def("products", &products<T>);
-    module.def("dot", &dot<T>);
+    module.def("curvature", &curvature<T>);
     module.def("direct", &direct<T>);
     module.def("leaves", &leaves<T>);
     module.def("advance", &advance<T>);

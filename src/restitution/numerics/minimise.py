@@ -28,7 +28,9 @@ from restitution.numerics.passes import Bound
 
 Array = NDArray[np.float64]
 
-_DRIFT = 1e-4  # of the violation, after which the gradient is computed anew
+# What rounding does to a product, in units of the last place of its largest value (measured: up to
+# 7), and how far above its error in the gradient a violation has to be to be followed.
+_ROUNDING, _CLEAR = 10.0, 5.0
 _NEARLY = 0.8  # of what was projected: where this much is best, all of it is taken
 # Trials begin as long as they mostly end up, for bounds cut off much of them. The best step changes
 # between long and short; their length follows half-heartedly.
@@ -46,7 +48,8 @@ class Operator(Protocol):
 class Minimum:
     """Where the minimiser stopped: the point, its gradient, and how far both can be trusted.
 
-    `residual` and `converged` are numbers, one for each item.
+    `residual` is the violation with the error of the gradient. `residual` and `converged` are
+    numbers, one for each item.
     """
 
     point: Array
@@ -68,6 +71,7 @@ def minimise_quadratic(
     max_iterations: int,
     quick: Operator | None = None,
     rough: bool = False,
+    product: Array | None = None,
 ) -> Minimum:
     """Projected conjugate gradients, Polak–Ribière+, preconditioned on the free nodes.
 
@@ -80,36 +84,39 @@ def minimise_quadratic(
     that end at a bound are not the best ones. And the residual is preconditioned by an approximate
     inverse of K, which need not be symmetric, or point down.
 
-    `start` is overwritten. `tolerance` is on the violation, in the units of `b`; an item that is
-    there rests until all are. The gradient follows the steps with the products of `quick`,
-    which may be K in single precision; it is computed anew with K whenever the violation has fallen
-    by `_DRIFT`, and the result is accepted only on such a gradient; or, if `rough`, on one that
-    `quick` has led there, which will do for a large tolerance. Not converging is reported in the
-    result, never raised.
+    `start` is overwritten, and so is `product`, that of `quick` with it, where it is known.
+    `tolerance` is on the violation, in the units of `b`; an item that is there rests until all are.
+    The gradient follows the steps with the products of `quick`, which may be K in single precision.
+    What rounding them may have done is added up, and the gradient is computed anew with K where the
+    violation is no longer well above that. The result is accepted only on a gradient computed
+    there; or, if `rough`, on one that the steps led to, when the violation and its error are within
+    `tolerance` together. Not converging is reported in the result, never raised.
     """
     # What only leads to the next step need not be more exact than what makes it.
     kind: Any = np.float64 if quick is None else np.float32
     quick = K if quick is None else quick
-    K = quick if rough else K
+    rounding = _ROUNDING * np.finfo(kind).eps
     p = np.clip(start, lower, upper, out=start)
     lower, upper = passes.as_rows(lower, p), passes.as_rows(upper, p)
-    g, exact = _gradient(quick, p, b), quick is K
+    if product is None:
+        product = quick(p) if p.any() else np.zeros_like(p)
+    error = (quick is not K) * rounding * passes.peak(product)
+    g = np.subtract(product, b, out=product)
     d, r_old = (np.zeros_like(p, dtype=kind) for _ in range(2))
     r, z, Kd = (np.empty_like(p, dtype=kind) for _ in range(3))
     residual = passes.downhill(p, g, lower, upper, r)
-    low = _DRIFT * residual  # where the gradient is computed anew
     rz_old, stuck = np.zeros_like(residual), residual < 0
     stretch = np.ones_like(residual)  # the last change of
     length = _FIRST * stretch  # the next trial step
     iteration = 0
 
     for iteration in range(1, max_iterations + 1):
-        going = ~stuck & (residual > (tolerance if exact else np.maximum(tolerance, low)))
+        going = ~stuck & (residual > np.maximum(tolerance, _CLEAR * error))
         if not some(going):
-            if exact:
+            if every(error == 0) or (rough and every(residual + error <= tolerance)):
                 iteration -= 1
                 break
-            g, exact = _gradient(K, p, b, out=g), True
+            g, error = _gradient(K, p, b, out=g), 0 * error
             residual = passes.downhill(p, g, lower, upper, r)
         else:
             if not every(going):
@@ -122,7 +129,7 @@ def minimise_quadratic(
             down = np.copysign(length, rz)
             slope, cut = passes.direct(d, kept, z, down, p, g, r, lower, upper)
             Kd = quick(d, out=Kd)
-            curvature = passes.dot(d, Kd)
+            curvature, largest = passes.curvature(d, Kd)
             stuck |= ~(curvature < np.inf) | ((slope < 0) & (curvature <= 0))
             if every(stuck):
                 break
@@ -131,17 +138,18 @@ def minimise_quadratic(
             if some(taken > 1):
                 outside = passes.leaves(p, d, taken, lower, upper)
                 taken = choose((taken > 1) & outside, 1.0, taken)
-            r, r_old, exact = r_old, r, rough
+            r, r_old = r_old, r
             residual = passes.advance(p, g, d, Kd, taken, lower, upper, r)
+            error = error + rounding * taken * largest
             rz_old = rz
             stretch = np.minimum(np.maximum(step, _SHORTER), _LONGER) ** _DAMPED
             stretch = choose(going, stretch, 1.0)
             length = length * stretch
-        low = _DRIFT * residual if exact else low
 
-    if not exact:
-        g = _gradient(K, p, b, out=g)
+    if not rough and some(error > 0):
+        g, error = _gradient(K, p, b, out=g), 0 * error
         residual = violation(p, g, lower, upper)
+    residual = residual + error
     return Minimum(p, g, residual, iteration, converged=residual <= tolerance)
 
 
@@ -151,7 +159,7 @@ def violation(p: Array, g: Array, lower: Bound, upper: Bound) -> Number:
     return passes.downhill(p, g, lower, upper, np.empty_like(p))
 
 
-def _gradient(K: Operator, p: Array, b: Array, out: Array | None = None) -> Array:
-    g = K(p, out=out) if p.any() else np.zeros_like(p)
+def _gradient(K: Operator, p: Array, b: Array, out: Array) -> Array:
+    g = K(p, out=out)
     g -= b
     return g

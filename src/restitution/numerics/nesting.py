@@ -50,15 +50,15 @@ def minimise_nested(
     """Minimise with 0 ≤ p ≤ `upper`; the result and the products with K on the finest grid."""
     everywhere: Box = (slice(0, b.shape[-2]), slice(0, b.shape[-1]))
     size = shape_of(everywhere)
-    p, g, products = np.zeros_like(b), np.empty_like(b), 0
+    p, Kp, products = np.zeros_like(b), None, 0
     whole, its_inverse = system(size, 0)  # first: smaller blocks have the same coefficients
     if min(size) >= _WORTH_A_GUESS:
         p = _first_guess(system, b, upper, level=1)
     window = bounding_box(somewhere(p > 0))
     if window is not None and _saves(window, size):
         # The coarser grids do not see all that touches: what the guess leaves closed may, too.
-        whole.quick(p, out=g)
-        window = bounding_box(somewhere((p > 0) | (g < b)))
+        Kp = whole.quick(p)
+        window = bounding_box(somewhere((p > 0) | (Kp < b)))
     window = everywhere if window is None else widen(window, _MARGIN, size)
     while True:
         if not _saves(window, size):
@@ -73,8 +73,10 @@ def minimise_nested(
             0.0,
             upper,
             start=p[inside],
+            product=None if Kp is None else Kp[inside],
             precondition=_with_less_mean(inverse, p[inside], b[inside], upper),
             quick=K.quick,
+            rough=window != everywhere,  # the check will see
             tolerance=tolerance,
             max_iterations=max_iterations,
         )
@@ -83,13 +85,14 @@ def minimise_nested(
         products += K.count
         iterations, converged = found.iterations, every(found.converged)
         del K, inverse, found  # their arrays make room for those of the check
-        whole(p, out=g)
-        g -= b
+        Kp = whole(p, out=Kp)
+        g = np.subtract(Kp, b, out=Kp)
         residual = violation(p, g, 0.0, upper)
         if every(residual <= tolerance) or not converged:
             checked = Minimum(p, g, residual, iterations, residual <= tolerance)
             return checked, products + whole.count
         wider = union(window, bounding_box(somewhere(g < -tolerance)))
+        Kp = np.add(g, b, out=g)
         # The same window again: what the last digits of the check leave, all nodes mend.
         window = everywhere if wider is None or wider == window else widen(wider, _MARGIN, size)
 

@@ -101,9 +101,9 @@ def products(z: Array, r: Array, r_old: Array) -> tuple[Number, Number]:
 
 
 @_by_loop
-def dot(a: Array, b: Array) -> Number:
-    """a·b."""
-    return items.dot(a, b)
+def curvature(d: Array, Kd: Array) -> tuple[Number, Number]:
+    """d·Kd and the largest magnitude of Kd."""
+    return items.dot(d, Kd), largest(Kd)
 
 
 @_by_loop
