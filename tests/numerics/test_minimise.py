@@ -358,3 +358,38 @@ def test_an_unreachable_tolerance_is_reported_and_not_raised():
     A, b = random_matrix(rng, 8), rng.normal(size=8)
     found, _ = minimise(A, b, np.zeros(8), np.full(8, np.inf), tolerance=-1.0)
     assert not found.converged
+
+
+@pytest.mark.parametrize("rough", [False, True])
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_a_product_that_is_not_finite_ends_the_solve_at_once(bad, rough):
+    """Single precision may overflow."""
+    rng = np.random.default_rng(19)
+    A, b = random_matrix(rng, 20), 3 * rng.normal(size=20)
+    products = []
+
+    def overflows(p, out=None):
+        found = rounded(A, products)(p, out)
+        found[7] = bad if len(products) == 4 else found[7]
+        return found
+
+    found, exact = minimise(A, b, *random_bounds(rng, 20), quick=overflows, rough=rough)
+    assert not found.converged
+    assert np.isfinite(found.point).all()
+    assert len(products) == 4
+    assert len(exact) <= 1
+
+
+def test_a_start_where_rounding_overflows_is_taken_up_exactly():
+    rng = np.random.default_rng(23)
+    A, b = random_matrix(rng, 20), 3 * rng.normal(size=20)
+    bounds, products = random_bounds(rng, 20), []
+
+    def overflows(p, out=None):
+        found = rounded(A, products)(p, out)
+        found *= np.nan if len(products) == 1 else 1.0
+        return found
+
+    found, _ = minimise(A, b, *bounds, start=rng.normal(size=20), quick=overflows)
+    assert found.converged
+    assert_allclose(found.point, minimise(A, b, *bounds)[0].point, atol=1e-9)

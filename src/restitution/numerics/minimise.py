@@ -116,7 +116,7 @@ def minimise_quadratic(
             if every(error == 0) or (rough and every(residual + error <= tolerance)):
                 iteration -= 1
                 break
-            g, error = _gradient(K, p, b, out=g), 0 * error
+            g, error = _gradient(K, p, b, out=g), np.zeros_like(residual)
             residual = passes.downhill(p, g, lower, upper, r)
         else:
             if not every(going):
@@ -147,7 +147,7 @@ def minimise_quadratic(
             length = length * stretch
 
     if not rough and some(error > 0):
-        g, error = _gradient(K, p, b, out=g), 0 * error
+        g, error = _gradient(K, p, b, out=g), np.zeros_like(residual)
         residual = violation(p, g, lower, upper)
     residual = residual + error
     return Minimum(p, g, residual, iteration, converged=residual <= tolerance)
