@@ -89,7 +89,7 @@ class FreeConvolution(_Spectral):
         return self._convolve(p, self._spectrum, out, 1.0)
 
     def quick(self, p: Array, out: Array | None = None) -> Array:
-        """The same for work in single precision: an error of up to 8e-7 of the largest value."""
+        """The same for work in single precision: an error of up to 9e-7 of the largest value."""
         self.count += 1
         return self._convolve(p, self._single_spectrum, out, 1.0)
 
