@@ -203,6 +203,22 @@ def rounded(A, applied):
     return apply
 
 
+@pytest.mark.parametrize("far", [1e-5, 1.0])
+def test_from_nearby_two_gradients_are_computed_exactly_the_first_and_the_last(far):
+    """Rounding does little to small steps."""
+    rng = np.random.default_rng(2)
+    A, b = random_matrix(rng, 20), 3 * rng.normal(size=20)
+    bounds = random_bounds(rng, 20)
+    answer = minimise(A, b, *bounds)[0].point
+    start = np.clip(answer + far * rng.normal(size=20), *bounds)
+    options = {"start": start.copy(), "quick": rounded(A, []), "tolerance": 1e-9}
+    found, exact = minimise(A, b, *bounds, **options)
+    assert found.converged
+    assert_array_equal(exact[0], start)
+    assert_array_equal(exact[-1], found.point)
+    assert len(exact) == 2 if far < 1 else len(exact) > 2
+
+
 @settings(deadline=None, max_examples=30)
 @given(st.integers(5, 40), st.sampled_from([1e-3, 1e-5, 1e-7, 1e-9]), seeds)
 def test_what_rounding_does_to_the_gradient_is_part_of_a_rough_residual(n, tolerance, seed):
@@ -377,10 +393,11 @@ def test_a_product_that_is_not_finite_ends_the_solve_at_once(bad, rough):
     assert not found.converged
     assert np.isfinite(found.point).all()
     assert len(products) == 4
-    assert len(exact) <= 1
+    assert len(exact) <= (1 if rough else 2)  # the last gradient, and the first
 
 
-def test_a_start_where_rounding_overflows_is_taken_up_exactly():
+@pytest.mark.parametrize("known", [False, True])
+def test_a_start_where_rounding_overflows_is_taken_up_exactly(known):
     rng = np.random.default_rng(23)
     A, b = random_matrix(rng, 20), 3 * rng.normal(size=20)
     bounds, products = random_bounds(rng, 20), []
@@ -390,6 +407,9 @@ def test_a_start_where_rounding_overflows_is_taken_up_exactly():
         found *= np.nan if len(products) == 1 else 1.0
         return found
 
-    found, _ = minimise(A, b, *bounds, start=rng.normal(size=20), quick=overflows)
+    start = np.clip(rng.normal(size=20), *bounds)
+    product = overflows(start[:, None]) if known else None
+    options = {"start": start, "quick": overflows, "product": product, "rough": not known}
+    found, _ = minimise(A, b, *bounds, **options)
     assert found.converged
     assert_allclose(found.point, minimise(A, b, *bounds)[0].point, atol=1e-9)

@@ -29,9 +29,9 @@ from restitution.numerics.passes import Bound
 Array = NDArray[np.float64]
 
 # What rounding does to a product, in units of the last place of its largest value (measured on 64²
-# to 4096² nodes: up to 8), and how far above its error in the gradient a violation has to be to be
+# to 4096² nodes: up to 8), and how far above the error of the gradient a violation has to be to be
 # followed.
-_ROUNDING, _CLEAR = 10.0, 5.0
+_ROUNDING, _CLEAR = 10.0, 3.0
 _NEARLY = 0.8  # of what was projected: where this much is best, all of it is taken
 # Trials begin as long as they mostly end up, for bounds cut off much of them. The best step changes
 # between long and short; their length follows half-heartedly.
@@ -88,11 +88,11 @@ def minimise_quadratic(
     `start` is overwritten, and so is `product`, that of `quick` with a `start` within the bounds,
     where it is known. `tolerance` is on the violation, in the units of `b`; an item that is there
     rests until all are. The gradient follows the steps with the products of `quick`, which may be K
-    in single precision. What rounding them may have done is added up, and the gradient is computed
-    anew with K where the violation is no longer well above that. The result is accepted only on a
-    gradient computed there; or, if `rough`, on one that the steps led to, when the violation and
-    its error are within `tolerance` together. Not converging is reported in the result, never
-    raised.
+    in single precision. What rounding them may have done is added up, as independent errors are,
+    and the gradient is computed anew with K where the violation is no longer well above that. The
+    result is accepted only on a gradient computed there; or, if `rough`, on one that the steps led
+    to, when the violation and its error are within `tolerance` together. Not converging is reported
+    in the result, never raised.
     """
     # What only leads to the next step need not be more exact than what makes it.
     kind: Any = np.float64 if quick is None else np.float32
@@ -100,9 +100,10 @@ def minimise_quadratic(
     rounding = _ROUNDING * np.finfo(kind).eps
     p = np.clip(start, lower, upper, out=start)
     lower, upper = passes.as_rows(lower, p), passes.as_rows(upper, p)
+    first = quick if rough or product is not None else K
     if product is None:
-        product = quick(p) if p.any() else np.zeros_like(p)
-    error = (quick is not K) * rounding * passes.peak(product)
+        product = first(p) if p.any() else np.zeros_like(p)
+    error = (first is not K) * rounding * passes.peak(product)
     g = np.subtract(product, b, out=product)
     d, r_old = (np.zeros_like(p, dtype=kind) for _ in range(2))
     r, z, Kd = (np.empty_like(p, dtype=kind) for _ in range(3))
@@ -142,7 +143,7 @@ def minimise_quadratic(
                 taken = choose((taken > 1) & outside, 1.0, taken)
             r, r_old = r_old, r
             residual = passes.advance(p, g, d, Kd, taken, lower, upper, r)
-            error = error + rounding * taken * largest
+            error = np.hypot(error, rounding * taken * largest)
             rz_old = rz
             stretch = np.minimum(np.maximum(step, _SHORTER), _LONGER) ** _DAMPED
             stretch = choose(going, stretch, 1.0)
