@@ -6,7 +6,7 @@ from pybind11.setup_helpers import Pybind11Extension, build_ext
 from setuptools import setup
 
 FOLDER = "src/restitution/numerics"
-HEADERS = ("rows", "crew", "each_processor", "loops", "convolve")
+HEADERS = ("rows", "crew", "each_processor", "loops", "grids", "convolve")
 # Products and sums are not fused, so that what should be equal is; no error numbers, no traps.
 FLAGS = ["-O3", "-fopenmp-simd", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=off"]
 

@@ -207,6 +207,17 @@ def test_spreading_is_that_of_the_expression(nodes, steps, seed):
     assert_allclose(have, expected, rtol=1e-12)
 
 
+@settings(deadline=None, max_examples=25)
+@given(shapes, seeds)
+def test_multipoles_are_those_of_the_expression(shape, seed):
+    rng = np.random.default_rng(seed)
+    x, y = rng.uniform(1, 9, (shape[0], 1)), rng.uniform(-9, 9, (1, shape[1]))
+    (_, (*_, expected)), (_, (*_, have)) = both(
+        "multipoles", x, y, rng.normal(size=(3, 3)), np.empty(shape)
+    )
+    assert_allclose(have, expected, rtol=1e-11, atol=1e-13)
+
+
 def test_a_loop_refuses_arrays_whose_results_would_be_lost():
     fine = np.zeros((8, 12))
     for coarse in (
@@ -217,8 +228,9 @@ def test_a_loop_refuses_arrays_whose_results_would_be_lost():
         with pytest.raises(TypeError, match="incompatible function arguments"):
             passes.coarsen(fine, coarse)
     for name, *args in (("curvature", fine, np.zeros((8, 13))), ("coarsen", fine, np.zeros((3, 6))),
-                        ("refine", np.zeros((4, 5)), fine)):  # fmt: skip
-        with pytest.raises(ValueError, match=r"shape|half as long"):
+                        ("refine", np.zeros((4, 5)), fine),
+                        ("multipoles", fine, fine, np.zeros((3, 3)), fine)):  # fmt: skip
+        with pytest.raises(ValueError, match=r"shape|half as long|go with each other"):
             getattr(passes, name)(*args)
 
 

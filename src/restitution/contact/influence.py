@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.numerics import passes
 from restitution.numerics.convolution import FreeConvolution, SpectralFilter
 from restitution.numerics.device import CPU, Device, current
 
@@ -51,29 +52,20 @@ def far_displacement(x: Array, y: Array, hx: float, hy: float, contact_modulus: 
     """The same far from the cell: Taylor series of the point load averaged over the cell.
 
     u πE*/(p hx hy) = [1 + (hx²∂x² + hy²∂y²)/24 + hx⁴∂x⁴/1920 + hx²hy²∂x²∂y²/576 + hy⁴∂y⁴/1920] 1/r;
-    the next term is of relative order (h/r)⁶.
+    the next term is of relative order (h/r)⁶. `x` and `y` (m) are a column and a row.
     """
     xx, yy = hx * hx, hy * hy
     # ∂x² 1/r = (3c − 1)/r³ and so on, with c the squared direction cosine along x.
-    second = np.array([2 * yy - xx, 3 * (xx - yy)]) / 24
+    second = np.array([2 * yy - xx, 3 * (xx - yy), 0.0]) / 24
     fourth = (
         np.array([9 * xx * xx + 24 * yy * yy, -90 * xx * xx - 120 * yy * yy, 105 * (xx**2 + yy**2)])
         / 1920
         + xx * yy * np.array([-12, 105, -105]) / 576
     )
-    s = 1 / (x * x + y * y)
-    c = x * x * s
-    series: Array = fourth[1] + fourth[2] * c
-    series *= c
-    series += fourth[0]
-    series *= s
-    series += second[0] + second[1] * c
-    series *= s
-    series += 1.0
-    np.sqrt(s, out=s)
-    series *= s
-    series *= hx * hy / (np.pi * contact_modulus)
-    return series
+    moments = np.array([[1.0, 0.0, 0.0], second, fourth]) * (hx * hy / (np.pi * contact_modulus))
+    far: Array = np.empty_like(x, shape=np.broadcast_shapes(x.shape, y.shape), dtype=np.float64)
+    passes.multipoles(x, y, moments, far)
+    return far
 
 
 def influence_coefficients(
@@ -123,7 +115,6 @@ def _kept(build: _lru_cache_wrapper[Operator], shape: tuple[int, int]) -> Callab
 _known: dict[tuple[float, Device], Array] = {}
 _MOST_KNOWN = 2**25  # coefficients: 256 MiB, for 4096² nodes half of that
 _MOST_KEPT = 2**21  # nodes of an operator that is kept: 16 MiB
-_AT_ONCE = 2**14  # coefficients whose intermediate results stay in the cache
 
 
 def _unit_coefficients(lags: tuple[int, int], aspect: float, device: Device) -> Array:
@@ -145,12 +136,9 @@ def _compute_coefficients(
     x: Array = hx * device.arange(lags[0])[:, None]
     y: Array = hy * device.arange(lags[1])[None, :]
     near_i, near_j = (math.ceil(_FAR * math.hypot(hx, hy) / h) for h in spacing)
-    u: Array = np.empty_like(x, shape=lags, dtype=np.float64)
-    rows = _AT_ONCE // lags[1] + 1
     # The origin is always in the near block, which Love's formula overwrites.
     with np.errstate(divide="ignore", invalid="ignore"):
-        for i in range(0, lags[0], rows):
-            u[i : i + rows] = far_displacement(x[i : i + rows], y, hx, hy, 1.0)
+        u = far_displacement(x, y, hx, hy, 1.0)
     u[:near_i, :near_j] = love_displacement(x[:near_i], y[:, :near_j], hx, hy, 1.0)
     return u
 

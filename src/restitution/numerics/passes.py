@@ -182,6 +182,21 @@ def refine(coarse: Array, fine: Array) -> None:
 
 
 @_by_loop
+def multipoles(x: Array, y: Array, moments: Array, out: Array) -> None:
+    """Σ_kl moments[k, l] c^l / r^(2k + 1) at (x, y), a column and a row, in `out`.
+
+    c = x²/r² is the squared direction cosine along x; `moments` are of shape (3, 3).
+    """
+    s = 1.0 / (x * x + y * y)
+    c = x * x * s
+    out[...] = 0.0
+    for row in moments[::-1]:
+        out *= s
+        out += (row[2] * c + row[1]) * c + row[0]
+    out *= np.sqrt(s)
+
+
+@_by_loop
 def spread(neighbours: NDArray[np.intp], weights: Array, steps: int, sums: Array) -> None:
     """Replace two sums at each node, `steps` times, by those of its neighbours, weighted.
 

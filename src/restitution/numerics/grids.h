@@ -1,0 +1,94 @@
+// Loops over the nodes of a grid that are no part of an iteration, in double precision: to coarser and
+// finer grids, over the lags of influence coefficients, and over the neighbours of nodes. loops.h
+// includes this.
+
+template <class Coarse, class Fine>
+void expect_halves(const Coarse& coarse, const Fine& fine) {
+    if (coarse.count != (fine.count + 1) / 2 || coarse.length != (fine.length + 1) / 2)
+        throw std::invalid_argument("one array is not half as long as the other");
+}
+
+inline void coarsen(Rows<const double> fine, Rows<double> coarse) {
+    expect_halves(coarse, fine);
+    for (Index i = 0; i < coarse.count; ++i) {
+        const double *one = fine[2 * i], *two = fine[std::min(2 * i + 1, fine.count - 1)];
+        double* mean = coarse[i];
+        for (Index j = 0; j < fine.length / 2; ++j)
+            mean[j] = 0.25 * (one[2 * j] + two[2 * j] + one[2 * j + 1] + two[2 * j + 1]);
+        if (fine.length % 2) {
+            const Index last = fine.length - 1;
+            mean[last / 2] = 0.5 * (one[last] + two[last]);
+        }
+    }
+}
+
+inline void refine(Rows<const double> coarse, Rows<double> fine) {
+    expect_halves(coarse, fine);
+    const Index last = coarse.length - 1;
+    std::vector<double> row(coarse.length);
+    for (Index i = 0; i < fine.count; ++i) {
+        const Index beside =
+            i % 2 ? std::min(i / 2 + 1, coarse.count - 1) : std::max(i / 2 - 1, Index(0));
+        const double *near = coarse[i / 2], *far = coarse[beside];
+        for (Index j = 0; j <= last; ++j) row[j] = 0.75 * near[j] + 0.25 * far[j];
+        double* out = fine[i];
+        for (Index j = 0; j < fine.length; ++j) {
+            const Index next = j % 2 ? std::min(j / 2 + 1, last) : std::max(j / 2 - 1, Index(0));
+            out[j] = 0.75 * row[j / 2] + 0.25 * row[next];
+        }
+    }
+}
+
+inline void multipoles(Rows<const double> x, Rows<const double> y, Rows<const double> moments,
+                       Rows<double> out) {
+    if (x.count != out.count || x.length != 1 || y.count != 1 || y.length != out.length ||
+        moments.count != 3 || moments.length != 3)
+        throw std::invalid_argument("arrays that do not go with each other");
+    const auto some = [&](Index begin, Index end) {
+        for (Index i = begin; i < end; ++i) {
+            const double xx = x[i][0] * x[i][0], *row = y[0];
+            double* result = out[i];
+#pragma omp simd
+            for (Index j = 0; j < out.length; ++j) {
+                const double s = 1 / (xx + row[j] * row[j]), c = xx * s;
+                double sum = 0;
+                for (int k = 2; k >= 0; --k)
+                    sum = sum * s + ((moments[k][2] * c + moments[k][1]) * c + moments[k][0]);
+                result[j] = sum * std::sqrt(s);
+            }
+        }
+        return Sums{};
+    };
+    over_rows(some, out);
+}
+
+inline void spread(Rows<const Index> neighbours, Rows<const double> weights, int steps,
+                   Rows<double> sums) {
+    expect_one_shape(neighbours, weights);
+    if (sums.count != weights.count || sums.length != 2)
+        throw std::invalid_argument("arrays of different shapes");
+    for (Index i = 0; i < neighbours.count; ++i)
+        for (Index k = 0; k < neighbours.length; ++k)
+            if (neighbours[i][k] < 0 || neighbours[i][k] >= sums.count)
+                throw std::out_of_range("a neighbour that is none of the nodes");
+    std::vector<std::array<double, 2>> next(sums.count);
+    for (; steps > 0; --steps) {
+        for (Index i = 0; i < sums.count; ++i) {
+            const Index* node = neighbours[i];
+            const double* weight = weights[i];
+            next[i] = {};
+            for (Index k = 0; k < weights.length; ++k) {
+                next[i][0] += weight[k] * sums[node[k]][0];
+                next[i][1] += weight[k] * sums[node[k]][1];
+            }
+        }
+        for (Index i = 0; i < sums.count; ++i) std::copy(next[i].begin(), next[i].end(), sums[i]);
+    }
+}
+
+inline void define_grids(py::module_& module) {
+    module.def("coarsen", &coarsen);
+    module.def("refine", &refine);
+    module.def("multipoles", &multipoles);
+    module.def("spread", &spread);
+}
