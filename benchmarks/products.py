@@ -96,7 +96,7 @@ PARTS = {
 
 
 # The whole residual through the preconditioner, whatever becomes of its mean.
-ALL_OF_THE_MEAN = ("if every(total(free) <= 0.5 * total(touching)):", "if True:")
+ALL_OF_THE_MEAN = ("if every(count(free) <= 0.5 * count(touching)):", "if True:")
 # The window around the pressure of the guess, whatever the guess leaves closed.
 BY_PRESSURE = [("(p > 0) | (Kp < b)", "p > 0"), ("Kp = whole.quick(p)", "pass")]
 HEAD = """\

@@ -147,6 +147,8 @@ def test_threads_share_the_rows_and_change_nothing(threads):
     d, r, z, r_old, Kd = rng.normal(size=(5, *shape)).astype(np.float32)
     lower, upper = (passes.as_rows(bound, p) for bound in (0.0, 0.9))
     sums, nodes = np.empty((2, 8, 8))
+    fine, moments = np.empty((2 * shape[0], 2 * shape[1] - 1)), rng.normal(size=(3, 3))
+    x, y = (rng.uniform(1, 9, size) for size in ((shape[0], 1), (1, shape[1])))
 
     def everything():
         its_p, its_g, its_d, its_r = p.copy(), g.copy(), d.copy(), r.copy()
@@ -157,6 +159,8 @@ def test_threads_share_the_rows_and_change_nothing(threads):
             passes.levels(r, sums, nodes), sums.copy(), nodes.copy(),
             passes.lower(r, 0.1, sums, nodes, its_r), its_r.copy(),
             passes.advance(its_p, its_g, its_d, Kd, 1.0, lower, upper, its_r), its_p, its_g, its_r,
+            passes.refine(p, fine), fine.copy(), passes.coarsen(fine, its_g), its_g.copy(),
+            passes.multipoles(x, y, moments, its_g), its_g,
         ]  # fmt: skip
 
     found = everything()

@@ -71,10 +71,8 @@ class FreeConvolution(_Spectral):
         super().__init__(shape, (px, py), device)
         # Transposed, as `Device.convolve` wants it.
         lags = kernel(device.arange(px // 2 + 1)[None, :], device.arange(py // 2 + 1)[:, None])
-        spectrum = device.even_spectrum(lags)
-        # The normalisation of the inverse transform rides along with the kernel.
-        spectrum /= px * py
-        self._spectrum, self._single_spectrum = spectrum, spectrum.astype(np.float32)
+        self._spectrum = device.even_spectrum(lags)
+        self._single_spectrum = self._spectrum.astype(np.float32)
         self.count = 0
 
     def fresh(self) -> Self:

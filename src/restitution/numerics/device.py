@@ -44,7 +44,8 @@ class Device(Protocol):
     def even_spectrum(self, quadrant: Array) -> Array:
         """Spectrum of a real array that is even along both axes, of which this is one quadrant.
 
-        The quadrant may be overwritten.
+        It is over the number of values, so that transforming back takes no factor. The quadrant may
+        be overwritten.
         """
 
     def room(self, shape: tuple[int, int], periods: tuple[int, int]) -> Array:
@@ -57,9 +58,8 @@ class Device(Protocol):
         """Multiply the waves of values, (*batch, nx, ny), by a real and even spectrum, in `out`.
 
         The values are filled up with zeros to `periods`. `spectrum` is a quadrant as
-        `even_spectrum` makes it but transposed, and without normalisation; its precision is that of
-        the work. Values are divided by `scale`, one for each item, and what comes out is multiplied
-        by it.
+        `even_spectrum` makes it but transposed; its precision is that of the work. Values are
+        divided by `scale`, one for each item, and what comes out is multiplied by it.
         """
 
 
@@ -83,9 +83,8 @@ class _Compiled:
         return np.arange(n)
 
     def even_spectrum(self, quadrant: Array) -> Array:
-        ducc0.fft.dct(
-            quadrant, type=1, out=quadrant, nthreads=self._loops.threads_for(quadrant.nbytes)
-        )
+        threads = self._loops.threads_for(quadrant.nbytes)
+        ducc0.fft.dct(quadrant, type=1, inorm=2, out=quadrant, nthreads=threads)
         return quadrant
 
     def room(self, shape: tuple[int, int], periods: tuple[int, int]) -> Array:
@@ -126,10 +125,11 @@ class _Arrays:
     def even_spectrum(self, quadrant: Array) -> Array:
         # CuPy has no DCT-I: the transform of the whole even array, which is real.
         columns = np.concatenate([quadrant, quadrant[:, -2:0:-1]], axis=1)
-        modes = self._fft.rfft(columns, axis=1).real
+        modes = self._fft.rfft(columns, axis=1, norm="forward").real
         rows = np.concatenate([modes, modes[-2:0:-1]], axis=0)
         half = quadrant.shape[0]
-        return self._fft.rfft(rows, axis=0).real[:half].copy()  # type: ignore[no-any-return]
+        waves = self._fft.rfft(rows, axis=0, norm="forward").real
+        return waves[:half].copy()  # type: ignore[no-any-return]
 
     def room(self, shape: tuple[int, int], periods: tuple[int, int]) -> Array:
         return np.empty(0)  # transforms find their own

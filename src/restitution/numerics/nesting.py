@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from restitution.numerics import passes
 from restitution.numerics.convolution import FreeConvolution, SpectralFilter
-from restitution.numerics.items import dot, every, highest, ratio, somewhere, total
+from restitution.numerics.items import count, dot, every, highest, ratio, somewhere, total
 from restitution.numerics.minimise import Minimum, Operator, minimise_quadratic, violation
 from restitution.numerics.passes import Bound
 from restitution.numerics.window import Box, bounding_box, shape_of, union, widen
@@ -107,12 +107,13 @@ def _with_less_mean(inverse: Operator, p: Array, b: Array, upper: Bound) -> Oper
     sides. How much too much, the guess `p` tells, for on its nodes K makes `b` of it. Means around
     8 × 8 places stand for what is nearly constant.
     """
-    touching, free = p > 0, (p > 0) & (p < upper)
-    if every(total(free) <= 0.5 * total(touching)):  # no guess, or where most yields: edges
+    touching = p > 0
+    free = touching & (p < upper)
+    if every(count(free) <= 0.5 * count(touching)):  # no guess, or where most yields: edges
         return inverse
     constant: Any = free.astype(np.float32)
     made = inverse(constant, out=np.empty_like(constant))
-    flexible, stiff = ratio(dot(b, constant), total(p)), ratio(dot(made, constant), total(touching))
+    flexible, stiff = ratio(dot(b, constant), total(p)), ratio(dot(made, constant), count(touching))
     kept = _USUAL / np.maximum(np.multiply(flexible, stiff), _USUAL)
     if every(kept > _WORTH_LESS):
         return inverse
