@@ -75,8 +75,8 @@ PROJECTED_AFTER = [
     ("if some(taken > 1):", "if False:"),
     (
         "residual = passes.advance(p, g, d, Kd, taken, lower, upper, r)",
-        "p += taken * d; np.clip(p, lower, upper, out=p); g = _gradient(quick, p, b, out=g); "
-        "residual = passes.downhill(p, g, lower, upper, r); "
+        "p += taken * d; np.clip(p, lower, upper, out=p); g = quick(p, out=g); "
+        "residual = passes.downhill(p, g, b, lower, upper, r); "
         "coming = np.any((r != 0) & ((p <= lower) | (p >= upper)))",
     ),
 ]

@@ -340,8 +340,11 @@ def test_violation_looks_only_where_a_node_may_move():
     p = np.array([[0.0, 1.0, 0.5, 0.5]])
     gradients = {(7.0, -7.0, 0.0, 0.0): 0, (-2.0, -7.0, 0.0, 0.0): 2,
                  (7.0, 3.0, 0.0, 0.0): 3, (7.0, -7.0, 0.0, -4.0): 4}  # fmt: skip
+    b = np.array([[3.0, 1.0, -2.0, 0.0]])
     for g, expected in gradients.items():
-        assert violation(p, np.array([g]), lower, upper) == expected
+        product = b + g
+        assert violation(p, product, b, lower, upper) == expected
+        assert_array_equal(product, [g])
 
 
 @pytest.mark.parametrize("push", [1.0, -1.0])

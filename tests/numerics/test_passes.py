@@ -53,10 +53,12 @@ def test_a_step_is_that_of_the_expressions(single, kind, shape, seed, taken):
     g[rng.random(shape) < 0.2] = 0.0
     d, r, z, Kd, out = (rng.normal(size=shape).astype(single) for _ in range(5))
 
-    (most, (_, _, _, _, left)), (its_most, (_, _, _, _, its_left)) = both(
-        "downhill", p, g, lower, upper, out
+    b = rng.normal(size=shape)
+    (most, (_, slope, *_, left)), (its_most, (_, its_slope, *_, its_left)) = both(
+        "downhill", p, g + b, b, lower, upper, out
     )
-    assert most == its_most
+    assert most == its_most == pytest.approx(np.abs(left).max(), rel=1e-7)
+    assert_array_equal(slope, its_slope)
     assert_array_equal(left, its_left)
 
     (found, (its_d, *_)), (compiled, (compiled_d, *_)) = both(
@@ -153,7 +155,8 @@ def test_threads_share_the_rows_and_change_nothing(threads):
     def everything():
         its_p, its_g, its_d, its_r = p.copy(), g.copy(), d.copy(), r.copy()
         return [
-            passes.downhill(p, g, lower, upper, its_r), its_r.copy(), passes.products(z, r, r_old),
+            passes.downhill(p, its_g, p, lower, upper, its_r), its_r.copy(), its_g.copy(),
+            passes.products(z, r, r_old),
             passes.direct(its_d, 0.3, z, 0.8, p, g, r, lower, upper), its_d,
             passes.curvature(its_d, Kd), passes.peak(g),
             passes.levels(r, sums, nodes), sums.copy(), nodes.copy(),
@@ -182,7 +185,7 @@ def test_what_is_not_finite_is_no_small_violation(single, bad, shape, seed):
     g[tuple(rng.integers(0, shape))] = bad
     values = g.astype(single)
     for largest in (
-        passes.downhill(p, g, lower, upper, out),
+        passes.downhill(p, g.copy(), p, lower, upper, out),
         passes.advance(p, g, d, Kd, 1.0, lower, upper, out),
         passes.peak(values),
         passes.curvature(d, values)[1],

@@ -44,24 +44,26 @@ struct Sums {
 };
 
 template <class T>
-double downhill(Rows<const double> p, Rows<const double> g, Rows<const double> lower,
-                Rows<const double> upper, Rows<T> out) {
+double downhill(Rows<const double> p, Rows<double> g, Rows<const double> b,
+                Rows<const double> lower, Rows<const double> upper, Rows<T> out) {
     const auto some = [&](Index begin, Index end) {
-        T most = 0, doubt = 0;
+        double most = 0, doubt = 0;
         for (Index i = begin; i < end; ++i) {
-            const double *pi = p[i], *gi = g[i], *low = lower[i], *high = upper[i];
+            const double *pi = p[i], *bi = b[i], *low = lower[i], *high = upper[i];
+            double* gi = g[i];
             T* result = out[i];
 #pragma omp simd reduction(max : most) reduction(+ : doubt)
             for (Index j = 0; j < p.length; ++j) {
-                const T slope = T(downhill_at(pi[j], gi[j], low[j], high[j]));
-                result[j] = slope;
+                gi[j] -= bi[j];
+                const double slope = downhill_at(pi[j], gi[j], low[j], high[j]);
+                result[j] = T(slope);
                 most = std::max(most, std::abs(slope));
                 doubt += 0 * slope;
             }
         }
-        return Peak<T>{most, doubt};
+        return Peak<double>{most, doubt};
     };
-    return over_rows(some, p, g, lower, upper, out).value();
+    return over_rows(some, p, g, b, lower, upper, out).value();
 }
 
 // How the nodes along an axis count to places: those of a part between the middles of the places k

@@ -102,12 +102,12 @@ def minimise_quadratic(
     lower, upper = passes.as_rows(lower, p), passes.as_rows(upper, p)
     first = quick if rough or product is not None else K
     if product is None:
-        product = first(p) if p.any() else np.zeros_like(p)
+        product = first(p) if some(passes.peak(p) > 0) else np.zeros_like(p)
     error = (first is not K) * rounding * passes.peak(product)
-    g = np.subtract(product, b, out=product)
     d, r_old = (np.zeros_like(p, dtype=kind) for _ in range(2))
     r, z, Kd = (np.empty_like(p, dtype=kind) for _ in range(3))
-    residual = passes.downhill(p, g, lower, upper, r)
+    g = product  # as soon as b is taken off
+    residual = passes.downhill(p, g, b, lower, upper, r)
     rz_old, stuck = np.zeros_like(residual), residual < 0
     stretch = np.ones_like(residual)  # the last change of
     length = _FIRST * stretch  # the next trial step
@@ -119,8 +119,8 @@ def minimise_quadratic(
             if every(error == 0) or (rough and every(residual + error <= tolerance)):
                 iteration -= 1
                 break
-            g, error = _gradient(K, p, b, out=g), np.zeros_like(residual)
-            residual = passes.downhill(p, g, lower, upper, r)
+            g, error = K(p, out=g), np.zeros_like(residual)
+            residual = passes.downhill(p, g, b, lower, upper, r)
         else:
             if not every(going):
                 r *= going
@@ -150,19 +150,16 @@ def minimise_quadratic(
             length = length * stretch
 
     if not rough and some(error > 0):
-        g, error = _gradient(K, p, b, out=g), np.zeros_like(residual)
-        residual = violation(p, g, lower, upper)
+        g, error = K(p, out=g), np.zeros_like(residual)
+        residual = passes.downhill(p, g, b, lower, upper, r)
     residual = residual + error
     return Minimum(p, g, residual, iteration, converged=residual <= tolerance)
 
 
-def violation(p: Array, g: Array, lower: Bound, upper: Bound) -> Number:
-    """Largest violation of the optimality conditions, in the units of the gradient."""
+def violation(p: Array, product: Array, b: Array, lower: Bound, upper: Bound) -> Number:
+    """Largest violation of the optimality conditions, in the units of the gradient.
+
+    `product`, that of K with `p`, becomes the gradient.
+    """
     lower, upper = passes.as_rows(lower, p), passes.as_rows(upper, p)
-    return passes.downhill(p, g, lower, upper, np.empty_like(p))
-
-
-def _gradient(K: Operator, p: Array, b: Array, out: Array) -> Array:
-    g = K(p, out=out)
-    g -= b
-    return g
+    return passes.downhill(p, product, b, lower, upper, np.empty_like(p, dtype=np.float32))

@@ -85,9 +85,8 @@ def minimise_nested(
         products += K.count
         iterations, converged = found.iterations, every(found.converged)
         del K, inverse, found  # their arrays make room for those of the check
-        Kp = whole(p, out=Kp)
-        g = np.subtract(Kp, b, out=Kp)
-        residual = violation(p, g, 0.0, upper)
+        g = whole(p, out=Kp)
+        residual = violation(p, g, b, 0.0, upper)
         if every(residual <= tolerance) or not converged:
             checked = Minimum(p, g, residual, iterations, residual <= tolerance)
             return checked, products + whole.count

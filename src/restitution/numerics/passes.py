@@ -68,10 +68,15 @@ def as_rows(bound: Bound, p: Array) -> Bound:
 
 
 @_by_loop
-def downhill(p: Array, g: Array, lower: Bound, upper: Bound, out: Array) -> Number:
-    """The gradient where one may follow it down within the bounds, else zero; its largest value."""
-    np.multiply(g, _free(p, g, lower, upper), out=out)
-    return largest(out)
+def downhill(p: Array, g: Array, b: Array, lower: Bound, upper: Bound, out: Array) -> Number:
+    """Turn K p, in `g`, into the gradient K p − b; its largest value where p may follow it down.
+
+    Going down means within the bounds. `out` is the gradient there, else zero.
+    """
+    g -= b
+    slope = g * _free(p, g, lower, upper)
+    out[...] = slope
+    return largest(slope)
 
 
 @_by_loop
@@ -142,7 +147,7 @@ def leaves(p: Array, d: Array, taken: Number, lower: Bound, upper: Bound) -> Fla
 def advance(
     p: Array, g: Array, d: Array, Kd: Array, taken: Number, lower: Bound, upper: Bound, out: Array
 ) -> Number:
-    """Go to p + `taken` d, where the gradient is g + `taken` Kd; `out` and result of `downhill`.
+    """Go to p + `taken` d, where the gradient is g + `taken` Kd; `out` and result as of `downhill`.
 
     A step that ended at a bound, and is taken whole, gets there without a rounding.
     """
