@@ -140,11 +140,11 @@ def settled(
     plastic, work, adhesive_work, work_error = _past(contact, history)
     yielding = (pressure >= limit) & (gradient < 0)
     if yielding.any():
-        rising = np.where(yielding, gradient, 0.0)
         if history is not None:
             plastic = plastic.copy()
-        plastic[box] -= rising
-        work -= limit * float(rising.sum()) * contact.grid.cell_area
+        lowered = plastic[box]
+        np.subtract(lowered, gradient, out=lowered, where=yielding)
+        work -= limit * float(np.sum(gradient, where=yielding)) * contact.grid.cell_area
     displacement = np.add(gradient, b, out=gradient)
     return State(contact, indentation, box, pressure, displacement, plastic,
                  work, adhesive_work, work_error, residual, convolutions)  # fmt: skip
