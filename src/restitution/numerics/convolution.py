@@ -95,9 +95,9 @@ class FreeConvolution(_Spectral):
 class SpectralFilter(_Spectral):
     """Multiplication by a real, even symbol of the wave vector; a cheap approximate operator.
 
-    `symbol(qx, qy)` takes the angular wave numbers (rad per cell, ≥ 0) as a column and a row. The
-    array is padded only to a fast size, so the filter is periodic, and works in single precision:
-    good enough for a preconditioner.
+    `symbol(qx, qy)` takes the angular wave numbers (rad per cell, ≥ 0) as arrays that broadcast, and
+    makes a new one. The array is padded only to a fast size, so the filter is periodic, and works
+    in single precision: good enough for a preconditioner.
     """
 
     def __init__(
@@ -108,9 +108,11 @@ class SpectralFilter(_Spectral):
     ) -> None:
         mx, my = (fast_size(n) for n in shape)
         super().__init__(shape, (mx, my), device)
-        i, j = device.arange(mx // 2 + 1)[:, None], device.arange(my // 2 + 1)[None, :]
+        # Transposed, as `Device.convolve` wants it.
+        i, j = device.arange(mx // 2 + 1)[None, :], device.arange(my // 2 + 1)[:, None]
         values = symbol(2 * np.pi / mx * i, 2 * np.pi / my * j)
-        self._symbol = (values.T / (mx * my)).astype(np.float32, order="C")
+        values /= mx * my
+        self._symbol = values.astype(np.float32)
 
     def __call__(self, r: Array, out: Array | None = None) -> Array:
         """Return the filtered array, same shape as `r`: in a new array, or in `out`."""
