@@ -91,6 +91,13 @@ def test_lags_that_never_meet_do_not_matter():
     assert_allclose(FreeConvolution(wild, (7, 10))(p), direct(wild, p), rtol=1e-9)
 
 
+def test_what_a_value_makes_at_its_own_node_is_known():
+    K = FreeConvolution(point_load((1.0, 1.0)), (9, 7))
+    p = np.zeros((9, 7))
+    p[2, 3] = 4.0
+    assert K(p)[2, 3] == approx(4.0 * K.own, rel=1e-12)
+
+
 def test_it_is_counted_and_leaves_its_input_and_its_earlier_answers_alone():
     K = FreeConvolution(point_load((1.0, 1.0)), (6, 5))
     p = np.random.default_rng(1).random((6, 5))

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
 from restitution.contact.influence import half_space, inverse_half_space
 from restitution.numerics import nesting, passes
@@ -189,6 +189,46 @@ def test_each_item_has_less_of_its_mean():
         assert alone is not inverse
         assert_allclose(found[k], alone(r[k]), atol=1e-5 * np.abs(found).max())
     assert_allclose(r, kept)
+
+
+def guess(b, upper):
+    return nesting._first_guess(system, b, upper, level=1)
+
+
+@pytest.mark.parametrize("rough", [0.0, 0.02])
+def test_where_nearly_all_yields_the_guess_knows_the_edge(rough, monkeypatch):
+    """Halfway between two nodes is no pressure that nodes beside a jump have."""
+    b, upper = bowl((200, 220), rough=rough), 0.002
+    answer = plain(b, upper).point
+    free = (answer > 0) & (answer < upper)
+    assert 0 < free.sum() < 0.05 * (answer > 0).sum()
+    found = guess(b, upper)
+    assert found.min() == 0
+    assert found.max() == upper
+    wrong = np.abs(found - answer).sum()
+    monkeypatch.setattr(nesting, "_NEARLY_NONE", -1.0)
+    assert wrong < 0.6 * np.abs(guess(b, upper) - answer).sum()
+
+
+def test_where_much_is_elastic_the_guess_is_what_pressure_is_between_nodes(monkeypatch):
+    b = bowl((200, 220), rough=0.02)
+    for upper in (np.inf, 0.25):
+        found = guess(b, upper)
+        with monkeypatch.context() as without:
+            without.setattr(nesting, "_NEARLY_NONE", -1.0)
+            assert_array_equal(guess(b, upper), found)
+
+
+def test_each_item_yields_by_itself():
+    b = np.stack([bowl((130, 140)), bowl((130, 140), rough=0.02)])
+    for limits in ((0.002, np.inf), (np.inf, 0.002), (0.002, 0.003)):
+        upper = np.array(limits)[:, None, None]
+        together = guess(b, upper)
+        assert (together <= upper).all()
+        for its_b, limit, found in zip(b, limits, together, strict=True):
+            # Items rest until all are there: those of a batch may have gone on.
+            alone = guess(its_b, limit)
+            assert np.abs(found - alone).mean() < 0.01 * alone.max()
 
 
 def test_not_converging_is_reported():

@@ -64,13 +64,17 @@ class _Spectral:
 
 
 class FreeConvolution(_Spectral):
-    """Convolution of arrays with one kernel; `count` tells how often it was applied."""
+    """Convolution of arrays with one kernel; `count` tells how often it was applied.
+
+    `own` is the kernel at lag (0, 0): what a node's value makes at the node itself.
+    """
 
     def __init__(self, kernel: Kernel, shape: tuple[int, int], device: Device = CPU) -> None:
         px, py = (2 * fast_size(n) for n in shape)
         super().__init__(shape, (px, py), device)
         # Transposed, as `Device.convolve` wants it.
         lags = kernel(device.arange(px // 2 + 1)[None, :], device.arange(py // 2 + 1)[:, None])
+        self.own = float(lags[0, 0])
         self._spectrum = device.even_spectrum(lags)
         self._single_spectrum = self._spectrum.astype(np.float32)
         self.count = 0
@@ -95,7 +99,7 @@ class FreeConvolution(_Spectral):
 class SpectralFilter(_Spectral):
     """Multiplication by a real, even symbol of the wave vector; a cheap approximate operator.
 
-    `symbol(qx, qy)` takes the angular wave numbers (rad per cell, ≥ 0) as arrays that broadcast, and
+    `symbol(qx, qy)` takes the angular wave numbers (rad per cell, ≥ 0) as arrays that broadcast and
     makes a new one. The array is padded only to a fast size, so the filter is periodic, and works
     in single precision: good enough for a preconditioner.
     """
