@@ -22,7 +22,8 @@ PYBIND11_MODULE(loops, module) {
     narrow::define_loops(next);
     define_narrow_convolve(next);
 #if defined(__x86_64__)
-    if (!__builtin_cpu_supports("avx2")) throw py::import_error("this processor has no AVX2");
+    if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma"))
+        throw py::import_error("this processor has no AVX2, or does not fuse products and sums");
     if (__builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl")) {
         wide::define_loops(module);
         define_wide_convolve(module);
