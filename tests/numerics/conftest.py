@@ -1,4 +1,12 @@
+"""Small problems with dense matrices, and threads."""
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
 import pytest
+
+from restitution.numerics.minimise import minimise_quadratic
 
 
 @pytest.fixture(params=[1, 2, 3, 40])
@@ -9,3 +17,72 @@ def threads(request):
     loops.use_threads(request.param)
     yield request.param
     loops.use_threads(before)
+
+
+@pytest.fixture(scope="session")
+def minimise():
+    """Minimise with a dense matrix A; the points it was applied to come along.
+
+    The program's arrays are of two dimensions: a column serves.
+    """
+
+    def found_and_applied(A, b, lower, upper, *, start=None, inverse=None, **options):
+        applied = []
+
+        def apply(p, out=None):
+            applied.append(p[:, 0].copy())
+            return np.matmul(A, p, out=out)
+
+        options = {"tolerance": 1e-10, "max_iterations": 500} | options
+        found = minimise_quadratic(
+            apply,
+            b[:, None],
+            lower[:, None],
+            upper[:, None],
+            start=np.zeros((b.size, 1)) if start is None else start[:, None],
+            precondition=np.positive if inverse is None else partial(np.matmul, inverse),
+            **options,
+        )
+        return replace(found, point=found.point[:, 0], gradient=found.gradient[:, 0]), applied
+
+    return found_and_applied
+
+
+@pytest.fixture(scope="session")
+def random_matrix():
+    """A symmetric positive definite one of that condition."""
+
+    def made(rng, n, condition=10.0):
+        Q = np.linalg.qr(rng.normal(size=(n, n)))[0]
+        A = Q @ np.diag(condition ** rng.uniform(0, 1, n)) @ Q.T
+        return 0.5 * (A + A.T)
+
+    return made
+
+
+@pytest.fixture(scope="session")
+def random_bounds():
+    """Finite, one-sided and absent bounds, negative lower ones among them."""
+
+    def made(rng, n):
+        kind = rng.integers(0, 4, n)
+        lower = np.where(kind == 0, -np.inf, rng.uniform(-1, 0.2, n))
+        upper = np.where(kind == 1, np.inf, rng.uniform(0.3, 1, n))
+        return lower, upper
+
+    return made
+
+
+@pytest.fixture(scope="session")
+def kkt_violation():
+    """The three conditions of the minimiser, node by node."""
+
+    def largest(A, b, p, lower, upper):
+        worst = 0.0
+        for g, at, low, up in zip(A @ p - b, p, lower, upper, strict=True):
+            assert low <= at <= up
+            may_fall, may_rise = at > low, at < up
+            worst = max(worst, g if may_fall else 0.0, -g if may_rise else 0.0)
+        return worst
+
+    return largest

@@ -87,12 +87,13 @@ def minimise_quadratic(
 
     `start` is overwritten, and so is `product`, that of `quick` with a `start` within the bounds,
     where it is known. `tolerance` is on the violation, in the units of `b`; an item that is there
-    rests until all are. The gradient is computed with K at first, unless `rough`, and then follows
-    the steps with the products of `quick`, which may be K in single precision. What rounding them
-    may have done is added up, as independent errors are, and the gradient is computed anew where
-    the violation is no longer well above that. The result is accepted only on a gradient computed
-    there; or, if `rough`, on one that the steps led to, when the violation and its error are within
-    `tolerance` together. Not converging is reported in the result, never raised.
+    rests until all are. The gradient at `start` is that of K, unless `product` is known or the
+    solve `rough`, and then follows the steps with the products of `quick`, which may be K in single
+    precision. What rounding them may have done is added up, as independent errors are, and the
+    gradient is computed anew where the violation is no longer well above that. The result is
+    accepted only on a gradient computed there; or, if `rough`, on one that the steps led to, when
+    the violation and its error are within `tolerance` together. Not converging is reported in the
+    result, never raised.
     """
     # What only leads to the next step need not be more exact than what makes it.
     kind: Any = np.float64 if quick is None else np.float32

@@ -1,4 +1,4 @@
-"""What the solver does at the nodes between its transforms, several steps at a time.
+"""What the solver does at the nodes but for its transforms, several steps at a time.
 
 Each function is written here as an expression of whole arrays, which holds for batches and on any
 device (`device`). For one problem on this machine the loop of the same name in `loops` does the
