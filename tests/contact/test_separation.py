@@ -43,10 +43,27 @@ def test_a_smaller_error_takes_more_steps(pressed):
 def test_an_error_above_the_asked_one_is_mended_by_finer_steps(monkeypatch):
     grid = Grid((40, 40), (0.15e-6, 0.15e-6))
     contact = Contact(Pair(STEEL, STEEL), smooth(grid), work_of_adhesion=0.09, approach="hertzian")
-    state = solve(contact, 4e-9)
-    assert collide(state).restitution_error <= separation.RESTITUTION_ERROR
+    state = solve(contact, 3.5e-9)
+
+    asked = 0.002
+
+    def error_of_steps():
+        found = separation.separation_of(list(separation.separate(state, tolerance=asked)))
+        e = (found.unloading_work / state.loading_work) ** 0.5
+        return 0.5 * e * found.error / found.unloading_work
+
+    assert error_of_steps() <= asked
     monkeypatch.setattr(separation, "_FINER", (1,))
-    assert collide(state).restitution_error > separation.RESTITUTION_ERROR
+    assert error_of_steps() > asked
+
+
+def test_the_error_holds_what_the_grid_takes_in_letting_go(pressed):
+    """Crack closure releases at 0.985 to 0.99 of w, in steps of any size."""
+    path = list(separation.separate(pressed))
+    found, whole = separation.separation_of(path), collide(pressed, path)
+    surface_energy = pressed.contact.work_of_adhesion * pressed.contact_area
+    added = whole.unloading_work_error - found.error
+    assert 0.01 * surface_energy < added < 0.02 * surface_energy
 
 
 def test_no_step_jumps_over_the_tension():

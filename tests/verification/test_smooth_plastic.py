@@ -56,7 +56,7 @@ def test_equilibrium_contact_area(pair, x, area):
 def test_truncated_table(pair, x, cor):
     state, depth_y, _ = at(pair, x, 12, plasticity="truncated")
     assert collide(state).restitution == pytest.approx(cor, rel=3e-3)
-    assert state.work_error < 1e-4 * state.loading_work
+    assert state.work_error < 1e-3 * state.loading_work  # nodes yield one after the other
     material = pair.radius, pair.contact_modulus, P_Y
     assert state.loading_work == pytest.approx(
         float(thornton_ning.loading_work(x * depth_y, *material)), rel=1e-3

@@ -57,11 +57,13 @@ def separate(state: State, *, tolerance: float = RESTITUTION_ERROR) -> Iterator[
         path = list(_way_back(state, tolerance / finer, finer))
         separation = separation_of(path)
         returned, given = separation.unloading_work, state.loading_work
-        # e = sqrt(W_u/W_l) makes 2 de/e = dW_u/W_u + dW_l/W_l. A pair that sticks has no e.
+        # e = sqrt(W_u/W_l) makes 2 de/e = dW_u/W_u + dW_l/W_l. A pair that sticks has no e. The
+        # error of the loading work, which finer steps do not reduce, takes half of it at most.
         if returned <= 0 or given <= 0:
             break
-        error = separation.error / returned + state.work_error / given
-        if 0.5 * math.sqrt(returned / given) * error <= tolerance:
+        half = 0.5 * math.sqrt(returned / given)
+        loading = min(half * state.work_error / given, 0.5 * tolerance)
+        if half * separation.error / returned + loading <= tolerance:
             break
     yield from path
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 
 import numpy as np
@@ -32,17 +33,27 @@ def integrate_adaptively(
     tolerance: float,
     *,
     depth: int = 12,
+    panels: int = 1,
 ) -> tuple[float, float]:
     """Adaptive Simpson integral of `f` over [a, b], and an estimate of its error.
 
-    For integrands that are dear to evaluate and whose end values `f_a`, `f_b` are known already.
+    For integrands that are expensive to evaluate and whose end values `f_a`, `f_b` are known.
     Intervals are visited from left to right, so that `f` may start from its last answer.
-    `tolerance` is absolute, and given up on after `depth` halvings: the error says so. The error of
-    the whole is the sum of those of the parts (Lyness 1969).
+    `tolerance` is absolute; after `depth` halvings the interval is accepted as it is, and the error
+    says so. The error of the whole is the sum of those of the parts (Lyness 1969).
+
+    The estimate compares two rules on the same interval, so it is zero for an integrand that is
+    zero at all five nodes. `panels` equal intervals to begin with guard against that where the
+    integrand may start inside the interval, as a force that is cut at yield does.
     """
-    middle = 0.5 * (a + b)
-    f_m = f(middle)
-    return _refine(f, a, b, f_a, f_m, f_b, tolerance, depth)
+    edges = [*(a + (b - a) * k / panels for k in range(panels)), b]
+    value, error, left = 0.0, 0.0, f_a
+    for low, high in itertools.pairwise(edges):
+        middle = f(0.5 * (low + high))
+        right = f_b if high is b else f(high)
+        part, its_error = _refine(f, low, high, left, middle, right, tolerance / panels, depth)
+        value, error, left = value + part, error + its_error, right
+    return value, error
 
 
 def _refine(
