@@ -40,3 +40,17 @@ def test_one_is_itself_and_none_or_two_grids_are_refused():
     other = Surface(np.zeros((4, 4)), Grid((4, 4), (1.0, 1.0)))
     with pytest.raises(SurfaceError, match="different grids"):
         composite([one, other])
+
+
+def test_what_the_grid_does_not_carry_of_the_parts():
+    height = np.zeros(GRID.nodes)
+    parts = [
+        {"removed_slope": 0.2, "removed_rms_m": 3e-9, "shortest_carried_m": 1e-6},
+        {"kind": "gaussian"},
+        {"removed_slope": 0.1, "removed_rms_m": 4e-9, "shortest_carried_m": 2e-6},
+    ]
+    told = composite([Surface(height, GRID, part) for part in parts]).provenance
+    assert told["removed_slope"] == 0.2
+    assert told["removed_rms_m"] == pytest.approx(5e-9, abs=0)
+    assert told["shortest_carried_m"] == 2e-6
+    assert "removed_slope" not in composite([Surface(height, GRID)] * 2).provenance

@@ -94,6 +94,21 @@ def test_a_coarser_grid_gets_the_waves_it_can_carry_and_says_so():
     assert "waves shorter than 0.6 x 0.6 um were taken out" in text
 
 
+def test_what_is_left_out_is_told():
+    scan = Grid((120, 96), (0.1e-6, 0.1e-6))
+    length = scan.x[-1] - scan.x[0]
+    phase = np.pi * (scan.x - scan.x[0])[:, None] / length + np.zeros((1, 96))
+    long, short = 3e-8 * np.sin(10 * phase), 1e-8 * np.sin(61 * phase)
+    told = place_on_grid(Surface(long + short, scan), Grid((40, 32), (0.3e-6, 0.3e-6))).provenance
+    assert told["removed_rms_m"] == pytest.approx(short.std(), rel=1e-6, abs=0)
+    slopes = [np.sqrt(np.mean(np.diff(z, axis=0) ** 2)) for z in (short, long + short)]
+    assert told["removed_slope"] == pytest.approx(slopes[0] / slopes[1], rel=1e-6, abs=0)
+    assert told["shortest_carried_m"] == pytest.approx(0.6e-6, abs=0)
+    finer = place_on_grid(Surface(long + short, scan), Grid((80, 64), (0.05e-6, 0.05e-6)))
+    assert finer.provenance["removed_slope"] == finer.provenance["removed_rms_m"] == 0
+    assert finer.provenance["shortest_carried_m"] == pytest.approx(0.2e-6, abs=0)
+
+
 def test_only_the_axis_that_is_coarser_loses_waves():
     placed = place_on_grid(ROUGH, Grid((10, 31), (0.4e-6, 0.2e-6)))
     again = place_on_grid(

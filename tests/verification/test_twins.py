@@ -16,9 +16,9 @@ def test_a_twin_of_a_scan(topographies, name, outliers):
     for seed in range(4):
         twin = extend(scan, tuple(2 * edge for edge in scan.grid.size), "twin", seed=seed)
         have = describe(twin)
-        assert have["Sq_m"] == pytest.approx(want["Sq_m"], rel=1e-6)
-        assert have["Ssk"] == pytest.approx(want["Ssk"], abs=0.01)
-        assert have["Sku"] == pytest.approx(want["Sku"], rel=0.01)
+        assert have["Sq_m"] == pytest.approx(want["Sq_m"], rel=1e-3, abs=0)
+        assert have["Ssk"] == pytest.approx(want["Ssk"], abs=0.02)
+        assert have["Sku"] == pytest.approx(want["Sku"], rel=0.015)
         assert have["Sdq"] == pytest.approx(want["Sdq"], rel=0.02)
         assert twin.provenance["spectrum_misfit"] < 0.35
         found.append((have["Sdq"] / want["Sdq"], twin.provenance["spectrum_misfit"]))

@@ -157,7 +157,7 @@ class MeasuredRoughness(Table):
         """The roughness on `grid`."""
         scan = self.scan(folder)
         if self.extend is not None:
-            scan = extend(scan, grid.size, self.extend, seed=self.seed)
+            return extend(scan, grid, self.extend, seed=self.seed)
         return place_on_grid(scan, grid)
 
 

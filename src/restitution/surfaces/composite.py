@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 
 from restitution.errors import SurfaceError
 from restitution.surfaces.surface import Surface, is_periodic
@@ -14,8 +15,8 @@ def composite(surfaces: Sequence[Surface]) -> Surface:
     Both surfaces are taken with their summits up and with the axes of the contact: where the
     orientation of two scans to each other matters, one is to be handed over turned or mirrored.
     The provenance holds that of the parts, numbered from 1, and of the whole what the rest of the
-    program asks for: the files, the coarsest pixel and whether all are periodic. Raises
-    `SurfaceError` for none and for different grids.
+    program asks for: the files, the coarsest pixel, what the grid does not carry and whether all
+    are periodic. Raises `SurfaceError` for none and for different grids.
     """
     if not surfaces:
         raise SurfaceError("composite: there is no surface to add; give at least one")
@@ -33,6 +34,7 @@ def composite(surfaces: Sequence[Surface]) -> Surface:
         pixels = [float(p[f"pixel_{axis}_m"]) for p in provenances if f"pixel_{axis}_m" in p]
         if pixels:
             whole[f"pixel_{axis}_m"] = max(pixels)
+    whole.update(_removed(provenances))
     if all(is_periodic(surface) for surface in surfaces):
         whole["periodicity"] = "periodic over the domain"
     notices = [str(p["notice"]) for p in provenances if "notice" in p]
@@ -42,3 +44,19 @@ def composite(surfaces: Sequence[Surface]) -> Surface:
         whole.update({f"part_{number}_{key}": value for key, value in provenance.items()})
     height = sum((surface.height for surface in surfaces[1:]), start=first.height)
     return Surface(height, first.grid, whole)
+
+
+def _removed(provenances: Sequence[Mapping[str, str | float]]) -> dict[str, float]:
+    """What the grid does not carry of the parts: the worst of them, and the rms of all."""
+    known = [p for p in provenances if "removed_slope" in p]
+    if not known:
+        return {}
+
+    def values(key: str) -> list[float]:
+        return [float(p[key]) for p in known]
+
+    return {
+        "shortest_carried_m": max(values("shortest_carried_m")),
+        "removed_rms_m": math.hypot(*values("removed_rms_m")),
+        "removed_slope": max(values("removed_slope")),
+    }

@@ -18,3 +18,22 @@ def white_noise(shape: tuple[int, int], seed: int) -> NDArray[np.float64]:
     u = ((raw >> np.uint64(12)).astype(np.float64) + 0.5) * 2.0**-52
     noise: NDArray[np.float64] = ndtri(u).reshape(shape)
     return noise
+
+
+def wave_phases(seed: int, numbers: NDArray[np.int64], count: int) -> NDArray[np.float64]:
+    """Phases (rad) of the waves with numbers (m, n), m in `numbers` and n in 0 … count − 1.
+
+    Shape (numbers.size, count). A phase depends on `seed`, m and n alone, so that a finer grid
+    has the phases of a coarser one and more. Waves with n = 0 come in conjugate pairs, m and −m.
+    """
+    phases = np.empty((numbers.size, count))
+    for row, m in enumerate(numbers.tolist()):
+        # One stream for each m; like that of PCG64, the raw stream of Philox never changes.
+        key = np.array([seed, m % 2**64], dtype=np.uint64)
+        raw = np.random.Philox(key=key).random_raw(count)
+        phases[row] = (raw >> np.uint64(12)).astype(np.float64)
+        if m < 0:
+            opposite = np.random.Philox(key=np.array([seed, -m], dtype=np.uint64)).random_raw(1)
+            phases[row, 0] = -(opposite >> np.uint64(12)).astype(np.float64)[0]
+    phases *= 2.0**-51 * np.pi
+    return phases

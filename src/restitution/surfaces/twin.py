@@ -1,11 +1,20 @@
 """A statistical twin of a scan: another surface, of any size, alike in all that is counted.
 
-1. The scan's power spectrum (`psd`) is interpolated to the wave vectors of the larger surface.
-   Waves longer than the scan have not been measured and are left out.
-2. It is multiplied by a + b/q² such that height and slope have the scan's mean squares: tapers see
-   less of the scan's rim than of its middle.
-3. These amplitudes are given the phases of white noise, then heights and amplitudes are adjusted
-   in turns until the distribution of heights is the scan's (`heights.adjusted`).
+The waves of a twin (`wave_spectrum`) have random phases at first. Then heights and amplitudes are
+adjusted in turns (Schreiber and Schmitz 1996, Phys. Rev. Lett. 77, 635–638), for only together
+do phases give the heights a skewness and a kurtosis. Phases and adjustment depend on the scan, the
+period and the seed, never on the grid: a grid twice as fine gets the same surface and its shorter
+waves.
+
+That is why the adjustment goes from long waves to short ones:
+
+* Longest band: all waves together, on as few nodes as carry them. The wanted heights are those of
+  the scan without its shorter waves. It ends with the amplitudes, which are exact.
+* Each further band halves the shortest wave. Only the new phases are adjusted.
+* Bands end where the waves left over have 1 % of the scan's mean square height: they say next to
+  nothing about its distribution, and keep their random phases.
+
+A coarse grid takes its waves out of the first band that has all of them.
 """
 
 from __future__ import annotations
@@ -15,126 +24,269 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.surfaces.describe import describe, rms_slope
-from restitution.surfaces.heights import adjusted
-from restitution.surfaces.noise import white_noise
 from restitution.surfaces.psd import power_spectral_density, radial_spectrum
+from restitution.surfaces.resample import carried, crop_to, left_out, place_on_grid
 from restitution.surfaces.surface import Surface
+from restitution.surfaces.wave_spectrum import Modes, WaveSpectrum, spectrum_of
 
 Array = NDArray[np.float64]
 
+_LEAST_PIXELS = 16  # of a scan along either axis: fewer say too little about its spectrum
+_LEFT_OVER = 0.01  # of the mean square height, in waves that are not adjusted
+_FIRST_BAND = 2**20  # nodes of the longest band, at most
+_LEAST_FIRST = 8  # pixels of the scan, once the shorter waves are left out
+_WORK = 2**24  # nodes times adjustments of a band
+_ADJUSTMENTS = 3, 60  # fewest and most
+_NEGLIGIBLE = 1e-3  # misfit of heights
+_STANDSTILL = 0.05  # of the misfit of heights, from one adjustment to the next
 _PARTS = 16  # of the twin, as large as the scan, that its spectrum is compared on
+_COMPARED = 2**23  # nodes of these parts in all, if there are more than one
 _UNLIKE = 0.5  # misfit of the spectrum from which on the twin is said not to be one
+_PROBABILITIES = 0.5 * (1 - np.cos(np.linspace(0, np.pi, 4097)))  # closer in the tails
+_TABLE = 2**14  # steps between the lowest and the highest node
 
 
-def twin(scan: Surface, nodes: tuple[int, int], seed: int) -> Surface:
-    """A periodic surface of `nodes` or some more with the spacing of `scan`, and its statistics.
+def twin(scan: Surface, grid: Grid, seed: int) -> Surface:
+    """A twin of `scan` on `grid`, periodic over it (or over a multiple, if the scan is larger).
 
-    Rq, skewness and kurtosis are the scan's; how far the slope and the spectrum are off is in the
-    provenance (`twin_Sdq`, `spectrum_misfit`: root mean square of the relative difference, on parts
-    as large as the scan, over bands of a quarter octave, each by its share of the mean squares of
-    height and slope), beside the scan's own (`scan_…`).
+    With all waves Rq is the scan's, and skewness and kurtosis nearly. What the cells of `grid`
+    cannot carry is left out (`removed_…` in the provenance). How far the spectrum of the others is
+    off is in `spectrum_misfit`: root mean square of the relative difference, on parts as large as
+    the scan, over bands of a quarter octave, each by its share of the mean squares of height and
+    slope. The provenance has the scan's own statistics, too (`scan_…`). Raises `SurfaceError` for a
+    scan that is flat or has fewer than 16 pixels along an axis, and for cells that carry no wave.
     """
-    from scipy.fft import irfft2, next_fast_len, rfft2
+    _check(scan, grid)
+    repeats = tuple(
+        math.ceil(s / g * (1 - 1e-9)) for s, g in zip(scan.grid.size, grid.size, strict=True)
+    )
+    nodes = repeats[0] * grid.nodes[0], repeats[1] * grid.nodes[1]
+    whole = Grid(nodes, grid.spacing)
+    spectrum = spectrum_of(scan, whole.size)
+    height = _heights(_adjusted(spectrum, scan, whole, seed), nodes)
+    made = Surface(np.ascontiguousarray(crop_to(height, grid.nodes)), grid)
+    return Surface(made.height, grid, _provenance(scan, made, seed, periodic=nodes == grid.nodes))
 
-    nodes = next_fast_len(nodes[0], real=True), next_fast_len(nodes[1], real=True)
-    grid = Grid(nodes, scan.grid.spacing)
-    z = scan.height - scan.height.mean()
-    H = np.sqrt(_spectrum(scan, grid))[:, : nodes[1] // 2 + 1]
-    phases = np.exp(1j * np.angle(rfft2(white_noise(nodes, seed))))
-    height = irfft2(H * phases, s=nodes)
-    height, _ = adjusted(height, _quantiles(z, height.size))
-    made = Surface(height, grid)
+
+def _check(scan: Surface, grid: Grid) -> None:
+    name = scan.provenance.get("file", "the scan")
+    pixels = " x ".join(map(str, scan.grid.nodes))
+    if min(scan.grid.nodes) < _LEAST_PIXELS:
+        raise SurfaceError(
+            f"{name}: {pixels} pixels are too few for the spectrum of a twin; give a scan of at "
+            f'least {_LEAST_PIXELS} x {_LEAST_PIXELS}, or extend = "mirror"'
+        )
+    if np.ptp(scan.height) <= 8 * np.finfo(np.float64).eps * float(np.abs(scan.height).max()):
+        raise SurfaceError(f"{name}: is flat, so it has no twin; leave out roughness.extend")
+    if any(2 * h >= s for h, s in zip(grid.spacing, scan.grid.size, strict=True)):
+        raise SurfaceError(
+            f"grid.spacing: cells of {1e6 * max(grid.spacing):g} um carry no wave of a scan of "
+            f"{1e6 * scan.grid.size[0]:.4g} x {1e6 * scan.grid.size[1]:.4g} um; make them smaller"
+        )
+
+
+def _adjusted(spectrum: WaveSpectrum, scan: Surface, grid: Grid, seed: int) -> Modes:
+    """The waves of the twin that `grid` carries, as `rfft2` on it orders them."""
+    cells = _bands(spectrum, scan)
+    modes: Modes | None = None
+    most = 0, 0
+    for cell in cells:
+        modes, most = _band(spectrum, scan, cell, seed, modes, most)
+        if all(c <= h for c, h in zip(cell, grid.spacing, strict=True)):
+            break
+    assert modes is not None  # there is at least one band
+    wanted = spectrum.numbers(grid.spacing)
+    common = min(wanted[0], most[0]), min(wanted[1], most[1])
+    if wanted == common:
+        full: Modes = np.zeros((grid.nodes[0], grid.nodes[1] // 2 + 1), dtype=np.complex128)
+    else:
+        full = spectrum.modes(wanted, grid.nodes, seed)
+    _copy(modes, full, common)
+    return full
+
+
+def _bands(spectrum: WaveSpectrum, scan: Surface) -> list[tuple[float, float]]:
+    """Cells (m) that carry the waves of each band, coarsest first."""
+    most = (1 - _LEFT_OVER) * float(np.var(scan.height))
+
+    def cell(level: int) -> tuple[float, float]:
+        return scan.grid.spacing[0] * 2.0**level, scan.grid.spacing[1] * 2.0**level
+
+    def enough(level: int) -> bool:
+        pixels: int = min(scan.grid.nodes)
+        return pixels >= _LEAST_FIRST << level
+
+    last = 0
+    while enough(last + 1) and float(np.var(carried(scan, cell(last + 1)))) > most:
+        last += 1
+    first = last
+    while enough(first + 1) and math.prod(_nodes(spectrum.numbers(cell(first)))) > _FIRST_BAND:
+        first += 1
+    return [cell(level) for level in range(first, last - 1, -1)]
+
+
+def _band(
+    spectrum: WaveSpectrum,
+    scan: Surface,
+    cell: tuple[float, float],
+    seed: int,
+    known: Modes | None,
+    kept: tuple[int, int],
+) -> tuple[Modes, tuple[int, int]]:
+    """The waves that `cell` carries, those of `known` up to the numbers `kept` as they are."""
+    from scipy.fft import irfft2, rfft2
+
+    most = spectrum.numbers(cell)
+    nodes = _nodes(most)
+    modes = spectrum.modes(most, nodes, seed)
+    size = np.abs(modes)
+    power = 2 * float((size**2).sum()) - float((size[:, 0] ** 2).sum())
+    wanted = np.sort(carried(scan, cell), axis=None)
+    wanted -= wanted.mean()
+    wanted *= math.sqrt(power / float(np.mean(wanted**2)))
+    misfit, fewest = math.inf, _ADJUSTMENTS[0]
+    for _ in range(max(fewest, min(_WORK // math.prod(nodes), _ADJUSTMENTS[1]))):
+        if known is not None:
+            _copy(known, modes, kept)
+        z = irfft2(modes, s=nodes, norm="forward")
+        adjusted = _with_heights(z, wanted)
+        z -= adjusted
+        last, misfit = misfit, math.sqrt(float(np.mean(z**2)) / power)
+        if misfit < _NEGLIGIBLE or misfit > last * (1 - _STANDSTILL):
+            break
+        modes = rfft2(adjusted, norm="forward")
+        modes *= size / np.maximum(np.abs(modes), np.finfo(float).tiny)
+    if known is not None:
+        _copy(known, modes, kept)
+    return modes, most
+
+
+def _with_heights(z: Array, heights: Array) -> Array:
+    """z with the distribution of the ascending `heights`, in the same order."""
+    have = np.sort(z, axis=None)
+    low, high = float(have[0]), float(have[-1])
+    if not low < high:
+        return z
+    # A table with equal steps is read much faster than one that has to be searched.
+    table = np.interp(np.linspace(low, high, _TABLE + 1), _quantiles(have), _quantiles(heights))
+    return _between(table, (z - low) * (_TABLE / (high - low)))
+
+
+def _quantiles(ascending: Array) -> Array:
+    return _between(ascending, _PROBABILITIES * (ascending.size - 1))
+
+
+def _between(table: Array, at: Array) -> Array:
+    """Linear interpolation at the places `at`, counted from the first of `table`."""
+    before = np.minimum(at.astype(np.intp), table.size - 2)
+    first = table[before]
+    before += 1
+    return first + (at - before + 1) * (table[before] - first)
+
+
+def _nodes(most: tuple[int, int]) -> tuple[int, int]:
+    """As few nodes as carry waves up to the numbers `most`, and are quick to transform."""
+    from scipy.fft import next_fast_len
+
+    return (
+        next_fast_len(2 * most[0] + 2, real=True),
+        next_fast_len(2 * most[1] + 2, real=True),
+    )
+
+
+def _copy(source: Modes, target: Modes, most: tuple[int, int]) -> None:
+    """Put the waves of `source` up to the numbers `most` into `target`."""
+    M, N = most
+    target[: M + 1, : N + 1] = source[: M + 1, : N + 1]
+    if M:
+        target[-M:, : N + 1] = source[-M:, : N + 1]
+
+
+def _heights(modes: Modes, nodes: tuple[int, int]) -> Array:
+    """The sum of the waves, whose phases count from the origin of `Grid`, node n // 2."""
+    from scipy.fft import irfft2
+
+    number = np.fft.fftfreq(nodes[0], 1 / nodes[0]), np.arange(modes.shape[1])
+    for k, n, shape in zip(number, nodes, ((-1, 1), (1, -1)), strict=True):
+        modes *= np.exp(-2j * np.pi * (n // 2) / n * k).reshape(shape)
+    height: Array = irfft2(modes, s=nodes, norm="forward", overwrite_x=True)
+    return height
+
+
+def _provenance(
+    scan: Surface, made: Surface, seed: int, *, periodic: bool
+) -> dict[str, str | float]:
+    grid = made.grid
     misfit = _misfit(made, scan)
     statistics = {
         f"scan_{key}": value for key, value in describe(scan).items() if value is not None
     }
+    removed = left_out(scan, carried(scan, grid.spacing), grid.spacing)
     edges = f"{1e6 * scan.grid.size[0]:.4g} x {1e6 * scan.grid.size[1]:.4g} um"
     slope = rms_slope(made)
     notice = (
         f"{scan.provenance.get('file', 'the scan')}: the surface is a statistical twin (seed "
-        f"{seed}) of the scan of {edges}, not the scan itself: Rq is the same, rms slope "
-        f"{slope:.3g} instead of {rms_slope(scan):.3g}, spectrum within {misfit:.0%} of the scan's"
+        f"{seed}) of the scan of {edges}, not the scan itself: Rq "
+        f"{1e9 * float(np.std(made.height)):.4g} instead of {1e9 * statistics['scan_Sq_m']:.4g} "
+        f"nm, rms slope {slope:.3g} instead of {rms_slope(scan):.3g}, spectrum within {misfit:.0%} "
+        "of the scan's"
     )
+    if removed["removed_slope"] > 0:
+        notice += (
+            f"; waves shorter than {1e6 * removed['shortest_carried_m']:.4g} um, which this grid "
+            f"does not carry, have {removed['removed_slope']:.0%} of the scan's rms slope"
+        )
     if misfit > _UNLIKE:
         notice += (
             "; one spectrum does not describe this scan (steps, scratches, single particles, or "
             "a form that is left in it?): crop it, take out outliers or level it"
         )
-    return Surface(
-        height,
-        grid,
-        {
-            **scan.provenance,
-            "source": "twin",
-            "extension": "statistical twin",
-            "seed": seed,
-            "longest_wave_m": max(scan.grid.size),
-            "spectrum_misfit": misfit,
-            "twin_Sdq": slope,
-            **statistics,
-            "periodicity": "periodic over the domain",
-            "notice": notice,
-        },
-    )
-
-
-def _spectrum(scan: Surface, grid: Grid) -> Array:
-    """Power of the modes of `fft2` on `grid`, to any scale, shape `grid.nodes`."""
-    from scipy.ndimage import map_coordinates
-
-    C = np.fft.fftshift(power_spectral_density(scan))
-    # Wave vectors in units of the scan's: its modes are at whole numbers.
-    number = [np.fft.fftfreq(n) * m for n, m in zip(grid.nodes, C.shape, strict=True)]
-    at = np.meshgrid(*(k + m // 2 for k, m in zip(number, C.shape, strict=True)), indexing="ij")
-    S: Array = map_coordinates(C, at, order=1, mode="grid-wrap")
-    waves2 = number[0][:, None] ** 2 + number[1][None, :] ** 2
-    S[waves2 < 1 - 1e-9] = 0.0
-    # Mean squares of height and of slope between neighbours, as `rms_slope` takes it.
-    slope2 = sum(
-        (4 * np.sin(np.pi * k / m) ** 2 / h**2).reshape(shape)
-        for k, m, h, shape in zip(number, C.shape, grid.spacing, ((-1, 1), (1, -1)), strict=True)
-    )
-    long = S / np.maximum(waves2, 1.0)
-    moments = [[S.sum(), long.sum()], [(S * slope2).sum(), (long * slope2).sum()]]
-    wanted = float(np.var(scan.height)), rms_slope(scan) ** 2
-    a, b = np.linalg.solve(moments, wanted)
-    power: Array = np.maximum(a * S + b * long, 0.0)
-    return power
-
-
-def _quantiles(z: Array, n: int) -> Array:
-    """n heights, ascending, with the distribution and the mean square of z."""
-    of_z = (np.arange(z.size) + 0.5) / z.size
-    heights = np.interp((np.arange(n) + 0.5) / n, of_z, np.sort(z, axis=None))
-    heights -= heights.mean()
-    heights *= math.sqrt(float(np.mean(z**2)) / float(np.mean(heights**2)))
-    return heights
+    return {
+        **scan.provenance,
+        "source": "twin",
+        "extension": "statistical twin",
+        "seed": seed,
+        "longest_wave_m": max(scan.grid.size),
+        "spectrum_misfit": misfit,
+        "twin_Sdq": slope,
+        **statistics,
+        **({"periodicity": "periodic over the domain"} if periodic else {}),
+        "placement": "made on the grid, with the waves that it carries",
+        **removed,
+        "notice": notice,
+    }
 
 
 def _misfit(made: Surface, scan: Surface) -> float:
-    """How far the radial spectrum of parts of `made` is from that of `scan`, relatively."""
-    (nx, ny), (mx, my) = made.grid.nodes, scan.grid.nodes
-    nx, ny = min(nx, mx), min(ny, my)
+    """How far the radial spectrum of parts of `made` is from that of `scan`, relatively.
+
+    Only waves that both carry are compared.
+    """
+    grid, pixel = made.grid, scan.grid.spacing
+    nx, ny = (
+        min(n, int(s / h * (1 + 1e-9)))
+        for n, s, h in zip(grid.nodes, scan.grid.size, grid.spacing, strict=True)
+    )
     corners = [
         (i, j)
-        for i in range(0, made.grid.nodes[0] - nx + 1, nx)
-        for j in range(0, made.grid.nodes[1] - ny + 1, ny)
-    ]
-    part = Grid((nx, ny), scan.grid.spacing)
-    density = np.mean(
-        [
-            power_spectral_density(Surface(made.height[i : i + nx, j : j + ny], part))
-            for i, j in corners[:_PARTS]
-        ],
-        axis=0,
-    )
-    of_scan = radial_spectrum(Surface(scan.height[:nx, :ny], part))
+        for i in range(0, grid.nodes[0] - nx + 1, nx)
+        for j in range(0, grid.nodes[1] - ny + 1, ny)
+    ][: max(1, min(_PARTS, _COMPARED // (nx * ny)))]
+    part = Grid((nx, ny), grid.spacing)
+    density = np.zeros(part.nodes)
+    for i, j in corners:
+        one = Surface(made.height[i : i + nx, j : j + ny], part)
+        density += power_spectral_density(one) / len(corners)
+    of_scan = radial_spectrum(Surface(place_on_grid(scan, part).height, part))
     of_twin = radial_spectrum(Surface(made.height[:nx, :ny], part), density)
+    both = of_scan.wave_number <= math.pi / max(*pixel, *grid.spacing) * (1 + 1e-9)
+    q, C = of_scan.wave_number[both], of_scan.density[both]
+    if not q.size or not C.max() > 0:
+        return 0.0
     # Bands count by their share of the mean squares of height and slope, ∫ C q^(2 or 4) d(ln q).
-    share = sum(
-        power / power.sum() for power in (of_scan.density * of_scan.wave_number**k for k in (2, 4))
-    )
-    off = (of_twin.density / of_scan.density - 1) ** 2
+    share = sum(power / power.sum() for power in (C * q**k for k in (2, 4)))
+    off = (of_twin.density[both] / np.maximum(C, 1e-12 * C.max()) - 1) ** 2
     return float(np.sqrt(np.average(off, weights=share)))

@@ -1,0 +1,64 @@
+"""A scan continued by its mirror image beyond every edge, and so on, at the nodes of a grid."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.numerics.grid import Grid
+from restitution.surfaces.resample import (
+    carried,
+    left_out,
+    place_on_grid,
+    same_spacing,
+    spline,
+)
+from restitution.surfaces.surface import Surface
+
+Array = NDArray[np.float64]
+
+
+def mirrored(scan: Surface, grid: Grid) -> Surface:
+    """The tiles of `scan` at the nodes of `grid`, one of them in the middle.
+
+    A grid that the scan covers gets the scan alone. Waves that the cells of `grid` cannot carry are
+    taken out of the tiles, otherwise heights are those of a cubic spline through the pixels.
+    """
+    if all(g <= s * (1 + 1e-9) for g, s in zip(grid.size, scan.grid.size, strict=True)):
+        return place_on_grid(scan, grid)
+    at = [
+        _pixel(along, axis) for axis, along in zip(_axes(scan.grid), (grid.x, grid.y), strict=True)
+    ]
+    kept = carried(scan, grid.spacing, mirrored=True)
+    if same_spacing(scan.grid, grid):
+        height = kept[np.ix_(*(np.rint(a).astype(int) for a in at))]
+    else:
+        height = kept
+        for a in at:
+            height = spline(height, np.arange(height.shape[0], dtype=float), a).T
+    tiles = " x ".join(f"{g / s:.3g}" for g, s in zip(grid.size, scan.grid.size, strict=True))
+    return Surface(
+        np.ascontiguousarray(height),
+        grid,
+        {
+            **scan.provenance,
+            "source": "mirrored",
+            "extension": f"mirrored tiling, {tiles} times the scan",
+            "placement": "tiles of the scan, with the waves that the grid carries",
+            **left_out(scan, kept, grid.spacing),
+            "notice": f"{scan.provenance.get('file', 'the scan')}: the surface is {tiles} "
+            "tiles of the scan and its mirror images, and repeats itself",
+        },
+    )
+
+
+def _axes(grid: Grid) -> tuple[tuple[int, float], tuple[int, float]]:
+    return (grid.nodes[0], grid.spacing[0]), (grid.nodes[1], grid.spacing[1])
+
+
+def _pixel(along: Array, axis: tuple[int, float]) -> Array:
+    """Where in the scan, in pixels from its first, the tiles have the heights `along` an axis."""
+    n, h = axis
+    from_edge = np.mod(along / h + n // 2 + 0.5, 2 * n)
+    folded: Array = np.minimum(from_edge, 2 * n - from_edge) - 0.5
+    return np.clip(folded, 0.0, n - 1.0)

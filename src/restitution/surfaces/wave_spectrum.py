@@ -1,0 +1,133 @@
+"""The waves of a statistical twin: amplitudes from the spectrum of a scan, over another period.
+
+1. The scan's power spectrum C (`psd`) is interpolated linearly to the wave vectors of the twin.
+   Waves longer than the scan have not been measured and are left out.
+2. It is multiplied by a + b/k² such that height and slope have the scan's mean squares: tapers see
+   less of the scan's rim than of its middle.
+
+Both depend on the scan and on the period of the twin, never on the grid, so that grids of every
+spacing get the same waves.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.surfaces.describe import rms_slope
+from restitution.surfaces.noise import wave_phases
+from restitution.surfaces.psd import power_spectral_density
+from restitution.surfaces.surface import Surface
+
+Array = NDArray[np.float64]
+Modes = NDArray[np.complex128]
+
+_SUMMED = 2**20  # waves that are summed one by one for the mean squares; others by an integral
+_LEAST = 2  # waves over the scan, up to which they are always summed one by one
+_ROWS = 2**20  # waves that are made at a time
+_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True)
+class WaveSpectrum:
+    """Mean square heights of the waves (m, n) of a surface with edges `period` (m).
+
+    Wave (m, n) has the wave vector 2π(m/Px, n/Py). `density` is the scan's spectrum, zero wave
+    vector in the middle, in mean square height per wave of the twin.
+    """
+
+    density: Array
+    waves: tuple[float, float]  # per wave of the scan, along either axis
+    pixel: tuple[float, float]  # of the scan, m
+    period: tuple[float, float]
+    flat: float = 1.0  # a
+    steep: float = 0.0  # b, for k in waves over the scan
+
+    def power(self, m: NDArray[np.int64], n: NDArray[np.int64]) -> Array:
+        """Mean square height (m²) of the waves (m, n), shape (m.size, n.size)."""
+        C, k2 = self._raw(m, n)
+        return np.maximum(C * (self.flat + self.steep / np.maximum(k2, 1.0)), 0.0)
+
+    def _raw(self, m: NDArray[np.int64], n: NDArray[np.int64]) -> tuple[Array, Array]:
+        """Interpolated density, and k² in waves over the scan."""
+        from scipy.ndimage import map_coordinates
+
+        kx, ky = m / self.waves[0], n / self.waves[1]
+        middle = [size // 2 for size in self.density.shape]
+        at = np.meshgrid(kx + middle[0], ky + middle[1], indexing="ij")
+        C: Array = map_coordinates(self.density, at, order=1, mode="grid-wrap")
+        k2 = kx[:, None] ** 2 + ky[None, :] ** 2
+        C[k2 < 1 - _ROUNDING] = 0.0
+        return C, k2
+
+    def numbers(self, spacing: tuple[float, float]) -> tuple[int, int]:
+        """Largest wave numbers m and n that cells of `spacing` (m) carry, and the scan has."""
+        most = [
+            math.ceil(0.5 * edge / max(h, pixel) * (1 - _ROUNDING)) - 1
+            for edge, h, pixel in zip(self.period, spacing, self.pixel, strict=True)
+        ]
+        return most[0], most[1]
+
+    def modes(self, most: tuple[int, int], nodes: tuple[int, int], seed: int) -> Modes:
+        """Waves up to the numbers `most` with random phases, as `rfft2` on `nodes` orders them.
+
+        The transform is normalised "forward": heights are the sum of the modes.
+        """
+        M, N = most
+        full: Modes = np.zeros((nodes[0], nodes[1] // 2 + 1), dtype=np.complex128)
+        n = np.arange(N + 1)
+        rows = max(1, _ROWS // (N + 1))
+        for first in range(-M, M + 1, rows):
+            m = np.arange(first, min(first + rows, M + 1))
+            phases = wave_phases(seed, m, N + 1)
+            full[m, : N + 1] = np.sqrt(self.power(m, n)) * np.exp(1j * phases)
+        return full
+
+
+def spectrum_of(scan: Surface, period: tuple[float, float]) -> WaveSpectrum:
+    """The waves of twins of `scan` with edges `period` (m)."""
+    C = np.fft.fftshift(power_spectral_density(scan))
+    waves = tuple(p / s for p, s in zip(period, scan.grid.size, strict=True))
+    C *= 1 / (scan.grid.size[0] * scan.grid.size[1] * waves[0] * waves[1])
+    raw = WaveSpectrum(C, (waves[0], waves[1]), scan.grid.spacing, period)
+    wanted = float(np.var(scan.height)), rms_slope(scan) ** 2
+    moments = _moments(raw)
+    a, b = wanted[0] / moments[0, 0], 0.0
+    if abs(np.linalg.det(moments)) > 1e-9 * abs(moments[0, 0] * moments[1, 1]):
+        a, b = (float(value) for value in np.linalg.solve(moments, wanted))
+    spectrum = WaveSpectrum(C, raw.waves, raw.pixel, period, a, b)
+    # Powers are cut off at zero: the mean square height is to be exact all the same.
+    excess = _moments(spectrum, raw=False)[0, 0] / wanted[0]
+    return WaveSpectrum(C, raw.waves, raw.pixel, period, a / excess, b / excess)
+
+
+def _moments(spectrum: WaveSpectrum, *, raw: bool = True) -> Array:
+    """Mean squares of height and slope (rows), of C and of C/k² (columns; 0 unless `raw`).
+
+    Slopes are those between neighbouring pixels, as `rms_slope` takes them. Long waves are summed
+    one by one, short ones over the wave vectors of the scan.
+    """
+    wx, wy = spectrum.waves
+    (mx, my), (hx, hy) = spectrum.density.shape, spectrum.pixel
+    K = max(_LEAST, min(int(0.5 * math.sqrt(_SUMMED / (wx * wy))), (min(mx, my) - 1) // 2))
+    m, n = (np.arange(-int((K + 0.5) * w), int((K + 0.5) * w) + 1) for w in (wx, wy))
+    k, l = np.arange(mx) - mx // 2, np.arange(my) - my // 2  # noqa: E741
+    beyond = np.maximum(np.abs(k)[:, None], np.abs(l)[None, :]) > K
+    k2 = np.add.outer((k * 1.0) ** 2, (l * 1.0) ** 2)
+    moments = np.zeros((2, 2))
+    near, far = spectrum._raw(m, n), (np.where(beyond, wx * wy * spectrum.density, 0.0), k2)
+    for (C, squares), x, y in ((near, m / (mx * wx), n / (my * wy)), (far, k / mx, l / my)):
+        slope2 = np.add.outer(
+            4 * np.sin(np.pi * x) ** 2 / hx**2, 4 * np.sin(np.pi * y) ** 2 / hy**2
+        )
+        squares = np.maximum(squares, 1.0)
+        if not raw:
+            C = np.maximum(C * (spectrum.flat + spectrum.steep / squares), 0.0)
+        moments += [
+            [C.sum(), (C / squares).sum() if raw else 0.0],
+            [(C * slope2).sum(), (C / squares * slope2).sum() if raw else 0.0],
+        ]
+    return moments
