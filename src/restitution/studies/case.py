@@ -32,7 +32,8 @@ from restitution.studies.tables import (
     Series,
     UnloadingTable,
 )
-from restitution.surfaces import Surface, composite, refine
+from restitution.surfaces import Surface, composite
+from restitution.surfaces.refine import divided
 
 
 def _one_or_more(value: Any) -> Any:
@@ -132,15 +133,13 @@ class Case(Table):
 
     def surface(self, folder: Path) -> Surface:
         """The composite roughness on the grid; files are relative to `folder`."""
-        grid = self._own_grid()
+        grid, factor = self._own_grid(), 1 if self.grid is None else self.grid.factor
         if grid is None:
             (scan,) = cast(tuple[MeasuredRoughness], self.roughness)  # _whole
-            surface = scan.scan(folder)
-        elif self.roughness:
-            surface = composite([part.surface(grid, folder) for part in self.roughness])
-        else:
-            surface = smooth(grid)
-        return surface if self.grid is None else refine(surface, self.grid.factor)
+            return scan.surface(None, folder, factor)
+        if not self.roughness:
+            return smooth(divided(grid, factor))
+        return composite([part.surface(grid, folder, factor) for part in self.roughness])
 
     def contact(self, folder: Path) -> Contact:
         """Everything before the first solve; files are relative to `folder`."""

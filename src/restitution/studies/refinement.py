@@ -23,15 +23,16 @@ def settled(case: Case, folder: Path) -> tuple[Case, str | None]:
     if case.grid is None or case.grid.refine != "auto":
         return case, None
     shallowest, patch = case.depths()[0], 0
-    finest, why = case.refined(1), ""
+    finest, why, nodes = case.refined(1), "", (1, 1)
     for factor in FACTORS:
         finer = case.refined(factor)
-        contact = finer.realisation(0).contact(folder)
-        nx, ny = contact.grid.nodes
-        if factor > 1 and nx * ny > MOST_NODES:
-            why = f"the next grid would have {nx} x {ny} nodes"
+        if factor > 1 and factor**2 * nodes[0] * nodes[1] > MOST_NODES:
+            why = f"the next grid would have {factor * nodes[0]} x {factor * nodes[1]} nodes"
             break
+        contact = finer.realisation(0).contact(folder)
         finest = finer
+        if factor == 1:
+            nodes = contact.grid.nodes
         state = next(finer.loading(contact))
         patch = median_patch(state.patch_sizes())
         if resolves(patch):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Generic, Literal, Self, TypeVar, cast
 
@@ -32,10 +33,12 @@ from restitution.surfaces import (
     level,
     place_on_grid,
     read_surface,
+    refine,
     remove_outliers,
 )
 from restitution.surfaces.extend import Extension
 from restitution.surfaces.generate import RoughnessKind
+from restitution.surfaces.refine import divided
 
 MOST_NODES = 2**27  # of a grid: more do not fit into the memory of common machines
 MOST_STEPS = 10_000  # of a curve
@@ -100,9 +103,9 @@ class GeneratedRoughness(Table):
     kurtosis: float = 3.0
     periodic: bool = True
 
-    def surface(self, grid: Grid, _: Path) -> Surface:
-        """The roughness on `grid`."""
-        return generate_surface(grid, **self.model_dump(exclude={"realisations"}))
+    def surface(self, grid: Grid, _: Path, factor: int = 1) -> Surface:
+        """The roughness of `grid`, its waves continued on cells `factor` times as small."""
+        return refine(generate_surface(grid, **self.model_dump(exclude={"realisations"})), factor)
 
 
 class CropTable(Table):
@@ -153,12 +156,37 @@ class MeasuredRoughness(Table):
         # Levelled as a whole before a grid's part is cut out: the form belongs to the scan.
         return level(scan, self.detrend)
 
-    def surface(self, grid: Grid, folder: Path) -> Surface:
-        """The roughness on `grid`."""
+    def surface(self, grid: Grid | None, folder: Path, factor: int = 1) -> Surface:
+        """The roughness on cells `factor` times as small as those of `grid`, or as the pixels.
+
+        Smaller cells get the scan's shorter waves, down to its pixel; below, no waves are added.
+        """
         scan = self.scan(folder)
-        if self.extend is not None:
-            return extend(scan, grid, self.extend, seed=self.seed)
-        return place_on_grid(scan, grid)
+        grid = grid or scan.grid
+        if self.extend == "twin":
+            # The waves of a twin have no nodes to continue them from: all grids are alike.
+            placed, steps = extend(scan, divided(grid, factor), "twin", seed=self.seed), factor
+        else:
+            steps = self._steps_to_pixel(grid, scan.grid, factor)
+            fine = divided(grid, steps)
+            placed = extend(scan, fine, self.extend) if self.extend else place_on_grid(scan, fine)
+        if factor == 1:
+            return placed
+        finer = refine(placed, factor // steps)
+        how = f"placed on cells {steps} times as small"
+        if factor > steps:
+            how += f", then {finer.provenance['refinement']}"
+        return replace(finer, provenance={**finer.provenance, "refined": factor, "refinement": how})
+
+    def _steps_to_pixel(self, grid: Grid, pixels: Grid, factor: int) -> int:
+        """The part of `factor` after which cells of `grid` are no longer larger than the pixel."""
+        steps = 1
+        while factor % (2 * steps) == 0 and any(
+            h / steps > pixel * (1 + 1e-9)
+            for h, pixel in zip(grid.spacing, pixels.spacing, strict=True)
+        ):
+            steps *= 2
+        return steps
 
 
 Roughness = Annotated[GeneratedRoughness | MeasuredRoughness, Field(discriminator="kind")]

@@ -34,6 +34,8 @@ def composite(surfaces: Sequence[Surface]) -> Surface:
         pixels = [float(p[f"pixel_{axis}_m"]) for p in provenances if f"pixel_{axis}_m" in p]
         if pixels:
             whole[f"pixel_{axis}_m"] = max(pixels)
+    if "refined" in provenances[0]:
+        whole["refined"] = provenances[0]["refined"]  # of all parts, as they are on one grid
     whole.update(_removed(provenances))
     if all(is_periodic(surface) for surface in surfaces):
         whole["periodicity"] = "periodic over the domain"

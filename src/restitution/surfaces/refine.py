@@ -24,23 +24,26 @@ def refine(surface: Surface, factor: int) -> Surface:
         raise SurfaceError(f"refine: {factor} is not a number of cells to divide one into")
     if factor == 1:
         return surface
-    grid = surface.grid
-    finer = Grid(
-        (factor * grid.nodes[0], factor * grid.nodes[1]),
-        (grid.spacing[0] / factor, grid.spacing[1] / factor),
-    )
     periodic = is_periodic(surface)
     height = surface.height
     for _ in range(2):
         height = _between(height, factor, periodic=periodic).T
     return Surface(
         np.ascontiguousarray(height),
-        finer,
+        divided(surface.grid, factor),
         {
             **surface.provenance,
             "refined": factor,
             "refinement": f"zero-padded spectrum, {'periodic' if periodic else 'mirrored'}",
         },
+    )
+
+
+def divided(grid: Grid, factor: int) -> Grid:
+    """`grid` with every cell divided into `factor` along either axis."""
+    return Grid(
+        (factor * grid.nodes[0], factor * grid.nodes[1]),
+        (grid.spacing[0] / factor, grid.spacing[1] / factor),
     )
 
 
