@@ -57,7 +57,17 @@ def test_a_yield_pressure_that_no_such_body_has(yield_pressure, said):
 
 
 def test_a_grid_coarser_than_the_scan():
-    (line,) = implausible(measured(ROUGH, pixel_x_m=0.5e-6, pixel_y_m=0.2e-6), 1e-7)
+    _, line = implausible(measured(ROUGH, pixel_x_m=0.5e-6, pixel_y_m=0.2e-6), 1e-7)
     assert "spacing 0.5 um is coarser than the scan's pixel 0.2 um along y" in line
     assert "shorter than 1 um are taken out" in line
     assert implausible(measured(ROUGH, pixel_x_m=0.5e-6, pixel_y_m=0.7e-6), 1e-7) == []
+
+
+def test_oblong_pixels_may_be_a_scan_that_lost_lines():
+    pixels = {"pixel_x_m": 5e-7, "pixel_y_m": 5.1e-7}
+    (line,) = implausible(measured(ROUGH, **pixels), 4e-7)
+    assert line.startswith("scan.npy: the pixels are 0.5 x 0.51 um, not square: if scan lines are")
+    parts = {f"part_2_{key}": value for key, value in {**pixels, "file": "b.npy"}.items()}
+    (line,) = implausible(measured(ROUGH, **parts), 4e-7)
+    assert line.startswith("b.npy: the pixels are")
+    assert implausible(measured(ROUGH, pixel_x_m=5e-7, pixel_y_m=5.02e-7), 4e-7) == []

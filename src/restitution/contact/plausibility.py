@@ -12,6 +12,7 @@ from restitution.contact.resolution import foreseen_radius
 from restitution.surfaces import level, rms_slope
 
 _TILTED = 0.5  # of the variance of the heights that a plane explains
+_OBLONG = 0.01  # difference of the edges of a pixel
 _STEEP = 0.5  # rms slope beyond which small-slope theory misleads
 _PRESSURES = (1e-5, 0.3)  # p_y/E* of materials, from soft polymers to the ideal strength
 _NEAR_EDGE = 0.1  # of the width of the grid
@@ -22,7 +23,7 @@ def implausible(contact: Contact, indentation: float) -> list[str]:
     """What the input of `contact` says against loading it to `indentation` (m)."""
     checks = (
         _tilt(contact), _edge(contact, indentation), _steepness(contact),
-        _yield_pressure(contact), _coarse_grid(contact), _made_up(contact),
+        _yield_pressure(contact), _oblong(contact), _coarse_grid(contact), _made_up(contact),
     )  # fmt: skip
     return [line for line in checks if line]
 
@@ -81,6 +82,23 @@ def _yield_pressure(contact: Contact) -> str | None:
         f"the yield pressure is {ratio:.2g} of the contact modulus E*, where materials have "
         f"{low:g} to {high:g}: check the units of yield_pressure and youngs_modulus"
     )
+
+
+def _oblong(contact: Contact) -> str | None:
+    """Scans are square in their pixels: others may lack lines, stretched over the stated size."""
+    provenance = contact.surface.provenance
+    for key, hx in provenance.items():
+        if not key.endswith("pixel_x_m") or (key != "pixel_x_m" and not key.startswith("part_")):
+            continue
+        of = key.removesuffix("pixel_x_m")
+        hy = float(provenance[f"{of}pixel_y_m"])
+        if abs(float(hx) / hy - 1) > _OBLONG and (f"{of}file" in provenance):
+            return (
+                f"{provenance[f'{of}file']}: the pixels are {1e6 * float(hx):.4g} x {1e6 * hy:.4g} "
+                "um, not square: if scan lines are missing in the file, it is stretched; check the "
+                "size"
+            )
+    return None
 
 
 def _coarse_grid(contact: Contact) -> str | None:

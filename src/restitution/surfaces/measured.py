@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 import os
+import stat
 from pathlib import Path
 from typing import Literal, get_args
 
@@ -20,15 +21,10 @@ from restitution.surfaces.instrument_files import (
     UnrecognisedError,
     read_instrument,
 )
-from restitution.surfaces.matrix_files import (
-    NUMPY_SUFFIXES,
-    TEXT_SUFFIXES,
-    NotAMatrixError,
-    read_numpy,
-    read_text,
-)
-from restitution.surfaces.scan import Scan
+from restitution.surfaces.numpy_files import NUMPY_SUFFIXES, read_numpy
+from restitution.surfaces.scan import MOST_PIXELS, Scan
 from restitution.surfaces.surface import Surface
+from restitution.surfaces.text_files import TEXT_SUFFIXES, NotAMatrixError, read_text
 
 UndefinedPixels = Literal["error", "interpolate"]
 
@@ -38,6 +34,7 @@ _LARGEST_FILL = 0.2
 _SIZE_ROUNDING = 1e-6
 # No scan is taller than this many times its longer side; heights not in metres are, by far.
 _TALLEST = 10.0
+_LARGEST = 2**30  # bytes of a file
 
 
 def read_surface(
@@ -76,6 +73,11 @@ def read_surface(
     nx, ny = scan.height.shape
     grid = Grid((nx, ny), (edges[0] / nx, edges[1] / ny))
 
+    if nx * ny > MOST_PIXELS:
+        raise SurfaceError(
+            f"{file}: holds {nx} x {ny} pixels, more than the {MOST_PIXELS} a scan may have; crop "
+            "it, or save fewer pixels"
+        )
     defined = np.isfinite(scan.height)
     missing = int(np.count_nonzero(~defined))
     _check_undefined(file, missing, defined.size, undefined)
@@ -101,8 +103,18 @@ def read_surface(
 def _check_readable(file: Path) -> str:
     """SHA-256 of the file, once it is known to be there, a file, readable and not empty."""
     try:
-        if file.is_dir():
+        kind = file.stat()
+        if stat.S_ISDIR(kind.st_mode):
             raise SurfaceError(f"{file}: is a directory; give the topography file inside it")
+        if not stat.S_ISREG(kind.st_mode):
+            raise SurfaceError(
+                f"{file}: is not a regular file (a device, pipe or socket); give a topography file"
+            )
+        if kind.st_size > _LARGEST:
+            raise SurfaceError(
+                f"{file}: has {kind.st_size} bytes, more than the {_LARGEST} a scan may have; crop "
+                "it, or save fewer pixels"
+            )
         with file.open("rb") as stream:
             digest = hashlib.file_digest(stream, "sha256").hexdigest()
             length = stream.tell()

@@ -16,6 +16,9 @@ _PER_METRE = {
 }  # fmt: skip
 
 
+# Of a scan: more would take gigabytes before anything is known of it.
+MOST_PIXELS = 2**26
+
 # For files of scan lines: y counts them, and they are drawn downwards, as instruments do.
 Y_DOWN = {"y_axis": "down"}
 

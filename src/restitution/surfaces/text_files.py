@@ -1,0 +1,214 @@
+"""Height matrices in plain text, read without any further package.
+
+A line of the file is a scan line: the column is x, the line is y, as Gwyddion, SurfaceTopography
+and the instruments write it. Heights are `[i, j]` ↔ `[x, y]`, as everywhere in this package.
+"""
+
+from __future__ import annotations
+
+import re
+from contextlib import suppress
+from pathlib import Path
+
+import numpy as np
+
+from restitution.errors import SurfaceError, shown
+from restitution.surfaces.numpy_files import SAVE_AS_NUMPY
+from restitution.surfaces.scan import Y_DOWN, Scan, in_metres
+
+TEXT_SUFFIXES = frozenset({".txt", ".csv", ".dat", ".asc"})
+
+_LEAST_VALUES = 4  # of a scan line: fewer are coordinates or a profile
+_LONGEST = 200  # characters of a value in a header
+_NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?"
+_QUANTITY = re.compile(rf"(?P<number>{_NUMBER})\s*(?P<unit>\S+)")
+# Keys by which other programs' headers (SPIP, Nova, Gwyddion's XYZ) fix units and scales.
+_FOREIGN_KEY = re.compile(r"unit|length|pixel|bit2|file format|factor", re.IGNORECASE)
+# Keys that say how many values (x) and lines (y) there are.
+_COLUMNS = frozenset({"nx", "columns", "values per line"})
+_LINES = frozenset({"ny", "rows", "lines"})
+_OWN_KEYS = frozenset({"width", "height", "value units"})
+_BOTH = re.compile(r"(\d{1,9})\s{0,9}[x×,\s]\s{0,9}(\d{1,9})")
+_UNDEFINED = frozenset({"", "bad", "nan", "inf", "-inf", "infinite"})
+_Counts = dict[str, int]
+
+
+class NotAMatrixError(SurfaceError):
+    """A text file that is no plain matrix of heights, but may be an instrument's own format."""
+
+
+def read_text(path: Path) -> Scan:
+    """Read a matrix of heights in m, separated by white space, commas or semicolons.
+
+    Lines that start with # are comments; `# Width:` and `# Height:` give the size,
+    `# Value units:` the unit of the heights, and keys such as `# nx:`, `# ny:` and `# Pixels:` how
+    many values and lines there are. An empty field, `nan` or `bad` is undefined. With
+    semicolons the comma is a decimal sign.
+
+    Raises `NotAMatrixError` when the content is not such a matrix but may be understood by
+    another reader, `SurfaceError` when it is one and is damaged or does not hold heights.
+    """
+    lines = [line.strip() for line in _decode(path).splitlines()]
+    data = [(n, line) for n, line in enumerate(lines, 1) if line and not line.startswith("#")]
+    if not data:
+        raise SurfaceError(f"{path}: holds no numbers; {SAVE_AS_NUMPY}")
+    comments = [line for line in lines if line.startswith("#")]
+    plain = any(_statement(line)[0] in _OWN_KEYS for line in comments)
+    rows = _parse_rows(path, data, plain=plain)
+    width = len(rows[0])
+    for (n, _), row in zip(data, rows, strict=True):
+        if len(row) != width:
+            raise SurfaceError(
+                f"{path}: line {n} has {len(row)} values where the first has {width}, so the file "
+                "is incomplete or not a matrix; export it again"
+            )
+    if width < _LEAST_VALUES or len(rows) < 2:
+        raise NotAMatrixError(
+            f"{path}: {len(rows)} lines of {width} values are a profile or a list of coordinates, "
+            "not a height map; give a matrix with a scan line of at least 4 heights on each line"
+        )
+    size, metres_per_value, details, counts = _read_header(path, comments)
+    _check_counts(path, counts, (width, len(rows)))
+    height = np.ascontiguousarray(np.array(rows, dtype=np.float64).T) * metres_per_value
+    return Scan(height, size, {"format": "text matrix", **Y_DOWN, **details})
+
+
+def _decode(path: Path) -> str:
+    raw = path.read_bytes()
+    try:
+        return raw.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return raw.decode("latin-1")
+
+
+def _parse_rows(path: Path, data: list[tuple[int, str]], *, plain: bool) -> list[list[float]]:
+    """The values of every line. `NotAMatrixError` for text, `SurfaceError` for damaged lines.
+
+    Other readers skip a line that they do not understand: among scan lines it is a damaged one, and
+    before them, too, where the file is known to be `plain` (a matrix with comments).
+    """
+    rows: list[list[float] | None] = []
+    first: NotAMatrixError | None = None
+    for number, line in data:
+        try:
+            rows.append(_parse_row(path, number, line))
+        except NotAMatrixError as error:
+            rows.append(None)
+            first = first or error
+    if first is None:
+        return [row for row in rows if row is not None]
+    widths = [len(row) for row in rows if row is not None and len(row) >= _LEAST_VALUES]
+    usual = max(set(widths), key=widths.count) if widths else 0
+    begin = next((i for i, row in enumerate(rows) if row and len(row) == usual), 0)
+    for i, (row, (number, line)) in enumerate(zip(rows, data, strict=True)):
+        if row is None and usual and (plain or begin < i or _is_nearly_a_row(path, line, usual)):
+            raise SurfaceError(
+                f"{path}: line {number}, {shown(line, 20)}, is no scan line like the others of "
+                f"{usual} values, so the file is damaged; export it again"
+            )
+    raise first
+
+
+def _is_nearly_a_row(path: Path, line: str, width: int) -> bool:
+    """Whether `line` holds at least half as many numbers as a scan line."""
+    numbers = 0
+    for text in line.replace(";", " ").replace(",", " ").split():
+        with suppress(NotAMatrixError):
+            _parse_field(path, 0, text)
+            numbers += 1
+    return 2 * numbers >= width
+
+
+def _parse_row(path: Path, number: int, line: str) -> list[float]:
+    fields = _fields(line)
+    try:
+        return [float(text) for text in fields]
+    except ValueError:
+        return [_parse_field(path, number, text.strip()) for text in fields]
+
+
+def _fields(line: str) -> list[str]:
+    if ";" in line:
+        return line.replace(",", ".").removesuffix(";").split(";")
+    if "," in line:
+        return line.removesuffix(",").split(",")
+    return line.split()
+
+
+def _parse_field(path: Path, number: int, text: str) -> float:
+    if text.lower() in _UNDEFINED:
+        return float("nan")
+    try:
+        return float(text)
+    except ValueError:
+        raise NotAMatrixError(
+            f"{path}: line {number} holds {text[:20]!a}, which is not a number; give a matrix of "
+            "heights in metres, with comments after #"
+        ) from None
+
+
+def _read_header(
+    path: Path, comments: list[str]
+) -> tuple[tuple[float | None, float | None], float, dict[str, str | float], _Counts]:
+    """Edge lengths (m), metres for each unit of height, details and counts, from the comments."""
+    sides: dict[str, float] = {}
+    metres_per_value = 1.0
+    details: dict[str, str | float] = {}
+    counts: _Counts = {}
+    for comment in comments:
+        key, value = _statement(comment)
+        if found := _counts(key, value):
+            counts.update(found)
+            continue
+        quantity = _QUANTITY.fullmatch(value) if len(value) <= _LONGEST else None
+        number, unit = (float(quantity["number"]), quantity["unit"]) if quantity else (1.0, value)
+        length = in_metres(number, unit)
+        if key in ("width", "height") and quantity and length is not None:
+            sides[key] = length
+        elif key == "value units":
+            if quantity or length is None:
+                raise SurfaceError(
+                    f"{path}: its values are in {shown(value)}, which is not a length; export the "
+                    "height channel instead"
+                )
+            metres_per_value = length
+        elif key == "channel":
+            if "channel_name" in details:
+                raise NotAMatrixError(
+                    f"{path}: holds several channels; save the heights in a file of their own"
+                )
+            details["channel_name"] = value
+        elif length is not None or _FOREIGN_KEY.search(key):
+            # Guessing at a scale could be wrong by a factor of a million without a sign of it.
+            raise NotAMatrixError(
+                f"{path}: its header line {comment[:60]!a} may set a unit or a scale that is not "
+                "understood; state '# Width:', '# Height:' and '# Value units:' only"
+            )
+    return (sides.get("width"), sides.get("height")), metres_per_value, details, counts
+
+
+def _statement(comment: str) -> tuple[str, str]:
+    """Key (lower case) and value of a line `# key: value` or `# key = value`; or empty."""
+    text = comment[1:]
+    ends = [at for at in (text.find(":"), text.find("=")) if at >= 0]
+    if not ends:
+        return "", ""
+    return text[: min(ends)].strip().lower(), text[min(ends) + 1 :].strip()
+
+
+def _counts(key: str, value: str) -> _Counts:
+    """How many values and lines a statement says there are."""
+    if key in _COLUMNS | _LINES and value.isdecimal() and len(value) < 10:
+        return {"values" if key in _COLUMNS else "lines": int(value)}
+    if key in ("pixels", "resolution", "shape") and (both := _BOTH.fullmatch(value)):
+        return {"values": int(both[1]), "lines": int(both[2])}
+    return {}
+
+
+def _check_counts(path: Path, said: _Counts, found: tuple[int, int]) -> None:
+    for what, there in zip(("values", "lines"), found, strict=True):
+        if said.get(what, there) != there:
+            raise SurfaceError(
+                f"{path}: its header says {said[what]} {what}, and it holds {found[1]} lines of "
+                f"{found[0]} values, so a part is missing; export it again"
+            )
