@@ -60,7 +60,7 @@ def test_a_grid_coarser_than_the_scan():
     _, line = implausible(measured(ROUGH, pixel_x_m=0.5e-6, pixel_y_m=0.2e-6), 1e-7)
     assert "spacing 0.5 um is coarser than the scan's pixel 0.2 um along y" in line
     assert "shorter than 1 um are taken out" in line
-    assert implausible(measured(ROUGH, pixel_x_m=0.5e-6, pixel_y_m=0.7e-6), 1e-7) == []
+    assert implausible(measured(ROUGH, pixel_x_m=0.7e-6, pixel_y_m=0.7e-6), 1e-7) == []
 
 
 def test_oblong_pixels_may_be_a_scan_that_lost_lines():
