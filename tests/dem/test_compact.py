@@ -1,9 +1,13 @@
 """The compact form, against laws that are known."""
 
+import math
+
 import numpy as np
 import pytest
 
 from restitution.dem.compact import compact_fit
+from restitution.dem.fitted import fitted_laws
+from restitution.dem.write import figure, table
 from restitution.theory import thornton_ning, yielding
 
 R, E_STAR, P_Y, MASS = 250e-6, 112e9, 750e6, 2e-6
@@ -86,5 +90,31 @@ def test_a_few_points_are_not_worth_a_fit(with_ratios, points):
 def test_numbers_are_restitutions_whatever_the_fit(with_ratios):
     V = np.geomspace(0.1, 10, 12)
     fit = compact_fit(with_ratios(V, np.linspace(0.99, 0.01, 12)))
-    e = fit.restitution(np.geomspace(1e-3, 1e3, 200))
+    e = fit.restitution(np.geomspace(0.1, 10, 200))
     assert np.all((e >= 0) & (e <= 1))
+
+
+def test_the_fit_has_no_value_outside_of_the_resolved_points(with_ratios):
+    """Lossless where it is resolved, 0.574 where it is not: 1 is said of the resolved only."""
+    V = np.geomspace(0.01, 10, 14)
+    ratio = np.concatenate([np.full(3, 0.574**2), np.ones(4), np.linspace(0.9, 0.4, 7)])
+    law = with_ratios(V, ratio)
+    points = [
+        point.model_copy(update={"resolved": 3 <= k < 13}) for k, point in enumerate(law.points)
+    ]
+    law = law.model_copy(update={"points": tuple(points)})
+    fit = compact_fit(law)
+    assert (fit.lowest, fit.highest) == (V[3], V[12]) == law.fitted_range
+    assert fit.elastic_below == V[6]
+    assert fit.restitution(V[3:7]).tolist() == [1.0] * 4
+    assert np.isnan(fit.restitution(V)).tolist() == [True] * 3 + [False] * 10 + [True]
+    assert np.isnan(fit.restitution([0.999 * V[3], 1.001 * V[12]])).all()
+    rows = table(law.model_copy(update={"fit": fit}))
+    assert [math.isnan(row["compact_fit"]) for row in rows] == [True] * 3 + [False] * 10 + [True]
+    drawing = figure(law.model_copy(update={"fit": fit, "laws": fitted_laws(law)}))
+    lines = [line for line in drawing.axes[0].lines if line.get_linestyle() in ("-", "--")]
+    assert len(lines) > 5
+    for line in lines:
+        drawn = line.get_xdata()[np.isfinite(line.get_ydata())]
+        assert drawn.min() >= V[3] * (1 - 1e-9)
+        assert drawn.max() <= V[12] * (1 + 1e-9)

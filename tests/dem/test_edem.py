@@ -58,6 +58,17 @@ def test_springs_are_those_at_the_velocity(law):
     assert float(row["hysteretic_yield_strength_Pa"]) == pytest.approx(1e6 / (5 * 0.5e-3))
 
 
+def test_springs_are_left_out_beyond_the_velocities_they_were_fitted_to(law):
+    coarse = tuple(
+        point.model_copy(update={"resolved": point.velocity > 0.05}) for point in law().points
+    )
+    matrix = matrix_of([law(laws=(SPRINGS,), points=coarse)])
+    for V, known in ((0.03, False), (0.1, True)):
+        (row,) = rows(write(matrix, V)["restitution_edem.csv"])
+        assert row["coefficient_of_restitution"]
+        assert bool(row["hysteretic_K2_N_per_m"]) == known
+
+
 def test_laws_with_walls_only_are_enough(on_wall):
     (row,) = rows(write(on_wall, 1.0)["restitution_edem.csv"])
     assert row["material_2"] == "plate_2"

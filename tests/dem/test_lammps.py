@@ -5,21 +5,10 @@ import re
 import pytest
 
 from restitution.dem.codes.lammps import LOWEST, write
-from restitution.dem.law import FittedLaw
 from restitution.dem.matrix import matrix_of
 from restitution.errors import CaseError, DomainError
 
 VELOCITIES = (0.01, 0.07, 0.5, 2.0, 10.0)
-MDR = FittedLaw(
-    name="lammps-mdr",
-    source="",
-    fitted_to="the coefficient of restitution",
-    parameters={"yield_strength_Pa": 3e8, "youngs_modulus_Pa": 7e10, "poissons_ratio": 0.25},
-    ends="separation",
-    restitution=(),
-    rms=0.05,
-    worst=0.0987,
-)
 
 
 @pytest.mark.parametrize("V", VELOCITIES)
@@ -111,26 +100,6 @@ def test_warnings_are_carried_into_every_file(law):
         assert "# WARNING: pair 1 1: the grid is coarse" in text
     assert "pull-off force is not modelled" in files["restitution.lmp"].replace("\n#    ", "")
     assert "unresolved" not in write(matrix_of([found]), 1.0)["restitution.lmp"]
-
-
-def test_the_fitted_mdr_is_offered_as_a_comment(law):
-    files = write(matrix_of([law(laws=(MDR,))]), 1.0)
-    said = files["restitution.lmp"]
-    assert "# pair_coeff 1 1 mdr 7e+10 0.25 300000000 0.0 0.5 0.0 tangential" in said
-    assert "worst difference in e is 0.099" in said
-
-
-def test_the_fitted_mdr_runs_when_its_comment_is_opened(law, lammps, texts):
-    from restitution.theory import mdr
-
-    files = write(matrix_of([law(laws=(MDR,))]), 1.0)
-    files["restitution.lmp"] = (
-        re.sub("^pair_coeff.*\n", "", files["restitution.lmp"], flags=re.MULTILINE)
-    ).replace("# pair_coeff", "pair_coeff")
-    files["collision.in"] = files["collision.in"].replace("style sphere", "style sphere 1")
-    mass = 2 * law().mass
-    expected = mdr.restitution(0.5, 1e-3, 7e10, 0.25, 3e8, mass)
-    assert lammps.pair(texts(files), 1, 1) == pytest.approx(expected, abs=0.01)
 
 
 def test_pairs_that_stick_are_refused(law, constant):

@@ -62,6 +62,14 @@ def test_it_is_valid_beside_stand_ins(mixed, hostile, law, texts):
         assert done.returncode == 0, done.stderr
 
 
+def test_a_wall_keeps_its_density(law):
+    plate = law().first.model_copy(update={"name": "plate", "radius": None, "density": 7850.0})
+    for density, written in ((7850.0, "7850"), (None, "1000")):
+        wall = plate.model_copy(update={"density": density})
+        text = write(matrix_of([law(), law(law().first, wall)]), 1.0)["restitution_mercury.h"]
+        assert re.findall(r"setDensity\((\S+)\)", text) == ["2500", written]
+
+
 def test_warnings_are_carried(law):
     text = write(matrix_of([law(warnings=("the grid is coarse",))]), 1.0)["restitution_mercury.h"]
     assert "// WARNING: pair 1 1: the grid is coarse" in text

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from restitution.dem import theories as room
+from restitution.dem.fitted import fitted_laws
 from restitution.dem.law import Particle
 from restitution.errors import CaseError
 from restitution.studies.case import parse_case
@@ -319,6 +320,22 @@ def test_nothing_of_a_law_is_interpolated(points):
     found = by_name(case_of(), np.array([0.02, *points.column("velocity")[:2]]), points)
     for name in ("computed", "constant", "luding", "brilliantov"):
         assert np.isnan(found[name].restitution).tolist() == [True, False, False]
+
+
+def test_what_is_fitted_to_a_law_is_empty_where_the_law_is_not_resolved(law):
+    ends = (0, 1, 12)
+    coarse = tuple(
+        point.model_copy(update={"resolved": k not in ends}) for k, point in enumerate(law().points)
+    )
+    found = law(points=coarse, yield_pressure=560e6)
+    found = found.model_copy(update={"laws": fitted_laws(found)})
+    V = found.column("velocity")
+    beside = by_name(case_of(), V, found)
+    for name in ("constant", "walton-braun", "luding", "eepa", "brilliantov"):
+        empty = np.flatnonzero(np.isnan(beside[name].restitution))
+        assert tuple(empty) == ends, name
+        assert "from 0.0316 to 5.62 m/s" in beside[name].holds
+    assert not np.isnan(beside["computed"].restitution).any()
 
 
 def test_a_law_that_loses_nothing_has_nothing_to_fit(law):

@@ -118,6 +118,45 @@ def test_pairs_that_stick_or_are_missing_are_refused(law, constant, mixed):
         write(matrix_of([found for pair, found in laws.items() if pair != (1, 3)]), 1.0)
 
 
+def test_beyond_the_law_it_warns_once_a_pair_or_raises(mixed):
+    names = module(mixed)
+    check = names["check"]
+    for V in (0.01, 0.3, 10.0):
+        check((1, 2), V)
+    said = r"types 1 and 2 meet at 20 m/s, outside .* \(0.01 to 10 m/s\)"
+    with pytest.warns(UserWarning, match=said):
+        check((1, 2), 20.0)
+    check((1, 2), 0.001)  # filterwarnings = error: a second warning would fail
+    with pytest.warns(UserWarning, match="types 1 and 3 meet at 0.001 m/s"):
+        check((1, 3), 0.001)
+    with pytest.raises(ValueError, match=said):
+        check((1, 2), 20.0, "raise")
+    with pytest.raises(ValueError, match="beyond"):
+        check((1, 2), 1.0, "ignore")
+
+
+def test_a_run_beyond_the_law_is_told_once_or_stopped(equal, yade, texts):
+    files = write(equal, 0.5)
+    said = yade.says(texts(files), "collision_yade.py", 20.0, 1, 1, "law")
+    assert said.count("UserWarning: types 1 and 1 meet at 20 m/s") == 1
+    assert "restitution = 0.299" in said
+    strict = files["collision_yade.py"].replace(".follow()", ".follow(beyond='raise')")
+    files["collision_yade.py"] = strict
+    said = yade.says(texts(files, "strict"), "collision_yade.py", 20.0, 1, 1, "law", status=1)
+    assert "ValueError: types 1 and 1 meet at 20 m/s" in said
+
+
+def test_a_wall_keeps_its_density(law):
+    def densities(wall):
+        matrix = matrix_of([law(), law(law().first, wall)])
+        return [row[3] for row in module(matrix)["MATERIALS"]]
+
+    plate = law().first.model_copy(update={"name": "plate", "radius": None, "density": 7850.0})
+    assert densities(plate) == [2500.0, 7850.0]
+    unknown = plate.model_copy(update={"density": None})
+    assert densities(unknown) == [2500.0, 1000.0]
+
+
 def module(matrix):
     """The names of the module that is exported, with a stand-in for YADE."""
     stand_in = type(sys)("yade")

@@ -283,7 +283,8 @@ def _judged(
     note: str = "",
 ) -> FittedLaw:
     """The law with what it gives beside the points."""
-    found = restitution(law.column("velocity"))
+    V = law.column("velocity")
+    found = np.where(law.fits_hold_at(V), restitution(V), np.nan)
     miss = found - law.column("restitution")
     miss = miss[np.isfinite(found) & law.column("resolved").astype(bool)]
     if not miss.size:

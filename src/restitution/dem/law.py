@@ -82,9 +82,10 @@ class Point(_Stored):
 class CompactFit(_Stored):
     """e² = Σ c_k L^k − s/V², L = ln(V/V₀)/w, between `lowest` and `highest` velocity.
 
-    Zero where that is negative and below `sticks_below`; 1 up to `elastic_below`. It is fitted to
-    the points that are resolved; `worst` is the largest difference to them, `between` the largest
-    at one that was left out of the fit.
+    Zero where that is negative and up to `sticks_below`; 1 up to `elastic_below`. The fit uses the
+    resolved points, and `lowest` and `highest` (m/s) are the first and last of them: the fit has no
+    value outside. `worst` is the largest difference to these points, `between` the largest at a
+    point that was left out of the fit.
     """
 
     coefficients: tuple[float, ...]
@@ -100,7 +101,10 @@ class CompactFit(_Stored):
     between: float
 
     def restitution(self, velocity: ArrayLike) -> Array:
-        """Coefficient of restitution at `velocity` (m/s), a number or an array; no range check."""
+        """Coefficient of restitution at `velocity` (m/s), a number or an array.
+
+        NaN below `lowest` and above `highest`, also where `elastic_below` or `sticks_below` holds.
+        """
         V = np.asarray(velocity, dtype=float)
         L = np.log(V / self.centre) / self.width
         e2 = np.polynomial.polynomial.polyval(L, self.coefficients) - self.adhesion / V**2
@@ -109,16 +113,17 @@ class CompactFit(_Stored):
             e2 = np.where(self.elastic_below >= V, 1.0, e2)
         if self.sticks_below is not None:
             e2 = np.where(self.sticks_below >= V, 0.0, e2)
-        found: Array = np.sqrt(e2)
-        return found
+        inside = (self.lowest * (1 - _SAME) <= V) & (self.highest * (1 + _SAME) >= V)
+        return np.where(inside, np.sqrt(e2), np.nan)
 
 
 class FittedLaw(_Stored):
     """A force law that DEM codes have, with the parameters that come nearest to ours.
 
     `parameters` are keyed with their units; `restitution` is what it gives at the velocities of
-    the points, None where it has no answer; `rms` and `worst` are its differences to ours where
-    ours is resolved.
+    the points, None where it has no answer and outside of the resolved velocities, to which it was
+    fitted (`Law.fitted_range`); `rms` and `worst` are its differences to ours where ours is
+    resolved.
     """
 
     name: str
@@ -201,6 +206,18 @@ class Law(_Stored):
     def highest(self) -> float:
         """The highest velocity that was computed, m/s."""
         return self.points[-1].velocity
+
+    @property
+    def fitted_range(self) -> tuple[float, float] | None:
+        """The lowest and highest resolved velocity (m/s), between which fits hold."""
+        V = self.column("velocity", resolved=True)
+        return (float(V[0]), float(V[-1])) if V.size else None
+
+    def fits_hold_at(self, velocity: ArrayLike) -> NDArray[np.bool_]:
+        """Whether `velocity` (m/s), a number or an array, is within `fitted_range`."""
+        V = np.asarray(velocity, dtype=float)
+        low, high = self.fitted_range or (math.inf, -math.inf)
+        return np.asarray((low * (1 - _SAME) <= V) & (high * (1 + _SAME) >= V))
 
     def column(self, name: str, *, resolved: bool = False) -> Array:
         """One field of all points, as numbers; or of those that are resolved."""

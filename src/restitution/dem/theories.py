@@ -59,8 +59,8 @@ def velocities_of(case: Case, law: Law | None = None) -> Array:
 def theories(case: Case, velocities: Array, law: Law | None = None) -> list[Theory]:
     """Every theory that applies to `case`, at `velocities`; with `law` also those fitted to it.
 
-    What is from the law has values at its own points only. Raises `CaseError`: a density is
-    missing, the law is of another pair.
+    What is from the law has values at its own points only, and what is fitted to it only between
+    the resolved ones. Raises `CaseError`: a density is missing, the law is of another pair.
     """
     V = np.asarray(velocities, dtype=float)
     found = [answer for answer in _answers(case, V) if isinstance(answer, Theory)]
@@ -133,6 +133,9 @@ def _of_law(bodies: Bodies, law: Law, V: Array) -> Iterator[Theory]:
     def values(of_points: Array) -> Array:
         return within(here, of_points[at])
 
+    def fitted(of_points: Array) -> Array:
+        return values(within(law.fits_hold_at(own), of_points))
+
     parameters = {}
     if law.yield_pressure is not None:
         parameters["yield_pressure_Pa"] = law.yield_pressure
@@ -145,12 +148,13 @@ def _of_law(bodies: Bodies, law: Law, V: Array) -> Iterator[Theory]:
         parameters,
         values(law.column("restitution")),
     )
-    span = f"fitted to the computed e from {law.lowest:.3g} to {speed(law.highest)}"
+    low, high = law.fitted_range or (math.nan, math.nan)
+    span = f"fitted to the computed e from {low:.3g} to {speed(high)}, and empty outside"
     for name in _FITTED:
         for each in law.laws:
             if each.name == name:
                 yield Theory(name, each.source, f"{span}, {_judged(each)}", each.parameters,
-                             values(_restitution_of(each)))  # fmt: skip
+                             fitted(_restitution_of(each)))  # fmt: skip
     if not _cannot_fit(law):
         beta = _dissipation(law)
         e = brilliantov.restitution(own, beta)
@@ -161,7 +165,7 @@ def _of_law(bodies: Bodies, law: Law, V: Array) -> Iterator[Theory]:
             f"{span}, rms {np.sqrt(np.mean(miss**2)):.2g}, worst {np.abs(miss).max():.2g}; ends "
             "where the force is back to zero; bodies that neither yield nor adhere, a << R*",
             {"dissipation_s_per_m_power_1_5": beta},
-            values(e),
+            fitted(e),
         )
 
 

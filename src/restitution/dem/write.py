@@ -68,7 +68,7 @@ def table(law: Law) -> list[dict[str, float | str]]:
 
 
 def figure(law: Law) -> Figure:
-    """Ours with its error, the compact form, and what simpler laws make of it."""
+    """Plot the computed COR with its error, and the fits over the velocities they are fitted to."""
     drawing = Figure(figsize=(7.6, 4.8), layout="constrained")
     axes = drawing.add_subplot()
     V, e = law.column("velocity"), law.column("restitution")
@@ -79,7 +79,7 @@ def figure(law: Law) -> Figure:
         axes.plot(V[unresolved], e[unresolved], "o", ms=4, mfc="white", mec="C0", zorder=4,
                   ls="none", label="not resolved")  # fmt: skip
     if law.fit is not None:
-        fine = np.geomspace(law.lowest, law.highest, _FINE)
+        fine = np.geomspace(law.fit.lowest, law.fit.highest, _FINE)
         axes.plot(fine, law.fit.restitution(fine), "-", color="C0", lw=1,
                   label=f"compact fit (within {law.fit.worst:.1g})")  # fmt: skip
     for k, other in enumerate(law.laws):

@@ -37,6 +37,7 @@ _NOTES = [
     PLACEHOLDER + " So is rolling friction 0.",
     "hysteretic_*: the hysteretic spring model fitted to the law, K2 at this velocity;",
     "    its restitution is (K1/K2)^(1/2), and its yield strength K1/(5 R*) what EDEM makes K1 of.",
+    "    Empty where there is no such fit, or the velocity is outside of those it was fitted to.",
 ]
 
 
@@ -70,7 +71,12 @@ def _interaction(pair: Pair, velocity: float) -> dict[str, str]:
 
 
 def _springs(pair: Pair, velocity: float) -> tuple[float, float] | None:
-    """K1 and K2 (N/m) of the fitted Walton–Braun law: K2 = k_u + S V (m* K1)^½."""
+    """K1 and K2 (N/m) of the fitted Walton–Braun law: K2 = k_u + S V (m* K1)^½.
+
+    None without such a fit, and at a velocity outside of those it was fitted to.
+    """
+    if not pair.law.fits_hold_at(velocity):
+        return None
     for fit in pair.law.laws:
         if fit.name == "walton-braun":
             k1 = fit.parameters["loading_stiffness_N_per_m"]

@@ -21,15 +21,13 @@ from restitution.dem.codes.fragment import (
     header,
     number,
     pairs_at,
-    plain,
     summary,
 )
-from restitution.dem.law import FittedLaw
+from restitution.dem.codes.lammps_mdr import mdr_lines
 from restitution.dem.matrix import Matrix
 
 CODE = "LAMMPS"
 LOWEST = 0.001  # reproduced within 0.5 % with `STEPS` steps a contact
-_FAR = 0.1  # of e: a fitted law that is further off is not offered
 FRAGMENT, COLLISION = "restitution.lmp", "collision.in"
 _ENDS = (
     "the overlap is back to zero. The damping pulls shortly before; do not add limit_damping, "
@@ -49,12 +47,12 @@ def write(matrix: Matrix, velocity: float) -> dict[str, str]:
     head = header(matrix, pairs, velocity, code=CODE, ends=_ENDS)
     short = summary(pairs, velocity, code=CODE, ends=_ENDS, fragment=FRAGMENT)
     return {
-        FRAGMENT: commented(head, "#") + _fragment(pairs),
+        FRAGMENT: commented(head, "#") + _fragment(pairs, velocity),
         COLLISION: commented(short, "#") + _collision(matrix, pairs, velocity),
     }
 
 
-def _fragment(pairs: list[Pair]) -> str:
+def _fragment(pairs: list[Pair], velocity: float) -> str:
     spheres = [pair for pair in pairs if not pair.wall]
     walls = [pair for pair in pairs if pair.wall]
     lines = [
@@ -78,11 +76,7 @@ def _fragment(pairs: list[Pair]) -> str:
             ),
             *(f'variable wall_{p.i}_{p.j} string "granular {_model(p)}"' for p in walls),
         ]
-    for pair in pairs:
-        for fit in pair.law.laws:
-            if fit.name == "lammps-mdr" and fit.worst <= _FAR:
-                lines += _mdr(pair, fit)
-    return "\n".join(lines) + "\n"
+    return "\n".join([*lines, *mdr_lines(pairs, velocity)]) + "\n"
 
 
 def _model(pair: Pair) -> str:
@@ -95,26 +89,6 @@ def _model(pair: Pair) -> str:
 
 def _pair_coeff(pair: Pair) -> str:
     return f"pair_coeff {pair.i} {pair.j} {_model(pair)}"
-
-
-def _mdr(pair: Pair, fit: FittedLaw) -> list[str]:
-    """The fitted elastic-plastic law as comments: one sphere on a rigid flat has its E and nu."""
-    names = "youngs_modulus_Pa", "poissons_ratio", "yield_strength_Pa"
-    E, nu, Y = (number(fit.parameters[name]) for name in names)
-    model = (
-        f"mdr {E} {nu} {Y} 0.0 0.5 0.0 tangential linear_history 1e6 1.0 {FRICTION} damping mdr 1"
-    )
-    use = f"pair_coeff {pair.i} {pair.j} {model}"
-    if pair.wall:
-        use = f"variable wall_{pair.i}_{pair.j} string 'granular {model}'"
-    return [
-        f"# Instead, for pair {pair.i} {pair.j}: an elastic-plastic force law fitted to "
-        f"{plain(fit.fitted_to)}, whose e depends on the velocity.",
-        f"#   Its worst difference in e is {fit.worst:.2g}.",
-        f"#   It ends where: {plain(fit.ends)}. {plain(fit.note)}",
-        "#   Needs atom_style sphere 1, newton off, and fix wall/gran/region for walls.",
-        f"# {use}",
-    ]
 
 
 def _collision(matrix: Matrix, pairs: list[Pair], velocity: float) -> str:

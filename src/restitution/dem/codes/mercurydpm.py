@@ -24,6 +24,7 @@ from restitution.dem.matrix import Matrix
 CODE = "MercuryDPM"
 FILE = "restitution_mercury.h"
 _ENDS = "the overlap is back to zero. The damping pulls shortly before."
+_WALL_DENSITY = 1000.0  # of a wall without a density in the case
 
 _BEFORE = """
 // Not compiled or run with MercuryDPM here: its sources were read. It needs a release that has
@@ -91,8 +92,9 @@ def _wall(k: int, body: Particle) -> list[str]:
     E, nu = body.youngs_modulus, body.poissons_ratio
     own = f"{number(E / (2 * (1 - nu**2)))}, {number(E / (4 * (2 - nu) * (1 + nu)))}, 1.0"
     return [
-        f"// type {k}: {identifier(body, k)}, a wall; density and e without meaning",
-        "type.setDensity(1000.0);",
+        f"// type {k}: {identifier(body, k)}, a wall; "
+        + ("e without meaning" if body.density else "density and e without meaning"),
+        f"type.setDensity({number(body.density or _WALL_DENSITY)});",
         f"setRestitution(type, {own});",
         f"species[{k - 1}] = dpm.speciesHandler.copyAndAddObject(type);",
     ]

@@ -32,7 +32,7 @@ from restitution.dem.codes.fragment import (
     pairs_at,
     summary,
 )
-from restitution.dem.law import Law
+from restitution.dem.law import Law, Particle
 from restitution.dem.matrix import Matrix
 
 CODE = "YADE"
@@ -44,18 +44,20 @@ _ENDS = (
     "R*: the contact is softer by sqrt(2), with the same e."
 )
 _STEPS = 2000
+_WALL_DENSITY = 1000.0  # of a wall without a density in the case: YADE asks for one
 _SAMPLES = 4  # of the law between two velocities that were computed
 
 _FIT = (-1.23589, 0.202669, 0.0108748, 0.000410051, -3.09169e-5, -1.19887e-6)
 
 _MODULE = '''
 from math import atan, exp, log
+from warnings import warn
 
 from yade import O, FrictMat, Ip2_FrictMat_FrictMat_MindlinPhys, MatchMaker
 
 # {placeholder}
 FRICTION = {friction}
-# name, E (Pa), nu, density (kg/m^3; YADE wants one of walls, too)
+# name, E (Pa), nu, density (kg/m^3; of walls {wall_density:g} where none is known)
 MATERIALS = (
 {materials}
 )
@@ -67,6 +69,7 @@ RESTITUTION = {{
 LAWS = {{
 {laws}
 }}
+_told = set()  # pairs of types that `check` has warned of
 
 
 def materials():
@@ -87,13 +90,14 @@ def physics(ids):
     return Ip2_FrictMat_FrictMat_MindlinPhys(betan=MatchMaker(matches=matches))
 
 
-def follow():
+def follow(beyond="warn"):
     """Give every new contact the e of its own velocity, from LAWS instead of RESTITUTION.
 
     To be called in each step, right after InteractionLoop (slow for large packings):
     PyRunner(iterPeriod=1, initRun=True,
              command="import restitution_yade; restitution_yade.follow()")
-    Beyond the velocities that were computed, e stays at the first or last one.
+    Nothing was computed beyond the velocities in LAWS. There beyond="warn" takes the e of the
+    first or last velocity and warns, once for each pair of types; beyond="raise" raises ValueError.
     """
     types = {{name: k for k, (name, *_) in enumerate(MATERIALS, 1)}}
     for contact in O.interactions:
@@ -102,11 +106,30 @@ def follow():
         one, two = O.bodies[contact.id1], O.bodies[contact.id2]
         pair = tuple(sorted(types[body.material.label] for body in (one, two)))
         approach = abs((one.state.vel - two.state.vel).dot(contact.geom.normal))
+        check(pair, approach, beyond)
         contact.phys.betan = contact.phys.betas = damping(restitution(LAWS[pair], approach))
 
 
+def check(pair, velocity, beyond="warn"):
+    """Warn, once for each pair of types, or raise where the law of `pair` has no `velocity`."""
+    if beyond not in ("warn", "raise"):
+        raise ValueError("beyond: %r is not 'warn' or 'raise'" % (beyond,))
+    low, high = LAWS[pair][0][0], LAWS[pair][-1][0]
+    if low * (1 - 1e-6) <= velocity <= high * (1 + 1e-6):
+        return
+    said = (
+        "types %d and %d meet at %.6g m/s, outside of the velocities that were computed "
+        "(%.6g to %.6g m/s)" % (*pair, velocity, low, high)
+    )
+    if beyond == "raise":
+        raise ValueError(said + "; compute the law further, or call follow() without beyond")
+    if pair not in _told:
+        _told.add(pair)
+        warn(said + "; e of the nearest one is used, and this pair is not named again")
+
+
 def restitution(law, velocity):
-    """e at `velocity`: by straight lines in ln V, held beyond the ends."""
+    """e at `velocity`: by straight lines in ln V, held beyond the ends (see `check`)."""
     below = [point for point in law if point[0] <= velocity]
     above = [point for point in law if point[0] > velocity]
     if not below or not above:
@@ -203,10 +226,11 @@ def _module(matrix: Matrix, pairs: list[Pair], velocity: float) -> str:
         placeholder=PLACEHOLDER,
         friction=FRICTION,
         velocity=number(velocity),
+        wall_density=_WALL_DENSITY,
         fit=_FIT,
         materials=_entries(
             f'("{identifier(b, k)}", {number(b.youngs_modulus)}, {number(b.poissons_ratio)}, '
-            f"{number(1000.0 if b.wall else density_of(b))})"
+            f"{number(_density(b))})"
             for k, b in bodies
         ),
         restitution=_entries(f"({p.i}, {p.j}): {number(p.restitution)}" for p in pairs),
@@ -229,6 +253,11 @@ def _collision(matrix: Matrix, pairs: list[Pair], velocity: float) -> str:
         radii="{" + ", ".join(radii) + "}",
         contact="{" + ", ".join(times) + "}",
     )
+
+
+def _density(body: Particle) -> float:
+    """Density (kg/m³); of a wall that has none, a number that moves nothing."""
+    return _WALL_DENSITY if body.wall and body.density is None else density_of(body)
 
 
 def _entries(items: Iterable[str]) -> str:
