@@ -18,6 +18,8 @@ from pathlib import Path
 
 import numpy as np
 
+from shared import write_table
+
 from restitution.dem.export import export, write_export
 from restitution.dem.from_run import bare_law, law_of
 from restitution.dem.law import Law
@@ -33,6 +35,7 @@ COMMANDS = {
     "liggghts": ["liggghts", "-in", "collision.in.liggghts", "-log", "none"],
     "yade": ["yade", "-n", "-x", "-j1", "collision_yade.py"],
 }
+SHARES = (0.02, 0.1, 0.25, 0.5, 0.75, 0.9, 0.98)  # of ln V between two velocities
 # Debian's programs want Debian's Python and MPI.
 CLEAN = {"PATH": "/usr/bin:/bin", "LANG": "C.UTF-8", "OMP_NUM_THREADS": "1",
          "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}  # fmt: skip
@@ -67,16 +70,40 @@ def in_time(out: Path, law: Law) -> None:
 
 
 def coverage(text: str, place: Path) -> None:
-    """How often the error between velocities holds: every second of 23, on four surfaces."""
-    inside = []
+    """How often the error between the velocities of the example holds, on four surfaces.
+
+    The velocities in between are kept in between_velocities.csv, which a test reads.
+    """
+    stored = np.geomspace(0.02, 5.0, 12)
+    steps = np.diff(np.log(stored))
+    between = np.exp(np.log(stored[:-1, None]) + steps[:, None] * np.array(SHARES))
+    velocities = np.sort(np.concatenate([stored, between.ravel()]))
+    before, after = text.split("[impact]")[0], text.split("[unloading]")[1]
+    listed = ", ".join(f'"{V:.12g} m/s"' for V in velocities)
+    text = f"{before}[impact]\nvelocity = [{listed}]\n[unloading]{after}"
+    text = text.replace("curves = 12", "curves = 0")
+    rows, inside = [], {share: [] for share in SHARES}
     for seed in (1, 2, 3, 4):
-        finer = text.replace("steps = 12", "steps = 23").replace("curves = 12", "curves = 0")
-        law = bare_law(run(finer.replace("seed = 1", f"seed = {seed}"), place / f"finer-{seed}"))
-        half = law.model_copy(update={"points": law.points[::2]})
-        for point in law.points[1::2]:
-            found = half.at(point.velocity)
-            inside.append(abs(found.restitution - point.restitution) <= found.error)
-    print(f"between velocities: the error held at {sum(inside)} of {len(inside)}\n")
+        law = bare_law(run(text.replace("seed = 1", f"seed = {seed}"), place / f"finer-{seed}"))
+        known = law.model_copy(update={"points": law.points[:: len(SHARES) + 1]})
+        for k, point in enumerate(law.points):
+            rows.append(
+                {
+                    "seed": seed,
+                    "share": (0.0, *SHARES)[k % (len(SHARES) + 1)],
+                    "velocity_m_per_s": f"{point.velocity:.9g}",
+                    "restitution": f"{point.restitution:.9g}",
+                    "restitution_error": f"{point.error:.3g}",
+                }
+            )
+            if rows[-1]["share"]:
+                found = known.at(point.velocity)
+                held = abs(found.restitution - point.restitution) <= found.error
+                inside[rows[-1]["share"]].append(held)
+    write_table("between_velocities.csv", rows)
+    for share, held in inside.items():
+        print(f"at {share:g} of the way between velocities: {sum(held)} of {len(held)} held")
+    print()
 
 
 def rebound(code: str, folder: Path) -> float:

@@ -1,12 +1,18 @@
 """Between the points of a law, and what is said of the error there."""
 
+import csv
+from pathlib import Path
+
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 from restitution.dem.interpolation import RatioCurve
 from restitution.theory import thornton_ning
 
+BETWEEN = Path(__file__).parents[2] / "docs" / "studies" / "between_velocities.csv"
 R, E_STAR, P_Y, MASS = 250e-6, 112e9, 750e6, 2e-6
 
 
@@ -48,9 +54,76 @@ def test_the_error_holds_for_curves_that_scatter_as_rough_ones_do(seed):
     assert np.mean(inside) >= 0.75
 
 
+def test_the_error_of_the_example_holds_between_its_velocities_and_close_to_them(law):
+    """Four rough surfaces, as `docs/studies/dem.py` computed them: twelve velocities are known."""
+    with open(BETWEEN, newline="") as file:
+        rows = [{key: float(text) for key, text in row.items()} for row in csv.DictReader(file)]
+    held = {}
+    for seed in (1, 2, 3, 4):
+        mine = [row for row in rows if row["seed"] == seed]
+        known = law(points=tuple(point_of(law, row) for row in mine if row["share"] == 0))
+        assert len(known.points) == 12
+        for row in mine:
+            found = known.at(row["velocity_m_per_s"])
+            miss = abs(found.restitution - row["restitution"])
+            if row["share"]:
+                held.setdefault(row["share"], []).append(miss <= found.error)
+            else:
+                assert found.error == row["restitution_error"]
+    assert np.mean([each for some in held.values() for each in some]) >= 0.9
+    for share, some in held.items():
+        assert len(some) == 44
+        assert np.mean(some) >= 0.9, share
+
+
+def point_of(law, row):
+    e = row["restitution"]
+    changes = {"velocity": row["velocity_m_per_s"], "restitution": e, "ratio": e**2}
+    return law().points[0].model_copy(update={**changes, "error": row["restitution_error"]})
+
+
+@given(st.lists(st.floats(0, 1), min_size=2, max_size=8), st.data())
+def test_the_error_is_continuous(law, values, data):
+    """Across a point, and between: nothing jumps where the velocity moves by a millionth."""
+    V = np.geomspace(0.1, 10, len(values))
+    errors = data.draw(st.lists(st.floats(0, 0.05), min_size=len(values), max_size=len(values)))
+    rows = [
+        {"velocity_m_per_s": v, "restitution": e, "restitution_error": error}
+        for v, e, error in zip(V.tolist(), values, errors, strict=True)
+    ]
+    found = law(points=tuple(point_of(law, row) for row in rows))
+    k = data.draw(st.integers(0, len(values) - 1))
+    for beside in (V[k] * (1 - 1e-8), V[k] * (1 + 1e-8)):
+        if found.lowest < beside < found.highest:
+            at = found.at(float(beside))
+            assert at.restitution == pytest.approx(values[k], abs=0.02)
+            assert at.error == pytest.approx(errors[k], abs=0.03)
+    V = data.draw(st.floats(0.1, 9.99))
+    here, there = found.at(V), found.at(V * (1 + 1e-9))
+    assert here.restitution == pytest.approx(there.restitution, abs=1e-3)
+    assert here.error == pytest.approx(there.error, abs=0.03)
+
+
+def test_the_error_falls_towards_the_points_and_their_own_is_interpolated(law):
+    one, two = (
+        point.model_copy(update={"error": error})
+        for point, error in zip(law().points, (0.01, 0.03), strict=False)
+    )
+    found = law(points=(one, two))
+    ends = [one.velocity, two.velocity]
+    V = [ends[0] ** (1 - t) * ends[1] ** t for t in (1e-9, 0.1, 0.5, 0.9, 1 - 1e-9)]
+    errors = [found.at(v).error for v in V]
+    assert errors[0] == pytest.approx(0.01, abs=1e-4)
+    assert errors[-1] == pytest.approx(0.03, abs=1e-4)
+    curve = found.curve()
+    assert curve.error(V[1]) == pytest.approx(0.6 * curve.error(V[2]), rel=1e-6, abs=0)
+    assert errors[2] - 0.02 > errors[1] - 0.012 > 0.5 * (errors[2] - 0.02)
+
+
 def test_of_two_points_the_error_is_their_difference_and_of_one_there_is_none():
     curve = RatioCurve(np.array([0.1, 1.0]), np.array([0.9, 0.5]), adhesive=False)
-    assert curve.error(0.3) == pytest.approx(0.4)
+    assert curve.error(0.316227766) == pytest.approx(0.4, abs=1e-9)
+    assert curve.error(0.1) == curve.error(1.0) == 0
     assert curve.at(0.316227766) == pytest.approx(0.7)
     alone = RatioCurve(np.array([0.1]), np.array([0.9]), adhesive=True)
     assert (alone.at(0.1), alone.error(0.1)) == (0.9, 0.0)

@@ -227,8 +227,9 @@ class Law(_Stored):
     def at(self, velocity: float) -> Estimate:
         """The estimate at `velocity` (m/s).
 
-        Between points its error is what interpolation may be off by, and the larger error of the
-        two neighbours. Raises `DomainError` beyond the velocities that were computed.
+        Its error is the one of the points, interpolated linearly in ln V, and what interpolation
+        of W_u/W_l may be off by between them (`RatioCurve.error`); it is continuous. Raises
+        `DomainError` beyond the velocities that were computed.
         """
         if not self.lowest * (1 - _SAME) <= velocity <= self.highest * (1 + _SAME):
             raise DomainError(
@@ -242,14 +243,14 @@ class Law(_Stored):
             return Estimate(nearest.restitution, nearest.error, nearest.resolved)
         curve = self.curve()
         ratio, off = curve.at(velocity), curve.error(velocity)
-        after = int(np.searchsorted(V, velocity))
-        near = self.points[after - 1 : after + 1]
+        after, share = curve.interval(velocity)
+        below, above = self.points[after - 1 : after + 1]
         e = _root(ratio)
         between = max(abs(_root(ratio + off) - e), abs(e - _root(ratio - off)))
         return Estimate(
             e,
-            max(point.error for point in near) + between,
-            all(point.resolved for point in near),
+            (1 - share) * below.error + share * above.error + between,
+            below.resolved and above.resolved,
         )
 
     def curve(self) -> RatioCurve:

@@ -2,8 +2,8 @@
 
 What LAMMPS 22Jul2025 does (tried, `tests/dem/test_lammps_mdr.py`): pair_style granular takes one
 mdr model, with the same values for every pair of types, and refuses any other normal model beside
-it. A wall with mdr crashes it unless pair_style has mdr, too; fix wall/gran then takes values of its
-own (or another model), fix wall/gran/region only those of pair_style.
+it. A wall with mdr crashes it unless pair_style has mdr, too; fix wall/gran then takes values of
+its own (or another model), fix wall/gran/region only those of pair_style.
 """
 
 from __future__ import annotations
