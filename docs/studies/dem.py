@@ -17,7 +17,6 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-
 from shared import write_table
 
 from restitution.dem.export import export, write_export

@@ -21,14 +21,25 @@ def law(
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the law; new or empty.")],
 ) -> None:
     """Write the restitution law of the results in OUT: table, compact fit, simpler laws."""
-    from restitution.cli.console import answers, warn
-    from restitution.dem.from_run import law_of
-    from restitution.dem.write import write_law
+    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-    found = law_of(results)
+    from restitution.cli.console import answers, errors, warn
+
+    columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
+    with Progress(*columns, console=errors, transient=True) as bar:
+        task = bar.add_task("reading the results")
+
+        def say(words: str) -> None:
+            bar.update(task, description=words, refresh=True)
+
+        from restitution.dem.from_run import law_of
+        from restitution.dem.write import write_law
+
+        found = law_of(results, lambda name, k, n: say(f"fitting {name} ({k} of {n})"))
+        say("drawing the figure")
+        written = write_law(found, out)
     for warning in found.warnings:
         warn(warning)
-    written = write_law(found, out)
     answers.print(
         f"{found.pair}: {len(found.points)} velocities, {found.lowest:.4g} to "
         f"{found.highest:.4g} m/s", markup=False, soft_wrap=True,

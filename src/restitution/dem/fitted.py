@@ -22,6 +22,19 @@ from restitution.theory import eepa, luding, mdr, sticking, thornton_ning, walto
 Array = NDArray[np.float64]
 Parameters = dict[str, float]
 
+NAMES = (
+    "constant",
+    "thornton-ning-force",
+    "thornton-ning",
+    "walton-braun",
+    "luding",
+    "eepa",
+    "lammps-mdr",
+)
+"""The laws that are fitted, in this order."""
+Begin = Callable[[str, int, int], None]
+"""Called before a fit begins, with its name, its number and how many there are."""
+
 _MOST = 1e6  # ratio of stiffnesses
 # The parameters of each set of springs, as its theory takes them.
 _WALTON_BRAUN = ("loading_stiffness_N_per_m", "unloading_stiffness_N_per_m", "hardening_per_m")
@@ -41,11 +54,18 @@ _EEPA = (
 _AT_FORCE_ZERO = "separation, where the force is back to zero"
 
 
-def fitted_laws(law: Law) -> tuple[FittedLaw, ...]:
+def fitted_laws(law: Law, begin: Begin | None = None) -> tuple[FittedLaw, ...]:
     """Every force law that can be fitted to `law`; none where it loses nothing or is unresolved."""
     if _seen(law, "restitution").min(initial=1.0) > 1 - LOSS:
         return ()
-    return tuple(_all(law))
+    fits, found = _all(law), []
+    for number, name in enumerate(NAMES, 1):
+        if begin is not None:
+            begin(name, number, len(NAMES))
+        if (each := next(fits, None)) is None:
+            break
+        found.append(each)
+    return tuple(found)
 
 
 def _all(law: Law) -> Iterator[FittedLaw]:

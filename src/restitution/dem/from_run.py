@@ -12,7 +12,7 @@ from typing import Any
 import xarray as xr
 
 from restitution.dem.compact import compact_fit
-from restitution.dem.fitted import fitted_laws
+from restitution.dem.fitted import Begin, fitted_laws
 from restitution.dem.law import LAW_FILE, Conventions, Law, Particle, Point
 from restitution.errors import CaseError, OutputError
 from restitution.studies.case import parse_case
@@ -21,10 +21,13 @@ from restitution.studies.particles import BodyTable
 _Row = Mapping[str, str]
 
 
-def law_of(out: Path) -> Law:
-    """The law of what was computed in the folder `out`, with its fits. Raises as `bare_law`."""
+def law_of(out: Path, begin: Begin | None = None) -> Law:
+    """The law of what was computed in the folder `out`, with its fits.
+
+    `begin` is called before each fit (`fitted.Begin`). Raises as `bare_law`.
+    """
     law = bare_law(out)
-    return law.model_copy(update={"fit": compact_fit(law), "laws": fitted_laws(law)})
+    return law.model_copy(update={"fit": compact_fit(law), "laws": fitted_laws(law, begin)})
 
 
 def bare_law(out: Path) -> Law:

@@ -10,9 +10,9 @@ begins to rebound. Without adhesion s = 0.
 What lies between two points is not known. Half way between them the error is the larger of one and
 a half times what the two neighbours are off when they are interpolated from the others (leaving one
 out), and of the difference to straight lines; of two points alone, all that they differ by. Towards
-the points it falls to zero as 2 (t (1 − t))^½, t being the share of ln V within the interval: as the
-standard deviation of a random walk that is known at both ends. How often it holds on rough surfaces
-is in docs/dem.md.
+the points it falls to zero as 2 (t (1 − t))^½, t being the share of ln V within the interval: as
+the standard deviation of a random walk that is known at both ends. How often it holds on rough
+surfaces is in docs/dem.md.
 """
 
 from __future__ import annotations

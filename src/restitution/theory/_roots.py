@@ -1,22 +1,76 @@
-"""Roots of increasing functions, for whole arrays at once."""
+"""Roots of increasing functions, for whole arrays at once.
+
+T. R. Chandrupatla, Advances in Engineering Software 28 (1997) 145–149: inverse quadratic
+interpolation where it is safe, halving where it is not. Every item keeps a bracket.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ._inputs import Array, Values
 
-_HALVINGS = 100  # from a bracket [0, 1], every root above 1e-14 to the last digit
+_MOST = 200  # steps; about 10 are usual, and halving alone takes 100 from [0, 1] to 1e-14
+_EXACT = 2 * np.finfo(float).eps  # relative width of a bracket that is done
 
 
 def increasing_root(excess: Callable[[Array], Array], low: Values, high: Values) -> Array:
-    """Where `excess`, which increases, passes zero between `low` and `high`; NaN stays NaN."""
-    low, high = np.broadcast_arrays(np.asarray(low, float), np.asarray(high, float))
-    for _ in range(_HALVINGS):
-        middle = (low + high) / 2
-        above = excess(middle) > 0
-        low, high = np.where(above, low, middle), np.where(above, middle, high)
-    root: Array = (low + high) / 2
+    """Where `excess`, which increases, passes zero between `low` and `high`; NaN stays NaN.
+
+    `low` where `excess` is positive there already, `high` where it is negative there still.
+    """
+    low, high = (np.asarray(end, float) for end in np.broadcast_arrays(low, high))
+    below, above = excess(low), excess(high)
+    root = np.where(below >= 0, low, np.where(above <= 0, high, low + high + below + above))
+    inside = (below < 0) & (above > 0)
+    if inside.any():
+        with np.errstate(all="ignore"):  # of items that are done, and of steps not taken
+            found = _chandrupatla(excess, low, high, below, above, inside)
+        root = np.where(inside, found, root)
     return root
+
+
+def _chandrupatla(
+    excess: Callable[[Array], Array],
+    low: Array,
+    high: Array,
+    below: Array,
+    above: Array,
+    inside: NDArray[np.bool_],
+) -> Array:
+    """The roots of the items `inside`; the newest point is 1, the other end 2, the one before 3."""
+    x1, f1, x2, f2 = high, above, low, below
+    root, share = np.full_like(x1, np.nan), np.full_like(x1, 0.5)
+    waiting = inside
+    for _ in range(_MOST):
+        x = x1 + share * (x2 - x1)
+        f = excess(x)
+        same = (f > 0) == (f1 > 0)
+        x3, f3 = np.where(same, x1, x2), np.where(same, f1, f2)
+        x2, f2 = np.where(same, x2, x1), np.where(same, f2, f1)
+        x1, f1 = x, f
+        best = np.where(np.abs(f1) < np.abs(f2), x1, x2)
+        width, least = np.abs(x2 - x1), _EXACT * np.abs(best)
+        done = (f1 == 0) | (width <= least) | np.isnan(f1)
+        root = np.where(waiting & done, np.where(np.isnan(f1), np.nan, best), root)
+        waiting = waiting & ~done
+        if not waiting.any():
+            break
+        share = np.clip(
+            _interpolated(x1, f1, x2, f2, x3, f3), 0.5 * least / width, 1 - 0.5 * least / width
+        )
+        share = np.where(waiting, share, 0.5)
+    return np.where(waiting, best, root)
+
+
+def _interpolated(x1: Array, f1: Array, x2: Array, f2: Array, x3: Array, f3: Array) -> Array:
+    """The share of the way from point 1 to point 2 at which the next trial is."""
+    xi, phi = (x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2)
+    safe = (phi**2 < xi) & ((1 - phi) ** 2 < 1 - xi)
+    quadratic = f1 / (f2 - f1) * f3 / (f2 - f3) + (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (
+        f3 - f2
+    )
+    return np.where(safe, quadratic, 0.5)
