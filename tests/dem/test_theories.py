@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from restitution import theory
 from restitution.dem import theories as room
 from restitution.dem.fitted import fitted_laws
 from restitution.dem.law import Particle
@@ -19,7 +20,6 @@ from restitution.theory import (
     mdr,
     sticking,
     thornton_ning,
-    wu_li_thornton,
     yielding,
 )
 
@@ -29,10 +29,7 @@ LIGHT = 'density = "2500 kg/m^3"\n'
 PLASTIC = 'yield_pressure = "560 MPa"\n'
 IMPACT = '[impact]\nfrom = "1 mm/s"\nto = "100 m/s"\nsteps = 3\n'
 V = np.geomspace(1e-4, 3000, 200)
-YIELDING = {
-    "thornton-ning", "johnson", "jackson-green-marghitu", "wu-li-thornton-sphere",
-    "wu-li-thornton-half-space", "mdr",
-}  # fmt: skip
+YIELDING = {"thornton-ning", "johnson", "jackson-green-marghitu", "mdr"}
 
 
 def case_of(first=SPHERE + LIGHT, second=None, interface=PLASTIC, depths=IMPACT):
@@ -120,19 +117,6 @@ def test_jackson_green_marghitu_is_silent_about_soft_strong_bodies():
     assert "so only where e = 1" in found.holds
 
 
-@pytest.mark.parametrize("plastic", ["sphere", "half-space"])
-def test_wu_li_thornton_on_a_wall(plastic):
-    case = case_of(second=WALL)
-    R, E, m = bodies(case)
-    found = by_name(case)[f"wu-li-thornton-{plastic}"]
-    expected = wu_li_thornton.restitution(V, R, E, 200e6, m, plastic)
-    same_within(found.restitution, expected, np.isfinite(expected))
-    begins = float(found.holds.split("from ")[1].split(" m/s")[0])
-    formula = np.isfinite(expected) & (expected < 1)
-    assert V[formula][0] / (V[1] / V[0]) < begins * 1.01
-    assert begins < V[formula][0] * 1.01
-
-
 def test_mdr_on_a_wall_and_between_equal_spheres():
     case = case_of(second=WALL)
     R, E, m = bodies(case)
@@ -151,20 +135,13 @@ def test_two_equal_spheres_are_one_on_a_rigid_wall_at_half_the_velocity():
     equal = by_name(case_of())
     rigid = case_of(second=WALL.replace("200 GPa", "900000 GPa"))
     wall = by_name(rigid, V / 2)
-    for name in ("wu-li-thornton-sphere", "mdr"):
-        np.testing.assert_allclose(
-            equal[name].restitution, wall[name].restitution, rtol=1e-3, err_msg=name
-        )
-    assert "wu-li-thornton-half-space" not in equal
+    np.testing.assert_allclose(equal["mdr"].restitution, wall["mdr"].restitution, rtol=1e-3)
 
 
 def test_unequal_spheres_are_left_out_where_a_theory_knows_equal_ones_only():
     case = case_of(second=SPHERE.replace("1 mm", "2 mm") + LIGHT)
-    gone = {"wu-li-thornton-sphere", "wu-li-thornton-half-space", "mdr"}
-    assert set(by_name(case)) == {"hertz"} | YIELDING - gone
-    reasons = room.left_out(case)
-    assert gone <= set(reasons)
-    assert "equal" in reasons["mdr"]
+    assert set(by_name(case)) == {"hertz"} | YIELDING - {"mdr"}
+    assert "equal" in room.left_out(case)["mdr"]
     R, E, m = bodies(case)
     expected = thornton_ning.restitution(1.0, R, E, 560e6, m)
     (found,) = by_name(case, np.ones(1))["thornton-ning"].restitution
@@ -176,17 +153,13 @@ def test_the_yield_strength_is_the_softer_bodys_where_both_give_one():
     weak = 'yield_strength = "150 MPa"\n'
     soft_sphere = case_of(first=SPHERE + LIGHT + weak, second=WALL + strong)
     found = by_name(soft_sphere)
-    for name in ("johnson", "jackson-green-marghitu", "wu-li-thornton-sphere", "mdr"):
+    for name in ("johnson", "jackson-green-marghitu", "mdr"):
         assert found[name].parameters["yield_strength_Pa"] == pytest.approx(150e6)
         assert "Y = 150 MPa, the yield_strength of first" in found[name].holds
     assert found["thornton-ning"].parameters == {"yield_pressure_Pa": pytest.approx(560e6)}
-    assert room.left_out(soft_sphere)["wu-li-thornton-half-space"] == "the sphere is the softer one"
 
     soft_wall = case_of(first=SPHERE + LIGHT + strong, second=WALL + weak)
-    gone = room.left_out(soft_wall)
-    assert "wu-li-thornton-half-space" not in gone
-    assert gone["wu-li-thornton-sphere"] == "the wall is the softer one"
-    assert "does not yield" in gone["mdr"]
+    assert "does not yield" in room.left_out(soft_wall)["mdr"]
 
     one = by_name(case_of(first=SPHERE + LIGHT + weak, second=WALL))
     assert one["johnson"].parameters["yield_strength_Pa"] == pytest.approx(200e6)
@@ -197,7 +170,6 @@ def test_the_order_of_the_bodies_does_not_matter(wall_first):
     strong, weak = SPHERE + LIGHT + 'yield_strength = "400 MPa"\n', WALL
     weak += 'yield_strength = "150 MPa"\n'
     case = case_of(weak, strong) if wall_first else case_of(strong, weak)
-    assert "wu-li-thornton-sphere" in room.left_out(case)
     assert "mdr" in room.left_out(case)
 
 
@@ -237,6 +209,12 @@ def test_an_elastic_case_has_hertz_and_with_adhesion_sticking():
     assert set(found) == {"hertz", "sticking"}
     assert np.nanmin(found["sticking"].restitution) == 0
     assert set(room.marks(sticky)) == {"V_s"}
+
+
+def test_no_theory_rests_on_constants_that_nobody_could_look_up():
+    """Wu, Li and Thornton's came from memory, and finite elements contradict them."""
+    assert not [name for name in room.FORMS if name.startswith("wu")]
+    assert not hasattr(theory, "wu_li_thornton")
 
 
 def test_velocities_are_the_span_of_the_case():

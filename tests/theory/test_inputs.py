@@ -20,7 +20,6 @@ from restitution.theory import (
     sticking,
     thornton_ning,
     walton_braun,
-    wu_li_thornton,
     yielding,
 )
 
@@ -134,7 +133,6 @@ FUNCTIONS = [
     (johnson.restitution, ("velocity", *STRONG, "mass"), 1),
     (jackson_green_marghitu.critical_velocity, (*STRONG, "poisson_ratio", "mass"), None),
     (jackson_green_marghitu.restitution, ("velocity", *STRONG, "poisson_ratio", "mass"), 1),
-    (wu_li_thornton.restitution, ("velocity", *STRONG, "mass"), 1),
     (walton_braun.loading_force, ("indentation", "loading_stiffness"), 0),
     (walton_braun.unloading_force, (*UNLOADING, *SPRINGS, "hardening"), 0),
     (walton_braun.residual_indentation, ("maximum_indentation", *SPRINGS, "hardening"), 0),

@@ -31,7 +31,6 @@ from restitution.theory import (
     mdr,
     sticking,
     thornton_ning,
-    wu_li_thornton,
     yielding,
 )
 
@@ -51,10 +50,6 @@ SOURCES = {
     "johnson": "K. L. Johnson, Contact Mechanics (Cambridge, 1985), section 11.5",
     "jackson-green-marghitu": "R. L. Jackson, I. Green, D. B. Marghitu, Nonlinear Dynamics 60 "
     "(2010) 217-229; coefficients from memory, see docs/theory.md",
-    "wu-li-thornton-sphere": "C.-Y. Wu, L.-Y. Li, C. Thornton, Int. J. Impact Engineering 28 "
-    "(2003) 929-946; coefficients from memory, see docs/theory.md",
-    "wu-li-thornton-half-space": "C.-Y. Wu, L.-Y. Li, C. Thornton, Int. J. Impact Engineering 28 "
-    "(2003) 929-946; coefficients from memory, see docs/theory.md",
     "mdr": "W. Zunker, K. Kamrin, J. Mech. Phys. Solids 183 (2024) 105492, as LAMMPS has it",
     "brilliantov": "P. Mueller, T. Poeschel, Phys. Rev. E 84 (2011) 021302, of the viscoelastic "
     "contact of N. V. Brilliantov et al., Phys. Rev. E 53 (1996) 5382-5392",
@@ -278,35 +273,6 @@ def _jackson_green_marghitu(b: Bodies, V: Array) -> Form | str:
     )  # fmt: skip
 
 
-def _wu_li_thornton(b: Bodies, V: Array, plastic: str) -> Form | str:
-    if b.elastic:
-        return _ELASTIC
-    wall = plastic == "half-space"
-    if wall and not b.walls:
-        return "neither body is a wall"
-    if not b.walls and not b.equal:
-        return "of two spheres it knows two equal ones only (one on a rigid wall, mirrored)"
-    if b.yielding_wall not in (None, wall):
-        return f"the {'sphere' if wall else 'wall'} is the softer one"
-    # Two equal spheres are two impacts on a rigid wall, as in `mdr`.
-    n = 2 if b.equal else 1
-    Y, E, R, m = b.strength, n * b.E, n * b.R, n * b.m
-    V_y = n * float(yielding.yield_velocity(R, E, wu_li_thornton.YIELD_COEFFICIENT * Y, m))
-    c, s = wu_li_thornton.COEFFICIENTS[plastic], E / Y
-    lowest = V_y * max(wu_li_thornton.THRESHOLD * s**2, c**2 * s)
-    which = (
-        "both spheres yield alike, each as on a rigid wall at V/2" if b.equal
-        else "elastic sphere, plastic half-space" if wall
-        else "plastic sphere, rigid wall"
-    )  # fmt: skip
-    return Form(
-        wu_li_thornton.restitution(V / n, R, E, Y, m, plastic),
-        f"{which}; large plastic deformation, from {speed(lowest)}, and e = 1 up to "
-        f"{speed(V_y)} (V_y at {wu_li_thornton.YIELD_COEFFICIENT:g} Y)",
-        takes_strength=True,
-    )
-
-
 def _mdr(b: Bodies, V: Array) -> Form | str:
     if b.elastic:
         return _ELASTIC
@@ -339,8 +305,6 @@ FORMS: dict[str, Callable[[Bodies, Array], Form | str]] = {
     "thornton-ning": _thornton_ning,
     "johnson": _johnson,
     "jackson-green-marghitu": _jackson_green_marghitu,
-    "wu-li-thornton-sphere": lambda b, V: _wu_li_thornton(b, V, "sphere"),
-    "wu-li-thornton-half-space": lambda b, V: _wu_li_thornton(b, V, "half-space"),
     "mdr": _mdr,
 }
 

@@ -33,7 +33,6 @@ from . import (
     sticking,
     thornton_ning,
     walton_braun,
-    wu_li_thornton,
     yielding,
 )
 
@@ -52,6 +51,5 @@ __all__ = [
     "sticking",
     "thornton_ning",
     "walton_braun",
-    "wu_li_thornton",
     "yielding",
 ]
