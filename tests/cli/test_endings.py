@@ -8,6 +8,7 @@ import sys
 import time
 
 import pytest
+import xarray as xr
 
 from restitution.studies import case as case_module
 from restitution.studies import run
@@ -163,8 +164,6 @@ def test_interruption_keeps_what_was_computed(case_text, tmp_path, sent, status)
     assert "depths were computed and are kept" in said
     assert "Traceback" not in said
 
-    import xarray as xr
-
     rows = (out / "curve.csv").read_text().splitlines()[1:]
     with xr.open_dataset(out / "results.nc") as results:
         assert results.sizes["indentation_max"] == len(rows) > 4
@@ -177,8 +176,6 @@ def test_interruption_keeps_what_was_computed(case_text, tmp_path, sent, status)
 @pytest.mark.parametrize("where", ["adhesive_nodes", "add"])
 def test_interruption_between_what_belongs_to_a_row(case_text, tmp_path, monkeypatch, where):
     """The third depth is computed, and is either kept or not."""
-    import xarray as xr
-
     from restitution.studies import run
     from restitution.studies.case import parse_case
     from restitution.studies.results import ResultsFolder
@@ -202,22 +199,49 @@ def test_interruption_between_what_belongs_to_a_row(case_text, tmp_path, monkeyp
 
 
 def test_interruption_while_results_are_written_loses_nothing(case_text, tmp_path, monkeypatch):
+    """Twice, in the middle of the library's own writing."""
     from restitution.studies.case import parse_case
+    from restitution.studies.reader import read_run
     from restitution.studies.results import ResultsFolder
     from restitution.studies.run import run_case
 
-    write, calls = ResultsFolder.write, []
+    write = xr.Dataset.to_netcdf
 
-    def interrupted(self, dataset, summary):
-        calls.append(summary["status"])
-        if len(calls) == 1:
-            raise KeyboardInterrupt
-        write(self, dataset, summary)
+    def interrupted(self, *arguments, **options):
+        signal.raise_signal(signal.SIGINT)
+        write(self, *arguments, **options)
+        signal.raise_signal(signal.SIGINT)
 
-    monkeypatch.setattr(ResultsFolder, "write", interrupted)
+    monkeypatch.setattr(xr.Dataset, "to_netcdf", interrupted)
     out = ResultsFolder(tmp_path / "out")
     with pytest.raises(KeyboardInterrupt):
         run_case(parse_case(case_text), case_text, tmp_path, out)
-    assert calls == ["complete", "complete"]
-    assert (tmp_path / "out" / "results.nc").exists()
-    assert (tmp_path / "out" / "summary.json").exists()
+    run = read_run(tmp_path / "out")
+    assert run.summary["status"] == "complete"
+    assert len(run.curve.rows) == 4
+
+
+@pytest.mark.parametrize("error", [RuntimeError("NetCDF: HDF error"), OSError(28, "No space left")])
+@pytest.mark.parametrize("realisations", [1, 2])
+def test_a_disk_that_is_full_for_the_results(
+    refused, case_text, tmp_path, monkeypatch, error, realisations
+):
+    """One line, a summary that says so, and no part of a file."""
+    (tmp_path / "case.toml").write_text(
+        case_text.replace("seed = 1", f"seed = 1\nrealisations = {realisations}")
+    )
+    write, out = xr.Dataset.to_netcdf, tmp_path / "out"
+
+    def full(self, path, **options):
+        if path.parent == out:  # not in the folders of the realisations
+            path.write_bytes(b"half of it")
+            raise error
+        write(self, path, **options)
+
+    monkeypatch.setattr(xr.Dataset, "to_netcdf", full)
+    assert f"{out}: cannot be written (" in refused("run", tmp_path / "case.toml", "-o", out)
+    summary = json.loads((out / "summary.json").read_text())
+    assert summary["status"] == "failed"
+    assert "cannot be written" in summary["reason"]
+    assert not (out / "results.nc").exists()
+    assert not list(out.glob(".*"))

@@ -21,7 +21,7 @@ def test_an_ensemble_from_start_to_figures(cli, case_text, tmp_path):
     assert names == {
         "results.nc", "curve.csv", "summary.json", "realisations.csv", "load-displacement.png",
         "restitution-indentation.png", "restitution-velocity.png",
-        "realisation-1", "realisation-2", "realisation-3",
+        "realisation-1", "realisation-2", "realisation-3", "SHA256SUMS",
     }  # fmt: skip
     rows = rows_of(tmp_path / "out" / "curve.csv")
     assert list(rows[0])[-4:] == [
@@ -51,7 +51,7 @@ def test_convergence_from_start_to_figures(cli, case_text, tmp_path):
     assert names == {
         "results.nc", "curve.csv", "convergence.csv", "summary.json", "load-displacement.png",
         "restitution-indentation.png", "restitution-velocity.png", "pressure.png", "refine-1",
-        "refine-2",
+        "refine-2", "SHA256SUMS",
     }  # fmt: skip
     summary = json.loads((tmp_path / "out" / "summary.json").read_text())
     assert summary["trust"]["largest_discretisation_error"] > 0

@@ -43,7 +43,7 @@ def test_run_writes_every_file(done):
     names = {path.name for path in out.iterdir()}
     assert names == {
         "results.nc", "curve.csv", "unloading.csv", "summary.json", "load-displacement.png",
-        "restitution-indentation.png", "restitution-velocity.png", "pressure.png",
+        "restitution-indentation.png", "restitution-velocity.png", "pressure.png", "SHA256SUMS",
     }  # fmt: skip
     for name in names:
         assert name in said

@@ -224,7 +224,7 @@ def test_damaged_results_are_refused(rough, tmp_path):
         return folder
 
     rows = (rough / "curve.csv").read_text().splitlines(keepends=True)
-    with pytest.raises(OutputError, match="has 2 depths, and the run computed 7"):
+    with pytest.raises(OutputError, match=r"curve\.csv: is damaged"):
         bare_law(copied("curve.csv", "".join(rows[:3])))
     with pytest.raises(OutputError, match="has not ended, or was killed"):
         bare_law(copied("summary.json", None))
@@ -234,7 +234,7 @@ def test_damaged_results_are_refused(rough, tmp_path):
         ("results.nc", ""),
         ("results.nc", None),
     ):
-        with pytest.raises(OutputError, match="holds no results of a run"):
+        with pytest.raises(OutputError, match=rf"{name}: (is damaged|does not exist)"):
             bare_law(copied(name, text))
 
 

@@ -87,4 +87,4 @@ def test_what_is_no_folder_of_results(refused, reported, tmp_path):
     assert "holds no results" in refused("report", tmp_path / "nothing")
     page = reported("run")
     (page.parent / "summary.json").write_text("{}")
-    assert "its results cannot be read" in refused("report", page.parent)
+    assert "summary.json: is damaged" in refused("report", page.parent)

@@ -124,6 +124,19 @@ def test_a_case_that_fails_is_kept_with_its_reason_and_not_tried_again(text, tmp
     assert calls == [2]
 
 
+def rewrite(path, change):
+    path.write_text(change(path.read_text()))
+
+
+def with_a_restitution_of(value):
+    def change(text):
+        lines = [line.split(",") for line in text.splitlines()]
+        lines[1][lines[0].index("restitution")] = value
+        return "".join(",".join(line) + "\n" for line in lines)
+
+    return change
+
+
 @pytest.mark.parametrize(
     "damage",
     [
@@ -132,12 +145,22 @@ def test_a_case_that_fails_is_kept_with_its_reason_and_not_tried_again(text, tmp
         lambda case: (case / "curve.csv").write_text("indentation_m\n"),
         lambda case: (case / "summary.json").write_text("{"),
         lambda case: (case / "case.toml").write_text("title = 'another'"),
+        lambda case: rewrite(case / "curve.csv", lambda text: text.replace("e-", "x-", 1)),
+        lambda case: rewrite(case / "curve.csv", lambda text: text.replace("force_N", "force", 1)),
+        lambda case: rewrite(case / "curve.csv", with_a_restitution_of("-7")),
+        lambda case: rewrite(case / "curve.csv", lambda text: "\0" * len(text)),
+        lambda case: rewrite(
+            case / "summary.json", lambda text: text.replace("complete", "failed")
+        ),
     ],
 )
-def test_a_damaged_case_is_computed_again(whole, text, tmp_path, damage, monkeypatch):
+@pytest.mark.parametrize("checked", [True, False])
+def test_a_damaged_case_is_computed_again(whole, text, tmp_path, damage, checked, monkeypatch):
     import shutil
 
     shutil.copytree(whole, tmp_path / "out")
+    if not checked:
+        (tmp_path / "out" / "cases" / "case-00003" / "SHA256SUMS").unlink()
     damage(tmp_path / "out" / "cases" / "case-00003")
     calls = []
     compute = module.compute

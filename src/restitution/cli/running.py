@@ -59,10 +59,12 @@ def carry_out(
     from restitution.numerics.device import on_device
     from restitution.reports.figures import write_figures
     from restitution.studies.case import naming, read_case
-    from restitution.studies.results import ResultsFolder
+    from restitution.studies.locking import locked
+    from restitution.studies.results import LOCK, ResultsFolder
 
     read, text = read_case(case)
     context.with_resource(on_device(device.value))
+    context.with_resource(locked(out))
     folder = ResultsFolder(out)
     errors.print(f"Results go to {out}", markup=False, soft_wrap=True)
     columns = (
@@ -99,7 +101,7 @@ def carry_out(
         _keep(folder, depths)
         raise
     drawn = {figure.name for figure in figures}
-    names = [path.name for path in sorted(out.iterdir()) if path.name not in drawn]
+    names = [p.name for p in sorted(out.iterdir()) if p.name not in drawn and p.name != LOCK]
     answers.print(f"In {out}: {', '.join([*names, *sorted(drawn)])}", markup=False, soft_wrap=True)
     return summary
 

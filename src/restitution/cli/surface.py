@@ -7,6 +7,7 @@ import typer
 
 
 def surface(
+    context: typer.Context,
     case: Annotated[Path, typer.Argument(help="Case file (TOML).", show_default=False)],
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the results; new or empty.")],
 ) -> None:
@@ -18,14 +19,22 @@ def surface(
     from restitution.reports.figures import surface_map, write_figure
     from restitution.reports.surface_page import write_surface_page
     from restitution.studies.case import naming, read_case
-    from restitution.studies.results import ResultsFolder, replace_file, write_json
+    from restitution.studies.interruption import hold_signals
+    from restitution.studies.locking import locked
+    from restitution.studies.results import (
+        ResultsFolder,
+        write_checksums,
+        write_json,
+        write_netcdf,
+    )
     from restitution.surfaces import describe
     from restitution.surfaces.texture import texture
 
     read, text = read_case(case)
     with naming(case):
         made = read.surface(case.parent)
-    folder = ResultsFolder(out)
+    context.with_resource(locked(out))
+    ResultsFolder(out)
     statistics = describe(made) | texture(made)
     hx, hy = made.grid.spacing
     provenance = {**made.provenance, "spacing_x_m": hx, "spacing_y_m": hy}
@@ -38,13 +47,15 @@ def surface(
     )
     dataset = height.to_dataset()
     dataset.attrs = {"title": read.title, "case": text, **provenance}
-    replace_file(folder.path / "surface.nc", lambda to: dataset.to_netcdf(to, engine="netcdf4"))
-    write_json(folder.path / "statistics.json", {**statistics, "provenance": provenance})
+    with hold_signals():
+        write_netcdf(out / "surface.nc", dataset)
+        write_json(out / "statistics.json", {**statistics, "provenance": provenance})
+        write_checksums(out, ["statistics.json", "surface.nc"])
     write_figure(
-        folder.path / "surface.png",
+        out / "surface.png",
         surface_map(height, read.title, str(made.provenance.get("y_axis", "up"))),
     )
-    write_surface_page(folder.path)
+    write_surface_page(out)
 
     table = Table(box=None, show_header=False)
     for key, value in statistics.items():

@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-import csv
-import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
-import xarray as xr
+from pydantic import ValidationError
 
 from restitution.dem.compact import compact_fit
 from restitution.dem.fitted import Begin, fitted_laws
 from restitution.dem.law import LAW_FILE, Conventions, Law, Particle, Point
-from restitution.errors import CaseError, OutputError
-from restitution.studies.case import parse_case
+from restitution.errors import CaseError, OutputError, one_line
 from restitution.studies.particles import BodyTable
+from restitution.studies.reader import StoredRun, read_run, stored_case
 
-_Row = Mapping[str, str]
+_Row = Mapping[str, float]
+_SAME = 1e-9  # relative difference of values that are the same
 
 
 def law_of(out: Path, begin: Begin | None = None) -> Law:
@@ -38,10 +36,20 @@ def bare_law(out: Path) -> Law:
     whose impact velocity does not exist (adhesion has done more work than the approach) are left
     out. Raises `OutputError` where the folder holds no run, `CaseError` where it has no velocities.
     """
-    rows, summary, text = _read(out)
-    case = parse_case(text)
+    run = _read(out)
+    try:
+        return _law(out, run)
+    except (KeyError, TypeError, ValidationError) as error:
+        raise OutputError(
+            f"{out}: its files do not belong together ({type(error).__name__}: "
+            f"{one_line(str(error))}); run the case again"
+        ) from None
+
+
+def _law(out: Path, run: StoredRun) -> Law:
+    rows, summary, case = run.curve.rows, run.summary, stored_case(out, run.case)
     derived, model = summary["derived"], summary["model"]
-    if derived["reduced_mass_kg"] is None:
+    if derived.get("reduced_mass_kg") is None:
         raise CaseError(
             f"{out}: has no impact velocities, for a density is not given in its case; give "
             "first.density (and second.density) and run it again"
@@ -62,6 +70,13 @@ def bare_law(out: Path) -> Law:
             "adhesion has done more work than the approach, or no force was found"
         )
     pair = case.pair()
+    for name, value in (("reduced_radius_m", pair.radius), ("reduced_mass_kg", pair.mass),
+                        ("contact_modulus_Pa", pair.contact_modulus)):  # fmt: skip
+        if value is None or not math.isclose(derived[name], value, rel_tol=_SAME):
+            raise OutputError(
+                f"{out}: {name} of summary.json is not that of the case in results.nc; a file is "
+                "damaged: run the case again"
+            )
     law = Law(
         title=case.title,
         first=_particle("first", case.first),
@@ -81,7 +96,7 @@ def bare_law(out: Path) -> Law:
         sticks_below=None,
         points=tuple(points),
         warnings=tuple(warnings),
-        case=text,
+        case=run.case,
         versions=summary["versions"],
     )
     if law.sticks_everywhere:
@@ -94,7 +109,7 @@ def bare_law(out: Path) -> Law:
     )
 
 
-def _read(out: Path) -> tuple[list[_Row], dict[str, Any], str]:
+def _read(out: Path) -> StoredRun:
     if (out / "study.toml").is_file():
         raise OutputError(
             f"{out}: is a study of many cases, and a law is that of one pair; run the case by "
@@ -102,32 +117,21 @@ def _read(out: Path) -> tuple[list[_Row], dict[str, Any], str]:
         )
     if (out / LAW_FILE).is_file():
         raise OutputError(f"{out}: is a law already; name the folder of the run it was made of")
-    if (out / "curve.csv").is_file() and not (out / "summary.json").is_file():
+    if (out / "curve.csv").is_file() and not (out / "summary.json").exists():
         raise OutputError(f"{out}: this run has not ended, or was killed; run it (again)")
-    try:
-        with open(out / "curve.csv", newline="", encoding="utf-8") as file:
-            rows: list[_Row] = list(csv.DictReader(file))
-        summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
-        with xr.open_dataset(out / "results.nc", engine="netcdf4") as stored:
-            text = str(stored.attrs["case"])
-        whole = len(rows) == summary["depths_computed"]
-    except (OSError, ValueError, KeyError):
+    if not (out / "curve.csv").is_file() and not (out / "results.nc").is_file():
         raise OutputError(
             f"{out}: holds no results of a run; name the folder of -o of `restitution run`"
-        ) from None
-    if not whole:
-        raise OutputError(
-            f"{out}: curve.csv has {len(rows)} depths, and the run computed "
-            f"{summary['depths_computed']}; the file is damaged: run the case again"
         )
-    return rows, summary, text
+    return read_run(out)
 
 
-def _error_is(rows: list[_Row], surfaces: int, rough: bool) -> str:
+def _error_is(rows: Sequence[_Row], surfaces: int, rough: bool) -> str:
     """What the error of a point includes, and what it does not."""
     included = ["numerical error"]
     missing: list[str] = []
-    (included if rows[0].get("discretisation_error") else missing).append("error of the grid")
+    of_grid = not math.isnan(rows[0]["discretisation_error"])
+    (included if of_grid else missing).append("error of the grid")
     if rough:
         if surfaces > 1:
             included.append(f"95 % interval of the mean of {surfaces} surfaces")
@@ -136,24 +140,24 @@ def _error_is(rows: list[_Row], surfaces: int, rough: bool) -> str:
     return ", ".join(included) + (f"; not the {' or the '.join(missing)}" if missing else "")
 
 
-def _points(rows: list[_Row]) -> list[Point]:
+def _points(rows: Sequence[_Row]) -> list[Point]:
     found: list[Point] = []
     for row in rows:
-        velocity, work = _number(row, "impact_velocity_m_per_s"), _number(row, "loading_work_J")
+        velocity, work = row["impact_velocity_m_per_s"], row["loading_work_J"]
         if not velocity > 0 or not work > 0 or (found and velocity <= found[-1].velocity):
             continue
-        pull_off = _number(row, "pull_off_force_N")
+        pull_off = row["pull_off_force_N"]
         found.append(
             Point(
                 velocity=velocity,
-                restitution=_number(row, "restitution"),
+                restitution=row["restitution"],
                 error=_error(row),
                 ratio=_ratio(row, work),
                 loading_work=work,
-                indentation=_number(row, "indentation_m"),
-                force=_number(row, "force_N"),
+                indentation=row["indentation_m"],
+                force=row["force_N"],
                 pull_off_force=None if math.isnan(pull_off) else pull_off,
-                resolved=row["resolved"] == "true" and row["adhesion_resolved"] != "false",
+                resolved=bool(row["resolved"] and row["adhesion_resolved"]),
             )
         )
     return found
@@ -161,24 +165,20 @@ def _points(rows: list[_Row]) -> list[Point]:
 
 def _ratio(row: _Row, work: float) -> float:
     """W_u/W_l; of an ensemble, whose columns are means each, e² where it rebounds."""
-    ratio, e = _number(row, "unloading_work_J") / work, _number(row, "restitution")
+    ratio, e = row["unloading_work_J"] / work, row["restitution"]
     return e * e if "restitution_std" in row and e > 0 else ratio
 
 
 def _error(row: _Row) -> float:
     """Numerical error, and what is known of the error of the grid and of the mean of surfaces."""
-    error = _number(row, "restitution_error")
-    grid = _number(row, "discretisation_error")
+    error = row["restitution_error"]
+    grid = row["discretisation_error"]
     error += 0.0 if math.isnan(grid) else grid
     if "restitution_low" in row:
-        e = _number(row, "restitution")
-        ends = (_number(row, "restitution_low"), _number(row, "restitution_high"))
+        e = row["restitution"]
+        ends = (row["restitution_low"], row["restitution_high"])
         error += max([abs(end - e) for end in ends if not math.isnan(end)], default=0.0)
     return error
-
-
-def _number(row: _Row, name: str) -> float:
-    return float(row.get(name) or "nan")
 
 
 def _particle(name: str, body: BodyTable) -> Particle:

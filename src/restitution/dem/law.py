@@ -17,6 +17,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from restitution.dem.interpolation import RatioCurve
 from restitution.errors import CaseError, DomainError, OutputError
+from restitution.studies.checksums import check_file
 from restitution.studies.quantities import read_positive
 
 Array = NDArray[np.float64]
@@ -279,6 +280,7 @@ def read_law(folder: Path) -> Law:
         raise OutputError(
             f"{folder}: holds no law ({LAW_FILE}); name the folder of -o of `restitution law`"
         ) from None
+    check_file(path)
     try:
         return Law.model_validate_json(text)
     except ValidationError as error:

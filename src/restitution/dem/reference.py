@@ -25,8 +25,14 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from restitution.contact.bodies import Pair
-from restitution.errors import CaseError, DomainError, NotConvergedError, OutputError
-from restitution.studies.case import parse_case
+from restitution.errors import (
+    CaseError,
+    DomainError,
+    NotConvergedError,
+    OutputError,
+    RestitutionError,
+)
+from restitution.studies.reader import damaged, read_results, stored_case
 
 Array = NDArray[np.float64]
 Force = Callable[[float], float]
@@ -105,18 +111,25 @@ class StoredForce:
 
 def stored_force(out: Path) -> StoredForce:
     """The force law in the folder `out` of a run. Raises `OutputError`, `CaseError`."""
-    try:
-        with xr.open_dataset(out / "results.nc", engine="netcdf4") as stored:
-            results = stored.load()
-    except (OSError, ValueError):
+    if not (out / "results.nc").exists():
         raise OutputError(
             f"{out}: holds no results of a run; name the folder of -o of `restitution run`"
-        ) from None
+        )
+    results = read_results(out)
     if "unloading_from" not in results:
         raise OutputError(
             f"{out}: holds no unloading curves; run the case with unloading.curves of 1 or more "
             "(of an ensemble, name the folder of one realisation)"
         )
+    try:
+        return _stored_force(out, results)
+    except (ValueError, KeyError, IndexError, TypeError) as error:
+        if isinstance(error, RestitutionError):
+            raise
+        raise damaged(out / "results.nc", f"{type(error).__name__}: {error}") from None
+
+
+def _stored_force(out: Path, results: xr.Dataset) -> StoredForce:
     depth, force = results["indentation"].values, results["force"].values
     curves = []
     for x, F in zip(
@@ -124,9 +137,11 @@ def stored_force(out: Path) -> StoredForce:
     ):
         known = np.isfinite(x)
         curves.append((x[known][::-1], F[known][::-1]))
+        if not known.any() or not np.isfinite(F[known]).all() or not (np.diff(x[known]) < 0).all():
+            raise ValueError("an unloading curve has gaps, or does not lead upwards")
     order = np.argsort(results["unloading_from"].values)
     return StoredForce(
-        pair=parse_case(str(results.attrs["case"])).pair(),
+        pair=stored_case(out, results.attrs["case"]).pair(),
         deepest=float(depth[-1]),
         highest=float(np.nanmax(results["impact_velocity"].values)),
         loading=_loading(depth, force, results["loading_work"].values),

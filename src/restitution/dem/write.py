@@ -11,7 +11,8 @@ from matplotlib.figure import Figure
 from restitution.dem.law import LAW_FILE, Law
 from restitution.errors import OutputError
 from restitution.reports.figures import plain, write_figure
-from restitution.studies.results import replace_file, write_table, writing
+from restitution.studies.interruption import hold_signals
+from restitution.studies.results import replace_file, write_checksums, write_table, writing
 
 _FINE = 400
 
@@ -25,12 +26,14 @@ def write_law(law: Law, out: Path) -> list[Path]:
                 f"{out}: this folder is not empty, and nothing in it is overwritten; name another"
             )
     text = law.model_dump_json(indent=2) + "\n"
-    replace_file(out / LAW_FILE, lambda to: to.write_text(text, encoding="utf-8"))
-    write_table(out / "table.csv", table(law))
     names = [LAW_FILE, "table.csv"]
-    if law.laws:
-        write_table(out / "laws.csv", _laws(law))
-        names.append("laws.csv")
+    with hold_signals():
+        replace_file(out / LAW_FILE, lambda to: to.write_text(text, encoding="utf-8"))
+        write_table(out / "table.csv", table(law))
+        if law.laws:
+            write_table(out / "laws.csv", _laws(law))
+            names.append("laws.csv")
+        write_checksums(out, names)
     write_figure(out / "law.png", figure(law))
     return [out / name for name in (*names, "law.png")]
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,7 @@ from plotly.graph_objects import Heatmap, Scatter
 from restitution.contact.resolution import NODES_PER_PATCH
 from restitution.reports.methods import methods
 from restitution.reports.page import Cell, Drawing, Listing, Page, Table, new_plot, write_page
+from restitution.studies.reader import read_results, read_summary
 
 _MOST_PIXELS = 320  # of a map, along either axis: more are skipped
 _MARGIN = 1.2  # of a logarithmic axis beyond the first and the last point
@@ -22,9 +22,7 @@ _SMOOTH = "smooth, same model"
 
 def write_run_page(out: Path) -> Path:
     """Write `report.html` from the `results.nc` and `summary.json` in `out`."""
-    with xr.open_dataset(out / "results.nc", engine="netcdf4") as stored:
-        results = stored.load()
-    summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
+    results, summary = read_results(out), read_summary(out)
     parts: list[Table | Drawing | Listing] = []
     if results.sizes["indentation_max"]:
         parts += [against_depth(results), force(results)]

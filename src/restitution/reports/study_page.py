@@ -2,64 +2,57 @@
 
 from __future__ import annotations
 
-import csv
-import json
 from pathlib import Path
 
-import numpy as np
-import xarray as xr
 from plotly.graph_objects import Scatter
 
 from restitution.contact.resolution import NODES_PER_PATCH
 from restitution.reports.methods import methods
 from restitution.reports.page import Cell, Drawing, Listing, Page, Table, new_plot, write_page
+from restitution.studies.case import parse_toml
+from restitution.studies.reader import StoredCase, read_study, read_summary, read_text
 
 _MOST_LINES = 60  # in one figure: more cannot be told apart
 
 
 def write_study_page(out: Path) -> Path:
     """Write `report.html` from the `table.csv`, `study.nc` and cases in `out`."""
-    with xr.open_dataset(out / "study.nc", engine="netcdf4") as stored:
-        study = stored.load()
-    with open(out / "table.csv", newline="", encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
-    cases: dict[str, list[dict[str, str]]] = {}
-    for row in rows:
-        cases.setdefault(row["case"], []).append(row)
-    swept = list(rows[0])[: list(rows[0]).index("indentation_m")]
-    count = {status: sum(of[0]["status"] == status for of in cases.values())
+    cases, text = read_study(out), read_text(out / "study.toml")
+    title = str(parse_toml(text).get("title", ""))
+    swept = list(cases[0].swept)
+    count = {status: sum(case.status == status for case in cases)
              for status in ("complete", "failed", "missing")}  # fmt: skip
     parts: list[Table | Drawing | Listing] = []
     if count["complete"]:
         parts.append(_restitution(cases, swept, "indentation_m", 1e6, "maximum indentation", "µm"))
-        if any(row["impact_velocity_m_per_s"] for row in rows):
+        if any(row["impact_velocity_m_per_s"] for case in cases for row in case.curve.cells):
             parts.append(
                 _restitution(cases, swept, "impact_velocity_m_per_s", 1.0, "impact velocity", "m/s")
             )
-    parts += [_cases(cases, swept), Listing("Study file", study.attrs["study"])]
-    complete = next((name for name, of in cases.items() if of[0]["status"] == "complete"), None)
+    parts += [_cases(cases, swept), Listing("Study file", text)]
+    complete = next((case.name for case in cases if case.status == "complete"), None)
     if complete is not None:
-        path = out / "cases" / complete / "summary.json"
-        parts.append(methods(json.loads(path.read_text(encoding="utf-8"))))
+        parts.append(methods(read_summary(out / "cases" / complete)))
     page = Page(
-        title=study.attrs["title"] or "Study",
+        title=title or "Study",
         intro=[
             f"{len(cases)} cases over {', '.join(swept)}: "
             + ", ".join(f"{number} {status}" for status, number in count.items() if number)
         ],
-        warnings=_warnings(rows, count),
+        warnings=_warnings(cases, count),
         parts=parts,
     )
     write_page(out / "report.html", page)
     return out / "report.html"
 
 
-def _warnings(rows: list[dict[str, str]], count: dict[str, int]) -> list[str]:
+def _warnings(cases: list[StoredCase], count: dict[str, int]) -> list[str]:
     found = []
-    few = sum(row["resolved"] == "false" for row in rows)
+    resolved = [row["resolved"] for case in cases for row in case.curve.rows]
+    few = len(resolved) - int(sum(resolved))
     if few:
         found.append(
-            f"{few} of {sum(bool(row['restitution']) for row in rows)} depths are not resolved: "
+            f"{few} of {len(resolved)} depths are not resolved: "
             f"half of their contact is in patches of fewer than {NODES_PER_PATCH} nodes, and their "
             "numbers belong to the grid"
         )
@@ -72,7 +65,7 @@ def _warnings(rows: list[dict[str, str]], count: dict[str, int]) -> list[str]:
 
 
 def _restitution(
-    cases: dict[str, list[dict[str, str]]],
+    cases: list[StoredCase],
     swept: list[str],
     column: str,
     scale: float,
@@ -82,10 +75,10 @@ def _restitution(
     plot = new_plot(f"{words} ({unit})", "coefficient of restitution")
     plot.update_xaxes(type="log", exponentformat="power")
     plot.update_yaxes(range=[0, 1.05])
-    drawn = {name: of for name, of in cases.items() if of[0]["status"] == "complete"}
+    drawn = [case for case in cases if case.status == "complete"]
     table: list[list[Cell]] = []
-    for number, rows in enumerate(drawn.values()):
-        rows = [row for row in rows if row[column]]
+    for number, case in enumerate(drawn):
+        rows = [row for row in case.curve.cells if row[column]]
         x = [scale * float(row[column]) for row in rows]
         y = [float(row["restitution"]) for row in rows]
         name = (
@@ -115,15 +108,14 @@ def _escaped(text: str) -> str:
     return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
 
 
-def _cases(cases: dict[str, list[dict[str, str]]], swept: list[str]) -> Table:
+def _cases(cases: list[StoredCase], swept: list[str]) -> Table:
     rows: list[list[Cell]] = []
-    for name, of in cases.items():
-        cor = np.array([float(row["restitution"]) for row in of if row["restitution"]])
-        resolved = sum(row["resolved"] == "true" for row in of)
+    for case in cases:
+        cor = [row["restitution"] for row in case.curve.rows]
+        resolved = int(sum(row["resolved"] for row in case.curve.rows))
         rows.append(
-            [name, *(of[0][key] for key in swept), of[0]["status"],
-             float(cor.min()) if cor.size else None, float(cor.max()) if cor.size else None,
-             f"{resolved} of {cor.size}", of[0]["reason"]]
+            [case.name, *case.swept.values(), case.status, min(cor, default=None),
+             max(cor, default=None), f"{resolved} of {len(cor)}", case.reason]
         )  # fmt: skip
     columns = ["case", *swept, "status", "least COR", "largest COR", "depths resolved", "reason"]
     return Table("Cases", columns, rows)

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 from plotly.graph_objects import Heatmap, Scatter
 
 from restitution.numerics.grid import Grid
 from restitution.reports.page import Cell, Drawing, Page, Table, new_plot, write_page
+from restitution.studies.reader import read_json, read_netcdf
 from restitution.surfaces import Surface
 from restitution.surfaces.psd import power_spectral_density, radial_spectrum, wave_numbers
 from restitution.surfaces.surface import is_periodic
@@ -58,9 +57,7 @@ _PARAMETERS: dict[str, tuple[str, str, str, float, str]] = {
 
 def write_surface_page(out: Path) -> Path:
     """Write `surface.html` from the `surface.nc` and `statistics.json` in `out`."""
-    with xr.open_dataset(out / "surface.nc", engine="netcdf4") as stored:
-        dataset = stored.load()
-    statistics = json.loads((out / "statistics.json").read_text(encoding="utf-8"))
+    dataset, statistics = read_netcdf(out / "surface.nc"), read_json(out / "statistics.json")
     provenance = statistics["provenance"]
     x, y = dataset["x"].values, dataset["y"].values
     nodes = x.size, y.size

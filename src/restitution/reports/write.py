@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from restitution.errors import OutputError
+from restitution.errors import OutputError, RestitutionError, one_line
 from restitution.reports.run_page import write_run_page
 from restitution.reports.study_page import write_study_page
 from restitution.reports.surface_page import write_surface_page
 
 # The file that tells what a folder holds, and what makes its page.
 _PAGES = {
-    "study.nc": write_study_page,
+    "study.toml": write_study_page,
     "results.nc": write_run_page,
     "surface.nc": write_surface_page,
 }
@@ -23,10 +23,12 @@ def write_report(out: Path) -> Path:
         if (out / name).is_file():
             try:
                 return write(out)
-            except (OSError, KeyError, ValueError) as error:
+            except RestitutionError:
+                raise
+            except (OSError, LookupError, ValueError, TypeError, AttributeError) as error:
                 raise OutputError(
-                    f"{out}: its results cannot be read ({type(error).__name__}: {error}); compute "
-                    "them again"
+                    f"{out}: its results cannot be read ({type(error).__name__}: "
+                    f"{one_line(str(error))}); compute them again"
                 ) from error
     raise OutputError(
         f"{out}: holds no results (none of {', '.join(_PAGES)}); name the folder that was given "

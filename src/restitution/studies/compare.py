@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-import csv
 import math
-import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from restitution.errors import OutputError
+from restitution.studies.case import parse_toml
+from restitution.studies.reader import read_curve, read_run, read_study, read_text
 
+_Row = Mapping[str, float]
 _SAME = 1e-9  # relative difference of depths that are the same
 
 
@@ -39,13 +39,14 @@ def compare(a: Path, b: Path) -> Comparison:
     if len(kinds) > 1:
         raise OutputError(f"{a}, {b}: one is a run and one a study; compare two of a kind")
     if kinds == {"run"}:
-        rows, notes = _curves(_read_curve(a), _read_curve(b), {})
-        return Comparison(rows, _inputs(_case(a), _case(b)), notes)
+        (of_a, case_a), (of_b, case_b) = _run(a), _run(b)
+        rows, notes = _curves(of_a, of_b, {})
+        return Comparison(rows, _inputs(case_a, case_b), notes)
     return _studies(a, b)
 
 
 def _kind(folder: Path) -> str:
-    if (folder / "table.csv").is_file():
+    if (folder / "study.toml").is_file():
         return "study"
     if (folder / "curve.csv").is_file():
         return "run"
@@ -67,18 +68,18 @@ def _studies(a: Path, b: Path) -> Comparison:
     for name, this, other in ((a, of_a, of_b), (b, of_b, of_a)):
         if alone := len(this) - len([key for key in this if key in other]):
             notes.append(f"{alone} of {len(this)} cases are in {name} only")
-    texts = [(folder / "study.toml").read_text(encoding="utf-8") for folder in (a, b)]
+    texts = [read_text(folder / "study.toml") for folder in (a, b)]
     return Comparison(rows, _inputs(*texts), notes)
 
 
 def _curves(
-    a: list[dict[str, str]], b: list[dict[str, str]], swept: Mapping[str, str]
+    a: Sequence[_Row], b: Sequence[_Row], swept: Mapping[str, str]
 ) -> tuple[list[dict[str, Any]], list[str]]:
     """Rows at the depths of `a` that `b` spans; between its depths `b` is interpolated."""
-    depth_b = np.array([float(row["indentation_m"]) for row in b])
+    depth_b = np.array([row["indentation_m"] for row in b])
     rows, between, beyond = [], 0, 0
     for row in a:
-        depth = float(row["indentation_m"])
+        depth = row["indentation_m"]
         same = np.flatnonzero(np.abs(depth_b - depth) <= _SAME * depth)
         if same.size:
             k = int(same[0])
@@ -94,9 +95,9 @@ def _curves(
             continue
 
         def of_b(name: str, other: Any = other, weights: Any = weights) -> float:
-            return float(np.dot(weights, [_number(o[name]) for o in other]))
+            return float(np.dot(weights, [o[name] for o in other]))
 
-        cor_a, cor_b = _number(row["restitution"]), of_b("restitution")
+        cor_a, cor_b = row["restitution"], of_b("restitution")
         error = math.hypot(_error(row), max(map(_error, other)))
         rows.append(
             {
@@ -107,8 +108,8 @@ def _curves(
                 "difference": cor_b - cor_a,
                 "error": error,
                 "significant": abs(cor_b - cor_a) > error,
-                "resolved": all(one["resolved"] == "true" for one in (row, *other)),
-                "force_ratio": _ratio(of_b("force_N"), _number(row["force_N"])),
+                "resolved": all(one["resolved"] for one in (row, *other)),
+                "force_ratio": _ratio(of_b("force_N"), row["force_N"]),
             }
         )
     notes = []
@@ -116,18 +117,18 @@ def _curves(
         notes.append("depths differ: the second is interpolated between its own")
     if beyond:
         notes.append("depths of the first that the second does not reach are left out")
-    if any(not row["discretisation_error"] for row in (*a, *b)):
+    if any(math.isnan(row["discretisation_error"]) for row in (*a, *b)):
         notes.append(
             "errors do not hold that of the grid, which one run cannot tell (restitution converge)"
         )
     return rows, notes
 
 
-def _error(row: Mapping[str, str]) -> float:
+def _error(row: _Row) -> float:
     """Error of COR: of unloading, of the grid, and of the mean of an ensemble, in quadrature."""
-    parts = [_number(row["restitution_error"]), _number(row["discretisation_error"])]
+    parts = [row["restitution_error"], row["discretisation_error"]]
     if "restitution_low" in row:
-        parts.append(0.5 * (_number(row["restitution_high"]) - _number(row["restitution_low"])))
+        parts.append(0.5 * (row["restitution_high"] - row["restitution_low"]))
     return math.hypot(*(part for part in parts if not math.isnan(part)))
 
 
@@ -135,41 +136,26 @@ def _ratio(over: float, under: float) -> float:
     return over / under if under else math.nan
 
 
-def _number(text: str) -> float:
-    return float(text) if text else math.nan
-
-
-def _read_curve(folder: Path) -> list[dict[str, str]]:
-    try:
-        with open(folder / "curve.csv", newline="", encoding="utf-8") as file:
-            return list(csv.DictReader(file))
-    except OSError as error:
-        raise OutputError(f"{folder}: cannot be read ({error.strerror})") from None
-
-
-def _read_cases(folder: Path) -> dict[tuple[tuple[str, str], ...], list[dict[str, str]]]:
+def _read_cases(folder: Path) -> dict[tuple[tuple[str, str], ...], list[dict[str, float]]]:
     """Rows of the complete cases of a study by their swept values."""
-    with open(folder / "table.csv", newline="", encoding="utf-8") as file:
-        table = list(csv.DictReader(file))
-    cases: dict[tuple[tuple[str, str], ...], list[dict[str, str]]] = {}
-    for row in table:
-        swept = list(row)[: list(row).index("indentation_m")]
-        if row["status"] == "complete":
-            cases.setdefault(tuple((key, row[key]) for key in swept), []).append(row)
-    return cases
+    return {
+        tuple(case.swept.items()): case.curve.rows
+        for case in read_study(folder)
+        if case.status == "complete"
+    }
 
 
-def _case(folder: Path) -> str:
-    try:
-        with xr.open_dataset(folder / "results.nc", engine="netcdf4") as stored:
-            return str(stored.attrs["case"])
-    except (OSError, KeyError, ValueError):
-        return ""
+def _run(folder: Path) -> tuple[list[dict[str, float]], str]:
+    """Rows and case of a run; of one that was killed, which has its curve alone, no case."""
+    if not (folder / "summary.json").exists() and not (folder / "results.nc").exists():
+        return read_curve(folder).rows, ""
+    run = read_run(folder)
+    return run.curve.rows, run.case
 
 
 def _inputs(a: str, b: str) -> list[tuple[str, str, str]]:
     """Keys whose values differ between two TOML texts, with the values of both."""
-    flat_a, flat_b = (dict(_flat(tomllib.loads(text))) for text in (a, b))
+    flat_a, flat_b = (dict(_flat(parse_toml(text))) for text in (a, b))
     return [
         (key, flat_a.get(key, "–"), flat_b.get(key, "–"))
         for key in dict.fromkeys([*flat_a, *flat_b])

@@ -25,6 +25,7 @@ import xarray as xr
 
 from restitution.errors import CaseError, RestitutionError
 from restitution.studies.case import Case
+from restitution.studies.interruption import hold_signals
 from restitution.studies.refinement import settled
 from restitution.studies.results import COLUMNS, ResultsFolder, curve_variables, write_table
 from restitution.studies.run import run_case, said_before
@@ -89,7 +90,8 @@ def run_convergence(
     finally:
         if runs:
             ended = {"status": status, "reason": reason, "known": [coarse] if coarse else []}
-            summary = _keep(case, out, runs, ended, began)
+            with hold_signals():
+                summary = _keep(case, out, runs, ended, began)
         else:
             out.discard()
     for warning in summary["warnings"]:

@@ -15,6 +15,7 @@ import xarray as xr
 from restitution.contact.resolution import unresolved_warning
 from restitution.errors import RestitutionError
 from restitution.studies.case import Case
+from restitution.studies.interruption import hold_signals
 from restitution.studies.refinement import settled
 from restitution.studies.results import (
     COLUMNS,
@@ -67,7 +68,8 @@ def run_realisations(
         raise
     finally:
         if ensemble.curves:
-            ensemble.keep()
+            with hold_signals():
+                ensemble.keep()
         else:
             out.discard()
     if not ensemble.curves:

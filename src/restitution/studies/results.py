@@ -2,7 +2,7 @@
 
 `curve.csv` and `unloading.csv` grow row by row while a case runs, so that whatever stops it leaves
 what was computed. `results.nc` and `summary.json` are written once, at the end or on interruption,
-each into a temporary file that is then renamed.
+each into a temporary file that is then renamed. Signals are held back while a file is written.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import math
 import os
 import platform
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, Any
 
@@ -30,7 +30,9 @@ from restitution.contact.resolution import (
     resolves,
 )
 from restitution.contact.state import State
-from restitution.errors import OutputError
+from restitution.errors import OutputError, one_line
+from restitution.studies.checksums import CHECKSUMS, checksums
+from restitution.studies.interruption import hold_signals
 
 # Column of curve.csv → (variable in results.nc, its unit, what it is).
 COLUMNS: dict[str, tuple[str, str, str]] = {
@@ -76,6 +78,8 @@ SPREAD_COLUMNS: dict[str, tuple[str, str, str]] = {
     "restitution_low": ("restitution_low", "1", "lower end of the 95 % interval of the mean"),
     "restitution_high": ("restitution_high", "1", "upper end of the 95 % interval of the mean"),
 }
+_BLOCK = 1 << 16  # bytes
+LOCK = ".lock"  # of the process that writes in a folder
 UNLOADING_COLUMNS = ("indentation_max_m", "indentation_m", "force_N")
 
 
@@ -129,7 +133,7 @@ class ResultsFolder:
         with writing(path):
             self._new = not path.exists()
             path.mkdir(parents=True, exist_ok=True)
-            if any(path.iterdir()):
+            if any(file.name != LOCK for file in path.iterdir()):
                 raise OutputError(
                     f"{path}: this folder is not empty, and nothing in it is overwritten; "
                     "name another one with -o, or move it away"
@@ -151,8 +155,9 @@ class ResultsFolder:
     def add(self, state: State, collision: Collision) -> None:
         """Write the row of a state of loading."""
         row = curve_row(state, collision)
-        self.rows.append(row)
-        _write_row(self._curve, [written(value) for value in row.values()])
+        with hold_signals():
+            _write_row(self._curve, [written(value) for value in row.values()])
+            self.rows.append(row)
 
     def part(self, name: str) -> ResultsFolder:
         """A folder of results within this one, for one of several runs."""
@@ -167,9 +172,10 @@ class ResultsFolder:
         """Write one unloading curve, from its deepest state to separation."""
         deepest = path[0].indentation
         points = [(state.indentation, state.force) for state in path]
-        self.unloading.append((deepest, points))
-        for point in points:
-            _write_row(self._unloading, [repr(v) for v in (deepest, *point)])
+        with hold_signals():
+            for point in points:
+                _write_row(self._unloading, [repr(v) for v in (deepest, *point)])
+            self.unloading.append((deepest, points))
 
     def discard(self) -> None:
         """Take back a folder in which nothing was computed, so that it can be named again."""
@@ -179,14 +185,47 @@ class ResultsFolder:
             self.path.rmdir()
 
     def write(self, dataset: xr.Dataset, summary: Mapping[str, Any]) -> None:
-        """Write `results.nc` and `summary.json`."""
+        """Write `results.nc`, `summary.json` and the checksums of all tables and of these two.
+
+        Where `results.nc` cannot be written, `summary.json` says so. Raises `OutputError`.
+        """
         maps = {"height", "pressure", "plastic_displacement"} & set(dataset)
         packed = {str(name): {"zlib": True, "complevel": 1} for name in maps}
-        replace_file(
-            self.path / "results.nc",
-            lambda to: dataset.to_netcdf(to, engine="netcdf4", encoding=packed),
-        )
-        write_json(self.path / "summary.json", summary)
+        with hold_signals():
+            try:
+                write_netcdf(self.path / "results.nc", dataset, packed)
+            except OutputError as error:
+                failed = {**summary, "status": "failed", "reason": one_line(str(error))}
+                with suppress(OutputError):
+                    write_json(self.path / "summary.json", failed)
+                raise
+            write_json(self.path / "summary.json", summary)
+            tables = sorted(path.name for path in self.path.glob("*.csv"))
+            write_checksums(self.path, [*tables, "results.nc", "summary.json"])
+
+
+def write_checksums(folder: Path, names: Sequence[str]) -> None:
+    """Write `SHA256SUMS` for the files `names` in `folder`. Raises `OutputError`."""
+    replace_file(
+        folder / CHECKSUMS, lambda to: to.write_text(checksums(folder, names), encoding="utf-8")
+    )
+
+
+def write_netcdf(
+    path: Path, dataset: xr.Dataset, encoding: Mapping[str, Any] | None = None
+) -> None:
+    """Write `dataset` as netCDF, all of it or nothing. Raises `OutputError`."""
+
+    def write(to: Path) -> None:
+        try:
+            dataset.to_netcdf(to, engine="netcdf4", encoding=encoding or {})
+        except (RuntimeError, OSError) as error:
+            # The library raises "HDF error", or names another reason, where the disk is full.
+            with open(to, "ab") as file:
+                file.write(bytes(_BLOCK))
+            raise OSError(f"{path.name}: {error}") from error
+
+    replace_file(path, write)
 
 
 def write_json(path: Path, content: Mapping[str, Any]) -> None:
@@ -209,12 +248,19 @@ def write_table(path: Path, rows: Sequence[Mapping[str, float | str]]) -> None:
 
 
 def replace_file(path: Path, write: Callable[[Path], object]) -> None:
-    """Let `write` fill a temporary file and rename it to `path`. Raises `OutputError`."""
+    """Let `write` fill a temporary file and rename it to `path`. Raises `OutputError`.
+
+    Signals are held back meanwhile.
+    """
     temporary = path.with_name(f".{path.name}.part")
-    with writing(path.parent):
+    with hold_signals(), writing(path.parent):
         try:
             write(temporary)
             os.replace(temporary, path)
+        except BaseException:
+            with suppress(OSError):  # a library may hold the file open, and so its room on the disk
+                os.truncate(temporary, 0)
+            raise
         finally:
             temporary.unlink(missing_ok=True)
 

@@ -27,6 +27,7 @@ from restitution.numerics.device import current
 from restitution.numerics.quadrature import integrate_curve
 from restitution.studies.case import Case
 from restitution.studies.derived import deepest_indentation, derived_quantities
+from restitution.studies.interruption import hold_signals
 from restitution.studies.results import ResultsFolder, results_dataset, versions
 from restitution.studies.smooth import smooth_curve
 from restitution.surfaces import describe
@@ -100,11 +101,8 @@ def run_case(
         if run.deepest is None:
             out.discard()
         else:
-            try:
+            with hold_signals():  # what was computed is not lost to an interruption just now
                 summary = _keep(case, text, out, run, run.deepest, began)
-            except KeyboardInterrupt:  # what was computed is not lost for being put down just now
-                summary = _keep(case, text, out, run, run.deepest, began)
-                raise
             for warning in summary["warnings"][len(run.warnings) :]:
                 warn(warning)
     return summary
@@ -162,11 +160,11 @@ def _load_and_unload(
                 )
             )
         collision = collide(state, back if followed else None, method=case.unloading.method)
-        # A row comes last of what belongs to it: an interruption leaves none without.
-        run.adhesive_nodes.append(adhesive_nodes(state))
-        run.loading_work_errors.append(state.work_error / max(abs(state.loading_work), 1e-300))
-        out.add(state, collision)
-        run.deepest = state
+        with hold_signals():  # an interruption leaves no row without what belongs to it
+            run.adhesive_nodes.append(adhesive_nodes(state))
+            run.loading_work_errors.append(state.work_error / max(abs(state.loading_work), 1e-300))
+            out.add(state, collision)
+            run.deepest = state
         if number in unloaded:
             out.add_unloading(back)
             run.unloading_checks.append(_check(state, back, collision))

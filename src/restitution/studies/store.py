@@ -10,17 +10,26 @@ import csv
 import json
 import math
 import shutil
-from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
-from filelock import FileLock, Timeout
 
 from restitution.errors import OutputError
-from restitution.studies.results import COLUMNS, SPREAD_COLUMNS, replace_file, writing
+from restitution.studies.interruption import hold_signals
+from restitution.studies.locking import locked
+from restitution.studies.reader import read_curve, read_json, read_run
+from restitution.studies.results import (
+    COLUMNS,
+    LOCK,
+    SPREAD_COLUMNS,
+    replace_file,
+    write_checksums,
+    write_netcdf,
+    writing,
+)
 from restitution.studies.sweep import Study, SweptCase
 from restitution.studies.work import Outcome
 
@@ -47,7 +56,7 @@ class StudyFolder:
                     f"{path}: holds another study (its study.toml differs); name another folder "
                     "with -o, or the file it was begun with"
                 )
-        elif path.exists() and any(path.iterdir()):
+        elif path.exists() and any(file.name != LOCK for file in path.iterdir()):
             more = ", or go on with --resume" if held.is_file() else ", or move it away"
             raise OutputError(
                 f"{path}: this folder is not empty, and nothing in it is overwritten; name another "
@@ -57,23 +66,9 @@ class StudyFolder:
             self._cases.mkdir(parents=True, exist_ok=True)
         replace_file(held, lambda to: to.write_text(study.text, encoding="utf-8"))
 
-    @contextmanager
-    def locked(self) -> Iterator[None]:
+    def locked(self) -> AbstractContextManager[None]:
         """Keep other processes out. Raises `OutputError` while one is at work here."""
-        lock = FileLock(self.path / ".lock")
-        try:
-            with writing(self.path):
-                lock.acquire(blocking=False)
-        except OutputError as error:
-            if not isinstance(error.__cause__, Timeout):
-                raise
-            raise OutputError(
-                f"{self.path}: another process is computing this study; wait for it, or stop it"
-            ) from None
-        try:
-            yield
-        finally:
-            lock.release()
+        return locked(self.path)
 
     def clear(self) -> None:
         """Remove what a process that was killed has left half written."""
@@ -83,8 +78,8 @@ class StudyFolder:
     def put(self, case: SweptCase, outcome: Outcome) -> None:
         """Keep what has come of a case. Raises `OutputError` when it cannot be written."""
         part, whole = self._cases / f".{case.name}", self._cases / case.name
-        shutil.rmtree(part, ignore_errors=True)
-        with writing(self.path):
+        with hold_signals(), writing(self.path):
+            shutil.rmtree(part, ignore_errors=True)
             for name, content in outcome.files.items():
                 file = part / name
                 file.parent.mkdir(parents=True, exist_ok=True)
@@ -100,36 +95,33 @@ class StudyFolder:
     def reason(self, case: SweptCase) -> str | None:
         """Why a case failed, "" when it is complete, None when it is missing or damaged.
 
-        A case is complete when its files can be read; one whose text differs is another case.
+        A case is complete when its files are as they were written (`reader`); one whose text
+        differs is another case.
         """
         folder = self._cases / case.name
         try:
             if (folder / "case.toml").read_text(encoding="utf-8") != case.text:
                 return None
             if (folder / FAILED).is_file():
-                return str(json.loads((folder / FAILED).read_text(encoding="utf-8"))["reason"])
-            json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-            with xr.open_dataset(folder / "results.nc", engine="netcdf4") as stored:
-                rows = stored.sizes["indentation_max"]
-            return "" if rows == len(self.rows(case)) > 0 else None
-        except (OSError, ValueError, KeyError, UnicodeDecodeError):
+                return str(read_json(folder / FAILED)["reason"]) or None
+            run = read_run(folder)
+        except (OutputError, OSError, ValueError, KeyError):
             return None
-
-    def rows(self, case: SweptCase) -> list[dict[str, str]]:
-        """The rows of the curve of a case, as written."""
-        with open(self._cases / case.name / "curve.csv", newline="", encoding="utf-8") as file:
-            return list(csv.DictReader(file))
+        return "" if run.curve.rows and run.summary["status"] == "complete" else None
 
     def write_tables(self) -> None:
         """Write `table.csv` and `study.nc` from the cases there are."""
         known = {case.number: self.reason(case) for case in self.study.cases}
         curves = {
-            case.number: self.rows(case) if known[case.number] == "" else []
+            case.number: read_curve(self._cases / case.name)
             for case in self.study.cases
+            if known[case.number] == ""
         }
-        replace_file(self.path / "table.csv", lambda to: self._write_csv(to, known, curves))
-        dataset = self._dataset(known, curves)
-        replace_file(self.path / "study.nc", lambda to: dataset.to_netcdf(to, engine="netcdf4"))
+        cells = {number: curve.cells for number, curve in curves.items()}
+        rows = {number: curve.rows for number, curve in curves.items()}
+        replace_file(self.path / "table.csv", lambda to: self._write_csv(to, known, cells))
+        write_netcdf(self.path / "study.nc", self._dataset(known, rows))
+        write_checksums(self.path, ["study.nc", "study.toml", "table.csv"])
 
     def _write_csv(
         self, to: Path, known: dict[int, str | None], curves: dict[int, list[dict[str, str]]]
@@ -143,18 +135,18 @@ class StudyFolder:
                 reason = known[case.number]
                 status = _status(reason)
                 values = [_written(value) for value in case.values.values()]
-                for row in curves[case.number] or [{}]:
+                for row in curves.get(case.number, [{}]):
                     cells = [row.get(column, "") for column in columns]
                     table.writerow([*values, *cells, case.name, status, reason or ""])
 
     def _dataset(
-        self, known: dict[int, str | None], curves: dict[int, list[dict[str, str]]]
+        self, known: dict[int, str | None], curves: dict[int, list[dict[str, float]]]
     ) -> xr.Dataset:
         """All curves, their dimensions named by the swept quantities, and by depth."""
         study = self.study
         depths = max((len(rows) for rows in curves.values()), default=0)
         units = {**COLUMNS, **SPREAD_COLUMNS}
-        present = [c for c in units if any(rows and c in rows[0] for rows in curves.values())]
+        present = [c for c in units if any(c in rows[0] for rows in curves.values())]
         if study.mode == "paired":
             dims: tuple[str, ...] = ("case",)
             coordinates: dict[str, Any] = {
@@ -170,8 +162,8 @@ class StudyFolder:
             name, unit, meaning = units[column]
             values = np.full((len(study.cases), depths), np.nan)
             for row, case in enumerate(study.cases):
-                for k, cells in enumerate(curves[case.number]):
-                    values[row, k] = _number(cells[column])
+                for k, numbers in enumerate(curves.get(case.number, [])):
+                    values[row, k] = numbers.get(column, math.nan)
             data[name] = (
                 (*dims, "depth"), values.reshape(*study.shape, depths),
                 {"units": unit, "long_name": meaning},
@@ -196,9 +188,3 @@ def _written(value: Any) -> str:
     if isinstance(value, str):
         return value
     return json.dumps(value, ensure_ascii=False, default=str)
-
-
-def _number(text: str) -> float:
-    if text in ("true", "false"):
-        return float(text == "true")
-    return float(text) if text else math.nan

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from restitution.errors import OutputError, one_line
+from restitution.studies.interruption import hold_signals
 from restitution.studies.store import StudyFolder
 from restitution.studies.sweep import Study, SweptCase
 from restitution.studies.work import Outcome, compute
@@ -56,7 +57,8 @@ def run_study(
     try:
         _compute_all(deque(missing), folder, out, workers, tally, progress)
     finally:
-        out.write_tables()
+        with hold_signals():
+            out.write_tables()
     return tally
 
 

@@ -16,6 +16,7 @@ from multiprocessing.managers import SyncManager
 from queue import Empty
 
 from restitution.errors import OutputError
+from restitution.studies.interruption import hold_signals
 from restitution.studies.work import Channel
 
 PATIENCE = "15s"  # with a scheduler that does not answer
@@ -68,11 +69,12 @@ def local_workers(count: int | None) -> Iterator[Workers]:
         try:
             yield Workers(begin(places), places, threads, queue, heard, begin)
         finally:
-            for pool in started:
-                # Cases in flight are given up: their results would not be kept.
-                for process in list((pool._processes or {}).values()):
-                    process.terminate()
-                pool.shutdown(cancel_futures=True)
+            with hold_signals():
+                for pool in started:
+                    # Cases in flight are given up: their results would not be kept.
+                    for process in list((pool._processes or {}).values()):
+                        process.terminate()
+                    pool.shutdown(cancel_futures=True)
 
 
 def _serve() -> None:

@@ -1,0 +1,53 @@
+"""SHA-256 of the files of a folder, so that a damaged one is not read as results.
+
+They stand in `SHA256SUMS`, in the format of the program `sha256sum`. Files without a checksum (of a
+folder from which that file was removed, or of a program that wrote none) are not checked.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from pathlib import Path
+
+from restitution.errors import OutputError
+
+CHECKSUMS = "SHA256SUMS"
+
+
+def checksums(folder: Path, names: Sequence[str]) -> str:
+    """The content of `SHA256SUMS` for the files `names` in `folder`."""
+    return "".join(f"{_checksum(folder / name)}  {name}\n" for name in names)
+
+
+def check_file(path: Path) -> None:
+    """Raise `OutputError` when `path` differs from what was written there."""
+    known = _known(path.parent)
+    try:
+        damaged = path.name in known and known[path.name] != _checksum(path)
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be read ({error.strerror})") from None
+    if damaged:
+        raise OutputError(
+            f"{path}: is damaged, or was edited (its checksum differs from {CHECKSUMS}); compute "
+            "it again"
+        )
+
+
+def _known(folder: Path) -> dict[str, str]:
+    path = folder / CHECKSUMS
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+        pairs = [line.split("  ", 1) for line in lines]
+        return {name: checksum for checksum, name in pairs}
+    except (FileNotFoundError, NotADirectoryError):
+        return {}
+    except (OSError, ValueError):
+        raise OutputError(
+            f"{path}: is damaged; compute the results again, or remove it to read them unchecked"
+        ) from None
+
+
+def _checksum(path: Path) -> str:
+    with open(path, "rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
