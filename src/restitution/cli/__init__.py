@@ -6,6 +6,12 @@ import sys
 # Reasons of the system why a terminal, pipe or file takes no more output.
 _NO_ROOM = {errno.ENOSPC, errno.EFBIG, errno.EIO, getattr(errno, "EDQUOT", errno.ENOSPC)}
 
+# Its reasons why a file or folder cannot be used.
+_NO_ACCESS = {
+    errno.EACCES, errno.EPERM, errno.EROFS, errno.ENOTDIR, errno.EISDIR, errno.ELOOP,
+    errno.ENAMETOOLONG,
+}  # fmt: skip
+
 
 def main() -> None:
     """Run the command line; a user's error is one red line and status 1."""
@@ -21,12 +27,14 @@ def main() -> None:
 def _run() -> int:
     from restitution.cli.app import app
     from restitution.cli.console import refuse
+    from restitution.cli.environment import prepare
     from restitution.cli.signals import Stopped, received, stoppable
     from restitution.errors import RestitutionError
 
     try:
         with stoppable():
             try:
+                prepare(sys.argv[1:])
                 app()
             except BaseException:
                 if received:
@@ -37,6 +45,12 @@ def _run() -> int:
     except MemoryError:
         refuse("the memory is too small for this case; use fewer grid.nodes")
     except OSError as error:
+        if error.filename is not None and error.errno in _NO_ROOM | _NO_ACCESS:
+            refuse(
+                f"{error.filename}: cannot be read or written ({error.strerror}); change its "
+                "permissions, make room, or name another"
+            )
+            return 1
         if error.errno not in _NO_ROOM:
             raise
         refuse(f"standard output: cannot be written ({error.strerror}); send it elsewhere")

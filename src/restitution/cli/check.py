@@ -7,7 +7,9 @@ import typer
 
 
 def check(
-    case: Annotated[Path, typer.Argument(help="Case file (TOML).", show_default=False)],
+    case: Annotated[
+        Path, typer.Argument(help="Case file (TOML).", show_default=False, readable=False)
+    ],
 ) -> None:
     """Validate CASE and print R*, E*, m*, yield and contact size; solve nothing."""
     from rich.table import Table

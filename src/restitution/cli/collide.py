@@ -8,7 +8,10 @@ import typer
 
 def collide(
     results: Annotated[
-        Path, typer.Argument(metavar="OUT", help="Results folder of a run.", show_default=False)
+        Path,
+        typer.Argument(
+            metavar="OUT", help="Results folder of a run.", show_default=False, readable=False
+        ),
     ],
     velocity: Annotated[
         list[str] | None,
@@ -18,7 +21,8 @@ def collide(
         ),
     ] = None,
     out: Annotated[
-        Path | None, typer.Option("-o", "--out", help="CSV file for the courses in time; new.")
+        Path | None,
+        typer.Option("-o", "--out", help="CSV file for the courses in time; new.", readable=False),
     ] = None,
 ) -> None:
     """Integrate collisions through the forces in OUT and compare with the energies' COR."""
@@ -42,15 +46,18 @@ def collide(
         if (abs(unloaded / point.indentation - 1) < 1e-6).any()
     ]
     table = Table(box=None, header_style="bold")
-    for name in ("V (m/s)", "COR", "by energies", "difference", "time (s)", "force (N)",
+    for name in ("V (m/s)", "COR", "error", "by energies", "difference", "time (s)", "force (N)",
                  "depth (nm)"):  # fmt: skip
         table.add_column(name, justify="right", no_wrap=True)
     courses, blended = [], False
     for each in asked:
         found, energies = collide_in_time(force, each), law.at(each)
+        # The stored curves are as exact as their work is that of the energies.
+        error = max(abs(found.restitution - energies.restitution), energies.error)
         courses += course(found)
         table.add_row(
-            f"{each:.4g}", f"{found.restitution:.5f}", f"{energies.restitution:.5f}",
+            f"{each:.4g}", f"{found.restitution:.5f}", f"± {error:.5f}",
+            f"{energies.restitution:.5f}",
             f"{found.restitution - energies.restitution:+.5f}", f"{found.duration:.4g}",
             f"{found.largest_force:.4g}", f"{1e9 * found.largest_indentation:.4g}",
         )  # fmt: skip

@@ -7,10 +7,14 @@ import typer
 
 
 def compare(
-    a: Annotated[Path, typer.Argument(help="Results folder of a run or study.", metavar="A")],
-    b: Annotated[Path, typer.Argument(help="Another of the same kind.", metavar="B")],
+    a: Annotated[
+        Path, typer.Argument(help="Results folder of a run or study.", metavar="A", readable=False)
+    ],
+    b: Annotated[
+        Path, typer.Argument(help="Another of the same kind.", metavar="B", readable=False)
+    ],
     out: Annotated[
-        Path | None, typer.Option("-o", "--out", help="CSV file for the rows; new.")
+        Path | None, typer.Option("-o", "--out", help="CSV file for the rows; new.", readable=False)
     ] = None,
 ) -> None:
     """Print what differs between the results in A and B, with the errors of the differences."""

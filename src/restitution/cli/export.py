@@ -25,10 +25,11 @@ def export(
             metavar="LAW...",
             help="Folders of `restitution law`, one for every pair of particles.",
             show_default=False,
+            readable=False,
         ),
     ],
     to: Annotated[Code, typer.Option(help="DEM code.", show_default=False)],
-    out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the files.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the files.", readable=False)],
     velocity: Annotated[
         str | None,
         typer.Option(help='Impact velocity, such as "1 m/s"; not needed for csv.'),

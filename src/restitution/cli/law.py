@@ -16,9 +16,12 @@ def law(
             metavar="OUT",
             help="Results folder of a run, ensemble or convergence study.",
             show_default=False,
+            readable=False,
         ),
     ],
-    out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the law; new or empty.")],
+    out: Annotated[
+        Path, typer.Option("-o", "--out", help="Folder for the law; new or empty.", readable=False)
+    ],
 ) -> None:
     """Write the restitution law of the results in OUT: table, compact fit, simpler laws."""
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn

@@ -8,7 +8,10 @@ import typer
 
 def report(
     out: Annotated[
-        Path, typer.Argument(help="Results folder of a run, study or surface.", show_default=False)
+        Path,
+        typer.Argument(
+            help="Results folder of a run, study or surface.", show_default=False, readable=False
+        ),
     ],
 ) -> None:
     """Write a self-contained HTML page of the results in OUT."""

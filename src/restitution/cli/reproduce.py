@@ -7,7 +7,9 @@ import typer
 
 
 def reproduce(
-    out: Annotated[Path, typer.Option("-o", "--out", help="Folder for studies and report.")],
+    out: Annotated[
+        Path, typer.Option("-o", "--out", help="Folder for studies and report.", readable=False)
+    ],
     quick: Annotated[bool, typer.Option("--quick", help="Smaller: about three minutes.")] = False,
     refined: Annotated[
         bool, typer.Option("--refined", help="Rough contacts on a grid twice as fine.")

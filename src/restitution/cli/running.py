@@ -24,9 +24,11 @@ class Device(StrEnum):
     auto = "auto"
 
 
-CaseFile = Annotated[Path, typer.Argument(help="Case file (TOML).", show_default=False)]
+CaseFile = Annotated[
+    Path, typer.Argument(help="Case file (TOML).", show_default=False, readable=False)
+]
 OutFolder = Annotated[
-    Path, typer.Option("-o", "--out", help="Folder for the results; new or empty.")
+    Path, typer.Option("-o", "--out", help="Folder for the results; new or empty.", readable=False)
 ]
 OnDevice = Annotated[
     Device, typer.Option(help="Where to solve; auto is the GPU where one answers (needs CuPy).")

@@ -15,6 +15,7 @@ def study(
             help="Study file (TOML): a case and a table [sweep].",
             metavar="STUDY",
             show_default=False,
+            readable=False,
         ),
     ],
     out: OutFolder,

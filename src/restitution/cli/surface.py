@@ -8,8 +8,13 @@ import typer
 
 def surface(
     context: typer.Context,
-    case: Annotated[Path, typer.Argument(help="Case file (TOML).", show_default=False)],
-    out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the results; new or empty.")],
+    case: Annotated[
+        Path, typer.Argument(help="Case file (TOML).", show_default=False, readable=False)
+    ],
+    out: Annotated[
+        Path,
+        typer.Option("-o", "--out", help="Folder for the results; new or empty.", readable=False),
+    ],
 ) -> None:
     """Write the surface of CASE to OUT: heights, ISO 25178 statistics, a picture and a page."""
     import xarray as xr

@@ -13,14 +13,25 @@ if TYPE_CHECKING:
 
 
 def theory(
-    case: Annotated[Path, typer.Argument(help="Case file (TOML).", show_default=False)],
+    case: Annotated[
+        Path, typer.Argument(help="Case file (TOML).", show_default=False, readable=False)
+    ],
     out: Annotated[
         Path | None,
-        typer.Option("-o", "--out", help="Folder for theory.csv and theory.png; new or empty."),
+        typer.Option(
+            "-o",
+            "--out",
+            help="Folder for theory.csv and theory.png; new or empty.",
+            readable=False,
+        ),
     ] = None,
     law: Annotated[
         Path | None,
-        typer.Option("--law", help="Folder of `restitution law` for the same pair: its points."),
+        typer.Option(
+            "--law",
+            help="Folder of `restitution law` for the same pair: its points.",
+            readable=False,
+        ),
     ] = None,
 ) -> None:
     """Print COR against velocity of every published closed form for the smooth bodies of CASE."""

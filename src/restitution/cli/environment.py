@@ -1,0 +1,53 @@
+"""What the environment of a process may hold that would end a command in the middle."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+
+from restitution.errors import CaseError, shown
+
+_THREADS = ("DUCC0_NUM_THREADS", "OMP_NUM_THREADS")  # the first that is set counts
+
+
+def prepare(arguments: Sequence[str]) -> None:
+    """Check the arguments of the command line and the variables that libraries read.
+
+    Raises `CaseError` for a number of threads that is none, and for a path that is not UTF-8: the
+    netCDF library takes no other.
+    """
+    # Figures are drawn into files, whatever windows the user's other programs open.
+    os.environ["MPLBACKEND"] = "agg"
+    _check_threads()
+    for path in (*arguments, _current_folder()):
+        try:
+            path.encode()
+        except UnicodeEncodeError:
+            raise CaseError(
+                f"{shown(path, 200)}: is not UTF-8, and netCDF files need a path that is; rename it"
+            ) from None
+
+
+def _current_folder() -> str:
+    try:
+        return os.getcwd()
+    except OSError:
+        raise CaseError("the current folder was removed; change to another") from None
+
+
+def _check_threads() -> None:
+    name = next((name for name in _THREADS if name in os.environ), None)
+    if name is None:
+        return
+    text = os.environ[name]
+    if not text.strip():
+        del os.environ[name]
+        return
+    # OpenMP takes a list, whose first number is that of the outermost level.
+    first = text.split(",")[0].strip() if name == "OMP_NUM_THREADS" else text.strip()
+    if not (first.isascii() and first.isdigit() and len(first) < 10):
+        raise CaseError(
+            f"{name}: {shown(text)} is not a number of threads; set it to a whole number from 1, "
+            "or unset it"
+        )
+    os.environ["DUCC0_NUM_THREADS"] = first
