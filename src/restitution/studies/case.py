@@ -104,10 +104,17 @@ class Case(Table):
     def realisation(self, number: int) -> Case:
         """This case with one surface, the `number`th (from 0): so much is added to the seeds."""
         parts = tuple(
-            part.model_copy(update={"seed": cast(int, part.seed) + number, "realisations": 1})
+            part.variant(number).model_copy(update={"realisations": 1})
             if part.realisations > 1
             else part
             for part in self.roughness
+        )
+        return self.model_copy(update={"roughness": parts})
+
+    def variant(self, number: int) -> Case:
+        """This case with another surface of the same kind: every part has another seed or place."""
+        parts = tuple(
+            part.variant(number).model_copy(update={"realisations": 1}) for part in self.roughness
         )
         return self.model_copy(update={"roughness": parts})
 
@@ -148,7 +155,7 @@ class Case(Table):
             self.surface(folder),
             yield_pressure=self.yields()[0],
             plasticity=self.interface.plasticity,
-            work_of_adhesion=self.interface.work_of_adhesion,
+            work_of_adhesion=self.interface.adhesion,
             approach=self.interface.approach,
             detachment=self.interface.detachment,
         )

@@ -39,10 +39,12 @@ from restitution.surfaces import (
 from restitution.surfaces.extend import Extension
 from restitution.surfaces.generate import RoughnessKind
 from restitution.surfaces.refine import divided
+from restitution.surfaces.shift import place_of
 
 MOST_NODES = 2**27  # of a grid: more do not fit into the memory of common machines
 MOST_STEPS = 10_000  # of a curve
 MOST_REALISATIONS = 1000
+MOST_PLACES = 10_000  # of a scan
 
 
 def _two(value: Any) -> Any:
@@ -103,6 +105,10 @@ class GeneratedRoughness(Table):
     kurtosis: float = 3.0
     periodic: bool = True
 
+    def variant(self, number: int) -> Self:
+        """Another surface of the same statistics; 0 is the surface itself."""
+        return self.model_copy(update={"seed": self.seed + number})
+
     def surface(self, grid: Grid, _: Path, factor: int = 1) -> Surface:
         """The roughness of `grid`, its waves continued on cells `factor` times as small."""
         return refine(generate_surface(grid, **self.model_dump(exclude={"realisations"})), factor)
@@ -128,21 +134,28 @@ class MeasuredRoughness(Table):
     detrend: Literal["none", "center", "tilt", "curvature"] = "none"
     extend: Extension | None = None
     seed: Seed | None = None
+    place: Annotated[int, Field(ge=0, le=MOST_PLACES)] = 0
     realisations: Realisations = 1
 
     @model_validator(mode="after")
     def _twins(self) -> Self:
         if self.extend == "twin" and self.seed is None:
             raise ValueError('extend = "twin" draws a random surface and needs a seed; give one')
-        for name, given in (
-            ("seed", self.seed is not None),
-            ("realisations", self.realisations > 1),
-        ):
-            if given and self.extend != "twin":
-                raise ValueError(
-                    f'{name} belongs to extend = "twin"; a scan is one surface: leave it out'
-                )
+        if self.seed is not None and self.extend != "twin":
+            raise ValueError(
+                'seed belongs to extend = "twin"; a scan is one surface, and has places: leave '
+                "seed out, or give place"
+            )
+        if self.place and self.extend == "twin":
+            raise ValueError('place belongs to a scan, and extend = "twin" has a seed: leave it out')
         return self
+
+    def variant(self, number: int) -> Self:
+        """Another twin, or another place of the scan; 0 is the surface itself."""
+        if self.extend == "twin":
+            assert self.seed is not None  # _twins
+            return self.model_copy(update={"seed": self.seed + number})
+        return self.model_copy(update={"place": self.place + number})
 
     def scan(self, folder: Path) -> Surface:
         """What was measured, cleaned and levelled; `file` is relative to `folder`."""
@@ -154,7 +167,7 @@ class MeasuredRoughness(Table):
         if self.outliers is not None:
             scan = remove_outliers(scan, self.outliers)
         # Levelled as a whole before a grid's part is cut out: the form belongs to the scan.
-        return level(scan, self.detrend)
+        return place_of(level(scan, self.detrend), self.place)
 
     def surface(self, grid: Grid | None, folder: Path, factor: int = 1) -> Surface:
         """The roughness on cells `factor` times as small as those of `grid`, or as the pixels.

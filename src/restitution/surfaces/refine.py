@@ -1,4 +1,4 @@
-"""The same surface on a finer grid: its waves, and no others, between the nodes."""
+"""The same surface on a finer or a coarser grid over the same domain, by its spectrum."""
 
 from __future__ import annotations
 
@@ -24,19 +24,36 @@ def refine(surface: Surface, factor: int) -> Surface:
         raise SurfaceError(f"refine: {factor} is not a number of cells to divide one into")
     if factor == 1:
         return surface
-    periodic = is_periodic(surface)
-    height = surface.height
-    for _ in range(2):
-        height = _between(height, factor, periodic=periodic).T
+    how = "periodic" if is_periodic(surface) else "mirrored"
+    grid = divided(surface.grid, factor)
     return Surface(
-        np.ascontiguousarray(height),
-        divided(surface.grid, factor),
-        {
-            **surface.provenance,
-            "refined": factor,
-            "refinement": f"zero-padded spectrum, {'periodic' if periodic else 'mirrored'}",
-        },
+        _resampled(surface, grid.nodes),
+        grid,
+        {**surface.provenance, "refined": factor, "refinement": f"zero-padded spectrum, {how}"},
     )
+
+
+def coarsen(surface: Surface, factor: int = 2) -> Surface:
+    """`surface` on cells `factor` times as large, without the waves that these cannot carry.
+
+    Where `factor` does not divide the number of nodes, the cells are up to one part in that number
+    smaller. Waves shorter than two cells are left out, and the rest is kept to the last digit.
+    Raises `SurfaceError` for a factor below 1.
+    """
+    if factor < 1:
+        raise SurfaceError(f"coarsen: {factor} is not a number of cells to join")
+    nx, ny = (-(-n // factor) for n in surface.grid.nodes)
+    wide, long = surface.grid.size
+    grid = Grid((nx, ny), (wide / nx, long / ny))
+    return Surface(_resampled(surface, grid.nodes), grid, {**surface.provenance})
+
+
+def _resampled(surface: Surface, nodes: tuple[int, int]) -> Array:
+    """Heights of `surface` at the nodes of a grid with so many over the same domain."""
+    height = surface.height
+    for n in nodes:
+        height = _at_nodes(height, n, periodic=is_periodic(surface)).T
+    return np.ascontiguousarray(height)
 
 
 def divided(grid: Grid, factor: int) -> Grid:
@@ -47,18 +64,22 @@ def divided(grid: Grid, factor: int) -> Grid:
     )
 
 
-def _between(height: Array, factor: int, *, periodic: bool) -> Array:
-    """Values along the first axis at `factor` times as many nodes."""
+def _at_nodes(height: Array, nodes: int, *, periodic: bool) -> Array:
+    """Values along the first axis at another number of nodes over the same length."""
     from scipy.fft import irfft, rfft
 
     n = height.shape[0]
-    first = n // 2 - (factor * n // 2) / factor  # of the new nodes, in old cells
+    first = n // 2 - (nodes // 2) * n / nodes  # of the new nodes, in old cells
     values = height if periodic else np.concatenate([height, height[::-1]])
     period = values.shape[0]
+    new_period = nodes * period // n
     modes = rfft(values, axis=0)
     if period % 2 == 0:
         modes[-1] *= 0.5  # the shortest wave is no longer its own mirror image
+    if new_period < period:
+        # The wave of two new cells cannot be told from its mirror image there: it goes, too.
+        modes = modes[: (new_period + 1) // 2]
     number = np.arange(modes.shape[0])[:, None]
-    modes *= factor * np.exp(2j * np.pi * number * first / period)
-    finer: Array = irfft(modes, n=factor * period, axis=0)
-    return finer[: factor * n]
+    modes *= new_period / period * np.exp(2j * np.pi * number * first / period)
+    values = irfft(modes, n=new_period, axis=0)
+    return values[:nodes]

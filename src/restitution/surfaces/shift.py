@@ -1,0 +1,40 @@
+"""Another place of a scan under the particle."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from restitution.surfaces.surface import Surface, is_periodic
+
+# Multiples of these fill a square evenly, however many are taken: powers of the inverse of the
+# plastic number, the root of x³ = x + 1.
+_STEPS = 1 / 1.324717957244746, 1 / 1.324717957244746**2
+
+
+def place_of(surface: Surface, number: int) -> Surface:
+    """`surface` moved so that another point of it is in the middle; number 0 is the surface itself.
+
+    Points 1, 2 … fill the scan evenly, whatever their number. Beyond the edges the surface is
+    continued periodically if it is periodic, and by its mirror image otherwise.
+    """
+    if number == 0:
+        return surface
+    cells = [
+        round((math.fmod(number * step + 0.5, 1.0) - 0.5) * n)
+        for step, n in zip(_STEPS, surface.grid.nodes, strict=True)
+    ]
+    height = surface.height
+    for axis, cell in enumerate(cells):
+        n = surface.grid.nodes[axis]
+        if is_periodic(surface):
+            at = (np.arange(n) + cell) % n
+        else:
+            at = (np.arange(n) + cell) % (2 * n)
+            at = np.minimum(at, 2 * n - 1 - at)
+        height = np.take(height, at, axis=axis)
+    x, y = (cell * h for cell, h in zip(cells, surface.grid.spacing, strict=True))
+    moved = {"place": number, "place_x_m": float(x), "place_y_m": float(y)}
+    return replace(surface, height=height, provenance={**surface.provenance, **moved})
