@@ -93,7 +93,7 @@ class Bodies:
             E=pair.contact_modulus,
             m=pair.mass,
             p_y=case.yields()[0],
-            w=case.interface.work_of_adhesion,
+            w=case.interface.adhesion,
             walls=sum(walls),
             equal=not any(walls) and pair.first == pair.second and Y_1 == Y_2,
             sphere_poisson=(pair.second if walls[0] else pair.first).poissons_ratio,

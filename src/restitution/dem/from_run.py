@@ -60,7 +60,7 @@ def _law(out: Path, run: StoredRun) -> Law:
     warnings = list(summary["warnings"])
     if summary["status"] != "complete":
         warnings.insert(0, f"the run is not complete ({summary['status']}: {summary['reason']})")
-    if case.interface.work_of_adhesion > 0 and case.unloading.method == "energy-estimate":
+    if case.interface.adhesion > 0 and case.unloading.method == "energy-estimate":
         warnings.append(
             'COR is an estimate (unloading.method = "energy-estimate"), and pull-off is not known'
         )
@@ -85,7 +85,7 @@ def _law(out: Path, run: StoredRun) -> Law:
         contact_modulus=pair.contact_modulus,
         mass=derived["reduced_mass_kg"],
         yield_pressure=derived["yield_pressure_Pa"],
-        work_of_adhesion=case.interface.work_of_adhesion,
+        work_of_adhesion=case.interface.adhesion,
         model={key: str(value) for key, value in model.items()},
         conventions=Conventions(
             **summary["conventions"],

@@ -74,12 +74,18 @@ class BodyTable(Table):
 
 
 YieldRule = tuple[float, Literal["yield_strength", "hardness"]]
+DEFAULT_RULE: YieldRule = (2.8, "yield_strength")  # fully plastic contact (Tabor 1951)
 
 
 def _pressure_or_rule(value: Any) -> float | YieldRule | None:
-    """A pressure in Pa; "2.8 Y" as (2.8, "yield_strength"), "hardness" as (1.0, "hardness")."""
+    """A pressure in Pa; "2.8 Y" as (2.8, "yield_strength"), "hardness" as (1.0, "hardness").
+
+    "elastic" is an infinite pressure, and None what is left out.
+    """
     if value is None:
         return None
+    if value == "elastic":
+        return math.inf
     if value == "hardness":
         return 1.0, "hardness"
     match = _STRENGTHS.fullmatch(value) if isinstance(value, str) else None
@@ -91,35 +97,39 @@ def _pressure_or_rule(value: Any) -> float | YieldRule | None:
 
 
 class InterfaceTable(Table):
-    """`[interface]`; omitted: elastic."""
+    """`[interface]`; omitted: bodies of known strength yield, and none adheres."""
 
     yield_pressure: Annotated[float | YieldRule | None, BeforeValidator(_pressure_or_rule)] = None
     plasticity: Plasticity = "equilibrium"
-    work_of_adhesion: SurfaceEnergy = 0.0
+    work_of_adhesion: SurfaceEnergy | None = None
     approach: Approach = "equilibrium"
     detachment: Detachment = "crack-closure"
     equilibrium_separation: Length = 0.3e-9
 
     @model_validator(mode="after")
     def _truncated_at(self) -> Self:
-        if self.plasticity == "truncated" and self.yield_pressure is None:
+        if self.plasticity == "truncated" and self.yield_pressure == math.inf:
             raise ValueError(
-                'plasticity = "truncated" needs the pressure to cut at; give yield_pressure, or '
-                "leave plasticity out for elastic bodies"
+                'plasticity = "truncated" needs the pressure to cut at, and yield_pressure is '
+                '"elastic"; give a pressure, or leave plasticity out'
             )
         return self
+
+    @property
+    def adhesion(self) -> float:
+        """The work of adhesion, J/m²: zero where it is left out."""
+        return self.work_of_adhesion or 0.0
 
     def yields(self, first: BodyTable, second: BodyTable) -> tuple[float, str]:
         """The yield pressure (Pa; inf if elastic) of two bodies, and in words where it is from.
 
         Of two bodies the softer one yields. Where the rule asks for a yield strength, a body that
-        has none (glass) yields at its hardness. Raises `CaseError` when a body has neither.
+        has none (glass) yields at its hardness. Without a rule `DEFAULT_RULE` holds. Raises
+        `CaseError` when a body has neither.
         """
-        rule = self.yield_pressure
-        if rule is None:
-            return math.inf, "elastic"
+        rule = DEFAULT_RULE if self.yield_pressure is None else self.yield_pressure
         if isinstance(rule, float):
-            return rule, "given"
+            return rule, "elastic" if math.isinf(rule) else "given"
         factor, quantity = rule
         found = []
         for name, body in (("first", first), ("second", second)):
@@ -130,6 +140,12 @@ class InterfaceTable(Table):
             elif body.hardness is not None:
                 found.append((body.hardness, f"hardness {of}, {1e-6 * body.hardness:.6g} MPa"))
             else:
+                if self.yield_pressure is None:
+                    raise CaseError(
+                        "interface.yield_pressure: is missing, and so are "
+                        f"{name}.yield_strength and {name}.hardness; give one of them, or write "
+                        'yield_pressure = "elastic" for bodies that do not yield'
+                    )
                 raise CaseError(
                     f"interface.yield_pressure: needs {name}.{quantity}, which is not given"
                     + (f" and not known of {body.material}" if body.material else "")
