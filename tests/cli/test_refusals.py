@@ -309,3 +309,12 @@ def test_an_output_that_cannot_be_a_folder(refused, case_text, tmp_path):
         message = refused("run", tmp_path / "case.toml", "-o", out)
         assert "cannot be written" in message
         assert "name another folder with -o" in message
+
+
+def test_a_case_that_is_no_regular_file_is_refused_at_once(refused, tmp_path):
+    os.mkfifo(tmp_path / "pipe.toml")
+    for path in (tmp_path / "pipe.toml", "/dev/zero"):
+        assert "is not a regular file" in refused("check", path)
+    with (tmp_path / "large.toml").open("wb") as stream:
+        stream.truncate(2**33)
+    assert "has 8589934592 bytes, more than" in refused("check", tmp_path / "large.toml")

@@ -14,17 +14,19 @@ def check(
     """Validate CASE and print R*, E*, m*, yield and contact size; solve nothing."""
     from rich.table import Table
 
-    from restitution.cli.console import answers, warn
+    from restitution.cli.console import answers, waiting, warn
     from restitution.contact.plausibility import implausible
     from restitution.contact.resolution import foreseen_warnings, refuse_coarse_scan
+    from restitution.numerics.memory import available, in_words
     from restitution.studies.case import naming, read_case
     from restitution.studies.derived import deepest_indentation, derived_quantities
+    from restitution.studies.needs import run_bytes
     from restitution.surfaces import describe
 
     read, _ = read_case(case)
-    with naming(case):
+    with naming(case), waiting("making the surface"):
         contact = read.contact(case.parent)
-    rms = describe(contact.surface)["Sq_m"] or 0.0
+        rms = describe(contact.surface)["Sq_m"] or 0.0
     quantities = derived_quantities(read, contact)
     labels = {
         "reduced_radius_m": ("reduced radius R*", 1e6, "um"),
@@ -64,12 +66,15 @@ def check(
             continue
         value = quantities[key]
         table.add_row(label, "-" if value is None else f"{scale * value:.5g}", unit)
+    needed = in_words(run_bytes(contact.grid, read.interface))
+    table.add_row("memory of a run, at most", needed, f"of {in_words(available())}{auto}")
     answers.print(table)
     if (from_where := read.yields()[1]) not in ("given", "elastic"):
         answers.print(f"The yield pressure is {from_where}.", markup=False, soft_wrap=True)
     deepest = deepest_indentation(read)
     refuse_coarse_scan(contact, deepest)
-    warnings = foreseen_warnings(contact, deepest) + implausible(contact, deepest)
+    with waiting("checking the surface"):
+        warnings = foreseen_warnings(contact, deepest) + implausible(contact, deepest)
     for warning in warnings:
         warn(warning)
     answers.print("The case is valid." if not warnings else "The case is valid, with warnings.")

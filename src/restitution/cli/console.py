@@ -1,8 +1,14 @@
 """The two consoles: answers on standard output, everything about the run on standard error."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from threading import Timer
+
 from rich.console import Console
 
 from restitution.errors import one_line
+
+_PATIENCE = 2.0  # s without a sign of life
 
 answers = Console(highlight=False)
 errors = Console(stderr=True, highlight=False)
@@ -18,3 +24,18 @@ def refuse(message: str) -> None:
     errors.print(
         f"Error: {one_line(message)}", style="red", highlight=False, markup=False, soft_wrap=True
     )
+
+
+@contextmanager
+def waiting(words: str) -> Iterator[None]:
+    """Show a spinner with `words` on standard error where the block takes more than two seconds."""
+    status = errors.status(words)
+    later = Timer(_PATIENCE, status.start)
+    later.daemon = True
+    later.start()
+    try:
+        yield
+    finally:
+        later.cancel()
+        later.join()  # it may be starting the spinner right now
+        status.stop()

@@ -20,9 +20,10 @@ def surface(
     import xarray as xr
     from rich.table import Table
 
-    from restitution.cli.console import answers
+    from restitution.cli.console import answers, waiting
     from restitution.reports.figures import surface_map, write_figure
     from restitution.reports.surface_page import write_surface_page
+    from restitution.studies import needs
     from restitution.studies.case import naming, read_case
     from restitution.studies.interruption import hold_signals
     from restitution.studies.locking import locked
@@ -36,11 +37,13 @@ def surface(
     from restitution.surfaces.texture import texture
 
     read, text = read_case(case)
-    with naming(case):
+    with naming(case), waiting("making the surface"):
         made = read.surface(case.parent)
+        needs.require(needs.described_bytes(made.grid), made.grid)
     context.with_resource(locked(out))
     ResultsFolder(out)
-    statistics = describe(made) | texture(made)
+    with waiting("describing the surface"):
+        statistics = describe(made) | texture(made)
     hx, hy = made.grid.spacing
     provenance = {**made.provenance, "spacing_x_m": hx, "spacing_y_m": hy}
     height = xr.DataArray(
@@ -52,15 +55,16 @@ def surface(
     )
     dataset = height.to_dataset()
     dataset.attrs = {"title": read.title, "case": text, **provenance}
-    with hold_signals():
-        write_netcdf(out / "surface.nc", dataset)
-        write_json(out / "statistics.json", {**statistics, "provenance": provenance})
-        write_checksums(out, ["statistics.json", "surface.nc"])
-    write_figure(
-        out / "surface.png",
-        surface_map(height, read.title, str(made.provenance.get("y_axis", "up"))),
-    )
-    write_surface_page(out)
+    with waiting("writing the results"):
+        with hold_signals():
+            write_netcdf(out / "surface.nc", dataset)
+            write_json(out / "statistics.json", {**statistics, "provenance": provenance})
+            write_checksums(out, ["statistics.json", "surface.nc"])
+        write_figure(
+            out / "surface.png",
+            surface_map(height, read.title, str(made.provenance.get("y_axis", "up"))),
+        )
+        write_surface_page(out)
 
     table = Table(box=None, show_header=False)
     for key, value in statistics.items():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import math
+import stat
 import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -18,6 +19,7 @@ from restitution.contact.path import loading_path
 from restitution.contact.state import State
 from restitution.errors import CaseError, SurfaceError, shown
 from restitution.numerics.grid import Grid
+from restitution.studies import needs
 from restitution.studies.particles import BodyTable, InterfaceTable
 from restitution.studies.quantities import Force, Length
 from restitution.studies.table import Table
@@ -41,6 +43,7 @@ def _one_or_more(value: Any) -> Any:
     return tuple(value) if isinstance(value, list) else (value,)
 
 
+_LARGEST = 2**22  # bytes of a case file
 DEPTHS = ("indentation", "load", "impact")  # the tables that may say how deep
 
 
@@ -149,10 +152,19 @@ class Case(Table):
         return composite([part.surface(grid, folder, factor) for part in self.roughness])
 
     def contact(self, folder: Path) -> Contact:
-        """Everything before the first solve; files are relative to `folder`."""
+        """Everything before the first solve; files are relative to `folder`.
+
+        Raises `CaseError` where a run takes more memory than there is.
+        """
+        pair = self.pair()
+        if grid := self._own_grid():
+            fine = divided(grid, self.grid.factor if self.grid else 1)
+            needs.require(needs.run_bytes(fine, self.interface), fine)
+        surface = self.surface(folder)
+        needs.require(needs.run_bytes(surface.grid, self.interface), surface.grid)
         return Contact(
-            self.pair(),
-            self.surface(folder),
+            pair,
+            surface,
             yield_pressure=self.yields()[0],
             plasticity=self.interface.plasticity,
             work_of_adhesion=self.interface.adhesion,
@@ -186,6 +198,16 @@ def read_case(path: Path) -> tuple[Case, str]:
 def read_text(path: Path) -> str:
     """The text of a case file. Raises `CaseError`, naming the file."""
     try:
+        kind = path.stat()
+        if not (stat.S_ISREG(kind.st_mode) or stat.S_ISDIR(kind.st_mode)):
+            raise CaseError(
+                f"{path}: is not a regular file (a device, pipe or socket); name a case file"
+            )
+        if kind.st_size > _LARGEST:
+            raise CaseError(
+                f"{path}: has {kind.st_size} bytes, more than the {_LARGEST} a case file may have; "
+                "name a case file"
+            )
         return path.read_text(encoding="utf-8-sig")  # editors on Windows write a byte order mark
     except UnicodeDecodeError:
         raise CaseError(f"{path}: is not a text file; a case file is TOML in UTF-8") from None

@@ -18,6 +18,7 @@ from restitution.collision import UnloadingMethod
 from restitution.contact.separation import RESTITUTION_ERROR
 from restitution.errors import shown
 from restitution.numerics.grid import Grid
+from restitution.studies import needs
 from restitution.studies.quantities import (
     Angle,
     Length,
@@ -111,6 +112,10 @@ class GeneratedRoughness(Table):
 
     def surface(self, grid: Grid, _: Path, factor: int = 1) -> Surface:
         """The roughness of `grid`, its waves continued on cells `factor` times as small."""
+        fine = divided(grid, factor)
+        normal = (self.skewness, self.kurtosis) == (0.0, 3.0)
+        made = needs.generated_bytes(grid, normal=normal, periodic=self.periodic)
+        needs.require(max(made, needs.generated_bytes(fine, normal=True, periodic=True)), fine)
         return refine(generate_surface(grid, **self.model_dump(exclude={"realisations"})), factor)
 
 
@@ -176,9 +181,11 @@ class MeasuredRoughness(Table):
         """
         scan = self.scan(folder)
         grid = grid or scan.grid
+        whole = divided(grid, factor)
+        needs.require(needs.measured_bytes(whole, scan.grid, twin=self.extend == "twin"), whole)
         if self.extend == "twin":
             # The waves of a twin have no nodes to continue them from: all grids are alike.
-            placed, steps = extend(scan, divided(grid, factor), "twin", seed=self.seed), factor
+            placed, steps = extend(scan, whole, "twin", seed=self.seed), factor
         else:
             steps = self._steps_to_pixel(grid, scan.grid, factor)
             fine = divided(grid, steps)
