@@ -61,8 +61,6 @@ def test_what_takes_more_costs_more(case_text):
 def test_every_verb_refuses_what_does_not_fit(
     refused, case_text, tmp_path, verb, extend, monkeypatch
 ):
-    import numpy as np
-
     np.save(tmp_path / "scan.npy", 1e-8 * np.random.default_rng(1).standard_normal((40, 40)))
     begin, end = case_text.index("[roughness]"), case_text.index("[indentation]")
     rough = f'[roughness]\nkind = "measured"\nfile = "scan.npy"\nsize = "4 um"\n{extend}\n'
