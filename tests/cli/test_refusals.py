@@ -2,6 +2,7 @@
 
 import os
 import pickle
+import time
 
 import numpy as np
 import pytest
@@ -129,7 +130,8 @@ def test_nothing_says_how_deep(refused_case, case_text):
         ('velocity = "-1 m/s"', "greater than zero"),
         ("velocity = []", "impact.velocity"),
         ('from = "1 m/s"', "give from, to and steps (or velocity = [...])"),
-        ('velocity = "90 m/s"', "grid"),
+        ('velocity = "20 m/s"', "grid"),
+        ('velocity = "90 m/s"', "beyond R* = 250 um"),
     ],
 )
 def test_an_impact_that_is_wrong(refused_case, case_text, impact, remedy):
@@ -167,13 +169,13 @@ def test_plain_words(refused_case, case_text, replacement, words):
     assert words in refused_case((span, '[load]\nvalues = ["1 N"]\n'), replacement, verb="check")
 
 
-def test_other_problems_are_counted_by_key(refused_case):
+def test_other_problems_are_named_by_key(refused_case):
     """Two places in one list are one key."""
     once = refused_case(('["0.5 um", "0.6 um"]', '["a", "b"]'), verb="check")
     assert "grid.spacing" in once
-    assert "more)" not in once
+    assert "also wrong" not in once
     twice = refused_case(('["0.5 um", "0.6 um"]', '["a", "b"]'), ("seed = 1", ""), verb="check")
-    assert twice.endswith("(and 1 more)")
+    assert twice.endswith("(also wrong: grid.spacing)")
 
 
 def test_what_is_wrong_with_a_surface_names_the_case(refused_case):
@@ -318,3 +320,65 @@ def test_a_case_that_is_no_regular_file_is_refused_at_once(refused, tmp_path):
     with (tmp_path / "large.toml").open("wb") as stream:
         stream.truncate(2**33)
     assert "has 8589934592 bytes, more than" in refused("check", tmp_path / "large.toml")
+
+
+SPACES, MANY = 10**5 * " ", 5000
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('"500 um"', f'"5 {"(" * MANY}m{")" * MANY}"', "is not one number followed by a unit"),
+        ('"500 um"', f'"5 m{"*m" * MANY}"', "is not one number followed by a unit"),
+        ('"500 um"', f'"5{SPACES}x y"', "is not one number followed by a unit"),
+        ('"500 um"', f'"{10**5 * "1"} x y"', "is not one number followed by a unit"),
+        ('"750 MPa"', f'"2{SPACES}*{SPACES}Z"', "is not one number followed by a unit"),
+        ('"750 MPa"', f'"{10**5 * "2"}Z"', "is not one number followed by a unit"),
+        ("title =", f"a{'.a' * MANY} = 1\ntitle =", "nested too deeply"),
+        ('radius = "500 um"', f"radius{'.a' * MANY} = 1", "nested too deeply"),
+        ('radius = "500 um"', f"radius{'.a' * 40} = 1", "nested too deeply"),
+        ('radius = "500 um"', "radius" + MANY * ".'a'" + " = 1", "nested too deeply"),
+        ("[first]", f"[first{'.a' * MANY}]", "nested too deeply"),
+        ('radius = "500 um"', f"radius = {'{a=' * 200}1{'}' * 200}", "nested too deeply"),
+    ],
+)
+def test_what_would_take_minutes_is_refused_at_once(case_text, old, new, words):
+    from restitution.errors import CaseError
+    from restitution.studies.case import parse_case
+
+    parse_case(case_text)  # the table of units is read once
+    assert old in case_text
+    began = time.perf_counter()
+    with pytest.raises(CaseError, match=words):
+        parse_case(case_text.replace(old, new, 1))
+    assert time.perf_counter() - began < 0.1
+
+
+def test_the_other_keys_that_are_wrong_are_named(refused_case):
+    message = refused_case(("radius =", "radus ="), ("rms =", "rns ="), ("nodes =", "nods ="))
+    assert 'first.radus: unknown key; did you mean "radius"?' in message
+    assert "(also wrong: roughness.rns, grid.nods, first.radius, 1 more)" in message
+    one = refused_case(("seed = 1", 'seed = "1"'), ("steps = 6", "steps = true"))
+    assert one.endswith("(also wrong: unloading.steps)")
+
+
+def test_a_law_with_a_wrong_value_is_said_in_plain_words(tmp_path):
+    from restitution.dem.law import read_law
+    from restitution.errors import CaseError
+
+    (tmp_path / "law.json").write_text("{}")
+    with pytest.raises(CaseError) as caught:
+        read_law(tmp_path / "law.json")
+    assert "Value error" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (('"500 um"', '"0.1 um"'), "radius: the particle of 0.1 um is smaller than its roughness"),
+        (('to = "300 nm"', 'to = "300 um"'), "beyond R* = 250 um"),
+    ],
+)
+@pytest.mark.parametrize("verb", ["check", "run"])
+def test_what_is_larger_than_the_particle(refused_case, change, words, verb):
+    assert words in refused_case(change, verb=verb)

@@ -1,10 +1,13 @@
 """What is said against a contact before it is solved."""
 
+import math
+
 import numpy as np
 import pytest
 
 from restitution import Body, Contact, Grid, Pair, Surface, generate_surface, smooth
-from restitution.contact.plausibility import implausible
+from restitution.contact.plausibility import implausible, require_small
+from restitution.errors import CaseError
 
 STEEL = Pair(*2 * [Body(500e-6, 210e9, 0.25)])
 GRID = Grid((64, 64), (0.5e-6, 0.5e-6))
@@ -71,3 +74,17 @@ def test_oblong_pixels_may_be_a_scan_that_lost_lines():
     (line,) = implausible(measured(ROUGH, **parts), 4e-7)
     assert line.startswith("b.npy: the pixels are")
     assert implausible(measured(ROUGH, pixel_x_m=5e-7, pixel_y_m=5.02e-7), 4e-7) == []
+
+
+def test_a_particle_smaller_than_its_roughness_is_refused():
+    small = Pair(Body(1e-7, 210e9, 0.25), Body(math.inf, 210e9, 0.25))
+    with pytest.raises(CaseError, match=r"^radius: the particle of 0.1 um is smaller than its"):
+        require_small(Contact(small, Surface(10 * ROUGH, GRID)), 1e-9)
+    require_small(Contact(small, Surface(0.1 * ROUGH, GRID)), 1e-9)
+
+
+def test_a_contact_beyond_the_particle_is_refused():
+    contact = Contact(STEEL, smooth(GRID))
+    require_small(contact, 240e-6)
+    with pytest.raises(CaseError, match=r"reach 255 um from the centre .* beyond R\* = 250 um"):
+        require_small(contact, 260e-6)

@@ -15,7 +15,7 @@ def check(
     from rich.table import Table
 
     from restitution.cli.console import answers, waiting, warn
-    from restitution.contact.plausibility import implausible
+    from restitution.contact.plausibility import implausible, require_small
     from restitution.contact.resolution import foreseen_warnings, refuse_coarse_scan
     from restitution.numerics.memory import available, in_words
     from restitution.studies.case import naming, read_case
@@ -72,6 +72,7 @@ def check(
     if (from_where := read.yields()[1]) not in ("given", "elastic"):
         answers.print(f"The yield pressure is {from_where}.", markup=False, soft_wrap=True)
     deepest = deepest_indentation(read)
+    require_small(contact, deepest)
     refuse_coarse_scan(contact, deepest)
     with waiting("checking the surface"):
         warnings = foreseen_warnings(contact, deepest) + implausible(contact, deepest)

@@ -9,6 +9,7 @@ import numpy as np
 from restitution.contact.contact import Contact
 from restitution.contact.edge import edge_advice, first_touch
 from restitution.contact.resolution import foreseen_radius
+from restitution.errors import CaseError
 from restitution.surfaces import level, rms_slope
 
 _TILTED = 0.5  # of the variance of the heights that a plane explains
@@ -17,6 +18,25 @@ _STEEP = 0.5  # rms slope beyond which small-slope theory misleads
 _PRESSURES = (1e-5, 0.3)  # p_y/E* of materials, from soft polymers to the ideal strength
 _NEAR_EDGE = 0.1  # of the width of the grid
 _SAFELY = 0.9  # foreseen radii are good to 6 %
+
+
+def require_small(contact: Contact, indentation: float) -> None:
+    """Raise `CaseError` where the roughness or the contact is larger than the particle."""
+    pair, height = contact.pair, contact.surface.height
+    radius = min(pair.first.radius, pair.second.radius)
+    if height.size and (peak := float(height.max() - height.mean())) >= radius:
+        raise CaseError(
+            f"radius: the particle of {1e6 * radius:.4g} um is smaller than its roughness, whose "
+            f"highest peak is {1e6 * peak:.4g} um above the mean; check the units of the radius "
+            "and of the roughness"
+        )
+    foreseen = foreseen_radius(pair, indentation, contact.yield_pressure)
+    if foreseen > pair.radius:
+        raise CaseError(
+            f"the contact is foreseen to reach {1e6 * foreseen:.4g} um from the centre at an "
+            f"indentation of {1e9 * indentation:.4g} nm, beyond R* = {1e6 * pair.radius:.4g} um: "
+            "stop earlier, or check the units of the depths and of the radius"
+        )
 
 
 def implausible(contact: Contact, indentation: float) -> list[str]:

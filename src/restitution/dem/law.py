@@ -286,8 +286,9 @@ def read_law(folder: Path) -> Law:
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(map(str, first["loc"])) or "the whole"
+        why = first["msg"].removeprefix("Value error, ")
         raise CaseError(
-            f"{path}: is not a law of this version ({where}: {first['msg']}); make it again with "
+            f"{path}: is not a law of this version ({where}: {why}); make it again with "
             "`restitution law`"
         ) from None
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import math
+import re
 import stat
 import tomllib
 from collections.abc import Iterator
@@ -44,6 +45,8 @@ def _one_or_more(value: Any) -> Any:
 
 
 _LARGEST = 2**22  # bytes of a case file
+_DEEPEST = 32  # tables and lists within each other, and parts of a key
+_NAMED = 3  # further keys with a problem
 DEPTHS = ("indentation", "load", "impact")  # the tables that may say how deep
 
 
@@ -227,13 +230,40 @@ def naming(path: Path) -> Iterator[None]:
 def parse_toml(text: str) -> dict[str, Any]:
     """The tables of a TOML file. Raises `CaseError`."""
     try:
-        return tomllib.loads(text)
+        _check_dots(text)
+        content = tomllib.loads(text)
+        _check_depth(content)
+        return content
+    except CaseError:  # a ValueError, too
+        raise
     except RecursionError:
-        raise CaseError("not valid TOML: nested too deeply; correct the brackets") from None
+        raise _too_deep() from None
     except tomllib.TOMLDecodeError as error:
         raise CaseError(f"not valid TOML: {error}") from None
     except ValueError:  # Python refuses to read an integer of more than 4300 digits
         raise CaseError("holds a number of thousands of digits; correct it") from None
+
+
+def _too_deep() -> CaseError:
+    return CaseError("not valid TOML: nested too deeply; correct the brackets or the dotted keys")
+
+
+def _check_dots(text: str) -> None:
+    """Refuse keys of very many parts, for which the reader of TOML takes minutes."""
+    for word in re.split(r"[^\w.\-\"']+", text):
+        if word.count(".") > _DEEPEST and ".." not in word.strip("."):
+            raise _too_deep()
+
+
+def _check_depth(content: dict[str, Any]) -> None:
+    """Refuse tables so deep that showing them would fail."""
+    level: list[Any] = [content]
+    for _ in range(_DEEPEST):
+        inner = [v.values() if isinstance(v, dict) else v for v in level]
+        level = [v for values in inner for v in values if isinstance(v, (dict, list))]
+        if not level:
+            return
+    raise _too_deep()
 
 
 def parse_case(text: str) -> Case:
@@ -245,9 +275,16 @@ def parse_case(text: str) -> Case:
         # A key that is not known explains one that is missing, not the other way round.
         problems = error.errors(include_url=False)
         problems.sort(key=lambda problem: problem["type"] != "extra_forbidden")
-        others = {_key_of(problem) for problem in problems} - {_key_of(problems[0])}
-        more = f" (and {len(others)} more)" if others else ""
-        raise CaseError(_in_words(problems[0]) + more) from None
+        raise CaseError(_in_words(problems[0]) + _others(problems)) from None
+
+
+def _others(problems: list[Any]) -> str:
+    """The other keys with a problem, up to three by name."""
+    names = list(dict.fromkeys(_key_of(problem) for problem in problems))[1:]
+    if not names:
+        return ""
+    more = [f"{len(names) - _NAMED} more"] if len(names) > _NAMED else []
+    return f" (also wrong: {', '.join(names[:_NAMED] + more)})"
 
 
 # pydantic's kinds of problem in the words of a case file.

@@ -13,7 +13,14 @@ from restitution.contact.contact import Approach, Plasticity
 from restitution.contact.detachment import Detachment
 from restitution.errors import CaseError, shown
 from restitution.studies.materials import Property, material
-from restitution.studies.quantities import Density, Length, Pressure, SurfaceEnergy, read_positive
+from restitution.studies.quantities import (
+    LONGEST,
+    Density,
+    Length,
+    Pressure,
+    SurfaceEnergy,
+    read_positive,
+)
 from restitution.studies.table import Table
 
 # What a library's material gives a body, with the unit of each.
@@ -24,7 +31,7 @@ _FROM_LIBRARY = {
     "yield_strength": "Pa",
     "hardness": "Pa",
 }
-_STRENGTHS = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*\*?\s*Y\s*")
+_STRENGTHS = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*(?:\*\s*)?Y\s*")
 
 
 def _flat_is_infinite(value: Any) -> Any:
@@ -88,7 +95,8 @@ def _pressure_or_rule(value: Any) -> float | YieldRule | None:
         return math.inf
     if value == "hardness":
         return 1.0, "hardness"
-    match = _STRENGTHS.fullmatch(value) if isinstance(value, str) else None
+    short = isinstance(value, str) and len(value) <= LONGEST
+    match = _STRENGTHS.fullmatch(value) if short else None
     if match is None:
         return read_positive(value, "Pa")
     if not 0.5 <= (factor := float(match[1])) <= 10:

@@ -15,10 +15,13 @@ from restitution.errors import shown
 # One number, then one unit expression: names, powers, * and /. Nothing that could be arithmetic on
 # numbers, so that a case file cannot make the unit parser compute. A digit right behind a name is
 # its power: "g/cm3" is g/cm^3.
-_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?"
 _UNIT = r"[^\W\d]+(?:\s*(?:\^|\*\*)\s*-?\d|\d)?"
 _POWER = re.compile(r"(?<=[^\W\d])(\d)")
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*((?:{_UNIT})(?:\s*[*/·]\s*{_UNIT})*)\s*", re.UNICODE)
+
+# Characters of a quantity: more are none, and take patterns and the unit parser too long.
+LONGEST = 100
 
 _EXAMPLES = {
     "m": '"0.25 um"',
@@ -71,9 +74,9 @@ def read_quantity(value: object, unit: str) -> float:
         raise ValueError(f"{shown(value)} has no unit; {example}")
     if not isinstance(value, str):
         raise ValueError(f"{shown(value)} is not a text with a number and a unit; {example}")
-    match = _QUANTITY.fullmatch(value)
+    match = _QUANTITY.fullmatch(value) if len(value) <= LONGEST else None
     if match is None:
-        missing = re.fullmatch(rf"\s*{_NUMBER}\s*", value)
+        missing = len(value) <= LONGEST and re.fullmatch(rf"\s*{_NUMBER}\s*", value)
         problem = "has no unit" if missing else "is not one number followed by a unit"
         raise ValueError(f"{shown(value)} {problem}; {example}")
     number, name = float(match[1]), match[2].replace("·", "*").replace("^", "**")

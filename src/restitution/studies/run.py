@@ -13,7 +13,7 @@ from typing import Any
 from restitution.collision import Collision, collide
 from restitution.contact.contact import Contact
 from restitution.contact.path import unloading_path
-from restitution.contact.plausibility import implausible
+from restitution.contact.plausibility import implausible, require_small
 from restitution.contact.resolution import (
     adhesion_warning,
     adhesive_nodes,
@@ -80,6 +80,7 @@ def run_case(
     try:
         contact = case.contact(folder)
         foreseen = deepest_indentation(case)
+        require_small(contact, foreseen)
         refuse_coarse_scan(contact, foreseen)
         run.warnings += foreseen_warnings(contact, foreseen) + implausible(contact, foreseen)
         for warning in run.warnings:
