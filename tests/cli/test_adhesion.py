@@ -165,3 +165,15 @@ def test_refusals_are_one_line_that_names_the_key(refusal, old, new, words):
     message = refusal(old, new)
     for word in words:
         assert word in message
+
+
+def test_a_seed_that_lets_go_of_everything_is_a_row_that_sticks(cli, run, tmp_path):
+    """The surface is so soft that the pull of 0.1 nm takes all of it apart."""
+    rows, summary, _ = run(
+        ('"1.5 GPa"', '"1 MPa"'), ('"0.09 J/m^2"', '"0.001 J/m^2"'), ('"hertzian"', '"seed"'),
+        ('"0.07 um"', '"0.5 um"'), ('["1.5 nm", "10 nm"]', '["0.05 nm", "0.1 nm"]'),
+    )  # fmt: skip
+    assert [row["force_N"] for row in rows] == ["0.0", "0.0"]
+    assert [row["sticks"] for row in rows] == ["true", "true"]
+    assert summary["status"] == "complete"
+    assert cli("report", tmp_path / "out")[0] == 0

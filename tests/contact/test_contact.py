@@ -15,6 +15,18 @@ from restitution.surfaces import Surface
 approx = partial(pytest.approx, abs=0.0)  # whose own 1e-12 is more than these energies
 
 
+def test_what_is_no_pair_or_no_surface_is_refused_by_name(pair):
+    flat = smooth(Grid(8, 1e-6))
+    with pytest.raises(
+        CaseError, match=r"^pair: an object of type Body is not a pair of bodies; give Pair\("
+    ):
+        Contact(pair.first, flat)
+    with pytest.raises(
+        CaseError, match=r"^surface: an object of type ndarray is not a surface; give Surface\("
+    ):
+        Contact(pair, np.zeros((8, 8)))
+
+
 def test_the_smooth_gap_is_the_paraboloid_and_the_apex_a_node(pair):
     for nodes in ((8, 5), (7, 6), (1, 1), (1, 4)):
         gap = Contact(pair, smooth(Grid(nodes, (1e-6, 2e-6)))).gap

@@ -172,7 +172,10 @@ def without_cupy(monkeypatch):
 
 @pytest.mark.usefixtures("without_cupy")
 def test_a_gpu_without_cupy_is_refused_and_auto_goes_on():
-    with pytest.raises(CaseError, match=r"gpu needs CuPy .*install restitution"), on_device("gpu"):
+    with (
+        pytest.raises(CaseError, match=r"gpu needs CuPy .*pip install \"\.\[gpu\]\""),
+        on_device("gpu"),
+    ):
         pass
     with on_device("auto") as device:
         assert device.name == "cpu"

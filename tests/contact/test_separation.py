@@ -74,3 +74,17 @@ def test_no_step_jumps_over_the_tension():
     path = list(separation.separate(solve(contact, 200e-9)))
     assert sum(state.force < 0 for state in path) > 15
     assert separation.separation_of(path).pull_off_force == pytest.approx(2.2e-4, rel=0.05)
+
+
+def test_a_seed_that_lets_go_of_everything_is_parted_and_returns_nothing():
+    """So soft a surface gives way by more than the seed's pull: no node is left in contact."""
+    contact = Contact(
+        Pair(STEEL, STEEL), smooth(Grid(32, 0.5e-6)), 1e6, work_of_adhesion=1e-3, approach="seed"
+    )
+    state = solve(contact, 1e-10)
+    assert (state.contact_nodes, state.force, state.contact_area) == (0, 0.0, 0.0)
+    assert state.plastic_volume > 0
+    assert [each is state for each in separation.separate(state)] == [True]
+    collision = collide(state)
+    assert collision.sticks
+    assert (collision.restitution, collision.pull_off_force) == (0.0, 0.0)

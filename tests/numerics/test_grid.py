@@ -59,3 +59,22 @@ def test_a_spacing_that_is_no_length_is_refused(h):
 def test_a_grid_does_not_change():
     with pytest.raises(AttributeError):
         Grid((4, 4), (1.0, 1.0)).nodes = (5, 5)
+
+
+def test_one_number_is_for_both_axes():
+    assert Grid(64, 1e-6) == Grid((64, 64), (1e-6, 1e-6))
+    assert Grid((64, 32), 1e-6).spacing == (1e-6, 1e-6)
+    assert Grid(np.int64(8), np.float32(0.5)) == Grid(np.array([8, 8]), [0.5, 0.5])
+    assert hash(Grid([8, 8], [0.5, 0.5])) == hash(Grid(8, 0.5))
+
+
+@pytest.mark.parametrize("nodes", ["64", None, (64,), (64, 64, 64), (64, "64"), True, 64.5])
+def test_nodes_that_are_none_are_refused_by_name(nodes):
+    with pytest.raises(CaseError, match=r"^grid\.nodes: "):
+        Grid(nodes, 1e-6)
+
+
+@pytest.mark.parametrize("spacing", ["1 um", None, (1e-6,), (1e-6, None), math.nan, 0.0])
+def test_spacings_that_are_none_are_refused_by_name(spacing):
+    with pytest.raises(CaseError, match=r"^grid\.spacing: "):
+        Grid(64, spacing)

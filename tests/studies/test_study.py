@@ -1,6 +1,7 @@
 """Studies: kept case by case, finished after whatever has stopped them."""
 
 import csv
+import json
 import os
 import random
 import signal
@@ -81,8 +82,10 @@ def test_the_dataset_has_the_swept_quantities_as_dimensions(whole):
     with xr.open_dataset(whole / "study.nc") as study:
         cor = study["restitution"]
         assert cor.dims == ("roughness.seed", "interface.yield_pressure", "depth")
-        soft = cor.sel({"interface.yield_pressure": "150 MPa"})
-        assert (soft < cor.sel({"interface.yield_pressure": "750 MPa"})).all()
+        soft = cor.sel({"interface.yield_pressure": 150e6})
+        assert (soft < cor.sel({"interface.yield_pressure": 750e6})).all()
+        assert study["interface.yield_pressure"].attrs["units"] == "Pa"
+        assert study["roughness.seed"].values.tolist() == [1, 2, 3]
         assert (study["status"] == "complete").all()
 
 
@@ -94,7 +97,9 @@ def test_paired_quantities_are_coordinates_of_the_cases(text, tmp_path):
     _, out = run(paired, tmp_path)
     with xr.open_dataset(out.path / "study.nc") as study:
         assert study["restitution"].dims == ("case", "depth")
-        assert study["interface.yield_pressure"].values.tolist() == ["150 MPa", "750 MPa"]
+        pressure = study["interface.yield_pressure"]
+        assert pressure.values.tolist() == [150e6, 750e6]
+        assert json.loads(pressure.attrs["as_written"]) == ["150 MPa", "750 MPa"]
 
 
 def test_the_same_study_gives_the_same_table(whole, text, tmp_path):

@@ -12,7 +12,7 @@ def study(
     file: Annotated[
         Path,
         typer.Argument(
-            help="Study file (TOML): a case and a table [sweep].",
+            help="Study file (TOML): a case and a table \\[sweep].",
             metavar="STUDY",
             show_default=False,
             readable=False,

@@ -33,7 +33,8 @@ class Contact:
     `yield_pressure` (Pa) is the largest pressure the surface carries: a hardness, about 2.8 times
     the yield strength; inf for elastic bodies. `plasticity` is `equilibrium` (pressure and surface
     in equilibrium under that bound) or `truncated` (the elastic pressure cut at the bound, as in
-    Thornton and Ning 1998). Raises `CaseError` for other values.
+    Thornton and Ning 1998). Raises `CaseError` for other values, and for a pair or a surface that
+    is none.
     """
 
     pair: Pair
@@ -45,6 +46,16 @@ class Contact:
     detachment: Detachment = "crack-closure"
 
     def __post_init__(self) -> None:
+        if not isinstance(self.pair, Pair):
+            raise CaseError(
+                f"pair: {_kind(self.pair)} is not a pair of bodies; give Pair(first, second), the "
+                "same body twice for two equal spheres"
+            )
+        if not isinstance(self.surface, Surface):
+            raise CaseError(
+                f"surface: {_kind(self.surface)} is not a surface; give Surface(height, grid), or "
+                "what generate_surface and read_surface return"
+            )
         if not self.yield_pressure > 0:
             raise CaseError(f"yield_pressure: {self.yield_pressure} Pa is not positive")
         if self.plasticity not in ("equilibrium", "truncated"):
@@ -116,6 +127,11 @@ class Contact:
         gap -= self.surface.height  # in place: other arrays of this size would take as long
         gap -= gap.min()
         return gap
+
+
+def _kind(value: object) -> str:
+    """What `value` is, in words."""
+    return f"an object of type {type(value).__name__}"
 
 
 def smooth(grid: Grid) -> Surface:

@@ -49,6 +49,8 @@ class Separation:
 def separate(state: State, *, tolerance: float = RESTITUTION_ERROR) -> Iterator[State]:
     """Yield `state` and the states on the way to separation, the last one without contact.
 
+    A `state` without contact is all of it.
+
     `tolerance` is the error of the coefficient of restitution that the steps may cause; where their
     own estimate is above it, the way back is gone again in finer steps, at last four times as many.
     Raises `NotConvergedError` when the bodies do not come apart.
@@ -72,6 +74,8 @@ def _way_back(state: State, tolerance: float, finer: int) -> Iterator[State]:
     """`state` and the states to separation, by at least `finer` times as many steps as usual."""
     contact = state.contact
     yield state
+    if state.contact_nodes == 0:
+        return  # `approach = "seed"` has let go of everything already
     recovery, allowed = _plan(state, tolerance)
     step = recovery / (finer * _STEPS_OF_RECOVERY)
     previous: State | None = None

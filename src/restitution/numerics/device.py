@@ -208,7 +208,8 @@ def _gpu() -> Device:
         cupy.cuda.Device().use()  # raises where there is none
     except ImportError as error:
         raise CaseError(
-            f"device: gpu needs CuPy ({error}); install restitution[gpu], or use --device cpu"
+            f"device: gpu needs CuPy ({error}); install the extra gpu, from a checkout with "
+            '`pip install ".[gpu]"`, or use --device cpu'
         ) from error
     except Exception as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__

@@ -53,9 +53,9 @@ def figures(results: xr.Dataset) -> Iterator[tuple[str, Figure]]:
         return
     yield "load-displacement", load_displacement(results)
     yield "restitution-indentation", restitution_against_indentation(results)
-    if np.isfinite(results["impact_velocity"]).any():
+    if (results["impact_velocity"] > 0).any():
         yield "restitution-velocity", restitution_against_velocity(results)
-    if "pressure" in results:  # not of the mean of several surfaces
+    if "pressure" in results and results["pressure"].any():  # none of a mean of surfaces
         yield "pressure", pressure_map(results)
 
 

@@ -26,9 +26,9 @@ def write_run_page(out: Path) -> Path:
     parts: list[Table | Drawing | Listing] = []
     if results.sizes["indentation_max"]:
         parts += [against_depth(results), force(results)]
-        if np.isfinite(results["impact_velocity"]).any():
+        if (results["impact_velocity"] > 0).any():
             parts.insert(1, against_velocity(results))
-        if "pressure" in results:
+        if "pressure" in results and results["pressure"].any():
             parts.append(_pressure(results))
     parts += [
         _trust(results, summary),

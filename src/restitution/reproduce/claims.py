@@ -6,6 +6,7 @@ beside the claim they judge.
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -15,6 +16,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from restitution.studies.coordinates import AS_WRITTEN
 from restitution.theory import hertz, jkr, thornton_ning, yielding
 
 Array = NDArray[np.float64]
@@ -64,11 +66,20 @@ def curves(study: xr.Dataset) -> list[Curve]:
         if str(case["status"].item()) != "complete":
             continue
         keys = [str(key) for key in study.coords if str(key) != "case"]
-        label = ", ".join(str(case[key].item()) for key in keys)
+        label = ", ".join(_as_written(study[key])[case[key].item()] for key in keys)
         have = np.isfinite(case["indentation"].values)
         depth, cor, force, pull_off, resolved = (case[name].values[have] for name in _VARIABLES)
         found.append(Curve(label, depth, cor, force, pull_off, resolved.astype(bool)))
     return found
+
+
+def _as_written(coordinate: xr.DataArray) -> dict[float | str, str]:
+    """The text in the study of each value of a swept quantity."""
+    values = coordinate.values.tolist()
+    written = coordinate.attrs.get(AS_WRITTEN)  # none in studies of earlier versions, all text
+    return dict(
+        zip(values, map(str, values) if written is None else json.loads(written), strict=True)
+    )
 
 
 def _resolved(*of: Curve) -> str:

@@ -166,7 +166,7 @@ def _load_and_unload(
             run.loading_work_errors.append(state.work_error / max(abs(state.loading_work), 1e-300))
             out.add(state, collision)
             run.deepest = state
-        if number in unloaded:
+        if number in unloaded and state.contact_nodes:
             out.add_unloading(back)
             run.unloading_checks.append(_check(state, back, collision))
         run.seconds.append(round(time.perf_counter() - began, 4))

@@ -18,6 +18,7 @@ import numpy as np
 import xarray as xr
 
 from restitution.errors import OutputError
+from restitution.studies.coordinates import as_text, coordinate
 from restitution.studies.interruption import hold_signals
 from restitution.studies.locking import locked
 from restitution.studies.reader import read_curve, read_json, read_run
@@ -37,7 +38,7 @@ FAILED = "failed.json"
 
 
 class StudyFolder:
-    """OUT: `study.toml`, `cases/case-<n>/`, `table.csv` and `study.nc`."""
+    """OUT: `study.toml`, `cases/case-00001/` and so on, `table.csv` and `study.nc`."""
 
     def __init__(self, path: Path, study: Study, *, resume: bool) -> None:
         """Take the folder for `study`.
@@ -134,7 +135,7 @@ class StudyFolder:
             for case in self.study.cases:
                 reason = known[case.number]
                 status = _status(reason)
-                values = [_written(value) for value in case.values.values()]
+                values = [as_text(value) for value in case.values.values()]
                 for row in curves.get(case.number, [{}]):
                     cells = [row.get(column, "") for column in columns]
                     table.writerow([*values, *cells, case.name, status, reason or ""])
@@ -150,13 +151,11 @@ class StudyFolder:
         if study.mode == "paired":
             dims: tuple[str, ...] = ("case",)
             coordinates: dict[str, Any] = {
-                key: ("case", [_written(v) for v in values]) for key, values in study.swept.items()
+                key: ("case", *coordinate(values)) for key, values in study.swept.items()
             }
         else:
             dims = tuple(study.swept)
-            coordinates = {
-                key: [_written(v) for v in values] for key, values in study.swept.items()
-            }
+            coordinates = {key: (key, *coordinate(values)) for key, values in study.swept.items()}
         data: dict[str, Any] = {}
         for column in present:
             name, unit, meaning = units[column]
@@ -183,8 +182,3 @@ def _status(reason: str | None) -> str:
     return "failed" if reason else "complete"
 
 
-def _written(value: Any) -> str:
-    """A swept value as it stands in the study: "0.1 um", 3, true, [1, 2]."""
-    if isinstance(value, str):
-        return value
-    return json.dumps(value, ensure_ascii=False, default=str)

@@ -104,7 +104,8 @@ def cluster_workers(address: str) -> Iterator[Workers]:
         from distributed import Client, Queue
     except ImportError:
         raise OutputError(
-            'scheduler: Dask is not installed; pip install "restitution[cluster]"'
+            "scheduler: Dask is not installed; install the extra cluster, from a checkout with "
+            '`pip install ".[cluster]"`'
         ) from None
     try:
         client = Client(address, timeout=PATIENCE, set_as_default=False)
