@@ -61,6 +61,7 @@ def carry_out(
     from restitution.numerics.device import on_device
     from restitution.reports.figures import write_figures
     from restitution.studies.case import naming, read_case
+    from restitution.studies.error_budget import steps
     from restitution.studies.locking import locked
     from restitution.studies.results import LOCK, ResultsFolder
 
@@ -78,7 +79,7 @@ def carry_out(
     depths = len(read.depths())
     try:
         with naming(case), Progress(*columns, console=errors, transient=True) as bar:
-            task = bar.add_task("reading the surface", total=depths * runs(read))
+            task = bar.add_task("reading the surface", total=depths * runs(read) + steps(read))
             summary = start(
                 read, text, case.parent, folder,
                 progress=lambda words: bar.update(task, advance=1, description=words),
@@ -130,7 +131,7 @@ def _print_curve(console: Console, rows: list[dict[str, float]]) -> None:
     from rich.table import Table
 
     table = Table(box=None, header_style="bold")
-    for name in ("indentation (nm)", "force (N)", "velocity (m/s)", "COR", "nodes in contact"):
+    for name in ("indentation (nm)", "force (N)", "velocity (m/s)", "COR", "nodes", "resolved"):
         table.add_column(name, justify="right")
     for row in rows:
         velocity = row["impact_velocity_m_per_s"]
@@ -140,14 +141,12 @@ def _print_curve(console: Console, rows: list[dict[str, float]]) -> None:
             "-" if velocity != velocity else f"{velocity:.4g}",
             f"{row['restitution']:.4f}{_uncertainty(row)}",
             f"{row['contact_nodes']:.0f}",
+            "yes" if row["resolved"] and row["adhesion_resolved"] else "no",
         )
     console.print(table)
 
 
 def _uncertainty(row: dict[str, float]) -> str:
-    """Half of the confidence interval of an ensemble, or the error of a convergence."""
-    half = row["discretisation_error"]
-    if "restitution_std" in row:
-        half = max(row["restitution_high"] - row["restitution"],
-                   row["restitution"] - row["restitution_low"])  # fmt: skip
-    return "" if half != half else f" ± {half:.4f}"
+    """The total error, where it is known."""
+    error = row["total_error"]
+    return "" if error != error else f" ± {error:.4f}"

@@ -12,6 +12,7 @@ from restitution.dem.compact import compact_fit
 from restitution.dem.fitted import Begin, fitted_laws
 from restitution.dem.law import LAW_FILE, Conventions, Law, Particle, Point
 from restitution.errors import CaseError, OutputError, one_line
+from restitution.studies.error_budget import total
 from restitution.studies.particles import BodyTable
 from restitution.studies.reader import StoredRun, read_run, stored_case
 
@@ -89,7 +90,7 @@ def _law(out: Path, run: StoredRun) -> Law:
         model={key: str(value) for key, value in model.items()},
         conventions=Conventions(
             **summary["conventions"],
-            restitution_error=_error_is(rows, case.realisations, bool(case.roughness)),
+            restitution_error=_error_is(summary["trust"]),
         ),
         yield_velocity=derived["yield_velocity_m_per_s"],
         sticking_velocity=derived.get("sticking_velocity_m_per_s"),
@@ -126,18 +127,10 @@ def _read(out: Path) -> StoredRun:
     return read_run(out)
 
 
-def _error_is(rows: Sequence[_Row], surfaces: int, rough: bool) -> str:
+def _error_is(trust: Mapping[str, object]) -> str:
     """What the error of a point includes, and what it does not."""
-    included = ["numerical error"]
-    missing: list[str] = []
-    of_grid = not math.isnan(rows[0]["discretisation_error"])
-    (included if of_grid else missing).append("error of the grid")
-    if rough:
-        if surfaces > 1:
-            included.append(f"95 % interval of the mean of {surfaces} surfaces")
-        else:
-            missing.append("scatter from one surface to another")
-    return ", ".join(included) + (f"; not the {' or the '.join(missing)}" if missing else "")
+    includes = trust.get("total_error_includes") or "solver"
+    return f"{includes}; not: {trust.get('total_error_does_not_include') or 'anything else'}"
 
 
 def _points(rows: Sequence[_Row]) -> list[Point]:
@@ -170,15 +163,9 @@ def _ratio(row: _Row, work: float) -> float:
 
 
 def _error(row: _Row) -> float:
-    """Numerical error, and what is known of the error of the grid and of the mean of surfaces."""
-    error = row["restitution_error"]
-    grid = row["discretisation_error"]
-    error += 0.0 if math.isnan(grid) else grid
-    if "restitution_low" in row:
-        e = row["restitution"]
-        ends = (row["restitution_low"], row["restitution_high"])
-        error += max([abs(end - e) for end in ends if not math.isnan(end)], default=0.0)
-    return error
+    """The total error, or where it was not computed what is known of it."""
+    known = row.get("total_error", math.nan)
+    return total(row) if math.isnan(known) else known
 
 
 def _particle(name: str, body: BodyTable) -> Particle:

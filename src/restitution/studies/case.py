@@ -16,7 +16,9 @@ from pydantic import BeforeValidator, ValidationError, model_validator
 
 from restitution.contact.bodies import Pair
 from restitution.contact.contact import Contact, smooth
-from restitution.contact.path import loading_path
+from restitution.contact.impact import solve_at_velocity
+from restitution.contact.load import solve_at_force
+from restitution.contact.loading import solve
 from restitution.contact.state import State
 from restitution.errors import CaseError, SurfaceError, shown
 from restitution.numerics.grid import Grid
@@ -54,6 +56,7 @@ class Case(Table):
     """A whole case file, in SI units."""
 
     title: str = ""
+    total_error: bool = True
     first: BodyTable
     second: BodyTable | None = None
     interface: InterfaceTable = InterfaceTable()
@@ -74,7 +77,12 @@ class Case(Table):
             )
         if self.impact is not None:
             self._check_masses()
-        self.yields()
+        p_y, _ = self.yields()
+        if self.interface.plasticity == "truncated" and math.isinf(p_y):
+            raise ValueError(
+                'interface.plasticity = "truncated" needs the pressure to cut at, and '
+                'yield_pressure is "elastic"; give a pressure, or leave plasticity out'
+            )
         if self._own_grid() is None:
             self._check_scan_brings_grid()
         if len({part.realisations for part in self.roughness} - {1}) > 1:
@@ -123,6 +131,10 @@ class Case(Table):
             part.variant(number).model_copy(update={"realisations": 1}) for part in self.roughness
         )
         return self.model_copy(update={"roughness": parts})
+
+    def has_library_values(self) -> bool:
+        """Whether a value of the bodies is the library's, which has a spread."""
+        return any(body.from_library() for body in (self.first, self.second) if body is not None)
 
     def refined(self, factor: int) -> Case:
         """This case on cells `factor` times as small as [grid] says, whatever its `refine`."""
@@ -181,14 +193,16 @@ class Case(Table):
         assert table is not None  # _whole
         return table.series()
 
-    def loading(self, contact: Contact) -> Iterator[State]:
-        """The states of `contact` at these depths. Raises as `loading_path`."""
-        depths = self.depths()
+    def load_to(self, contact: Contact, depth: float, start: State | None = None) -> State:
+        """The state of `contact` at one of these depths; `start` is that of a shallower one.
+
+        Raises as `solve`, `solve_at_force` and `solve_at_velocity`.
+        """
         if self.load is not None:
-            return loading_path(contact, forces=depths)
+            return solve_at_force(contact, depth, start=start)
         if self.impact is not None:
-            return loading_path(contact, velocities=depths)
-        return loading_path(contact, depths)
+            return solve_at_velocity(contact, depth, start=start)
+        return solve(contact, depth, start=start)
 
 
 def read_case(path: Path) -> tuple[Case, str]:

@@ -25,6 +25,14 @@ import xarray as xr
 
 from restitution.errors import CaseError, RestitutionError
 from restitution.studies.case import Case
+from restitution.studies.error_budget import (
+    MISSING_BAND,
+    Band,
+    add_errors,
+    total,
+    total_error_summary,
+    widened_error,
+)
 from restitution.studies.interruption import hold_signals
 from restitution.studies.refinement import settled
 from restitution.studies.results import COLUMNS, ResultsFolder, curve_variables, write_table
@@ -75,11 +83,13 @@ def run_convergence(
                 run_case(
                     refined.refined(factor), text, folder, part,
                     _named(progress, f"refine = {factor}"),
-                    said_before(part, warn if not runs else None, said),
+                    said_before(part, warn if not runs else None, said), errors=False,
                 )  # fmt: skip
             finally:
                 if part.rows:
                     runs[factor] = later, part.rows
+        if case.total_error and runs:
+            _add_errors(case, folder, runs, progress)
         status, reason = "complete", ""
     except KeyboardInterrupt:
         status, reason = "interrupted", "stopped by the user"
@@ -91,13 +101,27 @@ def run_convergence(
         if runs:
             ended = {"status": status, "reason": reason, "known": [coarse] if coarse else []}
             with hold_signals():
-                summary = _keep(case, out, runs, ended, began)
+                summary = _keep(case, folder, out, runs, ended, began)
         else:
             out.discard()
     for warning in summary["warnings"]:
         if warning not in said:
             warn(warning)
     return summary
+
+
+def _add_errors(
+    case: Case,
+    folder: Path,
+    runs: dict[int, tuple[float, list[_Row]]],
+    progress: Callable[[str], None],
+) -> None:
+    """Put the errors of surface and materials into the finest rows, from the coarsest grid."""
+    coarsest, finest = case.refined(min(runs)), runs[max(runs)][1]
+    alone = [dict(row) for row in finest]
+    add_errors(coarsest, folder, coarsest.surface(folder), alone, progress)
+    for row, errors in zip(finest, alone, strict=True):
+        row.update({name: errors[name] for name in ("surface_scatter", "material_error")})
 
 
 def _named(progress: Callable[[str], None], name: str) -> Callable[[str], None]:
@@ -140,6 +164,7 @@ def _pressed_less(case: Case, later: float) -> Case:
 
 def _keep(
     case: Case,
+    folder: Path,
     out: ResultsFolder,
     runs: dict[int, tuple[float, list[_Row]]],
     ended: dict[str, Any],
@@ -148,11 +173,16 @@ def _keep(
     """Write the curve of the finest grid, the table of all, and the summary, which is returned."""
     depths = _by_depth(case, runs)
     finest = [rows[max(runs)] for rows in depths if max(runs) in rows]
+    lacking = _with_grid_errors(case, folder, finest) if case.total_error else 0
     order = observed_order(depths)
     out.put_curve([{key: row[key] for key in COLUMNS} for row in finest])
     write_table(
         out.path / "convergence.csv",
-        [{"refine": factor, **row} for rows in depths for factor, row in rows.items()],
+        [
+            {"refine": factor, **{key: row[key] for key in (*COLUMNS, "observed_order")}}
+            for rows in depths
+            for factor, row in rows.items()
+        ],
     )
     one = out.path / f"refine-{max(runs)}"
     summary: dict[str, Any] = json.loads((one / "summary.json").read_text(encoding="utf-8"))
@@ -169,6 +199,12 @@ def _keep(
     errors = [row["discretisation_error"] for row in finest]
     known = [error for error in errors if not math.isnan(error)]
     summary["trust"]["largest_discretisation_error"] = max(known, default=None)
+    summary["trust"] |= total_error_summary(case, finest)
+    if lacking:
+        summary["warnings"].append(
+            f"{lacking} of {len(finest)} depths are not resolved: even the finest grid leaves out "
+            "waves of the scan that move COR; give more grids, or a smaller grid.spacing"
+        )
     if len(known) < len(errors):
         summary["warnings"].append(
             f"{len(errors) - len(known)} of {len(errors)} depths have no discretisation_error: "
@@ -192,6 +228,28 @@ def _keep(
     return summary
 
 
+def _with_grid_errors(case: Case, folder: Path, rows: list[_Row]) -> int:
+    """Widen the discretisation error of the finest rows by what differences do not show.
+
+    That is what contacts of so few nodes are off by, so that no difference is zero by chance, and
+    the waves that the finest grid leaves out of a scan. Returns how many rows these leave
+    unresolved.
+    """
+    octaves = Band.of(case.refined(int(max(row["refine"] for row in rows))).surface(folder)).octaves
+    lacking = 0
+    for row in rows:
+        if math.isnan(row["discretisation_error"]) or not row["loading_work_J"] > 0:
+            continue
+        widened, band = widened_error(
+            row["discretisation_error"], row["last_change"], row["median_patch_nodes"], octaves
+        )
+        row["discretisation_error"] = widened
+        if band > MISSING_BAND:
+            row["resolved"], lacking = False, lacking + 1
+        row["total_error"] = total(row)
+    return lacking
+
+
 def _by_depth(case: Case, runs: dict[int, tuple[float, list[_Row]]]) -> list[dict[int, _Row]]:
     """For each depth its row on every grid that reached it, with error and order."""
     asked = case.depths()
@@ -206,6 +264,8 @@ def _by_depth(case: Case, runs: dict[int, tuple[float, list[_Row]]]) -> list[dic
             found[number][factor] = {
                 **row,
                 "indentation_m": indentation,
+                "refine": factor,
+                "last_change": abs(values[-1] - row["restitution"]) if values else math.nan,
                 "discretisation_error": error,
                 "observed_order": order,
             }

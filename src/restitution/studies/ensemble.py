@@ -15,6 +15,12 @@ import xarray as xr
 from restitution.contact.resolution import unresolved_warning
 from restitution.errors import RestitutionError
 from restitution.studies.case import Case
+from restitution.studies.error_budget import (
+    MISSING_BAND,
+    add_errors,
+    total,
+    total_error_summary,
+)
 from restitution.studies.interruption import hold_signals
 from restitution.studies.refinement import settled
 from restitution.studies.results import (
@@ -62,6 +68,7 @@ def run_realisations(
     try:
         for number in range(case.realisations):
             ensemble.run(number, folder, progress, warn)
+        ensemble.add_errors(folder, progress)
         ensemble.status, ensemble.reason = "complete", ""
     except KeyboardInterrupt:
         ensemble.status, ensemble.reason = "interrupted", "stopped by the user"
@@ -89,6 +96,8 @@ class _Ensemble:
         self.curves: dict[int, list[_Row]] = {}
         self.failures: list[RestitutionError] = []
         self.ended: list[dict[str, Any]] = []
+        self.errors: list[_Row] = []
+        self.band_errors: list[float] = []
 
     def run(
         self,
@@ -106,7 +115,7 @@ class _Ensemble:
             run_case(
                 case.model_copy(update={"title": title}), self.text, folder, part,
                 progress=lambda words: progress(f"{name}, {words}"),
-                warn=said_before(part, None if number else warn, self.known),
+                warn=said_before(part, None if number else warn, self.known), errors=False,
             )  # fmt: skip
         except RestitutionError as error:
             self.failures.append(error)
@@ -121,9 +130,26 @@ class _Ensemble:
             depths = len(part.rows)
             self.ended.append({"realisation": number + 1, "depths": depths, "reason": reason})
 
+    def add_errors(self, folder: Path, progress: Callable[[str], None]) -> None:
+        """Find the errors of grid and materials, on the surface that has reached most depths.
+
+        The scatter between surfaces is known from the ensemble itself.
+        """
+        if not self.curves or not self.case.total_error:
+            return
+        number = max(self.curves, key=lambda k: len(self.curves[k]))
+        case, rows = self.case.realisation(number), self.curves[number]
+        alone = [dict(row) for row in rows]
+        try:
+            surface = case.surface(folder)
+            self.band_errors = add_errors(case, folder, surface, alone, progress, scattered=False)
+        except RestitutionError as error:
+            self.known.append(f"total_error is not known: {error}")
+        self.errors = alone
+
     def keep(self) -> None:
         """Write the curve of the ensemble, its summary and the table of all surfaces."""
-        rows = mean_rows(list(self.curves.values()))
+        rows = mean_rows(list(self.curves.values()), self.errors)
         self.out.put_curve(rows)
         write_table(
             self.out.path / "realisations.csv",
@@ -147,6 +173,12 @@ class _Ensemble:
             ),
             self._unlike(),
         ]
+        lacking = sum(error > MISSING_BAND for error in self.band_errors)
+        if lacking:
+            warnings.append(
+                f"{lacking} of {len(self.band_errors)} depths are not resolved: the grid leaves "
+                "out waves of the scan that move COR; use a smaller grid.spacing or grid.refine"
+            )
         return {
             "title": self.case.title,
             "status": self.status,
@@ -164,7 +196,8 @@ class _Ensemble:
             "trust": {
                 f"largest_{name}": max(row[name] for row in whole)
                 for name in ("residual", "restitution_error")
-            },
+            }
+            | total_error_summary(self.case, self.out.rows),
             "convolutions": sum(int(row["convolutions"]) for row in whole),
             "seconds": round(time.perf_counter() - self.began, 3),
         }
@@ -180,14 +213,15 @@ class _Ensemble:
         )
 
 
-def mean_rows(curves: Sequence[Sequence[_Row]]) -> list[_Row]:
+def mean_rows(curves: Sequence[Sequence[_Row]], errors: Sequence[_Row] = ()) -> list[_Row]:
     """The curve of an ensemble: a row for each depth, over the surfaces that have reached it.
 
     Columns are means, but for the largest residual, the smallest median patch, the sum of the
     convolutions, and flags, which are true where all are. Besides: the number of surfaces, the
     standard deviation s of COR (of the sample), and the ends of the 95 % confidence interval of its
     mean, mean ± t s/√n with Student's t (NaN for one surface); COR being bounded, they are cut at
-    0 and 1.
+    0 and 1. `errors` are rows of one of the surfaces with the errors of grid and materials, which
+    are those of the mean, too; `surface_scatter` is half of the interval.
     """
     from scipy.stats import t
 
@@ -209,5 +243,11 @@ def mean_rows(curves: Sequence[Sequence[_Row]]) -> list[_Row]:
         row["restitution_std"] = std
         row["restitution_low"] = max(row["restitution"] - half, 0.0)
         row["restitution_high"] = min(row["restitution"] + half, 1.0)
+        if depth < len(errors) and not math.isnan(errors[depth]["total_error"]):
+            for name in ("discretisation_error", "material_error"):
+                row[name] = errors[depth][name]
+            row["resolved"] = bool(row["resolved"]) and bool(errors[depth]["resolved"])
+            row["surface_scatter"] = half
+            row["total_error"] = total(row)
         rows.append(row)
     return rows

@@ -31,7 +31,7 @@ class _Interface(Protocol):
     @property
     def plasticity(self) -> str: ...
     @property
-    def work_of_adhesion(self) -> float: ...
+    def adhesion(self) -> float: ...
 
 
 def nodes_of(grid: Grid) -> int:
@@ -52,9 +52,9 @@ def require(needed: float, grid: Grid) -> None:
 def run_bytes(grid: Grid, interface: _Interface) -> float:
     """Memory of a run on `grid`, once the surface is there."""
     per_node = _ELASTIC
-    if interface.work_of_adhesion > 0:
+    if interface.adhesion > 0:
         per_node = _ADHESIVE
-    elif interface.yield_pressure is not None:
+    elif interface.yield_pressure != math.inf:
         per_node = _TRUNCATED if interface.plasticity == "truncated" else _PLASTIC
     return _PROCESS + per_node * nodes_of(grid)
 

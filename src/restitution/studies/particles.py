@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
@@ -113,15 +113,6 @@ class InterfaceTable(Table):
     approach: Approach = "equilibrium"
     detachment: Detachment = "crack-closure"
     equilibrium_separation: Length = 0.3e-9
-
-    @model_validator(mode="after")
-    def _truncated_at(self) -> Self:
-        if self.plasticity == "truncated" and self.yield_pressure == math.inf:
-            raise ValueError(
-                'plasticity = "truncated" needs the pressure to cut at, and yield_pressure is '
-                '"elastic"; give a pressure, or leave plasticity out'
-            )
-        return self
 
     @property
     def adhesion(self) -> float:

@@ -33,7 +33,7 @@ def settled(case: Case, folder: Path) -> tuple[Case, str | None]:
         finest = finer
         if factor == 1:
             nodes = contact.grid.nodes
-        state = next(finer.loading(contact))
+        state = finer.load_to(contact, shallowest)
         patch = median_patch(state.patch_sizes())
         if resolves(patch):
             return finer, None

@@ -68,8 +68,11 @@ COLUMNS: dict[str, tuple[str, str, str]] = {
     "discretisation_error": (
         "discretisation_error",
         "1",
-        "how far the restitution may be from that of finer grids",
+        "restitution's error by the grid, and by the waves that it leaves out of a scan",
     ),
+    "surface_scatter": ("surface_scatter", "1", "restitution's error as one surface of many"),
+    "material_error": ("material_error", "1", "restitution's error by library values"),
+    "total_error": ("total_error", "1", "all these errors of the restitution, in quadrature"),
 }
 # What the curve of an ensemble has besides: its other columns are means.
 SPREAD_COLUMNS: dict[str, tuple[str, str, str]] = {
@@ -110,7 +113,7 @@ def curve_row(state: State, collision: Collision) -> dict[str, float]:
         adhesive_nodes(state) >= ADHESIVE_NODES,
         median,
         resolves(median),
-        math.nan,  # one grid cannot tell: see `convergence`
+        *(math.nan,) * 4,  # one curve cannot tell: see `error_budget`
     )
     return dict(zip(COLUMNS, values, strict=True))
 

@@ -22,12 +22,14 @@ from restitution.contact.resolution import (
     unresolved_warning,
 )
 from restitution.contact.state import State
-from restitution.errors import RestitutionError, one_line
+from restitution.errors import DomainError, NotConvergedError, RestitutionError, one_line
 from restitution.numerics.device import current
 from restitution.numerics.quadrature import integrate_curve
 from restitution.studies.case import Case
 from restitution.studies.derived import deepest_indentation, derived_quantities
+from restitution.studies.error_budget import add_errors, band_warning, total_error_summary
 from restitution.studies.interruption import hold_signals
+from restitution.studies.omissions import omissions
 from restitution.studies.results import ResultsFolder, results_dataset, versions
 from restitution.studies.smooth import smooth_curve
 from restitution.surfaces import describe
@@ -40,6 +42,7 @@ CONVENTIONS = {
 }
 
 _VELOCITY = 1e-3  # difference of an impact velocity from that asked for that is worth a warning
+_IMPRECISE = 0.02  # numerical error of COR that is worth a warning
 _BALANCE = 0.01  # difference of unloading work and stored energy that is worth a warning
 
 
@@ -53,6 +56,7 @@ class _Progress:
     warnings: list[str] = field(default_factory=list)
     loading_work_errors: list[float] = field(default_factory=list)
     adhesive_nodes: list[float] = field(default_factory=list)
+    band_errors: list[float] = field(default_factory=list)
     seconds: list[float] = field(default_factory=list)
     unloading_checks: list[dict[str, float]] = field(default_factory=list)
 
@@ -65,8 +69,14 @@ def run_case(
     progress: Callable[[str], None] = lambda _: None,
     warn: Callable[[str], None] = lambda _: None,
     known: Sequence[str] = (),
+    *,
+    errors: bool = True,
 ) -> dict[str, Any]:
     """Run `case` (whose text was `text`, with files relative to `folder`) and return the summary.
+
+    With `errors` (and unless the case says total_error = false) every row gets its total error
+    (`error_budget`). A depth that does not converge is left out, and the others go on; contact at
+    the edge of the grid ends the curve; either makes the run a failed one in the end.
 
     It has one surface and a number for `grid.refine` (see `ensemble` and `refinement`). `known` are
     warnings that were said before and belong to the results. `progress` is called with a few words
@@ -82,12 +92,17 @@ def run_case(
         foreseen = deepest_indentation(case)
         require_small(contact, foreseen)
         refuse_coarse_scan(contact, foreseen)
+        run.warnings += omissions(case)
         run.warnings += foreseen_warnings(contact, foreseen) + implausible(contact, foreseen)
         for warning in run.warnings:
             warn(warning)
         run.warnings[:0] = known
         with out.tables():
-            _load_and_unload(contact, case, out, run, progress)
+            failure = _load_and_unload(contact, case, out, run, progress)
+        if errors and case.total_error and out.rows:
+            _add_errors(case, folder, contact, out, run, progress)
+        if failure is not None:
+            raise failure
         run.status, run.reason = "complete", ""
     except KeyboardInterrupt:
         run.status, run.reason = "interrupted", "stopped by the user"
@@ -146,12 +161,24 @@ def _load_and_unload(
     out: ResultsFolder,
     run: _Progress,
     progress: Callable[[str], None],
-) -> None:
+) -> RestitutionError | None:
+    """Every depth, one after the other; what stopped the first of those that failed."""
     depths, curves = case.depths(), case.unloading.curves
     # Evenly apart in number, the deepest among them.
     unloaded = {len(depths) - 1 - (k * len(depths)) // curves for k in range(curves)}
     began = time.perf_counter()
-    for number, state in enumerate(case.loading(contact)):
+    before: State | None = None
+    failure: RestitutionError | None = None
+    for number, depth in enumerate(depths):
+        try:
+            state = case.load_to(contact, depth, before)
+        except (NotConvergedError, DomainError) as error:
+            failure = failure or error
+            if isinstance(error, DomainError):  # so do all deeper ones
+                break
+            progress(f"{number + 1} of {len(depths)} depths")
+            continue
+        before = state
         followed = contact.adhesive and case.unloading.method == "path"
         back: list[State] = []
         if followed or number in unloaded:
@@ -172,6 +199,23 @@ def _load_and_unload(
         run.seconds.append(round(time.perf_counter() - began, 4))
         began = time.perf_counter()
         progress(f"{number + 1} of {len(depths)} depths")
+    return failure
+
+
+def _add_errors(
+    case: Case,
+    folder: Path,
+    contact: Contact,
+    out: ResultsFolder,
+    run: _Progress,
+    progress: Callable[[str], None],
+) -> None:
+    """Put the total error into the rows, and warn of what the grid leaves out of the surface."""
+    try:
+        run.band_errors = add_errors(case, folder, contact.surface, out.rows, progress)
+    except RestitutionError as error:
+        run.warnings.append(f"total_error is not known: {error}")
+    out.put_curve(out.rows)
 
 
 def _check(state: State, back: list[State], collision: Collision) -> dict[str, float]:
@@ -193,6 +237,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Progress)
     depths = [row["indentation_m"] for row in out.rows]
     nodes = run.adhesive_nodes[: len(depths)]  # interrupted, there may be one more
     found = [unresolved_warning(depths, patches), adhesion_warning(depths, nodes)]
+    found.append(band_warning(contact.surface, run.band_errors))
     found += [_imprecise(out, case), _velocities_missed(out, case)]
     if not contact.adhesive:
         found.append(_unbalanced(run.unloading_checks))
@@ -221,6 +266,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Progress)
             "largest_residual": max(row["residual"] for row in out.rows),
             "largest_loading_work_error": max(run.loading_work_errors),
             "largest_restitution_error": max(row["restitution_error"] for row in out.rows),
+            **total_error_summary(case, out.rows),
             "unloading_checks": run.unloading_checks,
         },
         "device": current().name,
@@ -245,15 +291,17 @@ def _materials(case: Case) -> dict[str, Any]:
 
 def _imprecise(out: ResultsFolder, case: Case) -> str | None:
     """One line on depths whose restitution is not as precise as asked for, or None."""
-    asked = case.unloading.restitution_error
+    asked = max(_IMPRECISE, case.unloading.restitution_error)
     missed = [row for row in out.rows if row["restitution_error"] > asked]
-    if not missed or case.unloading.method != "path":
+    if not missed:
         return None
     worst = max(missed, key=lambda row: row["restitution_error"])
+    why = "contact comes and goes in jumps there; use a finer grid"
+    if case.unloading.method == "energy-estimate":
+        why = 'unloading is an estimate; set unloading.method = "path"'
     return (
         f"restitution_error is above {asked:g} at {len(missed)} of {len(out.rows)} depths, at "
-        f"worst {worst['restitution_error']:.2g} at {1e9 * worst['indentation_m']:.4g} nm: contact "
-        "comes and goes in jumps there; use a finer grid"
+        f"worst {worst['restitution_error']:.2g} at {1e9 * worst['indentation_m']:.4g} nm: {why}"
     )
 
 

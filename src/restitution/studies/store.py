@@ -180,5 +180,3 @@ def _status(reason: str | None) -> str:
     if reason is None:
         return "missing"
     return "failed" if reason else "complete"
-
-

@@ -152,7 +152,7 @@ class MeasuredRoughness(Table):
                 "seed out, or give place"
             )
         if self.place and self.extend == "twin":
-            raise ValueError('place belongs to a scan, and extend = "twin" has a seed: leave it out')
+            raise ValueError("place belongs to a scan; a twin has a seed instead: leave place out")
         return self
 
     def variant(self, number: int) -> Self:

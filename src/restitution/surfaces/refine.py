@@ -81,5 +81,5 @@ def _at_nodes(height: Array, nodes: int, *, periodic: bool) -> Array:
         modes = modes[: (new_period + 1) // 2]
     number = np.arange(modes.shape[0])[:, None]
     modes *= new_period / period * np.exp(2j * np.pi * number * first / period)
-    values = irfft(modes, n=new_period, axis=0)
-    return values[:nodes]
+    resampled: Array = irfft(modes, n=new_period, axis=0)
+    return resampled[:nodes]
