@@ -129,6 +129,13 @@ def test_of_two_points_the_error_is_their_difference_and_of_one_there_is_none():
     assert (alone.at(0.1), alone.error(0.1)) == (0.9, 0.0)
 
 
+def test_sticking_ends_where_rounding_hides_the_sign():
+    V = np.array([1.0, 1.0047897627974371, 1.2093715638305813, 1.3776992179874699])
+    curve = RatioCurve(V, np.array([-2.0, 1e-17, -1e-12, 1e-17]), adhesive=True)
+    assert curve.at(V[3]) < 0 < curve.ratios[3]
+    assert curve.begins() == V[3]
+
+
 @pytest.mark.parametrize(
     ("ratios", "begins"),
     [([0.1, 0.5, 0.9], None), ([-0.5, -0.2, -0.1], None), ([0.0, 0.5, 0.9], 1.0)],

@@ -70,8 +70,8 @@ def fitted_laws(law: Law, begin: Begin | None = None) -> tuple[FittedLaw, ...]:
 
 def _all(law: Law) -> Iterator[FittedLaw]:
     yield _constant(law)
-    if _seen(law, "restitution").max() < LOSS:
-        return  # everything sticks, and that is all there is to say
+    if _seen(law, "restitution").max() < LOSS or _seen(law, "force").max() <= 0:
+        return  # everything sticks, or is held by tension alone: no law of a force fits
     yield from _thornton_ning(law)
     yield _walton_braun(law)
     yield _luding(law)

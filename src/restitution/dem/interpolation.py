@@ -74,6 +74,9 @@ class RatioCurve:
         below, above = self.velocities[sticking[-1] : sticking[-1] + 2]
         if self.ratios[sticking[-1]] == 0:
             return float(below)
+        # Of ratios next to zero the sign may be lost in rounding.
+        if self.at(above) <= 0 or self.at(below) >= 0:
+            return float(above if self.at(above) <= 0 else below)
         return float(brentq(self.at, below, above))
 
     @cached_property
@@ -93,4 +96,5 @@ class RatioCurve:
 def _pchip(x: Array, y: Array, at: float) -> float:
     from scipy.interpolate import PchipInterpolator
 
-    return float(y[0]) if x.size == 1 else float(PchipInterpolator(x, y)(at))
+    with np.errstate(over="ignore"):  # the reciprocal of a slope of 1e-308, which is then zero
+        return float(y[0]) if x.size == 1 else float(PchipInterpolator(x, y)(at))

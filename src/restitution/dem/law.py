@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from restitution.dem.interpolation import RatioCurve
-from restitution.errors import CaseError, DomainError, OutputError
+from restitution.errors import CaseError, DomainError, OutputError, one_line
 from restitution.studies.checksums import check_file
 from restitution.studies.quantities import read_positive
 
@@ -54,7 +54,7 @@ class Particle(_Stored):
     def __str__(self) -> str:
         """Its name and size, as messages and comments show it."""
         size = "flat" if self.radius is None else f"R = {self.radius:.6g} m"
-        return f"{self.name} ({size})"
+        return f"{one_line(self.name)} ({size})"
 
 
 class Point(_Stored):
