@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 BUILD := pyproject.toml setup.py $(wildcard src/restitution/numerics/*.cpp src/restitution/numerics/*.h)
 
-.PHONY: demo test lint bench bench-peers clean
+.PHONY: demo test fuzz lint bench bench-peers clean
 
 demo: $(VENV)/demo.installed  ## run the bundled example
 	rm -rf demo
@@ -14,6 +14,9 @@ demo: $(VENV)/demo.installed  ## run the bundled example
 
 test: $(VENV)/test.installed  ## run the tests
 	DUCC0_NUM_THREADS=1 $(BIN)/pytest -n auto
+
+fuzz: $(VENV)/test.installed  ## random and damaged input, 25 times as much as in the tests
+	FUZZ=25 DUCC0_NUM_THREADS=1 $(BIN)/pytest -n auto tests/fuzz
 
 lint: $(VENV)/test.installed  ## style, format and types
 	$(BIN)/ruff check

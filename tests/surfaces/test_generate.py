@@ -123,3 +123,12 @@ def test_impossible_surfaces_are_refused(changes, key, number):
 def test_limits_of_the_correlation_length_are_allowed():
     generate(correlation_length=(0.25e-6, 0.2e-6))
     generate(correlation_length=(6e-6, 6.4e-6))
+
+
+@pytest.mark.parametrize("skewness", [0.0, -1.0])
+def test_a_grid_without_a_wave_is_refused(skewness):
+    one = Grid((1, 1), (1e-6, 1e-6))
+    with pytest.raises(SurfaceError, match="1 x 1 nodes carry no wave of this roughness"):
+        generate_surface(
+            one, kind="self-affine", hurst=0.8, rms=1e-8, seed=1, skewness=skewness, kurtosis=6
+        )

@@ -493,3 +493,9 @@ def test_a_sparse_file_of_gigabytes_is_refused_at_once(tmp_path):
     with (tmp_path / "a.txt").open("wb") as stream:
         stream.truncate(2**32)
     assert "has 4294967296 bytes" in refusal(tmp_path / "a.txt")
+
+
+def test_a_name_too_long_for_a_file_is_shortened(tmp_path):
+    with pytest.raises(SurfaceError, match="cannot be opened") as caught:
+        read_surface(tmp_path / (5000 * "x"), size=SIZE)
+    assert len(str(caught.value)) < 300

@@ -145,6 +145,12 @@ def _heights(
 
     larger = grid if periodic else _enlarged(grid, spectrum.longest)
     noise, H = white_noise(larger.nodes, seed), spectrum.amplitude(larger)
+    # The mean is no wave; neither is there one along an axis of a single node.
+    if not H.ravel()[1:].any() or grid.nodes == (1, 1):
+        raise SurfaceError(
+            f"grid.nodes: {grid.nodes[0]} x {grid.nodes[1]} nodes carry no wave of this roughness; "
+            "give more of them"
+        )
     made: dict[str, str | float] = {"method": "Hu and Tonder 1992"}
     z: Array | None = None
     if wanted != (0.0, 3.0):

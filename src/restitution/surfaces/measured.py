@@ -12,7 +12,7 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.errors import SurfaceError
+from restitution.errors import SurfaceError, shown
 from restitution.numerics.grid import Grid
 from restitution.surfaces.fill import fill_harmonically
 from restitution.surfaces.instrument_files import (
@@ -67,7 +67,7 @@ def read_surface(
             'as size = ["10 um", "10 um"]'
         )
     file = Path(path)
-    digest = _check_readable(file)
+    _check_readable(file)
     scan = _read_scan(file, channel)
     edges = _agreed_size(file, scan, size)
     nx, ny = scan.height.shape
@@ -89,10 +89,12 @@ def read_surface(
         {
             "source": "measured",
             "file": str(file),
-            "file_sha256": digest,
+            "file_sha256": _digest(file),
             **scan.details,
             "size_x_m": edges[0],
             "size_y_m": edges[1],
+            "pixel_x_m": grid.spacing[0],
+            "pixel_y_m": grid.spacing[1],
             "undefined_pixels": missing,
             "undefined_fraction": missing / defined.size,
             "undefined_treatment": "interpolated harmonically" if missing else "none to treat",
@@ -100,8 +102,8 @@ def read_surface(
     )
 
 
-def _check_readable(file: Path) -> str:
-    """SHA-256 of the file, once it is known to be there, a file, readable and not empty."""
+def _check_readable(file: Path) -> None:
+    """Raise `SurfaceError` unless the file is there, a file, readable, not empty nor too large."""
     try:
         kind = file.stat()
         if stat.S_ISDIR(kind.st_mode):
@@ -115,18 +117,24 @@ def _check_readable(file: Path) -> str:
                 f"{file}: has {kind.st_size} bytes, more than the {_LARGEST} a scan may have; crop "
                 "it, or save fewer pixels"
             )
-        with file.open("rb") as stream:
-            digest = hashlib.file_digest(stream, "sha256").hexdigest()
-            length = stream.tell()
+        with file.open("rb"):
+            length = kind.st_size
     except SurfaceError:
         raise
     except FileNotFoundError as error:
         raise SurfaceError(f"{file}: there is no such file; check the path") from error
     except (OSError, ValueError) as error:
-        raise SurfaceError(f"{file}: cannot be opened ({error}); check the path") from error
+        why = error.strerror if isinstance(error, OSError) else error
+        raise SurfaceError(
+            f"{shown(str(file), 200)}: cannot be opened ({why}); check the path"
+        ) from error
     if length == 0:
         raise SurfaceError(f"{file}: is empty; export the topography again")
-    return digest
+
+
+def _digest(file: Path) -> str:
+    with file.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
 
 
 def _read_scan(file: Path, channel: int | None) -> Scan:
