@@ -5,6 +5,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -27,6 +28,9 @@ def pytest_sessionstart():
             "and so does pip install -e ."
         )
 
+
+# Surfaces that took long are kept for the session alone, not in the user's cache.
+os.environ["XDG_CACHE_HOME"] = tempfile.mkdtemp(prefix="restitution-tests-")
 
 CASE = """
 title = "A small rough contact"

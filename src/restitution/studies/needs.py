@@ -22,7 +22,7 @@ _SCAN = 60.0  # per pixel of a scan: read, levelled, its spectrum
 _TWIN = 75.0  # per node
 _BAND = 90.0  # per node of the finest band of a twin that is adjusted
 _DESCRIBED = 150.0  # autocorrelation, spectrum and page of `restitution surface`
-_ELASTIC, _PLASTIC, _TRUNCATED, _ADHESIVE = 115.0, 140.0, 190.0, 190.0
+_ELASTIC, _PLASTIC, _TRUNCATED, _ADHESIVE = 115.0, 140.0, 190.0, 150.0
 
 
 class _Interface(Protocol):

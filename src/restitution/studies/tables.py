@@ -37,6 +37,7 @@ from restitution.surfaces import (
     refine,
     remove_outliers,
 )
+from restitution.surfaces.cache import kept
 from restitution.surfaces.extend import Extension
 from restitution.surfaces.generate import RoughnessKind
 from restitution.surfaces.refine import divided
@@ -116,7 +117,11 @@ class GeneratedRoughness(Table):
         normal = (self.skewness, self.kurtosis) == (0.0, 3.0)
         made = needs.generated_bytes(grid, normal=normal, periodic=self.periodic)
         needs.require(max(made, needs.generated_bytes(fine, normal=True, periodic=True)), fine)
-        return refine(generate_surface(grid, **self.model_dump(exclude={"realisations"})), factor)
+        asked = self.model_dump(exclude={"realisations"})
+        return kept(
+            {"generated": asked, "nodes": grid.nodes, "spacing": grid.spacing, "refine": factor},
+            lambda: refine(generate_surface(grid, **asked), factor),
+        )
 
 
 class CropTable(Table):
@@ -183,9 +188,21 @@ class MeasuredRoughness(Table):
         grid = grid or scan.grid
         whole = divided(grid, factor)
         needs.require(needs.measured_bytes(whole, scan.grid, twin=self.extend == "twin"), whole)
+        asked = {
+            "measured": self.model_dump(exclude={"realisations"}),
+            "path": str(folder / self.file),
+            "sha256": scan.provenance["file_sha256"],
+            "nodes": grid.nodes,
+            "spacing": grid.spacing,
+            "refine": factor,
+        }
+        return kept(asked, lambda: self._placed(scan, grid, factor))
+
+    def _placed(self, scan: Surface, grid: Grid, factor: int) -> Surface:
+        """The `scan`, continued if asked for, on cells `factor` times as small as `grid`'s."""
         if self.extend == "twin":
             # The waves of a twin have no nodes to continue them from: all grids are alike.
-            placed, steps = extend(scan, whole, "twin", seed=self.seed), factor
+            placed, steps = extend(scan, divided(grid, factor), "twin", seed=self.seed), factor
         else:
             steps = self._steps_to_pixel(grid, scan.grid, factor)
             fine = divided(grid, steps)

@@ -1,0 +1,96 @@
+"""Surfaces that took long to make, kept in the user's cache folder.
+
+A file holds the heights, the provenance and the key: all that the surface depends on, the version
+of the program among it. What cannot be written or read is made anew without a word.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import time
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from importlib.metadata import version
+from pathlib import Path
+from tempfile import NamedTemporaryFile
+from typing import Any
+
+import numpy as np
+
+from restitution.numerics.grid import Grid
+from restitution.surfaces.surface import Surface
+
+_LONG = 1.0  # s: what is made faster is not kept
+_MOST = 2**30  # bytes of all that is kept
+_LARGEST = 2**28  # bytes of one surface
+_REST = 2**12  # bytes of a file beside the heights
+
+
+def kept(parameters: Mapping[str, Any], make: Callable[[], Surface]) -> Surface:
+    """What `make` returns, which depends on `parameters` (of JSON's types) and nothing else."""
+    key = json.dumps({"version": version("restitution"), **parameters}, sort_keys=True)
+    file = _folder() / f"{hashlib.sha256(key.encode()).hexdigest()}.npz"
+    found = _read(file, key)
+    if found is not None:
+        return found
+    began = time.perf_counter()
+    surface = make()
+    if time.perf_counter() - began > _LONG and surface.height.nbytes <= _LARGEST:
+        _write(file, key, surface)
+    return surface
+
+
+def _folder() -> Path:
+    from platformdirs import user_cache_path
+
+    return user_cache_path("restitution", appauthor=False) / "surfaces"
+
+
+def _read(file: Path, key: str) -> Surface | None:
+    """The surface in `file`; None where there is none, or it is damaged or another."""
+    # A damaged file raises what its reader finds first: any error there is a reason to go on.
+    with suppress(Exception):
+        with file.open("rb") as stream, np.load(stream, allow_pickle=False) as content:
+            told = json.loads(str(content["told"]))
+            if told["key"] != key:
+                return None
+            nodes, spacing = told["nodes"], told["spacing"]
+            grid = Grid((nodes[0], nodes[1]), (spacing[0], spacing[1]))
+            surface = Surface(np.asarray(content["height"], np.float64), grid, told["provenance"])
+        os.utime(file)  # the oldest is what was not used for longest
+        return surface
+    return None
+
+
+def _write(file: Path, key: str, surface: Surface) -> None:
+    told = {
+        "key": key,
+        "nodes": surface.grid.nodes,
+        "spacing": surface.grid.spacing,
+        "provenance": dict(surface.provenance),
+    }
+    with suppress(OSError, TypeError, ValueError):
+        file.parent.mkdir(parents=True, exist_ok=True)
+        _make_room(file.parent, surface.height.nbytes + _REST)
+        with NamedTemporaryFile(dir=file.parent, suffix=".part", delete=False) as stream:
+            try:
+                np.savez(stream, height=surface.height, told=np.array(json.dumps(told)))
+                stream.close()
+                os.replace(stream.name, file)
+            except BaseException:
+                Path(stream.name).unlink(missing_ok=True)
+                raise
+
+
+def _make_room(folder: Path, size: int) -> None:
+    """Drop the oldest surfaces until one of `size` bytes fits, and what was never finished."""
+    files = [(entry.stat(), entry) for entry in folder.iterdir() if entry.is_file()]
+    files.sort(key=lambda item: item[0].st_mtime)
+    total = size + sum(stat.st_size for stat, _ in files)
+    for stat, entry in files:
+        forgotten = entry.suffix == ".part" and stat.st_mtime < time.time() - 3600
+        if total > _MOST or forgotten:
+            entry.unlink(missing_ok=True)
+            total -= stat.st_size
