@@ -129,7 +129,7 @@ def _coarse_grid(contact: Contact) -> str | None:
             return (
                 f"the grid spacing {1e6 * h:.3g} um is coarser than the scan's pixel "
                 f"{1e6 * pixel:.3g} um along {axis}: waves shorter than {2e6 * h:.3g} um are "
-                "taken out of it; use the pixel as grid.spacing to keep them"
+                "taken out of it; make cells smaller (grid.refine), down to the pixel, to keep them"
             )
     return None
 
