@@ -8,12 +8,15 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import signal
+import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing.managers import SyncManager
 from queue import Empty
+from typing import Any
 
 from restitution.errors import OutputError
 from restitution.studies.interruption import hold_signals
@@ -49,12 +52,13 @@ def local_workers(count: int | None) -> Iterator[Workers]:
     started: list[ProcessPoolExecutor] = []
 
     def begin(size: int) -> Executor:
-        pool = ProcessPoolExecutor(size, mp_context=context, initializer=_serve)
+        pool = _Pool(size, mp_context=context, initializer=_serve)
         started.append(pool)
         return pool
 
     manager = SyncManager(ctx=context)
-    manager.start(_serve)
+    with hold_signals(), _without_interrupts():
+        manager.start(_serve)
     with manager:
         queue = manager.Queue()
 
@@ -77,12 +81,36 @@ def local_workers(count: int | None) -> Iterator[Workers]:
                     pool.shutdown(cancel_futures=True)
 
 
+class _Pool(ProcessPoolExecutor):
+    """Begins its processes, as tasks are submitted, without Ctrl-C."""
+
+    def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        with _without_interrupts():
+            return super().submit(function, *args, **kwargs)
+
+
+@contextmanager
+def _without_interrupts() -> Iterator[None]:
+    """Block SIGINT for the processes that are begun here, until they ignore it (`_serve`).
+
+    Ctrl-C reaches all processes of a terminal, and before that would end them with a traceback.
+    """
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    from multiprocessing import resource_tracker
+
+    # It would be begun with the first process, and unblock the signal.
+    resource_tracker.ensure_running()
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 def _serve() -> None:
     """Leave it to the process that keeps the results when to end, and end when it is gone."""
-    import signal
-    import threading
-
-    # Ctrl-C reaches all processes of a terminal.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent = multiprocessing.parent_process()
 

@@ -1,0 +1,194 @@
+"""Damaged results through every verb that reads them: one line at most, and no wrong COR.
+
+The seed of a damage is its number, so that `FUZZ=50 pytest tests/fuzz -k "damage-123"` repeats it.
+"""
+
+import csv
+import importlib.util
+import os
+import random
+import re
+import shutil
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from restitution.dem.from_run import law_of
+from restitution.dem.write import write_law
+from restitution.studies import workers
+from restitution.studies.case import parse_case
+from restitution.studies.convergence import run_convergence
+from restitution.studies.ensemble import run_realisations
+from restitution.studies.results import ResultsFolder
+from restitution.studies.store import StudyFolder
+from restitution.studies.study import run_study
+from restitution.studies.sweep import parse_study
+from restitution.studies.workers import Workers
+
+COUNT = round(15 * float(os.environ.get("FUZZ", "1")))
+FOLDERS = ("run", "ensemble", "converge", "study", "law")
+
+pytestmark = pytest.mark.filterwarnings("ignore")  # of libraries, on numbers that are damaged
+
+_spec = importlib.util.spec_from_file_location("damage", Path(__file__).with_name("damage.py"))
+damage = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(damage)
+
+
+class _Nowhere:
+    def put(self, message):
+        pass
+
+
+@contextmanager
+def in_threads(_):
+    """Workers in this process: those of processes take seconds to begin."""
+    with ThreadPoolExecutor(1) as executor:
+        yield Workers(executor, 1, 1, _Nowhere(), list, lambda _: executor)
+
+
+@pytest.fixture(scope="module")
+def whole(case_text, tmp_path_factory):
+    """One folder of each kind, as it was written."""
+    at = tmp_path_factory.mktemp("whole")
+    text = case_text.replace("[72, 64]", "[32, 32]").replace('spacing = ["0.5 um", "0.6 um"]',
+                                                             'spacing = "1 um"')  # fmt: skip
+    text = text.replace("2 um", "4 um").replace("steps = 4", "steps = 3")
+    (at / "case.toml").write_text(text)
+    run_realisations(parse_case(text), text, at, ResultsFolder(at / "run"))
+    several = text.replace("seed = 1", "seed = 1\nrealisations = 2")
+    run_realisations(parse_case(several), several, at, ResultsFolder(at / "ensemble"))
+    run_convergence(parse_case(text), text, at, ResultsFolder(at / "converge"), 2)
+    study = parse_study(f'{text}[sweep]\n"roughness.seed" = [1, 2]\n')
+    (at / "study.toml").write_text(study.text)
+    with in_threads(None) as there:
+        run_study(study, at, StudyFolder(at / "study", study, resume=False), there)
+    write_law(law_of(at / "run"), at / "law")
+    return at
+
+
+def verbs(kind, damaged, whole, out):
+    """Command lines that read the folder `damaged` of that kind, writing to `out`."""
+    compared = [
+        ("compare", damaged, whole / kind, "-o", out / "rows.csv"),
+        ("compare", whole / kind, damaged, "-o", out / "rows-2.csv"),
+    ]
+    if kind == "law":
+        velocity = ("--velocity", "0.05 m/s", "-o")
+        return [
+            ("export", damaged, "--to", "csv", "-o", out / "csv"),
+            *(("export", damaged, "--to", code, *velocity, out / code)
+              for code in ("lammps", "liggghts", "yade", "mercurydpm", "edem")),
+            ("theory", whole / "case.toml", "--law", damaged, "-o", out / "theory"),
+        ]  # fmt: skip
+    if kind == "study":
+        resume = ("study", whole / "study.toml", "-o", damaged, "--resume")
+        return [("report", damaged), *compared, resume]
+    law = ("law", damaged, "-o", out / "law")
+    return [("report", damaged), *compared, ("collide", damaged), law]
+
+
+def spoil(kind, damaged, number):
+    """Damage one file of the folder; return whether its checksums were left."""
+    pick = random.Random(number)
+    files = sorted(path for path in damaged.rglob("*") if path.is_file() and path.suffix != ".png")
+    # Most verbs read the files at the top.
+    top = [path for path in files if path.parent == damaged or kind == "study"]
+    path = pick.choice(top if pick.random() < 0.9 else files)
+    pick.choice(damage.kinds(path))(path, pick)
+    # Without checksums, content is all that tells. A netCDF file without one may end the library.
+    if path.suffix != ".nc" and pick.random() < 0.5:
+        for sums in damaged.rglob("SHA256SUMS"):
+            if sums.is_file():
+                sums.unlink()
+        return False
+    return path.name != "SHA256SUMS"
+
+
+@pytest.mark.parametrize("number", range(COUNT), ids=lambda number: f"damage-{number}")
+def test_damaged_results(number, whole, tmp_path, cli, monkeypatch):
+    monkeypatch.setattr(workers, "local_workers", in_threads)
+    kind = FOLDERS[number % len(FOLDERS)]
+    damaged = tmp_path / kind
+    shutil.copytree(whole / kind, damaged)
+    (tmp_path / "out").mkdir()
+    checked = spoil(kind, damaged, number)
+    for verb in verbs(kind, damaged, whole, tmp_path / "out"):
+        status, said, err = cli(*verb)
+        words = " ".join(map(str, verb))
+        assert status in (0, 1), f"{words}: {err}"
+        assert "Traceback" not in said + err, words
+        refusals = [line for line in err.splitlines() if line.startswith("Error: ")]
+        assert len(refusals) == status, f"{words}: {err}"
+        if verb[0] == "collide":
+            assert_collisions(said)
+        if verb[0] == "study" and status == 0:
+            assert_same(damaged / "table.csv", whole / kind / "table.csv", checked)
+    for path in (*damaged.glob("report.html"), *tmp_path.glob("out/**/*.csv")):
+        assert_shares(path)
+    if checked and (tmp_path / "out" / "law").exists():
+        write_law(law_of(whole / kind), tmp_path / "expected")
+        assert_same(tmp_path / "out/law/table.csv", tmp_path / "expected/table.csv", checked)
+
+
+def assert_same(path, expected, checked):
+    """What is written follows from what was computed, and not from the damage."""
+    if checked:
+        assert path.read_text() == expected.read_text()
+    assert_shares(path)
+
+
+def assert_collisions(said):
+    for cor, error in re.findall(r"(\S+) +± (\d\S*)", said):
+        assert 0 <= float(cor) <= 1 + float(error) + 1e-9, said
+
+
+def assert_shares(path):
+    """Every COR in a table or page is between 0 and 1."""
+    tables = _tables(path) if path.suffix == ".html" else [_rows(path)]
+    for columns, rows in tables:
+        for at, name in enumerate(columns):
+            if name in ("COR", "least COR", "largest COR") or re.fullmatch(
+                r"restitution(_a|_b|_low|_high)?", name
+            ):
+                for row in rows:
+                    if row[at] not in ("", "–"):
+                        assert 0 <= float(row[at]) <= 1, f"{path}: {name}"
+
+
+def _rows(path):
+    with open(path, newline="") as file:
+        columns, *rows = csv.reader(file)
+    return columns, rows
+
+
+def _tables(path):
+    page = _Tables()
+    # The drawing library, most of the page, has no tables.
+    page.feed(re.sub(r"<script.*?</script>", "", path.read_text(), flags=re.S))
+    return [(rows[0], rows[1:]) for rows in page.tables if rows]
+
+
+class _Tables(HTMLParser):
+    def __init__(self):
+        super().__init__()
+        self.tables, self._cell = [], False
+
+    def handle_starttag(self, tag, _):
+        if tag == "table":
+            self.tables.append([])
+        elif tag == "tr":
+            self.tables[-1].append([])
+        elif tag in ("td", "th"):
+            self._cell = True
+            self.tables[-1][-1].append("")
+
+    def handle_endtag(self, tag):
+        self._cell = self._cell and tag not in ("td", "th")
+
+    def handle_data(self, data):
+        if self._cell:
+            self.tables[-1][-1][-1] += data

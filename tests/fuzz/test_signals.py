@@ -1,0 +1,132 @@
+"""Signals at random moments of saving: what was computed is there, readable, and nothing hangs.
+
+Each process sends the signal to itself and to those it has begun, as a terminal does, some
+milliseconds after it has begun to save; the moments are random (the number of the test is the
+seed), and every third signal is sent twice.
+"""
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+
+import pytest
+
+from restitution.studies.reader import read_netcdf, read_run, read_study
+
+COUNT = min(50, round(3 * float(os.environ.get("FUZZ", "1"))))
+
+# What saves first, and for about how long (s).
+SAVES = {
+    "run": ("results_dataset", 0.3),
+    "ensemble": ("results_dataset", 0.4),
+    "converge": ("results_dataset", 0.6),
+    "surface": ("ResultsFolder.__init__", 0.3),
+    "study": ("replace_file", 0.4),
+    "law": ("write_table", 0.1),
+}
+STATUS = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129}
+
+# Slower writing, half inside and half outside of the library, makes moments easier to meet.
+CALL = """
+import os, signal, sys, threading, time
+import xarray
+from restitution.studies import results
+
+def send():
+    time.sleep({delay})
+    for _ in range({times}):
+        os.killpg(0, {number})
+        time.sleep(0.02)
+
+begun = []
+def announced(function):
+    def call(*arguments, **options):
+        if not begun:
+            begun.append(True)
+            threading.Thread(target=send, daemon=True).start()
+        return function(*arguments, **options)
+    return call
+
+owner, name = results, {what!r}
+if "." in name:
+    owner, name = results.ResultsFolder, name.split(".")[1]
+changed = announced(getattr(owner, name))
+setattr(owner, name, changed)
+real = xarray.Dataset.to_netcdf
+def slow(self, *arguments, **options):
+    for _ in range(3):
+        time.sleep(0.01)
+        real(self, *arguments, **options)
+xarray.Dataset.to_netcdf = slow
+signal.signal({number}, signal.default_int_handler if {number} == signal.SIGINT else signal.SIG_DFL)
+from restitution.cli import main
+main()
+"""
+
+
+@pytest.fixture(scope="module")
+def cases(case_text, tmp_path_factory):
+    """A case, an ensemble, a study, and a run."""
+    at = tmp_path_factory.mktemp("cases")
+    text = case_text.replace("[72, 64]", "[32, 32]").replace('spacing = ["0.5 um", "0.6 um"]',
+                                                             'spacing = "1 um"')  # fmt: skip
+    text = text.replace("2 um", "4 um").replace("steps = 4", "steps = 3")
+    (at / "case.toml").write_text(text)
+    (at / "ensemble.toml").write_text(text.replace("seed = 1", "seed = 1\nrealisations = 2"))
+    (at / "study.toml").write_text(f'{text}[sweep]\n"roughness.seed" = [1, 2]\n')
+    done = subprocess.run([sys.executable, "-m", "restitution", "run", "case.toml", "-o", "run"],
+                          cwd=at, capture_output=True, check=False)  # fmt: skip
+    assert done.returncode == 0
+    return at
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs signals")
+@pytest.mark.parametrize("number", range(COUNT), ids=lambda number: f"signal-{number}")
+def test_a_signal_at_a_random_moment_of_saving(number, cases, tmp_path):
+    pick = random.Random(number)
+    kind = list(SAVES)[number % len(SAVES)]
+    what, long = SAVES[kind]
+    sent = pick.choice(list(STATUS))
+    call = CALL.format(
+        delay=pick.uniform(0, long), times=2 if number % 3 == 0 else 1, number=int(sent), what=what
+    )
+    arguments = {
+        "ensemble": ("run", "ensemble.toml"),
+        "study": ("study", "study.toml", "--workers", "1"),
+        "law": ("law", "run"),
+    }.get(kind, (kind, "case.toml"))
+    if kind == "converge":
+        arguments = (*arguments, "--grids", "2")
+    out = tmp_path / "out"
+    done = subprocess.run(
+        [sys.executable, "-c", call, *arguments, "-o", out], cwd=cases, timeout=60,
+        capture_output=True, text=True, start_new_session=True,
+    )  # fmt: skip
+    assert "Traceback" not in done.stderr
+    assert done.returncode in (0, STATUS[sent]), done.stderr
+    assert not list(out.rglob(".*")), "half of a file, or a lock"
+    assert_readable(kind, out, done.returncode)
+
+
+def assert_readable(kind, out, status):
+    """What is there is whole; all of it is where the signal came late enough."""
+    if kind == "surface":
+        if status == 0 or (out / "surface.nc").exists():
+            assert read_netcdf(out / "surface.nc")["height"].shape == (32, 32)
+            json.loads((out / "statistics.json").read_text())
+    elif kind == "law":
+        if status == 0 or (out / "law.json").exists():
+            assert json.loads((out / "law.json").read_text())["points"]
+    elif kind == "study":
+        # Before the first table is written the folder is one that --resume finishes.
+        if status == 0 or (out / "table.csv").exists():
+            assert all(case.status in ("complete", "missing") for case in read_study(out))
+            read_netcdf(out / "study.nc")
+    else:
+        run = read_run(out)  # saving had begun: what was computed is there
+        assert run.summary["status"] in ("complete", "interrupted")
+        assert (run.summary["status"] == "complete") == (run.summary["reason"] == "")
+        assert run.summary["depths_computed"] > 0
