@@ -16,7 +16,7 @@ import pytest
 
 from restitution.studies.reader import read_netcdf, read_run, read_study
 
-COUNT = min(50, round(3 * float(os.environ.get("FUZZ", "1"))))
+COUNT = max(1, round(2 * float(os.environ.get("FUZZ", "1")) + 1))
 
 # What saves first, and for about how long (s).
 SAVES = {

@@ -137,7 +137,9 @@ def reading(path: Path) -> Iterator[None]:
 def read_text(path: Path) -> str:
     """The text of a file of results. Raises `OutputError`."""
     with reading(path):
-        return path.read_text(encoding="utf-8")
+        text = path.read_text(encoding="utf-8")
+    check_file(path)
+    return text
 
 
 def read_json(path: Path) -> dict[str, Any]:
@@ -146,7 +148,6 @@ def read_json(path: Path) -> dict[str, Any]:
         content = json.loads(read_text(path))
     if not isinstance(content, dict):
         raise damaged(path, "no table of names and values")
-    check_file(path)
     return content
 
 

@@ -21,7 +21,7 @@ from restitution.errors import OutputError
 from restitution.studies.coordinates import as_text, coordinate
 from restitution.studies.interruption import hold_signals
 from restitution.studies.locking import locked
-from restitution.studies.reader import read_curve, read_json, read_run
+from restitution.studies.reader import read_curve, read_json, read_run, read_text
 from restitution.studies.results import (
     COLUMNS,
     LOCK,
@@ -52,7 +52,7 @@ class StudyFolder:
         if resume:
             if not held.is_file():
                 raise OutputError(f"{path}: holds no study; leave out --resume to begin one")
-            if held.read_text(encoding="utf-8") != study.text:
+            if read_text(held) != study.text:
                 raise OutputError(
                     f"{path}: holds another study (its study.toml differs); name another folder "
                     "with -o, or the file it was begun with"
