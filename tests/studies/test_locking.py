@@ -4,7 +4,7 @@ import pytest
 
 from restitution.errors import OutputError
 from restitution.studies.locking import locked
-from restitution.studies.results import ResultsFolder
+from restitution.studies.results import LOCK, ResultsFolder
 
 
 def test_a_second_process_is_kept_out_and_no_lock_is_left(tmp_path):
@@ -38,4 +38,12 @@ def test_the_verbs_refuse_a_folder_in_which_another_process_writes(
     with locked(tmp_path / "out"):
         said = refused(verb, tmp_path / "case.toml", "-o", tmp_path / "out")
         assert "another process is writing there" in said
-        assert [path.name for path in (tmp_path / "out").iterdir()] == [".lock"]
+        assert [path.name for path in (tmp_path / "out").iterdir()] == [LOCK]
+
+
+def test_files_of_others_stay(refused, case_text, tmp_path):
+    (tmp_path / "case.toml").write_text(case_text)
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / ".lock").write_text("of another program")
+    assert "is not empty" in refused("run", tmp_path / "case.toml", "-o", tmp_path / "out")
+    assert [path.name for path in (tmp_path / "out").iterdir()] == [".lock"]

@@ -82,7 +82,7 @@ SPREAD_COLUMNS: dict[str, tuple[str, str, str]] = {
     "restitution_high": ("restitution_high", "1", "upper end of the 95 % interval of the mean"),
 }
 _BLOCK = 1 << 16  # bytes
-LOCK = ".lock"  # of the process that writes in a folder
+LOCK = ".restitution-lock"  # of the process that writes in a folder
 UNLOADING_COLUMNS = ("indentation_max_m", "indentation_m", "force_N")
 
 
