@@ -50,10 +50,15 @@ class Curve:
         return found
 
 
-def curve_of(contact: Contact, depths: Sequence[float], method: UnloadingMethod) -> Curve:
+def curve_of(
+    contact: Contact,
+    depths: Sequence[float],
+    method: UnloadingMethod,
+    tolerance: float = _TOLERANCE,
+) -> Curve:
     """The curve of `contact` over `depths` (m) and one beyond either end.
 
-    A depth that fails is left out; the first contact that reaches the edge of the grid ends the
+    `tolerance` is the error of COR that adhesive unloading may have. A depth that fails is left out; the first contact that reaches the edge of the grid ends the
     curve.
     """
     works: list[float] = []
@@ -61,7 +66,7 @@ def curve_of(contact: Contact, depths: Sequence[float], method: UnloadingMethod)
     for depth in (_SHALLOWER * depths[0], *depths, _DEEPER * depths[-1]):
         try:
             (state,) = loading_path(contact, [depth])
-            collision = collide(state, method=method, tolerance=_TOLERANCE)
+            collision = collide(state, method=method, tolerance=tolerance)
         except DomainError:
             break
         except RestitutionError:

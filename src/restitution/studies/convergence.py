@@ -240,9 +240,7 @@ def _with_grid_errors(case: Case, folder: Path, rows: list[_Row]) -> int:
     for row in rows:
         if math.isnan(row["discretisation_error"]) or not row["loading_work_J"] > 0:
             continue
-        widened, band = widened_error(
-            row["discretisation_error"], row["last_change"], row["median_patch_nodes"], octaves
-        )
+        widened, band = widened_error(row["discretisation_error"], row["last_change"], row, octaves)
         row["discretisation_error"] = widened
         if band > MISSING_BAND:
             row["resolved"], lacking = False, lacking + 1

@@ -81,28 +81,26 @@ class Band:
 
 
 def grid_error(
-    change: Array, work: Array, median_patch: Sequence[float], octaves: float
+    change: Array, work: Array, rows: Sequence[Row], octaves: float
 ) -> tuple[Array, Array]:
-    """Discretisation error of COR, and the part of it by waves that the grid leaves out.
+    """Discretisation error of COR of `rows`, and the part of it by waves that the grid leaves out.
 
     `change` is the difference of COR from that on cells twice as large, at `work` (J).
     """
     near = np.sqrt(_smoothed(change**2, work, _NEAR_GRID))
     band = _BAND * octaves * near
-    share = [_SHARE_RESOLVED if resolves(n) else _SHARE_UNRESOLVED for n in median_patch]
-    return np.sqrt(near**2 + band**2 + (np.array(share) * _expected(median_patch)) ** 2), band
+    return np.sqrt(near**2 + band**2 + np.array([_floor(row) for row in rows]) ** 2), band
 
 
 def widened_error(
-    error: float, last_change: float, median_patch: float, octaves: float
+    error: float, last_change: float, row: Row, octaves: float
 ) -> tuple[float, float]:
     """Discretisation error found on several grids with what these do not show, and its band part.
 
     `last_change` is the difference of COR on the last two of them.
     """
     band = _BAND * octaves * last_change
-    share = _SHARE_RESOLVED if resolves(median_patch) else _SHARE_UNRESOLVED
-    return math.hypot(error, band, share * float(_expected([median_patch])[0])), band
+    return math.hypot(error, band, _floor(row)), band
 
 
 def scatter(restitution: Array, work: Array) -> Array:
@@ -131,11 +129,10 @@ def add_errors(
         return []
     work = np.array([row["loading_work_J"] for row in reached])
     restitution = np.array([row["restitution"] for row in reached])
-    patches = [row["median_patch_nodes"] for row in reached]
     companions = Companions(case, folder, sorted(row["indentation_m"] for row in reached))
     progress("error: cells twice as large")
     own = companions.own().at(work)
-    errors, band = grid_error(restitution - own, work, patches, Band.of(surface).octaves)
+    errors, band = grid_error(restitution - own, work, reached, Band.of(surface).octaves)
     columns = {"discretisation_error": errors}
     if case.roughness and scattered:
         others = [curve.at(work) for curve in companions.others(progress)]
@@ -213,10 +210,12 @@ def total(row: Mapping[str, float]) -> float:
     return min(math.hypot(*known), max(row["restitution"], 1 - row["restitution"]))
 
 
-def _expected(median_patch: Sequence[float]) -> Array:
-    """Error of COR of contacts with so many nodes in the median patch."""
-    nodes = np.log(np.maximum(median_patch, 1))
-    return np.exp(np.interp(nodes, np.log(_PATCH_NODES), np.log(_PATCH_ERROR)))
+def _floor(row: Row) -> float:
+    """The least discretisation error of a row, whatever differences between grids say."""
+    nodes = max(row["median_patch_nodes"], 1.0)
+    expected = math.exp(np.interp(math.log(nodes), np.log(_PATCH_NODES), np.log(_PATCH_ERROR)))
+    resolved = resolves(nodes) and row["adhesion_resolved"]
+    return expected * (_SHARE_RESOLVED if resolved else _SHARE_UNRESOLVED)
 
 
 def _smoothed(values: Array, work: Array, near: float) -> Array:
