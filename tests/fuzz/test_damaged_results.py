@@ -161,8 +161,8 @@ def assert_shares(path):
 
 def _rows(path):
     with open(path, newline="") as file:
-        columns, *rows = csv.reader(file)
-    return columns, rows
+        rows = list(csv.reader(file))
+    return (rows[0], rows[1:]) if rows else ([], [])  # empty: no depth in common
 
 
 def _tables(path):
