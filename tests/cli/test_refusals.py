@@ -79,7 +79,12 @@ def refused_case(refused, case_text, tmp_path):
         ('"750 MPa"', '"750 mpa"', "interface.yield_pressure", "did you mean MPa?"),
         ('"500 um"', f'"{"x" * 500}"', "first.radius", f'"{"x" * 59}…" is not one number'),
         ('"500 um"', '"5\\n\\u001b[31m um"', "first.radius", r'"5\n\x1b[31m um" is not one number'),
-        ('yield_pressure = "750 MPa"', 'plasticity = "truncated"', "interface", "give yield_pr"),
+        (
+            'yield_pressure = "750 MPa"',
+            'plasticity = "truncated"',
+            "interface.yield_pressure",
+            "is missing",
+        ),
         ("steps = 4", "steps = 1", "indentation", "use values = [...]"),
         ("steps = 4", "steps = 10_001", "indentation.steps", "less than or equal to 10000"),
         ('to = "300 nm"', 'to = "20 nm"', "indentation", "use values = [...]"),
@@ -351,7 +356,7 @@ def test_what_would_take_minutes_is_refused_at_once(case_text, old, new, words):
     began = time.perf_counter()
     with pytest.raises(CaseError, match=words):
         parse_case(case_text.replace(old, new, 1))
-    assert time.perf_counter() - began < 0.1
+    assert time.perf_counter() - began < 1.0  # minutes, with backtracking
 
 
 def test_the_other_keys_that_are_wrong_are_named(refused_case):

@@ -1,10 +1,14 @@
 import math
+from functools import partial
 
 import numpy as np
 import pytest
 
 from restitution.errors import CaseError
 from restitution.studies.case import parse_case, read_case
+from restitution.studies.omissions import omissions
+
+approx = partial(pytest.approx, abs=0.0)
 
 
 def test_the_second_body_is_the_first_unless_given(case_text):
@@ -42,9 +46,37 @@ def test_depths(case_text):
     assert depths(span_of) == pytest.approx([0.1, 1.0, 10.0])
 
 
-def test_elastic_when_no_yield_pressure_is_given(case_text, tmp_path):
-    contact = parse_case(case_text.replace('yield_pressure = "750 MPa"', "")).contact(tmp_path)
+def test_bodies_of_unknown_strength_are_elastic_only_when_asked_for(case_text, tmp_path):
+    with pytest.raises(CaseError, match=r'or write yield_pressure = "elastic"'):
+        parse_case(case_text.replace('yield_pressure = "750 MPa"', ""))
+    contact = parse_case(case_text.replace('"750 MPa"', '"elastic"')).contact(tmp_path)
     assert contact.yield_pressure == math.inf
+
+
+STEEL = 'first = { material = "steel", radius = "500 um" }\n'
+
+
+def test_a_material_of_known_strength_yields_by_default(case_text, tmp_path):
+    """Without [interface] a steel sphere was elastic, with a COR of 1.0000 ± 0."""
+    begin, end = case_text.index("[first]"), case_text.index("[roughness]")
+    case = parse_case(STEEL + case_text[end:])
+    p_y, source = case.yields()
+    assert p_y == approx(2.8 * case.first.yield_strength, rel=1e-12)
+    assert source.startswith("2.8 Y of first (steel)")
+    (line,) = [each for each in omissions(case) if "yield_pressure" in each]
+    assert "is left out: the contact yields at" in line
+    assert not any("yield_pressure" in each for each in omissions(parse_case(case_text)))
+    assert begin == case_text.index("[first]")
+
+
+def test_a_fine_powder_is_told_where_adhesion_would_matter(case_text):
+    fine = case_text.replace('"500 um"', '"5 um"').replace('"20 nm"', '"1 nm"')
+    (line,) = [each for each in omissions(parse_case(fine)) if "work_of_adhesion" in each]
+    assert "adhesion changes COR by more than 0.01 below about" in line
+    given = fine.replace("[interface]", '[interface]\nwork_of_adhesion = "0 J/m^2"')
+    assert not any("work_of_adhesion" in each for each in omissions(parse_case(given)))
+    coarse = case_text.replace('"20 nm"', '"200 nm"')
+    assert not any("work_of_adhesion" in each for each in omissions(parse_case(coarse)))
 
 
 def test_the_scan_is_levelled_before_a_part_is_cut_out(case_text, tmp_path):
