@@ -58,8 +58,8 @@ def curve_of(
 ) -> Curve:
     """The curve of `contact` over `depths` (m) and one beyond either end.
 
-    `tolerance` is the error of COR that adhesive unloading may have. A depth that fails is left out; the first contact that reaches the edge of the grid ends the
-    curve.
+    `tolerance` is the error of COR that adhesive unloading may have. A depth that fails is left
+    out; the first contact that reaches the edge of the grid ends the curve.
     """
     works: list[float] = []
     restitutions: list[float] = []
