@@ -29,16 +29,15 @@ def call(*arguments, before="", **options):
 
 
 def fail_at_the_third_depth(monkeypatch, error):
-    real, calls = case_module.loading_path, []
+    real, calls = case_module.solve, []
 
-    def path(*arguments, **options):
-        for state in real(*arguments, **options):
-            calls.append(state)
-            if len(calls) == 3:
-                raise error
-            yield state
+    def solve(*arguments, **options):
+        calls.append(arguments)
+        if len(calls) == 3:
+            raise error
+        return real(*arguments, **options)
 
-    monkeypatch.setattr(case_module, "loading_path", path)
+    monkeypatch.setattr(case_module, "solve", solve)
 
 
 def test_an_unforeseen_error_is_recorded(cli, case, tmp_path, monkeypatch):

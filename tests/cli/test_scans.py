@@ -136,7 +136,11 @@ def test_a_scan_may_be_refined_on_its_own_pixels(surface, scan):
         ('extend = "twin"', GRID.format(nodes=200), "needs a seed"),
         ('extend = "wrap"', GRID.format(nodes=200), 'roughness.extend: "wrap" should be'),
         ('extend = "mirror"\nseed = 1', GRID.format(nodes=200), 'seed belongs to extend = "twin"'),
-        ("realisations = 3", "", 'realisations belongs to extend = "twin"; a scan is one surface'),
+        (
+            'extend = "twin"\nseed = 1\nplace = 2',
+            GRID.format(nodes=200),
+            "a twin has a seed instead",
+        ),
         ("realisations = 0", "", "roughness.realisations: 0 should be greater than or equal to 1"),
         ('extend = "mirror"', "", "[grid] is missing; roughness.extend says how"),
         ('extend = "mirror"', "[grid]\nrefine = 2", "grid: nodes and spacing are missing"),

@@ -21,7 +21,7 @@ def case(case_text, tmp_path):
     return write
 
 
-ELASTIC = ('yield_pressure = "750 MPa"', "")
+ELASTIC = ('"750 MPa"', '"elastic"')
 
 
 def test_prints_the_table_and_where_each_theory_holds(cli, case):
