@@ -13,14 +13,16 @@ from restitution.numerics.grid import Grid
 from restitution.studies import needs
 from restitution.studies.case import parse_case
 
+# VmHWM is that of this program; ru_maxrss begins with the size of the process that started it.
 PEAK = """
-import resource, sys
+import sys
 from restitution.cli import main
 sys.argv = ["restitution", "run", sys.argv[1], "-o", sys.argv[2]]
 try:
     main()
 finally:
-    print("peak", resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+    status = open("/proc/self/status").read()
+    print("peak", status.split("VmHWM:")[1].split()[0])
 """
 
 
