@@ -83,9 +83,8 @@ def test_the_points_are_those_of_the_run(rough):
     summary = json.loads((rough / "summary.json").read_text())
     assert law.warnings == tuple(summary["warnings"])
     said = law.conventions.model_dump()
-    assert said.pop("restitution_error") == (
-        "numerical error; not the error of the grid or the scatter from one surface to another"
-    )
+    error = said.pop("restitution_error")
+    assert error.startswith("solver, grid, scatter of one surface among 8; not: the model")
     assert said == summary["conventions"]
 
 
@@ -97,7 +96,7 @@ def test_at_a_point_the_law_is_the_point_and_between_points_it_is_between(rough)
         middle = law.at(math.sqrt(before.velocity * point.velocity))
         ends = sorted((before.restitution, point.restitution))
         assert ends[0] <= middle.restitution <= ends[1]
-        assert middle.error >= max(before.error, point.error)
+        assert middle.error >= 0.5 * (before.error + point.error)  # linear, and what is between
         assert middle.resolved == (before.resolved and point.resolved)
 
 
@@ -196,7 +195,8 @@ def test_every_fitted_law_is_judged_by_its_own_numbers(truncated):
 
 
 def test_an_elastic_pair_has_nothing_to_fit(runs):
-    law = law_of(runs(HEAD + '[impact]\nvelocity = ["0.1 m/s", "0.3 m/s"]\n' + GRID))
+    elastic = '[interface]\nyield_pressure = "elastic"\n'
+    law = law_of(runs(HEAD + elastic + '[impact]\nvelocity = ["0.1 m/s", "0.3 m/s"]\n' + GRID))
     assert law.laws == ()
     assert law.column("restitution") == pytest.approx(1.0, abs=1e-6)
     assert law.yield_velocity is None

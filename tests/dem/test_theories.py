@@ -32,6 +32,9 @@ V = np.geomspace(1e-4, 3000, 200)
 YIELDING = {"thornton-ning", "johnson", "jackson-green-marghitu", "mdr"}
 
 
+ELASTIC = 'yield_pressure = "elastic"\n'
+
+
 def case_of(first=SPHERE + LIGHT, second=None, interface=PLASTIC, depths=IMPACT):
     tables = f"[first]\n{first}" + ("" if second is None else f"[second]\n{second}")
     grid = '[grid]\nnodes = 64\nspacing = "1 um"\n'
@@ -68,7 +71,7 @@ def test_hertz_loses_nothing_until_something_yields():
 
 
 def test_hertz_ends_where_the_contact_is_no_longer_small():
-    case = case_of(interface="")
+    case = case_of(interface=ELASTIC)
     R, E, m = bodies(case)
     limit = math.sqrt(2 * hertz.stored_energy(0.01 * R, R, E) / m)
     found = by_name(case)["hertz"]
@@ -202,9 +205,9 @@ def test_a_pair_that_yields_before_it_can_rebound_has_no_adhesive_answer_above()
 
 
 def test_an_elastic_case_has_hertz_and_with_adhesion_sticking():
-    assert set(by_name(case_of(interface=""))) == {"hertz"}
-    assert set(room.left_out(case_of(interface=""))) == {"sticking", *YIELDING}
-    sticky = case_of(interface='work_of_adhesion = "0.1 J/m^2"\n')
+    assert set(by_name(case_of(interface=ELASTIC))) == {"hertz"}
+    assert set(room.left_out(case_of(interface=ELASTIC))) == {"sticking", *YIELDING}
+    sticky = case_of(interface=ELASTIC + 'work_of_adhesion = "0.1 J/m^2"\n')
     found = by_name(sticky)
     assert set(found) == {"hertz", "sticking"}
     assert np.nanmin(found["sticking"].restitution) == 0
@@ -237,7 +240,7 @@ def test_velocities_of_loads_are_those_of_the_smooth_bodies_that_carry_them():
     force = thornton_ning.loading_force(depth[[0, -1]], R, E, 560e6)
     assert force == pytest.approx([1e-3, 50])
 
-    elastic = case_of(interface="", depths='[load]\nfrom = "1 mN"\nto = "50 N"\nsteps = 4\n')
+    elastic = case_of(interface=ELASTIC, depths='[load]\nfrom = "1 mN"\nto = "50 N"\nsteps = 4\n')
     work = 0.5 * m * room.velocities_of(elastic)[-1] ** 2
     assert work == pytest.approx(hertz.stored_energy(hertz.indentation_from_force(50, R, E), R, E))
 
@@ -321,7 +324,7 @@ def test_a_law_that_loses_nothing_has_nothing_to_fit(law):
         point.model_copy(update={"restitution": 1.0, "ratio": 1.0}) for point in law().points
     )
     elastic = law(points=lossless, yield_pressure=None)
-    case = case_of(interface="")
+    case = case_of(interface=ELASTIC)
     assert list(by_name(case, V, elastic)) == ["hertz", "computed"]
     assert "loses nothing" in room.left_out(case, elastic)["brilliantov"]
 
