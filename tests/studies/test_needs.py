@@ -1,5 +1,6 @@
 """Memory: the estimate, and what is refused for it."""
 
+import math
 import resource
 import subprocess
 import sys
@@ -48,7 +49,7 @@ def test_what_takes_more_costs_more(case_text):
     sizes = [
         needs.run_bytes(grid, plastic.model_copy(update=update))
         for update in (
-            {"yield_pressure": None},
+            {"yield_pressure": math.inf},
             {},
             {"plasticity": "truncated"},
         )
