@@ -262,10 +262,10 @@ def _plot_restitution(axes: Axes, results: xr.Dataset, x: NDArray[np.float64]) -
     for coarser, style in zip(results.get("coarser_restitution", ()), _DASHES, strict=False):
         axes.plot(x, coarser, style, color="C1", lw=1,
                   label=f"refine = {int(coarser['refine'])}")  # fmt: skip
-    error = results["discretisation_error"].values
+    error = results["total_error"].values
     if np.isfinite(error).any():
         axes.errorbar(x, cor, yerr=error, fmt="none", ecolor="C0", elinewidth=1, capsize=2,
-                      label="discretisation error")  # fmt: skip
+                      label="total error")  # fmt: skip
     axes.plot(x, cor, "-", color="C0", lw=1)
     axes.plot(x[resolved], cor[resolved], "o", ms=4.5, color="C0", label=label)
     if not resolved.all():

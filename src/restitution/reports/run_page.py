@@ -94,7 +94,7 @@ def _restitution(
                         fillcolor="rgba(31,119,180,0.25)", hoverinfo="skip",
                         name="95 % interval of the mean", showlegend=fill is not None)
             )  # fmt: skip
-    error = results["discretisation_error"].values
+    error = results["total_error"].values
     plot.add_trace(
         Scatter(
             x=x, y=cor, mode="lines+markers", name="this contact",
@@ -105,7 +105,7 @@ def _restitution(
             hovertemplate=f"%{{x:.4g}} {unit}<br>COR %{{y:.4f}}<extra></extra>",
         )
     )  # fmt: skip
-    columns = [f"{words} ({unit})", "COR", "resolved", "restitution_error", "discretisation_error"]
+    columns = [f"{words} ({unit})", "COR", "resolved", "restitution_error", "total_error"]
     few = int(np.count_nonzero(~resolved))
     return Drawing(
         f"Restitution against {words}",
