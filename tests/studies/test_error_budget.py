@@ -1,5 +1,6 @@
 """The total error of COR: what it is made of, and that each part of it counts."""
 
+import json
 import math
 from functools import partial
 from pathlib import Path
@@ -7,6 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from restitution.errors import NotConvergedError
+from restitution.studies import case as case_module
 from restitution.studies.case import parse_case
 from restitution.studies.companions import Curve
 from restitution.studies.convergence import run_convergence
@@ -109,6 +112,32 @@ def test_waves_beyond_the_grid_count_by_the_slope_they_have():
     error, band = grid_error(change, work, [row()] * 3, octaves=2.0)
     assert band == approx(np.full(3, 0.06), rel=1e-12)
     assert error == approx(np.hypot(without, 0.06), rel=1e-12)
+
+
+def test_what_no_companion_tells_is_not_known():
+    work = np.geomspace(1e-9, 1e-6, 3)
+    assert np.isnan(grid_error(np.full(3, math.nan), work, [row()] * 3, 0.0)[0]).all()
+    assert np.isnan(scatter(np.array([[0.5, 0.5, 0.5], [math.nan] * 3]), work)).all()
+
+
+def test_a_depth_that_fails_leaves_the_others_a_total_error(case_text, tmp_path, monkeypatch):
+    real, calls = case_module.solve, []
+
+    def solve(*arguments, **options):
+        calls.append(arguments)
+        if len(calls) == 2:
+            raise NotConvergedError("the second depth")
+        return real(*arguments, **options)
+
+    monkeypatch.setattr(case_module, "solve", solve)
+    out = ResultsFolder(tmp_path / "out")
+    with pytest.raises(NotConvergedError, match="the second depth"):
+        run_realisations(parse_case(case_text), case_text, tmp_path, out)
+    depths = parse_case(case_text).depths()
+    assert [each["indentation_m"] for each in out.rows] == [depths[0], *depths[2:]]
+    assert all(each["total_error"] > 0 for each in out.rows)
+    summary = json.loads((out.path / "summary.json").read_text())
+    assert (summary["status"], summary["reason"]) == ("failed", "the second depth")
 
 
 def test_scatter_grows_with_the_spread_of_curves():

@@ -55,7 +55,7 @@ def _law(out: Path, run: StoredRun) -> Law:
             f"{out}: has no impact velocities, for a density is not given in its case; give "
             "first.density (and second.density) and run it again"
         )
-    points = _points(rows)
+    points = _points(rows, case.total_error)
     if not points:
         raise CaseError(f"{out}: has no depth that an impact reaches; compute deeper ones")
     warnings = list(summary["warnings"])
@@ -133,7 +133,7 @@ def _error_is(trust: Mapping[str, object]) -> str:
     return f"{includes}; not: {trust.get('total_error_does_not_include') or 'anything else'}"
 
 
-def _points(rows: Sequence[_Row]) -> list[Point]:
+def _points(rows: Sequence[_Row], asked: bool) -> list[Point]:
     found: list[Point] = []
     for row in rows:
         velocity, work = row["impact_velocity_m_per_s"], row["loading_work_J"]
@@ -144,7 +144,7 @@ def _points(rows: Sequence[_Row]) -> list[Point]:
             Point(
                 velocity=velocity,
                 restitution=row["restitution"],
-                error=_error(row),
+                error=_error(row, asked=asked),
                 ratio=_ratio(row, work),
                 loading_work=work,
                 indentation=row["indentation_m"],
@@ -162,10 +162,16 @@ def _ratio(row: _Row, work: float) -> float:
     return e * e if "restitution_std" in row and e > 0 else ratio
 
 
-def _error(row: _Row) -> float:
-    """The total error, or where it was not computed what is known of it."""
+def _error(row: _Row, *, asked: bool) -> float:
+    """The total error of a row.
+
+    Where it was `asked` for and a part of it is not known, it is all that COR can be off by; where
+    it was not, it is what is known of it.
+    """
     known = row.get("total_error", math.nan)
-    return total(row) if math.isnan(known) else known
+    if not math.isnan(known):
+        return known
+    return max(row["restitution"], 1 - row["restitution"]) if asked else total(row)
 
 
 def _particle(name: str, body: BodyTable) -> Particle:

@@ -40,7 +40,7 @@ Row = dict[str, float]
 _BAND = 1.5  # of the change of COR expected from the waves that the grid does not carry
 _SHARE_RESOLVED, _SHARE_UNRESOLVED = 0.03, 0.6
 # About 90 % of contacts with so many nodes in the median patch were within this COR of a finer
-# grid's; single nodes, which yield late and all at once, within none.
+# grid's. A single node yields late and all at once, so its COR may be off by nearly all of it.
 _PATCH_NODES = (1, 3, 7, 14, 30, 100, 400)
 _PATCH_ERROR = (0.9, 0.4, 0.15, 0.08, 0.05, 0.024, 0.008)
 _SCATTER = 1.9  # standard deviations of COR between surfaces: about 93 % with eight of them
@@ -51,7 +51,7 @@ MISSING_BAND = 0.03  # of COR: from there on a row is not resolved for the waves
 
 NOT_INCLUDED = (
     "the model (constant yield pressure: COR up to 11 % too high; half-space; no range of "
-    "attraction), the input of your own, rate effects and waves"
+    "attraction), values that the case gives, rate effects, elastic waves"
 )
 
 
@@ -105,8 +105,14 @@ def widened_error(
 
 
 def scatter(restitution: Array, work: Array) -> Array:
-    """Scatter of COR between surfaces; `restitution` has a row for each surface."""
-    variance = np.nanvar(restitution, axis=0, ddof=1)
+    """Scatter of COR between surfaces, NaN where fewer than two of them have a curve.
+
+    `restitution` has a row for each surface.
+    """
+    known = restitution[np.isfinite(restitution).all(axis=1)]
+    if len(known) < 2:
+        return np.full(work.size, math.nan)
+    variance = np.var(known, axis=0, ddof=1)
     return np.asarray(_SCATTER * np.sqrt(_smoothed(variance, work, _NEAR_SURFACE)))
 
 
@@ -122,8 +128,9 @@ def add_errors(
     """Put the errors of grid, surface and materials, and their total, into the rows of a run.
 
     `surface` is the one that was solved on; without `scattered` the scatter between surfaces is
-    left out. A row without a positive loading work, which no impact
-    reaches, gets no error. Returns the part of the error by waves that the grid leaves out.
+    left out. A row without a positive loading work, which no impact reaches, gets no error; nor
+    does one of which a part is not known. Returns the part of the error by waves that the grid
+    leaves out.
     """
     reached = [row for row in rows if row["loading_work_J"] > 0]
     if not reached:
@@ -145,7 +152,8 @@ def add_errors(
     for k, row in enumerate(reached):
         row.update({name: float(values[k]) for name, values in columns.items()})
         row["resolved"] = bool(row["resolved"]) and not band[k] > MISSING_BAND
-        row["total_error"] = total(row)
+        if all(math.isfinite(values[k]) for values in columns.values()):
+            row["total_error"] = total(row)
     return [float(error) for error in band]
 
 
@@ -158,7 +166,7 @@ def band_warning(surface: Surface, band_errors: Sequence[float]) -> str | None:
     lacking = [error for error in band_errors if error > MISSING_BAND]
     if not lacking:
         return None
-    nodes = [math.ceil(edge / (band.pixel)) for edge in surface.grid.size]
+    nodes = [math.ceil(edge / band.pixel) for edge in surface.grid.size]
     needed = f"cells of {1e6 * band.pixel:.3g} um ({nodes[0]} x {nodes[1]} nodes) carry them"
     if nodes[0] * nodes[1] > MOST_AFFORDABLE:
         needed += ", more than can be computed here; take a smaller grid, or trust larger depths"
@@ -220,9 +228,8 @@ def _floor(row: Row) -> float:
 
 
 def _smoothed(values: Array, work: Array, near: float) -> Array:
-    """Mean of `values` weighted by exp(−|Δ ln W|/near); undefined values are left out."""
+    """Mean of `values` weighted by exp(−|Δ ln W|/near); NaN where one is undefined."""
     L = np.log(work)
-    weights = np.exp(-np.abs(L[:, None] - L) / near) * np.isfinite(values)
-    weights /= np.maximum(weights.sum(axis=1, keepdims=True), 1e-300)
-    smoothed: Array = weights @ np.where(np.isfinite(values), values, 0.0)
+    weights = np.exp(-np.abs(L[:, None] - L) / near)
+    smoothed: Array = weights @ values / weights.sum(axis=1)
     return smoothed

@@ -8,7 +8,7 @@ from restitution.studies.case import Case
 from restitution.studies.tables import GeneratedRoughness
 from restitution.theory import hertz, sticking
 
-TYPICAL_ADHESION = 0.05  # J/m²: 0.01 to 0.1 between dry solids in air (Israelachvili 2011, §13.10)
+TYPICAL_ADHESION = 0.05  # J/m²: within the 0.01 to 0.09 of Ghanbarzadeh et al. (2019)
 # Adhesion takes (V_s/V)² from e² (Thornton and Ning 1998): 0.01 of e = 0.7 at 8.5 V_s.
 _MATTERS = 8.5
 
@@ -48,7 +48,7 @@ def _no_adhesion(case: Case) -> str | None:
         return None
     return (
         f"interface.work_of_adhesion is left out, and nothing adheres: at {TYPICAL_ADHESION} J/m2, "
-        f"as dry solids have, adhesion changes COR by more than 0.01 below about {below:.2g} m/s "
+        f"a common value, adhesion changes COR by more than 0.01 below about {below:.2g} m/s "
         '(smooth bodies); give it, or "0 J/m^2"'
     )
 

@@ -55,6 +55,7 @@ class _Progress:
     deepest: State | None = None
     warnings: list[str] = field(default_factory=list)
     loading_work_errors: list[float] = field(default_factory=list)
+    asked: list[float] = field(default_factory=list)
     adhesive_nodes: list[float] = field(default_factory=list)
     band_errors: list[float] = field(default_factory=list)
     seconds: list[float] = field(default_factory=list)
@@ -75,8 +76,9 @@ def run_case(
     """Run `case` (whose text was `text`, with files relative to `folder`) and return the summary.
 
     With `errors` (and unless the case says total_error = false) every row gets its total error
-    (`error_budget`). A depth that does not converge is left out, and the others go on; contact at
-    the edge of the grid ends the curve; either makes the run a failed one in the end.
+    (`error_budget`). With `errors` a depth that does not converge is left out, and the others go
+    on; without, as one of several runs whose rows are compared by their number, it ends the curve.
+    So does contact at the edge of the grid. Either makes the run a failed one in the end.
 
     It has one surface and a number for `grid.refine` (see `ensemble` and `refinement`). `known` are
     warnings that were said before and belong to the results. `progress` is called with a few words
@@ -98,7 +100,7 @@ def run_case(
             warn(warning)
         run.warnings[:0] = known
         with out.tables():
-            failure = _load_and_unload(contact, case, out, run, progress)
+            failure = _load_and_unload(contact, case, out, run, progress, go_on=errors)
         if errors and case.total_error and out.rows:
             _add_errors(case, folder, contact, out, run, progress)
         if failure is not None:
@@ -161,6 +163,8 @@ def _load_and_unload(
     out: ResultsFolder,
     run: _Progress,
     progress: Callable[[str], None],
+    *,
+    go_on: bool,
 ) -> RestitutionError | None:
     """Every depth, one after the other; what stopped the first of those that failed."""
     depths, curves = case.depths(), case.unloading.curves
@@ -174,7 +178,7 @@ def _load_and_unload(
             state = case.load_to(contact, depth, before)
         except (NotConvergedError, DomainError) as error:
             failure = failure or error
-            if isinstance(error, DomainError):  # so do all deeper ones
+            if not go_on or isinstance(error, DomainError):  # deeper ones reach the edge, too
                 break
             progress(f"{number + 1} of {len(depths)} depths")
             continue
@@ -189,6 +193,7 @@ def _load_and_unload(
             )
         collision = collide(state, back if followed else None, method=case.unloading.method)
         with hold_signals():  # an interruption leaves no row without what belongs to it
+            run.asked.append(depth)
             run.adhesive_nodes.append(adhesive_nodes(state))
             run.loading_work_errors.append(state.work_error / max(abs(state.loading_work), 1e-300))
             out.add(state, collision)
@@ -238,7 +243,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Progress)
     nodes = run.adhesive_nodes[: len(depths)]  # interrupted, there may be one more
     found = [unresolved_warning(depths, patches), adhesion_warning(depths, nodes)]
     found.append(band_warning(contact.surface, run.band_errors))
-    found += [_imprecise(out, case), _velocities_missed(out, case)]
+    found += [_imprecise(out, case), _velocities_missed(out, case, run.asked)]
     if not contact.adhesive:
         found.append(_unbalanced(run.unloading_checks))
     elastic = math.isinf(contact.yield_pressure)
@@ -305,11 +310,11 @@ def _imprecise(out: ResultsFolder, case: Case) -> str | None:
     )
 
 
-def _velocities_missed(out: ResultsFolder, case: Case) -> str | None:
+def _velocities_missed(out: ResultsFolder, case: Case, computed: list[float]) -> str | None:
     """One line on impact velocities that are not those asked for, or None."""
     if case.impact is None:
         return None
-    pairs = zip((row["impact_velocity_m_per_s"] for row in out.rows), case.depths(), strict=False)
+    pairs = zip((row["impact_velocity_m_per_s"] for row in out.rows), computed, strict=False)
     off = {asked: abs(met / asked - 1) for met, asked in pairs}
     missed = [asked for asked, miss in off.items() if not miss <= _VELOCITY]
     if not missed:
