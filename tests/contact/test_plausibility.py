@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from restitution import Body, Contact, Grid, Pair, Surface, generate_surface, smooth
+from restitution.contact.path import loading_path
 from restitution.contact.plausibility import implausible, require_small
-from restitution.errors import CaseError
+from restitution.contact.resolution import foreseen_warnings
+from restitution.errors import CaseError, DomainError
 
 STEEL = Pair(*2 * [Body(500e-6, 210e9, 0.25)])
 GRID = Grid((64, 64), (0.5e-6, 0.5e-6))
@@ -45,6 +47,29 @@ def test_contact_at_the_rim_is_foreseen_where_smooth_bodies_would_not_have_it():
     (line,) = implausible(Contact(STEEL, Surface(ridge, GRID), 750e6), 4e-7)
     assert "the gap there is 151.7 nm" in line
     assert implausible(Contact(STEEL, Surface(ridge, GRID), 750e6), 5e-8) == []
+
+
+@pytest.mark.parametrize("yield_pressure", [math.inf, 750e6])
+@pytest.mark.parametrize(("rms", "work_of_adhesion"), [(0.0, 0.0), (2e-8, 0.0), (0.0, 1.0)])
+def test_what_reaches_the_edge_is_foreseen_before(yield_pressure, rms, work_of_adhesion):
+    """The grid that holds a contact is found by trial: on all smaller ones it is foreseen."""
+    for nodes in range(60, 26, -2):
+        grid = Grid((nodes, nodes), (0.25e-6, 0.25e-6))
+        surface = smooth(grid)
+        if rms:
+            shape = {"kind": "gaussian", "rms": rms, "correlation_length": 2e-6, "seed": 3}
+            surface = generate_surface(grid, **shape)
+        contact = Contact(STEEL, surface, yield_pressure, work_of_adhesion=work_of_adhesion)
+        said = [*implausible(contact, 1e-7), *foreseen_warnings(contact, 1e-7)]
+        foreseen = any("foreseen to reach" in line for line in said)
+        try:
+            next(iter(loading_path(contact, [1e-7])))
+        except DomainError:
+            assert foreseen
+            return
+        if nodes == 60:
+            assert not foreseen
+    pytest.fail("no grid was too small")
 
 
 def test_steep_surfaces():

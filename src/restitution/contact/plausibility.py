@@ -17,7 +17,7 @@ _OBLONG = 0.01  # difference of the edges of a pixel
 _STEEP = 0.5  # rms slope beyond which small-slope theory misleads
 _PRESSURES = (1e-5, 0.3)  # p_y/E* of materials, from soft polymers to the ideal strength
 _NEAR_EDGE = 0.1  # of the width of the grid
-_SAFELY = 0.9  # foreseen radii are good to 6 %
+_DISPLACED = 0.7  # of the displacement outside a smooth contact, for rough ones carry less force
 
 
 def require_small(contact: Contact, indentation: float) -> None:
@@ -65,22 +65,39 @@ def _tilt(contact: Contact) -> str | None:
 
 
 def _edge(contact: Contact, indentation: float) -> str | None:
-    """Contact at the rim that smooth bodies would not have: those are foreseen by their radius."""
+    """Contact at the rim of the grid, with a margin for what smooth bodies do not tell."""
     radius = foreseen_radius(contact.pair, indentation, contact.yield_pressure)
     gap, grid = contact.gap, contact.grid
-    if radius >= 0.5 * min(grid.size):
+    half_width = 0.5 * min(grid.size)
+    if radius >= half_width:  # `foreseen_warnings` says so
         return None
     rim = float(min(gap[0].min(), gap[-1].min(), gap[:, 0].min(), gap[:, -1].min()))
     position = zip(first_touch(contact), grid.size, strict=True)
     near = any(abs(at) > (0.5 - _NEAR_EDGE) * edge for at, edge in position)
-    # Smooth bodies touch where the undeformed gap is below a²/(2R*).
-    if not near and rim >= _SAFELY * radius**2 / (2 * contact.pair.radius):
+    if not near and rim >= _closed_gap(contact, indentation, half_width):
         return None
     return (
         f"the contact is foreseen to reach the edge of the grid: the gap there is "
         f"{1e9 * rim:.4g} nm at first touch, and the deepest indentation is "
         f"{1e9 * indentation:.4g} nm; {edge_advice(contact, indentation)}"
     )
+
+
+def _closed_gap(contact: Contact, indentation: float, distance: float) -> float:
+    """The undeformed gap up to which bodies are foreseen to touch `distance` off the centre, m.
+
+    It is the indentation less the displacement F/(πE*r) outside a smooth contact. Adhesion deepens
+    the indentation by sqrt(2πaw/E*) (JKR). Where the roughness is as high as the indentation is
+    deep, single asperities carry the load, and displace little.
+    """
+    pair, p_y, w = contact.pair, contact.yield_pressure, contact.work_of_adhesion
+    E_star, deeper = pair.contact_modulus, indentation
+    for _ in range(10):  # a fixed point: `radius` grows with its square root at most
+        radius = foreseen_radius(pair, deeper, p_y)
+        deeper = indentation + math.sqrt(2 * math.pi * radius * w / E_star)
+    force = min(4 * E_star * radius**3 / (3 * pair.radius), math.pi * radius**2 * p_y)
+    share = max(_DISPLACED - float(np.std(contact.surface.height)) / indentation, 0.0)
+    return deeper - share * force / (math.pi * E_star * distance)
 
 
 def _steepness(contact: Contact) -> str | None:
