@@ -51,12 +51,10 @@ def in_threads(_):
 
 
 @pytest.fixture(scope="module")
-def whole(case_text, tmp_path_factory):
+def whole(tiny_case, tmp_path_factory):
     """One folder of each kind, as it was written."""
     at = tmp_path_factory.mktemp("whole")
-    text = case_text.replace("[72, 64]", "[32, 32]").replace('spacing = ["0.5 um", "0.6 um"]',
-                                                             'spacing = "1 um"')  # fmt: skip
-    text = text.replace("2 um", "4 um").replace("steps = 4", "steps = 3")
+    text = tiny_case
     (at / "case.toml").write_text(text)
     run_realisations(parse_case(text), text, at, ResultsFolder(at / "run"))
     several = text.replace("seed = 1", "seed = 1\nrealisations = 2")

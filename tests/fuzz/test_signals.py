@@ -69,12 +69,10 @@ main()
 
 
 @pytest.fixture(scope="module")
-def cases(case_text, tmp_path_factory):
+def cases(tiny_case, tmp_path_factory):
     """A case, an ensemble, a study, and a run."""
     at = tmp_path_factory.mktemp("cases")
-    text = case_text.replace("[72, 64]", "[32, 32]").replace('spacing = ["0.5 um", "0.6 um"]',
-                                                             'spacing = "1 um"')  # fmt: skip
-    text = text.replace("2 um", "4 um").replace("steps = 4", "steps = 3")
+    text = tiny_case
     (at / "case.toml").write_text(text)
     (at / "ensemble.toml").write_text(text.replace("seed = 1", "seed = 1\nrealisations = 2"))
     (at / "study.toml").write_text(f'{text}[sweep]\n"roughness.seed" = [1, 2]\n')
