@@ -64,8 +64,8 @@ def test_the_softer_body_yields():
 def test_so_many_yield_strengths(rule, factor):
     steel = 'first = { material = "steel", radius = "1 mm" }\nsecond = "304"\n'
     case = parsed(f'{steel}[interface]\nyield_pressure = "{rule}"\n')
-    assert case.yields()[0] == factor * material("304").yield_strength.value
-    assert case.yields()[1].startswith(f"{factor:g} Y of second (stainless-steel)")
+    assert case.yielding().hardness == factor * material("304").yield_strength.value
+    assert case.yielding().source.startswith(f"{factor:g} Y of second (stainless-steel)")
 
 
 def test_a_body_without_a_yield_strength_yields_at_its_hardness():
@@ -77,13 +77,13 @@ def test_a_body_without_a_yield_strength_yields_at_its_hardness():
     )
     soft = 'first = { material = "sodium-chloride", radius = "1 mm" }\nsecond = "steel"\n'
     case = parsed(f'{soft}[interface]\nyield_pressure = "1.6 Y"\n')
-    assert case.yields()[1] == "hardness of first (sodium-chloride), 216 MPa"
+    assert case.yielding().source == "hardness of first (sodium-chloride), 216 MPa"
 
 
 def test_a_strength_of_ones_own():
     steel = 'first = { material = "steel", radius = "1 mm", yield_strength = "500 MPa" }\n'
     case = parsed(f'{steel}[interface]\nyield_pressure = "2 Y"\n')
-    assert case.yields()[0] == 1e9
+    assert case.yielding().hardness == 1e9
 
 
 @pytest.mark.parametrize(

@@ -20,7 +20,6 @@ def check(
     from restitution.numerics.memory import available, in_words
     from restitution.studies.case import naming, read_case
     from restitution.studies.derived import deepest_indentation, derived_quantities
-    from restitution.studies.needs import run_bytes
     from restitution.surfaces import describe
 
     read, _ = read_case(case)
@@ -32,6 +31,7 @@ def check(
         "reduced_radius_m": ("reduced radius R*", 1e6, "um"),
         "contact_modulus_Pa": ("contact modulus E*", 1e-9, "GPa"),
         "reduced_mass_kg": ("reduced mass m*", 1, "kg"),
+        "yield_strength_Pa": ("yield strength Y", 1e-6, "MPa"),
         "yield_pressure_Pa": ("yield pressure p_y (hardness, ~2.8 Y)", 1e-6, "MPa"),
         "yield_indentation_m": ("yield indentation δ_y, smooth", 1e9, "nm"),
         "yield_force_N": ("yield force F_y, smooth", 1, "N"),
@@ -62,15 +62,15 @@ def check(
     if read.realisations > 1:
         table.add_row("realisations", str(read.realisations), "surfaces; the first is described")
     for key, (label, scale, unit) in labels.items():
-        if key not in quantities:
+        if key not in quantities or (key == "yield_strength_Pa" and quantities[key] is None):
             continue
         value = quantities[key]
         table.add_row(label, "-" if value is None else f"{scale * value:.5g}", unit)
-    needed = in_words(run_bytes(contact.grid, read.interface))
+    needed = in_words(read.run_bytes(contact.grid))
     table.add_row("memory of a run, at most", needed, f"of {in_words(available())}{auto}")
     answers.print(table)
-    if (from_where := read.yields()[1]) not in ("given", "elastic"):
-        answers.print(f"The yield pressure is {from_where}.", markup=False, soft_wrap=True)
+    if (from_where := read.yielding().source) not in ("given", "elastic"):
+        answers.print(f"The contact yields at: {from_where}.", markup=False, soft_wrap=True)
     deepest = deepest_indentation(read)
     require_small(contact, deepest)
     refuse_coarse_scan(contact, deepest)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -23,7 +22,7 @@ def peel(
     box: Box,
     held: Mask,
     *,
-    limit: float,
+    limit: Array | float,
     history: State | None = None,
     first_guess: Array | None = None,
     residual: float,
@@ -83,7 +82,7 @@ def attach(
     box: Box,
     held: Mask,
     *,
-    limit: float,
+    limit: Array | float,
     first_guess: Array | None = None,
     residual: float,
 ) -> State:
@@ -127,7 +126,7 @@ def pull(state: State, indentation: float, *, first_guess: Array | None = None,
         indentation,
         state.box,
         state.box_pressure != 0,
-        limit=state.contact.yield_pressure,
+        limit=state.bound,
         history=state,
         first_guess=state.box_pressure if first_guess is None else first_guess,
         residual=residual,
@@ -136,8 +135,3 @@ def pull(state: State, indentation: float, *, first_guess: Array | None = None,
     return replace(
         settled, adhesive_work=state.adhesive_work - lost, pulled_force=pulled.force, virgin=False
     )
-
-
-def limit_of(contact: Contact) -> float:
-    """The pressure bound of the solve: p_y, or none when the pressure is cut afterwards."""
-    return math.inf if contact.plasticity == "truncated" else contact.yield_pressure

@@ -86,7 +86,7 @@ def _refuse_unlike(contacts: Sequence[Contact], indentations: Sequence[float]) -
     for contact, depth in zip(contacts, indentations, strict=True):
         if not 0 < depth < math.inf:
             raise CaseError(f"indentation: {depth} m is not a positive depth")
-        if contact.adhesive or contact.cut:
+        if contact.adhesive or contact.plasticity != "equilibrium":
             raise CaseError("a batch holds contacts without adhesion in the equilibrium model only")
         if (contact.grid, contact.pair.contact_modulus) != (first.grid, first.pair.contact_modulus):
             raise CaseError("the contacts of a batch have one grid and one contact modulus")

@@ -21,8 +21,9 @@ from restitution.errors import CaseError
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface
 
-Plasticity = Literal["equilibrium", "truncated"]
+Plasticity = Literal["expanding-cavity", "equilibrium", "truncated"]
 Approach = Literal["equilibrium", "hertzian", "seed"]
+FULL_CONSTRAINT = 2.8  # pressure over yield strength of fully plastic contact (Tabor 1951)
 _OFF_NODE = 0.31, 0.17  # of a cell: no symmetry of the grid maps this point onto itself
 
 
@@ -30,20 +31,28 @@ _OFF_NODE = 0.31, 0.17  # of a cell: no symmetry of the grid maps this point ont
 class Contact:
     """A pair of bodies whose composite roughness is `surface`.
 
-    `yield_pressure` (Pa) is the largest pressure the surface carries: a hardness, about 2.8 times
-    the yield strength; inf for elastic bodies. `plasticity` is `equilibrium` (pressure and surface
-    in equilibrium under that bound) or `truncated` (the elastic pressure cut at the bound, as in
-    Thornton and Ning 1998). Raises `CaseError` for other values, and for a pair or a surface that
-    is none.
+    Bodies yield by their `yield_strength` (Pa, of a tensile test) or by a `yield_pressure` (Pa, the
+    largest pressure the surface carries: a hardness, about 2.8 times the yield strength); at most
+    one of them is finite, and elastic bodies have neither. `plasticity` is
+
+    * `expanding-cavity`, for a yield strength: the largest pressure grows with deformation, see
+      `cavity`; `tangent_modulus` (Pa) is the slope of the tensile stress over strain after yield;
+    * `equilibrium`, for a yield pressure: pressure and surface in equilibrium under that bound;
+    * `truncated`: the elastic pressure cut at the yield pressure (Thornton and Ning 1998).
+
+    None is the first for a yield strength, else the second. Raises `CaseError` for values that are
+    none or do not go together, and for a pair or a surface that is none.
     """
 
     pair: Pair
     surface: Surface
     yield_pressure: float = math.inf
-    plasticity: Plasticity = "equilibrium"
+    plasticity: Plasticity | None = None
     work_of_adhesion: float = 0.0
     approach: Approach = "equilibrium"
     detachment: Detachment = "crack-closure"
+    yield_strength: float = math.inf
+    tangent_modulus: float = 0.0
 
     def __post_init__(self) -> None:
         if not isinstance(self.pair, Pair):
@@ -56,18 +65,67 @@ class Contact:
                 f"surface: {_kind(self.surface)} is not a surface; give Surface(height, grid), or "
                 "what generate_surface and read_surface return"
             )
-        if not self.yield_pressure > 0:
-            raise CaseError(f"yield_pressure: {self.yield_pressure} Pa is not positive")
-        if self.plasticity not in ("equilibrium", "truncated"):
-            raise CaseError(f'plasticity: "{self.plasticity}" is not "equilibrium" or "truncated"')
-        if not 0 <= self.work_of_adhesion < math.inf:
-            raise CaseError(f"work_of_adhesion: {self.work_of_adhesion} J/m2 is not zero or more")
         for name, value, known in (
+            ("plasticity", self.plasticity, (None, *get_args(Plasticity))),
             ("approach", self.approach, get_args(Approach)),
             ("detachment", self.detachment, get_args(Detachment)),
         ):
             if value not in known:
-                raise CaseError(f'{name}: "{value}" is not one of {", ".join(known)}')
+                names = ", ".join(filter(None, known))
+                raise CaseError(f'{name}: "{value}" is not one of {names}')
+        if not self.yield_pressure > 0:
+            raise CaseError(f"yield_pressure: {self.yield_pressure} Pa is not positive")
+        if not self.yield_strength > 0:
+            raise CaseError(f"yield_strength: {self.yield_strength} Pa is not positive")
+        grows = math.isfinite(self.yield_strength)
+        if self.plasticity is None:
+            model = "expanding-cavity" if grows else "equilibrium"
+            object.__setattr__(self, "plasticity", model)
+        if grows != (self.plasticity == "expanding-cavity"):
+            raise CaseError(
+                f'plasticity: "{self.plasticity}" takes a '
+                + ("yield_pressure, not a yield_strength" if grows else "yield_strength")
+            )
+        if grows and math.isfinite(self.yield_pressure):
+            raise CaseError("yield_strength, yield_pressure: only one of them can be given")
+        softest = min(body.youngs_modulus for body in (self.pair.first, self.pair.second))
+        if not 0 <= self.tangent_modulus < softest:
+            raise CaseError(
+                f"tangent_modulus: {self.tangent_modulus} Pa is not zero or more and below Young's "
+                f"modulus, {softest} Pa"
+            )
+        if self.tangent_modulus and not grows:
+            raise CaseError("tangent_modulus: hardening needs a yield_strength")
+        if not 0 <= self.work_of_adhesion < math.inf:
+            raise CaseError(f"work_of_adhesion: {self.work_of_adhesion} J/m2 is not zero or more")
+
+    @property
+    def grows(self) -> bool:
+        """Whether the yield bound grows with deformation (`expanding-cavity`)."""
+        return self.plasticity == "expanding-cavity"
+
+    @property
+    def hardness(self) -> float:
+        """Pressure of a fully plastic contact, Pa; inf for elastic bodies."""
+        return FULL_CONSTRAINT * self.yield_strength if self.grows else self.yield_pressure
+
+    @property
+    def first_yield_pressure(self) -> float:
+        """Largest pressure (Pa) under which smooth bodies stay elastic; inf for elastic bodies.
+
+        1.295 exp(0.736 ν) times the yield strength (Jackson and Green 2005, ν the mean of both
+        bodies), or the yield pressure.
+        """
+        if not self.grows:
+            return self.yield_pressure
+        nu = 0.5 * (self.pair.first.poissons_ratio + self.pair.second.poissons_ratio)
+        return 1.295 * math.exp(0.736 * nu) * self.yield_strength
+
+    @property
+    def hardening_modulus(self) -> float:
+        """Slope of the flow stress over *plastic* strain, Pa: E_t/(1 − E_t/E)."""
+        E = min(body.youngs_modulus for body in (self.pair.first, self.pair.second))
+        return self.tangent_modulus / (1 - self.tangent_modulus / E)
 
     @property
     def cut(self) -> bool:

@@ -41,7 +41,7 @@ def equilibrate(
     indentation: float,
     box: Box,
     *,
-    limit: float,
+    limit: Array | float,
     history: State | None = None,
     held: Mask | None = None,
     tension: float = 0.0,
@@ -49,6 +49,8 @@ def equilibrate(
     residual: float = RESIDUAL,
 ) -> State:
     """Solve for p ≤ `limit` on the surface `history` left; p ≥ 0, or ≥ −`tension` where `held`.
+
+    `limit` is a number, or an array of the shape of the grid.
 
     `box` has to hold the `reach` and all nodes that are held; `held` and `first_guess`, where to
     begin with nodes held, are arrays on it. The violation of the contact conditions is measured
@@ -59,9 +61,10 @@ def equilibrate(
     b = overlap(contact, indentation, box, history)
     scale = scale_of(contact, indentation, b)
     system = system_of(contact)
+    upper = limit if isinstance(limit, float) else device.put(np.ascontiguousarray(limit[box]))
     if held is None:
         found, convolutions = minimise_nested(
-            system, device.put(b), limit, tolerance=residual * scale, max_iterations=MAX_ITERATIONS
+            system, device.put(b), upper, tolerance=residual * scale, max_iterations=MAX_ITERATIONS
         )
     else:
         K, inverse = system(shape, 0)
@@ -69,7 +72,7 @@ def equilibrate(
             K,
             device.put(b),
             lower=device.put(np.where(held, -tension, 0.0)),
-            upper=limit,
+            upper=upper,
             start=device.put(np.zeros(shape) if first_guess is None else first_guess.copy()),
             precondition=inverse,
             quick=K.quick,
@@ -128,25 +131,28 @@ def settled(
     pressure: Array,
     gradient: Array,
     *,
-    limit: float,
+    limit: Array | float,
     history: State | None,
     residual: float,
     convolutions: int,
 ) -> State:
     """The state with that overlap `b`, pressure and deformed gap: what yields has given way.
 
-    The displacement takes the place of the `gradient`.
+    The displacement takes the place of the `gradient`. Under a limit for each node the plastic work
+    stays that of `history`: `loading` integrates it.
     """
     plastic, work, adhesive_work, work_error = _past(contact, history)
-    yielding = (pressure >= limit) & (gradient < 0)
+    upper = limit if isinstance(limit, float) else limit[box]
+    yielding = (pressure >= upper) & (gradient < 0)
     if yielding.any():
         if history is not None:
             plastic = plastic.copy()
         lowered = plastic[box]
         np.subtract(lowered, gradient, out=lowered, where=yielding)
-        work -= limit * float(np.sum(gradient, where=yielding)) * contact.grid.cell_area
+        if isinstance(limit, float):
+            work -= limit * float(np.sum(gradient, where=yielding)) * contact.grid.cell_area
     displacement = np.add(gradient, b, out=gradient)
-    return State(contact, indentation, box, pressure, displacement, plastic,
+    return State(contact, indentation, box, pressure, displacement, plastic, limit,
                  work, adhesive_work, work_error, residual, convolutions)  # fmt: skip
 
 
@@ -166,8 +172,10 @@ def reach(contact: Contact, indentation: float, history: State | None = None) ->
 def parted(contact: Contact, indentation: float, history: State | None = None) -> State:
     """The state without any contact."""
     nothing = np.zeros((0, 0))
-    return State(contact, indentation, NOWHERE, nothing, nothing, *_past(contact, history),
-                 residual=0.0, convolutions=0)  # fmt: skip
+    plastic, work, adhesive_work, work_error = _past(contact, history)
+    bound = contact.first_yield_pressure if history is None else history.bound
+    return State(contact, indentation, NOWHERE, nothing, nothing, plastic, bound,
+                 work, adhesive_work, work_error, residual=0.0, convolutions=0)  # fmt: skip
 
 
 def _past(contact: Contact, history: State | None) -> tuple[Array, float, float, float]:

@@ -26,7 +26,7 @@ def solve_at_force(contact: Contact, force: float, *, start: State | None = None
     if not 0 < force < math.inf:
         raise CaseError(f"load: {force} N is not a positive force")
     nx, ny = contact.grid.nodes
-    capacity = contact.yield_pressure * contact.grid.cell_area * nx * ny
+    capacity = contact.hardness * contact.grid.cell_area * nx * ny
     if force >= capacity:
         raise DomainError(
             f"load: {force:.4g} N is more than the whole grid carries at the yield pressure "

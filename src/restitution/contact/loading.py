@@ -11,8 +11,10 @@ import math
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
-from restitution.contact.adhesion import attach, limit_of, pull
+from restitution.contact.adhesion import attach, pull
+from restitution.contact.cavity import yield_bound
 from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import RESIDUAL, equilibrate, parted, reach, refuse_edge
 from restitution.contact.influence import half_space
@@ -20,6 +22,8 @@ from restitution.contact.state import State
 from restitution.errors import CaseError
 from restitution.numerics.quadrature import integrate_adaptively
 from restitution.numerics.window import bounding_box, shape_of
+
+Array = NDArray[np.float64]
 
 SEED_PULL = 1e-10  # m: the pull after each loading increment (Ghanbarzadeh et al. 2019, §2.2)
 _CUT_TOLERANCE = 3e-5  # of force times indentation, where the work needs quadrature
@@ -33,6 +37,8 @@ _ADHESIVE_HALVINGS = 5
 # from first touch, the work of blind contacts was off by up to this share of w times the area
 # (93 % of 29 contacts with `equilibrium`, all of 11 with `seed`), whatever the quadrature says.
 _PINNING = {"equilibrium": 0.02, "seed": 0.006, "hertzian": 0.0}
+# Of the growth of the bound within one step, which the work of that step knows to such a part.
+_RATIO, _SHALLOW, _RULE_ERROR, _NEW, _NEW_ERROR = 1.5, 0.01, 0.1, 0.8, 0.15
 _WORK_RESIDUAL = 1e-6  # of the solves in between, whose force errors stay well below that
 
 
@@ -71,13 +77,22 @@ def step(state: State, indentation: float, *, residual: float = RESIDUAL) -> Sta
     if contact.adhesive:
         new = pull(state, indentation, residual=residual)
     else:
-        new = _press(contact, indentation, contact.yield_pressure, residual, history=state)
+        limit, convolutions = state.bound, 0
+        if contact.grows and indentation > state.indentation:
+            grown, convolutions = yield_bound(contact, indentation, residual)
+            limit = np.maximum(limit, grown)
+        new = _press(contact, indentation, limit, residual, history=state)
+        if contact.grows:
+            work, _ = _plastic_work(state, new)
+            new = replace(new, plastic_work=state.plastic_work + work,
+                          convolutions=new.convolutions + convolutions)  # fmt: skip
     refuse_edge(new)
     return replace(new, virgin=False)
 
 
 def load(contact: Contact, indentation: float, *, start: State | None, residual: float) -> State:
     """`solve` without its work, and letting contact at the edge of the grid pass."""
+    limit, convolutions = _limit_at(contact, indentation, residual)
     if contact.adhesive and contact.approach == "equilibrium":
         shallower = start if start is not None and start.indentation <= indentation else None
         if shallower is None:
@@ -87,25 +102,35 @@ def load(contact: Contact, indentation: float, *, start: State | None, residual:
             held = held[box]
         else:
             box, held = shallower.box, shallower.box_pressure != 0
-        state = attach(contact, indentation, box, held, limit=limit_of(contact),
+        state = attach(contact, indentation, box, held, limit=limit,
                        first_guess=None if start is None else start.pressure_on(box),
                        residual=residual)  # fmt: skip
     elif contact.adhesive and contact.approach == "seed":
         # The pull may let go of everything: the state is then parted, with zero force.
-        pressed = _press(contact, indentation + SEED_PULL, limit_of(contact), residual)
+        pressed = _press(contact, indentation + SEED_PULL, limit, residual)
         state = pull(pressed, indentation, residual=residual)
         state = replace(state, adhesive_work=0.0, virgin=True)
     else:
-        state = _press(contact, indentation, limit_of(contact), residual)
+        state = _press(contact, indentation, limit, residual)
     if contact.cut:
         state = _cut(state)
-    return state
+    return replace(state, convolutions=state.convolutions + convolutions)
+
+
+def _limit_at(contact: Contact, indentation: float, residual: float) -> tuple[Array | float, int]:
+    """The pressure bound of the solve, Pa, and the convolutions that finding it took.
+
+    It is infinite where the pressure is cut afterwards.
+    """
+    if contact.grows:
+        return yield_bound(contact, max(indentation, 0.0), residual)
+    return (math.inf if contact.cut else contact.yield_pressure), 0
 
 
 def _press(
     contact: Contact,
     indentation: float,
-    limit: float,
+    limit: Array | float,
     residual: float,
     history: State | None = None,
 ) -> State:
@@ -130,13 +155,13 @@ def _cut(elastic: State) -> State:
     plastic = np.zeros(contact.grid.nodes)
     plastic[box] = np.maximum(indentation - contact.gap[box] - displacement, 0.0)
     return replace(elastic, box_pressure=pressure, plastic_displacement=plastic,
-                   box_displacement=displacement,
+                   bound=contact.yield_pressure, box_displacement=displacement,
                    convolutions=elastic.convolutions + 1)  # fmt: skip
 
 
 def work_is_integrated(contact: Contact) -> bool:
-    """Whether the loading work of `contact` is an integral of its force, with an error."""
-    return contact.cut or (contact.adhesive and contact.approach != "hertzian")
+    """Whether the loading work of `contact` is an integral, with an error."""
+    return contact.cut or contact.grows or (contact.adhesive and contact.approach != "hertzian")
 
 
 def with_work(state: State, start: State | None) -> State:
@@ -147,14 +172,21 @@ def with_work(state: State, start: State | None) -> State:
     if start is None or not start.virgin or start.indentation >= indentation:
         start = None
     gain = contact.work_of_adhesion * state.contact_area
+    if contact.grows and contact.adhesive:
+        # Only the sum with the work of adhesion is known, by the force.
+        state = replace(state, plastic_work=_plastic_work(None, state)[0])
     known = state.stored_energy + state.plastic_work
     if _gain_hardly_matters(state):
         # Integrated works were between 0.37 and 0.93 of w times the area, most of them above 0.7.
         return replace(state, adhesive_work=gain, work_error=0.5 * gain)
     if contact.adhesive and contact.approach != "hertzian":
         work, error, convolutions = _work_by_force(state, start)
-    else:
+    elif contact.cut:
         work, error, convolutions = _work_by_cut(state, start)
+    else:
+        plastic, error, convolutions = _work_by_increments(state, start)
+        return replace(state, plastic_work=plastic, work_error=error,
+                       convolutions=state.convolutions + convolutions)  # fmt: skip
     convolutions += state.convolutions
     if contact.plasticity == "truncated":
         # The cut pressure's plastic work is what is left of the work; it has no formula of its own.
@@ -168,7 +200,7 @@ def _gain_hardly_matters(state: State) -> bool:
     contact = state.contact
     if not contact.adhesive or contact.approach != "equilibrium":
         return False
-    if contact.cut:
+    if contact.cut or contact.grows:
         return False
     gain = contact.work_of_adhesion * state.contact_area
     return gain <= 2 * _ADHESIVE_TOLERANCE * (state.stored_energy + state.plastic_work)
@@ -197,6 +229,52 @@ def _work_by_force(state: State, start: State | None) -> tuple[float, float, int
         _ADHESIVE_TOLERANCE * scale, depth=_ADHESIVE_HALVINGS,
     )  # fmt: skip
     return work + increment, error + its_error + _pinning_error(state), convolutions
+
+
+def _work_by_increments(state: State, start: State | None) -> tuple[float, float, int]:
+    """Plastic work under a bound that grows, its error, and the convolutions it took.
+
+    It is summed over depths that grow by `_RATIO` at most, from `start` or from where nearly
+    nothing has yielded.
+    """
+    contact, indentation = state.contact, state.indentation
+    first = _SHALLOW * indentation if start is None else start.indentation
+    steps = max(1, math.ceil(math.log(indentation / first) / math.log(_RATIO) - 1e-9))
+    depths = first * (indentation / first) ** (np.arange(steps) / steps)
+    work, error, convolutions, before = 0.0, 0.0, 0, start
+    if start is not None:
+        work, error, depths = start.plastic_work, start.work_error, depths[1:]
+    for depth in (*map(float, depths), indentation):
+        now = state
+        if depth != indentation:
+            now = load(contact, depth, start=None, residual=_WORK_RESIDUAL)
+            convolutions += now.convolutions
+        increment, its_error = _plastic_work(before, now)
+        work, error, before = work + increment, error + its_error, now
+    return work, error, convolutions
+
+
+def _plastic_work(before: State | None, after: State) -> tuple[float, float]:
+    """Work (J) of yielding from one state to the next, at most `_RATIO` as deep, and its error.
+
+    Each node yields by Δu under bounds that grow from b₁ to b₂. With u linear in the indentation
+    δ, and b in its logarithm, its work is Δu [b₁ + (b₂ − b₁) (δ₂/(δ₂ − δ₁) − 1/ln(δ₂/δ₁))]. The
+    error is the difference from the trapezium, and that of other rates of yielding.
+    """
+    area, given = after.contact.grid.cell_area, after.plastic_displacement
+    begun: Array | float
+    if before is None:
+        begun, old = after.contact.first_yield_pressure, np.zeros(1, dtype=bool)
+        ratio = math.inf
+    else:
+        begun, old = before.bound, before.plastic_displacement > 0
+        given = given - before.plastic_displacement
+        ratio = after.indentation / before.indentation if before.indentation > 0 else math.inf
+    share = ratio / (ratio - 1) - 1 / math.log(ratio) if 1 < ratio < math.inf else 0.5
+    whole = float(np.sum(given * begun)) * area
+    growth = given * (after.bound - begun)
+    on, new = (float(np.sum(growth, where=nodes)) * area for nodes in (old, ~old))
+    return whole + share * on + _NEW * new, _RULE_ERROR * abs(on) + _NEW_ERROR * abs(new)
 
 
 def _pinning_error(state: State) -> float:

@@ -30,7 +30,7 @@ def require_small(contact: Contact, indentation: float) -> None:
             f"highest peak is {1e6 * peak:.4g} um above the mean; check the units of the radius "
             "and of the roughness"
         )
-    foreseen = foreseen_radius(pair, indentation, contact.yield_pressure)
+    foreseen = foreseen_radius(pair, indentation, contact.hardness)
     if foreseen > pair.radius:
         raise CaseError(
             f"the contact is foreseen to reach {1e6 * foreseen:.4g} um from the centre at an "
@@ -66,7 +66,7 @@ def _tilt(contact: Contact) -> str | None:
 
 def _edge(contact: Contact, indentation: float) -> str | None:
     """Contact at the rim of the grid, with a margin for what smooth bodies do not tell."""
-    radius = foreseen_radius(contact.pair, indentation, contact.yield_pressure)
+    radius = foreseen_radius(contact.pair, indentation, contact.hardness)
     gap, grid = contact.gap, contact.grid
     half_width = 0.5 * min(grid.size)
     if radius >= half_width:  # `foreseen_warnings` says so
@@ -90,7 +90,7 @@ def _closed_gap(contact: Contact, indentation: float, distance: float) -> float:
     the indentation by sqrt(2πaw/E*) (JKR). Where the roughness is as high as the indentation is
     deep, single asperities carry the load, and displace little.
     """
-    pair, p_y, w = contact.pair, contact.yield_pressure, contact.work_of_adhesion
+    pair, p_y, w = contact.pair, contact.hardness, contact.work_of_adhesion
     E_star, deeper = pair.contact_modulus, indentation
     for _ in range(10):  # a fixed point: `radius` grows with its square root at most
         radius = foreseen_radius(pair, deeper, p_y)
@@ -111,7 +111,7 @@ def _steepness(contact: Contact) -> str | None:
 
 
 def _yield_pressure(contact: Contact) -> str | None:
-    ratio = contact.yield_pressure / contact.pair.contact_modulus
+    ratio = contact.hardness / contact.pair.contact_modulus
     low, high = _PRESSURES
     if math.isinf(ratio) or low <= ratio <= high:
         return None

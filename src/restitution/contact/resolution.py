@@ -91,7 +91,7 @@ def refuse_coarse_scan(contact: Contact, indentation: float) -> None:
     if "file" not in provenance:
         return
     pixel = max(_coarsest_pixel(contact), *contact.grid.spacing)
-    radius = foreseen_radius(contact.pair, indentation, contact.yield_pressure)
+    radius = foreseen_radius(contact.pair, indentation, contact.hardness)
     if radius < pixel:
         raise SurfaceError(
             f"{provenance['file']}: one pixel ({_um(pixel)}) is larger than the contact radius at "
@@ -103,7 +103,7 @@ def refuse_coarse_scan(contact: Contact, indentation: float) -> None:
 def foreseen_warnings(contact: Contact, indentation: float) -> list[str]:
     """What the numbers before a solve say against loading `contact` to `indentation` (m)."""
     grid, pair = contact.grid, contact.pair
-    radius = foreseen_radius(pair, indentation, contact.yield_pressure)
+    radius = foreseen_radius(pair, indentation, contact.hardness)
     pixel = _coarsest_pixel(contact)
     half_width, coarsest = 0.5 * min(grid.size), max(pixel, *grid.spacing)
     found = []

@@ -23,7 +23,9 @@ class State:
 
     `box` is the part of the grid that was solved on; `box_pressure` (Pa) and the elastic
     displacement `box_displacement` (m) are known there, and outside it the pressure is zero.
-    `plastic_displacement` (m, the surface is left lower by it) has the shape of the grid.
+    `plastic_displacement` (m, the surface is left lower by it) has the shape of the grid, and so
+    has `bound`, the largest pressure (Pa) that each node carries from now on, unless it is one for
+    all.
     `plastic_work` (J) is what yielding has dissipated so far and `adhesive_work` what adhesion has
     done, known within `work_error`. `residual` is the largest violation of the contact conditions
     over the indentation, `convolutions` what the solve cost.
@@ -35,6 +37,7 @@ class State:
     box_pressure: Array
     box_displacement: Array
     plastic_displacement: Array
+    bound: Array | float
     plastic_work: float
     adhesive_work: float
     work_error: float

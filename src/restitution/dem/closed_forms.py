@@ -92,7 +92,7 @@ class Bodies:
             R=pair.radius,
             E=pair.contact_modulus,
             m=pair.mass,
-            p_y=case.yields()[0],
+            p_y=case.yielding().hardness,
             w=case.interface.adhesion,
             walls=sum(walls),
             equal=not any(walls) and pair.first == pair.second and Y_1 == Y_2,

@@ -81,14 +81,17 @@ def minimise_nested(
         if window != everywhere:
             K, inverse = system(shape_of(window), 0)
         inside = (..., *window)
+        bound: Any = upper
+        if _varies(upper):
+            bound = bound[inside]
         found = minimise_quadratic(
             K,
             b[inside],
             0.0,
-            upper,
+            bound,
             start=p[inside],
             product=None if Kp is None else Kp[inside],
-            precondition=_with_less_mean(inverse, p[inside], b[inside], upper),
+            precondition=_with_less_mean(inverse, p[inside], b[inside], bound),
             quick=K.quick,
             rough=window != everywhere,  # the check will see
             tolerance=tolerance,
@@ -140,6 +143,11 @@ def _with_less_mean(inverse: Operator, p: Array, b: Array, upper: Bound) -> Oper
     return less
 
 
+def _varies(bound: Bound) -> bool:
+    """Whether each node has a bound of its own (those of a batch have one for all its nodes)."""
+    return np.ndim(bound) >= 2 and bound.shape[-1] > 1  # type: ignore[union-attr]
+
+
 def _between_the_bounds(p: Array, upper: Bound) -> tuple[Mask, Number, Number]:
     """The nodes with 0 < p < `upper`; how many they are, and how many with 0 < p."""
     touching = p > 0
@@ -161,22 +169,26 @@ def _first_guess(system: System, b: Array, upper: Bound, level: int) -> Array:
     size = (rows + 1) // 2, (columns + 1) // 2
     coarse = np.empty_like(b, shape=(*batch, *size), order="C")
     passes.coarsen(b, coarse)
+    bound: Any = upper
+    if _varies(upper):
+        bound = np.empty_like(coarse)
+        passes.coarsen(upper, bound)  # type: ignore[arg-type]
     K, inverse = system(size, level)
-    start = _first_guess(system, coarse, upper, level + 1)
+    start = _first_guess(system, coarse, bound, level + 1)
     found = minimise_quadratic(
         K,
         coarse,
         0.0,
-        upper,
+        bound,
         start=start,
-        precondition=_with_less_mean(inverse, start, coarse, upper),
+        precondition=_with_less_mean(inverse, start, coarse, bound),
         quick=K.quick,
         rough=True,
         tolerance=_COARSE_ACCURACY * np.maximum(highest(b), 0.0),
         max_iterations=_COARSE_ITERATIONS,
     )
     guess = np.empty_like(b, order="C")
-    _, free, touching = _between_the_bounds(found.point, upper)
+    _, free, touching = _between_the_bounds(found.point, bound)
     jumps = free <= _NEARLY_NONE * touching
     if not some(jumps):
         passes.refine(found.point, guess)

@@ -26,6 +26,12 @@ _TRUNCATED = (
     "elastic pressure cut at p_y",
     "Thornton and Ning (1998), Powder Technol. 99, 154–162",
 )
+_CAVITY = (
+    "yield", "pressure bounded by 1.6 to 3.5 yield strengths, growing with the elastic pressure",
+    "Johnson (1970), J. Mech. Phys. Solids 18, 115–126; Jackson and Green (2005), J. Tribol. 127, "
+    "343–354",
+)  # fmt: skip
+_YIELD = {"equilibrium": _EQUILIBRIUM, "truncated": _TRUNCATED, "expanding-cavity": _CAVITY}
 _ADHESION = (
     "adhesion", "JKR limit, energy balance at the edge of contact",
     "Johnson, Kendall and Roberts (1971), Proc. R. Soc. A 324, 301–313",
@@ -54,7 +60,7 @@ def methods(summary: Mapping[str, Any]) -> Table:
     model = summary["model"]
     rows = list(_ALWAYS)
     if model["plasticity"] != "none":
-        rows.append(_TRUNCATED if model["plasticity"] == "truncated" else _EQUILIBRIUM)
+        rows.append(_YIELD[model["plasticity"]])
     if model["adhesion"] != "none":
         rows += [_ADHESION, _DETACHMENT[model["detachment"]]]
     source = summary.get("surface", {}).get("source")

@@ -23,7 +23,7 @@ from restitution.contact.state import State
 from restitution.errors import CaseError, SurfaceError, shown
 from restitution.numerics.grid import Grid
 from restitution.studies import needs
-from restitution.studies.particles import BodyTable, InterfaceTable
+from restitution.studies.particles import BodyTable, InterfaceTable, Yielding
 from restitution.studies.quantities import Force, Length
 from restitution.studies.table import Table
 from restitution.studies.tables import (
@@ -77,8 +77,8 @@ class Case(Table):
             )
         if self.impact is not None:
             self._check_masses()
-        p_y, _ = self.yields()
-        if self.interface.plasticity == "truncated" and math.isinf(p_y):
+        elastic = math.isinf(self.yielding().hardness)
+        if self.interface.plasticity == "truncated" and elastic:
             raise ValueError(
                 'interface.plasticity = "truncated" needs the pressure to cut at, and '
                 'yield_pressure is "elastic"; give a pressure, or leave plasticity out'
@@ -152,9 +152,9 @@ class Case(Table):
             )
         return Pair(first, first if self.second is None else self.second.body())
 
-    def yields(self) -> tuple[float, str]:
-        """The yield pressure (Pa; inf if elastic), and where it is from. Raises `CaseError`."""
-        return self.interface.yields(self.first, self.second or self.first)
+    def yielding(self) -> Yielding:
+        """How the contact yields. Raises `CaseError` where what it needs is not known."""
+        return self.interface.yielding(self.first, self.second or self.first)
 
     def surface(self, folder: Path) -> Surface:
         """The composite roughness on the grid; files are relative to `folder`."""
@@ -174,18 +174,24 @@ class Case(Table):
         pair = self.pair()
         if grid := self._own_grid():
             fine = divided(grid, self.grid.factor if self.grid else 1)
-            needs.require(needs.run_bytes(fine, self.interface), fine)
+            needs.require(self.run_bytes(fine), fine)
         surface = self.surface(folder)
-        needs.require(needs.run_bytes(surface.grid, self.interface), surface.grid)
+        needs.require(self.run_bytes(surface.grid), surface.grid)
         return Contact(
             pair,
             surface,
-            yield_pressure=self.yields()[0],
-            plasticity=self.interface.plasticity,
+            **self.yielding().arguments(),
             work_of_adhesion=self.interface.adhesion,
             approach=self.interface.approach,
             detachment=self.interface.detachment,
         )
+
+    def run_bytes(self, grid: Grid) -> float:
+        """Memory that a run on `grid` takes."""
+        yielding = self.yielding()
+        plasticity = "none" if math.isinf(yielding.hardness) else yielding.plasticity
+        adhesive = self.interface.adhesion > 0
+        return needs.run_bytes(grid, plasticity=plasticity, adhesive=adhesive)
 
     def depths(self) -> list[float]:
         """The indentations (m), loads (N) or impact velocities (m/s) asked for, increasing."""

@@ -107,7 +107,7 @@ class Companions:
         here, mass = curve.at(work), coarse.pair.mass
         changes = []
         stiff = [replace(coarse, pair=_with_modulus_of(coarse.pair, case.pair())) for case in ends]
-        strong = [replace(coarse, yield_pressure=case.yields()[0]) for case in ends]
+        strong = [replace(coarse, **case.yielding().arguments()) for case in ends]
         for pair in (stiff, strong):
             if any(contact != coarse for contact in pair):
                 found = [self._curve(contact).at(work) for contact in pair]

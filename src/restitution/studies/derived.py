@@ -23,7 +23,7 @@ def deepest_indentation(case: Case) -> float:
         return float(hertz.indentation_from_force(last, pair.radius, pair.contact_modulus))
     assert pair.mass is not None  # Case._check_masses
     # As good as elastic: beyond any pressure of a contact.
-    p_y = min(case.yields()[0], pair.contact_modulus)
+    p_y = min(case.yielding().hardness, pair.contact_modulus)
     return float(
         thornton_ning.indentation_from_velocity(
             last, pair.radius, pair.contact_modulus, p_y, pair.mass
@@ -33,16 +33,17 @@ def deepest_indentation(case: Case) -> float:
 
 def derived_quantities(case: Case, contact: Contact) -> dict[str, float | None]:
     """R*, E*, m*, yield quantities and the foreseen contact, keyed with SI units; None: not so."""
-    pair, p_y = contact.pair, contact.yield_pressure
+    pair, p_y = contact.pair, contact.hardness
     deepest = deepest_indentation(case)
     radius = foreseen_radius(pair, deepest, p_y)
     elastic = math.isinf(p_y)
     mass = pair.mass
-    arguments = (pair.radius, pair.contact_modulus, p_y)
+    arguments = (pair.radius, pair.contact_modulus, contact.first_yield_pressure)
     return {
         "reduced_radius_m": pair.radius,
         "contact_modulus_Pa": pair.contact_modulus,
         "reduced_mass_kg": mass,
+        "yield_strength_Pa": contact.yield_strength if contact.grows else None,
         "yield_pressure_Pa": None if elastic else p_y,
         "yield_indentation_m": None if elastic else float(yielding.yield_indentation(*arguments)),
         "yield_force_N": None if elastic else float(yielding.yield_force(*arguments)),

@@ -8,7 +8,6 @@ a factor of up to 1.5.
 from __future__ import annotations
 
 import math
-from typing import Protocol
 
 from restitution.numerics import memory
 from restitution.numerics.grid import Grid
@@ -22,16 +21,8 @@ _SCAN = 60.0  # per pixel of a scan: read, levelled, its spectrum
 _TWIN = 75.0  # per node
 _BAND = 90.0  # per node of the finest band of a twin that is adjusted
 _DESCRIBED = 150.0  # autocorrelation, spectrum and page of `restitution surface`
-_ELASTIC, _PLASTIC, _TRUNCATED, _ADHESIVE = 115.0, 140.0, 190.0, 150.0
-
-
-class _Interface(Protocol):
-    @property
-    def yield_pressure(self) -> object: ...
-    @property
-    def plasticity(self) -> str: ...
-    @property
-    def adhesion(self) -> float: ...
+_MODELS = {"none": 115.0, "equilibrium": 140.0, "expanding-cavity": 190.0, "truncated": 190.0}
+_ADHESIVE = 150.0
 
 
 def nodes_of(grid: Grid) -> int:
@@ -49,13 +40,9 @@ def require(needed: float, grid: Grid) -> None:
     )
 
 
-def run_bytes(grid: Grid, interface: _Interface) -> float:
-    """Memory of a run on `grid`, once the surface is there."""
-    per_node = _ELASTIC
-    if interface.adhesion > 0:
-        per_node = _ADHESIVE
-    elif interface.yield_pressure != math.inf:
-        per_node = _TRUNCATED if interface.plasticity == "truncated" else _PLASTIC
+def run_bytes(grid: Grid, *, plasticity: str, adhesive: bool) -> float:
+    """Memory of a run on `grid`, once the surface is there; `plasticity` "none" is elastic."""
+    per_node = max(_MODELS[plasticity], _ADHESIVE if adhesive else 0.0)
     return _PROCESS + per_node * nodes_of(grid)
 
 

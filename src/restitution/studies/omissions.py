@@ -33,12 +33,16 @@ def adhesion_matters_below(case: Case) -> float | None:
 
 
 def _default_yield(case: Case) -> str | None:
-    if case.interface.yield_pressure is not None:
+    interface = case.interface
+    if interface.yield_pressure is not None or interface.yield_strength is not None:
         return None
-    p_y, source = case.yields()
+    yielding = case.yielding()
+    how = f"yields at {1e-6 * yielding.yield_pressure:.4g} MPa ({yielding.source})"
+    if math.isfinite(yielding.yield_strength):
+        how = f"yields by {yielding.source}"
     return (
-        f"interface.yield_pressure is left out: the contact yields at {1e-6 * p_y:.4g} MPa "
-        f'({source}); write a pressure, or "elastic" for bodies that do not yield'
+        f"interface.yield_strength is left out: the contact {how}; write a strength or a pressure, "
+        'or yield_pressure = "elastic" for bodies that do not yield'
     )
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from restitution.collision import Collision, collide
-from restitution.contact.contact import Contact
+from restitution.contact.contact import FULL_CONSTRAINT, Contact
 from restitution.contact.path import unloading_path
 from restitution.contact.plausibility import implausible, require_small
 from restitution.contact.resolution import (
@@ -38,8 +38,12 @@ CONVENTIONS = {
     "end_of_contact": "separation, where the force is back to zero",
     "indentation_zero": "first touch of the undeformed bodies (highest asperity)",
     "restitution": "sqrt(unloading work / loading work), quasi-static normal impact",
-    "yield_pressure": "largest contact pressure, a hardness: about 2.8 times the yield strength",
 }
+YIELD_PRESSURE = "largest contact pressure, a hardness: about 2.8 times the yield strength"
+FULL_PRESSURE = (
+    f"pressure of a fully plastic contact, {FULL_CONSTRAINT} times the yield strength; contacts "
+    "begin to yield at about 1.6 times the yield strength"
+)
 
 _VELOCITY = 1e-3  # difference of an impact velocity from that asked for that is worth a warning
 _IMPRECISE = 0.02  # numerical error of COR that is worth a warning
@@ -246,7 +250,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Progress)
     found += [_imprecise(out, case), _velocities_missed(out, case, run.asked)]
     if not contact.adhesive:
         found.append(_unbalanced(run.unloading_checks))
-    elastic = math.isinf(contact.yield_pressure)
+    elastic = math.isinf(contact.hardness)
     return {
         "title": case.title,
         "status": run.status,
@@ -260,10 +264,13 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Progress)
             "half_space": "free, Love cells, zero-padded FFT",
             **asdict(contact.grid),
             "refine": case.grid.factor if case.grid else 1,
-            "yield_pressure": case.yields()[1],
+            "yield_pressure": case.yielding().source,
         },
         "materials": _materials(case),
-        "conventions": CONVENTIONS,
+        "conventions": {
+            **CONVENTIONS,
+            "yield_pressure": FULL_PRESSURE if contact.grows else YIELD_PRESSURE,
+        },
         "derived": derived_quantities(case, contact),
         "surface": dict(contact.surface.provenance),
         "surface_statistics": describe(contact.surface),

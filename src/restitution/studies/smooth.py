@@ -28,7 +28,7 @@ def smooth_curve(contact: Contact, rows: list[dict[str, float]]) -> dict[str, An
     of its own; up to yield Hertz holds. Empty in the `truncated` model, whose smooth contact is
     Thornton and Ning's, and with adhesion, which small grids do not resolve. Raises as `solve`.
     """
-    pair, p_y = contact.pair, contact.yield_pressure
+    pair, p_y = contact.pair, contact.hardness
     R, E_star = pair.radius, pair.contact_modulus
     if contact.plasticity == "truncated" or contact.adhesive or not rows:
         return {}
@@ -37,7 +37,9 @@ def smooth_curve(contact: Contact, rows: list[dict[str, float]]) -> dict[str, An
     least = min(row["loading_work_J"] for row in rows)
     same_work = (15 * least / (8 * E_star * math.sqrt(R))) ** 0.4
     first = min(same_work, *(row["indentation_m"] for row in rows))
-    onset = math.inf if math.isinf(p_y) else float(yielding.yield_indentation(R, E_star, p_y))
+    first_yield = contact.first_yield_pressure
+    elastic = math.isinf(first_yield)
+    onset = math.inf if elastic else float(yielding.yield_indentation(R, E_star, first_yield))
     depths = np.unique(np.append(first, np.geomspace(min(max(first, onset), last), last, _DEPTHS)))
     force, cor, velocity = (np.empty(depths.size) for _ in range(3))
     for k, depth in enumerate(depths):
