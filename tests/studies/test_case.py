@@ -60,12 +60,11 @@ def test_a_material_of_known_strength_yields_by_default(case_text, tmp_path):
     """Without [interface] a steel sphere was elastic, with a COR of 1.0000 ± 0."""
     begin, end = case_text.index("[first]"), case_text.index("[roughness]")
     case = parse_case(STEEL + case_text[end:])
-    p_y, source = case.yields()
-    assert p_y == approx(2.8 * case.first.yield_strength, rel=1e-12)
-    assert source.startswith("2.8 Y of first (steel)")
-    (line,) = [each for each in omissions(case) if "yield_pressure" in each]
-    assert "is left out: the contact yields at" in line
-    assert not any("yield_pressure" in each for each in omissions(parse_case(case_text)))
+    assert case.yielding().yield_strength == case.first.yield_strength
+    assert case.yielding().source.startswith("Y of first (steel)")
+    (line,) = [each for each in omissions(case) if "yield_strength" in each]
+    assert "is left out: the contact yields by Y of first (steel)" in line
+    assert not any("yield_strength" in each for each in omissions(parse_case(case_text)))
     assert begin == case_text.index("[first]")
 
 

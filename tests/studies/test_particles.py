@@ -2,12 +2,14 @@
 
 import json
 import math
+from pathlib import Path
 
 import pytest
 
 from restitution.errors import CaseError
 from restitution.studies.case import parse_case
 from restitution.studies.materials import material
+from restitution.studies.particles import Yielding
 
 REST = """
 [grid]
@@ -54,10 +56,10 @@ def test_a_material_that_is_not_known(table):
 def test_the_softer_body_yields():
     hardness = '[interface]\nyield_pressure = "hardness"\n'
     case = parsed(f'second = "aluminium"\n{GLASS}{hardness}')
-    pressure, words = case.yields()
-    assert pressure == material("aluminium").hardness.value
-    assert words == "hardness of second (aluminium), 1050 MPa"
-    assert parsed(GLASS + hardness).yields()[0] == material("glass").hardness.value
+    yielding = case.yielding()
+    assert yielding.yield_pressure == material("aluminium").hardness.value
+    assert yielding.source == "hardness of second (aluminium), 1050 MPa"
+    assert parsed(GLASS + hardness).yielding().yield_pressure == material("glass").hardness.value
 
 
 @pytest.mark.parametrize(("rule", "factor"), [("1.6 Y", 1.6), ("2.8Y", 2.8), ("3 * Y", 3.0)])
@@ -71,9 +73,9 @@ def test_so_many_yield_strengths(rule, factor):
 def test_a_body_without_a_yield_strength_yields_at_its_hardness():
     steel = 'first = { material = "glass", radius = "1 mm" }\nsecond = "polystyrene"\n'
     case = parsed(f'{steel}[interface]\nyield_pressure = "1.6 Y"\n')
-    assert case.yields() == (
-        1.6 * material("polystyrene").yield_strength.value,
-        "1.6 Y of second (polystyrene), Y = 90 MPa",
+    strength = material("polystyrene").yield_strength.value
+    assert case.yielding() == Yielding(
+        "1.6 Y of second (polystyrene), Y = 90 MPa", yield_pressure=1.6 * strength
     )
     soft = 'first = { material = "sodium-chloride", radius = "1 mm" }\nsecond = "steel"\n'
     case = parsed(f'{soft}[interface]\nyield_pressure = "1.6 Y"\n')
@@ -117,3 +119,68 @@ def test_results_say_where_values_are_from(cli, tmp_path):
     assert density["low"] <= density["value"] <= density["high"]
     assert "verified" in density
     assert density["source"]
+
+
+STEELS = 'first = { material = "steel", radius = "1 mm" }\nsecond = "304"\n'
+
+
+def test_a_known_strength_bounds_by_an_expanding_cavity():
+    """By default, of the softer body; a strength of one's own goes before it."""
+    strength = material("304").yield_strength.value
+    found = parsed(STEELS).yielding()
+    assert found == Yielding(
+        f"Y of second (stainless-steel), {1e-6 * strength:.6g} MPa",
+        "expanding-cavity",
+        yield_strength=strength,
+    )
+    own = parsed(f'{STEELS}[interface]\nyield_strength = "1 GPa"\ntangent_modulus = "2 GPa"\n')
+    assert own.yielding() == Yielding(
+        "given", "expanding-cavity", yield_strength=1e9, tangent_modulus=2e9
+    )
+    contact = own.contact(Path())
+    assert contact.yield_strength == 1e9
+    assert contact.grows
+
+
+def test_a_yield_pressure_keeps_the_constant_bound():
+    text = f'{STEELS}[interface]\nyield_pressure = "2.8 Y"\n'
+    assert parsed(text).yielding().plasticity == "equilibrium"
+    constant = parsed(f'{STEELS}[interface]\nplasticity = "equilibrium"\n').yielding()
+    assert constant == parsed(text).yielding()
+    # a ceramic has no yield strength: the softer body yields at its hardness
+    assert parsed(GLASS).yielding().source.startswith("hardness of first (glass)")
+
+
+@pytest.mark.parametrize(
+    ("interface", "said"),
+    [
+        (
+            'yield_strength = "1 GPa"\nyield_pressure = "2 GPa"',
+            "yield_pressure, yield_strength: give one of them",
+        ),
+        (
+            'tangent_modulus = "1 GPa"\nyield_pressure = "2 GPa"',
+            "yield_pressure, tangent_modulus: give one of them",
+        ),
+        (
+            'plasticity = "expanding-cavity"\nyield_pressure = "2 GPa"',
+            'plasticity = "expanding-cavity" takes a yield_strength',
+        ),
+        (
+            'plasticity = "truncated"\nyield_strength = "2 GPa"',
+            'plasticity = "truncated" takes a yield_pressure instead',
+        ),
+        ('plasticity = "expanding-cavity"', r"is missing, and so is that of first \(glass\)"),
+        ('tangent_modulus = "1 GPa"', r"is missing, and so is that of first \(glass\)"),
+    ],
+)
+def test_a_model_without_what_it_needs(interface, said):
+    with pytest.raises(CaseError, match=said):
+        parsed(f"{GLASS}[interface]\n{interface}\n").yielding()
+
+
+def test_a_tangent_modulus_above_youngs_is_refused():
+    text = f'{STEELS}[interface]\nyield_strength = "1 GPa"\ntangent_modulus = "300 GPa"\n'
+    case = parsed(text)
+    with pytest.raises(CaseError, match=r"tangent_modulus: 3e\+11 Pa is not zero or more"):
+        case.contact(Path())

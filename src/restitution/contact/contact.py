@@ -91,8 +91,8 @@ class Contact:
         softest = min(body.youngs_modulus for body in (self.pair.first, self.pair.second))
         if not 0 <= self.tangent_modulus < softest:
             raise CaseError(
-                f"tangent_modulus: {self.tangent_modulus} Pa is not zero or more and below Young's "
-                f"modulus, {softest} Pa"
+                f"tangent_modulus: {self.tangent_modulus:g} Pa is not zero or more and below "
+                f"Young's modulus, {softest:g} Pa"
             )
         if self.tangent_modulus and not grows:
             raise CaseError("tangent_modulus: hardening needs a yield_strength")
