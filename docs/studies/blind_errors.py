@@ -5,12 +5,11 @@ reference is the mean COR over other surfaces of the same kind (other seeds, or 
 scan), on cells four times as small, at the same loading work, with adhesive unloading in steps for
 a quarter of the error. Where a case takes materials of the library, each reference surface has
 values drawn at random from the library's spread. Constants of `error_budget` were chosen on other
-seeds (`--first 1000` and above were never looked at before).
+seeds (1000 to 1104 and 2000 to 2079 among them; those of the table were never looked at before).
 
     python docs/studies/blind_errors.py --topographies ../shared/topographies
 
-writes blind_errors.csv beside this file, a row for each COR. `--summary` reads it again. The table
-that is kept has cases 1000 to 1019, and from 1020 to 1104 those without adhesion.
+writes blind_errors.csv beside this file, a row for each COR. `--summary` reads it again.
 """
 
 from __future__ import annotations
@@ -50,7 +49,7 @@ def draw(seed: int, scans: Path) -> tuple[str, str]:
     """The kind and the text of a case; every fourth is adhesive."""
     rng = np.random.default_rng(seed)
     adhesive = seed % 4 == 0
-    nodes = int(rng.choice([32, 40] if adhesive else [64, 96, 128]))
+    nodes = int(rng.choice([24, 32] if adhesive else [64, 96, 128]))
     kind = str(rng.choice(KINDS, p=SHARES))
     R = 10 ** rng.uniform(-5.3, -3.3)
     E, nu = 10 ** rng.uniform(9.6, 11.3), rng.uniform(0.15, 0.4)
@@ -175,7 +174,7 @@ def _reference(case, rows, seed):
         contact = other.contact(Path())
         # The same velocity is another work where the masses differ.
         mass = contact.pair.mass / case.pair().mass
-        curve = curve_of(contact, list(between), case.unloading.method, tolerance=0.0005)
+        curve = curve_of(contact, list(between), case.unloading.method, tolerance=0.001)
         found.append(curve.at(work * mass))
     deviation = np.std(found, axis=0, ddof=1) if surfaces > 1 else np.zeros(work.size)
     return np.mean(found, axis=0), deviation / math.sqrt(surfaces)
@@ -242,7 +241,7 @@ def summary(path: Path) -> str:
 def main() -> None:
     """Compute and summarise."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--first", type=int, default=1000, help="number of the first case")
+    parser.add_argument("--first", type=int, default=3000, help="number of the first case")
     parser.add_argument("--cases", type=int, default=88)
     parser.add_argument("--topographies", type=Path, default=Path("../shared/topographies"))
     parser.add_argument(
@@ -265,7 +264,7 @@ def main() -> None:
         ):
             table = csv.DictWriter(file, COLUMNS, lineterminator="\n")
             table.writeheader()
-            for rows in pool.imap(examine, tasks):
+            for rows in pool.imap_unordered(examine, tasks):
                 table.writerows(rows)
                 file.flush()
     print(summary(options.table))

@@ -88,7 +88,7 @@ def test_scatter_is_that_of_the_surfaces(case_text, tmp_path):
             for s in range(100, 112)
         ]
     )
-    stated = np.array([each["surface_scatter"] for each in rows]) / 1.65
+    stated = np.array([each["surface_scatter"] for each in rows]) / 1.5
     ratio = found.std(axis=0, ddof=1) / stated
     assert (ratio > 0.3).all()
     assert (ratio < 2.5).all()
@@ -144,7 +144,7 @@ def test_scatter_grows_with_the_spread_of_curves():
     work = np.geomspace(1e-9, 1e-6, 3)
     rng = np.random.default_rng(1)
     curves = 0.5 + 0.05 * rng.standard_normal((4000, 3))
-    assert scatter(curves, work) == approx(np.full(3, 1.65 * 0.05), rel=0.05)
+    assert scatter(curves, work) == approx(np.full(3, 1.5 * 0.05), rel=0.05)
 
 
 def test_a_curve_is_not_extrapolated():

@@ -14,7 +14,7 @@ surfaces, whose shortest wave belongs to their definition, n = 0. f is the error
 many nodes in the median patch had on finer grids (docs/resolution.md), and s a small share of it
 that keeps chance from making the error zero, a large one where the contact is not resolved.
 
-The constants were chosen on some 190 random cases, 12 of them adhesive, and checked on others
+The constants were chosen on some 260 random cases, 30 of them adhesive, and checked on others
 (docs/error.md).
 """
 
@@ -39,12 +39,12 @@ Row = dict[str, float]
 
 _BAND = 1.5  # of the change of COR expected from the waves that the grid does not carry
 _SHARE_RESOLVED = 0.03
-_FEW_NODES, _SHARE_UNRESOLVED = (3, 7), (0.6, 0.2)
+_FEW_NODES, _SHARE_UNRESOLVED = (3, 7), (0.6, 0.1)
 # About 90 % of contacts with so many nodes in the median patch were within this COR of a finer
 # grid's. A single node yields late and all at once, so its COR may be off by nearly all of it.
 _PATCH_NODES = (1, 3, 7, 14, 30, 100, 400)
 _PATCH_ERROR = (0.9, 0.4, 0.15, 0.08, 0.05, 0.024, 0.008)
-_SCATTER = 1.65  # standard deviations of COR between surfaces: about 90 % with eight of them
+_SCATTER = 1.5  # standard deviations of COR between surfaces: about 88 % with eight of them
 # ln W over which neighbouring rows tell about a row: single differences may be zero by chance.
 _NEAR_GRID, _NEAR_SURFACE = 2.0, 1.0
 MOST_AFFORDABLE = 2**24  # nodes: minutes and some 2 GB
