@@ -131,7 +131,8 @@ def _print_curve(console: Console, rows: list[dict[str, float]]) -> None:
     from rich.table import Table
 
     table = Table(box=None, header_style="bold")
-    for name in ("indentation (nm)", "force (N)", "velocity (m/s)", "COR", "nodes", "resolved"):
+    for name in ("indentation (nm)", "force (N)", "velocity (m/s)", "COR", "model error", "nodes",
+                 "resolved"):  # fmt: skip
         table.add_column(name, justify="right")
     for row in rows:
         velocity = row["impact_velocity_m_per_s"]
@@ -140,6 +141,7 @@ def _print_curve(console: Console, rows: list[dict[str, float]]) -> None:
             f"{row['force_N']:.4g}",
             "-" if velocity != velocity else f"{velocity:.4g}",
             f"{row['restitution']:.4f}{_uncertainty(row)}",
+            f"{row['model_error']:.3f}",
             f"{row['contact_nodes']:.0f}",
             "yes" if row["resolved"] and row["adhesion_resolved"] else "no",
         )

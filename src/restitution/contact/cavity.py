@@ -40,14 +40,16 @@ Array = NDArray[np.float64]
 
 GROWTH, LARGEST = 0.65, 3.5  # c₁, c₂
 _DEEPER = 2.0  # times the indentation, where the elastic pressure is taken
+_LOOSER = 1e2  # times the residual of the solve
 _TABOR = 0.2  # representative strain over a/R
 
 
 def yield_bound(contact: Contact, indentation: float, residual: float) -> tuple[Array, int]:
     """The largest pressure (Pa) of each node at `indentation` (m), and the convolutions it took.
 
-    The array has the shape of the grid. `residual` is that of the elastic solve, whose contact may
-    reach the edge of the grid. Raises `NotConvergedError`.
+    The array has the shape of the grid. `residual` is that of the solve under this bound; that of
+    the elastic solve may be larger, for the bound follows the logarithm of its pressure. The
+    elastic contact may reach the edge of the grid. Raises `NotConvergedError`.
     """
     onset = contact.first_yield_pressure
     bound = np.full(contact.grid.nodes, onset)
@@ -55,7 +57,7 @@ def yield_bound(contact: Contact, indentation: float, residual: float) -> tuple[
     box = reach(contact, deeper)
     if box is None:
         return bound, 0
-    elastic = equilibrate(contact, deeper, box, limit=math.inf, residual=residual)
+    elastic = equilibrate(contact, deeper, box, limit=math.inf, residual=_LOOSER * residual)
     measure = elastic.box_pressure / math.sqrt(_DEEPER)
     bound[box] = bound_of(contact, measure)
     return bound, elastic.convolutions

@@ -21,7 +21,7 @@ from restitution.contact.influence import half_space
 from restitution.contact.state import State
 from restitution.errors import CaseError
 from restitution.numerics.quadrature import integrate_adaptively
-from restitution.numerics.window import bounding_box, shape_of
+from restitution.numerics.window import Box, bounding_box, shape_of
 
 Array = NDArray[np.float64]
 
@@ -37,8 +37,11 @@ _ADHESIVE_HALVINGS = 5
 # from first touch, the work of blind contacts was off by up to this share of w times the area
 # (93 % of 29 contacts with `equilibrium`, all of 11 with `seed`), whatever the quadrature says.
 _PINNING = {"equilibrium": 0.02, "seed": 0.006, "hertzian": 0.0}
-# Of the growth of the bound within one step, which the work of that step knows to such a part.
-_RATIO, _SHALLOW, _RULE_ERROR, _NEW, _NEW_ERROR = 1.5, 0.01, 0.1, 0.8, 0.15
+# Depths between which the plastic work is summed grow by this ratio at most; from this part of the
+# indentation on. Errors are parts of what the growth of the bound adds to the work of a step, for
+# nodes that had yielded before it and for those that begin to (against 11 times as many depths).
+_RATIO, _SHALLOW = 1.42, 0.1
+_RULE_ERROR, _NEW, _NEW_ERROR = 0.1, 0.8, 0.15
 _WORK_RESIDUAL = 1e-6  # of the solves in between, whose force errors stay well below that
 
 
@@ -172,21 +175,20 @@ def with_work(state: State, start: State | None) -> State:
     if start is None or not start.virgin or start.indentation >= indentation:
         start = None
     gain = contact.work_of_adhesion * state.contact_area
-    if contact.grows and contact.adhesive:
-        # Only the sum with the work of adhesion is known, by the force.
-        state = replace(state, plastic_work=_plastic_work(None, state)[0])
+    if contact.grows:
+        plastic, error, convolutions = _work_by_increments(state, start)
+        convolutions += state.convolutions
+        state = replace(state, plastic_work=plastic, convolutions=convolutions)
+        if not contact.adhesive or contact.approach == "hertzian":
+            return replace(state, work_error=error)
     known = state.stored_energy + state.plastic_work
     if _gain_hardly_matters(state):
         # Integrated works were between 0.37 and 0.93 of w times the area, most of them above 0.7.
         return replace(state, adhesive_work=gain, work_error=0.5 * gain)
     if contact.adhesive and contact.approach != "hertzian":
         work, error, convolutions = _work_by_force(state, start)
-    elif contact.cut:
-        work, error, convolutions = _work_by_cut(state, start)
     else:
-        plastic, error, convolutions = _work_by_increments(state, start)
-        return replace(state, plastic_work=plastic, work_error=error,
-                       convolutions=state.convolutions + convolutions)  # fmt: skip
+        work, error, convolutions = _work_by_cut(state, start)
     convolutions += state.convolutions
     if contact.plasticity == "truncated":
         # The cut pressure's plastic work is what is left of the work; it has no formula of its own.
@@ -261,20 +263,26 @@ def _plastic_work(before: State | None, after: State) -> tuple[float, float]:
     δ, and b in its logarithm, its work is Δu [b₁ + (b₂ − b₁) (δ₂/(δ₂ − δ₁) − 1/ln(δ₂/δ₁))]. The
     error is the difference from the trapezium, and that of other rates of yielding.
     """
-    area, given = after.contact.grid.cell_area, after.plastic_displacement
-    begun: Array | float
-    if before is None:
-        begun, old = after.contact.first_yield_pressure, np.zeros(1, dtype=bool)
-        ratio = math.inf
-    else:
-        begun, old = before.bound, before.plastic_displacement > 0
-        given = given - before.plastic_displacement
-        ratio = after.indentation / before.indentation if before.indentation > 0 else math.inf
+    contact, box = after.contact, after.box
+    given, begun = after.plastic_displacement[box], np.asarray(contact.first_yield_pressure)
+    old, ratio = np.zeros(1, dtype=bool), math.inf
+    if before is not None:
+        begun = _on(before.bound, box)
+        old = before.plastic_displacement[box] > 0
+        given = given - before.plastic_displacement[box]
+        if before.indentation > 0:
+            ratio = after.indentation / before.indentation
     share = ratio / (ratio - 1) - 1 / math.log(ratio) if 1 < ratio < math.inf else 0.5
+    area = contact.grid.cell_area
     whole = float(np.sum(given * begun)) * area
-    growth = given * (after.bound - begun)
+    growth = given * (_on(after.bound, box) - begun)
     on, new = (float(np.sum(growth, where=nodes)) * area for nodes in (old, ~old))
     return whole + share * on + _NEW * new, _RULE_ERROR * abs(on) + _NEW_ERROR * abs(new)
+
+
+def _on(bound: Array | float, box: Box) -> Array:
+    """A bound of each node, or one for all, on a box of the grid."""
+    return np.asarray(bound) if np.ndim(bound) == 0 else np.asarray(bound)[box]
 
 
 def _pinning_error(state: State) -> float:

@@ -130,7 +130,10 @@ def _read(out: Path) -> StoredRun:
 def _error_is(trust: Mapping[str, object]) -> str:
     """What the error of a point includes, and what it does not."""
     includes = trust.get("total_error_includes") or "solver"
-    return f"{includes}; not: {trust.get('total_error_does_not_include') or 'anything else'}"
+    excludes = trust.get("total_error_does_not_include") or "anything else"
+    model = trust.get("largest_model_error")
+    error = f"; model_error is up to {model:.2g}" if isinstance(model, float) else ""
+    return f"{includes}; not: {excludes}{error}"
 
 
 def _points(rows: Sequence[_Row], asked: bool) -> list[Point]:

@@ -105,7 +105,14 @@ def _restitution(
             hovertemplate=f"%{{x:.4g}} {unit}<br>COR %{{y:.4f}}<extra></extra>",
         )
     )  # fmt: skip
-    columns = [f"{words} ({unit})", "COR", "resolved", "restitution_error", "total_error"]
+    columns = [
+        f"{words} ({unit})",
+        "COR",
+        "resolved",
+        "restitution_error",
+        "total_error",
+        "model_error",
+    ]
     few = int(np.count_nonzero(~resolved))
     return Drawing(
         f"Restitution against {words}",
@@ -118,9 +125,15 @@ def _restitution(
             "Restitution",
             columns,
             [
-                [float(a), float(b), "yes" if good else "no", float(e), float(d)]
-                for a, b, good, e, d in zip(
-                    x, cor, resolved, results["restitution_error"].values, error, strict=True
+                [float(a), float(b), "yes" if good else "no", float(e), float(d), float(m)]
+                for a, b, good, e, d, m in zip(
+                    x,
+                    cor,
+                    resolved,
+                    results["restitution_error"].values,
+                    error,
+                    results["model_error"].values,
+                    strict=True,
                 )
             ],
         ),

@@ -35,7 +35,7 @@ CONFIDENCE = 0.95
 _Row = dict[str, float]
 # Columns of an ensemble's curve that are not means over its surfaces.
 _WORST: dict[str, Callable[[list[float]], float]] = {
-    "residual": max, "median_patch_nodes": min, "convolutions": sum
+    "residual": max, "model_error": max, "median_patch_nodes": min, "convolutions": sum
 }  # fmt: skip
 _ALL = {"sticks", "adhesion_resolved", "resolved"}
 

@@ -51,8 +51,8 @@ MOST_AFFORDABLE = 2**24  # nodes: minutes and some 2 GB
 MISSING_BAND = 0.03  # of COR: from there on a row is not resolved for the waves it lacks
 
 NOT_INCLUDED = (
-    "the model (constant yield pressure: COR up to 11 % too high; half-space; no range of "
-    "attraction), values that the case gives, rate effects, elastic waves"
+    "the model (of plasticity: model_error; half-space; no range of attraction), values that the "
+    "case gives, rate effects, elastic waves"
 )
 
 
@@ -183,6 +183,7 @@ def total_error_summary(case: Case, rows: Sequence[Row]) -> dict[str, object]:
     known = [row["total_error"] for row in rows if not math.isnan(row["total_error"])]
     return {
         "largest_total_error": max(known, default=None),
+        "largest_model_error": max((row["model_error"] for row in rows), default=None),
         "total_error_includes": ", ".join(included(case)) if known else "",
         "total_error_does_not_include": NOT_INCLUDED,
     }

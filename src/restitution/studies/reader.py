@@ -47,7 +47,7 @@ _RANGES = {
         (
             "impact_velocity_m_per_s", "contact_area_m2", "stored_energy_J", "plastic_work_J",
             "contact_nodes", "contact_patches", "largest_patch_nodes", "median_patch_nodes",
-            "residual", "convolutions", "restitution_error", "discretisation_error",
+            "residual", "convolutions", "restitution_error", "model_error", "discretisation_error",
             "surface_scatter", "material_error", "total_error",
             "restitution_std", "realisations",
         ),

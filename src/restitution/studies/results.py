@@ -22,6 +22,7 @@ import numpy as np
 import xarray as xr
 
 from restitution.collision import Collision
+from restitution.contact.model_error import model_error
 from restitution.contact.resolution import (
     ADHESIVE_NODES,
     NODES_PER_PATCH,
@@ -53,6 +54,7 @@ COLUMNS: dict[str, tuple[str, str, str]] = {
     "pull_off_force_N": ("pull_off_force", "N", "largest tension on the way back"),
     "separation_indentation_m": ("separation_indentation", "m", "where the bodies part"),
     "restitution_error": ("restitution_error", "1", "numerical error of the restitution"),
+    "model_error": ("model_error", "1", "restitution's error by the model of plasticity"),
     "sticks": ("sticks", "1", "nothing is returned: the pair does not come apart by itself"),
     "adhesion_resolved": (
         "adhesion_resolved",
@@ -72,7 +74,11 @@ COLUMNS: dict[str, tuple[str, str, str]] = {
     ),
     "surface_scatter": ("surface_scatter", "1", "restitution's error as one surface of many"),
     "material_error": ("material_error", "1", "restitution's error by library values"),
-    "total_error": ("total_error", "1", "all these errors of the restitution, in quadrature"),
+    "total_error": (
+        "total_error",
+        "1",
+        "all these errors but that of the model, in quadrature",
+    ),
 }
 # What the curve of an ensemble has besides: its other columns are means.
 SPREAD_COLUMNS: dict[str, tuple[str, str, str]] = {
@@ -109,6 +115,7 @@ def curve_row(state: State, collision: Collision) -> dict[str, float]:
         collision.pull_off_force,
         collision.separation_indentation,
         collision.restitution_error,
+        model_error(state, collision.restitution),
         collision.sticks,
         adhesive_nodes(state) >= ADHESIVE_NODES,
         median,
