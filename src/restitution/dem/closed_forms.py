@@ -25,8 +25,6 @@ from restitution.studies.case import Case
 from restitution.theory import (
     adhesive_thornton_ning,
     hertz,
-    jackson_green,
-    jackson_green_marghitu,
     johnson,
     mdr,
     sticking,
@@ -41,15 +39,12 @@ STRENGTHS = 2.8
 
 _SMALL = 0.01  # δ/R* up to which Hertz holds
 _JOHNSON = 0.6  # e below which Johnson's formula holds
-_STEEL_LIKE = 0.001, 0.007  # Y/E* of Jackson, Green and Marghitu's fit
 
 SOURCES = {
     "hertz": "H. Hertz, J. reine angew. Math. 92 (1882) 156-171",
     "sticking": "JKR, elastic: C. Thornton, Z. Ning, Powder Technology 99 (1998) 154-162",
     "thornton-ning": "C. Thornton, Z. Ning, Powder Technology 99 (1998) 154-162",
     "johnson": "K. L. Johnson, Contact Mechanics (Cambridge, 1985), section 11.5",
-    "jackson-green-marghitu": "R. L. Jackson, I. Green, D. B. Marghitu, Nonlinear Dynamics 60 "
-    "(2010) 217-229; coefficients from memory, see docs/theory.md",
     "mdr": "W. Zunker, K. Kamrin, J. Mech. Phys. Solids 183 (2024) 105492, as LAMMPS has it",
     "brilliantov": "P. Mueller, T. Poeschel, Phys. Rev. E 84 (2011) 021302, of the viscoelastic "
     "contact of N. V. Brilliantov et al., Phys. Rev. E 53 (1996) 5382-5392",
@@ -68,7 +63,6 @@ class Bodies:
     walls: int
     equal: bool  # two spheres that are the same
     sphere_poisson: float
-    poissons: tuple[float, float]
     strengths: tuple[float, float] | None  # of both bodies, or of none
     labels: tuple[str, str]
     sphere_is_first: bool
@@ -86,7 +80,9 @@ class Bodies:
                 )
         assert pair.mass is not None  # just checked
         tables = case.first, case.second or case.first
-        Y_1, Y_2 = (table.yield_strength for table in tables)
+        # A strength of the interface stands above those of the bodies.
+        own = case.interface.yield_strength is None
+        Y_1, Y_2 = (table.yield_strength if own else None for table in tables)
         walls = [math.isinf(body.radius) for body in (pair.first, pair.second)]
         return cls(
             R=pair.radius,
@@ -97,7 +93,6 @@ class Bodies:
             walls=sum(walls),
             equal=not any(walls) and pair.first == pair.second and Y_1 == Y_2,
             sphere_poisson=(pair.second if walls[0] else pair.first).poissons_ratio,
-            poissons=(pair.first.poissons_ratio, pair.second.poissons_ratio),
             strengths=None if Y_1 is None or Y_2 is None else (Y_1, Y_2),
             labels=(tables[0].material or "first", tables[1].material or "second"),
             sphere_is_first=not walls[0],
@@ -249,30 +244,6 @@ def _johnson(b: Bodies, V: Array) -> Form | str:
     )
 
 
-def _jackson_green_marghitu(b: Bodies, V: Array) -> Form | str:
-    if b.elastic:
-        return _ELASTIC
-    # Of two deformable bodies, Y and ν of the one with the smaller CY (`jackson_green`).
-    strengths = b.strengths or (b.strength, b.strength)
-    _, Y, nu = min(
-        (float(jackson_green.yield_coefficient(nu)) * Y, Y, nu)
-        for Y, nu in zip(strengths, b.poissons, strict=True)
-    )
-    V_c = float(jackson_green_marghitu.critical_velocity(b.R, b.E, Y, nu, b.m))
-    low, high = _STEEL_LIKE
-    steel_like = low <= Y / b.E <= high
-    e = jackson_green_marghitu.restitution(V, b.R, b.E, Y, nu, b.m)
-    limit = jackson_green_marghitu.LIMIT
-    return Form(
-        e if steel_like else within(V_c >= V, e),
-        f"steel-like bodies on a rigid flat, {low:g} <= Y/E* <= {high:g} (here {Y / b.E:.2g}"
-        + (f"), up to {limit:g} V_c = {speed(limit * V_c)}" if steel_like
-           else f", so only where e = 1), up to V_c = {speed(V_c)}"),
-        {"poissons_ratio": nu, "critical_velocity_m_per_s": V_c},
-        takes_strength=True,
-    )  # fmt: skip
-
-
 def _mdr(b: Bodies, V: Array) -> Form | str:
     if b.elastic:
         return _ELASTIC
@@ -304,7 +275,6 @@ FORMS: dict[str, Callable[[Bodies, Array], Form | str]] = {
     "sticking": _sticking,
     "thornton-ning": _thornton_ning,
     "johnson": _johnson,
-    "jackson-green-marghitu": _jackson_green_marghitu,
     "mdr": _mdr,
 }
 

@@ -49,7 +49,6 @@ _LINES: dict[str, tuple[str, str | tuple[int, tuple[int, ...]], float]] = {
     "sticking": ("#f0a830", "-", 3.2),
     "thornton-ning": ("black", "-", 1.4),
     "johnson": ("#d62728", "-", 1.4),
-    "jackson-green-marghitu": ("#2ca02c", (0, (6, 2)), 1.4),
     "mdr": ("#000080", (0, (5, 1, 1, 1)), 1.4),
     "constant": ("#e3d5ae", "-", 3.2),
     "walton-braun": ("#8c564b", (0, (4, 2)), 1.2),
