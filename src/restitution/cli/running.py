@@ -131,9 +131,8 @@ def _print_curve(console: Console, rows: list[dict[str, float]]) -> None:
     from rich.table import Table
 
     table = Table(box=None, header_style="bold")
-    for name in ("indentation (nm)", "force (N)", "velocity (m/s)", "COR", "model error", "nodes",
-                 "resolved"):  # fmt: skip
-        table.add_column(name, justify="right")
+    for name in ("depth (nm)", "force (N)", "V (m/s)", "COR", "± model", "nodes", "resolved"):
+        table.add_column(name, justify="right", no_wrap=True)
     for row in rows:
         velocity = row["impact_velocity_m_per_s"]
         table.add_row(
