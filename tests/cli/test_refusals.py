@@ -79,7 +79,7 @@ def refused_case(refused, case_text, tmp_path):
         ('"750 MPa"', '"750 mpa"', "interface.yield_pressure", "did you mean MPa?"),
         ('"500 um"', f'"{"x" * 500}"', "first.radius", f'"{"x" * 59}…" is not one number'),
         ('"500 um"', '"5\\n\\u001b[31m um"', "first.radius", r'"5\n\x1b[31m um" is not one number'),
-        ('yield_pressure = "750 MPa"', "", "interface.yield_pressure", "is missing, and so are"),
+        ('yield_pressure = "750 MPa"', "", "interface.yield_strength", "is missing, and so are"),
         ('"750 MPa"', '"elastic"\nplasticity = "truncated"', "interface.plasticity", "to cut at"),
         ("steps = 4", "steps = 1", "indentation", "use values = [...]"),
         ("steps = 4", "steps = 10_001", "indentation.steps", "less than or equal to 10000"),

@@ -54,7 +54,6 @@ COLUMNS: dict[str, tuple[str, str, str]] = {
     "pull_off_force_N": ("pull_off_force", "N", "largest tension on the way back"),
     "separation_indentation_m": ("separation_indentation", "m", "where the bodies part"),
     "restitution_error": ("restitution_error", "1", "numerical error of the restitution"),
-    "model_error": ("model_error", "1", "restitution's error by the model of plasticity"),
     "sticks": ("sticks", "1", "nothing is returned: the pair does not come apart by itself"),
     "adhesion_resolved": (
         "adhesion_resolved",
@@ -77,8 +76,9 @@ COLUMNS: dict[str, tuple[str, str, str]] = {
     "total_error": (
         "total_error",
         "1",
-        "all these errors but that of the model, in quadrature",
+        "all these errors of the restitution, in quadrature",
     ),
+    "model_error": ("model_error", "1", "restitution's error by the model of plasticity"),
 }
 # What the curve of an ensemble has besides: its other columns are means.
 SPREAD_COLUMNS: dict[str, tuple[str, str, str]] = {
@@ -115,12 +115,12 @@ def curve_row(state: State, collision: Collision) -> dict[str, float]:
         collision.pull_off_force,
         collision.separation_indentation,
         collision.restitution_error,
-        model_error(state, collision.restitution),
         collision.sticks,
         adhesive_nodes(state) >= ADHESIVE_NODES,
         median,
         resolves(median),
         *(math.nan,) * 4,  # one curve cannot tell: see `error_budget`
+        model_error(state, collision.restitution),
     )
     return dict(zip(COLUMNS, values, strict=True))
 
