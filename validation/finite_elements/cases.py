@@ -1,0 +1,246 @@
+"""Run the reference cases and write data/*.json; finished cases and ranges are skipped.
+
+Example:
+    python cases.py                     # all cases, in order
+    python cases.py smooth_0.001        # one case
+    python cases.py --list
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import solve
+from solve import Model
+
+HERE = Path(__file__).parent
+_E, _R = 210e9, 500e-6
+
+
+@dataclass(frozen=True)
+class Range:
+    """Depths that are read from one mesh.
+
+    Args:
+        name: label of the mesh.
+        omegas: values of δ/δ_c from which the body is unloaded.
+        low: δ/δ_c from which the curve is read on this mesh; steps are fine above it.
+        start: δ/δ_c of the first step.
+        elements: elements over the contact radius (smooth) or over one wavelength (waves).
+        coarse: relative step below `low`.
+        fine: relative step above `low`.
+        refinement: divisor of all element sizes.
+    """
+
+    name: str
+    omegas: tuple[float, ...]
+    low: float
+    start: float
+    elements: float
+    coarse: float = 0.07
+    fine: float = 0.035
+    refinement: int = 1
+
+
+@dataclass(frozen=True)
+class Case:
+    """One model with its ranges and kinematics (see `solve.Indentation`)."""
+
+    name: str
+    model: Model
+    ranges: tuple[Range, ...]
+    kinematics: str = "small"
+
+
+def _smooth(name, ratio, nu, top, **hardening):
+    contact_modulus = _E / (1 - nu**2)
+    model = Model(_E, nu, ratio * contact_modulus, radius=_R, **hardening)
+    ranges = [Range("a", (2, 4, 8), 0.8, 0.8, 80)]
+    if top > 128:
+        ranges += [Range("b", (16, 32, 64), 8, 0.8, 80),
+                   Range("c", (128, 256, 512), 64, 0.8, 80, coarse=0.1)]
+    else:
+        ranges += [Range("b", (16, 32, 64, 128), 8, 0.8, 80)]
+    return Case(name, model, tuple(ranges))
+
+
+def _waves(amplitude_um, wavelength_um):
+    model = Model(_E, 0.3, 1e9, radius=_R, wave_amplitude=amplitude_um * 1e-6,
+                  wavelength=wavelength_um * 1e-6)
+    start = 0.8 * model.crest_radius / model.radius
+    ranges = (Range("a", (0.25, 0.5, 1), start, start, 64, fine=0.05),
+              Range("b", (2, 4, 8), 1, start, 32, coarse=0.1))
+    return Case(f"waves_A{amplitude_um:g}um_L{wavelength_um:g}um", model, ranges)
+
+
+def _refined(case, name, **changes):
+    return replace(case, name=name, ranges=tuple(replace(r, **changes) for r in case.ranges))
+
+
+def _finite(case, name):
+    return replace(case, name=name, kinematics="finite")
+
+
+def all_cases() -> list[Case]:
+    """Return all cases in the order in which they run."""
+    cases = [_smooth("smooth_0.001", 0.001, 0.3, 512), _smooth("smooth_0.005", 0.005, 0.3, 128)]
+    cases += [_waves(a, w) for a in (0.03, 0.1) for w in (8, 4)]
+    cases += [
+        _smooth("hardening_0.02E", 0.002, 0.3, 128, hardening_modulus=0.02 * _E),
+        _smooth("poisson_0.2", 0.001, 0.2, 128),
+        _smooth("poisson_0.4", 0.001, 0.4, 128),
+        _smooth("smooth_0.0005", 0.0005, 0.3, 512),
+        _smooth("hardening_0.1E", 0.002, 0.3, 128, hardening_modulus=0.1 * _E),
+    ]
+    cases += [_waves(0.01, w) for w in (8, 4)]
+    cases += [_finite(cases[1], "finite_0.005"), _finite(cases[0], "finite_0.001")]
+    return cases
+
+
+def check_cases() -> list[Case]:
+    """Return cases for comparison and convergence; they go to data/checks."""
+    by_name = {c.name: c for c in all_cases()}
+    smooth = by_name["smooth_0.001"]
+    wave = by_name["waves_A0.03um_L8um"]
+    result = [Case(f"compare_{s:g}MPa", Model(_E, 0.3, s * 1e6, radius=_R),
+                   smooth.ranges[:2]) for s in (1000, 250)]
+    result += [
+        _refined(smooth, "smooth_0.001_half_steps", fine=0.0175, coarse=0.035),
+        _refined(smooth, "smooth_0.001_half_elements", refinement=2),
+        _refined(smooth, "smooth_0.001_double_elements", elements=40),
+        _refined(wave, "waves_A0.03um_L8um_half_elements", refinement=2),
+        _refined(wave, "waves_A0.03um_L8um_half_steps", fine=0.02, coarse=0.05),
+    ]
+    return result
+
+
+def run_case(case: Case, partial: Path) -> list[dict]:
+    """Return the ranges of a case, each computed once and kept in the folder `partial`."""
+    partial.mkdir(parents=True, exist_ok=True)
+    results = []
+    for part in case.ranges:
+        file = partial / f"{case.name}_{part.name}.json"
+        if not file.exists():
+            mesh = solve.wave_mesh if case.model.wave_amplitude else solve.smooth_mesh
+            spec = mesh(case.model, max(part.omegas), part.elements, part.refinement)
+            force_step = 0.045 * part.fine / 0.035 if part.fine < 0.035 else 0.045
+            result = solve.run_range(case.model, spec, part.omegas, part.low, part.start,
+                                     part.coarse, part.fine, force_step,
+                                     kinematics=case.kinematics)
+            file.write_text(json.dumps(_round(result)))
+            print(case.name, part.name, result["mesh"]["run_time_s"], "s,",
+                  result["mesh"]["elements"], "elements,",
+                  result["mesh"]["newton_iterations"], "iterations", flush=True)
+        results.append(json.loads(file.read_text()))
+        merged = merge(case, results)
+        yield merged
+
+
+def merge(case: Case, results: list[dict]) -> dict:
+    """Merge the ranges of a case into one table (SI units)."""
+    model, delta_c = case.model, case.model.critical_indentation
+    columns = {k: [] for k in ("indentation_m", "force_N", "contact_radius_m", "contact_area_m2",
+                               "contact_area_inner_m2", "contact_area_outer_m2", "loading_work_J")}
+    summary, unloading, meshes, work_below = [], [], {}, 0.0
+    for part, result in zip(case.ranges, results, strict=False):
+        loading = {k: np.array(v) for k, v in result["loading"].items()}
+        omega = np.array(result["omega"])
+        work = solve.loading_work(loading["indentation_m"], loading["force_N"])
+        first = int(np.argmin(abs(omega - part.low)))
+        mesh = dict(result["mesh"])
+        if columns["force_N"]:
+            work += work_below - work[first]
+            mesh["force_over_last_range_at_low"] = loading["force_N"][first] / columns["force_N"][-1]
+            first += 1
+        for name in columns:
+            if name in loading:
+                columns[name] += list(loading[name][first:])
+        columns["loading_work_J"] += list(work[first:])
+        columns["contact_radius_m"] += list(np.sqrt(loading["contact_area_m2"][first:] / np.pi))
+        work_below = work[-1]
+        meshes[part.name] = mesh
+        for path in result["unloading"]:
+            k = int(np.argmin(abs(omega - path["omega"])))
+            returned = solve.unloading_work(path["indentation_m"], path["force_N"])
+            unloading.append({**path, "mesh_range": part.name})
+            summary.append({
+                "omega": path["omega"], "indentation_m": loading["indentation_m"][k],
+                "force_N": loading["force_N"][k], "contact_area_m2": loading["contact_area_m2"][k],
+                "contact_area_inner_m2": loading["contact_area_inner_m2"][k],
+                "contact_area_outer_m2": loading["contact_area_outer_m2"][k],
+                "loading_work_J": work[k], "unloading_work_J": returned,
+                "restitution": np.sqrt(returned / work[k]),
+                "residual_indentation_m": path["indentation_m"][-1], "mesh_range": part.name,
+            })
+    return {
+        "case": case.name,
+        "model": {"youngs_modulus_Pa": model.youngs_modulus,
+                  "poissons_ratio": model.poissons_ratio,
+                  "yield_strength_Pa": model.yield_strength,
+                  "hardening_modulus_Pa": model.hardening_modulus,
+                  "hardening_exponent": model.hardening_exponent, "radius_m": model.radius,
+                  "wave_amplitude_m": model.wave_amplitude, "wavelength_m": model.wavelength,
+                  "kinematics": case.kinematics},
+        "contact_modulus_Pa": model.contact_modulus, "critical_indentation_m": delta_c,
+        "mesh": meshes, "loading": columns, "unloading": unloading, "summary": summary,
+        "versions": solve.versions(),
+    }
+
+
+def _round(value):
+    if isinstance(value, dict):
+        return {k: _round(v) for k, v in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_round(v) for v in value]
+    if isinstance(value, (float, np.floating)):
+        return float(f"{value:.7g}")
+    return value
+
+
+def write(result: dict, file: Path) -> None:
+    """Write a result with 7 significant digits, one list of numbers per line."""
+    text = json.dumps(_round(result), indent=1)
+    text = re.sub(r"\[\s+([^\[\]{}]*?)\s+\]",
+                  lambda m: "[" + re.sub(r"\s+", " ", m.group(1)) + "]", text)
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(text + "\n")
+
+
+def main() -> None:
+    """Run the cases named on the command line, or all."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("names", nargs="*", help="cases to run; left out: all reference cases")
+    parser.add_argument("--list", action="store_true", help="print the names of all cases")
+    parser.add_argument("--checks", action="store_true", help="run the convergence cases, too")
+    parser.add_argument("--partial", type=Path, default=HERE / "partial",
+                        help="folder of finished ranges")
+    args = parser.parse_args()
+    checks = {c.name for c in check_cases()}
+    known = {c.name: c for c in [*all_cases(), *check_cases()]}
+    if args.list:
+        print("\n".join(known))
+        return
+    unknown = set(args.names) - set(known)
+    if unknown:
+        parser.error(f"unknown cases: {', '.join(sorted(unknown))}")
+    names = args.names or [n for n in known if args.checks or n not in checks]
+    for name in names:
+        folder = HERE / "data" / "checks" if name in checks else HERE / "data"
+        file = folder / f"{name}.json"
+        case = known[name]
+        if file.exists() and len(json.loads(file.read_text())["mesh"]) == len(case.ranges):
+            continue
+        for merged in run_case(case, args.partial):
+            write(merged, file)
+        for row in merged["summary"]:
+            print(f"{name} omega {row['omega']:g}: F {row['force_N']:.6g} N, area "
+                  f"{row['contact_area_m2']:.5g} m2, COR {row['restitution']:.5f}", flush=True)
+
+
+if __name__ == "__main__":
+    main()
