@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import json
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -74,7 +75,7 @@ def _waves(amplitude_um, wavelength_um):
                   wavelength=wavelength_um * 1e-6)
     start = 0.8 * model.crest_radius / model.radius
     ranges = (Range("a", (0.25, 0.5, 1), start, start, 64, fine=0.05),
-              Range("b", (2, 4, 8), 1, start, 32, coarse=0.1))
+              Range("b", (2, 4, 8), 1, start, 4 * wavelength_um if wavelength_um > 6 else 24, coarse=0.1))
     return Case(f"waves_A{amplitude_um:g}um_L{wavelength_um:g}um", model, ranges)
 
 
@@ -109,20 +110,22 @@ def check_cases() -> list[Case]:
     wave = by_name["waves_A0.03um_L8um"]
     result = [Case(f"compare_{s:g}MPa", Model(_E, 0.3, s * 1e6, radius=_R),
                    smooth.ranges[:2]) for s in (1000, 250)]
+    first = replace(smooth, ranges=smooth.ranges[:1])
+    both = replace(smooth, ranges=smooth.ranges[:2])
     result += [
-        _refined(smooth, "smooth_0.001_half_steps", fine=0.0175, coarse=0.035),
-        _refined(smooth, "smooth_0.001_half_elements", refinement=2),
-        _refined(smooth, "smooth_0.001_double_elements", elements=40),
-        _refined(wave, "waves_A0.03um_L8um_half_elements", refinement=2),
-        _refined(wave, "waves_A0.03um_L8um_half_steps", fine=0.02, coarse=0.05),
+        _refined(both, "smooth_0.001_double_elements", elements=40),
+        _refined(first, "smooth_0.001_half_steps", fine=0.0175),
+        replace(wave, name="waves_A0.03um_L8um_double_elements",
+                ranges=tuple(replace(r, elements=r.elements / 2) for r in wave.ranges)),
+        _refined(first, "smooth_0.001_half_elements", refinement=2),
     ]
     return result
 
 
-def run_case(case: Case, partial: Path) -> list[dict]:
-    """Return the ranges of a case, each computed once and kept in the folder `partial`."""
+def run_case(case: Case, partial: Path) -> Iterator[dict]:
+    """Yield the merged table of a case after each range; `partial` keeps finished ranges."""
     partial.mkdir(parents=True, exist_ok=True)
-    results = []
+    results: list[dict] = []
     for part in case.ranges:
         file = partial / f"{case.name}_{part.name}.json"
         if not file.exists():
@@ -141,21 +144,53 @@ def run_case(case: Case, partial: Path) -> list[dict]:
         yield merged
 
 
+def smooth_over_steps(indentation, values, window: float = 0.25) -> np.ndarray:
+    """Return values > 0 smoothed by local parabolas of ln(value) over ln(indentation).
+
+    Nodes enter the contact one by one, so force and radius alternate by a part of one element.
+
+    Args:
+        indentation: depths (m).
+        values: positive values, one per depth.
+        window: half width of the window in ln(indentation).
+    """
+    x, y, result = np.log(indentation), np.log(values), np.empty(len(values))
+    for k in range(len(x)):
+        # At the ends the window keeps its width.
+        centre = np.clip(x[k], x[0] + window, max(x[-1] - window, x[0] + window))
+        near = abs(x - centre) <= 1.001 * window
+        fit = np.polyfit(x[near] - x[k], y[near], min(2, near.sum() - 1))
+        result[k] = np.exp(fit[-1])
+    return result
+
+
 def merge(case: Case, results: list[dict]) -> dict:
     """Merge the ranges of a case into one table (SI units)."""
     model, delta_c = case.model, case.model.critical_indentation
     columns = {k: [] for k in ("indentation_m", "force_N", "contact_radius_m", "contact_area_m2",
-                               "contact_area_inner_m2", "contact_area_outer_m2", "loading_work_J")}
+                               "contact_area_inner_m2", "contact_area_outer_m2", "force_smoothed_N",
+                               "loading_work_J")}
     summary, unloading, meshes, work_below = [], [], {}, 0.0
     for part, result in zip(case.ranges, results, strict=False):
         loading = {k: np.array(v) for k, v in result["loading"].items()}
         omega = np.array(result["omega"])
+        depth = loading["indentation_m"]
+        if case.model.wave_amplitude:
+            loading["force_smoothed_N"] = loading["force_N"]
+        else:
+            # The edge lies between the last node in contact and the first free node.
+            inner, outer = (np.sqrt(loading[f"contact_area_{k}_m2"] / np.pi)
+                            for k in ("inner", "outer"))
+            radius = smooth_over_steps(depth, 0.5 * (inner + outer))
+            loading["contact_area_m2"] = np.pi * radius**2
+            loading["force_smoothed_N"] = smooth_over_steps(depth, loading["force_N"])
         work = solve.loading_work(loading["indentation_m"], loading["force_N"])
         first = int(np.argmin(abs(omega - part.low)))
         mesh = dict(result["mesh"])
         if columns["force_N"]:
             work += work_below - work[first]
-            mesh["force_over_last_range_at_low"] = loading["force_N"][first] / columns["force_N"][-1]
+            mesh["force_over_last_range_at_low"] = (
+                loading["force_smoothed_N"][first] / columns["force_smoothed_N"][-1])
             first += 1
         for name in columns:
             if name in loading:
@@ -170,7 +205,9 @@ def merge(case: Case, results: list[dict]) -> dict:
             unloading.append({**path, "mesh_range": part.name})
             summary.append({
                 "omega": path["omega"], "indentation_m": loading["indentation_m"][k],
-                "force_N": loading["force_N"][k], "contact_area_m2": loading["contact_area_m2"][k],
+                "force_N": loading["force_N"][k],
+                "force_smoothed_N": loading["force_smoothed_N"][k],
+                "contact_area_m2": loading["contact_area_m2"][k],
                 "contact_area_inner_m2": loading["contact_area_inner_m2"][k],
                 "contact_area_outer_m2": loading["contact_area_outer_m2"][k],
                 "loading_work_J": work[k], "unloading_work_J": returned,
@@ -217,6 +254,8 @@ def main() -> None:
     parser.add_argument("names", nargs="*", help="cases to run; left out: all reference cases")
     parser.add_argument("--list", action="store_true", help="print the names of all cases")
     parser.add_argument("--checks", action="store_true", help="run the convergence cases, too")
+    parser.add_argument("--rewrite", action="store_true",
+                        help="write the files again from the finished ranges")
     parser.add_argument("--partial", type=Path, default=HERE / "partial",
                         help="folder of finished ranges")
     args = parser.parse_args()
@@ -233,7 +272,7 @@ def main() -> None:
         folder = HERE / "data" / "checks" if name in checks else HERE / "data"
         file = folder / f"{name}.json"
         case = known[name]
-        if file.exists() and len(json.loads(file.read_text())["mesh"]) == len(case.ranges):
+        if not args.rewrite and file.exists() and len(json.loads(file.read_text())["mesh"]) == len(case.ranges):
             continue
         for merged in run_case(case, args.partial):
             write(merged, file)

@@ -494,8 +494,16 @@ class _Factor:
         self.indptr, self.indices, self.n = indptr, indices, len(indptr) - 1
         self._solver = PyPardisoSolver(mtype=-2) if PyPardisoSolver else None
         self._analysed = False
+        self._rows = np.repeat(np.arange(self.n), np.diff(indptr))
+        self._diagonal = indptr[:-1]  # the first entry of each row of the upper triangle
 
     def solve(self, data, b):
+        # Entries grow with the radius, and PARDISO compares pivots with the largest entry.
+        scale = 1 / np.sqrt(np.abs(data[self._diagonal]))
+        data = data * scale[self._rows] * scale[self.indices]
+        return scale * self._solve(data, scale * b)
+
+    def _solve(self, data, b):
         A = csr_matrix((data, self.indices, self.indptr), shape=(self.n, self.n))
         if self._solver is None:
             diagonal = csr_matrix((A.diagonal(), (range(self.n), range(self.n))))
@@ -656,7 +664,7 @@ class Indentation:
             active = state.active.copy()
         tensor, al = np.empty_like(state.tensor), np.empty_like(state.equivalent_plastic_strain)
         f = np.empty(self.ndof)
-        changed = True
+        changed, last_du, last_norm, fraction = True, None, 0.0, 1.0
         for iteration in range(_MAX_ITERATIONS):
             self._evaluate(state, u, slope, tensor, al, f)
             nodes = self.candidates[active]
@@ -668,8 +676,16 @@ class Indentation:
             du[self.fixed] = max(force, 0.0) * self.per_force[self.fixed] - u[self.fixed]
             du[nodes] = target[active] - u[nodes]
             free = ~held
+            norm = np.linalg.norm(f[free])
+            if last_du is not None and not norm < last_norm and fraction > 1 / 64:
+                # The full step increased the residual of the same contact: take half of it.
+                fraction /= 2
+                u -= fraction * last_du
+                profile, slope, curvature = self._gap_profile(u)
+                target = indentation - profile
+                continue
             scale = max(abs(force), 1e-3 * abs(state.force), 1e-300)
-            residual = np.linalg.norm(f[free]) / scale
+            residual = norm / scale
             if not residual < 1e8:
                 break
             mismatch = np.abs(du).max() / indentation if indentation else 0.0
@@ -701,6 +717,8 @@ class Indentation:
                     leave[:] = False
             changed = bool(leave.any() or enter.any())
             active = (active & ~leave) | enter
+            settled = not changed and mismatch < 1e-6 and residual > 10 * _NEWTON_TOLERANCE
+            last_du, last_norm, fraction = (du if settled else None), norm, 1.0
         raise RuntimeError(f"no equilibrium at indentation {indentation:g} m (residual {residual:.1e})")
 
     def areas(self, state: State) -> tuple[float, float, float]:
