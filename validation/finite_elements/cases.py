@@ -58,15 +58,15 @@ class Case:
     kinematics: str = "small"
 
 
-def _smooth(name, ratio, nu, top, **hardening):
+def _smooth(name, ratio, nu, top, elements=80, **hardening):
     contact_modulus = _E / (1 - nu**2)
     model = Model(_E, nu, ratio * contact_modulus, radius=_R, **hardening)
-    ranges = [Range("a", (2, 4, 8), 0.8, 0.8, 80)]
+    ranges = [Range("a", (2, 4, 8), 0.8, 0.8, elements)]
     if top > 128:
-        ranges += [Range("b", (16, 32, 64), 8, 0.8, 80),
-                   Range("c", (128, 256, 512), 64, 0.8, 80, coarse=0.1)]
+        ranges += [Range("b", (16, 32, 64), 8, 0.8, elements),
+                   Range("c", (128, 256, 512), 64, 0.8, elements, coarse=0.1)]
     else:
-        ranges += [Range("b", (16, 32, 64, 128), 8, 0.8, 80)]
+        ranges += [Range("b", (16, 32, 64, 128), 8, 0.8, elements)]
     return Case(name, model, tuple(ranges))
 
 
@@ -75,7 +75,7 @@ def _waves(amplitude_um, wavelength_um):
                   wavelength=wavelength_um * 1e-6)
     start = 0.8 * model.crest_radius / model.radius
     ranges = (Range("a", (0.25, 0.5, 1), start, start, 64, fine=0.05),
-              Range("b", (2, 4, 8), 1, start, 4 * wavelength_um if wavelength_um > 6 else 24, coarse=0.1))
+              Range("b", (2, 4, 8), 1, start, 32 if wavelength_um > 6 else 24, coarse=0.1))
     return Case(f"waves_A{amplitude_um:g}um_L{wavelength_um:g}um", model, ranges)
 
 
@@ -83,8 +83,8 @@ def _refined(case, name, **changes):
     return replace(case, name=name, ranges=tuple(replace(r, **changes) for r in case.ranges))
 
 
-def _finite(case, name):
-    return replace(case, name=name, kinematics="finite")
+def _with_kinematics(case, name, kinematics):
+    return replace(case, name=name, kinematics=kinematics)
 
 
 def all_cases() -> list[Case]:
@@ -92,14 +92,16 @@ def all_cases() -> list[Case]:
     cases = [_smooth("smooth_0.001", 0.001, 0.3, 512), _smooth("smooth_0.005", 0.005, 0.3, 128)]
     cases += [_waves(a, w) for a in (0.03, 0.1) for w in (8, 4)]
     cases += [
-        _smooth("hardening_0.02E", 0.002, 0.3, 128, hardening_modulus=0.02 * _E),
-        _smooth("poisson_0.2", 0.001, 0.2, 128),
+        _smooth("hardening_0.02E", 0.002, 0.3, 128, 60, hardening_modulus=0.02 * _E),
+        _smooth("poisson_0.2", 0.001, 0.2, 128, 60),
         _smooth("poisson_0.4", 0.001, 0.4, 128),
         _smooth("smooth_0.0005", 0.0005, 0.3, 512),
-        _smooth("hardening_0.1E", 0.002, 0.3, 128, hardening_modulus=0.1 * _E),
+        _smooth("hardening_0.1E", 0.002, 0.3, 128, 60, hardening_modulus=0.1 * _E),
     ]
     cases += [_waves(0.01, w) for w in (8, 4)]
-    cases += [_finite(cases[1], "finite_0.005"), _finite(cases[0], "finite_0.001")]
+    cases += [_with_kinematics(cases[1], "finite_0.005", "finite"),
+              _with_kinematics(cases[1], "flattening_0.005", "flattening"),
+              _with_kinematics(cases[0], "finite_0.001", "finite")]
     return cases
 
 
@@ -272,8 +274,10 @@ def main() -> None:
         folder = HERE / "data" / "checks" if name in checks else HERE / "data"
         file = folder / f"{name}.json"
         case = known[name]
-        if not args.rewrite and file.exists() and len(json.loads(file.read_text())["mesh"]) == len(case.ranges):
-            continue
+        if file.exists() and not args.rewrite:
+            finished = json.loads(file.read_text())["mesh"]
+            if len(finished) == len(case.ranges):
+                continue
         for merged in run_case(case, args.partial):
             write(merged, file)
         for row in merged["summary"]:

@@ -19,12 +19,12 @@ from typing import NamedTuple
 for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")
 
-import numba as nb
-import numpy as np
-import scipy
-from scipy.interpolate import PchipInterpolator
-from scipy.sparse import csc_matrix, csr_matrix
-from scipy.sparse.linalg import splu
+import numba as nb  # noqa: E402
+import numpy as np  # noqa: E402
+import scipy  # noqa: E402
+from scipy.interpolate import PchipInterpolator  # noqa: E402
+from scipy.sparse import csc_matrix, csr_matrix  # noqa: E402
+from scipy.sparse.linalg import splu  # noqa: E402
 
 try:
     from pypardiso import PyPardisoSolver
@@ -563,12 +563,13 @@ class Indentation:
         model: material and profile.
         spec: mesh.
         kinematics: "small" (small strains, gap at the undeformed radius), "deformed-contact"
-            (small strains, gap and normal at the deformed radius) or "finite" (finite strains,
-            gap and normal at the deformed radius).
+            (small strains, gap and normal at the deformed radius), "finite" (finite strains,
+            gap and normal at the deformed radius) or "flattening" (finite strains, the body has
+            the profile and the rigid surface is flat).
     """
 
     def __init__(self, model: Model, spec: MeshSpec, kinematics: str = "small"):
-        if kinematics not in ("small", "deformed-contact", "finite"):
+        if kinematics not in ("small", "deformed-contact", "finite", "flattening"):
             raise ValueError(f"unknown kinematics {kinematics!r}")
         self.model, self.spec, self.kinematics = model, spec, kinematics
         E, nu = model.youngs_modulus, model.poissons_ratio
@@ -583,7 +584,15 @@ class Indentation:
         self.surface_r = x
         self.surface_dof = 2 * nz * np.arange(nr) + 1
         self.candidates = self.surface_dof[:-1]
-        self.coordinates = np.stack([r, z], axis=1).ravel()
+        shift = np.zeros_like(r)
+        if kinematics == "flattening":
+            # The profile ends in a plane outside 1.4 times the finely meshed radius.
+            limit, decay = 1.4 * spec.uniform_radius, 2 * spec.uniform_radius
+            inner = np.minimum(r, limit)
+            slope = model.profile_slopes(np.array([limit]))[0][0]
+            shift = model.profile(inner) + slope * decay * (1 - np.exp((inner - r) / decay))
+            shift = shift * np.exp(-z / (4 * spec.uniform_radius))
+        self.coordinates = np.stack([r, z + shift], axis=1).ravel()
         self.ndof, self.conn, self.elements = 2 * nr * nz, conn, len(conn)
         self.B = np.empty((self.elements, 4, 4, 8))
         self.w = np.empty((self.elements, 4))
@@ -624,6 +633,8 @@ class Indentation:
         r = self.surface_r[:-1]
         if self.kinematics == "small":
             return self.model.profile(r), np.zeros_like(r), np.zeros_like(r)
+        if self.kinematics == "flattening":
+            return self.coordinates[self.candidates], np.zeros_like(r), np.zeros_like(r)
         r = r + u[self.candidates - 1]
         return (self.model.profile(r), *self.model.profile_slopes(r))
 
@@ -636,7 +647,7 @@ class Indentation:
         material = (self.G, self.bulk, strength, m.hardening_modulus, m.hardening_exponent,
                     m.youngs_modulus, self.kmap, node_slope, tensor, al, f, self.kdata)
         old = state.tensor, state.equivalent_plastic_strain
-        if self.kinematics == "finite":
+        if self.kinematics in ("finite", "flattening"):
             _element_pass_finite(u, state.u, self.coordinates, self.conn, *old, *material)
         else:
             _element_pass(u, self.B, self.w, self.conn, *old, *material)
@@ -719,7 +730,7 @@ class Indentation:
             active = (active & ~leave) | enter
             settled = not changed and mismatch < 1e-6 and residual > 10 * _NEWTON_TOLERANCE
             last_du, last_norm, fraction = (du if settled else None), norm, 1.0
-        raise RuntimeError(f"no equilibrium at indentation {indentation:g} m (residual {residual:.1e})")
+        raise RuntimeError(f"no equilibrium at {indentation:g} m (residual {residual:.1e})")
 
     def areas(self, state: State) -> tuple[float, float, float]:
         """Return the contact area (m²), and its bounds from the last and the first free node.
@@ -797,7 +808,8 @@ class Indentation:
             depth = state.indentation - step
             guess = None
             if last is not None:
-                guess = state.u + (state.u - last.u) * (step / (last.indentation - state.indentation))
+                ratio = step / (last.indentation - state.indentation)
+                guess = state.u + ratio * (state.u - last.u)
             try:
                 new = self.advance(state, depth, guess)
             except RuntimeError:
@@ -842,7 +854,8 @@ def unloading_work(indentation, force) -> float:
     return float(PchipInterpolator(d[keep], f[keep]).integrate(d[0], d[-1]))
 
 
-def smooth_mesh(model: Model, omega_max: float, elements: int = 60, refinement: int = 1) -> MeshSpec:
+def smooth_mesh(model: Model, omega_max: float, elements: float = 60,
+                refinement: int = 1) -> MeshSpec:
     """Return a mesh with about `elements` over the contact radius at ω = `omega_max`.
 
     Args:
@@ -866,8 +879,8 @@ def wave_mesh(model: Model, omega_max: float, per_wave: float, refinement: int =
     depth = omega_max * model.critical_indentation
     a = 1.15 * np.sqrt(model.radius * depth)
     k = 1 / refinement
-    return MeshSpec(model.wavelength / per_wave * k, 1.1 * a, 0.3 * model.wavelength, 3 * a, 100 * a,
-                    1.10**k, 1.06**k, 1.25**k)
+    return MeshSpec(model.wavelength / per_wave * k, 1.1 * a, 0.3 * model.wavelength, 3 * a,
+                    100 * a, 1.10**k, 1.06**k, 1.25**k)
 
 
 def load_steps(start: float, low: float, omegas, coarse: float, fine: float):
@@ -953,7 +966,7 @@ def main() -> None:
     parser.add_argument("--elements", type=int, default=60, help="over the contact radius")
     parser.add_argument("--step", type=float, default=0.035, help="relative step of ω")
     parser.add_argument("--kinematics", default="small",
-                        choices=("small", "deformed-contact", "finite"))
+                        choices=("small", "deformed-contact", "finite", "flattening"))
     parser.add_argument("--verbose", action="store_true")
     parser.add_argument("--output", help="JSON file for the curves")
     a = parser.parse_args()
