@@ -109,7 +109,7 @@ def check_cases() -> list[Case]:
     """Return cases for comparison and convergence; they go to data/checks."""
     by_name = {c.name: c for c in all_cases()}
     smooth = by_name["smooth_0.001"]
-    wave = by_name["waves_A0.03um_L8um"]
+    wave, rough = by_name["waves_A0.03um_L8um"], by_name["waves_A0.1um_L4um"]
     result = [Case(f"compare_{s:g}MPa", Model(_E, 0.3, s * 1e6, radius=_R),
                    smooth.ranges[:2]) for s in (1000, 250)]
     first = replace(smooth, ranges=smooth.ranges[:1])
@@ -120,6 +120,8 @@ def check_cases() -> list[Case]:
         replace(wave, name="waves_A0.03um_L8um_double_elements",
                 ranges=tuple(replace(r, elements=r.elements / 2) for r in wave.ranges)),
         _refined(first, "smooth_0.001_half_elements", refinement=2),
+        _refined(replace(rough, ranges=rough.ranges[:1]), "waves_A0.1um_L4um_half_elements",
+                 elements=128),
     ]
     return result
 

@@ -656,7 +656,8 @@ class Indentation:
         A = csr_matrix((self.kdata, self.cols, self.indptr), shape=(self.ndof, self.ndof))
         return A @ x + A.T @ x - self.kdata[self.diagonal] * x
 
-    def advance(self, state: State, indentation: float, guess: np.ndarray | None = None) -> State:
+    def advance(self, state: State, indentation: float, guess: np.ndarray | None = None,
+                careful: bool = False) -> State:
         """Return the equilibrium at an indentation (m), after the converged `state`.
 
         Semismooth Newton: plasticity and the set of contact nodes change together.
@@ -665,7 +666,9 @@ class Indentation:
             state: last converged equilibrium.
             indentation: approach of the rigid body since first touch (m).
             guess: starting displacements (m); None: those of `state`.
+            careful: change the contact only once plasticity has nearly converged, and limit steps.
         """
+        longest = 2 * abs(indentation - state.indentation)
         u = (state.u if guess is None else guess).copy()
         profile, slope, curvature = self._gap_profile(u)
         target = indentation - profile
@@ -676,7 +679,7 @@ class Indentation:
         tensor, al = np.empty_like(state.tensor), np.empty_like(state.equivalent_plastic_strain)
         f = np.empty(self.ndof)
         changed, last_du, last_norm, fraction = True, None, 0.0, 1.0
-        for iteration in range(_MAX_ITERATIONS):
+        for iteration in range(_MAX_ITERATIONS * (3 if careful else 1)):
             self._evaluate(state, u, slope, tensor, al, f)
             nodes = self.candidates[active]
             force = f[nodes].sum()
@@ -712,13 +715,17 @@ class Indentation:
                 break
             reaction = (f + self._product(du))[self.candidates]
             du[self.candidates] -= slope * du[self.candidates - 1]
+            if careful:
+                du *= min(1.0, longest / max(np.abs(du).max(), 1e-300))
             u += du
             profile, slope, curvature = self._gap_profile(u)
             target = indentation - profile
             overlap = target - u[self.candidates]
             leave = active & (reaction < 0)
             enter = ~active & (overlap > 1e-9 * abs(indentation))
-            if iteration >= _FREE_SET_ITERATIONS:
+            if careful and residual > 1e-3 and iteration:
+                leave[:] = enter[:] = False
+            if iteration >= (3 if careful else 1) * _FREE_SET_ITERATIONS:
                 for flags, size in ((leave, -reaction), (enter, overlap)):
                     worst = np.argmax(np.where(flags, size, -np.inf))
                     keep_one = flags[worst]
@@ -726,9 +733,11 @@ class Indentation:
                     flags[worst] = keep_one
                 if enter.any():
                     leave[:] = False
-            changed = bool(leave.any() or enter.any())
+            waits = careful and residual > 1e-3
+            changed = bool(leave.any() or enter.any() or waits)
             active = (active & ~leave) | enter
-            settled = not changed and mismatch < 1e-6 and residual > 10 * _NEWTON_TOLERANCE
+            settled = ((not changed or waits) and mismatch < 1e-6
+                       and residual > 10 * _NEWTON_TOLERANCE)
             last_du, last_norm, fraction = (du if settled else None), norm, 1.0
         raise RuntimeError(f"no equilibrium at {indentation:g} m (residual {residual:.1e})")
 
@@ -785,7 +794,7 @@ class Indentation:
 
     def _advance_halved(self, state, depth, levels=4):
         try:
-            return self.advance(state, depth)
+            return self.advance(state, depth, careful=True)
         except RuntimeError:
             if not levels:
                 raise
@@ -915,7 +924,11 @@ def run_range(model: Model, spec: MeshSpec, omegas, low: float, start: float,
                             lambda s: (iterations.append(s.iterations), report and report(s)))
     unloading = []
     for k, omega in stops.items():
-        path = body.unload(kept[k], force_step)
+        try:
+            path = body.unload(kept[k], force_step)
+        except RuntimeError as error:
+            print(f"unloading from omega {omega:g} left out: {error}", flush=True)
+            continue
         unloading.append({"omega": omega, "indentation_m": path.indentation, "force_N": path.force,
                           "contact_area_m2": path.area})
     largest = float(np.sqrt(max(curve.area) / np.pi))
