@@ -62,6 +62,7 @@ class Contact:
                  images=True, tolerance=1e-4, epic=False):
         n = heights.shape[0]
         self.n, self.length, self.layers = n, length, layers
+        self.depth = depth
         self.cell = length / n
         self.model = tm.ModelFactory.createModel(
             tm.model_type.volume_2d, [depth, length, length], [layers, n, n])
@@ -106,20 +107,23 @@ class Contact:
                                      * self.length**3)) * self.r2
 
     def image_strain(self, dforce):
-        """Uniform strain that turns the mean mode into that of one contact.
+        """Strain that turns that of the periodic array into one contact's.
 
         The mean mode of the volume operators is the uniaxial one, with stress
         -F/L^2 (nu/(1 - nu), nu/(1 - nu), 1).  The limit of the other modes
         for vanishing wave number, averaged over the directions, is
-        -F/L^2 (1/2 + nu, 1/2 + nu, 1); the strain of the difference is added.
+        -F/L^2 (1/2 + nu, 1/2 + nu, 1), and the images then add, to first
+        order in the depth z, -LATTICE_3 (1 + nu) F z/(2 pi L^3) (1, 1, 0).
         """
-        out = np.zeros(6)
+        out = np.zeros((self.layers, 1, 1, 6))
         if self.images:
-            s = -dforce / self.length**2 * np.array(
-                [1.0, 1.0, 0.0]) * (
-                0.5 + self.poisson - self.poisson / (1 - self.poisson))
-            out[:3] = ((1 + self.poisson) * s - self.poisson * s.sum()) \
-                / self.modulus
+            nu, length = self.poisson, self.length
+            z = np.linspace(0, self.depth, self.layers)
+            s = dforce / length**2 * (
+                nu / (1 - nu) - 0.5 - nu
+                + LATTICE_3 * (1 + nu) * z / (2 * np.pi * length))
+            out[:, 0, 0, 0] = out[:, 0, 0, 1] = (1 - nu) * s / self.modulus
+            out[:, 0, 0, 2] = -2 * nu * s / self.modulus
         return out
 
     def pressure(self):
