@@ -92,7 +92,7 @@ def all_cases() -> list[Case]:
     cases = [_smooth("smooth_0.001", 0.001, 0.3, 512), _smooth("smooth_0.005", 0.005, 0.3, 128)]
     cases += [_waves(a, w) for a in (0.03, 0.1) for w in (8, 4)]
     cases += [
-        _smooth("hardening_0.02E", 0.002, 0.3, 128, 60, hardening_modulus=0.02 * _E),
+        _smooth("hardening_0.02E", 0.002, 0.3, 128, hardening_modulus=0.02 * _E),
         _smooth("poisson_0.2", 0.001, 0.2, 128, 60),
         _smooth("poisson_0.4", 0.001, 0.4, 128),
         _smooth("smooth_0.0005", 0.0005, 0.3, 512),
