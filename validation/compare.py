@@ -1,10 +1,10 @@
 """How far each model of plasticity is from finite elements and from a rough contact in 3D.
 
-    python validation/compare.py
+    python validation/compare.py [CASE ...]
 
 reads the references in `finite_elements/data` and `rough_plastic/data`, computes each of their
-contacts with every model, and writes `models.csv` (a row for each model and depth) and the figures
-of docs/validation.md. `--figures` draws them again from the table.
+contacts (or those of the cases that are named) with every model, and writes `models.csv` (a row for
+each model and depth) and the figure of docs/validation.md. `--figures` only draws it again.
 """
 
 from __future__ import annotations
@@ -62,9 +62,8 @@ def at_depth(contact, depths, last) -> dict:
     from restitution.collision import collide
     from restitution.contact.path import loading_path
 
-    state = None
-    for state in loading_path(contact, [d for d in depths if d < last * (1 - 1e-9)] + [last]):
-        pass
+    through = [depth for depth in depths if depth < last * (1 - 1e-9)]
+    *_, state = loading_path(contact, [*through, last])
     return _quantities(state, collide(state))
 
 
@@ -120,12 +119,14 @@ def rough(reference: dict, folder: Path) -> list[dict]:
     depths = [row["indentation_m"] for row in reference["summary"]]
     for name in MODELS:
         contact = Contact(pair_of(model), Surface(height, grid), **material(model, name))
-        states = list(loading_path(contact, np.geomspace(0.03 * depths[0], 1.2 * depths[-1], 40)))
+        states = list(loading_path(contact, np.geomspace(0.003 * depths[-1], 1.2 * depths[-1], 40)))
         curve = [_quantities(state, collide(state)) for state in states]
         force = np.log([each["force_N"] for each in curve])
         for row in reference["summary"]:
             mine = {
-                name: float(PchipInterpolator(force, [q[name] for q in curve])(np.log(row["force_N"])))
+                name: float(
+                    PchipInterpolator(force, [q[name] for q in curve])(np.log(row["force_N"]))
+                )
                 for name in QUANTITIES
             }
             found.append(_row(reference["case"], name, row, mine))
@@ -136,20 +137,26 @@ def _row(case: str, name: str, reference: dict, mine: dict) -> dict:
     row = {"case": case, "model": name, "omega": reference.get("omega", "")}
     row["indentation_m"] = reference["indentation_m"]
     for quantity in QUANTITIES:
-        row[f"{quantity}_reference"] = reference[quantity]
+        # Without what alternates as nodes of the finite elements enter the contact.
+        smoothed = quantity.replace("_N", "_smoothed_N")
+        its = reference.get(smoothed, reference[quantity])
+        row[f"{quantity}_reference"] = its
         row[quantity] = f"{mine[quantity]:.6g}"
-        row[f"{quantity}_off"] = f"{mine[quantity] / reference[quantity] - 1:.4f}"
+        row[f"{quantity}_off"] = f"{mine[quantity] / its - 1:.4f}"
     return row
 
 
-def compute() -> list[dict]:
-    """All rows of the table."""
+def compute(names: list[str]) -> list[dict]:
+    """The rows of the cases of these names, or of all."""
     rows = []
-    for file in sorted((HERE / "finite_elements" / "data").glob("*.json")):
-        rows += axisymmetric(json.loads(file.read_text()))
-        print(file.stem, flush=True)
-    for file in sorted((HERE / "rough_plastic" / "data").glob("rough*.json")):
-        rows += rough(json.loads(file.read_text()), file.parent)
+    for file in sorted(HERE.glob("*/data/*.json")):
+        if names and file.stem not in names:
+            continue
+        reference = json.loads(file.read_text())
+        if file.parts[-3] == "finite_elements":
+            rows += axisymmetric(reference)
+        elif reference["heights_file"] is not None:
+            rows += rough(reference, file.parent)
         print(file.stem, flush=True)
     return rows
 
@@ -207,12 +214,20 @@ def _kind(case: str) -> str:
 def main() -> None:
     """Compute, write and draw."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("names", nargs="*", metavar="CASE", help="cases to compute; others stay")
     parser.add_argument("--figures", action="store_true", help="only draw the table again")
-    if parser.parse_args().figures:
+    options = parser.parse_args()
+    rows = []
+    if options.names or options.figures:
         with open(TABLE, newline="", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
-    else:
-        rows = compute()
+    if not options.figures:
+        new = compute(options.names)
+        computed = {row["case"] for row in new}
+        rows = sorted(
+            [*(row for row in rows if row["case"] not in computed), *new],
+            key=lambda row: (row["case"], MODELS.index(row["model"]), float(row["indentation_m"])),
+        )
         with open(TABLE, "w", newline="", encoding="utf-8") as file:
             table = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
             table.writeheader()

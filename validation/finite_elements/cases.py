@@ -63,19 +63,24 @@ def _smooth(name, ratio, nu, top, elements=80, **hardening):
     model = Model(_E, nu, ratio * contact_modulus, radius=_R, **hardening)
     ranges = [Range("a", (2, 4, 8), 0.8, 0.8, elements)]
     if top > 128:
-        ranges += [Range("b", (16, 32, 64), 8, 0.8, elements),
-                   Range("c", (128, 256, 512), 64, 0.8, elements, coarse=0.1)]
+        ranges += [
+            Range("b", (16, 32, 64), 8, 0.8, elements),
+            Range("c", (128, 256, 512), 64, 0.8, elements, coarse=0.1),
+        ]
     else:
         ranges += [Range("b", (16, 32, 64, 128), 8, 0.8, elements)]
     return Case(name, model, tuple(ranges))
 
 
 def _waves(amplitude_um, wavelength_um):
-    model = Model(_E, 0.3, 1e9, radius=_R, wave_amplitude=amplitude_um * 1e-6,
-                  wavelength=wavelength_um * 1e-6)
+    model = Model(
+        _E, 0.3, 1e9, radius=_R, wave_amplitude=amplitude_um * 1e-6, wavelength=wavelength_um * 1e-6
+    )
     start = 0.8 * model.crest_radius / model.radius
-    ranges = (Range("a", (0.25, 0.5, 1), start, start, 64, fine=0.05),
-              Range("b", (2, 4, 8), 1, start, 32 if wavelength_um > 6 else 24, coarse=0.1))
+    ranges = (
+        Range("a", (0.25, 0.5, 1), start, start, 64, fine=0.05),
+        Range("b", (2, 4, 8), 1, start, 32 if wavelength_um > 6 else 24, coarse=0.1),
+    )
     return Case(f"waves_A{amplitude_um:g}um_L{wavelength_um:g}um", model, ranges)
 
 
@@ -99,9 +104,11 @@ def all_cases() -> list[Case]:
         _smooth("hardening_0.1E", 0.002, 0.3, 128, 60, hardening_modulus=0.1 * _E),
     ]
     cases += [_waves(0.01, w) for w in (8, 4)]
-    cases += [_with_kinematics(cases[1], "finite_0.005", "finite"),
-              _with_kinematics(cases[1], "flattening_0.005", "flattening"),
-              _with_kinematics(cases[0], "finite_0.001", "finite")]
+    cases += [
+        _with_kinematics(cases[1], "finite_0.005", "finite"),
+        _with_kinematics(cases[1], "flattening_0.005", "flattening"),
+        _with_kinematics(cases[0], "finite_0.001", "finite"),
+    ]
     return cases
 
 
@@ -110,18 +117,24 @@ def check_cases() -> list[Case]:
     by_name = {c.name: c for c in all_cases()}
     smooth = by_name["smooth_0.001"]
     wave, rough = by_name["waves_A0.03um_L8um"], by_name["waves_A0.1um_L4um"]
-    result = [Case(f"compare_{s:g}MPa", Model(_E, 0.3, s * 1e6, radius=_R),
-                   smooth.ranges[:2]) for s in (1000, 250)]
+    result = [
+        Case(f"compare_{s:g}MPa", Model(_E, 0.3, s * 1e6, radius=_R), smooth.ranges[:2])
+        for s in (1000, 250)
+    ]
     first = replace(smooth, ranges=smooth.ranges[:1])
     both = replace(smooth, ranges=smooth.ranges[:2])
     result += [
         _refined(both, "smooth_0.001_double_elements", elements=40),
         _refined(first, "smooth_0.001_half_steps", fine=0.0175),
-        replace(wave, name="waves_A0.03um_L8um_double_elements",
-                ranges=tuple(replace(r, elements=r.elements / 2) for r in wave.ranges)),
+        replace(
+            wave,
+            name="waves_A0.03um_L8um_double_elements",
+            ranges=tuple(replace(r, elements=r.elements / 2) for r in wave.ranges),
+        ),
         _refined(first, "smooth_0.001_half_elements", refinement=2),
-        _refined(replace(rough, ranges=rough.ranges[:1]), "waves_A0.1um_L4um_half_elements",
-                 elements=128),
+        _refined(
+            replace(rough, ranges=rough.ranges[:1]), "waves_A0.1um_L4um_half_elements", elements=128
+        ),
     ]
     return result
 
@@ -136,13 +149,29 @@ def run_case(case: Case, partial: Path) -> Iterator[dict]:
             mesh = solve.wave_mesh if case.model.wave_amplitude else solve.smooth_mesh
             spec = mesh(case.model, max(part.omegas), part.elements, part.refinement)
             force_step = 0.045 * part.fine / 0.035 if part.fine < 0.035 else 0.045
-            result = solve.run_range(case.model, spec, part.omegas, part.low, part.start,
-                                     part.coarse, part.fine, force_step,
-                                     kinematics=case.kinematics)
+            result = solve.run_range(
+                case.model,
+                spec,
+                part.omegas,
+                part.low,
+                part.start,
+                part.coarse,
+                part.fine,
+                force_step,
+                kinematics=case.kinematics,
+            )
             file.write_text(json.dumps(_round(result)))
-            print(case.name, part.name, result["mesh"]["run_time_s"], "s,",
-                  result["mesh"]["elements"], "elements,",
-                  result["mesh"]["newton_iterations"], "iterations", flush=True)
+            print(
+                case.name,
+                part.name,
+                result["mesh"]["run_time_s"],
+                "s,",
+                result["mesh"]["elements"],
+                "elements,",
+                result["mesh"]["newton_iterations"],
+                "iterations",
+                flush=True,
+            )
         results.append(json.loads(file.read_text()))
         merged = merge(case, results)
         yield merged
@@ -171,9 +200,19 @@ def smooth_over_steps(indentation, values, window: float = 0.25) -> np.ndarray:
 def merge(case: Case, results: list[dict]) -> dict:
     """Merge the ranges of a case into one table (SI units)."""
     model, delta_c = case.model, case.model.critical_indentation
-    columns = {k: [] for k in ("indentation_m", "force_N", "contact_radius_m", "contact_area_m2",
-                               "contact_area_inner_m2", "contact_area_outer_m2", "force_smoothed_N",
-                               "loading_work_J")}
+    columns = {
+        k: []
+        for k in (
+            "indentation_m",
+            "force_N",
+            "contact_radius_m",
+            "contact_area_m2",
+            "contact_area_inner_m2",
+            "contact_area_outer_m2",
+            "force_smoothed_N",
+            "loading_work_J",
+        )
+    }
     summary, unloading, meshes, work_below = [], [], {}, 0.0
     for part, result in zip(case.ranges, results, strict=False):
         loading = {k: np.array(v) for k, v in result["loading"].items()}
@@ -183,8 +222,9 @@ def merge(case: Case, results: list[dict]) -> dict:
             loading["force_smoothed_N"] = loading["force_N"]
         else:
             # The edge lies between the last node in contact and the first free node.
-            inner, outer = (np.sqrt(loading[f"contact_area_{k}_m2"] / np.pi)
-                            for k in ("inner", "outer"))
+            inner, outer = (
+                np.sqrt(loading[f"contact_area_{k}_m2"] / np.pi) for k in ("inner", "outer")
+            )
             radius = smooth_over_steps(depth, 0.5 * (inner + outer))
             loading["contact_area_m2"] = np.pi * radius**2
             loading["force_smoothed_N"] = smooth_over_steps(depth, loading["force_N"])
@@ -194,7 +234,8 @@ def merge(case: Case, results: list[dict]) -> dict:
         if columns["force_N"]:
             work += work_below - work[first]
             mesh["force_over_last_range_at_low"] = (
-                loading["force_smoothed_N"][first] / columns["force_smoothed_N"][-1])
+                loading["force_smoothed_N"][first] / columns["force_smoothed_N"][-1]
+            )
             first += 1
         for name in columns:
             if name in loading:
@@ -207,28 +248,41 @@ def merge(case: Case, results: list[dict]) -> dict:
             k = int(np.argmin(abs(omega - path["omega"])))
             returned = solve.unloading_work(path["indentation_m"], path["force_N"])
             unloading.append({**path, "mesh_range": part.name})
-            summary.append({
-                "omega": path["omega"], "indentation_m": loading["indentation_m"][k],
-                "force_N": loading["force_N"][k],
-                "force_smoothed_N": loading["force_smoothed_N"][k],
-                "contact_area_m2": loading["contact_area_m2"][k],
-                "contact_area_inner_m2": loading["contact_area_inner_m2"][k],
-                "contact_area_outer_m2": loading["contact_area_outer_m2"][k],
-                "loading_work_J": work[k], "unloading_work_J": returned,
-                "restitution": np.sqrt(returned / work[k]),
-                "residual_indentation_m": path["indentation_m"][-1], "mesh_range": part.name,
-            })
+            summary.append(
+                {
+                    "omega": path["omega"],
+                    "indentation_m": loading["indentation_m"][k],
+                    "force_N": loading["force_N"][k],
+                    "force_smoothed_N": loading["force_smoothed_N"][k],
+                    "contact_area_m2": loading["contact_area_m2"][k],
+                    "contact_area_inner_m2": loading["contact_area_inner_m2"][k],
+                    "contact_area_outer_m2": loading["contact_area_outer_m2"][k],
+                    "loading_work_J": work[k],
+                    "unloading_work_J": returned,
+                    "restitution": np.sqrt(returned / work[k]),
+                    "residual_indentation_m": path["indentation_m"][-1],
+                    "mesh_range": part.name,
+                }
+            )
     return {
         "case": case.name,
-        "model": {"youngs_modulus_Pa": model.youngs_modulus,
-                  "poissons_ratio": model.poissons_ratio,
-                  "yield_strength_Pa": model.yield_strength,
-                  "hardening_modulus_Pa": model.hardening_modulus,
-                  "hardening_exponent": model.hardening_exponent, "radius_m": model.radius,
-                  "wave_amplitude_m": model.wave_amplitude, "wavelength_m": model.wavelength,
-                  "kinematics": case.kinematics},
-        "contact_modulus_Pa": model.contact_modulus, "critical_indentation_m": delta_c,
-        "mesh": meshes, "loading": columns, "unloading": unloading, "summary": summary,
+        "model": {
+            "youngs_modulus_Pa": model.youngs_modulus,
+            "poissons_ratio": model.poissons_ratio,
+            "yield_strength_Pa": model.yield_strength,
+            "hardening_modulus_Pa": model.hardening_modulus,
+            "hardening_exponent": model.hardening_exponent,
+            "radius_m": model.radius,
+            "wave_amplitude_m": model.wave_amplitude,
+            "wavelength_m": model.wavelength,
+            "kinematics": case.kinematics,
+        },
+        "contact_modulus_Pa": model.contact_modulus,
+        "critical_indentation_m": delta_c,
+        "mesh": meshes,
+        "loading": columns,
+        "unloading": unloading,
+        "summary": summary,
         "versions": solve.versions(),
     }
 
@@ -246,8 +300,9 @@ def _round(value):
 def write(result: dict, file: Path) -> None:
     """Write a result with 7 significant digits, one list of numbers per line."""
     text = json.dumps(_round(result), indent=1)
-    text = re.sub(r"\[\s+([^\[\]{}]*?)\s+\]",
-                  lambda m: "[" + re.sub(r"\s+", " ", m.group(1)) + "]", text)
+    text = re.sub(
+        r"\[\s+([^\[\]{}]*?)\s+\]", lambda m: "[" + re.sub(r"\s+", " ", m.group(1)) + "]", text
+    )
     file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text(text + "\n")
 
@@ -258,10 +313,12 @@ def main() -> None:
     parser.add_argument("names", nargs="*", help="cases to run; left out: all reference cases")
     parser.add_argument("--list", action="store_true", help="print the names of all cases")
     parser.add_argument("--checks", action="store_true", help="run the convergence cases, too")
-    parser.add_argument("--rewrite", action="store_true",
-                        help="write the files again from the finished ranges")
-    parser.add_argument("--partial", type=Path, default=HERE / "partial",
-                        help="folder of finished ranges")
+    parser.add_argument(
+        "--rewrite", action="store_true", help="write the files again from the finished ranges"
+    )
+    parser.add_argument(
+        "--partial", type=Path, default=HERE / "partial", help="folder of finished ranges"
+    )
     args = parser.parse_args()
     checks = {c.name for c in check_cases()}
     known = {c.name: c for c in [*all_cases(), *check_cases()]}
@@ -283,8 +340,11 @@ def main() -> None:
         for merged in run_case(case, args.partial):
             write(merged, file)
         for row in merged["summary"]:
-            print(f"{name} omega {row['omega']:g}: F {row['force_N']:.6g} N, area "
-                  f"{row['contact_area_m2']:.5g} m2, COR {row['restitution']:.5f}", flush=True)
+            print(
+                f"{name} omega {row['omega']:g}: F {row['force_N']:.6g} N, area "
+                f"{row['contact_area_m2']:.5g} m2, COR {row['restitution']:.5f}",
+                flush=True,
+            )
 
 
 if __name__ == "__main__":

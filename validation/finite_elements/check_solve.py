@@ -1,6 +1,6 @@
 """Checks of the solver without other data: tangent, uniaxial hardening, Hertz. Run with pytest.
 
-    python -m pytest check_solve.py
+python -m pytest check_solve.py
 """
 
 import numpy as np
@@ -21,7 +21,8 @@ def _evaluate(body, u, ep, al):
 
 
 @pytest.mark.parametrize(
-    "hardening", [{}, {"hardening_modulus": 20.0}, {"hardening_exponent": 0.2}])
+    "hardening", [{}, {"hardening_modulus": 20.0}, {"hardening_exponent": 0.2}]
+)
 def test_the_tangent_is_the_derivative_of_the_forces(hardening):
     """Compare the tangent with central differences, after and during yield."""
     body = _small(Model(210.0, 0.3, 1.0, **hardening))
@@ -75,8 +76,9 @@ def test_elastic_contact_follows_hertz():
     """Compare force, area and returned work with Hertz."""
     model = Model(yield_strength=None)
     result = solve.run_range(model, solve.smooth_mesh(model, 4, 40), (2, 4), 0.8, 0.8, fine=0.1)
-    depth, force, area = (np.array(result["loading"][k])
-                          for k in ("indentation_m", "force_N", "contact_area_m2"))
+    depth, force, area = (
+        np.array(result["loading"][k]) for k in ("indentation_m", "force_N", "contact_area_m2")
+    )
     hertz = 4 / 3 * model.contact_modulus * np.sqrt(model.radius) * depth**1.5
     np.testing.assert_allclose(force, hertz, rtol=3e-3)
     np.testing.assert_allclose(area[-4:], np.pi * model.radius * depth[-4:], rtol=0.03)

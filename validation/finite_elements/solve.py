@@ -214,8 +214,9 @@ def _assemble(Ke, fe, conn_e, slope, dofs, kmap_e, f, kdata):
 
 
 @nb.njit(cache=True, error_model="numpy")
-def _element_pass(u, B, w, conn, ep_old, al_old, G, bulk, strength, H, n, E, kmap, slope,
-                  ep, al, f, kdata):
+def _element_pass(
+    u, B, w, conn, ep_old, al_old, G, bulk, strength, H, n, E, kmap, slope, ep, al, f, kdata
+):
     """Return map every point; fill internal forces `f` and the upper triangle `kdata`."""
     f[:] = 0.0
     kdata[:] = 0.0
@@ -365,8 +366,9 @@ def _deformed_strain_matrices(xe, B, w, dN):
 
 
 @nb.njit(cache=True, error_model="numpy")
-def _element_pass_finite(u, u_old, X, conn, sig_old, al_old, G, bulk, strength, H, n, E, kmap,
-                         slope, sig, al, f, kdata):
+def _element_pass_finite(
+    u, u_old, X, conn, sig_old, al_old, G, bulk, strength, H, n, E, kmap, slope, sig, al, f, kdata
+):
     """Like `_element_pass` for finite strains: midpoint strain and Hughes-Winget rotation."""
     f[:] = 0.0
     kdata[:] = 0.0
@@ -449,8 +451,9 @@ def _element_pass_finite(u, u_old, X, conn, sig_old, al_old, G, bulk, strength, 
                 sig[e, p, m] = s[m]
             wp = w[p]
             for k in range(8):
-                fe[k] += wp * (B[p, 0, k] * s[0] + B[p, 1, k] * s[1] + B[p, 2, k] * s[2]
-                               + B[p, 3, k] * s[3])
+                fe[k] += wp * (
+                    B[p, 0, k] * s[0] + B[p, 1, k] * s[1] + B[p, 2, k] * s[2] + B[p, 3, k] * s[3]
+                )
             g2 = 2 * G * theta
             for i in range(4):
                 for j in range(4):
@@ -472,16 +475,26 @@ def _element_pass_finite(u, u_old, X, conn, sig_old, al_old, G, bulk, strength, 
                 D[3, i] -= s[3]
             for i in range(4):
                 for k in range(8):
-                    DB[i, k] = wp * (D[i, 0] * B[p, 0, k] + D[i, 1] * B[p, 1, k]
-                                     + D[i, 2] * B[p, 2, k] + D[i, 3] * B[p, 3, k])
+                    DB[i, k] = wp * (
+                        D[i, 0] * B[p, 0, k]
+                        + D[i, 1] * B[p, 1, k]
+                        + D[i, 2] * B[p, 2, k]
+                        + D[i, 3] * B[p, 3, k]
+                    )
             for j in range(8):
                 for k in range(j, 8):
-                    Ke[j, k] += (B[p, 0, j] * DB[0, k] + B[p, 1, j] * DB[1, k]
-                                 + B[p, 2, j] * DB[2, k] + B[p, 3, j] * DB[3, k])
+                    Ke[j, k] += (
+                        B[p, 0, j] * DB[0, k]
+                        + B[p, 1, j] * DB[1, k]
+                        + B[p, 2, j] * DB[2, k]
+                        + B[p, 3, j] * DB[3, k]
+                    )
             for i in range(4):
                 for j in range(i, 4):
-                    geo = wp * (dN[p, i, 0] * (s[0] * dN[p, j, 0] + s[3] * dN[p, j, 1])
-                                + dN[p, i, 1] * (s[3] * dN[p, j, 0] + s[1] * dN[p, j, 1]))
+                    geo = wp * (
+                        dN[p, i, 0] * (s[0] * dN[p, j, 0] + s[3] * dN[p, j, 1])
+                        + dN[p, i, 1] * (s[3] * dN[p, j, 0] + s[1] * dN[p, j, 1])
+                    )
                     Ke[2 * i, 2 * j] += geo + wp * s[2] * dN[p, i, 2] * dN[p, j, 2]
                     Ke[2 * i + 1, 2 * j + 1] += geo
         _assemble(Ke, fe, conn[e], slope, dofs, kmap[e], f, kdata)
@@ -625,8 +638,14 @@ class Indentation:
     def start(self) -> State:
         """Return the undeformed state."""
         shape = (self.elements, 4)
-        return State(0.0, np.zeros(self.ndof), np.zeros((*shape, 4)), np.zeros(shape),
-                     np.zeros(len(self.candidates), bool), 0.0)
+        return State(
+            0.0,
+            np.zeros(self.ndof),
+            np.zeros((*shape, 4)),
+            np.zeros(shape),
+            np.zeros(len(self.candidates), bool),
+            0.0,
+        )
 
     def _gap_profile(self, u):
         """Return g (m), g' and g'' (1/m) at the candidate nodes; derivatives 0 where unused."""
@@ -644,8 +663,20 @@ class Indentation:
         strength = 1e30 if m.yield_strength is None else m.yield_strength
         node_slope = np.zeros(self.ndof // 2)
         node_slope[self.candidates // 2] = slope
-        material = (self.G, self.bulk, strength, m.hardening_modulus, m.hardening_exponent,
-                    m.youngs_modulus, self.kmap, node_slope, tensor, al, f, self.kdata)
+        material = (
+            self.G,
+            self.bulk,
+            strength,
+            m.hardening_modulus,
+            m.hardening_exponent,
+            m.youngs_modulus,
+            self.kmap,
+            node_slope,
+            tensor,
+            al,
+            f,
+            self.kdata,
+        )
         old = state.tensor, state.equivalent_plastic_strain
         if self.kinematics in ("finite", "flattening"):
             _element_pass_finite(u, state.u, self.coordinates, self.conn, *old, *material)
@@ -656,8 +687,13 @@ class Indentation:
         A = csr_matrix((self.kdata, self.cols, self.indptr), shape=(self.ndof, self.ndof))
         return A @ x + A.T @ x - self.kdata[self.diagonal] * x
 
-    def advance(self, state: State, indentation: float, guess: np.ndarray | None = None,
-                careful: bool = False) -> State:
+    def advance(
+        self,
+        state: State,
+        indentation: float,
+        guess: np.ndarray | None = None,
+        careful: bool = False,
+    ) -> State:
         """Return the equilibrium at an indentation (m), after the converged `state`.
 
         Semismooth Newton: plasticity and the set of contact nodes change together.
@@ -736,8 +772,9 @@ class Indentation:
             waits = careful and residual > 1e-3
             changed = bool(leave.any() or enter.any() or waits)
             active = (active & ~leave) | enter
-            settled = ((not changed or waits) and mismatch < 1e-6
-                       and residual > 10 * _NEWTON_TOLERANCE)
+            settled = (
+                (not changed or waits) and mismatch < 1e-6 and residual > 10 * _NEWTON_TOLERANCE
+            )
             last_du, last_norm, fraction = (du if settled else None), norm, 1.0
         raise RuntimeError(f"no equilibrium at {indentation:g} m (residual {residual:.1e})")
 
@@ -863,8 +900,9 @@ def unloading_work(indentation, force) -> float:
     return float(PchipInterpolator(d[keep], f[keep]).integrate(d[0], d[-1]))
 
 
-def smooth_mesh(model: Model, omega_max: float, elements: float = 60,
-                refinement: int = 1) -> MeshSpec:
+def smooth_mesh(
+    model: Model, omega_max: float, elements: float = 60, refinement: int = 1
+) -> MeshSpec:
     """Return a mesh with about `elements` over the contact radius at ω = `omega_max`.
 
     Args:
@@ -879,8 +917,7 @@ def smooth_mesh(model: Model, omega_max: float, elements: float = 60,
         growth = 1.0
     a = growth * np.sqrt(model.radius * omega_max * model.critical_indentation)
     k = 1 / refinement
-    return MeshSpec(a / elements * k, 1.08 * a, 0.5 * a, 3 * a, 100 * a,
-                    1.10**k, 1.06**k, 1.25**k)
+    return MeshSpec(a / elements * k, 1.08 * a, 0.5 * a, 3 * a, 100 * a, 1.10**k, 1.06**k, 1.25**k)
 
 
 def wave_mesh(model: Model, omega_max: float, per_wave: float, refinement: int = 1) -> MeshSpec:
@@ -888,8 +925,16 @@ def wave_mesh(model: Model, omega_max: float, per_wave: float, refinement: int =
     depth = omega_max * model.critical_indentation
     a = 1.15 * np.sqrt(model.radius * depth)
     k = 1 / refinement
-    return MeshSpec(model.wavelength / per_wave * k, 1.1 * a, 0.3 * model.wavelength, 3 * a,
-                    100 * a, 1.10**k, 1.06**k, 1.25**k)
+    return MeshSpec(
+        model.wavelength / per_wave * k,
+        1.1 * a,
+        0.3 * model.wavelength,
+        3 * a,
+        100 * a,
+        1.10**k,
+        1.06**k,
+        1.25**k,
+    )
 
 
 def load_steps(start: float, low: float, omegas, coarse: float, fine: float):
@@ -911,17 +956,29 @@ def load_steps(start: float, low: float, omegas, coarse: float, fine: float):
     return np.array(steps)
 
 
-def run_range(model: Model, spec: MeshSpec, omegas, low: float, start: float,
-              coarse: float = 0.07, fine: float = 0.035, force_step: float = _UNLOADING_FORCE_STEP,
-              report=None, kinematics: str = "small") -> dict:
+def run_range(
+    model: Model,
+    spec: MeshSpec,
+    omegas,
+    low: float,
+    start: float,
+    coarse: float = 0.07,
+    fine: float = 0.035,
+    force_step: float = _UNLOADING_FORCE_STEP,
+    report=None,
+    kinematics: str = "small",
+) -> dict:
     """Load on one mesh, unload from each ω in `omegas`, and return plain numbers (SI units)."""
     began = time.perf_counter()
     body = Indentation(model, spec, kinematics)
     steps = load_steps(start, low, omegas, coarse, fine)
     stops = {int(np.argmin(abs(steps - w))): w for w in omegas}
     iterations: list[int] = []
-    curve, kept = body.load(steps * model.critical_indentation, stops,
-                            lambda s: (iterations.append(s.iterations), report and report(s)))
+    curve, kept = body.load(
+        steps * model.critical_indentation,
+        stops,
+        lambda s: (iterations.append(s.iterations), report and report(s)),
+    )
     unloading = []
     for k, omega in stops.items():
         try:
@@ -929,22 +986,40 @@ def run_range(model: Model, spec: MeshSpec, omegas, low: float, start: float,
         except RuntimeError as error:
             print(f"unloading from omega {omega:g} left out: {error}", flush=True)
             continue
-        unloading.append({"omega": omega, "indentation_m": path.indentation, "force_N": path.force,
-                          "contact_area_m2": path.area})
+        unloading.append(
+            {
+                "omega": omega,
+                "indentation_m": path.indentation,
+                "force_N": path.force,
+                "contact_area_m2": path.area,
+            }
+        )
     largest = float(np.sqrt(max(curve.area) / np.pi))
     body.close()
     return {
-        "mesh": {"element_size_m": spec.element_size, "elements": body.elements,
-                 "elements_over_radius": round(largest / spec.element_size, 1),
-                 "uniform_radius_m": spec.uniform_radius, "uniform_depth_m": spec.uniform_depth,
-                 "domain_m": spec.domain, "domain_over_radius": round(spec.domain / largest, 1),
-                 "omega_low": low, "omega_high": float(max(omegas)), "fine_step": fine,
-                 "coarse_step": coarse, "newton_iterations": int(sum(iterations)),
-                 "run_time_s": round(time.perf_counter() - began, 1)},
+        "mesh": {
+            "element_size_m": spec.element_size,
+            "elements": body.elements,
+            "elements_over_radius": round(largest / spec.element_size, 1),
+            "uniform_radius_m": spec.uniform_radius,
+            "uniform_depth_m": spec.uniform_depth,
+            "domain_m": spec.domain,
+            "domain_over_radius": round(spec.domain / largest, 1),
+            "omega_low": low,
+            "omega_high": float(max(omegas)),
+            "fine_step": fine,
+            "coarse_step": coarse,
+            "newton_iterations": int(sum(iterations)),
+            "run_time_s": round(time.perf_counter() - began, 1),
+        },
         "omega": steps.tolist(),
-        "loading": {"indentation_m": curve.indentation, "force_N": curve.force,
-                    "contact_area_m2": curve.area, "contact_area_inner_m2": curve.area_inner,
-                    "contact_area_outer_m2": curve.area_outer},
+        "loading": {
+            "indentation_m": curve.indentation,
+            "force_N": curve.force,
+            "contact_area_m2": curve.area,
+            "contact_area_inner_m2": curve.area_inner,
+            "contact_area_outer_m2": curve.area_outer,
+        },
         "unloading": unloading,
     }
 
@@ -953,8 +1028,13 @@ def versions() -> dict[str, str]:
     """Return the versions of the packages that were used."""
     import platform
     from importlib.metadata import PackageNotFoundError, version
-    found = {"python": platform.python_version(), "numpy": np.__version__,
-             "scipy": scipy.__version__, "numba": nb.__version__}
+
+    found = {
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "scipy": scipy.__version__,
+        "numba": nb.__version__,
+    }
     for name in ("pypardiso", "mkl"):
         try:
             found[name] = version(name)
@@ -978,21 +1058,44 @@ def main() -> None:
     parser.add_argument("--start", type=float, default=0.8, help="first ω")
     parser.add_argument("--elements", type=int, default=60, help="over the contact radius")
     parser.add_argument("--step", type=float, default=0.035, help="relative step of ω")
-    parser.add_argument("--kinematics", default="small",
-                        choices=("small", "deformed-contact", "finite", "flattening"))
+    parser.add_argument(
+        "--kinematics",
+        default="small",
+        choices=("small", "deformed-contact", "finite", "flattening"),
+    )
     parser.add_argument("--verbose", action="store_true")
     parser.add_argument("--output", help="JSON file for the curves")
     a = parser.parse_args()
-    model = Model(a.youngs_modulus, a.poissons_ratio, a.yield_strength, a.hardening_modulus,
-                  a.hardening_exponent, a.radius, a.wave_amplitude, a.wavelength)
+    model = Model(
+        a.youngs_modulus,
+        a.poissons_ratio,
+        a.yield_strength,
+        a.hardening_modulus,
+        a.hardening_exponent,
+        a.radius,
+        a.wave_amplitude,
+        a.wavelength,
+    )
     spec = smooth_mesh(model, max(a.omega), a.elements)
 
     def show(s):
-        print(f"{s.indentation / model.critical_indentation:9.4f} {s.force:12.6g} "
-              f"{s.active.sum():5d} {s.iterations:3d}", flush=True)
+        print(
+            f"{s.indentation / model.critical_indentation:9.4f} {s.force:12.6g} "
+            f"{s.active.sum():5d} {s.iterations:3d}",
+            flush=True,
+        )
 
-    result = run_range(model, spec, a.omega, a.omega[0], a.start, fine=a.step, coarse=a.step,
-                       report=show if a.verbose else None, kinematics=a.kinematics)
+    result = run_range(
+        model,
+        spec,
+        a.omega,
+        a.omega[0],
+        a.start,
+        fine=a.step,
+        coarse=a.step,
+        report=show if a.verbose else None,
+        kinematics=a.kinematics,
+    )
     print(result["mesh"])
     work = loading_work(result["loading"]["indentation_m"], result["loading"]["force_N"])
     E_star, R = model.contact_modulus, model.radius
@@ -1002,9 +1105,11 @@ def main() -> None:
         cor = np.sqrt(unloading_work(path["indentation_m"], path["force_N"]) / work[k])
         hertz = 4 / 3 * E_star * np.sqrt(R) * d**1.5
         area = result["loading"]["contact_area_m2"][k]
-        print(f"omega {path['omega']:7.2f}  F {f:.6g} N (Hertz {f / hertz:.5f})  "
-              f"A/(pi R d) {area / (np.pi * R * d):.4f}  COR {cor:.5f}  "
-              f"unloading steps {len(path['force_N'])}")
+        print(
+            f"omega {path['omega']:7.2f}  F {f:.6g} N (Hertz {f / hertz:.5f})  "
+            f"A/(pi R d) {area / (np.pi * R * d):.4f}  COR {cor:.5f}  "
+            f"unloading steps {len(path['force_N'])}"
+        )
     if a.output:
         with open(a.output, "w") as file:
             json.dump(result, file)
