@@ -97,7 +97,10 @@ def axisymmetric(reference: dict) -> list[dict]:
         grid = Grid((nodes, nodes), (2 * half_width / nodes,) * 2)
         for name in MODELS:
             contact = Contact(pair_of(model), waves(grid, model), **material(model, name))
-            found.append(_row(reference["case"], name, row, at_depth(contact, depths, depth)))
+            mine = at_depth(contact, depths, depth)
+            found.append(
+                _row(reference["case"], name, _strength_and_slope(contact, model), row, mine)
+            )
     return found
 
 
@@ -129,13 +132,21 @@ def rough(reference: dict, folder: Path) -> list[dict]:
                 )
                 for name in QUANTITIES
             }
-            found.append(_row(reference["case"], name, row, mine))
+            found.append(
+                _row(reference["case"], name, _strength_and_slope(contact, model), row, mine)
+            )
     return found
 
 
-def _row(case: str, name: str, reference: dict, mine: dict) -> dict:
+def _strength_and_slope(contact, model: dict) -> tuple:
+    return model["yield_strength_Pa"] / contact.pair.contact_modulus, contact.slope
+
+
+def _row(case: str, name: str, contact_of: tuple, reference: dict, mine: dict) -> dict:
     row = {"case": case, "model": name, "omega": reference.get("omega", "")}
     row["indentation_m"] = reference["indentation_m"]
+    row["yield_strength_over_contact_modulus"] = f"{contact_of[0]:.6g}"
+    row["rms_slope"] = f"{contact_of[1]:.4g}"
     for quantity in QUANTITIES:
         # Without what alternates as nodes of the finite elements enter the contact.
         smoothed = quantity.replace("_N", "_smoothed_N")
@@ -181,27 +192,33 @@ def draw(rows: list[dict]) -> None:
 
     groups = {
         "smooth": ("Smooth spheres", "indentation over that of first yield, ω"),
-        "waves": ("Spheres on concentric waves", "indentation over that of first yield, ω"),
-        "rough": ("Rough spheres (3D)", "indentation (nm)"),
+        "waves": (
+            "Spheres on concentric waves",
+            "the same of the smooth sphere, ω",
+        ),
+        "rough": ("Rough spheres in 3D, at the same force", "force (N)"),
     }
     figure = Figure(figsize=(12, 7), layout="constrained")
-    axes = figure.subplots(2, 3, sharey="row")
+    axes = figure.subplots(2, 3)
     styles = {"expanding-cavity": "C0o", "equilibrium": "C1s", "truncated": "C2^"}
     for column, (kind, (title, label)) in enumerate(groups.items()):
         of = [row for row in rows if _kind(row["case"]) == kind]
-        for row, (quantity, what) in enumerate((("restitution", "COR"), ("force_N", "force"))):
+        second = "contact_area_m2" if kind == "rough" else "force_N"  # rough ones have one force
+        for row, quantity in enumerate(("restitution", second)):
             ax = axes[row, column]
             ax.axhline(0, color="0.5", lw=1)
             for name, style in styles.items():
                 chosen = [each for each in of if each["model"] == name]
-                x = [float(r["omega"] or 1e9 * float(r["indentation_m"])) for r in chosen]
+                x = [float(r["omega"] or r["force_N_reference"]) for r in chosen]
                 y = [100 * float(r[f"{quantity}_off"]) for r in chosen]
                 ax.plot(x, y, style[2], color=style[:2], ms=5, alpha=0.75, label=name)
-            ax.set(xscale="log", xlabel=label)
+            ax.set_xscale("log")
+            ax.set_xticks(sorted(set(x)), [f"{value:.3g}" for value in sorted(set(x))])
+            ax.minorticks_off()
+            what = {"restitution": "COR", "force_N": "force"}.get(quantity, "contact area")
+            ax.set(xlabel=label, ylabel=f"{what} off the reference (%)")
             if row == 0:
                 ax.set_title(title)
-            if column == 0:
-                ax.set_ylabel(f"{what} off the reference (%)")
             ax.grid(alpha=0.3)
     axes[0, 0].legend()
     figure.savefig(IMAGES / "validation.png", dpi=130)

@@ -1,16 +1,15 @@
 """The error of COR by the model of plasticity."""
 
 import csv
-import math
 from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 
-import numpy as np
 import pytest
 
-from restitution import Body, Contact, Grid, Pair, smooth, solve
+from restitution import Body, Contact, Grid, Pair, generate_surface, smooth, solve
 from restitution.collision import collide
-from restitution.contact.model_error import model_error
+from restitution.contact.model_error import largest_difference, model_error
 
 approx = partial(pytest.approx, abs=0.0)
 TABLE = Path(__file__).parents[2] / "validation" / "models.csv"
@@ -48,23 +47,37 @@ def test_adhesion_leaves_the_energy_that_plasticity_may_miss(yields):
 
 @pytest.mark.skipif(not TABLE.is_file(), reason="validation/ is not beside the package")
 def test_it_covers_the_references():
-    """Every COR of the validation is within its model_error, but for what the table rounds."""
-    from restitution.contact import model_error as module
+    """Every COR of the validation is within it (0.002 for what is rounded and interpolated).
 
+    The constant bounds are those of a material that does not harden.
+    """
     with open(TABLE, newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
-    assert len(rows) > 150
+    assert len(rows) > 200
     for row in rows:
+        grows = row["model"] == "expanding-cavity"
+        if "hardening" in row["case"] and not grows:
+            continue
+        yields = {"yield_strength": 1e9} if grows else {"yield_pressure": 2.8e9}
+        slope = float(row["rms_slope"])
+        pressed = SimpleNamespace(
+            contact=SimpleNamespace(
+                grows=grows, plasticity=row["model"], slope=slope, pair=PAIR, **yields
+            )
+        )
+        strength = float(row["yield_strength_over_contact_modulus"])
+        pressed.contact.slope *= yields.get("yield_strength", 0) / PAIR.contact_modulus / strength
         e, reference = float(row["restitution"]), float(row["restitution_reference"])
-        allowed = float(np.interp(e, *module._FOUND[row["model"]])) * e
-        assert abs(e - reference) <= allowed + 2e-3, row
+        assert abs(e - reference) <= largest_difference(pressed, e) * e + 2e-3, row
 
 
-def test_the_tables_are_in_order():
-    from restitution.contact import model_error as module
-
-    for at, off in module._FOUND.values():
-        assert sorted(at) == list(at)
-        assert math.isclose(at[-1], 1.0)
-        assert len(at) == len(off)
-        assert min(off) > 0
+def test_steeper_asperities_have_a_larger_error():
+    grid = Grid((64, 64), (0.5e-6, 0.5e-6))
+    errors = []
+    for rms in (1e-9, 5e-8, 2e-7):
+        shape = {"kind": "gaussian", "rms": rms, "correlation_length": 4e-6, "seed": 1}
+        state = solve(Contact(PAIR, generate_surface(grid, **shape), yield_strength=1e9), 1e-7)
+        errors.append(largest_difference(state, 0.8))
+    assert errors == sorted(errors)
+    assert errors[0] == approx(0.03, rel=0.1)
+    assert errors[2] > 2 * errors[0]

@@ -10,7 +10,9 @@ of tamaas.EPICSolver (option --epic uses the latter, for comparison).
 
 Units inside: micrometre, MPa, hence micronewton; files are in SI units.
 """
+
 import os
+
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 import argparse
 import json
@@ -34,8 +36,14 @@ LATTICE_3 = 9.033621683
 class State:
     """Everything that a force step changes."""
 
-    NAMES = ("strain", "plastic_strain", "cumulated_plastic_strain", "stress",
-             "traction", "displacement")
+    NAMES = (
+        "strain",
+        "plastic_strain",
+        "cumulated_plastic_strain",
+        "stress",
+        "traction",
+        "displacement",
+    )
 
     def __init__(self, solver):
         model = solver.model
@@ -57,23 +65,36 @@ class State:
 class Contact:
     """Rigid surface on an elastic-plastic half-space."""
 
-    def __init__(self, heights, length, depth, layers, modulus, poisson,
-                 yield_strength, radius, hardening=0.0, elastic=False,
-                 images=True, tolerance=1e-4, epic=False):
+    def __init__(
+        self,
+        heights,
+        length,
+        depth,
+        layers,
+        modulus,
+        poisson,
+        yield_strength,
+        radius,
+        hardening=0.0,
+        elastic=False,
+        images=True,
+        tolerance=1e-4,
+        epic=False,
+    ):
         n = heights.shape[0]
         self.n, self.length, self.layers = n, length, layers
         self.depth = depth
         self.cell = length / n
         self.model = tm.ModelFactory.createModel(
-            tm.model_type.volume_2d, [depth, length, length], [layers, n, n])
+            tm.model_type.volume_2d, [depth, length, length], [layers, n, n]
+        )
         self.model.E, self.model.nu = modulus, poisson
         self.poisson, self.modulus = poisson, modulus
         self.reduced = modulus / (1 - poisson**2)
-        self.material = tm.materials.IsotropicHardening(
-            self.model, yield_strength, hardening)
+        self.material = tm.materials.IsotropicHardening(self.model, yield_strength, hardening)
         self.residual = tm.Residual(self.model, self.material)
         x = (np.arange(n) - n // 2) * self.cell
-        self.r2 = x[:, None]**2 + x[None, :]**2
+        self.r2 = x[:, None] ** 2 + x[None, :] ** 2
         self.heights = heights
         self.surface = heights - self.r2 / (2 * radius)  # gap is minus this
         self.work = self.surface.copy()  # the contact solver keeps a reference
@@ -85,8 +106,7 @@ class Contact:
         self.force, self.last_step = 0.0, 0.0
         q = 2 * np.pi * np.fft.fftfreq(n, self.cell)
         q = np.hypot(q[:, None], q[None, :])
-        self.compliance = np.where(
-            q > 0, 2 / (self.reduced * np.where(q > 0, q, 1)), 0)
+        self.compliance = np.where(q > 0, 2 / (self.reduced * np.where(q > 0, q, 1)), 0)
         self.evaluations = 0
         self.epic = None
         if epic:
@@ -103,8 +123,7 @@ class Contact:
     def image_shape(self, force):
         if not self.images:
             return 0.0
-        return (LATTICE_3 * force / (4 * np.pi * self.reduced
-                                     * self.length**3)) * self.r2
+        return (LATTICE_3 * force / (4 * np.pi * self.reduced * self.length**3)) * self.r2
 
     def image_strain(self, dforce):
         """Strain that turns that of the periodic array into one contact's.
@@ -119,9 +138,11 @@ class Contact:
         if self.images:
             nu, length = self.poisson, self.length
             z = np.linspace(0, self.depth, self.layers)
-            s = dforce / length**2 * (
-                nu / (1 - nu) - 0.5 - nu
-                + LATTICE_3 * (1 + nu) * z / (2 * np.pi * length))
+            s = (
+                dforce
+                / length**2
+                * (nu / (1 - nu) - 0.5 - nu + LATTICE_3 * (1 + nu) * z / (2 * np.pi * length))
+            )
             out[:, 0, 0, 0] = out[:, 0, 0, 1] = (1 - nu) * s / self.modulus
             out[:, 0, 0, 2] = -2 * nu * s / self.modulus
         return out
@@ -130,8 +151,7 @@ class Contact:
         return np.array(self.model.traction)[..., 2]
 
     def elastic_displacement(self):
-        return np.fft.ifft2(
-            np.fft.fft2(self.pressure()) * self.compliance).real
+        return np.fft.ifft2(np.fft.fft2(self.pressure()) * self.compliance).real
 
     def solve_contact(self, force, traction, plastic):
         self.model.traction[...] = traction
@@ -155,14 +175,13 @@ class Contact:
         offset = self.image_strain(df)
         xs, rs = [], []
         t = t0.copy()
-        for it in range(max_iter):
+        for it in range(max_iter):  # noqa: B007
             if self.elastic:
                 increment = 0.0
             else:
                 res.computeResidualDisplacement(x)
                 increment = np.array(model.displacement)[0, ..., 2]
-            t = self.solve_contact(
-                force, t, self.plastic_displacement + increment)
+            t = self.solve_contact(force, t, self.plastic_displacement + increment)
             if self.elastic:
                 break
             model.traction[...] = t - t0
@@ -176,24 +195,26 @@ class Contact:
             if xs:
                 dx = [x - xs[-1]]
                 dr = [r - rs[-1]]
-            xs.append(x); rs.append(r)
+            xs.append(x)
+            rs.append(r)
             if len(xs) > 1:
-                self._hx.append(dx[0].ravel()); self._hr.append(dr[0].ravel())
+                self._hx.append(dx[0].ravel())
+                self._hr.append(dr[0].ravel())
                 if len(self._hx) > memory:
-                    self._hx.pop(0); self._hr.pop(0)
+                    self._hx.pop(0)
+                    self._hr.pop(0)
                     self._gram = self._gram[1:, 1:]
                 m = len(self._hr)
                 g = np.zeros((m, m))
-                g[:m-1, :m-1] = self._gram
+                g[: m - 1, : m - 1] = self._gram
                 col = np.array([h @ self._hr[-1] for h in self._hr])
-                g[m-1, :] = g[:, m-1] = col
+                g[m - 1, :] = g[:, m - 1] = col
                 self._gram = g
                 rhs = np.array([h @ r.ravel() for h in self._hr])
                 d = np.sqrt(np.diag(g))
-                gamma = np.linalg.lstsq(g / np.outer(d, d), rhs / d,
-                                        rcond=1e-12)[0] / d
+                gamma = np.linalg.lstsq(g / np.outer(d, d), rhs / d, rcond=1e-12)[0] / d
                 new = (x + r).ravel()
-                for c, hx, hr in zip(gamma, self._hx, self._hr):
+                for c, hx, hr in zip(gamma, self._hx, self._hr, strict=True):
                     new = new - c * (hx + hr)
                 new = new.reshape(x.shape)
             else:
@@ -214,8 +235,7 @@ class Contact:
 
     def approach(self):
         """Rigid approach, corrected for the periodic images."""
-        shape = (self.surface + self.image_shape(self.force)
-                 - self.plastic_displacement)
+        shape = self.surface + self.image_shape(self.force) - self.plastic_displacement
         if self.force == 0:
             return -shape.max()
         p = self.pressure()
@@ -231,17 +251,15 @@ class Contact:
 
 def work(delta, force):
     """Integral of F d(delta), F^(2/3) linear between the points."""
-    g = np.asarray(force)**(2 / 3)
+    g = np.asarray(force) ** (2 / 3)
     d = np.diff(delta)
     g1, g2 = g[:-1], g[1:]
     same = np.abs(g2 - g1) < 1e-9 * (g2 + g1 + 1e-300)
-    mean = np.where(same, g1**1.5,
-                    (g2**2.5 - g1**2.5) / (2.5 * np.where(same, 1, g2 - g1)))
+    mean = np.where(same, g1**1.5, (g2**2.5 - g1**2.5) / (2.5 * np.where(same, 1, g2 - g1)))
     return float(np.sum(d * mean))
 
 
-def band_limited(n, length, rms, shortest, rolloff, hurst, seed,
-                 reference_n=None):
+def band_limited(n, length, rms, shortest, rolloff, hurst, seed, reference_n=None):
     """Random-phase surface; the same surface for every n.
 
     Power spectrum constant from the longest wavelength to `rolloff`, then
@@ -255,7 +273,7 @@ def band_limited(n, length, rms, shortest, rolloff, hurst, seed,
     phase = rng.uniform(0, 2 * np.pi, kx.shape)
     kk = np.hypot(kx, ky) / length
     half = ((kx > 0) | ((kx == 0) & (ky > 0))) & (kk <= 1 / shortest)
-    amp = np.where(half, np.maximum(kk, 1 / rolloff)**-(1 + hurst), 0)
+    amp = np.where(half, np.maximum(kk, 1 / rolloff) ** -(1 + hurst), 0)
     amp *= rms / np.sqrt(np.sum(amp**2) / 2)
     x = (np.arange(n) - n // 2) * (length / n)
     ex = np.exp(2j * np.pi * np.outer(x, k) / length)
@@ -272,14 +290,17 @@ def run(case, solver, forces, unload_at, unload_steps, meta, out, log=print):
         it = solver.step(f)
         load.append((solver.approach(), f, solver.area()))
         peak = float(solver.plastic_strain().max())
-        log(f"{case} F={f:.6g} d={load[-1][0]:.6f} A={load[-1][2]:.4g} "
-            f"ep={peak:.3e} it={it} {time.time() - t:.1f}s", flush=True)
+        log(
+            f"{case} F={f:.6g} d={load[-1][0]:.6f} A={load[-1][2]:.4g} "
+            f"ep={peak:.3e} it={it} {time.time() - t:.1f}s",
+            flush=True,
+        )
         if i in unload_at:
             state = State(solver)
             back = [(load[-1][0], f, load[-1][2])]
             solver.guess[...] = 0
             for s in np.arange(1, unload_steps + 1) / unload_steps:
-                g = f * (1 - s)**1.5 if s < 1 else 0.0
+                g = f * (1 - s) ** 1.5 if s < 1 else 0.0
                 if g > 0:
                     try:
                         solver.step(g)
@@ -287,32 +308,44 @@ def run(case, solver, forces, unload_at, unload_steps, meta, out, log=print):
                         continue  # which the solver refuses
                 else:
                     solver.force = 0.0  # last contact; no stress changes
-                back.append((solver.approach(), g,
-                             solver.area() if g > 0 else 0.0))
+                back.append((solver.approach(), g, solver.area() if g > 0 else 0.0))
             rise = float(solver.plastic_strain().max()) - peak
             depth_map = solver.plastic_strain().max(axis=(1, 2))
             a, b = np.array(load), np.array(back)
             wl, wu = work(a[:, 0], a[:, 1]), -work(b[:, 0], b[:, 1])
-            summary.append({
-                "indentation_m": a[-1, 0] * 1e-6, "force_N": f * 1e-6,
-                "contact_area_m2": a[-1, 2] * 1e-12,
-                "loading_work_J": wl * 1e-12, "unloading_work_J": wu * 1e-12,
-                "restitution": float(np.sqrt(wu / wl)),
-                "max_plastic_strain": peak,
-                "max_plastic_strain_rise_in_unloading": rise,
-                "max_plastic_strain_by_layer": [float(v) for v in depth_map]})
-            unloading.append({
-                "from_indentation_m": a[-1, 0] * 1e-6,
-                "indentation_m": list(b[:, 0] * 1e-6),
-                "force_N": list(b[:, 1] * 1e-6),
-                "contact_area_m2": list(b[:, 2] * 1e-12)})
-            log(f"  unloaded: COR={summary[-1]['restitution']:.5f} "
-                f"rise={rise:.2e} {time.time() - start:.0f}s", flush=True)
+            summary.append(
+                {
+                    "indentation_m": a[-1, 0] * 1e-6,
+                    "force_N": f * 1e-6,
+                    "contact_area_m2": a[-1, 2] * 1e-12,
+                    "loading_work_J": wl * 1e-12,
+                    "unloading_work_J": wu * 1e-12,
+                    "restitution": float(np.sqrt(wu / wl)),
+                    "max_plastic_strain": peak,
+                    "max_plastic_strain_rise_in_unloading": rise,
+                    "max_plastic_strain_by_layer": [float(v) for v in depth_map],
+                }
+            )
+            unloading.append(
+                {
+                    "from_indentation_m": a[-1, 0] * 1e-6,
+                    "indentation_m": list(b[:, 0] * 1e-6),
+                    "force_N": list(b[:, 1] * 1e-6),
+                    "contact_area_m2": list(b[:, 2] * 1e-12),
+                }
+            )
+            log(
+                f"  unloaded: COR={summary[-1]['restitution']:.5f} "
+                f"rise={rise:.2e} {time.time() - start:.0f}s",
+                flush=True,
+            )
             state.restore(solver)
         a = np.array(load)
-        data["loading"] = {"indentation_m": list(a[:, 0] * 1e-6),
-                           "force_N": list(a[:, 1] * 1e-6),
-                           "contact_area_m2": list(a[:, 2] * 1e-12)}
+        data["loading"] = {
+            "indentation_m": list(a[:, 0] * 1e-6),
+            "force_N": list(a[:, 1] * 1e-6),
+            "contact_area_m2": list(a[:, 2] * 1e-12),
+        }
         data["unloading"], data["summary"] = unloading, summary
         data["run_time_s"] = time.time() - start
         data["operator_evaluations"] = solver.evaluations
@@ -329,11 +362,11 @@ def main():
     p.add_argument("--layers", type=int, default=16)
     p.add_argument("--depth", type=float, default=12.0, help="um")
     p.add_argument("--yield-strength", type=float, default=1000.0, help="MPa")
-    p.add_argument("--forces", type=float, nargs="+", default=None,
-                   help="forces of unloading, uN")
+    p.add_argument("--forces", type=float, nargs="+", default=None, help="forces of unloading, uN")
     p.add_argument("--steps", type=int, default=30)
-    p.add_argument("--power", type=float, default=1.5,
-                   help="forces of loading go with this power of the step")
+    p.add_argument(
+        "--power", type=float, default=1.5, help="forces of loading go with this power of the step"
+    )
     p.add_argument("--unload-steps", type=int, default=20)
     p.add_argument("--rms", type=float, default=0.0, help="um")
     p.add_argument("--shortest", type=float, default=4.0, help="um")
@@ -349,49 +382,73 @@ def main():
     n, length = a.nodes, a.length
     modulus, poisson, radius = 210e3, 0.3, 500.0
     if a.rms > 0:
-        z = band_limited(n, length, a.rms, a.shortest, a.rolloff, a.hurst,
-                         a.seed)
+        z = band_limited(n, length, a.rms, a.shortest, a.rolloff, a.hurst, a.seed)
         z = z.astype(np.float32).astype(float)
     else:
         z = np.zeros((n, n))
-    solver = Contact(z, length, a.depth, a.layers, modulus, poisson,
-                     a.yield_strength, radius, elastic=a.elastic,
-                     images=not a.no_images, tolerance=a.tolerance,
-                     epic=a.epic)
+    solver = Contact(
+        z,
+        length,
+        a.depth,
+        a.layers,
+        modulus,
+        poisson,
+        a.yield_strength,
+        radius,
+        elastic=a.elastic,
+        images=not a.no_images,
+        tolerance=a.tolerance,
+        epic=a.epic,
+    )
     top = max(a.forces)
-    grid = top * (np.arange(1, a.steps + 1) / a.steps)**a.power
+    grid = top * (np.arange(1, a.steps + 1) / a.steps) ** a.power
     for f in a.forces:  # the nearest step becomes the wanted force
-        grid[np.argmin(np.abs(grid**(2 / 3) - f**(2 / 3)))] = f
+        grid[np.argmin(np.abs(grid ** (2 / 3) - f ** (2 / 3)))] = f
     grid = [float(f) for f in grid]
     unload_at = {grid.index(f) for f in a.forces}
     meta = {
         "case": a.case,
-        "model": {"youngs_modulus_Pa": modulus * 1e6,
-                  "poissons_ratio": poisson,
-                  "yield_strength_Pa": a.yield_strength * 1e6,
-                  "hardening_modulus_Pa": 0.0, "radius_m": radius * 1e-6,
-                  "elastic": a.elastic},
-        "grid": {"nodes": n, "spacing_m": length / n * 1e-6,
-                 "depth_m": a.depth * 1e-6, "layers": a.layers,
-                 "period_m": length * 1e-6},
+        "model": {
+            "youngs_modulus_Pa": modulus * 1e6,
+            "poissons_ratio": poisson,
+            "yield_strength_Pa": a.yield_strength * 1e6,
+            "hardening_modulus_Pa": 0.0,
+            "radius_m": radius * 1e-6,
+            "elastic": a.elastic,
+        },
+        "grid": {
+            "nodes": n,
+            "spacing_m": length / n * 1e-6,
+            "depth_m": a.depth * 1e-6,
+            "layers": a.layers,
+            "period_m": length * 1e-6,
+        },
         "heights_file": None,
         "periodic_correction_m_per_N": solver.kappa(),
         "image_correction_of_shape_and_stress": not a.no_images,
         "tolerance": a.tolerance,
-        "versions": {"tamaas": tm.__version__, "numpy": np.__version__,
-                     "scipy": scipy.__version__,
-                     "python": platform.python_version()}}
+        "versions": {
+            "tamaas": tm.__version__,
+            "numpy": np.__version__,
+            "scipy": scipy.__version__,
+            "python": platform.python_version(),
+        },
+    }
     if a.rms > 0:
         name = f"{a.case}_heights.npy"
         np.save(os.path.join(a.out, name), (z * 1e-6).astype(np.float32))
         meta["heights_file"] = name
-        meta["surface"] = {"rms_m": a.rms * 1e-6,
-                           "measured_rms_m": float(z.std()) * 1e-6,
-                           "shortest_wavelength_m": a.shortest * 1e-6,
-                           "rolloff_wavelength_m": a.rolloff * 1e-6,
-                           "hurst": a.hurst, "seed": a.seed}
-    run(a.case, solver, grid, unload_at, a.unload_steps, meta,
-        os.path.join(a.out, a.case + ".json"))
+        meta["surface"] = {
+            "rms_m": a.rms * 1e-6,
+            "measured_rms_m": float(z.std()) * 1e-6,
+            "shortest_wavelength_m": a.shortest * 1e-6,
+            "rolloff_wavelength_m": a.rolloff * 1e-6,
+            "hurst": a.hurst,
+            "seed": a.seed,
+        }
+    run(
+        a.case, solver, grid, unload_at, a.unload_steps, meta, os.path.join(a.out, a.case + ".json")
+    )
 
 
 if __name__ == "__main__":

@@ -19,7 +19,7 @@ from restitution.contact.bodies import Pair
 from restitution.contact.detachment import Detachment
 from restitution.errors import CaseError
 from restitution.numerics.grid import Grid
-from restitution.surfaces import Surface
+from restitution.surfaces import Surface, rms_slope
 
 Plasticity = Literal["expanding-cavity", "equilibrium", "truncated"]
 Approach = Literal["equilibrium", "hertzian", "seed"]
@@ -172,6 +172,11 @@ class Contact:
             return 0.0, 0.0
         hx, hy = self.grid.spacing
         return _OFF_NODE[0] * hx, _OFF_NODE[1] * hy
+
+    @cached_property
+    def slope(self) -> float:
+        """The rms slope of the surface."""
+        return rms_slope(self.surface)
 
     @cached_property
     def gap(self) -> NDArray[np.float64]:
