@@ -3,7 +3,7 @@
 Each case is run as `restitution run` does, which states a total error at each of its depths. The
 reference is the mean COR over other surfaces of the same kind (other seeds, or other places of the
 scan), on cells four times as small, at the same loading work, with adhesive unloading in steps for
-a quarter of the error. Where a case takes materials of the library, each reference surface has
+half of the error. Where a case takes materials of the library, each reference surface has
 values drawn at random from the library's spread. Constants of `error_budget` were chosen on other
 seeds (1000 to 1104 and 2000 to 2079 among them; those of the table were never looked at before).
 
