@@ -1,10 +1,8 @@
 """What follows from the energies of one contact."""
 
 import math
-from functools import partial
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -13,8 +11,7 @@ from restitution.contact.bodies import Body, Pair
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.loading import solve, step
 from restitution.numerics.grid import Grid
-
-approx = partial(pytest.approx, abs=0.0)  # whose own 1e-12 is more than these energies
+from tolerance import approx
 
 UM, NM = 1e-6, 1e-9
 STEEL = Body(500 * UM, 210e9, 0.25, density=7850.0)

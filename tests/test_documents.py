@@ -13,6 +13,8 @@ from typing import get_args
 import numpy as np
 import pytest
 
+from tolerance import approx
+
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text()
 
@@ -109,7 +111,7 @@ def test_the_way_to_a_dem_code_is_as_its_page_says(cli, tmp_path, monkeypatch):
     # What the page shows of it.
     for law in json.loads((tmp_path / "law" / "law.json").read_text())["laws"]:
         row = re.search(rf"^\| `{law['name']}` \| .* \| (.*) \| (.*) \|$", page, re.MULTILINE)
-        assert [float(cell) for cell in row.groups()] == pytest.approx(
+        assert [float(cell) for cell in row.groups()] == approx(
             [law["rms"], law["worst"]], abs=0.002
         )
     assert (tmp_path / "input" / "restitution.lmp").is_file()

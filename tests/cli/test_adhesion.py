@@ -6,6 +6,8 @@ import re
 
 import pytest
 
+from tolerance import approx
+
 CASE = """
 title = "A small adhesive contact"
 [first]
@@ -72,7 +74,7 @@ def test_the_run_says_whether_it_sticks_and_is_resolved(run, tmp_path):
     assert float(rows[0]["unloading_work_J"]) <= 0
     assert 0 < float(rows[1]["restitution"]) < 1
     for row in rows:
-        assert float(row["pull_off_force_N"]) == pytest.approx(1.06e-4, rel=0.25)
+        assert float(row["pull_off_force_N"]) == approx(1.06e-4, rel=0.25)
         assert float(row["separation_indentation_m"]) < 0
         assert 0 <= float(row["restitution_error"]) <= 0.05
     assert summary["status"] == "complete"
@@ -87,7 +89,7 @@ def test_the_run_says_whether_it_sticks_and_is_resolved(run, tmp_path):
     with open(tmp_path / "out" / "unloading.csv", newline="") as file:
         force = [float(row["force_N"]) for row in csv.DictReader(file)]
     assert force[0] == float(rows[1]["force_N"])
-    assert min(force) == pytest.approx(-float(rows[1]["pull_off_force_N"]), rel=1e-12)
+    assert min(force) == approx(-float(rows[1]["pull_off_force_N"]), rel=1e-12)
     assert force[-1] == 0
 
 

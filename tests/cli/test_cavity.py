@@ -6,6 +6,8 @@ import math
 
 import pytest
 
+from tolerance import approx
+
 
 @pytest.fixture
 def case(case_text, tmp_path):
@@ -35,7 +37,7 @@ def test_run_law_report_and_export(cli, case, tmp_path):
     assert "± model" in out
     rows = table(tmp_path / "run" / "curve.csv")
     for row, velocity in zip(rows, (0.02, 0.1), strict=True):
-        assert float(row["impact_velocity_m_per_s"]) == pytest.approx(velocity, rel=1e-3, abs=0)
+        assert float(row["impact_velocity_m_per_s"]) == approx(velocity, rel=1e-3, abs=0)
         assert 0.001 < float(row["model_error"]) < 0.1
         assert float(row["total_error"]) >= float(row["restitution_error"]) > 0
     summary = json.loads((tmp_path / "run" / "summary.json").read_text())
@@ -47,7 +49,7 @@ def test_run_law_report_and_export(cli, case, tmp_path):
         assert status == 0, said
     law = json.loads((tmp_path / "law" / "law.json").read_text())
     assert "model_error is up to" in law["conventions"]["restitution_error"]
-    assert law["yield_pressure"] == pytest.approx(2.8 * 268e6, rel=1e-9, abs=0)
+    assert law["yield_pressure"] == approx(2.8 * 268e6, rel=1e-9, abs=0)
     page = (tmp_path / "run" / "report.html").read_text()
     assert "model_error" in page
     assert "Johnson (1970)" in page

@@ -4,6 +4,8 @@ import csv
 
 import pytest
 
+from tolerance import approx
+
 
 @pytest.fixture
 def results(cli, case_text, tmp_path):
@@ -44,11 +46,9 @@ def test_two_runs(cli, results, tmp_path):
     assert len(rows) == 4
     for row, one, other in zip(rows, of_a, of_b, strict=True):
         difference = float(other["restitution"]) - float(one["restitution"])
-        assert float(row["difference"]) == pytest.approx(difference)
+        assert float(row["difference"]) == approx(difference)
         assert row["significant"] == "true"
-        assert float(row["force_ratio"]) == pytest.approx(
-            float(other["force_N"]) / float(one["force_N"])
-        )
+        assert float(row["force_ratio"]) == approx(float(other["force_N"]) / float(one["force_N"]))
 
 
 def test_the_same_twice_differs_in_nothing(cli, results):
@@ -82,7 +82,7 @@ def test_errors_of_grids_and_means_count(cli, results, tmp_path):
         half = 0.5 * (float(other["restitution_high"]) - float(other["restitution_low"]))
         grids = [float(each["discretisation_error"]) for each in (one, other)]
         expected = (grids[0] ** 2 + grids[1] ** 2 + half**2) ** 0.5
-        assert float(row["error"]) == pytest.approx(expected)
+        assert float(row["error"]) == approx(expected)
 
 
 def test_two_studies_are_matched_by_what_is_swept(cli, results, tmp_path):

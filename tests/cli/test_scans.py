@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from restitution import Grid, generate_surface
+from tolerance import approx
 
 HEAD = """
 title = "From a scan"
@@ -70,7 +71,7 @@ def test_a_part_of_a_scan(surface, scan):
     found, _ = surface('crop = { x = ["-2 um", "3.05 um"] }')
     assert found["provenance"]["cropped"] == "51 x 96 of 96 x 96 pixels"
     part = scan[28:79]
-    assert found["Sq_m"] == pytest.approx(part.std())
+    assert found["Sq_m"] == approx(part.std())
 
 
 def test_spikes_are_taken_out(surface, scan, tmp_path):
@@ -90,9 +91,7 @@ def test_a_twin_is_run_and_labelled(cli, case, tmp_path):
     summary = json.loads((tmp_path / "out" / "summary.json").read_text())
     assert any("not the scan itself" in line for line in summary["warnings"])
     assert summary["surface"]["extension"] == "statistical twin"
-    assert summary["surface"]["scan_Sq_m"] == pytest.approx(
-        summary["surface_statistics"]["Sq_m"], rel=0.1
-    )
+    assert summary["surface"]["scan_Sq_m"] == approx(summary["surface_statistics"]["Sq_m"], rel=0.1)
 
 
 def test_twins_make_an_ensemble(cli, case, tmp_path):
@@ -113,7 +112,7 @@ def test_two_surfaces_are_added(surface, tmp_path, scan):
     np.save(tmp_path / "other.npy", 2 * scan)
     one = SCAN.format(more="", grid="").replace("[roughness]", "[[roughness]]")
     found, _ = surface(tables=one + one.replace("scan.npy", "other.npy") + GRID.format(nodes=96))
-    assert found["Sq_m"] == pytest.approx(3 * scan.std())
+    assert found["Sq_m"] == approx(3 * scan.std())
     assert found["provenance"]["file"].count("npy") == 2
 
 
@@ -121,13 +120,13 @@ def test_a_scan_and_a_generated_surface_are_added(surface, scan):
     one = SCAN.format(more="", grid="").replace("[roughness]", "[[roughness]]")
     two = '[[roughness]]\nkind = "gaussian"\nrms = "30 nm"\nseed = 1\ncorrelation_length = "2 um"\n'
     found, _ = surface(tables=one + two + GRID.format(nodes=96))
-    assert found["Sq_m"] == pytest.approx(np.hypot(scan.std(), 30e-9), rel=0.1)
+    assert found["Sq_m"] == approx(np.hypot(scan.std(), 30e-9), rel=0.1)
 
 
 def test_a_scan_may_be_refined_on_its_own_pixels(surface, scan):
     found, _ = surface(grid="[grid]\nrefine = 2")
     assert found["provenance"]["refined"] == 2
-    assert found["Sq_m"] == pytest.approx(scan.std(), rel=0.02)
+    assert found["Sq_m"] == approx(scan.std(), rel=0.02)
 
 
 @pytest.mark.parametrize(

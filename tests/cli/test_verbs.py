@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from tolerance import approx
+
 COLUMNS = """
 indentation_m force_N contact_area_m2 stored_energy_J plastic_work_J loading_work_J
 unloading_work_J restitution impact_velocity_m_per_s contact_nodes contact_patches
@@ -54,13 +56,11 @@ def test_run_writes_the_curve(done):
     names, rows = rows_of(done[0] / "curve.csv")
     assert names == COLUMNS
     depths = [row["indentation_m"] for row in rows]
-    assert depths == pytest.approx(np.geomspace(20e-9, 300e-9, 4), rel=1e-12)
+    assert depths == approx(np.geomspace(20e-9, 300e-9, 4), rel=1e-12)
     assert all(0 < row["restitution"] < 1 for row in rows)
     mass = 4 / 3 * np.pi * 500e-6**3 * 7850 / 2
     for row in rows:
-        assert 0.5 * mass * row["impact_velocity_m_per_s"] ** 2 == pytest.approx(
-            row["loading_work_J"]
-        )
+        assert 0.5 * mass * row["impact_velocity_m_per_s"] ** 2 == approx(row["loading_work_J"])
 
 
 def test_run_writes_unloading_curves_down_to_separation(done):
@@ -68,7 +68,7 @@ def test_run_writes_unloading_curves_down_to_separation(done):
     assert names == ["indentation_max_m", "indentation_m", "force_N"]
     deepest = sorted({row["indentation_max_m"] for row in rows})
     assert len(deepest) == 2
-    assert deepest[-1] == pytest.approx(300e-9)
+    assert deepest[-1] == approx(300e-9)
     _, curve = rows_of(done[0] / "curve.csv")
     for depth in deepest:
         force = [row["force_N"] for row in rows if row["indentation_max_m"] == depth]
@@ -89,10 +89,10 @@ def test_results_hold_units_case_and_versions(done, case_text):
         assert results["pressure"].shape == (72, 64)
         assert float(results["pressure"].max()) <= 750e6
         area = 0.5e-6 * 0.6e-6
-        assert float(results["pressure"].sum()) * area == pytest.approx(
+        assert float(results["pressure"].sum()) * area == approx(
             float(results["force"][-1]), rel=1e-12
         )
-        assert float(results["x"][1] - results["x"][0]) == pytest.approx(0.5e-6)
+        assert float(results["x"][1] - results["x"][0]) == approx(0.5e-6)
 
 
 def test_summary_says_what_made_the_numbers_and_how_far_to_trust_them(done):
@@ -101,8 +101,8 @@ def test_summary_says_what_made_the_numbers_and_how_far_to_trust_them(done):
     assert summary["depths_computed"] == 4
     assert summary["model"]["plasticity"] == "equilibrium"
     assert summary["trust"]["largest_residual"] <= 1e-8
-    assert summary["surface_statistics"]["Sq_m"] == pytest.approx(0.05e-6, rel=1e-9)
-    assert summary["derived"]["contact_modulus_Pa"] == pytest.approx(112e9)
+    assert summary["surface_statistics"]["Sq_m"] == approx(0.05e-6, rel=1e-9)
+    assert summary["derived"]["contact_modulus_Pa"] == approx(112e9)
     for check in summary["trust"]["unloading_checks"]:
         assert abs(check["relative_to_stored_energy"]) < 5e-3
     assert "separation" in summary["conventions"]["end_of_contact"]
@@ -140,7 +140,7 @@ def test_run_under_prescribed_load(cli, case_text, tmp_path):
     case.write_text(case_text.replace(span, '[load]\nvalues = ["2 mN", "0.03 N", "0.2 N"]\n'))
     assert cli("run", case, "-o", tmp_path / "out")[0] == 0
     _, rows = rows_of(tmp_path / "out" / "curve.csv")
-    assert [row["force_N"] for row in rows] == pytest.approx([0.002, 0.03, 0.2], rel=1e-8)
+    assert [row["force_N"] for row in rows] == approx([0.002, 0.03, 0.2], rel=1e-8)
 
 
 def test_a_smooth_elastic_case_without_density(cli, case_text, tmp_path):
@@ -199,9 +199,9 @@ def test_surface_writes_heights_statistics_and_a_picture(cli, case_text, tmp_pat
         height = stored["height"].load()
     assert height.dims == ("x", "y")
     assert height.attrs["units"] == "m"
-    assert float((height**2).mean()) ** 0.5 == pytest.approx(0.05e-6, rel=1e-9)
+    assert float((height**2).mean()) ** 0.5 == approx(0.05e-6, rel=1e-9)
     statistics = json.loads((tmp_path / "out" / "statistics.json").read_text())
-    assert statistics["Sq_m"] == pytest.approx(0.05e-6, rel=1e-9)
+    assert statistics["Sq_m"] == approx(0.05e-6, rel=1e-9)
     assert {"Ssk", "Sku", "Sdq"} <= statistics.keys()
     assert (tmp_path / "out" / "surface.png").read_bytes().startswith(b"\x89PNG")
 
@@ -239,7 +239,7 @@ def test_skewed_surfaces_with_a_lay_or_a_power_law_run(cli, case_text, tmp_path,
     summary = json.loads((tmp_path / "run" / "summary.json").read_text())
     asked, found = summary["surface"], summary["surface_statistics"]
     assert (asked["skewness"], asked["kurtosis"]) == (-1.2, 5.5)
-    assert (found["Ssk"], found["Sku"]) == pytest.approx((-1.2, 5.5), rel=0.05)
+    assert (found["Ssk"], found["Sku"]) == approx((-1.2, 5.5), rel=0.05)
     _, rows = rows_of(tmp_path / "run" / "curve.csv")
     assert all(0 < row["restitution"] < 1 for row in rows)
 
@@ -257,7 +257,7 @@ def test_a_refined_grid_resolves_more(cli, case_text, tmp_path):
     assert all(
         b["contact_nodes"] > 2 * a["contact_nodes"] for a, b in zip(coarse, fine, strict=True)
     )
-    assert fine[-1]["restitution"] == pytest.approx(coarse[-1]["restitution"], rel=0.05)
+    assert fine[-1]["restitution"] == approx(coarse[-1]["restitution"], rel=0.05)
 
 
 @pytest.mark.parametrize("also", ["", "work_of_adhesion = '0.02 J/m^2'\n"])
@@ -275,7 +275,7 @@ def test_velocities_instead_of_depths(cli, case_text, tmp_path, also):
     for part in ("realisation-1", "realisation-2"):
         _, rows = rows_of(tmp_path / "out" / part / "curve.csv")
         velocities = [row["impact_velocity_m_per_s"] for row in rows]
-        assert velocities == pytest.approx([0.002, 0.01], rel=1e-4 if also else 1e-6)
+        assert velocities == approx([0.002, 0.01], rel=1e-4 if also else 1e-6)
 
 
 def test_a_wait_shows_a_spinner_after_a_while(monkeypatch):

@@ -12,9 +12,9 @@ from restitution import Contact, Surface, solve
 from restitution.contact import batch
 from restitution.contact.batch import solve_batch
 from restitution.errors import CaseError, DomainError, NotConvergedError
+from tolerance import approx
 
 DEPTH = 40e-9
-approx = pytest.approx
 
 
 def assert_alike(state, alone):

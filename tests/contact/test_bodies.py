@@ -1,5 +1,4 @@
 import math
-from functools import partial
 
 import pytest
 from hypothesis import given
@@ -7,8 +6,7 @@ from hypothesis import strategies as st
 
 from restitution.contact.bodies import Body, Pair
 from restitution.errors import CaseError
-
-approx = partial(pytest.approx, abs=0.0)  # whose own 1e-12 is more than these energies
+from tolerance import approx
 
 STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25, density=7850.0)
 bodies = st.builds(

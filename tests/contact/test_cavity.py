@@ -2,7 +2,6 @@
 
 import itertools
 import math
-from functools import partial
 
 import numpy as np
 import pytest
@@ -16,8 +15,7 @@ from restitution.contact.loading import solve, step
 from restitution.contact.path import loading_path, unloading_path
 from restitution.errors import CaseError
 from restitution.theory import hertz
-
-approx = partial(pytest.approx, abs=0.0)
+from tolerance import approx
 
 Y = 1e9
 BODY = Body(1e-3, 420e9, 0.3, 7850.0)  # two of them: E* of one of 210 GPa on a rigid flat

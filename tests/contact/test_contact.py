@@ -1,5 +1,4 @@
 import math
-from functools import partial
 
 import numpy as np
 import pytest
@@ -11,8 +10,7 @@ from restitution.contact.contact import Contact, smooth
 from restitution.errors import CaseError
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface
-
-approx = partial(pytest.approx, abs=0.0)  # whose own 1e-12 is more than these energies
+from tolerance import approx
 
 
 def test_what_is_no_pair_or_no_surface_is_refused_by_name(pair):

@@ -21,6 +21,7 @@ from restitution.contact.influence import half_space
 from restitution.contact.separation import separate, separation_of
 from restitution.numerics import passes
 from restitution.theory import kendall
+from tolerance import approx
 
 E_STAR, W = 112e9, 0.09
 WALL = Body(radius=2e3, youngs_modulus=1e9, poissons_ratio=0.25)
@@ -30,11 +31,11 @@ FLAT = Pair(WALL, WALL)
 @pytest.mark.parametrize("h", [1e-9, 0.25e-6, 1.0])
 def test_the_tension_limit_of_square_cells(h):
     kappa = 0.4732010044
-    assert kappa == pytest.approx(
+    assert kappa == approx(
         2 / (3 * math.pi) * (1 - math.sqrt(2) + 3 * math.log(1 + math.sqrt(2))), rel=1e-9
     )
     limit = tension_limit(E_STAR, W, (h, h))
-    assert limit**2 == pytest.approx(E_STAR * W / (kappa * h), rel=1e-9)
+    assert limit**2 == approx(E_STAR * W / (kappa * h), rel=1e-9)
 
 
 @pytest.mark.parametrize(("hx", "hy"), [(1, 1), (1, 2), (3, 0.7)])
@@ -52,7 +53,7 @@ def test_the_tension_limit_of_rectangular_cells(hx, hy):
 
     integral = 4 * dblquad(over_r, 0, 1, 0, 1, epsabs=1e-10, epsrel=1e-8)[0]
     expected = 2 * math.pi * E_STAR * W * hx * hy / integral
-    assert tension_limit(E_STAR, W, (hx, hy)) ** 2 == pytest.approx(expected, rel=1e-5)
+    assert tension_limit(E_STAR, W, (hx, hy)) ** 2 == approx(expected, rel=1e-5)
     assert tension_limit(E_STAR, W, (hx, hy)) == tension_limit(E_STAR, W, (hy, hx))
 
 
@@ -86,8 +87,8 @@ def test_the_edge_of_a_punch_is_a_crack(nodes):
     state, fields = drawn(contact, disc, float(kendall.pull_off_displacement(radius, E, w)))
     G = energy_release_rate(*fields)[1]
     expected = state.force**2 / (8 * math.pi * E * radius**3)
-    assert expected == pytest.approx(w, rel=0.02)
-    assert G.mean() == pytest.approx(expected, rel=0.03)
+    assert expected == approx(w, rel=0.02)
+    assert G.mean() == approx(expected, rel=0.03)
     assert G.std() < 0.1 * G.mean()
 
 
@@ -120,7 +121,7 @@ def test_a_straight_edge_releases_k_squared_over_two_e():
     middle = abs(j - (long - 1) / 2) < 20
     P = p[:, long // 2 - 20 : long // 2 + 20].sum(axis=0).mean() * h
     c = (half + 0.5) * h
-    assert G[middle].mean() == pytest.approx(P**2 / (2 * math.pi * c * E_STAR), rel=0.01)
+    assert G[middle].mean() == approx(P**2 / (2 * math.pi * c * E_STAR), rel=0.01)
 
 
 def test_geometry_outside_the_contact_is_no_opening():
@@ -128,8 +129,8 @@ def test_geometry_outside_the_contact_is_no_opening():
     for depth in (1e-9, 1e-6, 1e-3):
         contact, disc, _ = punch(12.2, depth)
         rates.append(energy_release_rate(*drawn(contact, disc, 2e-8)[1])[1])
-    assert rates[0] == pytest.approx(rates[1], rel=1e-6)
-    assert rates[1] == pytest.approx(rates[2], rel=1e-6)
+    assert rates[0] == approx(rates[1], rel=1e-6)
+    assert rates[1] == approx(rates[2], rel=1e-6)
 
 
 def test_a_punch_parts_at_the_same_force_whatever_is_beside_it():
@@ -139,7 +140,7 @@ def test_a_punch_parts_at_the_same_force_whatever_is_beside_it():
         ).pull_off_force
         for depth in (1e-6, 1e-3)
     ]
-    assert forces[0] == pytest.approx(forces[1], rel=1e-6)
+    assert forces[0] == approx(forces[1], rel=1e-6)
 
 
 def patches():
@@ -164,7 +165,7 @@ def test_smoothing_conserves_the_sum_and_stays_on_its_patch():
         both[start] = 1.0
         passes.spread(neighbours, weights, detachment._SMOOTHING_STEPS, both)
         amount = both[:, 0]
-        assert amount.sum() == pytest.approx(1.0, rel=1e-12)
+        assert amount.sum() == approx(1.0, rel=1e-12)
         assert amount.min() >= 0
         home = joined[i[start], j[start]]
         assert not amount[joined[i, j] != home].any()

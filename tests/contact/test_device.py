@@ -20,9 +20,9 @@ from restitution.contact.influence import half_space, inverse_half_space
 from restitution.errors import CaseError
 from restitution.numerics import device as device_module
 from restitution.numerics.device import accelerator, current, on_device
+from tolerance import approx
 
 DEPTH = 40e-9
-approx = pytest.approx
 
 
 def _unwrapped(value):

@@ -8,6 +8,7 @@ import pytest
 from restitution import Body, Contact, Grid, Pair, Surface, generate_surface, smooth, solve
 from restitution.contact.edge import needed_edges
 from restitution.errors import DomainError
+from tolerance import approx
 
 STEEL = Pair(*2 * [Body(500e-6, 210e9, 0.25)])
 GRID = Grid((32, 32), (1e-6, 1e-6))
@@ -65,3 +66,11 @@ def test_more_of_a_scan_is_advised_only_where_there_is_more():
     part = scan(np.zeros(GRID.nodes), size_x_m=90e-6, size_y_m=90e-6)
     assert "a grid of about 53.7 um (the scan has 90 x 90)" in refusal(part, 1e-6)
     assert "a larger scan" in refusal(part, 4e-6)
+
+
+def test_the_level_of_the_heights_does_not_matter():
+    """Depths count from first touch, wherever the mean of the heights is."""
+    surface = generate_surface(GRID, kind="gaussian", rms=2e-7, correlation_length=5e-6, seed=2)
+    raised = Surface(surface.height + 1e-6, GRID)
+    edges = [needed_edges(Contact(STEEL, each), 1e-6) for each in (surface, raised)]
+    assert edges[0] == approx(edges[1], rel=1e-12)

@@ -9,13 +9,13 @@ indentation moves energy from E_el to −Q and does no work, so over the way bac
 import math
 
 import numpy as np
-import pytest
 from hypothesis import HealthCheck, Phase, given, reject, settings
 from hypothesis import strategies as st
 
 from restitution import Body, Contact, Grid, Pair, collide, generate_surface, smooth, solve
 from restitution.contact.separation import separate
 from restitution.errors import DomainError
+from tolerance import approx
 
 STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25, density=7850.0)
 PAIR = Pair(STEEL, STEEL)
@@ -79,15 +79,15 @@ def test_the_account_closes(case):
     pulled = np.array([s.pulled_force for s in path[1:]])
     sawtooth = -float(np.sum(0.5 * (force[:-1] + pulled) * np.diff(depths)))
     scale = state.stored_energy + state.plastic_work
-    assert state.loading_work - end.loading_work == pytest.approx(sawtooth, abs=2e-3 * scale)
+    assert state.loading_work - end.loading_work == approx(sawtooth, abs=2e-3 * scale)
 
     yielded = end.plastic_work - state.plastic_work
     assert yielded >= 0
-    assert state.stored_energy - W_u - collision.adhesive_loss - yielded == pytest.approx(
+    assert state.stored_energy - W_u - collision.adhesive_loss - yielded == approx(
         0, abs=error * (1 + 1e-9)
     )
     spent = state.loading_work - W_u
-    assert spent == pytest.approx(
+    assert spent == approx(
         end.plastic_work - state.adhesive_work + collision.adhesive_loss, abs=error * (1 + 1e-9)
     )
     assert state.stored_energy + error >= W_u
@@ -95,7 +95,7 @@ def test_the_account_closes(case):
     assert collision.restitution <= 1 + collision.restitution_error
 
     # A path of forces by another rule is within the error said.
-    assert -float(np.trapezoid(force, depths)) == pytest.approx(W_u, abs=error * (1 + 1e-9))
+    assert -float(np.trapezoid(force, depths)) == approx(W_u, abs=error * (1 + 1e-9))
 
 
 @few
@@ -106,7 +106,7 @@ def test_the_energy_estimate_is_within_its_error(case):
     estimate = collide(state, method="energy-estimate")
     assert math.isnan(estimate.pull_off_force)
     assert estimate.loading_work == collision.loading_work
-    assert collision.unloading_work == pytest.approx(
+    assert collision.unloading_work == approx(
         estimate.unloading_work,
         abs=estimate.unloading_work_error + collision.unloading_work_error,
     )
@@ -117,9 +117,9 @@ def test_the_energy_estimate_is_within_its_error(case):
 def test_finer_steps_stay_within_the_error_said(case):
     state = load(**case)
     coarse, fine = (collide(state, tolerance=tolerance) for tolerance in (0.02, 0.005))
-    assert coarse.restitution == pytest.approx(
+    assert coarse.restitution == approx(
         fine.restitution, abs=coarse.restitution_error + fine.restitution_error
     )
-    assert coarse.unloading_work == pytest.approx(
+    assert coarse.unloading_work == approx(
         fine.unloading_work, abs=coarse.unloading_work_error + fine.unloading_work_error
     )

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pytest
@@ -15,8 +14,7 @@ from restitution.contact.contact import Contact, smooth
 from restitution.contact.loading import load, solve, step
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface
-
-approx = partial(pytest.approx, abs=0.0)  # whose own 1e-12 is more than these energies
+from tolerance import approx
 
 UM, NM = 1e-6, 1e-9
 E_STAR = 112e9

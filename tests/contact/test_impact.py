@@ -1,5 +1,4 @@
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pytest
@@ -12,8 +11,8 @@ from restitution.contact.path import loading_path
 from restitution.errors import CaseError, DomainError
 from restitution.numerics.grid import Grid
 from restitution.theory import thornton_ning
+from tolerance import approx
 
-approx = partial(pytest.approx, abs=0.0)
 UM, NM = 1e-6, 1e-9
 
 
@@ -86,3 +85,15 @@ def test_an_impact_too_fast_for_the_grid_is_refused(rough_contact):
 def test_one_of_three_ways_to_say_how_deep(rough_contact):
     with pytest.raises(CaseError, match="one of indentations, forces and velocities"):
         next(loading_path(rough_contact(), [1e-8], velocities=[0.1]))
+
+
+def test_a_work_that_is_negative_at_small_depths_is_no_way_back():
+    """Adhesion pulls the bodies in: at first touch the work of loading is below zero."""
+    body = Body(20e-6, 5e9, 0.3, 1500.0)
+    grid = Grid((48, 48), (0.12e-6, 0.12e-6))
+    contact = Contact(Pair(body, body), smooth(grid), work_of_adhesion=0.3)
+    shallow = solve(contact, 1e-9)
+    assert shallow.loading_work < 0
+    state = solve_at_velocity(contact, 0.05)
+    assert state.indentation > shallow.indentation
+    assert _velocity(state) == approx(0.05, rel=5e-3)

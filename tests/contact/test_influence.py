@@ -2,7 +2,6 @@
 
 import threading
 from contextlib import suppress
-from functools import partial
 
 import ducc0
 import numpy as np
@@ -21,8 +20,7 @@ from restitution.contact.influence import (
     love_displacement,
 )
 from restitution.numerics.grid import Grid
-
-approx = partial(pytest.approx, abs=0.0)  # whose own 1e-12 is more than these energies
+from tolerance import approx
 
 E_STAR = 3.0
 cells = st.tuples(st.floats(0.2, 5), st.floats(0.2, 5))

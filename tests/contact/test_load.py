@@ -1,5 +1,3 @@
-from functools import partial
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -13,8 +11,7 @@ from restitution.contact.loading import solve, step
 from restitution.errors import CaseError, DomainError, NotConvergedError
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface
-
-approx = partial(pytest.approx, abs=0.0)  # whose own 1e-12 is more than these energies
+from tolerance import approx
 
 UM, NM = 1e-6, 1e-9
 P_Y = 750e6

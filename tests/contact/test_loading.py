@@ -2,19 +2,18 @@
 
 import math
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
+from restitution.contact.bodies import Body, Pair
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.loading import load, solve, step
 from restitution.errors import CaseError
 from restitution.numerics.grid import Grid
 from restitution.surfaces import generate_surface
-
-approx = partial(pytest.approx, abs=0.0)  # whose own 1e-12 is more than these energies
+from tolerance import approx
 
 UM, NM = 1e-6, 1e-9
 P_Y = 750e6
@@ -118,3 +117,14 @@ def test_truncated_work_from_an_unloaded_state_is_not_taken_for_granted(rough_co
 
 
 # --- refusals ---------------------------------------------------------------------------------
+
+
+def test_the_shortcut_of_adhesive_loading_states_half_of_what_it_takes():
+    """Where adhesion can hardly matter its work is w times the area, within a half of that."""
+    body = Body(500e-6, 210e9, 0.25)
+    grid = Grid((64, 64), (0.5e-6, 0.5e-6))
+    contact = Contact(Pair(body, body), smooth(grid), work_of_adhesion=1e-4)
+    state = solve(contact, 4e-7)
+    gain = 1e-4 * state.contact_area
+    assert state.adhesive_work == approx(gain, rel=1e-12)
+    assert state.work_error == approx(0.5 * gain, rel=1e-12)

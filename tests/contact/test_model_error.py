@@ -1,7 +1,6 @@
 """The error of COR by the model of plasticity."""
 
 import csv
-from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -10,8 +9,8 @@ import pytest
 from restitution import Body, Contact, Grid, Pair, generate_surface, smooth, solve
 from restitution.collision import collide
 from restitution.contact.model_error import largest_difference, model_error
+from tolerance import approx
 
-approx = partial(pytest.approx, abs=0.0)
 TABLE = Path(__file__).parents[2] / "validation" / "models.csv"
 BODY = Body(1e-3, 420e9, 0.3)
 PAIR = Pair(BODY, BODY)

@@ -1,4 +1,3 @@
-from functools import partial
 from itertools import islice
 
 import numpy as np
@@ -10,8 +9,7 @@ from restitution.contact.loading import solve
 from restitution.contact.path import loading_path, unloading_path
 from restitution.errors import CaseError, DomainError
 from restitution.numerics.quadrature import integrate_curve
-
-approx = partial(pytest.approx, abs=0.0)  # whose own 1e-12 is more than these energies
+from tolerance import approx
 
 P_Y = 750e6
 DEPTH = 40e-9
@@ -113,7 +111,7 @@ def test_steps_crowd_towards_separation(contact):
     deepest = solve(contact, DEPTH)
     depths, _ = curve(unloading_path(deepest, steps=4))
     part = (depths - depths[-1]) / (depths[0] - depths[-1])
-    assert part == pytest.approx([1, 9 / 16, 4 / 16, 1 / 16, 0], abs=1e-12)
+    assert part == approx([1, 9 / 16, 4 / 16, 1 / 16, 0], abs=1e-12)
 
 
 def test_an_elastic_path_returns_to_the_first_touch_with_nothing_left(pair, rough_contact):

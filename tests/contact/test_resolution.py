@@ -1,5 +1,4 @@
 import math
-from functools import partial
 
 import numpy as np
 import pytest
@@ -20,8 +19,7 @@ from restitution.contact.resolution import (
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface
-
-approx = partial(pytest.approx, abs=0.0)  # whose own 1e-12 is more than these energies
+from tolerance import approx
 
 R = 250e-6
 P_Y = 750e6

@@ -1,7 +1,6 @@
 """Restitution has no scale: only ratios of lengths and of pressures matter."""
 
 import math
-from functools import partial
 
 import pytest
 from hypothesis import given, settings
@@ -12,8 +11,7 @@ from restitution.collision import collide
 from restitution.contact.bodies import Body, Pair
 from restitution.contact.load import solve_at_force
 from restitution.contact.loading import solve
-
-approx = partial(pytest.approx, abs=0.0)  # whose own 1e-12 is more than these energies
+from tolerance import approx
 
 
 def scaled(rough_contact, length, stiffness, p_y, plasticity="equilibrium"):

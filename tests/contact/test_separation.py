@@ -1,11 +1,14 @@
 """The way back to separation: where it ends, and what is said when it does not."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from restitution import Body, Contact, Grid, Pair, collide, generate_surface, smooth, solve
 from restitution.contact import separation
 from restitution.errors import NotConvergedError
+from tolerance import approx
 
 STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25)
 
@@ -73,7 +76,7 @@ def test_no_step_jumps_over_the_tension():
     contact = Contact(Pair(STEEL, STEEL), surface, 750e6, work_of_adhesion=0.09)
     path = list(separation.separate(solve(contact, 200e-9)))
     assert sum(state.force < 0 for state in path) > 15
-    assert separation.separation_of(path).pull_off_force == pytest.approx(2.2e-4, rel=0.05)
+    assert separation.separation_of(path).pull_off_force == approx(2.2e-4, rel=0.05)
 
 
 def test_a_seed_that_lets_go_of_everything_is_parted_and_returns_nothing():
@@ -88,3 +91,13 @@ def test_a_seed_that_lets_go_of_everything_is_parted_and_returns_nothing():
     collision = collide(state)
     assert collision.sticks
     assert (collision.restitution, collision.pull_off_force) == (0.0, 0.0)
+
+
+def test_energy_that_is_not_accounted_for_is_an_error(pressed):
+    """What the states lose must be the work of the steps between them."""
+    path = list(separation.separate(pressed))
+    before = separation.separation_of(path)
+    missing = 0.1 * before.unloading_work
+    wrong = [*path[:-1], replace(path[-1], adhesive_work=path[-1].adhesive_work + missing)]
+    after = separation.separation_of(wrong)
+    assert after.error == approx(before.error + abs(missing), rel=0.05)

@@ -1,6 +1,5 @@
 import math
 from dataclasses import FrozenInstanceError, replace
-from functools import partial
 
 import numpy as np
 import pytest
@@ -8,8 +7,7 @@ from numpy.testing import assert_array_equal
 
 from restitution.contact.loading import solve, step
 from restitution.contact.state import State
-
-approx = partial(pytest.approx, abs=0.0)  # whose own 1e-12 is more than these energies
+from tolerance import approx
 
 P_Y = 750e6
 DEPTH = 40e-9

@@ -9,6 +9,7 @@ from restitution.dem.compact import compact_fit
 from restitution.dem.fitted import fitted_laws
 from restitution.dem.write import figure, table
 from restitution.theory import thornton_ning, yielding
+from tolerance import approx
 
 R, E_STAR, P_Y, MASS = 250e-6, 112e9, 750e6, 2e-6
 
@@ -52,10 +53,10 @@ def test_thornton_and_nings_law_and_its_elastic_range(with_ratios):
 def test_an_elastic_adhesive_pair_is_its_sticking_velocity(with_ratios):
     V = np.geomspace(0.5, 8, 15)
     fit = compact_fit(with_ratios(V, 1 - (1.2 / V) ** 2, work_of_adhesion=0.1, sticks_below=1.2))
-    assert fit.adhesion == pytest.approx(1.2**2, rel=1e-6)
+    assert fit.adhesion == approx(1.2**2, rel=1e-6)
     assert len(fit.coefficients) == 1
-    assert fit.coefficients[0] == pytest.approx(1, rel=1e-9)
-    assert fit.adhesive_below == pytest.approx(12, rel=1e-6)
+    assert fit.coefficients[0] == approx(1, rel=1e-9)
+    assert fit.adhesive_below == approx(12, rel=1e-6)
     assert fit.restitution(1.1) == 0
     assert fit.worst < 1e-9
     assert fit.between < 1e-9
@@ -68,7 +69,7 @@ def test_both(with_ratios):
     e = thornton_ning.restitution(V, R, E_STAR, P_Y, MASS)
     V_s = 1.5 * V_y
     fit = compact_fit(with_ratios(V, e**2 - (V_s / V) ** 2, work_of_adhesion=0.1, sticks_below=V_s))
-    assert np.sqrt(fit.adhesion) == pytest.approx(V_s, rel=0.15)
+    assert np.sqrt(fit.adhesion) == approx(V_s, rel=0.15)
     assert fit.worst < 0.005
 
 

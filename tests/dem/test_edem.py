@@ -2,11 +2,10 @@
 
 import csv
 
-import pytest
-
 from restitution.dem.codes.edem import write
 from restitution.dem.law import FittedLaw
 from restitution.dem.matrix import matrix_of
+from tolerance import approx
 
 SPRINGS = FittedLaw(
     name="walton-braun",
@@ -33,8 +32,8 @@ def test_every_pair_has_its_row(mixed):
     table = rows(write(mixed, 1.0)["restitution_edem.csv"])
     assert len(table) == 5
     for row, (_, _, law) in zip(table, mixed.pairs(), strict=True):
-        assert float(row["coefficient_of_restitution"]) == pytest.approx(law.at(1.0).restitution)
-        assert float(row["restitution_error"]) == pytest.approx(law.at(1.0).error, rel=0.05)
+        assert float(row["coefficient_of_restitution"]) == approx(law.at(1.0).restitution)
+        assert float(row["restitution_error"]) == approx(law.at(1.0).error, rel=0.05)
         assert row["hysteretic_K1_N_per_m"] == ""
     assert [table[1]["material_1"], table[1]["material_2"]] == ["glass_1", "steel_2"]
 
@@ -42,7 +41,7 @@ def test_every_pair_has_its_row(mixed):
 def test_materials_have_both_moduli(mixed):
     glass, _, plate = rows(write(mixed, 1.0)["restitution_edem_materials.csv"])
     assert float(glass["youngs_modulus_Pa"]) == 70e9
-    assert float(glass["shear_modulus_Pa"]) == pytest.approx(28e9)
+    assert float(glass["shear_modulus_Pa"]) == approx(28e9)
     assert plate["radius_m"] == plate["solids_density_kg_per_m3"] == ""
 
 
@@ -52,10 +51,10 @@ def test_springs_are_those_at_the_velocity(law):
     found = law(laws=(SPRINGS,))
     (row,) = rows(write(matrix_of([found]), 0.7)["restitution_edem.csv"])
     e = walton_braun.restitution(0.7, 1e6, 1.5e6, 2e5, found.mass)
-    assert float(row["hysteretic_restitution"]) == pytest.approx(e)
+    assert float(row["hysteretic_restitution"]) == approx(e)
     ratio = float(row["hysteretic_K1_N_per_m"]) / float(row["hysteretic_K2_N_per_m"])
-    assert ratio == pytest.approx(e**2)
-    assert float(row["hysteretic_yield_strength_Pa"]) == pytest.approx(1e6 / (5 * 0.5e-3))
+    assert ratio == approx(e**2)
+    assert float(row["hysteretic_yield_strength_Pa"]) == approx(1e6 / (5 * 0.5e-3))
 
 
 def test_springs_are_left_out_beyond_the_velocities_they_were_fitted_to(law):

@@ -1,6 +1,7 @@
 """From a run to a law to the input of a DEM code, as a user types it."""
 
 import csv
+import math
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from restitution.dem.export import CODES, export
 from restitution.dem.law import read_law
 from restitution.dem.write import write_law
+from tolerance import approx
 
 CASE = """
 title = "Rough glass on rough glass"
@@ -66,7 +68,7 @@ def test_lammps_rebounds_as_the_law_of_the_run_says(folder, cli, lammps, tmp_pat
         assert status == 0
         asked = found.at(V).restitution
         assert f"COR {asked:.4f} ± " in said
-        assert lammps.pair(out, 1, 1) == pytest.approx(asked, rel=0.01)
+        assert lammps.pair(out, 1, 1) == approx(asked, rel=0.01)
 
 
 def test_the_table_of_all_pairs(stored, law, cli, tmp_path):
@@ -81,9 +83,7 @@ def test_the_table_of_all_pairs(stored, law, cli, tmp_path):
     cli("export", *folders, "--to", "csv", "--velocity", "1 m/s", "-o", tmp_path / "one")
     with open(tmp_path / "one" / "restitution.csv", newline="") as file:
         rows = list(csv.DictReader(file))
-    assert [float(row["restitution"]) for row in rows] == pytest.approx(
-        [law().at(1.0).restitution] * 3
-    )
+    assert [float(row["restitution"]) for row in rows] == approx([law().at(1.0).restitution] * 3)
     assert all(row["end_of_contact"] and row["yield_pressure_is"] for row in rows)
     assert all(float(row["restitution_error"]) > 0 for row in rows)
 
@@ -134,3 +134,16 @@ def test_an_unresolved_velocity_is_warned_of(stored, law, cli, tmp_path):
     folder = stored("coarse", points=points)
     _, _, said = cli("export", folder, "--to", "edem", "--velocity", "1 m/s", "-o", tmp_path / "e")
     assert "not resolved by the grid" in said
+
+
+def test_the_contact_time_is_that_of_a_hertzian_impact(law):
+    """½ m* V² = ½ m* v² + (8/15) E* √R* δ^(5/2), integrated from touch to touch."""
+    from scipy.integrate import quad
+
+    from restitution.dem.codes.fragment import contact_time
+
+    found = law()
+    deepest = (15 * found.mass / (16 * found.contact_modulus * found.radius**0.5)) ** 0.4
+    # δ = δ_max sin^0.8 θ takes the singularity at the turning point out.
+    share, _ = quad(lambda t: 0.8 * math.sin(t) ** -0.2, 0, math.pi / 2)
+    assert contact_time(found) == approx(2 * deepest * share, rel=2e-3)

@@ -11,6 +11,7 @@ from scipy.optimize import brentq
 
 from restitution.dem.interpolation import RatioCurve
 from restitution.theory import thornton_ning
+from tolerance import approx
 
 BETWEEN = Path(__file__).parents[2] / "docs" / "studies" / "between_velocities.csv"
 R, E_STAR, P_Y, MASS = 250e-6, 112e9, 750e6, 2e-6
@@ -21,9 +22,9 @@ def test_an_elastic_adhesive_pair_is_exact_between_any_two_velocities():
     V = np.array([0.05, 0.2, 0.5, 1.0, 2.0])
     curve = RatioCurve(V, 1 - (0.107 / V) ** 2, adhesive=True)
     for v in (0.06, 0.115, 0.15, 0.3, 1.7):
-        assert curve.at(v) == pytest.approx(1 - (0.107 / v) ** 2, abs=1e-9)
+        assert curve.at(v) == approx(1 - (0.107 / v) ** 2, abs=1e-9)
         assert curve.error(v) < 1e-9
-    assert curve.begins() == pytest.approx(0.107, rel=1e-6)
+    assert curve.begins() == approx(0.107, rel=1e-6)
 
 
 def test_adhesion_and_yield_together():
@@ -34,7 +35,7 @@ def test_adhesion_and_yield_together():
         return e**2 - (0.05 / v) ** 2
 
     curve = RatioCurve(V, exact(V), adhesive=True)
-    assert curve.begins() == pytest.approx(brentq(exact, 0.02, 1), rel=0.01)
+    assert curve.begins() == approx(brentq(exact, 0.02, 1), rel=0.01)
     for v in np.geomspace(0.021, 2.9, 40):
         assert abs(curve.at(v) - exact(v)) <= curve.error(v) + 1e-12
 
@@ -96,12 +97,12 @@ def test_the_error_is_continuous(law, values, data):
     for beside in (V[k] * (1 - 1e-8), V[k] * (1 + 1e-8)):
         if found.lowest < beside < found.highest:
             at = found.at(float(beside))
-            assert at.restitution == pytest.approx(values[k], abs=0.02)
-            assert at.error == pytest.approx(errors[k], abs=0.03)
+            assert at.restitution == approx(values[k], abs=0.02)
+            assert at.error == approx(errors[k], abs=0.03)
     V = data.draw(st.floats(0.1, 9.99))
     here, there = found.at(V), found.at(V * (1 + 1e-9))
-    assert here.restitution == pytest.approx(there.restitution, abs=1e-3)
-    assert here.error == pytest.approx(there.error, abs=0.03)
+    assert here.restitution == approx(there.restitution, abs=1e-3)
+    assert here.error == approx(there.error, abs=0.03)
 
 
 def test_the_error_falls_towards_the_points_and_their_own_is_interpolated(law):
@@ -113,18 +114,18 @@ def test_the_error_falls_towards_the_points_and_their_own_is_interpolated(law):
     ends = [one.velocity, two.velocity]
     V = [ends[0] ** (1 - t) * ends[1] ** t for t in (1e-9, 0.1, 0.5, 0.9, 1 - 1e-9)]
     errors = [found.at(v).error for v in V]
-    assert errors[0] == pytest.approx(0.01, abs=1e-4)
-    assert errors[-1] == pytest.approx(0.03, abs=1e-4)
+    assert errors[0] == approx(0.01, abs=1e-4)
+    assert errors[-1] == approx(0.03, abs=1e-4)
     curve = found.curve()
-    assert curve.error(V[1]) == pytest.approx(0.6 * curve.error(V[2]), rel=1e-6, abs=0)
+    assert curve.error(V[1]) == approx(0.6 * curve.error(V[2]), rel=1e-6, abs=0)
     assert errors[2] - 0.02 > errors[1] - 0.012 > 0.5 * (errors[2] - 0.02)
 
 
 def test_of_two_points_the_error_is_their_difference_and_of_one_there_is_none():
     curve = RatioCurve(np.array([0.1, 1.0]), np.array([0.9, 0.5]), adhesive=False)
-    assert curve.error(0.316227766) == pytest.approx(0.4, abs=1e-9)
+    assert curve.error(0.316227766) == approx(0.4, abs=1e-9)
     assert curve.error(0.1) == curve.error(1.0) == 0
-    assert curve.at(0.316227766) == pytest.approx(0.7)
+    assert curve.at(0.316227766) == approx(0.7)
     alone = RatioCurve(np.array([0.1]), np.array([0.9]), adhesive=True)
     assert (alone.at(0.1), alone.error(0.1)) == (0.9, 0.0)
 

@@ -7,6 +7,7 @@ import pytest
 from restitution.dem.codes.lammps import LOWEST, write
 from restitution.dem.matrix import matrix_of
 from restitution.errors import CaseError, DomainError
+from tolerance import approx
 
 VELOCITIES = (0.01, 0.07, 0.5, 2.0, 10.0)
 
@@ -14,7 +15,7 @@ VELOCITIES = (0.01, 0.07, 0.5, 2.0, 10.0)
 @pytest.mark.parametrize("V", VELOCITIES)
 def test_equal_spheres_rebound_as_exported(equal, lammps, texts, V):
     asked = equal.laws[1, 1].at(V).restitution
-    assert lammps.pair(texts(write(equal, V)), 1, 1) == pytest.approx(asked, rel=5e-4)
+    assert lammps.pair(texts(write(equal, V)), 1, 1) == approx(asked, rel=5e-4)
 
 
 @pytest.mark.parametrize("V", VELOCITIES)
@@ -22,25 +23,25 @@ def test_unlike_spheres_and_walls_rebound_as_exported(mixed, lammps, texts, V):
     folder = texts(write(mixed, V))
     for i, j, law in mixed.pairs():
         asked = law.at(V).restitution
-        assert lammps.pair(folder, i, j) == pytest.approx(asked, rel=5e-4), (i, j)
+        assert lammps.pair(folder, i, j) == approx(asked, rel=5e-4), (i, j)
 
 
 def test_sphere_on_a_wall_needs_no_law_between_spheres(on_wall, lammps, texts):
     files = write(on_wall, 1.0)
     assert "pair_style granular" not in files["restitution.lmp"]
     asked = on_wall.laws[1, 2].at(1.0).restitution
-    assert lammps.pair(texts(files), 1, 2) == pytest.approx(asked, rel=5e-4)
+    assert lammps.pair(texts(files), 1, 2) == approx(asked, rel=5e-4)
 
 
 def test_e_is_that_of_the_velocity_of_the_export_at_any_other(equal, lammps, texts):
     asked = equal.laws[1, 1].at(0.1).restitution
-    assert lammps.pair(texts(write(equal, 0.1)), 1, 1, V=5.0) == pytest.approx(asked, rel=5e-4)
+    assert lammps.pair(texts(write(equal, 0.1)), 1, 1, V=5.0) == approx(asked, rel=5e-4)
 
 
 @pytest.mark.parametrize(("e", "rel"), [(1.0, 1e-6), (0.05, 1e-3), (LOWEST, 0.01)])
 def test_restitution_is_reproduced_from_the_least_to_one(lammps, law, constant, texts, e, rel):
     matrix = matrix_of([constant(law(), e)])
-    assert lammps.pair(texts(write(matrix, 1.0)), 1, 1) == pytest.approx(e, rel=rel)
+    assert lammps.pair(texts(write(matrix, 1.0)), 1, 1) == approx(e, rel=rel)
 
 
 def test_contact_has_the_stiffness_of_the_law(lammps, mixed, constant, texts):
@@ -57,7 +58,7 @@ def test_contact_has_the_stiffness_of_the_law(lammps, mixed, constant, texts):
         lines = (folder / "depth.txt").read_text().splitlines()
         depths = [line.split()[1] for line in lines if line[0] != "#"]
         hertz = (15 * found.mass / (16 * found.contact_modulus * found.radius**0.5)) ** 0.4
-        assert max(map(float, depths)) == pytest.approx(hertz, rel=1e-4), (i, j)
+        assert max(map(float, depths)) == approx(hertz, rel=1e-4), (i, j)
 
 
 def test_names_and_titles_stay_in_their_comments(hostile, lammps, law, texts):
@@ -65,7 +66,7 @@ def test_names_and_titles_stay_in_their_comments(hostile, lammps, law, texts):
     files = write(matrix_of([bad]), 1.0)
     assert all(text.isascii() for text in files.values())
     asked = bad.at(1.0).restitution
-    assert lammps.pair(texts(files), 1, 1) == pytest.approx(asked, rel=5e-4)
+    assert lammps.pair(texts(files), 1, 1) == approx(asked, rel=5e-4)
 
 
 def test_comments_tell_where_e_comes_from_and_how_far_to_trust_it(law):

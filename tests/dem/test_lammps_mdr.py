@@ -8,6 +8,7 @@ from restitution.dem.codes.lammps import write
 from restitution.dem.law import FittedLaw
 from restitution.dem.matrix import matrix_of
 from restitution.theory import mdr
+from tolerance import approx
 
 MDR = FittedLaw(
     name="lammps-mdr",
@@ -59,7 +60,7 @@ def test_one_type_is_offered_a_line_with_its_range(law):
 def test_the_line_runs_when_its_comment_is_opened(law, lammps, texts):
     expected = mdr.restitution(0.5, 1e-3, 7e10, 0.25, 3e8, 2 * law().mass)
     folder = texts(opened([law(laws=(MDR,))]))
-    assert lammps.pair(folder, 1, 1) == pytest.approx(expected, abs=0.01)
+    assert lammps.pair(folder, 1, 1) == approx(expected, abs=0.01)
 
 
 def test_the_line_of_a_wall_runs_beside_that_of_the_spheres(law, plate, lammps, texts):
@@ -69,9 +70,9 @@ def test_the_line_of_a_wall_runs_beside_that_of_the_spheres(law, plate, lammps, 
     assert "No mdr line" not in said
     folder = texts(opened(laws))
     expected = mdr.restitution(1.0, 1e-3, 7e10, 0.25, 2e8, laws[1].mass)
-    assert lammps.pair(folder, 1, 2) == pytest.approx(expected, abs=0.01)
+    assert lammps.pair(folder, 1, 2) == approx(expected, abs=0.01)
     expected = mdr.restitution(0.5, 1e-3, 7e10, 0.25, 3e8, laws[1].mass)
-    assert lammps.pair(folder, 1, 1) == pytest.approx(expected, abs=0.01)
+    assert lammps.pair(folder, 1, 1) == approx(expected, abs=0.01)
 
 
 def test_a_wall_alone_is_told_what_its_line_needs(law, plate):

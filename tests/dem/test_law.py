@@ -12,6 +12,7 @@ from restitution.dem.from_run import bare_law, law_of
 from restitution.dem.law import Law, read_law
 from restitution.dem.write import write_law
 from restitution.errors import CaseError, DomainError, OutputError
+from tolerance import approx
 
 HEAD = """
 title = "A small pair"
@@ -168,9 +169,9 @@ def test_the_fitted_yield_pressure_is_that_which_went_in(truncated):
     """Thornton and Ning's force is that of the cut pressure; their unloading is not quite."""
     laws = {each.name: each for each in law_of(truncated).laws}
     by_force = laws["thornton-ning-force"].parameters["yield_pressure_Pa"]
-    assert by_force == pytest.approx(750e6, rel=0.01)
+    assert by_force == approx(750e6, rel=0.01)
     by_restitution = laws["thornton-ning"].parameters["yield_pressure_Pa"]
-    assert by_restitution == pytest.approx(750e6, rel=0.08)
+    assert by_restitution == approx(750e6, rel=0.08)
     assert laws["thornton-ning"].rms < laws["thornton-ning-force"].rms < 0.03
 
 
@@ -183,13 +184,13 @@ def test_every_fitted_law_is_judged_by_its_own_numbers(truncated):
     e = law.column("restitution")
     for each in law.laws:
         miss = np.array(each.restitution, dtype=float) - e
-        assert each.worst == pytest.approx(np.abs(miss).max(), rel=1e-9)
-        assert each.rms == pytest.approx(np.sqrt(np.mean(miss**2)), rel=1e-9)
+        assert each.worst == approx(np.abs(miss).max(), rel=1e-9)
+        assert each.rms == approx(np.sqrt(np.mean(miss**2)), rel=1e-9)
         assert each.source
         assert each.ends
     rms = {each.name: each.rms for each in law.laws}
     # What cannot vary with velocity is no better than a constant, what can is.
-    assert rms["eepa"] == pytest.approx(rms["constant"], rel=0.01)
+    assert rms["eepa"] == approx(rms["constant"], rel=0.01)
     assert rms["walton-braun"] < 0.5 * rms["constant"]
     assert rms["luding"] < 0.5 * rms["constant"]
 
@@ -198,7 +199,7 @@ def test_an_elastic_pair_has_nothing_to_fit(runs):
     elastic = '[interface]\nyield_pressure = "elastic"\n'
     law = law_of(runs(HEAD + elastic + '[impact]\nvelocity = ["0.1 m/s", "0.3 m/s"]\n' + GRID))
     assert law.laws == ()
-    assert law.column("restitution") == pytest.approx(1.0, abs=1e-6)
+    assert law.column("restitution") == approx(1.0, abs=1e-6)
     assert law.yield_velocity is None
 
 

@@ -5,6 +5,7 @@ import pytest
 from restitution.dem.codes.liggghts import LOWEST, write
 from restitution.dem.matrix import matrix_of
 from restitution.errors import CaseError
+from tolerance import approx
 
 VELOCITIES = (0.01, 0.07, 0.5, 2.0, 10.0)
 
@@ -12,7 +13,7 @@ VELOCITIES = (0.01, 0.07, 0.5, 2.0, 10.0)
 @pytest.mark.parametrize("V", VELOCITIES)
 def test_equal_spheres_rebound_as_exported(equal, liggghts, texts, V):
     asked = equal.laws[1, 1].at(V).restitution
-    assert liggghts.pair(texts(write(equal, V)), 1, 1) == pytest.approx(asked, rel=5e-4)
+    assert liggghts.pair(texts(write(equal, V)), 1, 1) == approx(asked, rel=5e-4)
 
 
 @pytest.mark.parametrize("V", VELOCITIES)
@@ -20,7 +21,7 @@ def test_unlike_spheres_and_walls_rebound_as_exported(mixed, liggghts, texts, V)
     folder = texts(write(mixed, V))
     for i, j, law in mixed.pairs():
         asked = law.at(V).restitution
-        assert liggghts.pair(folder, i, j) == pytest.approx(asked, rel=5e-4), (i, j)
+        assert liggghts.pair(folder, i, j) == approx(asked, rel=5e-4), (i, j)
 
 
 @pytest.mark.parametrize("E", [1e6, 1e8, 1e9, 1e11])
@@ -31,12 +32,12 @@ def test_any_modulus_is_taken(liggghts, law, texts, E):
     assert ("hard_particles yes" in said) == (E > 1e9)
     asked = soft.at(0.1).restitution
     ratio = liggghts.pair(texts(write(matrix_of([soft]), 0.1)), 1, 1)
-    assert ratio == pytest.approx(asked, rel=5e-4)
+    assert ratio == approx(asked, rel=5e-4)
 
 
 def test_the_least_restitution_is_reproduced_and_less_is_refused(liggghts, law, constant, texts):
     matrix = matrix_of([constant(law(), LOWEST)])
-    assert liggghts.pair(texts(write(matrix, 1.0)), 1, 1) == pytest.approx(LOWEST, rel=2e-3)
+    assert liggghts.pair(texts(write(matrix, 1.0)), 1, 1) == approx(LOWEST, rel=2e-3)
     with pytest.raises(CaseError, match=r"has e = 0.05 at 1 m/s, and LIGGGHTS takes no"):
         write(matrix_of([constant(law(), 0.05)]), 1.0)
     with pytest.raises(CaseError, match=r"sticks \(e = 0\) at every velocity"):
@@ -48,7 +49,7 @@ def test_names_and_titles_stay_in_their_comments(hostile, liggghts, law, texts):
     files = write(matrix_of([bad]), 1.0)
     assert max(len(line) for text in files.values() for line in text.splitlines()) < 120
     asked = bad.at(1.0).restitution
-    assert liggghts.pair(texts(files), 1, 1) == pytest.approx(asked, rel=5e-4)
+    assert liggghts.pair(texts(files), 1, 1) == approx(asked, rel=5e-4)
 
 
 def test_warnings_are_carried_into_every_file(law):

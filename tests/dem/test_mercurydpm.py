@@ -9,6 +9,7 @@ import pytest
 from restitution.dem.codes.mercurydpm import write
 from restitution.dem.matrix import matrix_of
 from restitution.errors import CaseError
+from tolerance import approx
 
 # What the header uses of MercuryDPM, as its sources declare it.
 DPM_BASE = """
@@ -41,9 +42,9 @@ def test_types_and_pairs_get_their_moduli_and_restitution(mixed):
     by_target = {target.split(".")[-1]: values for target, *values in calls}
     law = mixed.laws[1, 2]
     modulus, shear, e = map(float, by_target["getMixedObject(species[0], species[1])"])
-    assert modulus == pytest.approx(law.contact_modulus, rel=1e-8)
-    assert e == pytest.approx(law.at(1.0).restitution, rel=1e-8)
-    assert shear == pytest.approx(1 / (2 * 1.75 * 1.25 / 70e9 + 2 * 1.7 * 1.3 / 200e9))
+    assert modulus == approx(law.contact_modulus, rel=1e-8)
+    assert e == approx(law.at(1.0).restitution, rel=1e-8)
+    assert shear == approx(1 / (2 * 1.75 * 1.25 / 70e9 + 2 * 1.7 * 1.3 / 200e9))
     assert len(calls) == 3 + 3  # three types, three mixed pairs
     assert text.count("copyAndAddObject(type)") == 3
     assert "Not compiled or run with MercuryDPM here" in text

@@ -15,6 +15,7 @@ from restitution.studies.case import parse_case
 from restitution.studies.ensemble import run_realisations
 from restitution.studies.results import ResultsFolder
 from restitution.theory import thornton_ning
+from tolerance import approx
 
 STEEL = Body(500e-6, 210e9, 0.25, 7850.0)
 SMALL = Body(100e-6, 70e9, 0.2, 2500.0)
@@ -50,9 +51,9 @@ def test_thornton_and_nings_spheres(second):
     for deepest in depths[1:]:
         velocity = float(thornton_ning.impact_velocity(deepest, *material, pair.mass))
         found = collide_in_time(law, velocity)
-        assert found.largest_indentation == pytest.approx(deepest, rel=1e-6)
+        assert found.largest_indentation == approx(deepest, rel=1e-6)
         exact = thornton_ning.restitution(velocity, *material, pair.mass)
-        assert found.restitution == pytest.approx(float(exact), abs=2e-4)
+        assert found.restitution == approx(float(exact), abs=2e-4)
         assert not found.blended
 
 
@@ -64,9 +65,9 @@ def test_an_elastic_collision_lasts_as_long_as_hertz_says():
     velocity = 0.999 * law.highest
     found = collide_in_time(law, velocity)
     exact = 2.9432 * (15 / 16 * pair.mass / (math.sqrt(pair.radius) * pair.contact_modulus)) ** 0.4
-    assert found.duration == pytest.approx(exact * velocity**-0.2, rel=2e-4)
-    assert found.restitution == pytest.approx(1, abs=2e-4)
-    assert found.largest_force == pytest.approx(k * found.largest_indentation**1.5, rel=1e-9)
+    assert found.duration == approx(exact * velocity**-0.2, rel=2e-4)
+    assert found.restitution == approx(1, abs=2e-4)
+    assert found.largest_force == approx(k * found.largest_indentation**1.5, rel=1e-9)
 
 
 def test_momentum_is_kept_and_a_wall_stays():
@@ -74,9 +75,7 @@ def test_momentum_is_kept_and_a_wall_stays():
     found = collide_in_time(closed_form(pair, P_Y, np.geomspace(1e-8, 1e-6, 5)), 0.1)
     momentum = STEEL.mass * found.rebound_first + SMALL.mass * found.rebound_second
     assert abs(momentum) < 1e-6 * SMALL.mass * 0.1
-    assert found.rebound_second - found.rebound_first == pytest.approx(
-        0.1 * found.restitution, rel=1e-9
-    )
+    assert found.rebound_second - found.rebound_first == approx(0.1 * found.restitution, rel=1e-9)
     assert found.blended
     wall = collide_in_time(closed_form(Pair(STEEL, WALL), P_Y, np.geomspace(1e-8, 1e-6, 5)), 0.05)
     assert wall.rebound_second == 0
@@ -135,9 +134,9 @@ def test_restitution_in_time_is_that_of_the_energies(run, values):
     assert len(law.points) == values["steps"]
     for point in law.points:
         found = collide_in_time(force, point.velocity)
-        assert found.restitution == pytest.approx(point.restitution, abs=1e-3)
-        assert found.largest_indentation == pytest.approx(point.indentation, rel=1e-6)
-        assert found.largest_force == pytest.approx(point.force, rel=1e-4)
+        assert found.restitution == approx(point.restitution, abs=1e-3)
+        assert found.largest_indentation == approx(point.indentation, rel=1e-6)
+        assert found.largest_force == approx(point.force, rel=1e-4)
 
 
 def test_between_stored_curves_it_is_near_and_beyond_them_refused(run):
@@ -146,7 +145,7 @@ def test_between_stored_curves_it_is_near_and_beyond_them_refused(run):
     between = math.sqrt(law.points[-2].velocity * law.points[-1].velocity)
     found = collide_in_time(force, between)
     assert found.blended
-    assert found.restitution == pytest.approx(law.at(between).restitution, abs=0.01)
+    assert found.restitution == approx(law.at(between).restitution, abs=0.01)
     with pytest.raises(DomainError, match="not within what was computed"):
         collide_in_time(force, 1.01 * law.highest)
     with pytest.raises(DomainError, match="nothing is extrapolated"):
@@ -166,9 +165,7 @@ def test_the_verb(run, cli, refused, tmp_path):
     velocities = {row["impact_velocity_m_per_s"] for row in rows}
     assert len(velocities) == 4
     last = [row for row in rows if row["impact_velocity_m_per_s"] == max(velocities, key=float)]
-    assert float(last[0]["closing_velocity_m_per_s"]) == pytest.approx(
-        float(max(velocities, key=float))
-    )
+    assert float(last[0]["closing_velocity_m_per_s"]) == approx(float(max(velocities, key=float)))
     assert float(last[-1]["closing_velocity_m_per_s"]) < 0
     assert "exists" in refused("collide", out, "-o", tmp_path / "courses.csv")
     assert "has no unit" in refused("collide", out, "--velocity", "1")

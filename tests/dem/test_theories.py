@@ -21,6 +21,7 @@ from restitution.theory import (
     thornton_ning,
     yielding,
 )
+from tolerance import approx
 
 SPHERE = 'radius = "1 mm"\nyoungs_modulus = "70 GPa"\npoissons_ratio = 0.25\n'
 WALL = 'radius = "flat"\nyoungs_modulus = "200 GPa"\npoissons_ratio = 0.3\n'
@@ -84,7 +85,7 @@ def test_thornton_ning_takes_the_pressure_of_the_case():
     depth = thornton_ning.indentation_from_velocity(V, R, E, 560e6, m)
     expected = thornton_ning.restitution(V, R, E, 560e6, m)
     found = by_name(case)["thornton-ning"]
-    assert found.parameters == {"yield_pressure_Pa": pytest.approx(560e6)}
+    assert found.parameters == {"yield_pressure_Pa": approx(560e6)}
     same_within(found.restitution, expected, depth < R)
 
 
@@ -97,9 +98,9 @@ def test_johnson_answers_only_in_fully_plastic_impacts():
     same_within(found.restitution, expected, (expected < 0.6) & small)
     assert "Y = p_y/2.8 = 200 MPa" in found.holds
     lowest = float(found.holds.split("above ")[1].split(" m/s")[0])
-    assert johnson.restitution(lowest, R, E, 200e6, m) == pytest.approx(0.6, rel=2e-3)
+    assert johnson.restitution(lowest, R, E, 200e6, m) == approx(0.6, rel=2e-3)
     highest = float(found.holds.split("on, ")[1].split(" m/s")[0])
-    assert highest == pytest.approx(V[small][-1], rel=0.1)
+    assert highest == approx(V[small][-1], rel=0.1)
 
 
 def test_mdr_on_a_wall_and_between_equal_spheres():
@@ -113,7 +114,7 @@ def test_mdr_on_a_wall_and_between_equal_spheres():
     expected = mdr.restitution(V / 2, 1e-3, 70e9, 0.25, 200e6, 2 * bodies(equal)[2])
     same_within(found.restitution, expected, np.isfinite(expected))
     last = float(found.holds.split("up to ")[1].split(" m/s")[0])
-    assert last == pytest.approx(V[np.isfinite(expected)][-1], rel=0.1)
+    assert last == approx(V[np.isfinite(expected)][-1], rel=0.1)
 
 
 def test_two_equal_spheres_are_one_on_a_rigid_wall_at_half_the_velocity():
@@ -130,7 +131,7 @@ def test_unequal_spheres_are_left_out_where_a_theory_knows_equal_ones_only():
     R, E, m = bodies(case)
     expected = thornton_ning.restitution(1.0, R, E, 560e6, m)
     (found,) = by_name(case, np.ones(1))["thornton-ning"].restitution
-    assert found == pytest.approx(expected, rel=1e-12)
+    assert found == approx(expected, rel=1e-12)
 
 
 def test_the_yield_strength_is_the_softer_bodys_where_both_give_one():
@@ -139,15 +140,15 @@ def test_the_yield_strength_is_the_softer_bodys_where_both_give_one():
     soft_sphere = case_of(first=SPHERE + LIGHT + weak, second=WALL + strong)
     found = by_name(soft_sphere)
     for name in ("johnson", "mdr"):
-        assert found[name].parameters["yield_strength_Pa"] == pytest.approx(150e6)
+        assert found[name].parameters["yield_strength_Pa"] == approx(150e6)
         assert "Y = 150 MPa, the yield_strength of first" in found[name].holds
-    assert found["thornton-ning"].parameters == {"yield_pressure_Pa": pytest.approx(560e6)}
+    assert found["thornton-ning"].parameters == {"yield_pressure_Pa": approx(560e6)}
 
     soft_wall = case_of(first=SPHERE + LIGHT + strong, second=WALL + weak)
     assert "does not yield" in room.left_out(soft_wall)["mdr"]
 
     one = by_name(case_of(first=SPHERE + LIGHT + weak, second=WALL))
-    assert one["johnson"].parameters["yield_strength_Pa"] == pytest.approx(200e6)
+    assert one["johnson"].parameters["yield_strength_Pa"] == approx(200e6)
 
 
 @pytest.mark.parametrize("wall_first", [False, True])
@@ -162,7 +163,7 @@ def test_adhesion_adds_its_loss_to_thornton_ning_and_is_said_to_be_left_out_else
     case = case_of(second=WALL, interface=PLASTIC + 'work_of_adhesion = "0.1 J/m^2"\n')
     R, E, m = bodies(case)
     V_s, V_y = room.marks(case)["V_s"], room.marks(case)["V_y"]
-    assert V_s == pytest.approx(sticking.sticking_velocity(R, E, 0.1, m))
+    assert V_s == approx(sticking.sticking_velocity(R, E, 0.1, m))
     found = by_name(case)
     elastic = sticking.restitution(V, V_s)
     same_within(found["sticking"].restitution, elastic, V_y >= V)
@@ -204,13 +205,13 @@ def test_no_theory_rests_on_constants_that_nobody_could_look_up():
 
 def test_velocities_are_the_span_of_the_case():
     V = room.velocities_of(case_of())
-    assert pytest.approx(np.geomspace(1e-3, 100, 25)) == V
+    assert approx(np.geomspace(1e-3, 100, 25)) == V
 
     case = case_of(depths='[indentation]\nfrom = "10 nm"\nto = "5 um"\nsteps = 4\n')
     R, E, m = bodies(case)
     V = room.velocities_of(case)
     assert V.size == 25
-    assert V[[0, -1]] == pytest.approx(
+    assert V[[0, -1]] == approx(
         thornton_ning.impact_velocity(np.array([1e-8, 5e-6]), R, E, 560e6, m)
     )
 
@@ -220,11 +221,11 @@ def test_velocities_of_loads_are_those_of_the_smooth_bodies_that_carry_them():
     R, E, m = bodies(case)
     depth = thornton_ning.indentation_from_velocity(room.velocities_of(case), R, E, 560e6, m)
     force = thornton_ning.loading_force(depth[[0, -1]], R, E, 560e6)
-    assert force == pytest.approx([1e-3, 50])
+    assert force == approx([1e-3, 50])
 
     elastic = case_of(interface=ELASTIC, depths='[load]\nfrom = "1 mN"\nto = "50 N"\nsteps = 4\n')
     work = 0.5 * m * room.velocities_of(elastic)[-1] ** 2
-    assert work == pytest.approx(hertz.stored_energy(hertz.indentation_from_force(50, R, E), R, E))
+    assert work == approx(hertz.stored_energy(hertz.indentation_from_force(50, R, E), R, E))
 
 
 def test_a_single_depth_is_a_single_velocity():
@@ -276,7 +277,7 @@ def test_brilliantov_is_found_again(law):
         )
     )
     found = by_name(case_of(), V, exact)["brilliantov"]
-    assert found.parameters["dissipation_s_per_m_power_1_5"] == pytest.approx(0.3, rel=1e-6)
+    assert found.parameters["dissipation_s_per_m_power_1_5"] == approx(0.3, rel=1e-6)
 
 
 def test_nothing_of_a_law_is_interpolated(points):

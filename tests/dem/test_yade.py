@@ -10,6 +10,7 @@ from scipy.integrate import solve_ivp
 from restitution.dem.codes.yade import write
 from restitution.dem.matrix import matrix_of
 from restitution.errors import CaseError
+from tolerance import approx
 
 VELOCITIES = (0.01, 0.07, 0.5, 2.0, 10.0)
 # YADE takes seconds to start: many collisions, each as it was written, in one process.
@@ -44,7 +45,7 @@ def test_collisions_rebound_as_exported(equal, mixed, collide, texts):
             folder = texts(write(matrix, V), f"{name}-{V}")
             jobs += [(folder, V, i, j) for i, j, _ in matrix.pairs()]
             asked += [law.at(V).restitution for _, _, law in matrix.pairs()]
-    assert collide(jobs) == pytest.approx(asked, rel=1e-3)
+    assert collide(jobs) == approx(asked, rel=1e-3)
 
 
 def test_the_law_is_followed_at_every_velocity(mixed, collide, texts):
@@ -52,21 +53,19 @@ def test_the_law_is_followed_at_every_velocity(mixed, collide, texts):
     kinds = [(V, pair) for V in VELOCITIES for pair in ((1, 2), (1, 3))]
     asked = [mixed.laws[pair].at(V).restitution for V, pair in kinds]
     jobs = [(folder, V, *pair, "law") for V, pair in kinds]
-    assert collide(jobs) == pytest.approx(asked, rel=1e-3)
+    assert collide(jobs) == approx(asked, rel=1e-3)
 
 
 def test_the_law_is_held_beyond_its_ends(equal, collide, texts):
     folder = texts(write(equal, 0.5))
     asked = [equal.laws[1, 1].at(V).restitution for V in (0.01, 10.0)]
-    assert collide([(folder, V, 1, 1, "law") for V in (0.005, 20.0)]) == pytest.approx(
-        asked, rel=1e-3
-    )
+    assert collide([(folder, V, 1, 1, "law") for V in (0.005, 20.0)]) == approx(asked, rel=1e-3)
 
 
 def test_a_collision_runs_by_itself_with_what_was_exported(equal, yade, texts):
     folder = texts(write(equal, 0.5))
     asked = equal.laws[1, 1].at(0.5).restitution
-    assert yade.ratios(folder, "collision_yade.py") == pytest.approx([asked], rel=1e-3)
+    assert yade.ratios(folder, "collision_yade.py") == approx([asked], rel=1e-3)
 
 
 @pytest.mark.parametrize("e", [1.0, 0.99, 0.9, 0.5, 0.1, 0.01])
@@ -83,7 +82,7 @@ def test_damping_returns_its_restitution(equal, e):
 
     pull.terminal, pull.direction = True, -1
     end = solve_ivp(slope, (0, 1e4), [0.0, 1.0], rtol=1e-10, atol=1e-13, events=pull)
-    assert -end.y[1, -1] == pytest.approx(e, rel=2e-5)
+    assert -end.y[1, -1] == approx(e, rel=2e-5)
 
 
 def test_the_table_of_the_law_is_fine_enough_for_straight_lines(law):
@@ -91,7 +90,7 @@ def test_the_table_of_the_law_is_fine_enough_for_straight_lines(law):
     text = module(matrix_of([found]))
     for V in np.geomspace(0.01, 10, 101):
         e = text["restitution"](text["LAWS"][1, 1], V)
-        assert e == pytest.approx(found.at(V).restitution, abs=1e-3)
+        assert e == approx(found.at(V).restitution, abs=1e-3)
 
 
 def test_names_and_titles_break_out_of_nothing(hostile, law):

@@ -1,7 +1,5 @@
 """The FFT convolution against the sum it stands for."""
 
-from functools import partial
-
 import ducc0
 import numpy as np
 import pytest
@@ -14,8 +12,7 @@ from restitution.contact.influence import half_space
 from restitution.numerics.convolution import FreeConvolution, SpectralFilter
 from restitution.numerics.device import accelerator
 from restitution.numerics.minimise import _ROUNDING
-
-approx = partial(pytest.approx, abs=0.0)  # whose own 1e-12 is more than these energies
+from tolerance import approx
 
 # 1 x 1, single rows, primes and powers of two; up to 19 x 23 the direct sum stays quick.
 sizes = st.sampled_from([1, 2, 3, 5, 7, 8, 11, 13, 16, 17, 19, 23])

@@ -1,5 +1,4 @@
 import math
-from functools import partial
 
 import numpy as np
 import pytest
@@ -9,8 +8,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from restitution.errors import CaseError
 from restitution.numerics.grid import Grid
-
-approx = partial(pytest.approx, abs=0.0)  # whose own 1e-12 is more than these energies
+from tolerance import approx
 
 counts = st.integers(1, 50)
 

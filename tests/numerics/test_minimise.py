@@ -1,7 +1,6 @@
 """The minimiser against enumerated active sets and an independent least-squares solver."""
 
 import itertools
-from functools import partial
 
 import numpy as np
 import pytest
@@ -12,8 +11,7 @@ from scipy.linalg import solve_triangular
 from scipy.optimize import lsq_linear
 
 from restitution.numerics.minimise import minimise_quadratic, violation
-
-approx = partial(pytest.approx, abs=0.0)  # whose own 1e-12 is more than these energies
+from tolerance import approx
 
 TOLERANCE = 1e-10  # of `minimise`
 seeds = st.integers(0, 2**32 - 1)

@@ -9,6 +9,7 @@ from restitution.numerics import nesting, passes
 from restitution.numerics.convolution import FreeConvolution
 from restitution.numerics.minimise import minimise_quadratic
 from restitution.numerics.nesting import minimise_nested
+from tolerance import approx
 
 TOLERANCE = 1e-9
 
@@ -51,7 +52,7 @@ def test_the_answer_is_that_of_the_plain_solve(shape, rough, upper):
     assert found.residual <= TOLERANCE
     assert products > 0
     assert_allclose(found.point, expected.point, atol=1e-6 * expected.point.max())
-    assert found.point.sum() == pytest.approx(expected.point.sum(), rel=1e-7)
+    assert found.point.sum() == approx(expected.point.sum(), rel=1e-7)
     K, _ = system(shape, 0)
     assert_allclose(found.gradient, K(found.point) - b, atol=1e-12 * np.abs(b).max())
 
@@ -157,7 +158,7 @@ def test_a_constant_on_islands_is_too_stiff_and_less_so_with_less_of_the_mean():
 
     plain = stiffness(inverse)
     assert plain > 8
-    assert stiffness(less) == pytest.approx(nesting._USUAL, rel=1e-5)
+    assert stiffness(less) == approx(nesting._USUAL, rel=1e-5)
     # A checkerboard has no means: nothing changes.
     board = (constant * (-1.0) ** np.add.outer(np.arange(256), np.arange(256))).astype(np.float32)
     assert_allclose(less(board), inverse(board), atol=1e-2 * inverse(board).max())

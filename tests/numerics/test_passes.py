@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 from restitution.numerics import passes
+from tolerance import approx
 
 pytest.importorskip("restitution.numerics.loops", reason="built without a compiler")
 
@@ -57,7 +58,7 @@ def test_a_step_is_that_of_the_expressions(single, kind, shape, seed, taken):
     (most, (_, slope, *_, left)), (its_most, (_, its_slope, *_, its_left)) = both(
         "downhill", p, g + b, b, lower, upper, out
     )
-    assert most == its_most == pytest.approx(np.abs(left).max(), rel=1e-7)
+    assert most == its_most == approx(np.abs(left).max(), rel=1e-7)
     assert_array_equal(slope, its_slope)
     assert_array_equal(left, its_left)
 
@@ -65,7 +66,7 @@ def test_a_step_is_that_of_the_expressions(single, kind, shape, seed, taken):
         "direct", d, 0.3, z, 0.8, p, g, r, lower, upper
     )
     assert_allclose(compiled_d, its_d, atol=2e-7)
-    assert compiled[0] == pytest.approx(found[0], abs=1e-5)
+    assert compiled[0] == approx(found[0], abs=1e-5)
     assert compiled[1] == found[1]
 
     ends = [bool(outcome) for outcome, _ in both("leaves", p, compiled_d, taken, lower, upper)]
@@ -122,8 +123,8 @@ def test_means_around_places_are_those_of_the_expressions(single, shape, places,
     )
     assert_allclose(its_sums, sums, atol=1e-4)
     assert_allclose(its_nodes, nodes, atol=1e-4)
-    assert sums.sum() == pytest.approx(r.sum(), abs=1e-4)
-    assert nodes.sum() == pytest.approx(np.count_nonzero(r))
+    assert sums.sum() == approx(r.sum(), abs=1e-4)
+    assert nodes.sum() == approx(np.count_nonzero(r))
     (_, (*_, lowered)), (_, (*_, compiled)) = both("lower", r, 0.6, sums, nodes, np.full_like(r, 9))
     assert_allclose(compiled, lowered, atol=1e-4)
     assert_array_equal(lowered == 0, r == 0)
@@ -267,4 +268,4 @@ print(passes.loops is None, solve(Contact(Pair(body, body), surface, 4e9), 60e-9
         for line in (hidden, "")
     ]  # fmt: skip
     assert [each[0] for each in found] == ["True", "False"]
-    assert float(found[0][1]) == pytest.approx(float(found[1][1]), rel=1e-7)
+    assert float(found[0][1]) == approx(float(found[1][1]), rel=1e-7)

@@ -1,7 +1,6 @@
 """Path integrals against closed forms, and what the adaptive rule says about itself."""
 
 import math
-from functools import partial
 
 import numpy as np
 import pytest
@@ -9,8 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from restitution.numerics.quadrature import integrate_adaptively, integrate_curve
-
-approx = partial(pytest.approx, abs=0.0)  # whose own 1e-12 is more than these energies
+from tolerance import approx
 
 
 def adaptive(f, a, b, tolerance):
@@ -148,3 +146,11 @@ def test_a_hopeless_integrand_ends_with_a_large_estimate():
 def test_the_tolerance_is_absolute_and_the_interval_may_be_anywhere():
     value, _, _ = adaptive(lambda x: 1e-18 * x**1.5, 0.0, 1e-7, 1e-33)
     assert value == approx(0.4e-18 * 1e-7**2.5, abs=1e-33)
+
+
+def test_the_error_of_two_rules_is_taken_off():
+    """Richardson: with one halving Simpson's rule becomes Boole's, exact up to the fifth power."""
+    for power in range(6):
+        value, _, asked = adaptive(lambda x, n=power: x**n, 0.0, 1.0, math.inf)
+        assert value == approx(1 / (power + 1), rel=1e-14)
+        assert len(asked) == 3

@@ -6,6 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
+from tolerance import approx
+
 seeds = st.integers(0, 2**32 - 1)
 
 
@@ -56,9 +58,7 @@ def test_what_rounding_does_to_the_gradient_is_part_of_a_rough_residual(
     found, exact = minimise(A, b, *bounds, quick=rounded(A, []), tolerance=tolerance)
     assert_array_equal(exact[-1], found.point)
     assert found.residual <= tolerance
-    assert found.residual == pytest.approx(
-        kkt_violation(A, b, found.point, *bounds), rel=1e-6, abs=1e-14
-    )
+    assert found.residual == approx(kkt_violation(A, b, found.point, *bounds), rel=1e-6, abs=1e-14)
 
 
 @pytest.mark.parametrize("rough", [False, True])

@@ -3,6 +3,7 @@ import pytest
 import xarray as xr
 
 from restitution.reports.figures import figures, surface_map, write_figure
+from tolerance import approx
 
 
 @pytest.fixture
@@ -20,10 +21,10 @@ def test_figures_show_the_stored_numbers(results):
         "load-displacement", "restitution-indentation", "restitution-velocity", "pressure",
     ]  # fmt: skip
     loading = drawn["load-displacement"].axes[0].lines[0]
-    assert loading.get_xdata()[1:] == pytest.approx(1e6 * results["indentation"].values)
-    assert loading.get_ydata()[1:] == pytest.approx(results["force"].values)
+    assert loading.get_xdata()[1:] == approx(1e6 * results["indentation"].values)
+    assert loading.get_ydata()[1:] == approx(results["force"].values)
     image = drawn["pressure"].axes[0].images[0].get_array()
-    assert np.nanmax(image) == pytest.approx(1e-6 * float(results["pressure"].max()))
+    assert np.nanmax(image) == approx(1e-6 * float(results["pressure"].max()))
     for figure in drawn.values():
         assert figure.axes[0].get_xlabel()
         assert figure.axes[0].get_ylabel()
@@ -35,7 +36,7 @@ def test_unresolved_depths_have_open_markers(results):
     assert few.any()
     open_markers = [line for line in axes.lines if line.get_markerfacecolor() == "white"]
     assert len(open_markers) == 1
-    assert open_markers[0].get_xdata() == pytest.approx(results["impact_velocity"].values[few])
+    assert open_markers[0].get_xdata() == approx(results["impact_velocity"].values[few])
 
 
 def test_a_hostile_title_is_drawn_as_text(results):
@@ -49,8 +50,8 @@ def test_the_first_scan_line_of_a_file_is_drawn_at_the_top():
         np.arange(6.0).reshape(3, 2), {"x": [0.0, 1e-6, 2e-6], "y": [0.0, 2e-6]}, ("x", "y")
     )
     axes = surface_map(height, "", "down").axes[0]
-    assert axes.get_ylim() == pytest.approx((3.0, -1.0))
-    assert surface_map(height, "").axes[0].get_ylim() == pytest.approx((-1.0, 3.0))
+    assert axes.get_ylim() == approx((3.0, -1.0))
+    assert surface_map(height, "").axes[0].get_ylim() == approx((-1.0, 3.0))
 
 
 def test_the_smooth_contact_of_the_same_model_is_drawn_beside_another_model(results):
@@ -61,7 +62,7 @@ def test_the_smooth_contact_of_the_same_model_is_drawn_beside_another_model(resu
         assert "smooth, Thornton–Ning (truncated pressure)" in labels
     axes = drawn["restitution-velocity"].axes[0]
     line = next(line for line in axes.lines if line.get_label() == "smooth, same model")
-    assert line.get_ydata() == pytest.approx(results["smooth_restitution"].values)
+    assert line.get_ydata() == approx(results["smooth_restitution"].values)
     old = results.drop_vars([name for name in results if name.startswith("smooth_")])
     assert len(dict(figures(old))) == 4
 
@@ -89,6 +90,6 @@ def test_the_axes_of_a_map_are_x_to_the_right_and_y_up():
         np.arange(6.0).reshape(3, 2), {"x": [0.0, 1e-6, 2e-6], "y": [0.0, 2e-6]}, ("x", "y")
     )
     image = surface_map(height, "").axes[0].images[0]
-    assert image.get_extent() == pytest.approx([-0.5, 2.5, -1.0, 3.0])
+    assert image.get_extent() == approx([-0.5, 2.5, -1.0, 3.0])
     assert image.origin == "lower"
-    assert image.get_array()[1, 2] == pytest.approx(5e6)  # y index 1, x index 2
+    assert image.get_array()[1, 2] == approx(5e6)  # y index 1, x index 2

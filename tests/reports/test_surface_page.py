@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from restitution import Grid, generate_surface
+from tolerance import approx
 
 
 @pytest.fixture
@@ -37,9 +38,7 @@ def test_parameters_have_value_unit_clause_and_what_was_asked_for(described):
     assert cells(page, "root mean square height Sq")[1:] == ["50", "nm", "4.1.1", "50"]
     assert cells(page, "skewness Ssk")[4] == "0"
     assert cells(page, "autocorrelation length Sal")[2:4] == ["µm", "4.2.1"]
-    assert float(cells(page, "core height Sk")[1]) == pytest.approx(
-        1e9 * statistics["Sk_m"], rel=1e-4
-    )
+    assert float(cells(page, "core height Sk")[1]) == approx(1e9 * statistics["Sk_m"], rel=1e-4)
     # No lay, no direction.
     assert cells(page, "direction of slowest decay, from x")[1] == "–"
 
@@ -49,8 +48,8 @@ def test_a_lay_has_a_direction_beside_the_one_asked_for(described):
         ('correlation_length = "2 um"', 'correlation_length = ["12 um", "2 um"]\nlay = "30 deg"')
     )
     found, _, _, asked = cells(page, "direction of slowest decay, from x")[1:]
-    assert float(asked) == pytest.approx(30)
-    assert float(found) == pytest.approx(30, abs=12)
+    assert float(asked) == approx(30)
+    assert float(found) == approx(30, abs=12)
 
 
 def test_a_twin_stands_beside_its_scan(described, tmp_path):
@@ -67,7 +66,7 @@ def test_a_twin_stands_beside_its_scan(described, tmp_path):
     )
     assert "not the scan itself" in page
     row = cells(page, "root mean square height Sq")
-    assert float(row[5]) == pytest.approx(float(row[1]), rel=0.1)
+    assert float(row[5]) == approx(float(row[1]), rel=0.1)
 
 
 def test_a_browser_draws_all_figures_of_a_hostile_case(opened, described, tmp_path):

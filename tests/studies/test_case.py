@@ -1,5 +1,4 @@
 import math
-from functools import partial
 
 import numpy as np
 import pytest
@@ -7,22 +6,21 @@ import pytest
 from restitution.errors import CaseError
 from restitution.studies.case import parse_case, read_case
 from restitution.studies.omissions import omissions
-
-approx = partial(pytest.approx, abs=0.0)
+from tolerance import approx
 
 
 def test_the_second_body_is_the_first_unless_given(case_text):
     pair = parse_case(case_text).pair()
     assert pair.first == pair.second
     assert pair.radius == 250e-6
-    assert pair.contact_modulus == pytest.approx(112e9)
+    assert pair.contact_modulus == approx(112e9)
 
 
 def test_a_wall_has_no_curvature_and_infinite_mass(case_text):
     wall = '[second]\nradius = "flat"\nyoungs_modulus = "70 GPa"\npoissons_ratio = 0.2\n'
     pair = parse_case(case_text + wall).pair()
     assert pair.radius == 500e-6
-    assert pair.mass == pytest.approx(4 / 3 * math.pi * 500e-6**3 * 7850)
+    assert pair.mass == approx(4 / 3 * math.pi * 500e-6**3 * 7850)
 
 
 def test_depths(case_text):
@@ -31,19 +29,17 @@ def test_depths(case_text):
     def depths(table):
         return parse_case(case_text.replace(span, table)).depths()
 
-    assert depths('[indentation]\nfrom="1 nm"\nto="100 nm"\nsteps=3\n') == pytest.approx(
+    assert depths('[indentation]\nfrom="1 nm"\nto="100 nm"\nsteps=3\n') == approx(
         [1e-9, 1e-8, 1e-7]
     )
     linear = '[indentation]\nfrom="1 nm"\nto="101 nm"\nsteps=3\nscale="linear"\n'
-    assert depths(linear) == pytest.approx([1e-9, 51e-9, 101e-9])
-    assert depths('[indentation]\nvalues=["50 nm", "10 nm", "50 nm"]\n') == pytest.approx(
-        [10e-9, 50e-9]
-    )
+    assert depths(linear) == approx([1e-9, 51e-9, 101e-9])
+    assert depths('[indentation]\nvalues=["50 nm", "10 nm", "50 nm"]\n') == approx([10e-9, 50e-9])
     assert depths('[load]\nvalues=["1 N", "0.5 N"]\n') == [0.5, 1.0]
     assert depths('[impact]\nvelocity=["1 m/s", "50 cm/s"]\n') == [0.5, 1.0]
     assert depths('[impact]\nvelocity="1 m/s"\n') == [1.0]
     span_of = '[impact]\nfrom="0.1 m/s"\nto="10 m/s"\nsteps=3\n'
-    assert depths(span_of) == pytest.approx([0.1, 1.0, 10.0])
+    assert depths(span_of) == approx([0.1, 1.0, 10.0])
 
 
 def test_bodies_of_unknown_strength_are_elastic_only_when_asked_for(case_text, tmp_path):
@@ -89,7 +85,7 @@ def test_the_scan_is_levelled_before_a_part_is_cut_out(case_text, tmp_path):
     surface = parse_case(case_text[:begin] + rough + case_text[end:]).surface(tmp_path)
     # The plane that fits the whole cubic is steeper than the one that fits its middle.
     slope = np.polyfit(surface.grid.x, surface.height[:, 10], 1)[0]
-    assert slope == pytest.approx(np.polyfit(surface.grid.x, _levelled_cubic(x), 1)[0], rel=1e-2)
+    assert slope == approx(np.polyfit(surface.grid.x, _levelled_cubic(x), 1)[0], rel=1e-2)
 
 
 def _levelled_cubic(x):
@@ -104,7 +100,7 @@ def test_a_measured_case_without_grid_uses_the_pixels(case_text, tmp_path):
     rough = '[roughness]\nkind="measured"\nfile="scan.npy"\nsize=["15 um","12 um"]\n'
     surface = parse_case(case_text[:begin] + rough + case_text[end:]).surface(tmp_path)
     assert surface.grid.nodes == (30, 20)
-    assert surface.grid.spacing == pytest.approx((0.5e-6, 0.6e-6))
+    assert surface.grid.spacing == approx((0.5e-6, 0.6e-6))
 
 
 def test_only_a_measured_case_may_leave_out_the_grid(case_text):

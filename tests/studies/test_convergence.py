@@ -12,6 +12,7 @@ from restitution.errors import CaseError
 from restitution.studies.case import parse_case
 from restitution.studies.convergence import discretisation, observed_order, run_convergence
 from restitution.studies.results import ResultsFolder
+from tolerance import approx
 
 
 @pytest.fixture(scope="module")
@@ -33,16 +34,16 @@ def table_of(out, *names):
 def test_the_error_covers_what_is_left_of_a_power(order):
     values = [0.5 + 0.1 * 2 ** (-order * k) for k in range(3)]
     error, found = discretisation(values)
-    assert found == pytest.approx(order)
+    assert found == approx(order)
     assert abs(values[-1] - 0.5) <= error * (1 + 1e-12) if order >= 1 else error > 0
     assert error < 0.1
 
 
 def test_values_that_go_up_and_down_have_an_error_but_no_order():
     error, order = discretisation([0.50, 0.54, 0.53])
-    assert error == pytest.approx(0.02)
+    assert error == approx(0.02)
     assert math.isnan(order)
-    assert discretisation([0.5, 0.53])[0] == pytest.approx(0.09)
+    assert discretisation([0.5, 0.53])[0] == approx(0.09)
     assert np.isnan(discretisation([0.5])).all()
 
 
@@ -51,7 +52,7 @@ def test_the_order_over_depths_is_that_of_the_root_mean_square():
         return {2**k: {"restitution": v, "resolved": True} for k, v in enumerate(values)}
 
     depths = [depth(0.5, 0.54, 0.53), depth(0.7, 0.66, 0.67)]
-    assert observed_order(depths) == pytest.approx(2)
+    assert observed_order(depths) == approx(2)
     assert math.isnan(observed_order([depth(0.5, 0.54)]))
     assert math.isnan(observed_order([]))
 
@@ -73,11 +74,11 @@ def test_depths_count_from_one_first_touch(converged):
     by_depth = {}
     for row in table_of(out, "convergence.csv"):
         by_depth.setdefault(row["indentation_m"], set()).add(row["refine"])
-    assert [float(depth) for depth in by_depth] == pytest.approx(np.geomspace(20e-9, 300e-9, 4))
+    assert [float(depth) for depth in by_depth] == approx(np.geomspace(20e-9, 300e-9, 4))
     assert all(grids == {"1", "2", "4"} for grids in list(by_depth.values())[1:])
     pressed = [float(table_of(out, f"refine-{k}", "curve.csv")[-1]["indentation_m"])
                for k in (1, 2, 4)]  # fmt: skip
-    assert pressed[0] < pressed[1] < pressed[2] == pytest.approx(300e-9)
+    assert pressed[0] < pressed[1] < pressed[2] == approx(300e-9)
 
 
 def test_errors_and_coarser_grids_are_in_the_results_file(converged):
@@ -106,7 +107,7 @@ def test_loads_are_compared_as_they_are(case_text, tmp_path):
     text = case_text[:a] + '[load]\nvalues = ["5 mN", "20 mN"]\n' + case_text[b:]
     out, _ = converge(text, tmp_path, 2)
     forces = [float(row["force_N"]) for row in table_of(out, "convergence.csv")]
-    assert forces == pytest.approx([5e-3, 5e-3, 20e-3, 20e-3])
+    assert forces == approx([5e-3, 5e-3, 20e-3, 20e-3])
     rows = table_of(out, "curve.csv")
     assert all(float(row["discretisation_error"]) > 0 for row in rows)
 
@@ -130,7 +131,7 @@ def test_a_scan_is_refined_on_its_own_pixels(case_text, tmp_path):
     out, _ = converge(case_text[:a] + measured + case_text[b:], tmp_path, 2)
     spacings = [json.loads((out.path / f"refine-{k}" / "summary.json").read_text())["model"]
                 ["spacing"][0] for k in (1, 2)]  # fmt: skip
-    assert spacings == pytest.approx([0.5e-6, 0.25e-6])
+    assert spacings == approx([0.5e-6, 0.25e-6])
 
 
 def test_what_cannot_converge_is_refused(case_text, tmp_path):

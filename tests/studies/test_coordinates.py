@@ -6,6 +6,7 @@ import pytest
 import xarray as xr
 
 from restitution.studies.coordinates import coordinate
+from tolerance import approx
 
 
 @pytest.mark.parametrize(
@@ -22,7 +23,7 @@ from restitution.studies.coordinates import coordinate
 )
 def test_quantities_are_numbers_with_units(values, units, numbers):
     found, attributes = coordinate(values)
-    assert found == pytest.approx(numbers, rel=1e-12, abs=0)
+    assert found == approx(numbers, rel=1e-12, abs=0)
     assert attributes["units"] == units
     assert json.loads(attributes["as_written"]) == values
 

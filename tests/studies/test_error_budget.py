@@ -2,7 +2,6 @@
 
 import json
 import math
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -22,8 +21,7 @@ from restitution.studies.error_budget import (
     widened_error,
 )
 from restitution.studies.results import ResultsFolder
-
-approx = partial(pytest.approx, abs=0.0)
+from tolerance import approx
 
 TOPOGRAPHIES = Path(__file__).parents[3] / "shared" / "topographies"
 PARTS = ("restitution_error", "discretisation_error", "surface_scatter", "material_error")

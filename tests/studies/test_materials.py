@@ -5,6 +5,7 @@ import pytest
 
 from restitution.errors import CaseError
 from restitution.studies.materials import Property, material, materials
+from tolerance import approx
 
 DOCS = Path(__file__).parents[2] / "docs"
 ALL = materials().values()
@@ -59,7 +60,7 @@ def test_values_are_in_si_units():
     alumina = material("alumina")
     assert alumina.youngs_modulus.value == 416e9
     assert alumina.density.value == 3984
-    assert material("mcc").hardness.value == pytest.approx(168e6)
+    assert material("mcc").hardness.value == approx(168e6)
 
 
 def test_names_are_found_in_any_case_and_by_alias():

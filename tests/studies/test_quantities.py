@@ -6,6 +6,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from restitution.studies.quantities import read_quantity
+from tolerance import approx
 
 
 @pytest.mark.parametrize(
@@ -31,7 +32,7 @@ from restitution.studies.quantities import read_quantity
     ],
 )
 def test_units(text, unit, expected):
-    assert read_quantity(text, unit) == pytest.approx(expected, rel=1e-12)
+    assert read_quantity(text, unit) == approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -30,3 +30,15 @@ def test_a_file_is_replaced_whole_or_not_at_all(tmp_path):
         replace_file(path, half)
     assert path.read_text() == '{\n  "a": 1\n}\n'
     assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize(("off", "warned"), [(0.009, False), (0.011, True), (-0.02, True)])
+def test_unloading_that_returns_another_work_is_warned_of(off, warned):
+    """More than 1 % of the stored energy, either way."""
+    from restitution.studies.run import _unbalanced
+
+    check = {"relative_to_stored_energy": off, "indentation_m": 1e-7}
+    line = _unbalanced([check])
+    assert (line is not None) is warned
+    if warned:
+        assert f"{off:+.1%}" in line

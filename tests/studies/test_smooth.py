@@ -1,9 +1,9 @@
 import numpy as np
-import pytest
 
 from restitution import Body, Contact, Grid, Pair, smooth
 from restitution.studies.smooth import smooth_curve
 from restitution.theory import hertz, yielding
+from tolerance import approx
 
 STEEL = Body(500e-6, 210e9, 0.25, density=7850)
 PAIR = Pair(STEEL, STEEL)
@@ -24,8 +24,8 @@ def test_it_follows_the_table_of_smooth_contact():
     """Restitution at x = δ/δ_y, docs/method.md, whatever the grid of the case is."""
     for x, cor in [(2, 0.9379), (6, 0.752), (16, 0.6010), (36, 0.496)]:
         found = values(Contact(PAIR, smooth(GRID), P_Y), rows(x * YIELD))
-        assert found["smooth_indentation"][-1] == pytest.approx(x * YIELD)
-        assert found["smooth_restitution"][-1] == pytest.approx(cor, rel=3e-3)
+        assert found["smooth_indentation"][-1] == approx(x * YIELD)
+        assert found["smooth_restitution"][-1] == approx(cor, rel=3e-3)
 
 
 def test_it_spans_the_depths_and_the_velocities_of_the_run():
@@ -42,7 +42,7 @@ def test_up_to_yield_it_is_hertz():
     contact = Contact(PAIR, smooth(GRID))
     found = values(contact, rows(1e-8, 3e-7))
     assert (found["smooth_restitution"] == 1).all()
-    assert found["smooth_force"] == pytest.approx(
+    assert found["smooth_force"] == approx(
         hertz.force(found["smooth_indentation"], PAIR.radius, PAIR.contact_modulus)
     )
 

@@ -4,6 +4,7 @@ import pytest
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface, crop, generate_surface, remove_outliers
+from tolerance import approx
 
 GRID = Grid((96, 80), (0.1e-6, 0.2e-6))
 ROUGH = generate_surface(GRID, kind="gaussian", rms=50e-9, correlation_length=1.2e-6, seed=1)
@@ -13,10 +14,10 @@ def test_a_part_is_cut_out_by_the_coordinates_of_the_map():
     x, y = np.meshgrid(GRID.x, GRID.y, indexing="ij")
     part = crop(Surface(1e3 * x + y, GRID), x=(-2e-6, 3e-6), y=(0.0, 4.05e-6))
     assert part.grid.nodes == (51, 21)
-    assert part.height[0, 0] == pytest.approx(1e3 * -2e-6)
-    assert part.height[-1, -1] == pytest.approx(1e3 * 3e-6 + 4e-6)
+    assert part.height[0, 0] == approx(1e3 * -2e-6)
+    assert part.height[-1, -1] == approx(1e3 * 3e-6 + 4e-6)
     assert part.provenance["cropped"] == "51 x 21 of 96 x 80 pixels"
-    assert part.provenance["size_x_m"] == pytest.approx(5.1e-6)
+    assert part.provenance["size_x_m"] == approx(5.1e-6)
 
 
 def test_without_ranges_everything_stays():
@@ -34,7 +35,7 @@ def test_spikes_are_removed_and_nothing_else_changes():
     spoiled.ravel()[at] += random.choice([-1, 1], 40) * 1e-6
     cleaned = remove_outliers(Surface(spoiled, GRID, {"source": "measured"}), 8)
     assert cleaned.provenance["outliers"] == 40
-    assert cleaned.provenance["outlier_largest_step_m"] == pytest.approx(1e-6, rel=0.2)
+    assert cleaned.provenance["outlier_largest_step_m"] == approx(1e-6, rel=0.2)
     assert cleaned.provenance["source"] == "measured"
     others = np.ones(spoiled.size, bool)
     others[at] = False

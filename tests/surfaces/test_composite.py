@@ -4,6 +4,7 @@ import pytest
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface, composite, describe, generate_surface
+from tolerance import approx
 
 GRID = Grid((128, 128), (0.25e-6, 0.25e-6))
 
@@ -15,7 +16,7 @@ def rough(seed, rms=1e-7):
 def test_the_gap_is_that_of_both_and_mean_squares_add():
     both = composite([rough(1), rough(2, 0.5e-7)])
     assert np.array_equal(both.height, rough(1).height + rough(2, 0.5e-7).height)
-    assert describe(both)["Sq_m"] == pytest.approx(np.hypot(1e-7, 0.5e-7), rel=0.03)
+    assert describe(both)["Sq_m"] == approx(np.hypot(1e-7, 0.5e-7), rel=0.03)
     assert both.provenance["source"] == "composite"
     assert both.provenance["part_1_seed"] == 1
     assert both.provenance["part_2_rms_m"] == 0.5e-7
@@ -51,6 +52,6 @@ def test_what_the_grid_does_not_carry_of_the_parts():
     ]
     told = composite([Surface(height, GRID, part) for part in parts]).provenance
     assert told["removed_slope"] == 0.2
-    assert told["removed_rms_m"] == pytest.approx(5e-9, abs=0)
+    assert told["removed_rms_m"] == approx(5e-9, abs=0)
     assert told["shortest_carried_m"] == 2e-6
     assert "removed_slope" not in composite([Surface(height, GRID)] * 2).provenance

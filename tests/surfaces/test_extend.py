@@ -6,6 +6,7 @@ import pytest
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface, describe, extend, generate_surface, place_on_grid
+from tolerance import approx
 
 GRID = Grid((128, 128), (0.1e-6, 0.1e-6))
 
@@ -30,11 +31,11 @@ def test_a_twin_is_alike_in_all_that_is_counted(kind):
     twin = extend(measured, (40e-6, 30e-6), "twin", seed=3)
     assert twin.grid.nodes == (400, 300)
     have, want = describe(twin), describe(measured)
-    assert have["Sq_m"] == pytest.approx(want["Sq_m"], rel=1e-3, abs=0)
-    assert have["Ssk"] == pytest.approx(want["Ssk"], abs=0.02)
-    assert have["Sku"] == pytest.approx(want["Sku"], rel=0.02, abs=0)
-    assert have["Sdq"] == pytest.approx(want["Sdq"], rel=0.05)
-    assert have["rms_curvature_per_m"] == pytest.approx(want["rms_curvature_per_m"], rel=0.1)
+    assert have["Sq_m"] == approx(want["Sq_m"], rel=1e-3, abs=0)
+    assert have["Ssk"] == approx(want["Ssk"], abs=0.02)
+    assert have["Sku"] == approx(want["Sku"], rel=0.02, abs=0)
+    assert have["Sdq"] == approx(want["Sdq"], rel=0.05)
+    assert have["rms_curvature_per_m"] == approx(want["rms_curvature_per_m"], rel=0.1)
     assert twin.provenance["spectrum_misfit"] < 0.35
     assert twin.provenance["scan_Sq_m"] == want["Sq_m"]
     assert "not the scan itself" in twin.provenance["notice"]
@@ -48,7 +49,7 @@ def test_a_twin_keeps_the_lay():
         gx, gy = (np.diff(surface.height, axis=a)[:127, :127] for a in (0, 1))
         return 0.5 * np.arctan2(2 * (gx * gy).mean(), (gx * gx - gy * gy).mean())
 
-    assert direction(twin) == pytest.approx(direction(measured), abs=0.15)
+    assert direction(twin) == approx(direction(measured), abs=0.15)
 
 
 def test_the_same_seed_is_the_same_twin_and_another_is_another():
@@ -89,9 +90,9 @@ def test_what_the_grid_of_a_twin_does_not_carry_is_said():
     twin = extend(measured, grid, "twin", seed=2)
     full = extend(measured, Grid((250, 250), (0.1e-6, 0.1e-6)), "twin", seed=2)
     said = twin.provenance
-    assert said["shortest_carried_m"] == pytest.approx(1e-6, abs=0)
+    assert said["shortest_carried_m"] == approx(1e-6, abs=0)
     removed = full.height[::5, ::5] - twin.height
-    assert said["removed_rms_m"] == pytest.approx(removed.std(), rel=0.1, abs=0)
+    assert said["removed_rms_m"] == approx(removed.std(), rel=0.1, abs=0)
     assert 0.5 < said["removed_slope"] < 1
     assert "waves shorter than 1 um, which this grid does not carry, have" in said["notice"]
     assert full.provenance["removed_slope"] == full.provenance["removed_rms_m"] == 0
@@ -138,7 +139,7 @@ def test_a_twin_of_oblong_pixels():
     height = scan().height[:, ::2]
     measured = Surface(height, Grid((128, 64), (1e-7, 2e-7)))
     twin = extend(measured, Grid((200, 200), (2e-7, 2e-7)), "twin", seed=1)
-    assert describe(twin)["Sq_m"] == pytest.approx(describe(measured)["Sq_m"], rel=0.02, abs=0)
+    assert describe(twin)["Sq_m"] == approx(describe(measured)["Sq_m"], rel=0.02, abs=0)
 
 
 def test_mirrored_tiles_on_coarser_and_finer_cells():

@@ -7,6 +7,7 @@ from scipy.stats import kstest
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.surfaces import generate_surface
+from tolerance import approx
 
 GRID = Grid((48, 64), (0.25e-6, 0.2e-6))
 
@@ -26,17 +27,17 @@ def test_mean_autocorrelation_follows_the_target(kind, beta):
         acf += np.fft.ifft2(np.abs(np.fft.fft2(z)) ** 2).real / z.size / 20
     acf /= 2.0**2
     along_x, along_y = acf[int(beta[0]), 0], acf[0, int(beta[1])]
-    assert (along_x, along_y) == pytest.approx((0.1, 0.1), rel=0.05)
+    assert (along_x, along_y) == approx((0.1, 0.1), rel=0.05)
     for i, j in [(1, 0), (0, 2), (3, 2), (5, 1), (2, 5)]:
         rho = math.hypot(i / beta[0], j / beta[1])
         target = math.exp(-2.3 * (rho if kind == "exponential" else rho**2))
-        assert acf[i, j] == pytest.approx(target, abs=0.01)
+        assert acf[i, j] == approx(target, abs=0.01)
 
 
 def test_rms_is_exact_and_mean_is_zero():
     for seed in range(5):
         z = generate(rms=0.37e-6, seed=seed).height
-        assert math.sqrt(np.mean(z**2)) == pytest.approx(0.37e-6, rel=1e-14)
+        assert math.sqrt(np.mean(z**2)) == approx(0.37e-6, rel=1e-14)
         assert abs(z.mean()) < 1e-14 * 0.37e-6
 
 
@@ -66,7 +67,7 @@ def test_same_heights_on_every_machine(kind, expected):
     """Frozen when written: a change here changes every user's stored seed."""
     grid = Grid((8, 6), (1.0, 1.0))
     z = generate(grid, kind=kind, rms=1.0, correlation_length=(2.0, 3.0), seed=20190501).height
-    assert [z[0, 0], z[3, 2], z[7, 5]] == pytest.approx(expected, abs=1e-12)
+    assert [z[0, 0], z[3, 2], z[7, 5]] == approx(expected, abs=1e-12)
 
 
 def test_opposite_edges_match():

@@ -13,6 +13,7 @@ import pytest
 
 from restitution.errors import SurfaceError
 from restitution.surfaces import describe, level, read_surface
+from tolerance import approx
 
 SAMPLES = Path(__file__).parents[2].parent / "shared" / "topographies"
 needs_readers = pytest.mark.skipif(
@@ -50,9 +51,9 @@ def refusal(path, **kwargs):
 def test_samples(name, nodes, size, rms, rms_levelled, channel_name):
     surface = read_surface(SAMPLES / name, undefined="interpolate")
     assert surface.grid.nodes == nodes
-    assert surface.grid.size == pytest.approx(size, rel=1e-6)
-    assert describe(surface)["Sq_m"] == pytest.approx(rms, rel=1e-3)
-    assert describe(level(surface, "tilt"))["Sq_m"] == pytest.approx(rms_levelled, rel=1e-3)
+    assert surface.grid.size == approx(size, rel=1e-6)
+    assert describe(surface)["Sq_m"] == approx(rms, rel=1e-3)
+    assert describe(level(surface, "tilt"))["Sq_m"] == approx(rms_levelled, rel=1e-3)
     assert surface.provenance["channel_name"] == channel_name
     assert {type(value) for value in surface.provenance.values()} <= {str, float, int}
 
@@ -78,7 +79,7 @@ def test_native_text_reader_agrees_with_surface_topography():
         theirs = read_topography(str(SAMPLES / "matrix-3.txt")).to_unit("m")
     ours = read_surface(SAMPLES / "matrix-3.txt")
     np.testing.assert_array_equal(ours.height, theirs.heights())
-    assert ours.grid.size == pytest.approx(theirs.physical_sizes, rel=1e-14)
+    assert ours.grid.size == approx(theirs.physical_sizes, rel=1e-14)
 
 
 @needs_readers
@@ -87,7 +88,7 @@ def test_another_height_channel_can_be_chosen():
     height = read_surface(SAMPLES / "di-3.di", channel=3)
     assert height.provenance["channel"] == 3
     assert height.provenance["channel_name"] == "Height"
-    assert describe(height)["Sq_m"] == pytest.approx(264.0e-9, rel=1e-3)
+    assert describe(height)["Sq_m"] == approx(264.0e-9, rel=1e-3)
 
 
 @needs_readers
@@ -150,7 +151,7 @@ def test_samples_refused(name, arguments, expected):
 @needs_samples
 def test_a_size_that_repeats_the_file_is_accepted():
     surface = read_surface(SAMPLES / "nid-1.nid", size=(20.000001e-6, 20e-6))
-    assert surface.grid.size == pytest.approx((20e-6, 20e-6), rel=1e-12)
+    assert surface.grid.size == approx((20e-6, 20e-6), rel=1e-12)
 
 
 @needs_readers
@@ -204,7 +205,7 @@ def test_text_of_other_programs_is_handed_over(tmp_path):
         path.write_text(text, encoding="utf-8")
         surface = read_surface(path)
         np.testing.assert_allclose(surface.height, expected, rtol=1e-12, atol=1e-20)
-        assert surface.grid.spacing == pytest.approx((2e-6, 1e-6))
+        assert surface.grid.spacing == approx((2e-6, 1e-6))
         assert surface.provenance["format"].startswith("SurfaceTopography ")
 
 
@@ -291,7 +292,7 @@ def test_unit_and_size_become_metres(fake_file, capfd):
     path, closed = fake_file(fake_channel("z"))
     surface = read_surface(path)
     np.testing.assert_allclose(surface.height, 1e-9 * np.arange(1.0, 21.0).reshape(5, 4))
-    assert surface.grid.spacing == pytest.approx((0.4e-6, 0.25e-6), rel=1e-15)
+    assert surface.grid.spacing == approx((0.4e-6, 0.25e-6), rel=1e-15)
     assert surface.provenance["file_unit"] == "nm"
     assert closed == [str(path)]
     assert capfd.readouterr() == ("", "")
@@ -300,7 +301,7 @@ def test_unit_and_size_become_metres(fake_file, capfd):
 def test_size_is_needed_where_the_file_has_none(fake_file):
     path, _ = fake_file(fake_channel("z", physical_sizes=None))
     assert 'size = ["10 um", "10 um"]' in refusal(path)
-    assert read_surface(path, size=(1e-5, 2e-5)).grid.spacing == pytest.approx((2e-6, 5e-6))
+    assert read_surface(path, size=(1e-5, 2e-5)).grid.spacing == approx((2e-6, 5e-6))
 
 
 def test_default_channel_that_is_no_height_map_is_passed_over(fake_file):

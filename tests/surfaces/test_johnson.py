@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from scipy.stats import lognorm, norm
 
 from restitution.surfaces.johnson import possible, translation
+from tolerance import approx
 
 # Equal steps of probability are too coarse for tails; this is the density on a fine line.
 Z = np.linspace(-9, 9, 200_001)
@@ -28,7 +29,7 @@ def moments(apply):
 )
 def test_moments_are_those_asked_for(skewness, kurtosis):
     found = moments(translation(skewness, kurtosis))
-    assert found == pytest.approx((0, 1, skewness, kurtosis), abs=2e-3)
+    assert found == approx((0, 1, skewness, kurtosis), abs=2e-3)
 
 
 @settings(deadline=None, max_examples=40)
@@ -38,9 +39,9 @@ def test_any_possible_pair_is_met(skewness, above):
     apply = translation(skewness, kurtosis)
     assert apply is not None
     mean, variance, skew, kurt = moments(apply)
-    assert (mean, variance) == pytest.approx((0, 1), abs=2e-3)
-    assert skew == pytest.approx(skewness, abs=5e-3)
-    assert kurt == pytest.approx(kurtosis, rel=2e-2)
+    assert (mean, variance) == approx((0, 1), abs=2e-3)
+    assert skew == approx(skewness, abs=5e-3)
+    assert kurt == approx(kurtosis, rel=2e-2)
 
 
 def test_on_their_line_it_is_the_lognormal_distribution():
@@ -49,9 +50,7 @@ def test_on_their_line_it_is_the_lognormal_distribution():
     found = translation(skewness, 3 + excess)(Z)
     x = np.exp(sigma * Z)
     mean, deviation = math.exp(sigma**2 / 2), lognorm.std(sigma)
-    assert found[20_000:-20_000] == pytest.approx(
-        ((x - mean) / deviation)[20_000:-20_000], abs=0.05
-    )
+    assert found[20_000:-20_000] == approx(((x - mean) / deviation)[20_000:-20_000], abs=0.05)
 
 
 @pytest.mark.parametrize("pair", [(0, 1.0), (2, 5.0), (math.nan, 3), (0, math.nan), (0, math.inf)])

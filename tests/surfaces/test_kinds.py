@@ -9,6 +9,7 @@ import pytest
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.surfaces import describe, generate_surface
+from tolerance import approx
 
 GRID = Grid((256, 256), (0.25e-6, 0.25e-6))  # 64 um
 KINDS = {
@@ -43,14 +44,14 @@ def test_the_spectrum_falls_as_the_hurst_exponent_says(hurst, periodic):
         inside = [(low <= q) & (q < high) for low, high in pairwise(edges)]
         where = [np.exp(np.log(q[part]).mean()) for part in inside]
         slopes.append(np.polyfit(np.log(where), np.log([power[p].mean() for p in inside]), 1)[0])
-    assert np.mean(slopes) == pytest.approx(-2 * (hurst + 1), abs=0.05)
+    assert np.mean(slopes) == approx(-2 * (hurst + 1), abs=0.05)
 
 
 def test_the_spectrum_is_flat_above_the_rolloff_and_empty_beyond_the_shortest():
     surface = generate(kind="self-affine")
     q, power = spectral_density(surface)
     plateau = [power[(q > low * 1e5) & (q <= (low + 1) * 1e5)].mean() for low in (1, 2)]
-    assert plateau[0] == pytest.approx(plateau[1], rel=0.5)
+    assert plateau[0] == approx(plateau[1], rel=0.5)
     assert power[q > 2 * math.pi / 1e-6 * 1.001].max() < 1e-20 * power.max()
     for kind in ("gaussian", "exponential"):
         q, power = spectral_density(generate(kind=kind, shortest=2e-6))
@@ -71,7 +72,7 @@ def test_the_lay_is_where_it_is_said_to_be(angle):
         along = 0.25e-6 * (i * math.cos(lay) + j * math.sin(lay))
         across = 0.25e-6 * (j * math.cos(lay) - i * math.sin(lay))
         expected = math.exp(-2.3 * ((along / 6e-6) ** 2 + (across / 2e-6) ** 2))
-        assert acf[i, j] == pytest.approx(expected, abs=0.02)
+        assert acf[i, j] == approx(expected, abs=0.02)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -85,14 +86,12 @@ def test_the_lay_is_where_it_is_said_to_be(angle):
 def test_skewness_and_kurtosis_are_met(kind, periodic, pair):
     surface = generate(kind=kind, periodic=periodic, skewness=pair[0], kurtosis=pair[1])
     found, normal = describe(surface), describe(generate(kind=kind, periodic=periodic))
-    assert found["Sq_m"] == pytest.approx(1e-7, rel=1e-12)
-    assert found["Ssk"] == pytest.approx(pair[0], abs=0.03)
-    assert found["Sku"] == pytest.approx(pair[1], rel=0.03)
+    assert found["Sq_m"] == approx(1e-7, rel=1e-12)
+    assert found["Ssk"] == approx(pair[0], abs=0.03)
+    assert found["Sku"] == approx(pair[1], rel=0.03)
     # The waves stay those of the normal surface.
-    assert found["Sdq"] == pytest.approx(normal["Sdq"], rel=0.05 if periodic else 0.1)
-    assert found["correlation_length_y_m"] == pytest.approx(
-        normal["correlation_length_y_m"], rel=0.15
-    )
+    assert found["Sdq"] == approx(normal["Sdq"], rel=0.05 if periodic else 0.1)
+    assert found["correlation_length_y_m"] == approx(normal["correlation_length_y_m"], rel=0.15)
     again = generate(kind=kind, periodic=periodic, skewness=pair[0], kurtosis=pair[1])
     assert again.height.tobytes() == surface.height.tobytes()
 

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from restitution.errors import SurfaceError
 from restitution.surfaces import Surface, read_surface
+from tolerance import approx
 
 SIZE = (10e-6, 4e-6)
 # A ramp that tells both coordinates, of 5 pixels along x and 4 along y: nothing is symmetric.
@@ -32,7 +33,7 @@ def test_npy_axes_and_spacing(tmp_path):
     surface = read_surface(save(tmp_path / "ramp.npy", RAMP), size=SIZE)
     np.testing.assert_array_equal(surface.height, RAMP)
     assert surface.grid.nodes == (5, 4)
-    assert surface.grid.spacing == pytest.approx((2e-6, 1e-6), rel=1e-15)
+    assert surface.grid.spacing == approx((2e-6, 1e-6), rel=1e-15)
 
 
 @pytest.mark.parametrize(
@@ -187,7 +188,7 @@ def test_text_lines_are_scan_lines(write, tmp_path, name, separator):
     path = write(tmp_path / name, "# made for a test\n" + "\n".join(lines) + "\n")
     surface = read_surface(path, size=SIZE)
     np.testing.assert_allclose(surface.height, RAMP, rtol=1e-11)
-    assert surface.grid.spacing == pytest.approx((2e-6, 1e-6), rel=1e-15)
+    assert surface.grid.spacing == approx((2e-6, 1e-6), rel=1e-15)
     assert surface.height.flags.c_contiguous
 
 
@@ -200,7 +201,7 @@ def test_text_trailing_separators_and_blank_lines(write, tmp_path):
 def test_decimal_commas_between_semicolons(write, tmp_path):
     path = write(tmp_path / "a.csv", "1,5e-9;2e-9;3e-9;4e-9\n5e-9;6e-9;7e-9;8,25e-9\n")
     height = read_surface(path, size=SIZE).height
-    assert (height[0, 0], height[3, 1]) == pytest.approx((1.5e-9, 8.25e-9), rel=1e-15)
+    assert (height[0, 0], height[3, 1]) == approx((1.5e-9, 8.25e-9), rel=1e-15)
 
 
 def test_decimal_commas_between_tabs_are_not_taken_for_separators(write, refusal, tmp_path):
@@ -219,7 +220,7 @@ def test_text_header_gives_size_and_unit(write, tmp_path, encoding, micrometre):
     text = HEADER.replace(" {um}", micrometre) + MATRIX
     surface = read_surface(write(tmp_path / "a.txt", text, encoding))
     np.testing.assert_allclose(surface.height, RAMP, rtol=1e-12)
-    assert surface.grid.spacing == pytest.approx((2e-6, 1e-6), rel=1e-15)
+    assert surface.grid.spacing == approx((2e-6, 1e-6), rel=1e-15)
     assert surface.provenance["channel_name"] == "Height"
 
 
@@ -230,7 +231,7 @@ def test_text_header_size_is_exact(write, tmp_path):
 
 def test_greek_mu_is_a_micro_sign(write, tmp_path):
     text = HEADER.replace("{um}", "\N{GREEK SMALL LETTER MU}m") + MATRIX
-    assert read_surface(write(tmp_path / "a.txt", text)).grid.spacing[1] == pytest.approx(1e-6)
+    assert read_surface(write(tmp_path / "a.txt", text)).grid.spacing[1] == approx(1e-6)
 
 
 def test_size_may_repeat_but_not_contradict_the_header(write, refusal, tmp_path):
@@ -244,7 +245,7 @@ def test_header_with_one_side_only(write, refusal, tmp_path):
     path = write(tmp_path / "a.txt", "# Width: 10 um\n" + MATRIX_IN_METRES)
     assert "does not say how large" in refusal(path)
     assert "10 x ? um, but size says 20 x 4 um" in refusal(path, size=(20e-6, 4e-6))
-    assert read_surface(path, size=SIZE).grid.spacing == pytest.approx((2e-6, 1e-6))
+    assert read_surface(path, size=SIZE).grid.spacing == approx((2e-6, 1e-6))
 
 
 def test_values_that_are_no_lengths(write, refusal, tmp_path):
@@ -327,7 +328,7 @@ def test_undefined_pixels(refusal, tmp_path):
     surface = read_surface(path, size=SIZE, undefined="interpolate")
     defined = np.isfinite(height)
     np.testing.assert_array_equal(surface.height[defined], height[defined])
-    assert surface.height[3, 4] == pytest.approx(
+    assert surface.height[3, 4] == approx(
         np.average(height[[2, 4, 3, 3], [4, 4, 3, 5]], weights=[4, 4, 25, 25]), rel=1e-12
     )
     assert surface.provenance["undefined_pixels"] == 2

@@ -6,6 +6,7 @@ import pytest
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface, generate_surface
 from restitution.surfaces.psd import power_spectral_density, radial_spectrum, wave_numbers
+from tolerance import approx
 
 
 @pytest.mark.parametrize("nodes", [(64, 64), (75, 48)])
@@ -14,7 +15,7 @@ def test_the_mean_square_is_the_integral(nodes):
     surface = generate_surface(grid, kind="gaussian", rms=1e-7, correlation_length=2e-6, seed=1)
     cell = (2 * math.pi) ** 2 / math.prod(grid.size)
     exact = power_spectral_density(surface).sum() * cell / (2 * math.pi) ** 2
-    assert exact == pytest.approx((1e-7) ** 2, rel=1e-12)
+    assert exact == approx((1e-7) ** 2, rel=1e-12)
 
 
 def test_a_wave_has_its_power_at_its_wave_vector():
@@ -23,10 +24,10 @@ def test_a_wave_has_its_power_at_its_wave_vector():
     height = 3e-9 * np.cos(q * grid.x)[:, None] + np.zeros((1, 96))
     C = power_spectral_density(Surface(height, grid, {"periodicity": "periodic"}))
     assert np.argwhere(1e-6 * C.max() < C).tolist() == [[12, 0], [116, 0]]
-    assert C[12, 0] == pytest.approx((3e-9) ** 2 / 4 * math.prod(grid.size))
+    assert C[12, 0] == approx((3e-9) ** 2 / 4 * math.prod(grid.size))
     tapered = power_spectral_density(Surface(height, grid))
     near = np.abs(np.fft.fftfreq(128) * 128) < 16
-    assert tapered[near].sum() == pytest.approx(C.sum(), rel=0.02)
+    assert tapered[near].sum() == approx(C.sum(), rel=0.02)
 
 
 def test_an_estimate_from_a_part_agrees_with_the_whole():
@@ -48,7 +49,7 @@ def test_an_estimate_from_a_part_agrees_with_the_whole():
         ratios.append((found.density / between)[inside])
     # Nearer to the roll-off, four waves to the part, waves are smeared into their neighbours.
     assert len(ratios[0]) >= 4
-    assert np.mean(ratios, axis=0) == pytest.approx(1, abs=0.12)
+    assert np.mean(ratios, axis=0) == approx(1, abs=0.12)
 
 
 def test_a_slope_does_not_leak_into_short_waves():
@@ -65,6 +66,6 @@ def test_bands_hold_every_mode_once():
     grid = Grid((60, 45), (0.1e-6, 0.2e-6))
     q = wave_numbers(grid.nodes, grid.spacing)
     spectrum = radial_spectrum(Surface(np.zeros(grid.nodes), grid), np.ones(grid.nodes))
-    assert spectrum.density == pytest.approx(1)
+    assert spectrum.density == approx(1)
     assert np.all(np.diff(spectrum.wave_number) > 0)
     assert spectrum.wave_number[-1] <= math.pi / 0.2e-6 * 1.001 < q.max()

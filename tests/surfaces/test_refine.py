@@ -7,6 +7,7 @@ from numpy.testing import assert_allclose
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface, describe, generate_surface, refine
+from tolerance import approx
 
 
 @pytest.mark.parametrize("nodes", [(8, 8), (7, 9), (12, 5)])
@@ -19,7 +20,7 @@ def test_a_wave_is_continued_between_the_nodes(nodes, factor):
         return np.cos(kx * on.x[:, None] + ky * on.y[None, :] + 0.3) + 0.7
 
     finer = refine(Surface(height(grid), grid, {"periodicity": "periodic"}), factor)
-    assert finer.grid.size == pytest.approx(grid.size)
+    assert finer.grid.size == approx(grid.size)
     assert_allclose(finer.height, height(finer.grid), atol=1e-13)
     assert finer.provenance["refined"] == factor
 
@@ -35,7 +36,7 @@ def test_old_heights_are_kept_where_nodes_coincide(periodic, factor):
     assert_allclose(finer.height[::factor, ::factor], surface.height, atol=1e-20)
     assert_allclose(finer.grid.x[::factor], grid.x, atol=1e-18)
     for key in ("Sq_m", "Ssk", "Sku"):
-        assert describe(finer)[key] == pytest.approx(describe(surface)[key], rel=0.05, abs=0.02)
+        assert describe(finer)[key] == approx(describe(surface)[key], rel=0.05, abs=0.02)
 
 
 def test_the_edges_of_a_surface_that_is_not_periodic_do_not_ring():

@@ -4,6 +4,7 @@ import pytest
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface, generate_surface, place_on_grid
+from tolerance import approx
 
 ROUGH = generate_surface(
     Grid((40, 31), (0.1e-6, 0.2e-6)),
@@ -100,13 +101,13 @@ def test_what_is_left_out_is_told():
     phase = np.pi * (scan.x - scan.x[0])[:, None] / length + np.zeros((1, 96))
     long, short = 3e-8 * np.sin(10 * phase), 1e-8 * np.sin(61 * phase)
     told = place_on_grid(Surface(long + short, scan), Grid((40, 32), (0.3e-6, 0.3e-6))).provenance
-    assert told["removed_rms_m"] == pytest.approx(short.std(), rel=1e-6, abs=0)
+    assert told["removed_rms_m"] == approx(short.std(), rel=1e-6, abs=0)
     slopes = [np.sqrt(np.mean(np.diff(z, axis=0) ** 2)) for z in (short, long + short)]
-    assert told["removed_slope"] == pytest.approx(slopes[0] / slopes[1], rel=1e-6, abs=0)
-    assert told["shortest_carried_m"] == pytest.approx(0.6e-6, abs=0)
+    assert told["removed_slope"] == approx(slopes[0] / slopes[1], rel=1e-6, abs=0)
+    assert told["shortest_carried_m"] == approx(0.6e-6, abs=0)
     finer = place_on_grid(Surface(long + short, scan), Grid((80, 64), (0.05e-6, 0.05e-6)))
     assert finer.provenance["removed_slope"] == finer.provenance["removed_rms_m"] == 0
-    assert finer.provenance["shortest_carried_m"] == pytest.approx(0.2e-6, abs=0)
+    assert finer.provenance["shortest_carried_m"] == approx(0.2e-6, abs=0)
 
 
 def test_only_the_axis_that_is_coarser_loses_waves():

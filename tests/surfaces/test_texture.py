@@ -6,6 +6,7 @@ import pytest
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface, describe, generate_surface
 from restitution.surfaces.texture import autocorrelation, material_ratio, texture
+from tolerance import approx
 
 GRID = Grid((256, 192), (0.1e-6, 0.1e-6))
 
@@ -22,11 +23,11 @@ def test_the_autocorrelation_is_that_of_the_definition():
     for i, j in ((3, 0), (0, -4), (5, 7), (-6, 2)):
         a = z[max(i, 0) : 40 + min(i, 0), max(j, 0) : 30 + min(j, 0)]
         b = z[max(-i, 0) : 40 + min(-i, 0), max(-j, 0) : 30 + min(-j, 0)]
-        assert found.values[20 + i, 15 + j] == pytest.approx((a * b).mean() / (z * z).mean())
-        assert (found.x[20 + i], found.y[15 + j]) == pytest.approx((i * 1e-7, j * 1e-7))
+        assert found.values[20 + i, 15 + j] == approx((a * b).mean() / (z * z).mean())
+        assert (found.x[20 + i], found.y[15 + j]) == approx((i * 1e-7, j * 1e-7))
     periodic = autocorrelation(rough())
     z = rough().height
-    assert periodic.values[128 + 9, 96 - 4] == pytest.approx(
+    assert periodic.values[128 + 9, 96 - 4] == approx(
         (z * np.roll(z, (-9, 4), (0, 1))).mean() / (z * z).mean()
     )
 
@@ -35,23 +36,23 @@ def test_the_correlation_length_of_a_gaussian_surface():
     # R = exp(−2.3 (τ/β)²) falls to 0.2 at β sqrt(ln 5/2.3).
     lengths = [texture(rough(seed=seed))["Sal_m"] for seed in range(6)]
     expected = 1.5e-6 * math.sqrt(math.log(5) / 2.3)
-    assert np.mean(lengths) == pytest.approx(expected, rel=0.1)
+    assert np.mean(lengths) == approx(expected, rel=0.1)
     assert np.mean([texture(rough(seed=s))["Str"] for s in range(6)]) > 0.7
 
 
 def test_a_lay_is_found():
     surface = rough(correlation_length=(4e-6, 0.8e-6), lay=math.radians(35), seed=4)
     found = texture(surface)
-    assert found["Str"] == pytest.approx(0.2, abs=0.08)
-    assert found["lay_deg"] == pytest.approx(35, abs=8)
+    assert found["Str"] == approx(0.2, abs=0.08)
+    assert found["lay_deg"] == approx(35, abs=8)
 
 
 def test_the_core_of_normally_distributed_heights():
     # The flattest 40 % of the normal distribution's quantiles are those about its middle.
     found = texture(rough(correlation_length=0.4e-6))
-    assert found["Sk_m"] == pytest.approx(2 * 0.5244 / 0.4 * 5e-8, rel=0.03)
-    assert found["Spk_m"] == pytest.approx(found["Svk_m"], rel=0.15)
-    assert found["Smr1"] == pytest.approx(1 - found["Smr2"], abs=0.02)
+    assert found["Sk_m"] == approx(2 * 0.5244 / 0.4 * 5e-8, rel=0.03)
+    assert found["Spk_m"] == approx(found["Svk_m"], rel=0.15)
+    assert found["Smr1"] == approx(1 - found["Smr2"], abs=0.02)
 
 
 def test_the_core_of_known_steps():
@@ -60,26 +61,26 @@ def test_the_core_of_known_steps():
     heights = np.concatenate([np.linspace(0, 1, 9 * n * n // 10), np.linspace(1, 4, n * n // 10)])
     surface = Surface(heights.reshape(n, n), Grid((n, n), (1.0, 1.0)))
     found = texture(surface)
-    assert found["Sk_m"] == pytest.approx(10 / 9, rel=0.01)
-    assert found["Svk_m"] == pytest.approx(0, abs=0.01)
-    assert found["Smr1"] == pytest.approx(0.1, abs=0.01)
-    assert found["Spk_m"] == pytest.approx(3 - 1 / 9, rel=0.06)
+    assert found["Sk_m"] == approx(10 / 9, rel=0.01)
+    assert found["Svk_m"] == approx(0, abs=0.01)
+    assert found["Smr1"] == approx(0.1, abs=0.01)
+    assert found["Spk_m"] == approx(3 - 1 / 9, rel=0.06)
 
 
 def test_the_area_of_a_tilted_plane_is_exact():
     x, y = GRID.x[:, None], GRID.y[None, :]
     found = texture(Surface(0.5 * x - 0.2 * y, GRID))
-    assert found["Sdr"] == pytest.approx(math.sqrt(1 + 0.25 + 0.04) - 1)
+    assert found["Sdr"] == approx(math.sqrt(1 + 0.25 + 0.04) - 1)
     gentle = rough()
-    assert texture(gentle)["Sdr"] == pytest.approx(0.5 * describe(gentle)["Sdq"] ** 2, rel=0.05)
+    assert texture(gentle)["Sdr"] == approx(0.5 * describe(gentle)["Sdq"] ** 2, rel=0.05)
 
 
 def test_the_material_ratio_falls_from_the_summit_to_the_pit():
     curve = material_ratio(rough())
     z = rough().height
-    assert (curve.height[0], curve.height[-1]) == pytest.approx((z.max(), z.min()))
+    assert (curve.height[0], curve.height[-1]) == approx((z.max(), z.min()))
     assert np.all(np.diff(curve.height) <= 0)
-    assert np.mean(z > curve.height[300]) == pytest.approx(curve.ratio[300], abs=1e-3)
+    assert np.mean(z > curve.height[300]) == approx(curve.ratio[300], abs=1e-3)
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 8), (8, 8)])

@@ -6,6 +6,7 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
 from restitution.theory import brilliantov, hertz
+from tolerance import approx
 
 R, E_STAR, MASS, TIME = 250e-6, 1e9, 2e-6, 1e-6
 
@@ -33,7 +34,7 @@ def test_the_pade_form_is_the_solution_of_the_equation_of_motion(v, error):
     V, k = 0.3, 5e11
     beta = v**2 / V**0.2
     e = brilliantov.restitution(V, beta)
-    assert e == pytest.approx(collision(V, k, beta * k**0.6), abs=error)
+    assert e == approx(collision(V, k, beta * k**0.6), abs=error)
 
 
 def test_the_dissipation_is_that_of_the_viscoelastic_hertz_force():
@@ -42,7 +43,7 @@ def test_the_dissipation_is_that_of_the_viscoelastic_hertz_force():
     beta = brilliantov.dissipation_from_material(R, E_STAR, TIME, MASS)
     e = brilliantov.restitution(V, beta)
     assert 0.6 < e < 0.95
-    assert e == pytest.approx(collision(V, k, 1.5 * TIME * k), abs=1e-3)
+    assert e == approx(collision(V, k, 1.5 * TIME * k), abs=1e-3)
 
 
 def test_the_pade_form_sums_the_series():

@@ -7,6 +7,7 @@ from scipy.integrate import quad
 
 from restitution.errors import CaseError
 from restitution.theory import eepa, luding, walton_braun
+from tolerance import approx
 
 K1, K2, K_ADH, F0, N, MASS = 1e7, 4e7, 2e7, -1e-4, 1.5, 2e-6
 depths = st.floats(1e-8, 1e-3)
@@ -19,12 +20,12 @@ attractions = st.floats(-1e-2, 0.0)
 def test_a_value_worked_out_by_hand():
     # n = 1, k₁ = 1, k₂ = k_adh = 2, f₀ = −½, d = 2: δ_p = 1, δ_min = ½, F_c = 1.5
     springs = 1.0, 2.0, 2.0
-    assert eepa.residual_indentation(2.0, 1.0, 2.0, 1.0) == pytest.approx(1.0, rel=1e-15)
-    assert eepa.pull_off_force(2.0, *springs, -0.5, 1.0) == pytest.approx(1.5, rel=1e-14)
+    assert eepa.residual_indentation(2.0, 1.0, 2.0, 1.0) == approx(1.0, rel=1e-15)
+    assert eepa.pull_off_force(2.0, *springs, -0.5, 1.0) == approx(1.5, rel=1e-14)
     # W_l = −1 + 2 = 1, W_u = −1 + 1 − ½ = −½: stuck
-    assert eepa.loading_work(2.0, 1.0, -0.5, 1.0) == pytest.approx(1.0, rel=1e-14)
-    assert eepa.unloading_work(2.0, *springs, -0.5, 1.0) == pytest.approx(-0.5, rel=1e-14)
-    assert eepa.indentation_from_velocity(2**0.5, 1.0, -0.5, 1.0, 1.0) == pytest.approx(2.0)
+    assert eepa.loading_work(2.0, 1.0, -0.5, 1.0) == approx(1.0, rel=1e-14)
+    assert eepa.unloading_work(2.0, *springs, -0.5, 1.0) == approx(-0.5, rel=1e-14)
+    assert eepa.indentation_from_velocity(2**0.5, 1.0, -0.5, 1.0, 1.0) == approx(2.0)
     assert eepa.restitution(2**0.5, *springs, -0.5, 1.0, 1.0) == 0
 
 
@@ -102,7 +103,7 @@ def test_the_constant_force_makes_slow_impacts_stick():
     e = eepa.restitution(V, K1, K2, 0.0, F0, N, MASS)
     assert e[0] == 0
     assert np.all(np.diff(e) >= 0)
-    assert e[-1] == pytest.approx(eepa.restitution(1.0, K1, K2, 0.0, 0.0, N, MASS), rel=1e-3)
+    assert e[-1] == approx(eepa.restitution(1.0, K1, K2, 0.0, 0.0, N, MASS), rel=1e-3)
 
 
 @pytest.mark.parametrize(

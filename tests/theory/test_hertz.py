@@ -1,11 +1,11 @@
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
 from restitution.theory import hertz
+from tolerance import approx
 
 R, E_STAR = 250e-6, 112e9
 indentations = st.floats(1e-12, 1e-5)
@@ -14,11 +14,11 @@ scales = st.floats(1e-3, 1e3)
 
 def test_a_value_worked_out_by_hand():
     # E* = 3, R* = 4, δ = 1/4: a = 1, F = 4·2/8 = 1, W = 8/15·3·2/32 = 1/10, p₀ = 6/(4π)
-    assert hertz.force(0.25, 4.0, 3.0) == pytest.approx(1.0, rel=1e-14)
-    assert hertz.contact_radius(0.25, 4.0) == pytest.approx(1.0, rel=1e-14)
-    assert hertz.contact_area(0.25, 4.0) == pytest.approx(np.pi, rel=1e-14)
-    assert hertz.stored_energy(0.25, 4.0, 3.0) == pytest.approx(0.1, rel=1e-14)
-    assert hertz.peak_pressure(0.25, 4.0, 3.0) == pytest.approx(1.5 / np.pi, rel=1e-14)
+    assert hertz.force(0.25, 4.0, 3.0) == approx(1.0, rel=1e-14)
+    assert hertz.contact_radius(0.25, 4.0) == approx(1.0, rel=1e-14)
+    assert hertz.contact_area(0.25, 4.0) == approx(np.pi, rel=1e-14)
+    assert hertz.stored_energy(0.25, 4.0, 3.0) == approx(0.1, rel=1e-14)
+    assert hertz.peak_pressure(0.25, 4.0, 3.0) == approx(1.5 / np.pi, rel=1e-14)
 
 
 @given(indentations)

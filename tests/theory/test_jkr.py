@@ -1,12 +1,12 @@
 from itertools import pairwise
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from restitution.theory import hertz, jkr
+from tolerance import approx
 
 R, E_STAR, W, MASS = 250e-6, 112e9, 0.05, 2e-6
 MATERIAL = (R, E_STAR, W)
@@ -30,19 +30,19 @@ def integral(function, lower, upper):
 def test_values_worked_out_by_hand():
     # E* = 3, R* = 2, w = 6/π: a_b = (6·4/24)^{1/3} = 1, F_c = 18, U = 3/4
     material = 2.0, 3.0, 6 / np.pi
-    assert jkr.break_radius(*material) == pytest.approx(1.0, rel=1e-14)
-    assert jkr.pull_off_force(2.0, 6 / np.pi) == pytest.approx(18.0, rel=1e-14)
+    assert jkr.break_radius(*material) == approx(1.0, rel=1e-14)
+    assert jkr.pull_off_force(2.0, 6 / np.pi) == approx(18.0, rel=1e-14)
     # s = 2: a = 4, δ = (16 − 8)/2 = 4, F = (64 − 48)·18/9 = 32
-    assert jkr.contact_radius(4.0, *material) == pytest.approx(4.0, rel=1e-14)
-    assert jkr.force(4.0, *material) == pytest.approx(32.0, rel=1e-14)
-    assert jkr.force_at_contact_radius(4.0, *material) == pytest.approx(32.0, rel=1e-13)
-    assert jkr.indentation_at_contact_radius(4.0, *material) == pytest.approx(4.0, rel=1e-13)
+    assert jkr.contact_radius(4.0, *material) == approx(4.0, rel=1e-14)
+    assert jkr.force(4.0, *material) == approx(32.0, rel=1e-14)
+    assert jkr.force_at_contact_radius(4.0, *material) == approx(32.0, rel=1e-13)
+    assert jkr.indentation_at_contact_radius(4.0, *material) == approx(4.0, rel=1e-13)
     # U_T = ¾·16·(512/15 − 128/3 + 8) = −6.4, U_el = U_T + ¾·8·16, at the break ¾·16/5
     total = jkr.total_energy_at_contact_radius(4.0, *material)
-    assert total == pytest.approx(-6.4, rel=1e-12)
+    assert total == approx(-6.4, rel=1e-12)
     stored = jkr.stored_energy_at_contact_radius(4.0, *material)
-    assert stored == pytest.approx(89.6, rel=1e-13)
-    assert jkr.unloading_work(4.0, *material) == pytest.approx(-8.8, rel=1e-12)
+    assert stored == approx(89.6, rel=1e-13)
+    assert jkr.unloading_work(4.0, *material) == approx(-8.8, rel=1e-12)
 
 
 def test_the_four_points_of_the_curve():
@@ -76,7 +76,7 @@ def test_the_four_points_of_the_curve():
 def test_the_branch_ends_at_the_break():
     assert jkr.contact_radius(D_B, *MATERIAL) == A_B
     assert_allclose(jkr.force(D_B, *MATERIAL), -5 / 9 * F_C, rtol=1e-14)
-    assert jkr.unloading_work(D_B, *MATERIAL) == pytest.approx(0, abs=1e-14 * float(W_S))
+    assert jkr.unloading_work(D_B, *MATERIAL) == approx(0, abs=1e-14 * float(W_S))
     below = np.nextafter(D_B, -1)
     for function in (jkr.force, jkr.contact_radius, jkr.loading_work, jkr.unloading_work):
         assert function(below, *MATERIAL) == 0

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from restitution.theory import hertz, johnson, thornton_ning, yielding
+from tolerance import approx
 
 R, E_STAR, MASS = 250e-6, 112e9, 2e-6
 Y = 0.002 * E_STAR
@@ -52,9 +53,9 @@ def test_it_is_thornton_and_ning_where_the_contact_spreads_twice_as_far():
 
 def test_it_is_held_at_one_below_its_range():
     unity = V_Y * johnson.COEFFICIENT**4 / (math.pi**5 / 60 * 1.6**5) ** 0.5
-    assert unity / V_Y == pytest.approx(28.5, abs=0.05)
+    assert unity / V_Y == approx(28.5, abs=0.05)
     v = np.array([-1.0, 0.0, 1e-9, 0.999, 1.0])
-    assert np.all(johnson.restitution(v * unity, *MATERIAL) == pytest.approx(1, rel=1e-12))
+    assert np.all(johnson.restitution(v * unity, *MATERIAL) == approx(1, rel=1e-12))
     assert johnson.restitution(1.01 * unity, *MATERIAL) < 1
 
 
@@ -65,6 +66,6 @@ def test_its_range_begins_at_one_restitution_and_one_velocity_ratio(yield_strain
     W = math.pi * 3 * strength * a**4 / (4 * R)
     V = (2 * W / MASS) ** 0.5
     e = johnson.restitution(V, R, E_STAR, strength, MASS)
-    assert e == pytest.approx(0.62, abs=0.01)
+    assert e == approx(0.62, abs=0.01)
     V_y = yielding.yield_velocity(R, E_STAR, 1.6 * strength, MASS)
-    assert V / V_y == pytest.approx(190, rel=0.01)
+    assert V / V_y == approx(190, rel=0.01)

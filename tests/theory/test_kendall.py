@@ -1,10 +1,10 @@
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from restitution.theory import hertz, jkr, kendall
+from tolerance import approx
 
 R, E_STAR, W = 250e-6, 112e9, 0.05
 radii = st.floats(1e-9, 1e-4)
@@ -12,8 +12,8 @@ radii = st.floats(1e-9, 1e-4)
 
 def test_a_value_worked_out_by_hand():
     # E* = 2, w = 1/π, a = 4: F = (16·64)^½ = 32, drawn out by 32/(2·2·4) = 2
-    assert kendall.pull_off_force(4.0, 2.0, 1 / np.pi) == pytest.approx(32.0, rel=1e-14)
-    assert kendall.pull_off_displacement(4.0, 2.0, 1 / np.pi) == pytest.approx(2.0, rel=1e-14)
+    assert kendall.pull_off_force(4.0, 2.0, 1 / np.pi) == approx(32.0, rel=1e-14)
+    assert kendall.pull_off_displacement(4.0, 2.0, 1 / np.pi) == approx(2.0, rel=1e-14)
 
 
 @given(radii)

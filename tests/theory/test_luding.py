@@ -7,6 +7,7 @@ from scipy.integrate import quad
 
 from restitution.errors import CaseError
 from restitution.theory import luding, walton_braun
+from tolerance import approx
 
 R, K1, K2, K_C, PHI, MASS = 250e-6, 1e5, 5e5, 2e5, 0.05, 2e-6
 SPRINGS = (R, K1, K2, PHI)
@@ -21,13 +22,13 @@ stiffnesses = st.floats(0.0, 1e7)
 def test_a_value_worked_out_by_hand():
     # k₁ = 1, k̂₂ = 2, φ_f = 1, R* = ½: δ* = 2, δ₀* = 1. At δ = 1: k₂ = 1.5, δ₀ = ⅓, W_l = ½
     springs = 0.5, 1.0, 2.0, 1.0
-    assert luding.limit_indentation(*springs) == pytest.approx(2.0, rel=1e-15)
-    assert luding.residual_indentation(1.0, *springs) == pytest.approx(1 / 3, rel=1e-15)
+    assert luding.limit_indentation(*springs) == approx(2.0, rel=1e-15)
+    assert luding.residual_indentation(1.0, *springs) == approx(1 / 3, rel=1e-15)
     # k_c = 1.5: δ_min = 1/6, F_c = ¼, W_u = ½·1.5·4/9 − ½·¼·⅓ = 7/24
     sticky = 0.5, 1.0, 2.0, 1.5, 1.0
-    assert luding.pull_off_force(1.0, *sticky) == pytest.approx(0.25, rel=1e-14)
-    assert luding.unloading_work(1.0, *sticky) == pytest.approx(7 / 24, rel=1e-14)
-    assert luding.restitution(1.0, *sticky, 1.0) ** 2 == pytest.approx(7 / 12, rel=1e-14)
+    assert luding.pull_off_force(1.0, *sticky) == approx(0.25, rel=1e-14)
+    assert luding.unloading_work(1.0, *sticky) == approx(7 / 24, rel=1e-14)
+    assert luding.restitution(1.0, *sticky, 1.0) ** 2 == approx(7 / 12, rel=1e-14)
 
 
 def test_the_limit_scales_with_the_reduced_diameter_of_the_pair():
@@ -63,7 +64,7 @@ def test_beyond_the_limit_loading_and_unloading_are_one_line(d, fraction):
     assert_allclose(
         luding.unloading_force(between, d, *STICKY), luding.loading_force(between, *SPRINGS)
     )
-    assert luding.residual_indentation(d, *SPRINGS) == pytest.approx(PHI * 2 * R, rel=1e-14)
+    assert luding.residual_indentation(d, *SPRINGS) == approx(PHI * 2 * R, rel=1e-14)
 
 
 @given(depths, stiffnesses)
@@ -111,10 +112,10 @@ def test_restitution_is_the_root_of_the_ratio_of_the_works(v, k_c):
 def test_without_adhesion_restitution_is_least_at_the_limit():
     v = np.array([1e-6, 0.3, 0.999, 1.0, 1.001, 3.0, 1e6])
     e = luding.restitution(v * V_LIMIT, *DRY, MASS)
-    assert e[0] == pytest.approx(1, abs=1e-5)
-    assert e[3] == pytest.approx((K1 / K2) ** 0.5, rel=1e-12)
+    assert e[0] == approx(1, abs=1e-5)
+    assert e[3] == approx((K1 / K2) ** 0.5, rel=1e-12)
     assert np.argmin(e) == 3
-    assert e[-1] == pytest.approx(1, abs=1e-5)
+    assert e[-1] == approx(1, abs=1e-5)
     k2 = K1 + (K2 - K1) * v[:3]
     assert_allclose(e[:3], (K1 / k2) ** 0.5, rtol=1e-12)
 

@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
 from restitution.theory import hertz, mdr, thornton_ning
+from tolerance import approx
 
 R, E, NU, Y = 1e-3, 70e9, 0.33, 300e6
 MATERIAL = (R, E, NU, Y)
@@ -58,14 +59,14 @@ def test_yield_is_where_the_mean_hertz_pressure_reaches_that_of_the_yielded_cont
     mean = hertz.force(D_Y, R, E_STAR) / hertz.contact_area(D_Y, R)
     assert_allclose(mdr.yield_pressure(D_Y, R, Y), mean, rtol=1e-13)
     assert 2.7 < mean / Y < 2.75
-    assert mdr.yield_pressure(R, R, Y) == pytest.approx(1.02 * Y, rel=0.01)
+    assert mdr.yield_pressure(R, R, Y) == approx(1.02 * Y, rel=0.01)
 
 
 def test_first_loading_is_hertz_up_to_yield_and_continuous_there():
     d = np.array([0.1, 0.5, 1.0]) * D_Y
     assert_allclose(mdr.loading_force(d, *MATERIAL), hertz.force(d, R, E_STAR), rtol=1e-14)
     below, above = mdr.loading_force(np.array([1 - 1e-9, 1 + 1e-9]) * D_Y, *MATERIAL)
-    assert above == pytest.approx(below, rel=1e-8)
+    assert above == approx(below, rel=1e-8)
 
 
 def test_a_yielded_contact_spreads_over_the_section_of_the_sphere():
@@ -93,7 +94,7 @@ def test_unloading_starts_at_the_loading_force_and_ends_at_zero(d):
     F, d_p = mdr.loading_force(d, *MATERIAL), mdr.residual_indentation(d, *MATERIAL)
     assert 0 <= d_p < d
     assert_allclose(mdr.unloading_force(d, d, *MATERIAL), F, rtol=1e-12)
-    assert mdr.unloading_force(d_p * (1 - 1e-12), d, *MATERIAL) == pytest.approx(0, abs=1e-9 * F)
+    assert mdr.unloading_force(d_p * (1 - 1e-12), d, *MATERIAL) == approx(0, abs=1e-9 * F)
     further = 1.5 * d
     assert mdr.unloading_force(further, d, *MATERIAL) == mdr.loading_force(further, *MATERIAL)
 
@@ -107,7 +108,7 @@ def test_unloading_starts_as_a_flat_punch_stiffened_by_the_recovery():
     depth = 2 * mdr.yield_pressure(d, R, Y) * a / E_STAR
     recovered = (d - mdr.residual_indentation(d, *MATERIAL)) / depth
     assert 0.8 < recovered < 1
-    assert slope == pytest.approx(2 * E_STAR * a / recovered, rel=1e-4)
+    assert slope == approx(2 * E_STAR * a / recovered, rel=1e-4)
 
 
 def test_nothing_is_lost_below_yield():
@@ -140,7 +141,7 @@ def test_restitution_leaves_one_by_a_step(yield_strain):
     p_Y = mdr.yield_pressure(depth, R, yield_strain * E)
     recovered = (d - mdr.residual_indentation(d, *material)) * E_STAR / (2 * p_Y * a)
     assert below == 1
-    assert above == pytest.approx((recovered * 8 / 3 / (0.3 * np.pi**2)) ** 0.5, rel=1e-4)
+    assert above == approx((recovered * 8 / 3 / (0.3 * np.pi**2)) ** 0.5, rel=1e-4)
 
 
 def test_only_ratios_matter():
@@ -166,14 +167,14 @@ def test_a_sphere_driven_in_by_more_than_its_radius_has_no_answer():
 @pytest.mark.parametrize("V", [0.25, 0.27, 1.0, 5.0])  # yield: 0.2611 m/s
 def test_the_restitution_of_lammps_on_a_wall(V, lammps):
     path = lammps(ONE_SPHERE + WALL.replace("{V}", str(V)), V)
-    assert path[-1, 1] / V == pytest.approx(mdr.restitution(V, *MATERIAL, MASS), abs=3e-4)
+    assert path[-1, 1] / V == approx(mdr.restitution(V, *MATERIAL, MASS), abs=3e-4)
 
 
 @pytest.mark.parametrize(("V", "published"), [(0.5, 0.908), (2.5, 0.613)])
 def test_the_restitution_of_lammps_of_two_equal_spheres(V, published, lammps):
     path = lammps(ONE_SPHERE + PAIR.replace("{V}", str(V)), V)
     e = mdr.restitution(V, *MATERIAL, MASS)
-    assert path[-1, 1] / V == pytest.approx(e, abs=3e-4)
+    assert path[-1, 1] / V == approx(e, abs=3e-4)
     assert round(float(e), 3) == published
 
 

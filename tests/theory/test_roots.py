@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from restitution.theory._roots import increasing_root
+from tolerance import approx
 
 
 @pytest.fixture
@@ -52,4 +53,4 @@ def test_kinks_and_steps_do_not_stop_it(root, slope, jump):
         return np.where(x < root, x - root, slope * (x - root) + abs(jump))
 
     # A step has its root where the sign changes: between two neighbouring numbers.
-    assert increasing_root(excess, 0.0, 1.0) == pytest.approx(root, rel=1e-13, abs=1e-15)
+    assert increasing_root(excess, 0.0, 1.0) == approx(root, rel=1e-13, abs=1e-15)

@@ -1,10 +1,10 @@
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 from restitution.theory import jkr, sticking
+from tolerance import approx
 
 R, E_STAR, W, MASS = 250e-6, 112e9, 0.05, 2e-6
 MATERIAL = (R, E_STAR, W)
@@ -33,8 +33,8 @@ def test_sticking_ends_at_the_sticking_velocity():
     v = np.array([-1.0, 0.0, 1e-9, 0.5, 1.0, 1 + 1e-9, 1e9])
     e = sticking.restitution(v * V_S, V_S)
     assert_array_equal(e[:5], [1, 1, 0, 0, 0])
-    assert e[5] == pytest.approx((2e-9) ** 0.5, rel=1e-6)
-    assert e[6] == pytest.approx(1, abs=1e-15)
+    assert e[5] == approx((2e-9) ** 0.5, rel=1e-6)
+    assert e[6] == approx(1, abs=1e-15)
 
 
 @given(*[st.floats(1e-3, 1e3)] * 4)
@@ -46,7 +46,7 @@ def test_the_powers_of_the_sticking_velocity(length, stress, adhesion, inertia):
 
 def test_the_tabor_parameter_is_the_neck_over_the_range_of_the_forces():
     # R* = 8, w = E* = 1, z₀ = ½: (8/(1/8))^{1/3} = 4
-    assert sticking.tabor_parameter(8.0, 1.0, 1.0, 0.5) == pytest.approx(4.0, rel=1e-14)
+    assert sticking.tabor_parameter(8.0, 1.0, 1.0, 0.5) == approx(4.0, rel=1e-14)
     z0 = 3e-10
     neck = -jkr.break_indentation(*MATERIAL) / (0.75 * np.pi ** (2 / 3))
     assert_allclose(sticking.tabor_parameter(*MATERIAL, z0), neck / z0, rtol=1e-13)

@@ -21,6 +21,7 @@ from restitution.contact.detachment import tension_limit
 from restitution.contact.resolution import ADHESIVE_NODES, adhesive_nodes
 from restitution.contact.separation import separate, separation_of
 from restitution.theory import jkr, sticking
+from tolerance import approx
 
 STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25, density=7850.0)
 PAIR = Pair(STEEL, STEEL)
@@ -53,11 +54,11 @@ def test_elastic_spheres_follow_the_sticking_velocity(depth):
         assert collision.restitution == 0
         return
     V = collision.impact_velocity
-    assert pytest.approx(expected, abs=0.09 * V_s) == V
+    assert approx(expected, abs=0.09 * V_s) == V
     if 1.5 * V_s < V:
         assert not collision.sticks
         e = float(sticking.restitution(V, V_s))
-        assert collision.restitution == pytest.approx(e, abs=0.02)
+        assert collision.restitution == approx(e, abs=0.02)
 
 
 # Figures 8 and 9 of Ghanbarzadeh et al. (2019): restitution over indentation, smooth spheres.
@@ -101,7 +102,7 @@ def test_the_paper_does_not_resolve_its_adhesion(spacing, resolved):
     )  # fmt: skip
     assert (adhesive_nodes(state) >= ADHESIVE_NODES) is resolved
     a_c = float(jkr.pull_off_radius(R, E_STAR, 0.09))
-    assert adhesive_nodes(state) == pytest.approx(a_c / spacing, rel=1e-6)
+    assert adhesive_nodes(state) == approx(a_c / spacing, rel=1e-6)
 
 
 def test_roughness_takes_the_effect_of_adhesion_away():
@@ -160,7 +161,7 @@ def test_vanishing_adhesion_is_none():
         contact = square(20e-9, 0.25e-6, yield_pressure=0.75e9, work_of_adhesion=1e-7,
                          approach=approach)  # fmt: skip
         collision = collide(solve(contact, 20e-9))
-        assert collision.restitution == pytest.approx(plain.restitution, abs=3e-3)
+        assert collision.restitution == approx(plain.restitution, abs=3e-3)
 
 
 def test_what_yielded_pulls_harder():
@@ -179,7 +180,7 @@ def test_what_yielded_pulls_harder():
         for p_y in (math.inf, 0.5e9)
     )  # fmt: skip
     F_c = float(jkr.pull_off_force(R, 0.09))
-    assert elastic == pytest.approx(F_c, rel=0.05)
+    assert elastic == approx(F_c, rel=0.05)
     assert yielded > 1.15 * elastic
 
 

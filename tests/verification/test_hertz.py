@@ -5,15 +5,14 @@ import pytest
 
 from restitution import Contact, Grid, collide, smooth, solve
 from restitution.theory import hertz
+from tolerance import approx
 
 
 def test_the_seed_case(pair, grid):
     depth = (10e-6) ** 2 / pair.radius  # a = 10 um
     state = solve(Contact(pair, smooth(grid)), depth)
-    assert state.force == pytest.approx(
-        hertz.force(depth, pair.radius, pair.contact_modulus), rel=1e-4
-    )
-    assert state.stored_energy == pytest.approx(
+    assert state.force == approx(hertz.force(depth, pair.radius, pair.contact_modulus), rel=1e-4)
+    assert state.stored_energy == approx(
         hertz.stored_energy(depth, pair.radius, pair.contact_modulus), rel=1e-4
     )
     assert state.residual <= 1e-8
@@ -27,7 +26,7 @@ def test_the_pressure_is_a_hemisphere(pair, grid):
     r = np.hypot(grid.x[:, None], grid.y[None, :])
     expected = hertz.pressure(r, depth, pair.radius, pair.contact_modulus)
     inside = r < 9e-6
-    assert state.pressure[inside] == pytest.approx(expected[inside], rel=2e-3)
+    assert state.pressure[inside] == approx(expected[inside], rel=2e-3)
     assert not state.pressure[r > 10e-6 + 0.25e-6].any()
 
 
@@ -51,6 +50,4 @@ def test_rectangular_cells(pair, hx, hy):
     depth = (10e-6) ** 2 / pair.radius
     grid = Grid((int(24e-6 / hx), int(24e-6 / hy)), (hx, hy))
     state = solve(Contact(pair, smooth(grid)), depth)
-    assert state.force == pytest.approx(
-        hertz.force(depth, pair.radius, pair.contact_modulus), rel=5e-4
-    )
+    assert state.force == approx(hertz.force(depth, pair.radius, pair.contact_modulus), rel=5e-4)

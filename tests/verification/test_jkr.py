@@ -14,6 +14,7 @@ from restitution import Body, Contact, Grid, Pair, Surface, solve
 from restitution.contact.loading import load
 from restitution.contact.separation import separate, separation_of
 from restitution.theory import jkr
+from tolerance import approx
 
 W = 0.09
 STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25, density=7850.0)
@@ -45,10 +46,10 @@ def sphere(nodes, offset=(0, 0), approach="equilibrium", detachment="crack-closu
 def test_the_offset_is_in_the_gap():
     contact, shift = sphere(4, (0.5, 0.25))
     h = A_C / 4
-    assert shift == pytest.approx((0.25 + 0.0625) * h * h / (2 * PAIR.radius), rel=1e-9)
+    assert shift == approx((0.25 + 0.0625) * h * h / (2 * PAIR.radius), rel=1e-9)
     x, y = contact.grid.x[:, None] - h / 2, contact.grid.y[None, :] - h / 4
     expected = (x * x + y * y) / (2 * PAIR.radius) - shift
-    assert contact.gap == pytest.approx(expected, abs=1e-15)
+    assert contact.gap == approx(expected, abs=1e-15)
 
 
 @cache
@@ -71,7 +72,7 @@ def test_the_unloading_branch():
 def test_the_break():
     path = cycle("equilibrium")[1]
     assert path[-1].contact_nodes == 0
-    assert path[-1].indentation == pytest.approx(-BREAK, rel=0.04)
+    assert path[-1].indentation == approx(-BREAK, rel=0.04)
     assert path[-2].force < -0.4 * F_C  # it snaps off, at −5/9 F_c in theory
 
 
@@ -81,24 +82,24 @@ def test_the_loading_branch(depth):
     state = load(contact, depth * BREAK, start=None, residual=1e-6)
     expected = float(jkr.force(depth * BREAK, *MATERIAL))
     # One cell of contact radius is worth 0.18 F_c at the deepest; measured 0.011 to 0.040.
-    assert state.force == pytest.approx(expected, abs=0.05 * F_C)
+    assert state.force == approx(expected, abs=0.05 * F_C)
 
 
 def test_the_jump_in():
     contact, _ = sphere(16)
     state = load(contact, 0.0, start=None, residual=1e-6)
-    assert state.force == pytest.approx(float(jkr.jump_in_force(PAIR.radius, W)), rel=0.05)
+    assert state.force == approx(float(jkr.jump_in_force(PAIR.radius, W)), rel=0.05)
 
 
 def test_a_cycle_loses_the_jump_in_and_the_break():
     state, path = cycle("equilibrium")
     separation = separation_of(path)
     lost = state.loading_work - separation.unloading_work
-    assert lost == pytest.approx(float(jkr.hysteresis_loss(*MATERIAL)), abs=0.02 * F_C * BREAK)
+    assert lost == approx(float(jkr.hysteresis_loss(*MATERIAL)), abs=0.02 * F_C * BREAK)
     # Each side by itself carries what the lattice holds back over 4 |δ_b|.
     expected = float(jkr.loading_work(DEEP, *MATERIAL)), float(jkr.unloading_work(DEEP, *MATERIAL))
-    assert state.loading_work == pytest.approx(expected[0], abs=0.12 * F_C * BREAK)
-    assert separation.unloading_work == pytest.approx(expected[1], abs=0.12 * F_C * BREAK)
+    assert state.loading_work == approx(expected[0], abs=0.12 * F_C * BREAK)
+    assert separation.unloading_work == approx(expected[1], abs=0.12 * F_C * BREAK)
 
 
 def test_a_hertzian_approach_returns_the_energy_it_released():
@@ -107,7 +108,7 @@ def test_a_hertzian_approach_returns_the_energy_it_released():
     area = math.pi * PAIR.radius * DEEP  # Hertz; counting nodes would add an error of its own
     broken = jkr.total_energy_at_contact_radius(jkr.break_radius(*MATERIAL), *MATERIAL)
     expected = state.stored_energy - W * area - float(broken)
-    assert separation_of(path).unloading_work == pytest.approx(expected, abs=0.03 * F_C * BREAK)
+    assert separation_of(path).unloading_work == approx(expected, abs=0.03 * F_C * BREAK)
 
 
 @cache
@@ -132,8 +133,8 @@ def test_crack_closure_pulls_off_at_the_jkr_force_wherever_the_apex_is(nodes, me
     lattice's saw teeth they see.
     """
     found = pull_off(nodes, "crack-closure")
-    assert found.mean() == pytest.approx(1, abs=mean)
-    assert found == pytest.approx(np.ones(len(OFFSETS)), abs=each)
+    assert found.mean() == approx(1, abs=mean)
+    assert found == approx(np.ones(len(OFFSETS)), abs=each)
 
 
 def test_crack_closure_converges():
@@ -147,8 +148,8 @@ def test_crack_closure_converges():
 def test_the_tension_limit_overestimates_pull_off_by_about_the_spacing(nodes):
     """1 + 1.1 h/a_c in the mean over the offsets, 1 + 1.5 h/a_c where the apex is on a node."""
     found = pull_off(nodes, "pohrt-popov")
-    assert found.mean() == pytest.approx(1 + 1.1 / nodes, abs=0.08)
-    assert found[0] == pytest.approx(1 + 1.5 / nodes, abs=0.12)
+    assert found.mean() == approx(1 + 1.1 / nodes, abs=0.08)
+    assert found[0] == approx(1 + 1.5 / nodes, abs=0.12)
     assert found.max() < 1 + 2 / nodes
 
 

@@ -8,6 +8,7 @@ import pytest
 from restitution import Body, Contact, Grid, Pair, Surface, smooth, solve
 from restitution.contact.separation import separate, separation_of
 from restitution.theory import jkr, kendall
+from tolerance import approx
 
 A, W = 10e-6, 0.1
 
@@ -38,7 +39,7 @@ def test_kendall(detachment, nodes, offset, ratio):
     contact = Contact(pair, surface, work_of_adhesion=W, approach="hertzian", detachment=detachment)
     path = list(separate(solve(contact, 1e-10), tolerance=0.01))
     expected = float(kendall.pull_off_force(radius, pair.contact_modulus, W))
-    assert separation_of(path).pull_off_force == pytest.approx(expected, rel=0.02)
+    assert separation_of(path).pull_off_force == approx(expected, rel=0.02)
 
 
 @pytest.mark.parametrize("ratio", [2, 0.5])
@@ -60,5 +61,5 @@ def test_jkr_on_rectangular_cells(ratio):
         separation = separation_of(list(separate(state, tolerance=0.005)))
         found.append((separation.pull_off_force / F_c, separation.unloading_work / (F_c * depth)))
     square, rectangle = np.array(found)
-    assert rectangle[0] == pytest.approx(square[0], rel=0.03)
-    assert rectangle[1] == pytest.approx(square[1], abs=0.03)
+    assert rectangle[0] == approx(square[0], rel=0.03)
+    assert rectangle[1] == approx(square[1], abs=0.03)

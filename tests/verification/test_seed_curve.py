@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from tolerance import approx
+
 EXAMPLE = Path(__file__).parents[2] / "examples" / "steel.toml"
 
 # Linux counts the size of a parent as its child's until the child runs its own program, and a
@@ -60,9 +62,9 @@ def test_every_depth_meets_the_residual_and_the_energy_balance(curve):
     for row in curve[0]:
         assert row["residual"] <= 1e-8
         assert row["convolutions"] <= 90
-        assert row["loading_work_J"] == pytest.approx(
+        assert row["loading_work_J"] == approx(
             row["stored_energy_J"] + row["plastic_work_J"], rel=1e-12
         )
-        assert row["restitution"] ** 2 == pytest.approx(
+        assert row["restitution"] ** 2 == approx(
             row["unloading_work_J"] / row["loading_work_J"], rel=1e-9
         )

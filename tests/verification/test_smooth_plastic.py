@@ -6,6 +6,7 @@ import pytest
 
 from restitution import Body, Contact, Grid, Pair, collide, smooth, solve
 from restitution.theory import jackson_green, thornton_ning, yielding
+from tolerance import approx
 
 P_Y = 750e6
 
@@ -32,10 +33,10 @@ def at(pair, x, nodes_over_yield_radius, p_y=P_Y, plasticity="equilibrium"):
 )
 def test_equilibrium_table(pair, x, force, work, cor):
     state, depth_y, force_y = at(pair, x, 16)
-    assert collide(state).restitution == pytest.approx(cor, rel=3e-3)
+    assert collide(state).restitution == approx(cor, rel=3e-3)
     if force is not None:
-        assert state.force / force_y == pytest.approx(force, rel=3e-3)
-        assert state.loading_work / (force_y * depth_y) == pytest.approx(work, rel=3e-3)
+        assert state.force / force_y == approx(force, rel=3e-3)
+        assert state.loading_work / (force_y * depth_y) == approx(work, rel=3e-3)
 
 
 @pytest.mark.parametrize(("x", "area"), [(1.5, 1.011), (2, 1.037), (6, 1.272), (16, 1.507)])
@@ -48,17 +49,17 @@ def test_equilibrium_contact_area(pair, x, area):
         at(pair, x, n)[0].contact_area / (math.pi * pair.radius * at(pair, x, n)[0].indentation)
         for n in (16, 32)
     )
-    assert 2 * fine - coarse == pytest.approx(area, rel=1e-2)
+    assert 2 * fine - coarse == approx(area, rel=1e-2)
     assert 1 < fine < 2
 
 
 @pytest.mark.parametrize(("x", "cor"), [(2, 0.8915), (8, 0.6238), (32, 0.4382)])
 def test_truncated_table(pair, x, cor):
     state, depth_y, _ = at(pair, x, 12, plasticity="truncated")
-    assert collide(state).restitution == pytest.approx(cor, rel=3e-3)
+    assert collide(state).restitution == approx(cor, rel=3e-3)
     assert state.work_error < 1e-3 * state.loading_work  # nodes yield one after the other
     material = pair.radius, pair.contact_modulus, P_Y
-    assert state.loading_work == pytest.approx(
+    assert state.loading_work == approx(
         float(thornton_ning.loading_work(x * depth_y, *material)), rel=1e-3
     )
 
@@ -67,11 +68,11 @@ def test_truncated_table(pair, x, cor):
 def test_truncated_follows_thornton_and_ning(pair, x):
     state, depth_y, _ = at(pair, x, 24, plasticity="truncated")
     material = pair.radius, pair.contact_modulus, P_Y
-    assert state.force == pytest.approx(
+    assert state.force == approx(
         float(thornton_ning.loading_force(x * depth_y, *material)), rel=5e-4
     )
     cor = float(thornton_ning.restitution_at_indentation(x * depth_y, *material))
-    assert collide(state).restitution == pytest.approx(cor, rel=0.06)
+    assert collide(state).restitution == approx(cor, rel=0.06)
 
 
 @pytest.mark.parametrize("plasticity", ["equilibrium", "truncated"])
@@ -82,7 +83,7 @@ def test_scale_invariance(pair, plasticity):
     here, *_ = at(pair, 5, 10, plasticity=plasticity)
     for other, p_y in ((Pair(other_body, other_body), 400e6), (Pair(other_body, wall), 9e6)):
         there, *_ = at(other, 5, 10, p_y, plasticity)
-        assert collide(there).restitution == pytest.approx(collide(here).restitution, rel=1e-6)
+        assert collide(there).restitution == approx(collide(here).restitution, rel=1e-6)
 
 
 @pytest.mark.parametrize("ratio", [0.001, 0.003])
@@ -97,4 +98,4 @@ def test_equilibrium_follows_finite_elements(ratio, omega):
     h = math.sqrt(2 * pair.radius * depth) / 60
     contact = Contact(pair, smooth(Grid((151, 151), (h, h))), 2.8 * strength)
     force = float(jackson_green.loading_force(depth, *arguments))
-    assert solve(contact, depth).force == pytest.approx(force, rel=0.09)
+    assert solve(contact, depth).force == approx(force, rel=0.09)

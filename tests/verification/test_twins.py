@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from restitution import describe, extend, level, read_surface, remove_outliers
+from tolerance import approx
 
 
 @pytest.mark.parametrize(("name", "outliers"), [("di-3.di", None), ("mi-1.mi", 8.0)])
@@ -16,14 +17,14 @@ def test_a_twin_of_a_scan(topographies, name, outliers):
     for seed in range(4):
         twin = extend(scan, tuple(2 * edge for edge in scan.grid.size), "twin", seed=seed)
         have = describe(twin)
-        assert have["Sq_m"] == pytest.approx(want["Sq_m"], rel=1e-3, abs=0)
-        assert have["Ssk"] == pytest.approx(want["Ssk"], abs=0.02)
-        assert have["Sku"] == pytest.approx(want["Sku"], rel=0.015, abs=0)
-        assert have["Sdq"] == pytest.approx(want["Sdq"], rel=0.02)
+        assert have["Sq_m"] == approx(want["Sq_m"], rel=1e-3, abs=0)
+        assert have["Ssk"] == approx(want["Ssk"], abs=0.02)
+        assert have["Sku"] == approx(want["Sku"], rel=0.015, abs=0)
+        assert have["Sdq"] == approx(want["Sdq"], rel=0.02)
         assert twin.provenance["spectrum_misfit"] < 0.35
         found.append((have["Sdq"] / want["Sdq"], twin.provenance["spectrum_misfit"]))
     slope, misfit = np.mean(found, axis=0)
-    assert slope == pytest.approx(1, abs=0.01)
+    assert slope == approx(1, abs=0.01)
     assert misfit < 0.25
 
 
