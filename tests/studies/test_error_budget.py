@@ -211,3 +211,15 @@ def test_a_scan_has_places(tmp_path):
     for k, one in enumerate(surfaces):
         for other in surfaces[:k]:
             assert abs(np.corrcoef(one.height.ravel(), other.height.ravel())[0, 1]) < 0.6
+
+
+def test_another_body_may_be_the_softer_one_at_an_end_of_the_spread(tmp_path):
+    """Steel is softer than glass, but not at the low ends: glass then yields at its hardness."""
+    text = (
+        'first = { material = "steel", radius = "500 um" }\nsecond = "glass"\n[interface]\n'
+        'plasticity = "expanding-cavity"\n[grid]\nnodes = 64\nspacing = "3 um"\n'
+        '[indentation]\nvalues = ["8 um"]\n'
+    )
+    rows, _ = run(text, tmp_path / "out")
+    assert rows[0]["material_error"] > 0
+    assert rows[0]["total_error"] >= rows[0]["material_error"] - 1e-12

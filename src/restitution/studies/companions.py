@@ -18,9 +18,9 @@ from restitution.collision import UnloadingMethod, collide
 from restitution.contact.bodies import Pair
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.path import loading_path
-from restitution.errors import DomainError, RestitutionError
+from restitution.errors import CaseError, DomainError, RestitutionError
 from restitution.studies.case import Case
-from restitution.studies.particles import BodyTable
+from restitution.studies.particles import BodyTable, Yielding
 from restitution.surfaces.refine import coarsen
 
 Array = NDArray[np.float64]
@@ -107,7 +107,7 @@ class Companions:
         here, mass = curve.at(work), coarse.pair.mass
         changes = []
         stiff = [replace(coarse, pair=_with_modulus_of(coarse.pair, case.pair())) for case in ends]
-        strong = [replace(coarse, **case.yielding().arguments()) for case in ends]
+        strong = [replace(coarse, **_yielding(case).arguments()) for case in ends]
         for pair in (stiff, strong):
             if any(contact != coarse for contact in pair):
                 found = [self._curve(contact).at(work) for contact in pair]
@@ -136,6 +136,16 @@ def _with_modulus_of(pair: Pair, other: Pair) -> Pair:
         for body, its in ((pair.first, other.first), (pair.second, other.second))
     )
     return Pair(first, second)
+
+
+def _yielding(case: Case) -> Yielding:
+    """How `case` yields; by its default model where a body without a yield strength is softer."""
+    try:
+        return case.yielding()
+    except CaseError:
+        default = {"plasticity": None, "tangent_modulus": None}
+        interface = case.interface.model_copy(update=default)
+        return case.model_copy(update={"interface": interface}).yielding()
 
 
 def _spread(case: Case, end: str) -> Case:
