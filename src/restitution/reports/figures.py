@@ -122,7 +122,7 @@ def restitution_against_indentation(results: xr.Dataset) -> Figure:
         fine = _between(depth)
         reference = jkr.restitution_at_indentation(fine, R, E_star, w)
         axes.plot(1e6 * fine, reference, ":", color="0.4", label="JKR, smooth elastic")
-    axes.legend(frameon=False, fontsize="small", loc="lower left")
+    figure.legend(frameon=False, fontsize="small", loc="outside lower center", ncols=2)
     return figure
 
 
@@ -147,7 +147,7 @@ def restitution_against_velocity(results: xr.Dataset) -> Figure:
     elif np.isfinite(p_y):
         reference = thornton_ning.restitution(fine, R, E_star, p_y, mass)
         axes.plot(fine, reference, "--", color="0.4", label=_THORNTON_NING)
-    axes.legend(frameon=False, fontsize="small", loc="lower left")
+    figure.legend(frameon=False, fontsize="small", loc="outside lower center", ncols=2)
     return figure
 
 
