@@ -25,16 +25,6 @@ needs_samples = pytest.mark.skipif(
 )
 
 
-def refusal(path, **kwargs):
-    with pytest.raises(SurfaceError) as caught:
-        read_surface(path, **kwargs)
-    message = str(caught.value)
-    assert message.startswith(f"{path}: ")
-    assert "; " in message
-    assert "\n" not in message
-    return message.removeprefix(f"{path}: ")
-
-
 @needs_readers
 @needs_samples
 @pytest.mark.parametrize(
@@ -143,7 +133,7 @@ def test_another_height_channel_can_be_chosen():
         ("README.md", {}, "is damaged, or not a topography in a format known to Surface"),
     ],
 )
-def test_samples_refused(name, arguments, expected):
+def test_samples_refused(name, arguments, expected, refusal):
     assert refusal(SAMPLES / name, **arguments).startswith(expected)
 
 
@@ -158,7 +148,7 @@ def test_a_size_that_repeats_the_file_is_accepted():
 @needs_samples
 @pytest.mark.parametrize("name", ["mi-1.mi", "nid-1.nid", "di-3.di", "sur-2.sur", "tmd-1.tmd"])
 @pytest.mark.parametrize("share", [0.001, 0.05, 0.6, 0.99])
-def test_truncated_instrument_files(tmp_path, name, share):
+def test_truncated_instrument_files(tmp_path, name, share, refusal):
     """One error, or, where only later channels are cut off, the whole of this channel."""
     content = (SAMPLES / name).read_bytes()
     path = tmp_path / name
@@ -210,7 +200,7 @@ def test_text_of_other_programs_is_handed_over(tmp_path):
 
 
 @needs_readers
-def test_heights_without_a_unit_are_not_guessed_at(tmp_path):
+def test_heights_without_a_unit_are_not_guessed_at(tmp_path, refusal):
     from scipy.io import savemat
 
     savemat(tmp_path / "a.mat", {"z": np.ones((6, 6))})
@@ -221,7 +211,7 @@ def test_heights_without_a_unit_are_not_guessed_at(tmp_path):
 
 @needs_readers
 @pytest.mark.parametrize("suffix", [".pkl", ".dat", ".bin"])
-def test_pickles_are_not_run_by_any_reader(tmp_path, suffix):
+def test_pickles_are_not_run_by_any_reader(tmp_path, suffix, refusal):
     class Malicious:
         def __reduce__(self):
             return Path.mkdir, (tmp_path / "victim",)
@@ -298,7 +288,7 @@ def test_unit_and_size_become_metres(fake_file, capfd):
     assert capfd.readouterr() == ("", "")
 
 
-def test_size_is_needed_where_the_file_has_none(fake_file):
+def test_size_is_needed_where_the_file_has_none(fake_file, refusal):
     path, _ = fake_file(fake_channel("z", physical_sizes=None))
     assert 'size = ["10 um", "10 um"]' in refusal(path)
     assert read_surface(path, size=(1e-5, 2e-5)).grid.spacing == approx((2e-6, 5e-6))
@@ -326,12 +316,12 @@ def test_default_channel_is_the_readers(fake_file):
         {"dim": 1},
     ],
 )
-def test_file_without_a_height_map(fake_file, changes):
+def test_file_without_a_height_map(fake_file, changes, refusal):
     path, _ = fake_file(fake_channel("odd", **changes))
     assert "channel 0 ('odd', values in " in refusal(path)
 
 
-def test_failure_while_reading_is_one_error(fake_file):
+def test_failure_while_reading_is_one_error(fake_file, refusal):
     def fail(physical_sizes):
         raise ZeroDivisionError("no pixels\nat all")
 
@@ -340,7 +330,7 @@ def test_failure_while_reading_is_one_error(fake_file):
     assert closed
 
 
-def test_versions_that_misread_files_are_refused(fake_file):
+def test_versions_that_misread_files_are_refused(fake_file, refusal):
     path, _ = fake_file(fake_channel("z"), version="1.25.0")
     message = refusal(path)
     assert "takes SurfaceTopography 1.27 or later, and 1.25.0 is installed" in message

@@ -17,7 +17,8 @@ from pathlib import Path
 
 import numpy as np
 import solve
-from solve import Model
+from indentation import loading_work, unloading_work
+from problem import Model, smooth_mesh, wave_mesh
 
 HERE = Path(__file__).parent
 _E, _R = 210e9, 500e-6
@@ -50,7 +51,7 @@ class Range:
 
 @dataclass(frozen=True)
 class Case:
-    """One model with its ranges and kinematics (see `solve.Indentation`)."""
+    """One model with its ranges and kinematics (see `indentation.Indentation`)."""
 
     name: str
     model: Model
@@ -146,7 +147,7 @@ def run_case(case: Case, partial: Path) -> Iterator[dict]:
     for part in case.ranges:
         file = partial / f"{case.name}_{part.name}.json"
         if not file.exists():
-            mesh = solve.wave_mesh if case.model.wave_amplitude else solve.smooth_mesh
+            mesh = wave_mesh if case.model.wave_amplitude else smooth_mesh
             spec = mesh(case.model, max(part.omegas), part.elements, part.refinement)
             force_step = 0.045 * part.fine / 0.035 if part.fine < 0.035 else 0.045
             result = solve.run_range(
@@ -228,7 +229,7 @@ def merge(case: Case, results: list[dict]) -> dict:
             radius = smooth_over_steps(depth, 0.5 * (inner + outer))
             loading["contact_area_m2"] = np.pi * radius**2
             loading["force_smoothed_N"] = smooth_over_steps(depth, loading["force_N"])
-        work = solve.loading_work(loading["indentation_m"], loading["force_N"])
+        work = loading_work(loading["indentation_m"], loading["force_N"])
         first = int(np.argmin(abs(omega - part.low)))
         mesh = dict(result["mesh"])
         if columns["force_N"]:
@@ -246,7 +247,7 @@ def merge(case: Case, results: list[dict]) -> dict:
         meshes[part.name] = mesh
         for path in result["unloading"]:
             k = int(np.argmin(abs(omega - path["omega"])))
-            returned = solve.unloading_work(path["indentation_m"], path["force_N"])
+            returned = unloading_work(path["indentation_m"], path["force_N"])
             unloading.append({**path, "mesh_range": part.name})
             summary.append(
                 {

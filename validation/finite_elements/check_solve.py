@@ -6,7 +6,8 @@ python -m pytest check_solve.py
 import numpy as np
 import pytest
 import solve
-from solve import Indentation, MeshSpec, Model
+from indentation import Indentation, loading_work, unloading_work
+from problem import MeshSpec, Model, smooth_mesh
 
 
 def _small(model):
@@ -75,15 +76,15 @@ def test_uniaxial_compression_of_a_bar_follows_the_flow_curve(hardening):
 def test_elastic_contact_follows_hertz():
     """Compare force, area and returned work with Hertz."""
     model = Model(yield_strength=None)
-    result = solve.run_range(model, solve.smooth_mesh(model, 4, 40), (2, 4), 0.8, 0.8, fine=0.1)
+    result = solve.run_range(model, smooth_mesh(model, 4, 40), (2, 4), 0.8, 0.8, fine=0.1)
     depth, force, area = (
         np.array(result["loading"][k]) for k in ("indentation_m", "force_N", "contact_area_m2")
     )
     hertz = 4 / 3 * model.contact_modulus * np.sqrt(model.radius) * depth**1.5
     np.testing.assert_allclose(force, hertz, rtol=3e-3)
     np.testing.assert_allclose(area[-4:], np.pi * model.radius * depth[-4:], rtol=0.03)
-    work = solve.loading_work(depth, force)
+    work = loading_work(depth, force)
     for path in result["unloading"]:
         k = int(np.argmin(abs(np.array(result["omega"]) - path["omega"])))
-        returned = solve.unloading_work(path["indentation_m"], path["force_N"])
+        returned = unloading_work(path["indentation_m"], path["force_N"])
         assert returned == pytest.approx(work[k], rel=2e-3, abs=0.0)
