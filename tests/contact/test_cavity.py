@@ -254,3 +254,14 @@ def test_the_bound_is_known_beyond_the_edge_of_the_grid():
 def test_values_that_do_not_go_together(values, said):
     with pytest.raises(CaseError, match=said):
         Contact(PAIR, smooth(Grid((8, 8), (1e-6, 1e-6))), **values)
+
+
+@pytest.mark.parametrize("yields", ["yield_pressure", "yield_strength"])
+def test_whole_numbers_are_strengths_too(yields):
+    grid = Grid((48, 48), (1e-6, 1e-6))
+    states = [
+        solve(Contact(PAIR, smooth(grid), **{yields: value}), 5e-7)
+        for value in (500_000_000, 500e6, np.float32(500e6))
+    ]
+    assert states[0].force == states[1].force == states[2].force
+    assert states[0].loading_work == states[1].loading_work

@@ -73,6 +73,9 @@ class Contact:
             if value not in known:
                 names = ", ".join(filter(None, known))
                 raise CaseError(f'{name}: "{value}" is not one of {names}')
+        # The compiled loops take double precision only.
+        for name in ("yield_pressure", "work_of_adhesion", "yield_strength", "tangent_modulus"):
+            object.__setattr__(self, name, float(getattr(self, name)))
         if not self.yield_pressure > 0:
             raise CaseError(f"yield_pressure: {self.yield_pressure} Pa is not positive")
         if not self.yield_strength > 0:

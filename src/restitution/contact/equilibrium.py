@@ -61,7 +61,9 @@ def equilibrate(
     b = overlap(contact, indentation, box, history)
     scale = scale_of(contact, indentation, b)
     system = system_of(contact)
-    upper = limit if isinstance(limit, float) else device.put(np.ascontiguousarray(limit[box]))
+    upper = limit
+    if isinstance(limit, np.ndarray):
+        upper = device.put(np.ascontiguousarray(limit[box]))
     if held is None:
         found, convolutions = minimise_nested(
             system, device.put(b), upper, tolerance=residual * scale, max_iterations=MAX_ITERATIONS
@@ -142,14 +144,14 @@ def settled(
     stays that of `history`: `loading` integrates it.
     """
     plastic, work, adhesive_work, work_error = _past(contact, history)
-    upper = limit if isinstance(limit, float) else limit[box]
+    upper = limit[box] if isinstance(limit, np.ndarray) else limit
     yielding = (pressure >= upper) & (gradient < 0)
     if yielding.any():
         if history is not None:
             plastic = plastic.copy()
         lowered = plastic[box]
         np.subtract(lowered, gradient, out=lowered, where=yielding)
-        if isinstance(limit, float):
+        if not isinstance(limit, np.ndarray):
             work -= limit * float(np.sum(gradient, where=yielding)) * contact.grid.cell_area
     displacement = np.add(gradient, b, out=gradient)
     return State(contact, indentation, box, pressure, displacement, plastic, limit,

@@ -260,8 +260,9 @@ def _plastic_work(before: State | None, after: State) -> tuple[float, float]:
     """Work (J) of yielding from one state to the next, at most `_RATIO` as deep, and its error.
 
     Each node yields by Δu under bounds that grow from b₁ to b₂. With u linear in the indentation
-    δ, and b in its logarithm, its work is Δu [b₁ + (b₂ − b₁) (δ₂/(δ₂ − δ₁) − 1/ln(δ₂/δ₁))]. The
-    error is the difference from the trapezium, and that of other rates of yielding.
+    δ, and b in its logarithm, its work is Δu [b₁ + (b₂ − b₁) (δ₂/(δ₂ − δ₁) − 1/ln(δ₂/δ₁))]. A node
+    that begins to yield in this step does so under bounds nearer to b₂: the share of b₂ − b₁ is
+    `_NEW`. The error is a part of what b₂ − b₁ adds, `_RULE_ERROR` or `_NEW_ERROR`.
     """
     contact, box = after.contact, after.box
     given, begun = after.plastic_displacement[box], np.asarray(contact.first_yield_pressure)
