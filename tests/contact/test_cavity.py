@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from restitution import Body, Contact, Grid, Pair, generate_surface, smooth
+from restitution import Body, Contact, Grid, Pair, Surface, generate_surface, smooth
 from restitution.collision import collide
 from restitution.contact.cavity import GROWTH, LARGEST, bound_of, yield_bound
 from restitution.contact.impact import solve_at_velocity
@@ -62,6 +62,46 @@ def test_the_bound_is_the_logarithm_between_its_ends():
     measure = onset * np.array([0.0, 0.9, 1.0, math.e, 1e9])
     expected = np.array([ONSET, ONSET, ONSET, ONSET + GROWTH, LARGEST]) * Y
     assert bound_of(contact, measure) == approx(expected, rel=1e-12)
+
+
+def test_a_ridge_yields_in_plane_strain():
+    """At 1.79 Y instead of 1.61 Y (Johnson 1985, §4.2), and then twice as steep in ln m."""
+    contact = ball()
+    onset = contact.first_yield_pressure
+    measure = 1.11 * onset * np.array([0.5, 1.0, math.e**0.5, 1e9])
+    expected = np.array([1.11 * ONSET, 1.11 * ONSET, 1.11 * ONSET + GROWTH, 1.25 * LARGEST]) * Y
+    assert bound_of(contact, measure, 1.0) == approx(expected, rel=1e-12)
+
+
+def waves(amplitude, wavelength=4e-6, nodes=96):
+    grid = Grid((nodes, nodes), (wavelength / 24, wavelength / 24))
+    r = np.hypot(grid.x[:, None], grid.y[None, :])
+    height = -amplitude * (1 - np.cos(2 * np.pi * r / wavelength))
+    return Contact(PAIR, Surface(height, grid), yield_strength=Y)
+
+
+def test_rings_are_elongated_and_round_asperities_are_not():
+    assert ball().elongation == approx(0, abs=1e-9)
+    contact = waves(1e-7)
+    middle = contact.grid.nodes[0] // 2
+    assert contact.elongation[middle, middle] < 0.01
+    crest = middle + 24  # one wavelength from the axis
+    assert contact.elongation[crest, middle] > 0.95
+    assert contact.elongation[middle, crest] > 0.95
+
+
+def test_the_bound_of_a_ridge_falls_back_once_asperities_have_merged():
+    """Steep rings keep more than the bound of a round asperity; flat ones lose it at depth."""
+
+    def over_round(contact, depth):
+        bound, _ = yield_bound(contact, depth, 1e-8)
+        box = np.s_[:, contact.grid.nodes[1] // 2]
+        object.__setattr__(contact, "elongation", np.zeros(contact.grid.nodes))
+        plain, _ = yield_bound(contact, depth, 1e-8)
+        return (bound / plain)[box].max()
+
+    assert over_round(waves(1e-7), 2e-7) > 1.25
+    assert over_round(waves(1e-9), 2e-7) < 1.1
 
 
 def test_hardening_adds_the_flow_stress_at_tabors_strain():

@@ -73,14 +73,14 @@ def _smooth(name, ratio, nu, top, elements=80, **hardening):
     return Case(name, model, tuple(ranges))
 
 
-def _waves(amplitude_um, wavelength_um):
+def _waves(amplitude_um, wavelength_um, finer=1):
     model = Model(
         _E, 0.3, 1e9, radius=_R, wave_amplitude=amplitude_um * 1e-6, wavelength=wavelength_um * 1e-6
     )
     start = 0.8 * model.crest_radius / model.radius
     ranges = (
-        Range("a", (0.25, 0.5, 1), start, start, 64, fine=0.05),
-        Range("b", (2, 4, 8), 1, start, 32 if wavelength_um > 6 else 24, coarse=0.1),
+        Range("a", (0.25, 0.5, 1), start, start, 64 * finer, fine=0.05),
+        Range("b", (2, 4, 8), 1, start, (32 if wavelength_um > 6 else 24) * finer, coarse=0.1),
     )
     return Case(f"waves_A{amplitude_um:g}um_L{wavelength_um:g}um", model, ranges)
 
@@ -110,6 +110,9 @@ def all_cases() -> list[Case]:
         _with_kinematics(cases[1], "flattening_0.005", "flattening"),
         _with_kinematics(cases[0], "finite_0.001", "finite"),
     ]
+    # Computed after the constants of the model had been chosen on the waves above.
+    cases += [_waves(a, w) for a, w in ((0.02, 6), (0.05, 6), (0.06, 10), (0.1, 12))]
+    cases += [_waves(a, w, finer=2) for a, w in ((0.06, 4), (0.2, 12))]
     return cases
 
 
@@ -127,10 +130,13 @@ def check_cases() -> list[Case]:
     result += [
         _refined(both, "smooth_0.001_double_elements", elements=40),
         _refined(first, "smooth_0.001_half_steps", fine=0.0175),
-        replace(
-            wave,
-            name="waves_A0.03um_L8um_double_elements",
-            ranges=tuple(replace(r, elements=r.elements / 2) for r in wave.ranges),
+        *(
+            replace(
+                wave,
+                name=f"{wave.name}_double_elements",
+                ranges=tuple(replace(r, elements=r.elements / 2) for r in wave.ranges),
+            )
+            for wave in (wave, by_name["waves_A0.06um_L4um"], by_name["waves_A0.2um_L12um"])
         ),
         _refined(first, "smooth_0.001_half_elements", refinement=2),
         _refined(

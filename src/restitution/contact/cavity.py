@@ -16,12 +16,22 @@ the largest pressure of an elastic contact. On a rough surface
 with p_e(2δ) the pressure that *elastic* bodies of this shape would have at the same node at twice
 the indentation. It follows the slope of an asperity while asperities touch alone, and the slope of
 the bodies once they have merged. At twice the indentation an elastic sphere touches as far as a
-plastic one does at δ, and its largest pressure is √2 times as large. p_e nowhere falls when the
-indentation grows, and so neither does the bound: the state still does not depend on the path.
+plastic one does at δ, and its largest pressure is √2 times as large. The bound depends on the
+indentation only, and so the state still does not depend on the path.
 
-c₁ and c₂ were chosen on finite elements (docs/validation.md says which, and how far it holds). c₂
-is above 3 because it has to make up for material that piles up around a deep contact, which the
-bound does not know; it is reached where the finite elements end.
+A ridge yields in plane strain, which holds it together more firmly than a round asperity. With q
+between 0 (round, or merged) and 1 (a ridge that touches alone), the bound takes
+
+    c₀ (1 + 0.11 q),  c₁ (1 + q),  c₂ (1 + 0.25 q),    q = (1 − κ₂/κ₁)² max(1 − p_H/m, 0).
+
+κ₂ and κ₁ are the smaller and the larger curvature of the gap at the node. p_H is the pressure of
+smooth bodies under the elastic force at 2δ (Hertz): where it is as large as m, asperities have
+merged. 1.11 is the ratio of the pressures at first yield of a cylinder and a sphere, 1.79 and
+1.61 Y for ν = 0.3 (Johnson 1985, §§4.2, 4.4).
+
+All other constants were chosen on finite elements (docs/validation.md says which, and how far they
+hold). c₂ is above 3 because it has to make up for material that piles up around a deep contact,
+which the bound does not know; it is reached where the finite elements end.
 Where the material hardens by a tangent modulus, Y is the flow stress at the representative strain
 0.2 a/R (Tabor 1951), with a/R = π m/(2E*).
 """
@@ -35,12 +45,15 @@ from numpy.typing import NDArray
 
 from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import equilibrate, reach
+from restitution.numerics.window import Box
 
 Array = NDArray[np.float64]
 
 GROWTH, LARGEST = 0.65, 3.5  # c₁, c₂
+# Parts that a ridge adds to c₀, c₁ and c₂.
+_RIDGE_ONSET, _RIDGE_GROWTH, _RIDGE_LARGEST = 0.11, 1.0, 0.25
 _DEEPER = 2.0  # times the indentation, where the elastic pressure is taken
-_LOOSER = 1e2  # times the residual of the solve
+_LOOSER = 1e3  # times the residual of the solve
 _TABOR = 0.2  # representative strain over a/R
 
 
@@ -51,23 +64,41 @@ def yield_bound(contact: Contact, indentation: float, residual: float) -> tuple[
     the elastic solve may be larger, for the bound follows the logarithm of its pressure. The
     elastic contact may reach the edge of the grid. Raises `NotConvergedError`.
     """
-    onset = contact.first_yield_pressure
-    bound = np.full(contact.grid.nodes, onset)
+    bound = np.full(contact.grid.nodes, contact.first_yield_pressure)
     deeper = _DEEPER * indentation
     box = reach(contact, deeper)
     if box is None:
         return bound, 0
     elastic = equilibrate(contact, deeper, box, limit=math.inf, residual=_LOOSER * residual)
     measure = elastic.box_pressure / math.sqrt(_DEEPER)
-    bound[box] = bound_of(contact, measure)
+    merged = np.divide(_smooth_pressure(contact, box, elastic.force), measure,
+                       out=np.ones_like(measure), where=measure > 0)  # fmt: skip
+    ridge = contact.elongation[box] * np.maximum(1 - merged, 0)
+    bound[box] = bound_of(contact, measure, ridge)
     return bound, elastic.convolutions
 
 
-def bound_of(contact: Contact, measure: Array) -> Array:
-    """The bound (Pa) where the measure of strain, a pressure in Pa, is `measure`."""
-    Y, c_0 = contact.yield_strength, contact.first_yield_pressure / contact.yield_strength
+def bound_of(contact: Contact, measure: Array, ridge: Array | float = 0.0) -> Array:
+    """The bound (Pa) where the measure of strain, a pressure in Pa, is `measure`.
+
+    `ridge` is q, between 0 on round asperities and 1 on ridges.
+    """
+    Y = contact.yield_strength
+    c_0 = contact.first_yield_pressure / Y * (1 + _RIDGE_ONSET * ridge)
     beyond = np.maximum(measure / (c_0 * Y), 1.0)
-    factor = np.minimum(c_0 + GROWTH * np.log(beyond), LARGEST)
+    factor = np.minimum(c_0 + GROWTH * (1 + _RIDGE_GROWTH * ridge) * np.log(beyond),
+                        LARGEST * (1 + _RIDGE_LARGEST * ridge))  # fmt: skip
     strain = _TABOR * math.pi / 2 * (beyond - 1) * c_0 * Y / contact.pair.contact_modulus
     bound: Array = factor * (Y + contact.hardening_modulus * strain)
     return bound
+
+
+def _smooth_pressure(contact: Contact, box: Box, force: float) -> Array:
+    """Pressure (Pa) of smooth elastic bodies under `force` (N) on a box of the grid (Hertz)."""
+    E_star, R = contact.pair.contact_modulus, contact.pair.radius
+    radius = (0.75 * force * R / E_star) ** (1 / 3)
+    largest = 2 * E_star * radius / (math.pi * R)
+    x, y = contact.grid.x[box[0]] - contact.apex[0], contact.grid.y[box[1]] - contact.apex[1]
+    inside = np.maximum(1 - np.add.outer((x / radius) ** 2, (y / radius) ** 2), 0.0)
+    pressure: Array = largest * np.sqrt(inside)
+    return pressure

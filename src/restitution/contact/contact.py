@@ -194,6 +194,26 @@ class Contact:
         gap -= gap.min()
         return gap
 
+    @cached_property
+    def elongation(self) -> NDArray[np.float64]:
+        """How elongated asperities are at each node, (1 − κ₂/κ₁)²; shape `grid.nodes`.
+
+        κ₂ and κ₁ are the smaller and the larger curvature of the gap in size, by second
+        differences: 0 where it is round and 1 along a ridge. The outermost nodes of the grid, which
+        no contact may reach, have 0.
+        """
+        gap, inner = self.gap, slice(1, -1)
+        hx, hy = self.grid.spacing
+        elongation = np.zeros(self.grid.nodes)
+        xx = (gap[2:, inner] - 2 * gap[inner, inner] + gap[:-2, inner]) / hx**2
+        yy = (gap[inner, 2:] - 2 * gap[inner, inner] + gap[inner, :-2]) / hy**2
+        xy = (gap[2:, 2:] - gap[2:, :-2] - gap[:-2, 2:] + gap[:-2, :-2]) / (4 * hx * hy)
+        mean, spread = 0.5 * np.abs(xx + yy), np.hypot(0.5 * (xx - yy), xy)
+        larger = mean + spread
+        ratio = np.divide(np.abs(mean - spread), larger, out=np.ones_like(larger), where=larger > 0)
+        elongation[inner, inner] = (1 - ratio) ** 2
+        return elongation
+
 
 def _kind(value: object) -> str:
     """What `value` is, in words."""

@@ -40,8 +40,8 @@ _PINNING = {"equilibrium": 0.02, "seed": 0.006, "hertzian": 0.0}
 # Depths between which the plastic work is summed grow by this ratio at most; from this part of the
 # indentation on. Errors are parts of what the growth of the bound adds to the work of a step, for
 # nodes that had yielded before it and for those that begin to (against 11 times as many depths).
-_RATIO, _SHALLOW = 1.42, 0.1
-_RULE_ERROR, _NEW, _NEW_ERROR = 0.1, 0.8, 0.15
+_RATIO, _SHALLOW = 1.42, 0.2
+_RULE_ERROR, _NEW, _NEW_ERROR = 0.1, 0.8, 0.25
 _WORK_RESIDUAL = 1e-6  # of the solves in between, whose force errors stay well below that
 
 

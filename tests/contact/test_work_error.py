@@ -1,0 +1,43 @@
+"""The error of the loading work of an adhesive contact."""
+
+import numpy as np
+import pytest
+
+from restitution import Body, Contact, Grid, Pair, generate_surface, solve
+from restitution.contact import loading
+from tolerance import approx
+
+BODY = Body(1e-3, 420e9, 0.3, 7850.0)
+PAIR = Pair(BODY, BODY)
+DEPTH = 3e-8
+
+
+def adhesive(seed, approach="equilibrium"):
+    grid = Grid((40, 40), (0.4e-6, 0.4e-6))
+    shape = {"kind": "gaussian", "rms": 1e-8, "correlation_length": 2e-6}
+    surface = generate_surface(grid, seed=seed, **shape)
+    return Contact(PAIR, surface, 3e9, work_of_adhesion=1.0, approach=approach)
+
+
+def test_it_holds_where_the_grid_pins_the_edge_of_the_contact():
+    """Against 240 steps from first touch; the quadrature alone says three quarters of it."""
+    contact = adhesive(9)
+    state = solve(contact, DEPTH)
+    depths, forces, start = np.linspace(0, DEPTH, 241), [], None
+    for depth in depths:
+        start = loading.load(contact, float(depth), start=start, residual=1e-6)
+        forces.append(start.force)
+    off = abs(np.trapezoid(forces, depths) - state.loading_work)
+    assert off <= state.work_error
+    assert off > 0.5 * state.work_error
+
+
+@pytest.mark.parametrize(("approach", "share"), [("equilibrium", 0.02), ("seed", 0.006)])
+def test_pinning_adds_a_share_of_the_surface_energy(monkeypatch, approach, share):
+    """0.02 and 0.006 of w times the area held in 93 % of 29, and in all of 11, blind contacts."""
+    quadrature = loading.integrate_adaptively
+    monkeypatch.setattr(
+        loading, "integrate_adaptively", lambda *args, **kw: (quadrature(*args, **kw)[0], 0.0)
+    )
+    state = solve(adhesive(1, approach), DEPTH)
+    assert state.work_error == approx(share * 1.0 * state.contact_area, rel=1e-9)
