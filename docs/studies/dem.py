@@ -19,14 +19,14 @@ from pathlib import Path
 import numpy as np
 from shared import write_table
 
+from restitution.case.case_file import parse_case
 from restitution.dem.export import export, write_export
 from restitution.dem.from_run import bare_law, law_of
 from restitution.dem.law import Law
 from restitution.dem.reference import collide_in_time, stored_force
 from restitution.dem.write import write_law
-from restitution.studies.case import parse_case
-from restitution.studies.results import ResultsFolder
-from restitution.studies.run import run_case
+from restitution.results.writer import ResultsFolder
+from restitution.runs.run import run_case
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "dem.toml"
 COMMANDS = {

@@ -10,8 +10,8 @@ import time
 import pytest
 import xarray as xr
 
-from restitution.studies import case as case_module
-from restitution.studies import run
+from restitution.case import case as case_module
+from restitution.runs import run
 
 CALL = "from restitution.cli import main; main()"
 
@@ -175,9 +175,9 @@ def test_interruption_keeps_what_was_computed(case_text, tmp_path, sent, status)
 @pytest.mark.parametrize("where", ["adhesive_nodes", "add"])
 def test_interruption_between_what_belongs_to_a_row(case_text, tmp_path, monkeypatch, where):
     """The third depth is computed, and is either kept or not."""
-    from restitution.studies import run
-    from restitution.studies.case import parse_case
-    from restitution.studies.results import ResultsFolder
+    from restitution.case.case_file import parse_case
+    from restitution.results.writer import ResultsFolder
+    from restitution.runs import run
 
     owner = run if where == "adhesive_nodes" else ResultsFolder
     calls, real = [], getattr(owner, where)
@@ -199,10 +199,10 @@ def test_interruption_between_what_belongs_to_a_row(case_text, tmp_path, monkeyp
 
 def test_interruption_while_results_are_written_loses_nothing(case_text, tmp_path, monkeypatch):
     """Twice, in the middle of the library's own writing."""
-    from restitution.studies.case import parse_case
-    from restitution.studies.reader import read_run
-    from restitution.studies.results import ResultsFolder
-    from restitution.studies.run import run_case
+    from restitution.case.case_file import parse_case
+    from restitution.results.reader import read_run
+    from restitution.results.writer import ResultsFolder
+    from restitution.runs.run import run_case
 
     write = xr.Dataset.to_netcdf
 

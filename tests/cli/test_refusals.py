@@ -344,8 +344,8 @@ SPACES, MANY = 10**5 * " ", 5000
     ],
 )
 def test_what_would_take_minutes_is_refused_at_once(case_text, old, new, words):
+    from restitution.case.case_file import parse_case
     from restitution.errors import CaseError
-    from restitution.studies.case import parse_case
 
     parse_case(case_text)  # the table of units is read once
     assert old in case_text

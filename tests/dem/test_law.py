@@ -35,9 +35,9 @@ PLASTIC = '[interface]\nyield_pressure = "750 MPa"\n'
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory):
     """Run a case once; return its results folder."""
-    from restitution.studies.case import parse_case
-    from restitution.studies.ensemble import run_realisations
-    from restitution.studies.results import ResultsFolder
+    from restitution.case.case_file import parse_case
+    from restitution.results.writer import ResultsFolder
+    from restitution.runs.ensemble import run_realisations
 
     known = {}
 

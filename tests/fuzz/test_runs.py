@@ -9,11 +9,11 @@ import random
 import pytest
 import tomli_w
 
+from restitution.case.case_file import parse_case
 from restitution.errors import DomainError, NotConvergedError, RestitutionError
-from restitution.studies.case import parse_case
-from restitution.studies.ensemble import run_realisations
-from restitution.studies.reader import read_curve, read_results, read_summary
-from restitution.studies.results import ResultsFolder
+from restitution.results.reader import read_curve, read_results, read_summary
+from restitution.results.writer import ResultsFolder
+from restitution.runs.ensemble import run_realisations
 from tolerance import approx
 
 BLOCKS, RUNS = 8, 5  # blocks of so many runs, times FUZZ

@@ -14,7 +14,7 @@ import sys
 
 import pytest
 
-from restitution.studies.reader import read_netcdf, read_run, read_study
+from restitution.results.reader import read_netcdf, read_run, read_study
 
 COUNT = max(1, round(2 * float(os.environ.get("FUZZ", "1")) + 1))
 
@@ -34,7 +34,7 @@ STATUS = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129}
 CALL = """
 import os, signal, sys, threading, time
 from xarray.backends.locks import CombinedLock
-from restitution.studies import results
+from restitution.results import writer
 
 def send():
     time.sleep({delay})
@@ -51,8 +51,8 @@ def announced(function):
         return function(*arguments, **options)
     return call
 
-changed = announced(getattr(results, {what!r}))
-setattr(results, {what!r}, changed)
+changed = announced(getattr(writer, {what!r}))
+setattr(writer, {what!r}, changed)
 
 leave = CombinedLock.__exit__
 left = []

@@ -33,7 +33,7 @@ def collide(
     from restitution.dem.law import velocity_of
     from restitution.dem.reference import collide_in_time, course, stored_force
     from restitution.errors import OutputError
-    from restitution.studies.results import write_table
+    from restitution.results.writer import write_table
 
     if out is not None and out.exists():
         raise OutputError(f"{out}: exists, and nothing is overwritten; name another file")

@@ -22,8 +22,8 @@ def compare(
 
     from restitution.cli.console import answers
     from restitution.errors import OutputError
-    from restitution.studies.compare import compare as compared
-    from restitution.studies.results import write_table
+    from restitution.results.compare import compare as compared
+    from restitution.results.writer import write_table
 
     found = compared(a, b)
     if out is not None:

@@ -28,9 +28,9 @@ def reproduce(
     from restitution.errors import CaseError, OutputError
     from restitution.reproduce.report import write_reproduction
     from restitution.reproduce.studies import NAMES, Size, bundled
-    from restitution.studies.store import StudyFolder
-    from restitution.studies.study import Tally, run_study
-    from restitution.studies.workers import local_workers
+    from restitution.sweeps.executors import local_workers
+    from restitution.sweeps.scheduler import Tally, run_study
+    from restitution.sweeps.study_folder import StudyFolder
 
     if quick and refined:
         raise CaseError("--quick and --refined: are two sizes; give one")

@@ -8,13 +8,13 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
+from restitution.case.bodies import BodyTable
 from restitution.dem.compact import compact_fit
 from restitution.dem.fitted import Begin, fitted_laws
 from restitution.dem.law import LAW_FILE, Conventions, Law, Particle, Point
 from restitution.errors import CaseError, OutputError, one_line
-from restitution.studies.error_budget import total
-from restitution.studies.particles import BodyTable
-from restitution.studies.reader import StoredRun, read_run, stored_case
+from restitution.results.reader import StoredRun, read_run, stored_case
+from restitution.runs.error_budget import total
 
 _Row = Mapping[str, float]
 _SAME = 1e-9  # relative difference of values that are the same

@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
+from restitution.case.quantities import read_positive
 from restitution.dem.interpolation import RatioCurve
 from restitution.errors import CaseError, DomainError, OutputError, one_line
-from restitution.studies.checksums import check_file
-from restitution.studies.quantities import read_positive
+from restitution.results.checksums import check_file
 
 Array = NDArray[np.float64]
 

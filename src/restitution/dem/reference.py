@@ -32,7 +32,7 @@ from restitution.errors import (
     OutputError,
     RestitutionError,
 )
-from restitution.studies.reader import damaged, read_results, stored_case
+from restitution.results.reader import damaged, read_results, stored_case
 
 Array = NDArray[np.float64]
 Force = Callable[[float], float]

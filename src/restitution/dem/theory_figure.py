@@ -10,13 +10,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from restitution.case.case import Case
 from restitution.dem.closed_forms import FORMS
 from restitution.dem.law import Law
 from restitution.dem.theories import COMPUTED, Theory, marks, theories
 from restitution.errors import OutputError
 from restitution.reports.figures import write_figure
-from restitution.studies.case import Case
-from restitution.studies.results import write_table, writing
+from restitution.results.writer import write_table, writing
 
 Array = NDArray[np.float64]
 

@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 from restitution.dem.law import LAW_FILE, Law
 from restitution.errors import OutputError
 from restitution.reports.figures import plain, write_figure
-from restitution.studies.interruption import hold_signals
-from restitution.studies.results import replace_file, write_checksums, write_table, writing
+from restitution.results.interruption import hold_signals
+from restitution.results.writer import replace_file, write_checksums, write_table, writing
 
 _FINE = 400
 

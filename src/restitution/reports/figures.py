@@ -15,8 +15,8 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from restitution.contact.resolution import NODES_PER_PATCH
-from restitution.studies.reader import read_results
-from restitution.studies.results import replace_file
+from restitution.results.reader import read_results
+from restitution.results.writer import replace_file
 from restitution.theory import adhesive_thornton_ning, hertz, jkr, thornton_ning
 
 _SIZE = (6.4, 4.4)

@@ -13,7 +13,7 @@ from plotly.graph_objects import Heatmap, Scatter
 from restitution.contact.resolution import NODES_PER_PATCH
 from restitution.reports.methods import methods
 from restitution.reports.page import Cell, Drawing, Listing, Page, Table, new_plot, write_page
-from restitution.studies.reader import read_results, read_summary
+from restitution.results.reader import read_results, read_summary
 
 _MOST_PIXELS = 320  # of a map, along either axis: more are skipped
 _MARGIN = 1.2  # of a logarithmic axis beyond the first and the last point

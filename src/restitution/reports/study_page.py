@@ -6,11 +6,11 @@ from pathlib import Path
 
 from plotly.graph_objects import Scatter
 
+from restitution.case.case_file import parse_toml
 from restitution.contact.resolution import NODES_PER_PATCH
 from restitution.reports.methods import methods
 from restitution.reports.page import Cell, Drawing, Listing, Page, Table, new_plot, write_page
-from restitution.studies.case import parse_toml
-from restitution.studies.reader import StoredCase, read_study, read_summary, read_text
+from restitution.results.reader import StoredCase, read_study, read_summary, read_text
 
 _MOST_LINES = 60  # in one figure: more cannot be told apart
 
