@@ -10,8 +10,7 @@ import time
 import pytest
 import xarray as xr
 
-from restitution.case import case as case_module
-from restitution.runs import run
+from restitution.runs import loading, run
 
 CALL = "from restitution.cli import main; main()"
 
@@ -29,7 +28,7 @@ def call(*arguments, before="", **options):
 
 
 def fail_at_the_third_depth(monkeypatch, error):
-    real, calls = case_module.solve, []
+    real, calls = loading.solve, []
 
     def solve(*arguments, **options):
         calls.append(arguments)
@@ -37,7 +36,7 @@ def fail_at_the_third_depth(monkeypatch, error):
             raise error
         return real(*arguments, **options)
 
-    monkeypatch.setattr(case_module, "solve", solve)
+    monkeypatch.setattr(loading, "solve", solve)
 
 
 def test_an_unforeseen_error_is_recorded(cli, case, tmp_path, monkeypatch):

@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from restitution.case import case as case_module
 from restitution.case.case_file import parse_case
 from restitution.errors import NotConvergedError
 from restitution.results.writer import ResultsFolder
+from restitution.runs import loading
 from restitution.runs.companions import Curve
 from restitution.runs.convergence import run_convergence
 from restitution.runs.ensemble import run_realisations
@@ -113,7 +113,7 @@ def test_what_no_companion_tells_is_not_known():
 
 
 def test_a_depth_that_fails_leaves_the_others_a_total_error(case_text, tmp_path, monkeypatch):
-    real, calls = case_module.solve, []
+    real, calls = loading.solve, []
 
     def solve(*arguments, **options):
         calls.append(arguments)
@@ -121,7 +121,7 @@ def test_a_depth_that_fails_leaves_the_others_a_total_error(case_text, tmp_path,
             raise NotConvergedError("the second depth")
         return real(*arguments, **options)
 
-    monkeypatch.setattr(case_module, "solve", solve)
+    monkeypatch.setattr(loading, "solve", solve)
     out = ResultsFolder(tmp_path / "out")
     with pytest.raises(NotConvergedError, match="the second depth"):
         run_realisations(parse_case(case_text), case_text, tmp_path, out)

@@ -15,10 +15,6 @@ from restitution.case.roughness import MeasuredRoughness, Roughness
 from restitution.case.schema import GridTable, ImpactTable, Series, Table, UnloadingTable
 from restitution.contact.bodies import Pair
 from restitution.contact.contact import Contact, smooth
-from restitution.contact.impact import solve_at_velocity
-from restitution.contact.load import solve_at_force
-from restitution.contact.loading import solve
-from restitution.contact.state import State
 from restitution.errors import CaseError
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface, composite
@@ -179,14 +175,3 @@ class Case(Table):
         table = self.indentation or self.load or self.impact
         assert table is not None  # _whole
         return table.series()
-
-    def load_to(self, contact: Contact, depth: float, start: State | None = None) -> State:
-        """The state of `contact` at one of these depths; `start` is that of a shallower one.
-
-        Raises as `solve`, `solve_at_force` and `solve_at_velocity`.
-        """
-        if self.load is not None:
-            return solve_at_force(contact, depth, start=start)
-        if self.impact is not None:
-            return solve_at_velocity(contact, depth, start=start)
-        return solve(contact, depth, start=start)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from restitution.case.case import Case
 from restitution.contact.resolution import NODES_PER_PATCH, median_patch, resolves
+from restitution.runs.loading import load_to
 
 FACTORS = (1, 2, 4, 8, 16)
 # Nodes of the finest grid that is tried unasked: a few minutes and about 2 GiB.
@@ -33,7 +34,7 @@ def settled(case: Case, folder: Path) -> tuple[Case, str | None]:
         finest = finer
         if factor == 1:
             nodes = contact.grid.nodes
-        state = finer.load_to(contact, shallowest)
+        state = load_to(finer, contact, shallowest)
         patch = median_patch(state.patch_sizes())
         if resolves(patch):
             return finer, None

@@ -31,6 +31,7 @@ from restitution.numerics.quadrature import integrate_curve
 from restitution.results.interruption import hold_signals
 from restitution.results.writer import ResultsFolder, results_dataset, versions
 from restitution.runs.error_budget import add_errors, band_warning, total_error_summary
+from restitution.runs.loading import load_to
 from restitution.runs.smooth import smooth_curve
 from restitution.surfaces import describe
 
@@ -179,7 +180,7 @@ def _load_and_unload(
     failure: RestitutionError | None = None
     for number, depth in enumerate(depths):
         try:
-            state = case.load_to(contact, depth, before)
+            state = load_to(case, contact, depth, before)
         except (NotConvergedError, DomainError) as error:
             failure = failure or error
             if not go_on or isinstance(error, DomainError):  # deeper ones reach the edge, too
