@@ -199,7 +199,7 @@ def test_interruption_between_what_belongs_to_a_row(case_text, tmp_path, monkeyp
 def test_interruption_while_results_are_written_loses_nothing(case_text, tmp_path, monkeypatch):
     """Twice, in the middle of the library's own writing."""
     from restitution.case.case_file import parse_case
-    from restitution.results.reader import read_run
+    from restitution.results.reader import RunResults
     from restitution.results.writer import ResultsFolder
     from restitution.runs.run import run_case
 
@@ -214,7 +214,8 @@ def test_interruption_while_results_are_written_loses_nothing(case_text, tmp_pat
     out = ResultsFolder(tmp_path / "out")
     with pytest.raises(KeyboardInterrupt):
         run_case(parse_case(case_text), case_text, tmp_path, out)
-    run = read_run(tmp_path / "out")
+    run = RunResults(tmp_path / "out")
+    run.check()
     assert run.summary["status"] == "complete"
     assert len(run.curve.rows) == 4
 

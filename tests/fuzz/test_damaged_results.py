@@ -18,7 +18,7 @@ import pytest
 
 from restitution.case.case_file import parse_case
 from restitution.dem.from_run import law_of
-from restitution.dem.write import write_law
+from restitution.dem.law_files import write_law
 from restitution.results.writer import ResultsFolder
 from restitution.runs.convergence import run_convergence
 from restitution.runs.ensemble import run_realisations

@@ -9,7 +9,7 @@ import pytest
 from restitution.case.case_file import parse_case
 from restitution.errors import OutputError
 from restitution.results.checksums import CHECKSUMS
-from restitution.results.reader import read_curve, read_results, read_run, read_summary
+from restitution.results.reader import EnsembleResults, RunResults, read_run
 from restitution.results.writer import ResultsFolder
 from restitution.runs.run import run_case
 
@@ -29,17 +29,17 @@ def copy(whole, tmp_path):
 
 
 def test_what_was_written_is_read(whole, case_text):
-    run = read_run(whole.path)
-    assert run.case == case_text
+    run = RunResults(whole.path)
+    run.check()
+    assert run.case_text == case_text
+    assert run.case == parse_case(case_text)
     assert [row["restitution"] for row in run.curve.rows] == [
         row["restitution"] for row in whole.rows
     ]
     assert [row["resolved"] for row in run.curve.rows] == [row["resolved"] for row in whole.rows]
     assert math.isnan(run.curve.rows[0]["material_error"])  # no value is the library's
     assert run.curve.rows[0]["total_error"] == whole.rows[0]["total_error"]
-    assert read_results(whole.path)["restitution"].values.tolist() == [
-        row["restitution"] for row in whole.rows
-    ]
+    assert run.dataset["restitution"].values.tolist() == [row["restitution"] for row in whole.rows]
 
 
 @pytest.mark.parametrize("name", ["curve.csv", "summary.json", "results.nc"])
@@ -49,7 +49,7 @@ def test_a_changed_byte_is_refused(copy, name, where):
     content[int(where * len(content))] ^= 1
     (copy / name).write_bytes(content)
     with pytest.raises(OutputError, match=rf"{name}: is damaged"):
-        read_run(copy)
+        RunResults(copy).check()
 
 
 def test_a_digit_is_told_by_the_checksum_alone(copy):
@@ -60,9 +60,9 @@ def test_a_digit_is_told_by_the_checksum_alone(copy):
     changed = text.replace(last, f"{last[:-1]}{(int(digit) + 1) % 10}")
     (copy / "curve.csv").write_text(changed)
     with pytest.raises(OutputError, match=r"curve\.csv: is damaged, or was edited"):
-        read_curve(copy)
+        RunResults(copy).curve  # noqa: B018
     (copy / CHECKSUMS).unlink()
-    read_curve(copy)
+    RunResults(copy).curve  # noqa: B018
 
 
 def changed_cell(column, text):
@@ -99,7 +99,7 @@ def test_a_table_that_no_run_writes_is_refused(copy, change, said):
     lines = (copy / "curve.csv").read_text().splitlines()
     (copy / "curve.csv").write_text("\n".join(change(lines)) + "\n")
     with pytest.raises(OutputError) as refused:
-        read_run(copy)
+        RunResults(copy).check()
     assert said in str(refused.value)
     assert str(copy) in str(refused.value)
 
@@ -113,11 +113,11 @@ def test_a_summary_that_no_run_writes_is_refused(copy, key, value):
     content = json.loads((copy / "summary.json").read_text())
     (copy / "summary.json").write_text(json.dumps({**content, key: value}))
     with pytest.raises(OutputError, match=rf"summary\.json: is damaged \({key}"):
-        read_summary(copy)
+        RunResults(copy).summary  # noqa: B018
     del content[key]
     (copy / "summary.json").write_text(json.dumps(content))
     with pytest.raises(OutputError, match=rf"summary\.json: is damaged \({key}"):
-        read_summary(copy)
+        RunResults(copy).summary  # noqa: B018
 
 
 @pytest.mark.parametrize("name", ["curve.csv", "summary.json", "results.nc", CHECKSUMS])
@@ -129,9 +129,27 @@ def test_what_is_no_such_file_is_refused(copy, name, content):
     else:
         (copy / name).write_bytes(content)
     if name == CHECKSUMS and content == b"":
-        read_run(copy)
+        RunResults(copy).check()
         return
     with pytest.raises(OutputError) as refused:
-        read_run(copy)
+        RunResults(copy).check()
     assert str(copy / name) in str(refused.value)
     assert "\n" not in str(refused.value)
+
+
+def test_unloading_curves_are_read_from_the_least_depth_up(whole):
+    curves = RunResults(whole.path).unloading
+    assert [curve.start for curve in curves] == sorted(start for start, _ in whole.unloading)
+    for curve, (_, points) in zip(curves, sorted(whole.unloading), strict=True):
+        assert list(zip(curve.indentation, curve.force, strict=True)) == points[::-1]
+        assert curve.indentation[-1] == curve.start
+
+
+def test_an_ensemble_is_told_by_its_summary(whole, copy):
+    assert not isinstance(read_run(whole.path), EnsembleResults)
+    (copy / CHECKSUMS).unlink()
+    content = json.loads((copy / "summary.json").read_text()) | {"realisations": [{}, {}]}
+    (copy / "summary.json").write_text(json.dumps(content))
+    run = read_run(copy)
+    assert isinstance(run, EnsembleResults)
+    assert run.surfaces == 2

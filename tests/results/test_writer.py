@@ -1,7 +1,14 @@
 import pytest
 
 from restitution.errors import OutputError
-from restitution.results.writer import ResultsFolder, replace_file, write_json
+from restitution.results.schema import LOCK
+from restitution.results.writer import (
+    ResultsFolder,
+    make_folder,
+    replace_file,
+    require_new_file,
+    write_json,
+)
 
 
 def test_a_new_folder_is_taken_back_when_nothing_was_computed(tmp_path):
@@ -42,3 +49,16 @@ def test_unloading_that_returns_another_work_is_warned_of(off, warned):
     assert (line is not None) is warned
     if warned:
         assert f"{off:+.1%}" in line
+
+
+def test_nothing_is_written_over_what_is_there(tmp_path):
+    assert make_folder(tmp_path / "new" / "folder")
+    assert not make_folder(tmp_path / "new" / "folder")
+    (tmp_path / "new" / "folder" / LOCK).touch()
+    assert not make_folder(tmp_path / "new" / "folder")
+    with pytest.raises(OutputError, match=r"not empty.*another one with -o, or go home"):
+        make_folder(tmp_path / "new", "go home")
+    require_new_file(None)
+    require_new_file(tmp_path / "new.csv")
+    with pytest.raises(OutputError, match="exists, and nothing is overwritten"):
+        require_new_file(tmp_path / "new")

@@ -39,7 +39,7 @@ def theory(
     from restitution.cli.console import answers
     from restitution.dem import theories as room
     from restitution.dem.law import read_law
-    from restitution.dem.theory_figure import write_theories
+    from restitution.reports.theory_figure import write_theories
 
     read, _ = read_case(case)
     points = None if law is None else read_law(law)

@@ -9,8 +9,8 @@ from importlib import import_module
 from pathlib import Path
 
 from restitution.dem.law import Law
+from restitution.dem.law_files import table
 from restitution.dem.matrix import Matrix, matrix_of
-from restitution.dem.write import table
 from restitution.errors import CaseError, OutputError
 from restitution.results.writer import replace_file, writing, written
 

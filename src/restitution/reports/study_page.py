@@ -10,14 +10,15 @@ from restitution.case.case_file import parse_toml
 from restitution.contact.resolution import NODES_PER_PATCH
 from restitution.reports.methods import methods
 from restitution.reports.page import Cell, Drawing, Listing, Page, Table, new_plot, write_page
-from restitution.results.reader import StoredCase, read_study, read_summary, read_text
+from restitution.results.reader import StoredCase, StudyResults
 
 _MOST_LINES = 60  # in one figure: more cannot be told apart
 
 
 def write_study_page(out: Path) -> Path:
     """Write `report.html` from the `table.csv`, `study.nc` and cases in `out`."""
-    cases, text = read_study(out), read_text(out / "study.toml")
+    study = StudyResults(out)
+    cases, text = study.cases, study.text
     title = str(parse_toml(text).get("title", ""))
     swept = list(cases[0].swept)
     count = {status: sum(case.status == status for case in cases)
@@ -32,7 +33,7 @@ def write_study_page(out: Path) -> Path:
     parts += [_cases(cases, swept), Listing("Study file", text)]
     complete = next((case.name for case in cases if case.status == "complete"), None)
     if complete is not None:
-        parts.append(methods(read_summary(out / "cases" / complete)))
+        parts.append(methods(study.run(complete).summary))
     page = Page(
         title=title or "Study",
         intro=[

@@ -12,7 +12,7 @@ import numpy as np
 
 from restitution.case.case_file import parse_toml
 from restitution.errors import OutputError
-from restitution.results.reader import read_curve, read_run, read_study, read_text
+from restitution.results.reader import RunResults, StudyResults
 
 _Row = Mapping[str, float]
 _SAME = 1e-9  # relative difference of depths that are the same
@@ -54,7 +54,8 @@ def _kind(folder: Path) -> str:
 
 
 def _studies(a: Path, b: Path) -> Comparison:
-    of_a, of_b = _read_cases(a), _read_cases(b)
+    studies = StudyResults(a), StudyResults(b)
+    of_a, of_b = map(_complete_cases, studies)
     common = [key for key in of_a if key in of_b]
     if not common:
         raise OutputError(
@@ -68,8 +69,7 @@ def _studies(a: Path, b: Path) -> Comparison:
     for name, this, other in ((a, of_a, of_b), (b, of_b, of_a)):
         if alone := len(this) - len([key for key in this if key in other]):
             notes.append(f"{alone} of {len(this)} cases are in {name} only")
-    texts = [read_text(folder / "study.toml") for folder in (a, b)]
-    return Comparison(rows, _inputs(*texts), notes)
+    return Comparison(rows, _inputs(*(study.text for study in studies)), notes)
 
 
 def _curves(
@@ -136,21 +136,24 @@ def _ratio(over: float, under: float) -> float:
     return over / under if under else math.nan
 
 
-def _read_cases(folder: Path) -> dict[tuple[tuple[str, str], ...], list[dict[str, float]]]:
+def _complete_cases(
+    study: StudyResults,
+) -> dict[tuple[tuple[str, str], ...], list[dict[str, float]]]:
     """Rows of the complete cases of a study by their swept values."""
     return {
         tuple(case.swept.items()): case.curve.rows
-        for case in read_study(folder)
+        for case in study.cases
         if case.status == "complete"
     }
 
 
 def _run(folder: Path) -> tuple[list[dict[str, float]], str]:
     """Rows and case of a run; of one that was killed, which has its curve alone, no case."""
+    run = RunResults(folder)
     if not (folder / "summary.json").exists() and not (folder / "results.nc").exists():
-        return read_curve(folder).rows, ""
-    run = read_run(folder)
-    return run.curve.rows, run.case
+        return run.curve.rows, ""
+    run.check()
+    return run.curve.rows, run.case_text
 
 
 def _inputs(a: str, b: str) -> list[tuple[str, str, str]]:

@@ -33,7 +33,7 @@ from restitution.contact.state import State
 from restitution.errors import OutputError, one_line
 from restitution.results.checksums import CHECKSUMS, checksums
 from restitution.results.interruption import hold_signals
-from restitution.results.schema import COLUMNS, LOCK, SPREAD_COLUMNS, UNLOADING_COLUMNS
+from restitution.results.schema import ALL_COLUMNS, COLUMNS, LOCK, UNLOADING_COLUMNS
 
 _BLOCK = 1 << 16  # bytes
 
@@ -86,14 +86,7 @@ class ResultsFolder:
         self.path = path
         self.rows: list[dict[str, float]] = []
         self.unloading: list[tuple[float, list[tuple[float, float]]]] = []
-        with writing(path):
-            self._new = not path.exists()
-            path.mkdir(parents=True, exist_ok=True)
-            if any(file.name != LOCK for file in path.iterdir()):
-                raise OutputError(
-                    f"{path}: this folder is not empty, and nothing in it is overwritten; "
-                    "name another one with -o, or move it away"
-                )
+        self._new = make_folder(path)
 
     @contextmanager
     def tables(self) -> Iterator[None]:
@@ -158,6 +151,29 @@ class ResultsFolder:
             write_json(self.path / "summary.json", summary)
             tables = sorted(path.name for path in self.path.glob("*.csv"))
             write_checksums(self.path, [*tables, "results.nc", "summary.json"])
+
+
+def make_folder(path: Path, remedy: str = "move it away") -> bool:
+    """Make the folder `path`, and return whether it is new.
+
+    Raises `OutputError` where it holds anything or cannot be written; `remedy` is what the user can
+    do besides naming another folder.
+    """
+    with writing(path):
+        new = not path.exists()
+        path.mkdir(parents=True, exist_ok=True)
+        if any(file.name != LOCK for file in path.iterdir()):
+            raise OutputError(
+                f"{path}: this folder is not empty, and nothing in it is overwritten; name another "
+                f"one with -o, or {remedy}"
+            )
+    return new
+
+
+def require_new_file(path: Path | None) -> None:
+    """Raise `OutputError` where there is a file `path`; None is no file."""
+    if path is not None and path.exists():
+        raise OutputError(f"{path}: exists, and nothing is overwritten; name another file")
 
 
 def write_checksums(folder: Path, names: Sequence[str]) -> None:
@@ -254,10 +270,11 @@ def results_dataset(folder: ResultsFolder, deepest: State) -> xr.Dataset:
 def curve_variables(rows: Sequence[Mapping[str, float]]) -> dict[str, Any]:
     """The variables of `results.nc` for the rows of a curve."""
     data: dict[str, Any] = {}
-    for column, (name, unit, meaning) in {**COLUMNS, **SPREAD_COLUMNS}.items():
-        if rows and column in rows[0]:
-            values = np.array([row[column] for row in rows])
-            data[name] = ("indentation_max", values, {"units": unit, "long_name": meaning})
+    for name, column in ALL_COLUMNS.items():
+        if rows and name in rows[0]:
+            values = np.array([row[name] for row in rows])
+            attributes = {"units": column.unit, "long_name": column.meaning}
+            data[column.variable] = ("indentation_max", values, attributes)
     return data
 
 

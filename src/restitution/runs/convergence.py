@@ -13,7 +13,6 @@ margin of 1.5 on the last; it held in 95 % of the cases of docs/resolution.md. O
 
 from __future__ import annotations
 
-import json
 import math
 import time
 from collections.abc import Callable, Sequence
@@ -21,12 +20,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from restitution.case.case import Case
 from restitution.case.schema import MOST_NODES
 from restitution.errors import CaseError, RestitutionError
 from restitution.results.interruption import hold_signals
+from restitution.results.reader import RunResults
 from restitution.results.schema import COLUMNS
 from restitution.results.writer import ResultsFolder, curve_variables, write_table
 from restitution.runs.error_budget import (
@@ -185,12 +184,11 @@ def _keep(
             for factor, row in rows.items()
         ],
     )
-    one = out.path / f"refine-{max(runs)}"
-    summary: dict[str, Any] = json.loads((one / "summary.json").read_text(encoding="utf-8"))
-    summary |= {
+    one = RunResults(out.path / f"refine-{max(runs)}")
+    summary = one.summary | {
         "status": ended["status"],
         "reason": ended["reason"],
-        "warnings": ended["known"] + summary["warnings"],
+        "warnings": ended["known"] + one.summary["warnings"],
         "title": case.title,
         "grids": sorted(runs),
         "observed_order": None if math.isnan(order) else order,
@@ -199,8 +197,11 @@ def _keep(
     }
     errors = [row["discretisation_error"] for row in finest]
     known = [error for error in errors if not math.isnan(error)]
-    summary["trust"]["largest_discretisation_error"] = max(known, default=None)
-    summary["trust"] |= total_error_summary(case, finest)
+    summary["trust"] = {
+        **one.summary["trust"],
+        "largest_discretisation_error": max(known, default=None),
+        **total_error_summary(case, finest),
+    }
     if lacking:
         summary["warnings"].append(
             f"{lacking} of {len(finest)} depths are not resolved: even the finest grid leaves out "
@@ -211,8 +212,7 @@ def _keep(
             f"{len(errors) - len(known)} of {len(errors)} depths have no discretisation_error: "
             "coarser grids miss the contact there; begin deeper, or with a finer grid (grid.refine)"
         )
-    with xr.open_dataset(one / "results.nc", engine="netcdf4") as stored:
-        dataset = stored.load().assign(curve_variables(out.rows))
+    dataset = one.dataset.assign(curve_variables(out.rows))
     coarser = sorted(runs)[:-1]
     values = [
         [rows[factor]["restitution"] if factor in rows else math.nan for rows in depths

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import time
 from collections.abc import Callable, Sequence
@@ -10,12 +9,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from restitution.case.case import Case
 from restitution.contact.resolution import unresolved_warning
 from restitution.errors import RestitutionError
 from restitution.results.interruption import hold_signals
+from restitution.results.reader import RunResults
 from restitution.results.schema import COLUMNS
 from restitution.results.writer import ResultsFolder, curve_variables, write_table
 from restitution.runs.error_budget import MISSING_BAND, add_errors, total, total_error_summary
@@ -146,12 +145,10 @@ class _Ensemble:
             self.out.path / "realisations.csv",
             [{"realisation": k + 1, **row} for k, of in self.curves.items() for row in of],
         )
-        one = self.out.path / f"realisation-{min(self.curves) + 1}"
-        self.summary = self._summary(json.loads((one / "summary.json").read_text(encoding="utf-8")))
-        with xr.open_dataset(one / "results.nc", engine="netcdf4") as first:
-            smooth = [name for name in first if str(name).startswith("smooth_")]
-            dataset = first[smooth].load().assign(curve_variables(rows))
-            dataset.attrs = {**first.attrs, **{k: self.summary[k] for k in ("title", "status")}}
+        one = RunResults(self.out.path / f"realisation-{min(self.curves) + 1}")
+        self.summary = self._summary(one.summary)
+        dataset = one.smooth().assign(curve_variables(rows))
+        dataset.attrs |= {key: self.summary[key] for key in ("title", "status")}
         dataset.attrs["warnings"] = "\n".join(self.summary["warnings"])
         self.out.write(dataset, self.summary)
 

@@ -20,9 +20,15 @@ import xarray as xr
 from restitution.errors import OutputError
 from restitution.results.interruption import hold_signals
 from restitution.results.locking import locked
-from restitution.results.reader import read_curve, read_json, read_run, read_text
-from restitution.results.schema import COLUMNS, LOCK, SPREAD_COLUMNS
-from restitution.results.writer import replace_file, write_checksums, write_netcdf, writing
+from restitution.results.reader import RunResults, read_json, read_text
+from restitution.results.schema import ALL_COLUMNS, COLUMNS
+from restitution.results.writer import (
+    make_folder,
+    replace_file,
+    write_checksums,
+    write_netcdf,
+    writing,
+)
 from restitution.sweeps.coordinates import as_text, coordinate
 from restitution.sweeps.sweep import Study, SweptCase
 from restitution.sweeps.task import Outcome
@@ -50,12 +56,8 @@ class StudyFolder:
                     f"{path}: holds another study (its study.toml differs); name another folder "
                     "with -o, or the file it was begun with"
                 )
-        elif path.exists() and any(file.name != LOCK for file in path.iterdir()):
-            more = ", or go on with --resume" if held.is_file() else ", or move it away"
-            raise OutputError(
-                f"{path}: this folder is not empty, and nothing in it is overwritten; name another "
-                f"one with -o{more}"
-            )
+        else:
+            make_folder(path, "go on with --resume" if held.is_file() else "move it away")
         with writing(path):
             self._cases.mkdir(parents=True, exist_ok=True)
         replace_file(held, lambda to: to.write_text(study.text, encoding="utf-8"))
@@ -98,7 +100,8 @@ class StudyFolder:
                 return None
             if (folder / FAILED).is_file():
                 return str(read_json(folder / FAILED)["reason"]) or None
-            run = read_run(folder)
+            run = RunResults(folder)
+            run.check()
         except (OutputError, OSError, ValueError, KeyError):
             return None
         return "" if run.curve.rows and run.summary["status"] == "complete" else None
@@ -107,7 +110,7 @@ class StudyFolder:
         """Write `table.csv` and `study.nc` from the cases there are."""
         known = {case.number: self.reason(case) for case in self.study.cases}
         curves = {
-            case.number: read_curve(self._cases / case.name)
+            case.number: RunResults(self._cases / case.name).curve
             for case in self.study.cases
             if known[case.number] == ""
         }
@@ -139,8 +142,6 @@ class StudyFolder:
         """All curves, their dimensions named by the swept quantities, and by depth."""
         study = self.study
         depths = max((len(rows) for rows in curves.values()), default=0)
-        units = {**COLUMNS, **SPREAD_COLUMNS}
-        present = [c for c in units if any(c in rows[0] for rows in curves.values())]
         if study.mode == "paired":
             dims: tuple[str, ...] = ("case",)
             coordinates: dict[str, Any] = {
@@ -150,15 +151,16 @@ class StudyFolder:
             dims = tuple(study.swept)
             coordinates = {key: (key, *coordinate(values)) for key, values in study.swept.items()}
         data: dict[str, Any] = {}
-        for column in present:
-            name, unit, meaning = units[column]
+        for name, column in ALL_COLUMNS.items():
+            if not any(name in rows[0] for rows in curves.values()):
+                continue
             values = np.full((len(study.cases), depths), np.nan)
             for row, case in enumerate(study.cases):
                 for k, numbers in enumerate(curves.get(case.number, [])):
-                    values[row, k] = numbers.get(column, math.nan)
-            data[name] = (
+                    values[row, k] = numbers.get(name, math.nan)
+            data[column.variable] = (
                 (*dims, "depth"), values.reshape(*study.shape, depths),
-                {"units": unit, "long_name": meaning},
+                {"units": column.unit, "long_name": column.meaning},
             )  # fmt: skip
         reasons = [known[case.number] for case in study.cases]
         data["status"] = (

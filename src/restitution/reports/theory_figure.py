@@ -14,9 +14,8 @@ from restitution.case.case import Case
 from restitution.dem.closed_forms import FORMS
 from restitution.dem.law import Law
 from restitution.dem.theories import COMPUTED, Theory, marks, theories
-from restitution.errors import OutputError
 from restitution.reports.figures import write_figure
-from restitution.results.writer import write_table, writing
+from restitution.results.writer import make_folder, write_table
 
 Array = NDArray[np.float64]
 
@@ -27,13 +26,7 @@ def write_theories(
     case: Case, velocities: Array, found: list[Theory], out: Path, law: Law | None = None
 ) -> list[Path]:
     """Write `theory.csv` and `theory.png` into `out`, new or empty. Raises `OutputError`."""
-
-    with writing(out):
-        out.mkdir(parents=True, exist_ok=True)
-        if any(out.iterdir()):
-            raise OutputError(
-                f"{out}: this folder is not empty, and nothing in it is overwritten; name another"
-            )
+    make_folder(out)
     rows = [
         {"velocity_m_per_s": float(V), **{each.name: float(each.restitution[k]) for each in found}}
         for k, V in enumerate(velocities)
