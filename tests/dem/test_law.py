@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from restitution.dem.from_run import bare_law, law_of
-from restitution.dem.law import Law, read_law
-from restitution.dem.law_files import write_law
+from restitution.dem.law import Law
+from restitution.dem.law_files import read_law, write_law
 from restitution.errors import CaseError, DomainError, OutputError
 from tolerance import approx
 

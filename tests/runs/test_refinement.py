@@ -25,8 +25,9 @@ def patch(case, factor, tmp_path):
 
 def test_the_first_grid_that_resolves_is_taken(auto, tmp_path):
     case = parse_case(auto)
-    found, warning = settled(case, tmp_path)
-    assert warning is None
+    said = []
+    found = settled(case, tmp_path, said.append)
+    assert said == []
     assert found.grid.refine > 1
     assert resolves(patch(case, found.grid.refine, tmp_path))
     assert not resolves(patch(case, found.grid.refine // 2, tmp_path))
@@ -34,20 +35,21 @@ def test_the_first_grid_that_resolves_is_taken(auto, tmp_path):
 
 def test_a_number_is_left_as_it_is(case_text, tmp_path):
     case = parse_case(case_text)
-    assert settled(case, tmp_path) == (case, None)
+    assert settled(case, tmp_path, pytest.fail) == case
 
 
 def test_it_says_why_it_cannot(auto, tmp_path, monkeypatch):
     monkeypatch.setattr(refinement, "MOST_NODES", 2 * 72 * 64)
-    found, warning = settled(parse_case(auto), tmp_path)
+    said = []
+    found = settled(parse_case(auto), tmp_path, said.append)
     assert found.grid.refine == 1
-    assert "the next grid would have 144 x 128 nodes" in warning
-    assert "not resolved" in warning
+    assert "the next grid would have 144 x 128 nodes" in said[0]
+    assert "not resolved" in said[0]
     monkeypatch.setattr(refinement, "MOST_NODES", 2**24)
     monkeypatch.setattr(refinement, "FACTORS", (1, 2))
-    found, warning = settled(parse_case(auto.replace("0.05 um", "0.5 um")), tmp_path)
+    found = settled(parse_case(auto.replace("0.05 um", "0.5 um")), tmp_path, said.append)
     assert found.grid.refine == 2
-    assert "2 is the largest refine" in warning
+    assert "2 is the largest refine" in said[1]
 
 
 def test_a_run_has_it_in_its_results(auto, tmp_path, monkeypatch):
@@ -70,6 +72,5 @@ def test_a_run_has_it_in_its_results(auto, tmp_path, monkeypatch):
 def test_a_load_is_probed_as_a_load(auto, tmp_path):
     a, b = auto.index("[indentation]"), auto.index("[unloading]")
     loaded = auto[:a] + '[load]\nvalues = ["1 mN"]\n' + auto[b:]
-    found, warning = settled(parse_case(loaded), tmp_path)
-    assert warning is None
+    found = settled(parse_case(loaded), tmp_path, pytest.fail)
     assert found.grid.refine >= 1

@@ -38,7 +38,7 @@ def theory(
     from restitution.case.case_file import naming, read_case
     from restitution.cli.console import answers
     from restitution.dem import theories as room
-    from restitution.dem.law import read_law
+    from restitution.dem.law_files import read_law
     from restitution.reports.theory_figure import write_theories
 
     read, _ = read_case(case)

@@ -11,7 +11,8 @@ from pydantic import ValidationError
 from restitution.case.bodies import BodyTable
 from restitution.dem.compact import compact_fit
 from restitution.dem.fitted import Begin, fitted_laws
-from restitution.dem.law import LAW_FILE, Conventions, Law, Particle, Point
+from restitution.dem.law import Conventions, Law, Particle, Point
+from restitution.dem.law_files import LAW_FILE
 from restitution.errors import CaseError, OutputError, one_line
 from restitution.results.reader import EnsembleResults, RunResults, read_run
 from restitution.runs.error_budget import total

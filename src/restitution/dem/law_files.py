@@ -5,9 +5,15 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-from restitution.dem.law import LAW_FILE, Law
+from pydantic import ValidationError
+
+from restitution.dem.law import Law
+from restitution.errors import CaseError, OutputError
+from restitution.results.checksums import check_file
 from restitution.results.interruption import hold_signals
 from restitution.results.writer import make_folder, replace_file, write_checksums, write_table
+
+LAW_FILE = "law.json"
 
 
 def write_law(law: Law, out: Path) -> list[Path]:
@@ -23,6 +29,28 @@ def write_law(law: Law, out: Path) -> list[Path]:
             names.append("laws.csv")
         write_checksums(out, names)
     return [out / name for name in names]
+
+
+def read_law(folder: Path) -> Law:
+    """The law in `folder` (of `restitution law`). Raises `OutputError`, `CaseError`."""
+    path = folder / LAW_FILE if folder.is_dir() else folder
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError):
+        raise OutputError(
+            f"{folder}: holds no law ({LAW_FILE}); name the folder of -o of `restitution law`"
+        ) from None
+    check_file(path)
+    try:
+        return Law.model_validate_json(text)
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(map(str, first["loc"])) or "the whole"
+        why = first["msg"].removeprefix("Value error, ")
+        raise CaseError(
+            f"{path}: is not a law of this version ({where}: {why}); make it again with "
+            "`restitution law`"
+        ) from None
 
 
 def table(law: Law) -> list[dict[str, float | str]]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from pathlib import Path
 
 from plotly.graph_objects import Scatter
@@ -26,7 +28,7 @@ def write_study_page(out: Path) -> Path:
     parts: list[Table | Drawing | Listing] = []
     if count["complete"]:
         parts.append(_restitution(cases, swept, "indentation_m", 1e6, "maximum indentation", "µm"))
-        if any(row["impact_velocity_m_per_s"] for case in cases for row in case.curve.cells):
+        if any(_has(row, "impact_velocity_m_per_s") for case in cases for row in case.curve.rows):
             parts.append(
                 _restitution(cases, swept, "impact_velocity_m_per_s", 1.0, "impact velocity", "m/s")
             )
@@ -79,16 +81,16 @@ def _restitution(
     drawn = [case for case in cases if case.status == "complete"]
     table: list[list[Cell]] = []
     for number, case in enumerate(drawn):
-        rows = [row for row in case.curve.cells if row[column]]
-        x = [scale * float(row[column]) for row in rows]
-        y = [float(row["restitution"]) for row in rows]
-        name = (
-            ", ".join(f"{key.rsplit('.', 1)[-1]} {rows[0][key]}" for key in swept) if rows else ""
-        )
-        table += [[*(row[key] for key in swept), a, b, row["resolved"]]
-                  for row, a, b in zip(rows, x, y, strict=True)]  # fmt: skip
+        rows = [row for row in case.curve.rows if _has(row, column)]
+        x = [scale * row[column] for row in rows]
+        y = [row["restitution"] for row in rows]
+        resolved = ["true" if row["resolved"] else "false" for row in rows]
+        name = ", ".join(f"{key.rsplit('.', 1)[-1]} {value}" for key, value in case.swept.items())
+        table += [
+            [*case.swept.values(), a, b, yes] for a, b, yes in zip(x, y, resolved, strict=True)
+        ]
         if number < _MOST_LINES and rows:
-            open_or_not = ["circle" if row["resolved"] == "true" else "circle-open" for row in rows]
+            open_or_not = ["circle" if row["resolved"] else "circle-open" for row in rows]
             plot.add_trace(
                 Scatter(x=x, y=y, mode="lines+markers", name=_escaped(name),
                         marker={"symbol": open_or_not, "size": 7})
@@ -102,6 +104,11 @@ def _restitution(
         f"Open markers: not resolved by the grid. A click in the legend hides a case.{few}",
         Table("Restitution", [*swept, f"{words} ({unit})", "COR", "resolved"], table),
     )
+
+
+def _has(row: Mapping[str, float], column: str) -> bool:
+    """Whether the cell of `row` in `column` has a number."""
+    return not math.isnan(row[column])
 
 
 def _escaped(text: str) -> str:

@@ -7,7 +7,7 @@ the same impact velocity.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -21,6 +21,7 @@ from restitution.contact.bodies import Pair
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.path import loading_path
 from restitution.errors import CaseError, DomainError, RestitutionError
+from restitution.runs.log import Say, ignore
 from restitution.surfaces.refine import coarsen
 
 Array = NDArray[np.float64]
@@ -89,7 +90,7 @@ class Companions:
         """The curve of the case itself on cells twice as large, without its shortest waves."""
         return self._curve(self._coarse(self.case))
 
-    def others(self, progress: Callable[[str], None] = lambda _: None) -> Iterator[Curve]:
+    def others(self, progress: Say = ignore) -> Iterator[Curve]:
         """Curves of other surfaces of the same kind: other seeds, or other places of the scan."""
         for number in range(1, SURFACES + 1):
             progress(f"error: surface {number} of {SURFACES}")

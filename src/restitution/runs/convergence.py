@@ -14,8 +14,7 @@ margin of 1.5 on the last; it held in 95 % of the cases of docs/resolution.md. O
 from __future__ import annotations
 
 import math
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -23,8 +22,7 @@ import numpy as np
 
 from restitution.case.case import Case
 from restitution.case.schema import MOST_NODES
-from restitution.errors import CaseError, RestitutionError
-from restitution.results.interruption import hold_signals
+from restitution.errors import CaseError
 from restitution.results.reader import RunResults
 from restitution.results.schema import COLUMNS
 from restitution.results.writer import ResultsFolder, curve_variables, write_table
@@ -36,10 +34,12 @@ from restitution.runs.error_budget import (
     total_error_summary,
     widened_error,
 )
+from restitution.runs.log import RunLog, Say, ignore
 from restitution.runs.refinement import settled
-from restitution.runs.run import run_case, said_before
+from restitution.runs.run import run_case
 
 _Row = dict[str, float]
+_Runs = dict[int, tuple[float, list[_Row]]]  # refine → how much later (m) it touches, its rows
 
 
 def run_convergence(
@@ -48,8 +48,8 @@ def run_convergence(
     folder: Path,
     out: ResultsFolder,
     grids: int = 3,
-    progress: Callable[[str], None] = lambda _: None,
-    warn: Callable[[str], None] = lambda _: None,
+    progress: Say = ignore,
+    warn: Say = ignore,
 ) -> dict[str, Any]:
     """Run `case` on its grid and on ones with cells 2, 4 … times smaller; return the summary.
 
@@ -60,20 +60,14 @@ def run_convergence(
     the highest summit is missed, so it is pressed less deep by that difference. What stops a run
     stops the rest, and what was done is kept.
     """
-    try:
-        case, coarse = settled(case, folder)
-        levels = _levels(case, folder, grids)
-    except BaseException:
-        out.discard()
-        raise
-    said = [coarse] if coarse else []
-    if coarse:
-        warn(coarse)
-    began = time.perf_counter()
-    runs: dict[int, tuple[float, list[_Row]]] = {}
-    status, reason = "failed", "stopped by an unforeseen error"
-    try:
-        for factor, later in levels.items():
+    log, runs = RunLog(progress, warn), _Runs()
+    unsettled: list[str] = []
+
+    def compute() -> None:
+        nonlocal case
+        case = settled(case, folder, log.warn)
+        unsettled[:] = log.warnings
+        for factor, later in _levels(case, folder, grids).items():
             part, refined = out.part(f"refine-{factor}"), _pressed_less(case, later)
             if not refined.depths():
                 warn(f"refine = {factor}: misses the contact at every depth")
@@ -82,39 +76,28 @@ def run_convergence(
             try:
                 run_case(
                     refined.refined(factor), text, folder, part,
-                    _named(progress, f"refine = {factor}"),
-                    said_before(part, warn if not runs else None, said), errors=False,
+                    log.progress_of(f"refine = {factor}"),
+                    ignore if runs else log.warnings_of(part), errors=False,
                 )  # fmt: skip
             finally:
                 if part.rows:
                     runs[factor] = later, part.rows
         if case.total_error and runs:
             _add_errors(case, folder, runs, progress)
-        status, reason = "complete", ""
-    except KeyboardInterrupt:
-        status, reason = "interrupted", "stopped by the user"
-        raise
-    except RestitutionError as error:
-        reason = str(error)
-        raise
-    finally:
-        if runs:
-            ended = {"status": status, "reason": reason, "known": [coarse] if coarse else []}
-            with hold_signals():
-                summary = _keep(case, folder, out, runs, ended, began)
-        else:
-            out.discard()
-    for warning in summary["warnings"]:
-        if warning not in said:
-            warn(warning)
+
+    def keep() -> dict[str, Any] | None:
+        return _keep(case, folder, out, runs, log, unsettled) if runs else None
+
+    summary = log.record(out, compute, keep)
+    assert summary is not None  # the finest grid does not miss the contact
     return summary
 
 
 def _add_errors(
     case: Case,
     folder: Path,
-    runs: dict[int, tuple[float, list[_Row]]],
-    progress: Callable[[str], None],
+    runs: _Runs,
+    progress: Say,
 ) -> None:
     """Put the errors of surface and materials into the finest rows, from the coarsest grid."""
     coarsest, finest = case.refined(min(runs)), runs[max(runs)][1]
@@ -122,10 +105,6 @@ def _add_errors(
     add_errors(coarsest, folder, coarsest.surface(folder), alone, progress)
     for row, errors in zip(finest, alone, strict=True):
         row.update({name: errors[name] for name in ("surface_scatter", "material_error")})
-
-
-def _named(progress: Callable[[str], None], name: str) -> Callable[[str], None]:
-    return lambda words: progress(f"{name}, {words}")
 
 
 def _levels(case: Case, folder: Path, grids: int) -> dict[int, float]:
@@ -166,9 +145,9 @@ def _keep(
     case: Case,
     folder: Path,
     out: ResultsFolder,
-    runs: dict[int, tuple[float, list[_Row]]],
-    ended: dict[str, Any],
-    began: float,
+    runs: _Runs,
+    log: RunLog,
+    unsettled: list[str],
 ) -> dict[str, Any]:
     """Write the curve of the finest grid, the table of all, and the summary, which is returned."""
     depths = _by_depth(case, runs)
@@ -186,13 +165,13 @@ def _keep(
     )
     one = RunResults(out.path / f"refine-{max(runs)}")
     summary = one.summary | {
-        "status": ended["status"],
-        "reason": ended["reason"],
-        "warnings": ended["known"] + one.summary["warnings"],
+        "status": log.status,
+        "reason": log.reason,
+        "warnings": unsettled + one.summary["warnings"],
         "title": case.title,
         "grids": sorted(runs),
         "observed_order": None if math.isnan(order) else order,
-        "seconds": round(time.perf_counter() - began, 3),
+        "seconds": log.seconds,
         "convolutions": sum(int(row["convolutions"]) for _, rows in runs.values() for row in rows),
     }
     errors = [row["discretisation_error"] for row in finest]
@@ -223,7 +202,7 @@ def _keep(
         {"units": "1", "long_name": "coefficient of restitution on coarser grids"},
     )  # fmt: skip
     dataset["refine"] = coarser
-    dataset.attrs |= {"title": case.title, "status": ended["status"]}
+    dataset.attrs |= {"title": case.title, "status": log.status}
     dataset.attrs["warnings"] = "\n".join(summary["warnings"])
     out.write(dataset, summary)
     return summary
@@ -249,7 +228,7 @@ def _with_grid_errors(case: Case, folder: Path, rows: list[_Row]) -> int:
     return lacking
 
 
-def _by_depth(case: Case, runs: dict[int, tuple[float, list[_Row]]]) -> list[dict[int, _Row]]:
+def _by_depth(case: Case, runs: _Runs) -> list[dict[int, _Row]]:
     """For each depth its row on every grid that reached it, with error and order."""
     asked = case.depths()
     found: list[dict[int, _Row]] = [{} for _ in asked]

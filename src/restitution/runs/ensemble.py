@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -13,13 +12,13 @@ import numpy as np
 from restitution.case.case import Case
 from restitution.contact.resolution import unresolved_warning
 from restitution.errors import RestitutionError
-from restitution.results.interruption import hold_signals
 from restitution.results.reader import RunResults
 from restitution.results.schema import COLUMNS
 from restitution.results.writer import ResultsFolder, curve_variables, write_table
 from restitution.runs.error_budget import MISSING_BAND, add_errors, total, total_error_summary
+from restitution.runs.log import RunLog, Say, ignore
 from restitution.runs.refinement import settled
-from restitution.runs.run import run_case, said_before
+from restitution.runs.run import run_case
 
 CONFIDENCE = 0.95
 _Row = dict[str, float]
@@ -35,8 +34,8 @@ def run_realisations(
     text: str,
     folder: Path,
     out: ResultsFolder,
-    progress: Callable[[str], None] = lambda _: None,
-    warn: Callable[[str], None] = lambda _: None,
+    progress: Say = ignore,
+    warn: Say = ignore,
 ) -> dict[str, Any]:
     """Run `case` on each of its surfaces, as `run_case` does on one, and return the summary.
 
@@ -45,72 +44,52 @@ def run_realisations(
     A surface that fails is recorded, and the others go on; when all fail, the first failure is
     raised. `grid.refine = "auto"` is settled first (`refinement`), for all alike.
     """
-    try:
-        case, coarse = settled(case, folder)
-    except BaseException:
-        out.discard()
-        raise
-    if coarse:
-        warn(coarse)
     if case.realisations == 1:
-        return run_case(case, text, folder, out, progress, warn, [coarse] if coarse else [])
-    ensemble = _Ensemble(case, text, out, [coarse] if coarse else [])
-    try:
-        for number in range(case.realisations):
-            ensemble.run(number, folder, progress, warn)
-        ensemble.add_errors(folder, progress)
-        ensemble.status, ensemble.reason = "complete", ""
-    except KeyboardInterrupt:
-        ensemble.status, ensemble.reason = "interrupted", "stopped by the user"
-        raise
-    finally:
-        if ensemble.curves:
-            with hold_signals():
-                ensemble.keep()
-        else:
-            out.discard()
-    if not ensemble.curves:
+        return run_case(case, text, folder, out, progress, warn)
+    ensemble = _Ensemble(case, text, folder, out, RunLog(progress, warn))
+    summary = ensemble.log.record(out, ensemble.compute, ensemble.keep)
+    if summary is None:
         raise ensemble.failures[0]
-    for warning in ensemble.summary["warnings"][len(ensemble.known) :]:
-        warn(warning)
-    return ensemble.summary
+    return summary
 
 
 class _Ensemble:
     """What an ensemble has come to."""
 
-    def __init__(self, case: Case, text: str, out: ResultsFolder, known: list[str]) -> None:
-        self.case, self.text, self.out, self.known = case, text, out, known
-        self.status, self.reason = "failed", "stopped by an unforeseen error"
-        self.began = time.perf_counter()
+    def __init__(
+        self, case: Case, text: str, folder: Path, out: ResultsFolder, log: RunLog
+    ) -> None:
+        self.case, self.text, self.folder, self.out, self.log = case, text, folder, out, log
         self.curves: dict[int, list[_Row]] = {}
         self.failures: list[RestitutionError] = []
         self.ended: list[dict[str, Any]] = []
         self.errors: list[_Row] = []
         self.band_errors: list[float] = []
 
-    def run(
-        self,
-        number: int,
-        folder: Path,
-        progress: Callable[[str], None],
-        warn: Callable[[str], None],
-    ) -> None:
+    def compute(self) -> None:
+        """Run every surface, and find the errors of their mean."""
+        self.case = settled(self.case, self.folder, self.log.warn)
+        for number in range(self.case.realisations):
+            self._run(number)
+        self._add_errors()
+
+    def _run(self, number: int) -> None:
         name = f"realisation {number + 1} of {self.case.realisations}"
         case = self.case.realisation(number)
         title = f"{case.title}, {name}" if case.title else name
         part = self.out.part(f"realisation-{number + 1}")
         reason = ""
         try:
+            # What is foreseen of the first is foreseen of most.
             run_case(
-                case.model_copy(update={"title": title}), self.text, folder, part,
-                progress=lambda words: progress(f"{name}, {words}"),
-                warn=said_before(part, None if number else warn, self.known), errors=False,
+                case.model_copy(update={"title": title}), self.text, self.folder, part,
+                progress=self.log.progress_of(name),
+                warn=ignore if number else self.log.warnings_of(part), errors=False,
             )  # fmt: skip
         except RestitutionError as error:
             self.failures.append(error)
             reason = str(error)
-            warn(f"{name}: {reason}")
+            self.log.tell(f"{name}: {reason}")
         except KeyboardInterrupt:
             reason = "stopped by the user"
             raise
@@ -120,7 +99,7 @@ class _Ensemble:
             depths = len(part.rows)
             self.ended.append({"realisation": number + 1, "depths": depths, "reason": reason})
 
-    def add_errors(self, folder: Path, progress: Callable[[str], None]) -> None:
+    def _add_errors(self) -> None:
         """Find the errors of grid and materials, on the surface that has reached most depths.
 
         The scatter between surfaces is known from the ensemble itself.
@@ -131,14 +110,22 @@ class _Ensemble:
         case, rows = self.case.realisation(number), self.curves[number]
         alone = [dict(row) for row in rows]
         try:
-            surface = case.surface(folder)
-            self.band_errors = add_errors(case, folder, surface, alone, progress, scattered=False)
+            self.band_errors = add_errors(
+                case,
+                self.folder,
+                case.surface(self.folder),
+                alone,
+                self.log.progress,
+                scattered=False,
+            )
         except RestitutionError as error:
-            self.known.append(f"total_error is not known: {error}")
+            self.log.warnings.append(f"total_error is not known: {error}")
         self.errors = alone
 
-    def keep(self) -> None:
+    def keep(self) -> dict[str, Any] | None:
         """Write the curve of the ensemble, its summary and the table of all surfaces."""
+        if not self.curves:
+            return None
         rows = mean_rows(list(self.curves.values()), self.errors)
         self.out.put_curve(rows)
         write_table(
@@ -146,11 +133,12 @@ class _Ensemble:
             [{"realisation": k + 1, **row} for k, of in self.curves.items() for row in of],
         )
         one = RunResults(self.out.path / f"realisation-{min(self.curves) + 1}")
-        self.summary = self._summary(one.summary)
+        summary = self._summary(one.summary)
         dataset = one.smooth().assign(curve_variables(rows))
-        dataset.attrs |= {key: self.summary[key] for key in ("title", "status")}
-        dataset.attrs["warnings"] = "\n".join(self.summary["warnings"])
-        self.out.write(dataset, self.summary)
+        dataset.attrs |= {key: summary[key] for key in ("title", "status")}
+        dataset.attrs["warnings"] = "\n".join(summary["warnings"])
+        self.out.write(dataset, summary)
+        return summary
 
     def _summary(self, one: dict[str, Any]) -> dict[str, Any]:
         whole = [row for of in self.curves.values() for row in of]
@@ -169,14 +157,14 @@ class _Ensemble:
             )
         return {
             "title": self.case.title,
-            "status": self.status,
-            "reason": self.reason,
+            "status": self.log.status,
+            "reason": self.log.reason,
             "realisations_asked": self.case.realisations,
             "realisations": self.ended,
             "confidence": CONFIDENCE,
             "depths_asked": len(self.case.depths()),
             "depths_computed": len(self.out.rows),
-            "warnings": self.known + [warning for warning in warnings if warning],
+            "warnings": self.log.warnings + [warning for warning in warnings if warning],
             **{
                 key: one[key]
                 for key in ("model", "materials", "conventions", "derived", "device", "versions")
@@ -187,7 +175,7 @@ class _Ensemble:
             }
             | total_error_summary(self.case, self.out.rows),
             "convolutions": sum(int(row["convolutions"]) for row in whole),
-            "seconds": round(time.perf_counter() - self.began, 3),
+            "seconds": self.log.seconds,
         }
 
     def _unlike(self) -> str | None:

@@ -21,7 +21,7 @@ The constants were chosen on some 260 random cases, 30 of them adhesive, and che
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -31,6 +31,7 @@ from numpy.typing import NDArray
 from restitution.case.case import Case
 from restitution.contact.resolution import resolves
 from restitution.runs.companions import SURFACES, Companions
+from restitution.runs.log import Say, ignore
 from restitution.surfaces import Surface, rms_slope
 from restitution.surfaces.refine import coarsen
 
@@ -122,7 +123,7 @@ def add_errors(
     folder: Path,
     surface: Surface,
     rows: Sequence[Row],
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Say = ignore,
     *,
     scattered: bool = True,
 ) -> list[float]:

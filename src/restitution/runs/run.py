@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -25,13 +24,15 @@ from restitution.contact.resolution import (
     unresolved_warning,
 )
 from restitution.contact.state import State
-from restitution.errors import DomainError, NotConvergedError, RestitutionError, one_line
+from restitution.errors import DomainError, NotConvergedError, RestitutionError
 from restitution.numerics.device import current
 from restitution.numerics.quadrature import integrate_curve
 from restitution.results.interruption import hold_signals
 from restitution.results.writer import ResultsFolder, results_dataset, versions
 from restitution.runs.error_budget import add_errors, band_warning, total_error_summary
 from restitution.runs.loading import load_to
+from restitution.runs.log import RunLog, Say, ignore
+from restitution.runs.refinement import settled
 from restitution.runs.smooth import smooth_curve
 from restitution.surfaces import describe
 
@@ -52,18 +53,15 @@ _BALANCE = 0.01  # difference of unloading work and stored energy that is worth 
 
 
 @dataclass
-class _Progress:
-    """What a run has come to: how it ended, and what bears on how far it can be trusted."""
+class _Run(RunLog):
+    """A run, with what bears on how far it can be trusted."""
 
-    status: str = "failed"
-    reason: str = "stopped by an unforeseen error"
     deepest: State | None = None
-    warnings: list[str] = field(default_factory=list)
     loading_work_errors: list[float] = field(default_factory=list)
     asked: list[float] = field(default_factory=list)
     adhesive_nodes: list[float] = field(default_factory=list)
     band_errors: list[float] = field(default_factory=list)
-    seconds: list[float] = field(default_factory=list)
+    depth_seconds: list[float] = field(default_factory=list)
     unloading_checks: list[dict[str, float]] = field(default_factory=list)
 
 
@@ -72,9 +70,8 @@ def run_case(
     text: str,
     folder: Path,
     out: ResultsFolder,
-    progress: Callable[[str], None] = lambda _: None,
-    warn: Callable[[str], None] = lambda _: None,
-    known: Sequence[str] = (),
+    progress: Say = ignore,
+    warn: Say = ignore,
     *,
     errors: bool = True,
 ) -> dict[str, Any]:
@@ -85,75 +82,43 @@ def run_case(
     on; without, as one of several runs whose rows are compared by their number, it ends the curve.
     So does contact at the edge of the grid. Either makes the run a failed one in the end.
 
-    It has one surface and a number for `grid.refine` (see `ensemble` and `refinement`). `known` are
-    warnings that were said before and belong to the results. `progress` is called with a few words
-    after every depth, `warn` with every warning: what is foreseen before the first solve, what the
-    results show at the end, whichever end it is.
+    It is of one surface (see `ensemble`); `grid.refine = "auto"` is settled first (`refinement`).
+    `progress` is called with a few words after every depth, `warn` with every warning: what is
+    foreseen before the first solve, what the results show at the end, whichever end it is.
     Whatever stops the run is raised again once everything computed until then, and the reason, are
     in the folder; when nothing was, the folder is taken back.
     """
-    began = time.perf_counter()
-    run = _Progress()
-    try:
+    run = _Run(progress, warn)
+
+    def compute() -> None:
+        nonlocal case
+        case = settled(case, folder, run.warn)
         contact = case.contact(folder)
         foreseen = deepest_indentation(case)
         require_small(contact, foreseen)
         refuse_coarse_scan(contact, foreseen)
-        run.warnings += omissions(case)
-        run.warnings += foreseen_warnings(contact, foreseen) + implausible(contact, foreseen)
-        for warning in run.warnings:
-            warn(warning)
-        run.warnings[:0] = known
+        warnings = omissions(case) + foreseen_warnings(contact, foreseen)
+        for warning in warnings + implausible(contact, foreseen):
+            run.warn(warning)
         with out.tables():
-            failure = _load_and_unload(contact, case, out, run, progress, go_on=errors)
+            failure = _load_and_unload(contact, case, out, run, go_on=errors)
         if errors and case.total_error and out.rows:
-            _add_errors(case, folder, contact, out, run, progress)
+            _add_errors(case, folder, contact, out, run)
         if failure is not None:
             raise failure
-        run.status, run.reason = "complete", ""
-    except KeyboardInterrupt:
-        run.status, run.reason = "interrupted", "stopped by the user"
-        raise
-    except RestitutionError as error:
-        run.reason = str(error)
-        raise
-    except Exception as error:
-        run.reason = one_line(f"{run.reason}: {type(error).__name__} {error}".strip())
-        raise
-    finally:
-        if run.deepest is None:
-            out.discard()
-        else:
-            with hold_signals():  # what was computed is not lost to an interruption just now
-                summary = _keep(case, text, out, run, run.deepest, began)
-            for warning in summary["warnings"][len(run.warnings) :]:
-                warn(warning)
+
+    def keep() -> dict[str, Any] | None:
+        return None if run.deepest is None else _keep(case, text, out, run, run.deepest)
+
+    summary = run.record(out, compute, keep)
+    assert summary is not None  # where no depth is computed, `compute` raises
     return summary
 
 
-def said_before(
-    part: ResultsFolder, warn: Callable[[str], None] | None, said: list[str]
-) -> Callable[[str], None]:
-    """A `warn` for one of several runs: what is foreseen of it goes to `said` and to `warn`.
-
-    What is foreseen of the first is foreseen of most: the others are given None. What results show
-    is not passed on: it is for the whole of the runs to say.
-    """
-
-    def say(warning: str) -> None:
-        if warn is not None and not part.rows:
-            said.append(warning)
-            warn(warning)
-
-    return say
-
-
-def _keep(
-    case: Case, text: str, out: ResultsFolder, run: _Progress, deepest: State, began: float
-) -> dict[str, Any]:
+def _keep(case: Case, text: str, out: ResultsFolder, run: _Run, deepest: State) -> dict[str, Any]:
     """Write what the run has come to, and return its summary."""
     summary = _summarise(case, deepest.contact, out, run)
-    summary["seconds"] = round(time.perf_counter() - began, 3)
+    summary["seconds"] = run.seconds
     dataset = results_dataset(out, deepest)
     with suppress(RestitutionError):  # a reference that fails is no reason to fail
         dataset = dataset.assign(smooth_curve(deepest.contact, out.rows))
@@ -166,8 +131,7 @@ def _load_and_unload(
     contact: Contact,
     case: Case,
     out: ResultsFolder,
-    run: _Progress,
-    progress: Callable[[str], None],
+    run: _Run,
     *,
     go_on: bool,
 ) -> RestitutionError | None:
@@ -185,7 +149,7 @@ def _load_and_unload(
             failure = failure or error
             if not go_on or isinstance(error, DomainError):  # deeper ones reach the edge, too
                 break
-            progress(f"{number + 1} of {len(depths)} depths")
+            run.progress(f"{number + 1} of {len(depths)} depths")
             continue
         before = state
         followed = contact.adhesive and case.unloading.method == "path"
@@ -206,9 +170,9 @@ def _load_and_unload(
         if number in unloaded and state.contact_nodes:
             out.add_unloading(back)
             run.unloading_checks.append(_check(state, back, collision))
-        run.seconds.append(round(time.perf_counter() - began, 4))
+        run.depth_seconds.append(round(time.perf_counter() - began, 4))
         began = time.perf_counter()
-        progress(f"{number + 1} of {len(depths)} depths")
+        run.progress(f"{number + 1} of {len(depths)} depths")
     return failure
 
 
@@ -217,12 +181,11 @@ def _add_errors(
     folder: Path,
     contact: Contact,
     out: ResultsFolder,
-    run: _Progress,
-    progress: Callable[[str], None],
+    run: _Run,
 ) -> None:
     """Put the total error into the rows, and warn of what the grid leaves out of the surface."""
     try:
-        run.band_errors = add_errors(case, folder, contact.surface, out.rows, progress)
+        run.band_errors = add_errors(case, folder, contact.surface, out.rows, run.progress)
     except RestitutionError as error:
         run.warnings.append(f"total_error is not known: {error}")
     out.put_curve(out.rows)
@@ -242,7 +205,7 @@ def _check(state: State, back: list[State], collision: Collision) -> dict[str, f
     }
 
 
-def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Progress) -> dict[str, Any]:
+def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> dict[str, Any]:
     patches = [row["median_patch_nodes"] for row in out.rows]
     depths = [row["indentation_m"] for row in out.rows]
     nodes = run.adhesive_nodes[: len(depths)]  # interrupted, there may be one more
@@ -284,7 +247,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Progress)
         },
         "device": current().name,
         "convolutions": sum(int(row["convolutions"]) for row in out.rows),
-        "seconds_by_depth": run.seconds,
+        "seconds_by_depth": run.depth_seconds,
         "versions": versions(),
     }
 
