@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
@@ -11,7 +13,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 from restitution.case import needs
 from restitution.case.quantities import Angle, Length, Position
 from restitution.case.schema import PairOf, Table
-from restitution.errors import shown
+from restitution.errors import SurfaceError, shown
 from restitution.numerics.grid import Grid
 from restitution.surfaces import (
     Surface,
@@ -54,6 +56,16 @@ Realisations = Annotated[int, Field(ge=1, le=MOST_REALISATIONS)]
 Seed = Annotated[int, Field(ge=0, lt=2**63)]
 
 
+@contextmanager
+def _naming(arguments: Mapping[str, Any]) -> Iterator[None]:
+    """Turn the name of an argument at the head of a refusal into the key of the case file."""
+    try:
+        yield
+    except SurfaceError as error:
+        name = str(error).split(":", 1)[0]
+        raise SurfaceError(f"roughness.{error}" if name in arguments else str(error)) from None
+
+
 class GeneratedRoughness(Table):
     """`[roughness]` with `kind` exponential, gaussian or self-affine."""
 
@@ -81,10 +93,9 @@ class GeneratedRoughness(Table):
         made = needs.generated_bytes(grid, normal=normal, periodic=self.periodic)
         needs.require(max(made, needs.generated_bytes(fine, normal=True, periodic=True)), fine)
         asked = self.model_dump(exclude={"realisations"})
-        return kept(
-            {"generated": asked, "nodes": grid.nodes, "spacing": grid.spacing, "refine": factor},
-            lambda: refine(generate_surface(grid, **asked), factor),
-        )
+        key = {"generated": asked, "nodes": grid.nodes, "spacing": grid.spacing, "refine": factor}
+        with _naming(asked):
+            return kept(key, lambda: refine(generate_surface(grid, **asked), factor))
 
 
 class CropTable(Table):
