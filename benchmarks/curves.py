@@ -35,7 +35,7 @@ from restitution import (
     smooth,
     solve,
 )
-from restitution.studies.case import read_case
+from restitution.case.case_file import read_case
 
 ROOT = Path(__file__).parents[1]
 EXAMPLE = ROOT / "examples" / "steel.toml"

@@ -17,7 +17,7 @@ from scaling import PAIR, indentation, surface_of
 from unit import machine, today
 
 from restitution import Contact, Grid, collide, generate_surface, on_device, solve, solve_batch
-from restitution.studies.case import read_case
+from restitution.case.case_file import read_case
 
 BANDWIDTH = 3.35e12  # bytes/s: H100 SXM5, its data sheet
 

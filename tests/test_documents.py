@@ -52,7 +52,7 @@ def test_bundled_examples_are_valid(cli, path):
 
 
 def test_every_key_of_a_case_is_documented():
-    from restitution.studies.case import Case
+    from restitution.case.case import Case
 
     text = (ROOT / "docs" / "case-file.md").read_text()
 
@@ -70,7 +70,7 @@ def test_every_key_of_a_case_is_documented():
 
 
 def test_every_column_is_documented():
-    from restitution.studies.results import COLUMNS, SPREAD_COLUMNS
+    from restitution.results.schema import COLUMNS, SPREAD_COLUMNS
 
     text = (ROOT / "docs" / "results.md").read_text()
     for column in (*COLUMNS, *SPREAD_COLUMNS):

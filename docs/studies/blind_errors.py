@@ -116,10 +116,10 @@ def _generated(
 
 def examine(task: tuple[int, Path]) -> list[dict[str, object]]:
     """The rows of one case: what was stated, and the reference."""
+    from restitution.case.case_file import parse_case
     from restitution.errors import RestitutionError
-    from restitution.studies.case import parse_case
-    from restitution.studies.results import ResultsFolder
-    from restitution.studies.run import run_case
+    from restitution.results.writer import ResultsFolder
+    from restitution.runs.run import run_case
 
     seed, scans = task
     kind, text = draw(seed, scans)
@@ -157,7 +157,7 @@ def examine(task: tuple[int, Path]) -> list[dict[str, object]]:
 
 def _reference(case, rows, seed):
     """Mean COR at the loading works of `rows` and its standard error."""
-    from restitution.studies.companions import curve_of
+    from restitution.runs.companions import curve_of
 
     rng = np.random.default_rng([seed, 1])
     work = np.array([row["loading_work_J"] for row in rows])

@@ -19,14 +19,14 @@ from pathlib import Path
 import numpy as np
 from shared import write_table
 
+from restitution.case.case_file import parse_case
 from restitution.dem.export import export, write_export
 from restitution.dem.from_run import bare_law, law_of
 from restitution.dem.law import Law
 from restitution.dem.reference import collide_in_time, stored_force
-from restitution.dem.write import write_law
-from restitution.studies.case import parse_case
-from restitution.studies.results import ResultsFolder
-from restitution.studies.run import run_case
+from restitution.reports.law_figure import write_law_figure
+from restitution.results.writer import ResultsFolder
+from restitution.runs.run import run_case
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "dem.toml"
 COMMANDS = {
@@ -144,9 +144,9 @@ def main() -> None:
         fits(law)
         in_time(out, law)
         coverage(text, place)
-        write_law(law, place / "law")
         if len(sys.argv) > 1:
-            shutil.copy(place / "law" / "law.png", Path(sys.argv[1]) / "dem-law.png")
+            drawn = write_law_figure(law, place)
+            shutil.copy(drawn, Path(sys.argv[1]) / "dem-law.png")
         equal = text.replace('second = "steel"', "")
         in_codes(law_of(run(equal, place / "equal")), place)
 

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from restitution.studies.materials import materials
+from restitution.case.materials import materials
 
 QUANTITIES = {
     "youngs_modulus": ("Young's modulus E", "GPa", 1e9),

@@ -10,8 +10,7 @@ import time
 import pytest
 import xarray as xr
 
-from restitution.studies import case as case_module
-from restitution.studies import run
+from restitution.runs import loading, run
 
 CALL = "from restitution.cli import main; main()"
 
@@ -29,7 +28,7 @@ def call(*arguments, before="", **options):
 
 
 def fail_at_the_third_depth(monkeypatch, error):
-    real, calls = case_module.solve, []
+    real, calls = loading.solve, []
 
     def solve(*arguments, **options):
         calls.append(arguments)
@@ -37,7 +36,7 @@ def fail_at_the_third_depth(monkeypatch, error):
             raise error
         return real(*arguments, **options)
 
-    monkeypatch.setattr(case_module, "solve", solve)
+    monkeypatch.setattr(loading, "solve", solve)
 
 
 def test_an_unforeseen_error_is_recorded(cli, case, tmp_path, monkeypatch):
@@ -175,9 +174,9 @@ def test_interruption_keeps_what_was_computed(case_text, tmp_path, sent, status)
 @pytest.mark.parametrize("where", ["adhesive_nodes", "add"])
 def test_interruption_between_what_belongs_to_a_row(case_text, tmp_path, monkeypatch, where):
     """The third depth is computed, and is either kept or not."""
-    from restitution.studies import run
-    from restitution.studies.case import parse_case
-    from restitution.studies.results import ResultsFolder
+    from restitution.case.case_file import parse_case
+    from restitution.results.writer import ResultsFolder
+    from restitution.runs import run
 
     owner = run if where == "adhesive_nodes" else ResultsFolder
     calls, real = [], getattr(owner, where)
@@ -199,10 +198,10 @@ def test_interruption_between_what_belongs_to_a_row(case_text, tmp_path, monkeyp
 
 def test_interruption_while_results_are_written_loses_nothing(case_text, tmp_path, monkeypatch):
     """Twice, in the middle of the library's own writing."""
-    from restitution.studies.case import parse_case
-    from restitution.studies.reader import read_run
-    from restitution.studies.results import ResultsFolder
-    from restitution.studies.run import run_case
+    from restitution.case.case_file import parse_case
+    from restitution.results.reader import RunResults
+    from restitution.results.writer import ResultsFolder
+    from restitution.runs.run import run_case
 
     write = xr.Dataset.to_netcdf
 
@@ -215,7 +214,8 @@ def test_interruption_while_results_are_written_loses_nothing(case_text, tmp_pat
     out = ResultsFolder(tmp_path / "out")
     with pytest.raises(KeyboardInterrupt):
         run_case(parse_case(case_text), case_text, tmp_path, out)
-    run = read_run(tmp_path / "out")
+    run = RunResults(tmp_path / "out")
+    run.check()
     assert run.summary["status"] == "complete"
     assert len(run.curve.rows) == 4
 

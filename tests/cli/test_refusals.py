@@ -344,8 +344,8 @@ SPACES, MANY = 10**5 * " ", 5000
     ],
 )
 def test_what_would_take_minutes_is_refused_at_once(case_text, old, new, words):
+    from restitution.case.case_file import parse_case
     from restitution.errors import CaseError
-    from restitution.studies.case import parse_case
 
     parse_case(case_text)  # the table of units is read once
     assert old in case_text
@@ -364,7 +364,7 @@ def test_the_other_keys_that_are_wrong_are_named(refused_case):
 
 
 def test_a_law_with_a_wrong_value_is_said_in_plain_words(tmp_path):
-    from restitution.dem.law import read_law
+    from restitution.dem.law_files import read_law
     from restitution.errors import CaseError
 
     (tmp_path / "law.json").write_text("{}")

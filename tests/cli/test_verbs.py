@@ -304,12 +304,12 @@ def test_a_wait_shows_a_spinner_after_a_while(monkeypatch):
 
 @pytest.mark.parametrize("verb", ["check", "surface"])
 def test_the_surface_is_made_once(cli, case_text, tmp_path, monkeypatch, verb):
-    from restitution.studies import tables
+    from restitution.case import roughness
 
     made = []
-    make = tables.generate_surface
+    make = roughness.generate_surface
     monkeypatch.setattr(
-        tables, "generate_surface", lambda *a, **more: made.append(1) or make(*a, **more)
+        roughness, "generate_surface", lambda *a, **more: made.append(1) or make(*a, **more)
     )
     (tmp_path / "case.toml").write_text(case_text)
     out = () if verb == "check" else ("-o", tmp_path / "out")

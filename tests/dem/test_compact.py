@@ -7,7 +7,8 @@ import pytest
 
 from restitution.dem.compact import compact_fit
 from restitution.dem.fitted import fitted_laws
-from restitution.dem.write import figure, table
+from restitution.dem.law_files import table
+from restitution.reports.law_figure import figure
 from restitution.theory import thornton_ning, yielding
 from tolerance import approx
 

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from restitution.dem.export import CODES, export
-from restitution.dem.law import read_law
-from restitution.dem.write import write_law
+from restitution.dem.law_files import read_law, write_law
 from tolerance import approx
 
 CASE = """

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from restitution.dem.from_run import bare_law, law_of
-from restitution.dem.law import Law, read_law
-from restitution.dem.write import write_law
+from restitution.dem.law import Law
+from restitution.dem.law_files import read_law, write_law
 from restitution.errors import CaseError, DomainError, OutputError
 from tolerance import approx
 
@@ -35,9 +35,9 @@ PLASTIC = '[interface]\nyield_pressure = "750 MPa"\n'
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory):
     """Run a case once; return its results folder."""
-    from restitution.studies.case import parse_case
-    from restitution.studies.ensemble import run_realisations
-    from restitution.studies.results import ResultsFolder
+    from restitution.case.case_file import parse_case
+    from restitution.results.writer import ResultsFolder
+    from restitution.runs.ensemble import run_realisations
 
     known = {}
 
@@ -112,7 +112,7 @@ def test_nothing_is_extrapolated(rough, factor):
 def test_a_law_is_read_as_it_was_written(rough, tmp_path):
     law = law_of(rough)
     names = {path.name for path in write_law(law, tmp_path / "law")}
-    assert names == {"law.json", "table.csv", "laws.csv", "law.png"}
+    assert names == {"law.json", "table.csv", "laws.csv"}
     assert read_law(tmp_path / "law") == law
     with open(tmp_path / "law" / "table.csv", newline="") as file:
         rows = list(csv.DictReader(file))

@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from restitution.case.case_file import parse_case
 from restitution.contact.bodies import Body, Pair
 from restitution.dem.from_run import bare_law
 from restitution.dem.reference import StoredForce, collide_in_time, course, stored_force
 from restitution.errors import CaseError, DomainError, OutputError
-from restitution.studies.case import parse_case
-from restitution.studies.ensemble import run_realisations
-from restitution.studies.results import ResultsFolder
+from restitution.results.writer import ResultsFolder
+from restitution.runs.ensemble import run_realisations
 from restitution.theory import thornton_ning
 from tolerance import approx
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from restitution import theory
+from restitution.case.case_file import parse_case
 from restitution.dem import theories as room
 from restitution.dem.fitted import fitted_laws
 from restitution.dem.law import Particle
 from restitution.errors import CaseError
-from restitution.studies.case import parse_case
 from restitution.theory import (
     adhesive_thornton_ning,
     brilliantov,

@@ -5,11 +5,11 @@ import csv
 import numpy as np
 import pytest
 
+from restitution.case.case_file import parse_case
 from restitution.dem import theories as room
-from restitution.dem import theory_figure as drawn
 from restitution.dem.closed_forms import FORMS
 from restitution.errors import OutputError
-from restitution.studies.case import parse_case
+from restitution.reports import theory_figure as drawn
 
 CASE = """
 [first]

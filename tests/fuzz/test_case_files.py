@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 import tomli_w
 
+from restitution.case.case_file import parse_case
+from restitution.case.derived import deepest_indentation, derived_quantities
 from restitution.contact.plausibility import implausible, require_small
 from restitution.contact.resolution import foreseen_warnings, refuse_coarse_scan
 from restitution.errors import RestitutionError
-from restitution.studies.case import parse_case
-from restitution.studies.derived import deepest_indentation, derived_quantities
 
 CASES = 400
 MOST_NODES = 80**2

@@ -16,17 +16,17 @@ from pathlib import Path
 
 import pytest
 
+from restitution.case.case_file import parse_case
 from restitution.dem.from_run import law_of
-from restitution.dem.write import write_law
-from restitution.studies import workers
-from restitution.studies.case import parse_case
-from restitution.studies.convergence import run_convergence
-from restitution.studies.ensemble import run_realisations
-from restitution.studies.results import ResultsFolder
-from restitution.studies.store import StudyFolder
-from restitution.studies.study import run_study
-from restitution.studies.sweep import parse_study
-from restitution.studies.workers import Workers
+from restitution.dem.law_files import write_law
+from restitution.results.writer import ResultsFolder
+from restitution.runs.convergence import run_convergence
+from restitution.runs.ensemble import run_realisations
+from restitution.sweeps import executors
+from restitution.sweeps.executors import Workers
+from restitution.sweeps.scheduler import run_study
+from restitution.sweeps.study_folder import StudyFolder
+from restitution.sweeps.sweep import parse_study
 
 COUNT = max(1, round(30 * float(os.environ.get("FUZZ", "1")) - 20))
 FOLDERS = ("run", "ensemble", "converge", "study", "law")
@@ -108,7 +108,7 @@ def spoil(kind, damaged, number):
 
 @pytest.mark.parametrize("number", range(COUNT), ids=lambda number: f"damage-{number}")
 def test_damaged_results(number, whole, tmp_path, cli, monkeypatch):
-    monkeypatch.setattr(workers, "local_workers", in_threads)
+    monkeypatch.setattr(executors, "local_workers", in_threads)
     kind = FOLDERS[number % len(FOLDERS)]
     damaged = tmp_path / kind
     shutil.copytree(whole / kind, damaged)

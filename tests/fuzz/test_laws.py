@@ -18,8 +18,9 @@ from restitution.dem.compact import compact_fit
 from restitution.dem.export import CODES, export
 from restitution.dem.fitted import fitted_laws
 from restitution.dem.law import Law, Particle, Point
-from restitution.dem.write import figure, table
+from restitution.dem.law_files import table
 from restitution.errors import DomainError, RestitutionError
+from restitution.reports.law_figure import figure
 
 FUZZ = float(os.environ.get("FUZZ", "1"))
 CONVENTIONS = {

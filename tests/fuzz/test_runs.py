@@ -9,11 +9,11 @@ import random
 import pytest
 import tomli_w
 
+from restitution.case.case_file import parse_case
 from restitution.errors import DomainError, NotConvergedError, RestitutionError
-from restitution.studies.case import parse_case
-from restitution.studies.ensemble import run_realisations
-from restitution.studies.reader import read_curve, read_results, read_summary
-from restitution.studies.results import ResultsFolder
+from restitution.results.reader import RunResults
+from restitution.results.writer import ResultsFolder
+from restitution.runs.ensemble import run_realisations
 from tolerance import approx
 
 BLOCKS, RUNS = 8, 5  # blocks of so many runs, times FUZZ
@@ -106,16 +106,17 @@ def run(number, folder):
         status = "failed"
         if not folder.exists():
             return "nothing stored"
-    summary = read_summary(folder)
+    stored = RunResults(folder)
+    summary = stored.summary
     assert summary["status"] == status
-    rows = read_curve(folder).rows
+    rows = stored.curve.rows
     assert rows
     for row in rows:
         check(row, case)
     flagged = " ".join(summary["warnings"])
     if any(not row["resolved"] for row in rows):
         assert "not resolved" in flagged
-    read_results(folder)
+    assert stored.dataset.sizes["indentation_max"] == len(rows)
     return status
 
 

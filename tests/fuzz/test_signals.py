@@ -14,7 +14,7 @@ import sys
 
 import pytest
 
-from restitution.studies.reader import read_netcdf, read_run, read_study
+from restitution.results.reader import RunResults, StudyResults, read_netcdf
 
 COUNT = max(1, round(2 * float(os.environ.get("FUZZ", "1")) + 1))
 
@@ -34,7 +34,7 @@ STATUS = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129}
 CALL = """
 import os, signal, sys, threading, time
 from xarray.backends.locks import CombinedLock
-from restitution.studies import results
+from restitution.results import writer
 
 def send():
     time.sleep({delay})
@@ -51,8 +51,8 @@ def announced(function):
         return function(*arguments, **options)
     return call
 
-changed = announced(getattr(results, {what!r}))
-setattr(results, {what!r}, changed)
+changed = announced(getattr(writer, {what!r}))
+setattr(writer, {what!r}, changed)
 
 leave = CombinedLock.__exit__
 left = []
@@ -128,10 +128,11 @@ def assert_readable(kind, out, status):
     elif kind in ("study", "workers"):
         # Before the first table is written the folder is one that --resume finishes.
         if status == 0 or (out / "table.csv").exists():
-            assert all(case.status in ("complete", "missing") for case in read_study(out))
+            assert all(case.status in ("complete", "missing") for case in StudyResults(out).cases)
             read_netcdf(out / "study.nc")
     else:
-        run = read_run(out)  # saving had begun: what was computed is there
+        run = RunResults(out)
+        run.check()  # saving had begun: what was computed is there
         assert run.summary["status"] in ("complete", "interrupted")
         assert (run.summary["status"] == "complete") == (run.summary["reason"] == "")
         assert run.summary["depths_computed"] > 0

@@ -92,8 +92,8 @@ def test_the_oldest_make_room(folder, monkeypatch):
 
 
 def test_cases_use_it(folder, case_text, tmp_path, monkeypatch):
-    from restitution.studies import tables
-    from restitution.studies.case import parse_case
+    from restitution.case import roughness
+    from restitution.case.case_file import parse_case
 
     np.save(tmp_path / "scan.npy", 1e-8 * np.random.default_rng(1).standard_normal((40, 40)))
     begin, end = case_text.index("[roughness]"), case_text.index("[grid]")
@@ -105,7 +105,7 @@ def test_cases_use_it(folder, case_text, tmp_path, monkeypatch):
         first = parse_case(text).surface(tmp_path)
         with monkeypatch.context() as patch:
             for name in ("generate_surface", "extend"):
-                patch.setattr(tables, name, lambda *_, **__: pytest.fail("made again"))
+                patch.setattr(roughness, name, lambda *_, **__: pytest.fail("made again"))
             again = parse_case(text).surface(tmp_path)
         np.testing.assert_array_equal(first.height, again.height)
         assert first.provenance == again.provenance

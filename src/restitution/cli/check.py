@@ -14,12 +14,12 @@ def check(
     """Validate CASE and print R*, E*, m*, yield and contact size; solve nothing."""
     from rich.table import Table
 
+    from restitution.case.case_file import naming, read_case
+    from restitution.case.derived import deepest_indentation, derived_quantities
     from restitution.cli.console import answers, waiting, warn
     from restitution.contact.plausibility import implausible, require_small
     from restitution.contact.resolution import foreseen_warnings, refuse_coarse_scan
     from restitution.numerics.memory import available, in_words
-    from restitution.studies.case import naming, read_case
-    from restitution.studies.derived import deepest_indentation, derived_quantities
     from restitution.surfaces import describe
 
     read, _ = read_case(case)

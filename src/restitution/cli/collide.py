@@ -32,11 +32,9 @@ def collide(
     from restitution.dem.from_run import bare_law
     from restitution.dem.law import velocity_of
     from restitution.dem.reference import collide_in_time, course, stored_force
-    from restitution.errors import OutputError
-    from restitution.studies.results import write_table
+    from restitution.results.writer import require_new_file, write_table
 
-    if out is not None and out.exists():
-        raise OutputError(f"{out}: exists, and nothing is overwritten; name another file")
+    require_new_file(out)
     law, force = bare_law(results), stored_force(results)
     asked = [velocity_of(text) for text in velocity or []]
     unloaded = force.unloading_from

@@ -21,14 +21,12 @@ def compare(
     from rich.table import Table
 
     from restitution.cli.console import answers
-    from restitution.errors import OutputError
-    from restitution.studies.compare import compare as compared
-    from restitution.studies.results import write_table
+    from restitution.results.compare import compare as compared
+    from restitution.results.writer import require_new_file, write_table
 
     found = compared(a, b)
+    require_new_file(out)
     if out is not None:
-        if out.exists():
-            raise OutputError(f"{out}: exists, and nothing is overwritten; name another file")
         write_table(out, found.rows)
     if found.inputs:
         inputs = Table(box=None, header_style="bold")

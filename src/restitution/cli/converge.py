@@ -19,7 +19,7 @@ def converge(
 ) -> None:
     """Run CASE on its grid and finer ones; write COR with its discretisation error to OUT."""
     from restitution.cli.console import answers
-    from restitution.studies.convergence import run_convergence
+    from restitution.runs.convergence import run_convergence
 
     summary = carry_out(
         context, case, out, device, lambda _: grids, partial(run_convergence, grids=grids)

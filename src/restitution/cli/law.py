@@ -36,11 +36,13 @@ def law(
             bar.update(task, description=words, refresh=True)
 
         from restitution.dem.from_run import law_of
-        from restitution.dem.write import write_law
+        from restitution.dem.law_files import write_law
+        from restitution.reports.law_figure import write_law_figure
 
         found = law_of(results, lambda name, k, n: say(f"fitting {name} ({k} of {n})"))
-        say("drawing the figure")
         written = write_law(found, out)
+        say("drawing the figure")
+        written.append(write_law_figure(found, out))
     for warning in found.warnings:
         warn(warning)
     answers.print(

@@ -25,18 +25,19 @@ def reproduce(
 
     from restitution.cli.console import answers
     from restitution.cli.many import many_cases
-    from restitution.errors import CaseError, OutputError
+    from restitution.errors import CaseError
     from restitution.reproduce.report import write_reproduction
     from restitution.reproduce.studies import NAMES, Size, bundled
-    from restitution.studies.store import StudyFolder
-    from restitution.studies.study import Tally, run_study
-    from restitution.studies.workers import local_workers
+    from restitution.results.writer import make_folder
+    from restitution.sweeps.executors import local_workers
+    from restitution.sweeps.scheduler import Tally, run_study
+    from restitution.sweeps.study_folder import StudyFolder
 
     if quick and refined:
         raise CaseError("--quick and --refined: are two sizes; give one")
     size: Size = "quick" if quick else "refined" if refined else "paper"
-    if not resume and out.exists() and any(out.iterdir()):
-        raise OutputError(f"{out}: this folder is not empty; name another one, or give --resume")
+    if not resume:
+        make_folder(out, "go on with --resume")
     again = f"restitution reproduce -o {out}{' --' + size if size != 'paper' else ''} --resume"
     studies = {name: bundled(name, size) for name in NAMES}
     total = sum(len(study.cases) for study in studies.values())

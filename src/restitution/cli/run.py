@@ -9,6 +9,6 @@ def run(
     context: typer.Context, case: CaseFile, out: OutFolder, device: OnDevice = Device.cpu
 ) -> None:
     """Load and unload the contact of CASE and write its curves, restitution and figures to OUT."""
-    from restitution.studies.ensemble import run_realisations
+    from restitution.runs.ensemble import run_realisations
 
     carry_out(context, case, out, device, lambda read: read.realisations, run_realisations)

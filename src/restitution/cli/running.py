@@ -12,8 +12,8 @@ import typer
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from restitution.studies.case import Case
-    from restitution.studies.results import ResultsFolder
+    from restitution.case.case import Case
+    from restitution.results.writer import ResultsFolder
 
 
 class Device(StrEnum):
@@ -56,14 +56,15 @@ def carry_out(
         TimeRemainingColumn,
     )
 
+    from restitution.case.case_file import naming, read_case
     from restitution.cli.console import answers, errors, warn
     from restitution.cli.signals import Stopped, received
     from restitution.numerics.device import on_device
     from restitution.reports.figures import write_figures
-    from restitution.studies.case import naming, read_case
-    from restitution.studies.error_budget import steps
-    from restitution.studies.locking import locked
-    from restitution.studies.results import LOCK, ResultsFolder
+    from restitution.results.locking import locked
+    from restitution.results.schema import LOCK
+    from restitution.results.writer import ResultsFolder
+    from restitution.runs.error_budget import steps
 
     read, text = read_case(case)
     context.with_resource(on_device(device.value))

@@ -35,14 +35,14 @@ def study(
 ) -> None:
     """Run every case of STUDY and write a table of all of them to OUT."""
 
+    from restitution.case.case_file import parse_case
     from restitution.cli.console import answers, warn
     from restitution.cli.many import many_cases
     from restitution.errors import CaseError
-    from restitution.studies.case import parse_case
-    from restitution.studies.store import StudyFolder
-    from restitution.studies.study import Tally, run_study
-    from restitution.studies.sweep import read_study
-    from restitution.studies.workers import cluster_workers, local_workers
+    from restitution.sweeps.executors import cluster_workers, local_workers
+    from restitution.sweeps.scheduler import Tally, run_study
+    from restitution.sweeps.study_folder import StudyFolder
+    from restitution.sweeps.sweep import read_study
 
     if scheduler is not None and workers is not None:
         raise CaseError("workers: belongs to this machine, and --scheduler to another; give one")

@@ -20,19 +20,14 @@ def surface(
     import xarray as xr
     from rich.table import Table
 
+    from restitution.case import needs
+    from restitution.case.case_file import naming, read_case
     from restitution.cli.console import answers, waiting
     from restitution.reports.figures import surface_map, write_figure
     from restitution.reports.surface_page import write_surface_page
-    from restitution.studies import needs
-    from restitution.studies.case import naming, read_case
-    from restitution.studies.interruption import hold_signals
-    from restitution.studies.locking import locked
-    from restitution.studies.results import (
-        ResultsFolder,
-        write_checksums,
-        write_json,
-        write_netcdf,
-    )
+    from restitution.results.interruption import hold_signals
+    from restitution.results.locking import locked
+    from restitution.results.writer import ResultsFolder, write_checksums, write_json, write_netcdf
     from restitution.surfaces import describe
     from restitution.surfaces.texture import texture
 

@@ -35,11 +35,11 @@ def theory(
     ] = None,
 ) -> None:
     """Print COR against velocity of every published closed form for the smooth bodies of CASE."""
+    from restitution.case.case_file import naming, read_case
     from restitution.cli.console import answers
     from restitution.dem import theories as room
-    from restitution.dem.law import read_law
-    from restitution.dem.theory_figure import write_theories
-    from restitution.studies.case import naming, read_case
+    from restitution.dem.law_files import read_law
+    from restitution.reports.theory_figure import write_theories
 
     read, _ = read_case(case)
     points = None if law is None else read_law(law)

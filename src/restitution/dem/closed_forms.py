@@ -20,8 +20,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.case.case import Case
 from restitution.errors import CaseError
-from restitution.studies.case import Case
 from restitution.theory import (
     adhesive_thornton_ning,
     hertz,

@@ -9,10 +9,10 @@ from importlib import import_module
 from pathlib import Path
 
 from restitution.dem.law import Law
+from restitution.dem.law_files import table
 from restitution.dem.matrix import Matrix, matrix_of
-from restitution.dem.write import table
 from restitution.errors import CaseError, OutputError
-from restitution.studies.results import replace_file, writing, written
+from restitution.results.writer import replace_file, writing, written
 
 CODES = ("lammps", "liggghts", "yade", "mercurydpm", "edem", "csv")
 TABLE = "restitution.csv"

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 
 from pydantic import ValidationError
 
+from restitution.case.bodies import BodyTable
 from restitution.dem.compact import compact_fit
 from restitution.dem.fitted import Begin, fitted_laws
-from restitution.dem.law import LAW_FILE, Conventions, Law, Particle, Point
+from restitution.dem.law import Conventions, Law, Particle, Point
+from restitution.dem.law_files import LAW_FILE
 from restitution.errors import CaseError, OutputError, one_line
-from restitution.studies.error_budget import total
-from restitution.studies.particles import BodyTable
-from restitution.studies.reader import StoredRun, read_run, stored_case
+from restitution.results.reader import EnsembleResults, RunResults, read_run
+from restitution.runs.error_budget import total
 
 _Row = Mapping[str, float]
 _SAME = 1e-9  # relative difference of values that are the same
@@ -47,15 +48,15 @@ def bare_law(out: Path) -> Law:
         ) from None
 
 
-def _law(out: Path, run: StoredRun) -> Law:
-    rows, summary, case = run.curve.rows, run.summary, stored_case(out, run.case)
+def _law(out: Path, run: RunResults) -> Law:
+    rows, summary, case = run.curve.rows, run.summary, run.case
     derived, model = summary["derived"], summary["model"]
     if derived.get("reduced_mass_kg") is None:
         raise CaseError(
             f"{out}: has no impact velocities, for a density is not given in its case; give "
             "first.density (and second.density) and run it again"
         )
-    points = _points(rows, case.total_error)
+    points = _points(run, case.total_error)
     if not points:
         raise CaseError(f"{out}: has no depth that an impact reaches; compute deeper ones")
     warnings = list(summary["warnings"])
@@ -97,7 +98,7 @@ def _law(out: Path, run: StoredRun) -> Law:
         sticks_below=None,
         points=tuple(points),
         warnings=tuple(warnings),
-        case=run.case,
+        case=run.case_text,
         versions=summary["versions"],
     )
     if law.sticks_everywhere:
@@ -110,7 +111,7 @@ def _law(out: Path, run: StoredRun) -> Law:
     )
 
 
-def _read(out: Path) -> StoredRun:
+def _read(out: Path) -> RunResults:
     if (out / "study.toml").is_file():
         raise OutputError(
             f"{out}: is a study of many cases, and a law is that of one pair; run the case by "
@@ -124,7 +125,9 @@ def _read(out: Path) -> StoredRun:
         raise OutputError(
             f"{out}: holds no results of a run; name the folder of -o of `restitution run`"
         )
-    return read_run(out)
+    run = read_run(out)
+    run.check()
+    return run
 
 
 def _error_is(trust: Mapping[str, object]) -> str:
@@ -136,9 +139,9 @@ def _error_is(trust: Mapping[str, object]) -> str:
     return f"{includes}; not: {excludes}{error}"
 
 
-def _points(rows: Sequence[_Row], asked: bool) -> list[Point]:
+def _points(run: RunResults, asked: bool) -> list[Point]:
     found: list[Point] = []
-    for row in rows:
+    for row in run.curve.rows:
         velocity, work = row["impact_velocity_m_per_s"], row["loading_work_J"]
         if not velocity > 0 or not work > 0 or (found and velocity <= found[-1].velocity):
             continue
@@ -148,7 +151,7 @@ def _points(rows: Sequence[_Row], asked: bool) -> list[Point]:
                 velocity=velocity,
                 restitution=row["restitution"],
                 error=_error(row, asked=asked),
-                ratio=_ratio(row, work),
+                ratio=_ratio(row, work, means=isinstance(run, EnsembleResults)),
                 loading_work=work,
                 indentation=row["indentation_m"],
                 force=row["force_N"],
@@ -159,10 +162,10 @@ def _points(rows: Sequence[_Row], asked: bool) -> list[Point]:
     return found
 
 
-def _ratio(row: _Row, work: float) -> float:
-    """W_u/W_l; of an ensemble, whose columns are means each, e² where it rebounds."""
+def _ratio(row: _Row, work: float, *, means: bool) -> float:
+    """W_u/W_l; e² where the columns are `means` over surfaces, and the pair rebounds."""
     ratio, e = row["unloading_work_J"] / work, row["restitution"]
-    return e * e if "restitution_std" in row and e > 0 else ratio
+    return e * e if means and e > 0 else ratio
 
 
 def _error(row: _Row, *, asked: bool) -> float:

@@ -8,21 +8,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Annotated, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from restitution.case.quantities import read_positive
 from restitution.dem.interpolation import RatioCurve
-from restitution.errors import CaseError, DomainError, OutputError, one_line
-from restitution.studies.checksums import check_file
-from restitution.studies.quantities import read_positive
+from restitution.errors import CaseError, DomainError, one_line
 
 Array = NDArray[np.float64]
 
-LAW_FILE = "law.json"
 LOSS = 1e-3
 """Of e: a law that loses less is not fitted, nor is one that returns less."""
 _SAME = 1e-9  # relative difference of velocities that are the same
@@ -269,28 +266,6 @@ class Law(_Stored):
     def pair(self) -> str:
         """The names of the two bodies."""
         return f"{self.first} and {self.second}"
-
-
-def read_law(folder: Path) -> Law:
-    """The law in `folder` (of `restitution law`). Raises `OutputError`, `CaseError`."""
-    path = folder / LAW_FILE if folder.is_dir() else folder
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError):
-        raise OutputError(
-            f"{folder}: holds no law ({LAW_FILE}); name the folder of -o of `restitution law`"
-        ) from None
-    check_file(path)
-    try:
-        return Law.model_validate_json(text)
-    except ValidationError as error:
-        first = error.errors()[0]
-        where = ".".join(map(str, first["loc"])) or "the whole"
-        why = first["msg"].removeprefix("Value error, ")
-        raise CaseError(
-            f"{path}: is not a law of this version ({where}: {why}); make it again with "
-            "`restitution law`"
-        ) from None
 
 
 def velocity_of(text: str) -> float:

@@ -32,7 +32,7 @@ from restitution.errors import (
     OutputError,
     RestitutionError,
 )
-from restitution.studies.reader import damaged, read_results, stored_case
+from restitution.results.reader import RunResults, damaged
 
 Array = NDArray[np.float64]
 Force = Callable[[float], float]
@@ -115,39 +115,31 @@ def stored_force(out: Path) -> StoredForce:
         raise OutputError(
             f"{out}: holds no results of a run; name the folder of -o of `restitution run`"
         )
-    results = read_results(out)
-    if "unloading_from" not in results:
+    run = RunResults(out)
+    if not run.unloading:
         raise OutputError(
             f"{out}: holds no unloading curves; run the case with unloading.curves of 1 or more "
             "(of an ensemble, name the folder of one realisation)"
         )
     try:
-        return _stored_force(out, results)
+        return _stored_force(run)
     except (ValueError, KeyError, IndexError, TypeError) as error:
         if isinstance(error, RestitutionError):
             raise
         raise damaged(out / "results.nc", f"{type(error).__name__}: {error}") from None
 
 
-def _stored_force(out: Path, results: xr.Dataset) -> StoredForce:
+def _stored_force(run: RunResults) -> StoredForce:
+    results = run.dataset
     depth, force = results["indentation"].values, results["force"].values
-    curves = []
-    for x, F in zip(
-        results["unloading_indentation"].values, results["unloading_force"].values, strict=True
-    ):
-        known = np.isfinite(x)
-        curves.append((x[known][::-1], F[known][::-1]))
-        if not known.any() or not np.isfinite(F[known]).all() or not (np.diff(x[known]) < 0).all():
-            raise ValueError("an unloading curve has gaps, or does not lead upwards")
-    order = np.argsort(results["unloading_from"].values)
     return StoredForce(
-        pair=stored_case(out, results.attrs["case"]).pair(),
+        pair=run.case.pair(),
         deepest=float(depth[-1]),
         highest=float(np.nanmax(results["impact_velocity"].values)),
         loading=_loading(depth, force, results["loading_work"].values),
         separation=_separation(results, depth),
-        unloading_from=results["unloading_from"].values[order],
-        unloading=tuple(curves[k] for k in order),
+        unloading_from=np.array([curve.start for curve in run.unloading]),
+        unloading=tuple((curve.indentation, curve.force) for curve in run.unloading),
     )
 
 

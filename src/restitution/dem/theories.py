@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.case.case import Case
 from restitution.dem.closed_forms import FORMS, SOURCES, Bodies, speed, within
 from restitution.dem.law import LOSS, FittedLaw, Law
 from restitution.errors import CaseError
-from restitution.studies.case import Case
 from restitution.theory import brilliantov
 
 Array = NDArray[np.float64]

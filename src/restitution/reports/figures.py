@@ -15,8 +15,8 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from restitution.contact.resolution import NODES_PER_PATCH
-from restitution.studies.reader import read_results
-from restitution.studies.results import replace_file
+from restitution.results.reader import RunResults
+from restitution.results.writer import replace_file
 from restitution.theory import adhesive_thornton_ning, hertz, jkr, thornton_ning
 
 _SIZE = (6.4, 4.4)
@@ -29,7 +29,7 @@ _UNRESOLVED = f"open: not resolved (patches below {NODES_PER_PATCH} nodes)"
 
 def write_figures(out: Path) -> list[Path]:
     """Draw every figure that the `results.nc` in `out` supports; return the files written."""
-    results = read_results(out)
+    results = RunResults(out).dataset
     written = []
     for name, figure in figures(results):
         path = out / f"{name}.png"

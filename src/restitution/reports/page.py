@@ -17,7 +17,7 @@ from markupsafe import Markup
 from plotly.graph_objects import Figure as Plot
 from plotly.offline import get_plotlyjs
 
-from restitution.studies.results import replace_file
+from restitution.results.writer import replace_file
 
 Cell = str | float | int | None
 

@@ -13,7 +13,7 @@ from plotly.graph_objects import Heatmap, Scatter
 from restitution.contact.resolution import NODES_PER_PATCH
 from restitution.reports.methods import methods
 from restitution.reports.page import Cell, Drawing, Listing, Page, Table, new_plot, write_page
-from restitution.studies.reader import read_results, read_summary
+from restitution.results.reader import EnsembleResults, RunResults, read_run
 
 _MOST_PIXELS = 320  # of a map, along either axis: more are skipped
 _MARGIN = 1.2  # of a logarithmic axis beyond the first and the last point
@@ -22,7 +22,8 @@ _SMOOTH = "smooth, same model"
 
 def write_run_page(out: Path) -> Path:
     """Write `report.html` from the `results.nc` and `summary.json` in `out`."""
-    results, summary = read_results(out), read_summary(out)
+    run = read_run(out)
+    results, summary = run.dataset, run.summary
     parts: list[Table | Drawing | Listing] = []
     if results.sizes["indentation_max"]:
         parts += [against_depth(results), force(results)]
@@ -38,7 +39,7 @@ def write_run_page(out: Path) -> Path:
     ]
     page = Page(
         title=summary["title"] or "Restitution",
-        intro=[_in_words(summary)],
+        intro=[_in_words(run)],
         warnings=summary["warnings"],
         parts=parts,
     )
@@ -46,12 +47,13 @@ def write_run_page(out: Path) -> Path:
     return out / "report.html"
 
 
-def _in_words(summary: Mapping[str, Any]) -> str:
+def _in_words(run: RunResults) -> str:
+    summary = run.summary
     nx, ny = summary["model"]["nodes"]
     h = summary["model"]["spacing"][0]
     what = f"{summary['depths_computed']} of {summary['depths_asked']} depths"
-    if "realisations" in summary:
-        what += f", means of {len(summary['realisations'])} surfaces"
+    if isinstance(run, EnsembleResults):
+        what += f", means of {run.surfaces} surfaces"
     if "grids" in summary:
         what += f", on grids refined {', '.join(map(str, summary['grids']))} times"
     ended = "" if summary["status"] == "complete" else f"; {summary['status']}: {summary['reason']}"

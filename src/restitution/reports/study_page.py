@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from pathlib import Path
 
 from plotly.graph_objects import Scatter
 
+from restitution.case.case_file import parse_toml
 from restitution.contact.resolution import NODES_PER_PATCH
 from restitution.reports.methods import methods
 from restitution.reports.page import Cell, Drawing, Listing, Page, Table, new_plot, write_page
-from restitution.studies.case import parse_toml
-from restitution.studies.reader import StoredCase, read_study, read_summary, read_text
+from restitution.results.reader import StoredCase, StudyResults
 
 _MOST_LINES = 60  # in one figure: more cannot be told apart
 
 
 def write_study_page(out: Path) -> Path:
     """Write `report.html` from the `table.csv`, `study.nc` and cases in `out`."""
-    cases, text = read_study(out), read_text(out / "study.toml")
+    study = StudyResults(out)
+    cases, text = study.cases, study.text
     title = str(parse_toml(text).get("title", ""))
     swept = list(cases[0].swept)
     count = {status: sum(case.status == status for case in cases)
@@ -25,14 +28,14 @@ def write_study_page(out: Path) -> Path:
     parts: list[Table | Drawing | Listing] = []
     if count["complete"]:
         parts.append(_restitution(cases, swept, "indentation_m", 1e6, "maximum indentation", "µm"))
-        if any(row["impact_velocity_m_per_s"] for case in cases for row in case.curve.cells):
+        if any(_has(row, "impact_velocity_m_per_s") for case in cases for row in case.curve.rows):
             parts.append(
                 _restitution(cases, swept, "impact_velocity_m_per_s", 1.0, "impact velocity", "m/s")
             )
     parts += [_cases(cases, swept), Listing("Study file", text)]
     complete = next((case.name for case in cases if case.status == "complete"), None)
     if complete is not None:
-        parts.append(methods(read_summary(out / "cases" / complete)))
+        parts.append(methods(study.run(complete).summary))
     page = Page(
         title=title or "Study",
         intro=[
@@ -78,16 +81,16 @@ def _restitution(
     drawn = [case for case in cases if case.status == "complete"]
     table: list[list[Cell]] = []
     for number, case in enumerate(drawn):
-        rows = [row for row in case.curve.cells if row[column]]
-        x = [scale * float(row[column]) for row in rows]
-        y = [float(row["restitution"]) for row in rows]
-        name = (
-            ", ".join(f"{key.rsplit('.', 1)[-1]} {rows[0][key]}" for key in swept) if rows else ""
-        )
-        table += [[*(row[key] for key in swept), a, b, row["resolved"]]
-                  for row, a, b in zip(rows, x, y, strict=True)]  # fmt: skip
+        rows = [row for row in case.curve.rows if _has(row, column)]
+        x = [scale * row[column] for row in rows]
+        y = [row["restitution"] for row in rows]
+        resolved = ["true" if row["resolved"] else "false" for row in rows]
+        name = ", ".join(f"{key.rsplit('.', 1)[-1]} {value}" for key, value in case.swept.items())
+        table += [
+            [*case.swept.values(), a, b, yes] for a, b, yes in zip(x, y, resolved, strict=True)
+        ]
         if number < _MOST_LINES and rows:
-            open_or_not = ["circle" if row["resolved"] == "true" else "circle-open" for row in rows]
+            open_or_not = ["circle" if row["resolved"] else "circle-open" for row in rows]
             plot.add_trace(
                 Scatter(x=x, y=y, mode="lines+markers", name=_escaped(name),
                         marker={"symbol": open_or_not, "size": 7})
@@ -101,6 +104,11 @@ def _restitution(
         f"Open markers: not resolved by the grid. A click in the legend hides a case.{few}",
         Table("Restitution", [*swept, f"{words} ({unit})", "COR", "resolved"], table),
     )
+
+
+def _has(row: Mapping[str, float], column: str) -> bool:
+    """Whether the cell of `row` in `column` has a number."""
+    return not math.isnan(row[column])
 
 
 def _escaped(text: str) -> str:

@@ -13,7 +13,7 @@ from plotly.graph_objects import Heatmap, Scatter
 
 from restitution.numerics.grid import Grid
 from restitution.reports.page import Cell, Drawing, Page, Table, new_plot, write_page
-from restitution.studies.reader import read_json, read_netcdf
+from restitution.results.reader import read_json, read_netcdf
 from restitution.surfaces import Surface
 from restitution.surfaces.psd import power_spectral_density, radial_spectrum, wave_numbers
 from restitution.surfaces.surface import is_periodic

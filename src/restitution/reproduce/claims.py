@@ -16,7 +16,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from restitution.studies.coordinates import AS_WRITTEN
+from restitution.sweeps.coordinates import AS_WRITTEN
 from restitution.theory import hertz, jkr, thornton_ning, yielding
 
 Array = NDArray[np.float64]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -26,6 +25,7 @@ from restitution.reproduce.claims import (
     curves,
 )
 from restitution.reproduce.studies import NAMES, Size
+from restitution.results.reader import StudyResults
 from restitution.theory import hertz, jkr, thornton_ning
 
 PAPER = (
@@ -47,17 +47,12 @@ _OPEN = (
 
 def write_reproduction(out: Path, size: Size) -> tuple[Path, list[Finding]]:
     """Write `report.html` from the studies in the folders of `out`; return it and its verdicts."""
-    studies = {}
-    for name in NAMES:
-        with xr.open_dataset(out / name / "study.nc", engine="netcdf4") as stored:
-            studies[name] = stored.load()
+    stored = {name: StudyResults(out / name) for name in NAMES}
+    studies = {name: study.dataset for name, study in stored.items()}
     findings = [claim(studies) for claim in CLAIMS]
     judged = ", ".join(
         f"{sum(f.verdict == v for f in findings)} {v}"
         for v in ("agrees", "agrees in part", "does not agree", "not decided")
-    )
-    summary = json.loads(
-        (out / "roughness" / "cases" / "case-00002" / "summary.json").read_text(encoding="utf-8")
     )
     page = Page(
         title="The figures of Ghanbarzadeh, Hassanpour and Neville (2019)",
@@ -71,7 +66,7 @@ def write_reproduction(out: Path, size: Size) -> tuple[Path, list[Finding]]:
             ),
             Table("What the paper leaves open", ["input", "here", "in the paper"], _OPEN),
             *_drawings(studies, findings),
-            methods(summary),
+            methods(stored["roughness"].run("case-00002").summary),
         ],
     )
     write_page(out / "report.html", page)

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 import tomli_w
 
-from restitution.studies.sweep import Study, parse_study
+from restitution.sweeps.sweep import Study, parse_study
 
 Size = Literal["quick", "paper", "refined"]
 

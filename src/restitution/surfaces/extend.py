@@ -36,10 +36,10 @@ def extend(
     grid = to if isinstance(to, Grid) else _with_pixels_of(surface, to)
     if how == "twin":
         if seed is None or seed < 0:
-            raise SurfaceError("roughness.seed: a twin needs one, a whole number from 0 up")
+            raise SurfaceError("seed: a twin needs one, a whole number from 0 up")
         return twin(surface, grid, seed)
     if seed is not None:
-        raise SurfaceError('roughness.seed: does not belong to extend = "mirror"; leave it out')
+        raise SurfaceError('seed: does not belong to extend = "mirror"; leave it out')
     return mirrored(surface, grid)
 
 

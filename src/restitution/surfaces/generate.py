@@ -65,14 +65,13 @@ def generate_surface(
     spectrum = _spectrum(kind, correlation_length, lay, hurst, rolloff, shortest)
     if not (math.isfinite(rms) and rms > 0):
         raise SurfaceError(
-            f"roughness.rms: {rms:g} m is not a positive length; give the rms height, "
-            'such as "0.1 um"'
+            f'rms: {rms:g} m is not a positive length; give the rms height, such as "0.1 um"'
         )
     if seed < 0:
-        raise SurfaceError(f"roughness.seed: {seed} is negative; give a whole number from 0 up")
+        raise SurfaceError(f"seed: {seed} is negative; give a whole number from 0 up")
     if not possible(skewness, kurtosis):
         raise SurfaceError(
-            f"roughness.kurtosis: no heights have a skewness of {skewness:g} and a kurtosis of "
+            f"kurtosis: no heights have a skewness of {skewness:g} and a kurtosis of "
             f"{kurtosis:g}; it has to be at least skewness² + {LEAST_KURTOSIS:g} = "
             f"{skewness**2 + LEAST_KURTOSIS:g}"
         )
@@ -110,7 +109,7 @@ def _spectrum(
     """The spectrum of that kind, refusing what belongs to another."""
     if kind not in get_args(RoughnessKind):
         raise SurfaceError(
-            f"roughness.kind: {kind!r} is no kind of roughness known here; "
+            f"kind: {kind!r} is no kind of roughness known here; "
             "choose 'exponential', 'gaussian' or 'self-affine'"
         )
     foreign: list[tuple[str, object]] = [("hurst", hurst), ("rolloff", rolloff)]
@@ -118,16 +117,14 @@ def _spectrum(
         foreign = [("correlation_length", correlation_length), ("lay", lay or None)]
     for name, value in foreign:
         if value is not None:
-            raise SurfaceError(
-                f"roughness.{name}: does not belong to kind = {kind!r}; leave it out"
-            )
+            raise SurfaceError(f"{name}: does not belong to kind = {kind!r}; leave it out")
     if kind == "self-affine":
         if hurst is None:
-            raise SurfaceError("roughness.hurst: missing; a self-affine surface needs it, say 0.8")
+            raise SurfaceError("hurst: missing; a self-affine surface needs it, say 0.8")
         return SelfAffine(hurst, rolloff, shortest)
     if correlation_length is None:
         raise SurfaceError(
-            f"roughness.correlation_length: missing; kind = {kind!r} needs the length over which "
+            f"correlation_length: missing; kind = {kind!r} needs the length over which "
             'the autocorrelation falls to 10 %, such as "2 um"'
         )
     if not isinstance(correlation_length, tuple):
@@ -162,7 +159,7 @@ def _heights(
             heights = distribution(z.size, *wanted)
             if heights is None:
                 raise SurfaceError(
-                    f"roughness.kurtosis: no Johnson distribution was found with a skewness of "
+                    f"kurtosis: no Johnson distribution was found with a skewness of "
                     f"{wanted[0]:g} and a kurtosis of {wanted[1]:g}; ask for a larger kurtosis"
                 )
             z, made["amplitude_misfit"] = adjusted(z, heights)

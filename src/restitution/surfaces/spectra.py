@@ -58,8 +58,8 @@ class Autocorrelated:
             _check_correlation_length(where, beta, spacing, size)
         if self.lay != 0 and self.correlation_length[0] == self.correlation_length[1]:
             raise SurfaceError(
-                "roughness.lay: a surface with one correlation length has no lay; give two in "
-                "roughness.correlation_length, along the lay and across it, or leave lay out"
+                "lay: a surface with one correlation length has no lay; give two "
+                "lengths, along the lay and across it, or leave lay out"
             )
         _check_shortest(self.shortest, grid)
 
@@ -99,7 +99,7 @@ class SelfAffine:
         """Raise `SurfaceError` where `grid` cannot hold such waves."""
         if not 0 < self.hurst <= 1:
             raise SurfaceError(
-                f"roughness.hurst: {self.hurst:g} is not an exponent above 0 and up to 1; real "
+                f"hurst: {self.hurst:g} is not an exponent above 0 and up to 1; real "
                 "surfaces often have 0.8"
             )
         _check_shortest(self.shortest, grid)
@@ -109,7 +109,7 @@ class SelfAffine:
         _check_positive("rolloff", rolloff)
         if not shortest < rolloff <= max(grid.size):
             raise SurfaceError(
-                f"roughness.rolloff: {rolloff * 1e6:g} um is not between the shortest wavelength, "
+                f"rolloff: {rolloff * 1e6:g} um is not between the shortest wavelength, "
                 f"{shortest * 1e6:g} um, and the domain, {max(grid.size) * 1e6:g} um; move it, or "
                 "leave it out for a power law up to the domain"
             )
@@ -143,18 +143,18 @@ def _wave_numbers(grid: Grid) -> Array:
 def _check_correlation_length(where: str, beta: float, spacing: float, size: float) -> None:
     if not (math.isfinite(beta) and beta > 0):
         raise SurfaceError(
-            f"roughness.correlation_length: {beta:g} m {where} is not a positive length; "
+            f"correlation_length: {beta:g} m {where} is not a positive length; "
             'give one such as "5 um"'
         )
     if beta < spacing:
         raise SurfaceError(
-            f"roughness.correlation_length: {beta * 1e6:g} um {where} is below the grid "
+            f"correlation_length: {beta * 1e6:g} um {where} is below the grid "
             f"spacing of {spacing * 1e6:g} um and cannot be resolved; refine grid.spacing or give "
             "a longer correlation length"
         )
     if beta > 0.5 * size:
         raise SurfaceError(
-            f"roughness.correlation_length: {beta * 1e6:g} um {where} is above half of the "
+            f"correlation_length: {beta * 1e6:g} um {where} is above half of the "
             f"domain of {size * 1e6:g} um; enlarge the domain (grid.nodes) or give a shorter "
             "correlation length"
         )
@@ -166,7 +166,7 @@ def _check_shortest(shortest: float | None, grid: Grid) -> None:
     _check_positive("shortest", shortest)
     if not 2 * max(grid.spacing) <= shortest < max(grid.size):
         raise SurfaceError(
-            f"roughness.shortest: {shortest * 1e6:g} um is no wavelength that the grid can hold "
+            f"shortest: {shortest * 1e6:g} um is no wavelength that the grid can hold "
             f"({2e6 * max(grid.spacing):g} to {1e6 * max(grid.size):g} um); refine grid.spacing, "
             "or leave it out"
         )
@@ -175,6 +175,6 @@ def _check_shortest(shortest: float | None, grid: Grid) -> None:
 def _check_positive(name: str, wavelength: float) -> None:
     if not (math.isfinite(wavelength) and wavelength > 0):
         raise SurfaceError(
-            f"roughness.{name}: {wavelength:g} m is not a positive wavelength; give one such as "
+            f"{name}: {wavelength:g} m is not a positive wavelength; give one such as "
             '"10 um", or leave it out'
         )

@@ -1,0 +1,1 @@
+"""The case file: pure data in SI units. Nothing is solved here."""

@@ -1,0 +1,249 @@
+"""`[first]`, `[second]` and `[interface]`: what the bodies are made of, and where they yield."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import asdict, dataclass
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from restitution.case.materials import Property, material
+from restitution.case.quantities import (
+    LONGEST,
+    Density,
+    Length,
+    Pressure,
+    SurfaceEnergy,
+    read_positive,
+)
+from restitution.case.schema import Table
+from restitution.contact.bodies import Body
+from restitution.contact.contact import FULL_CONSTRAINT, Approach, Plasticity
+from restitution.contact.detachment import Detachment
+from restitution.errors import CaseError, shown
+
+# What a library's material gives a body, with the unit of each.
+_FROM_LIBRARY = {
+    "youngs_modulus": "Pa",
+    "poissons_ratio": "",
+    "density": "kg/m^3",
+    "yield_strength": "Pa",
+    "hardness": "Pa",
+}
+_STRENGTHS = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*(?:\*\s*)?Y\s*")
+
+
+def _flat_is_infinite(value: Any) -> Any:
+    return None if value == "flat" else value
+
+
+class BodyTable(Table):
+    """`[first]` and `[second]`; the name of a material alone is a flat wall of it."""
+
+    material: str | None = None
+    radius: Annotated[Length | None, BeforeValidator(_flat_is_infinite)]
+    youngs_modulus: Pressure
+    poissons_ratio: Annotated[float, Field(gt=-1, le=0.5)]
+    density: Density | None = None
+    yield_strength: Pressure | None = None
+    hardness: Pressure | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_material(cls, value: Any) -> Any:
+        """Put in what the library knows and the table leaves out."""
+        table = {"material": value, "radius": "flat"} if isinstance(value, str) else value
+        if not isinstance(table, dict) or not isinstance(table.get("material"), str):
+            return table
+        known = material(table["material"])
+        taken = {
+            key: found.value if not unit else f"{found.value!r} {unit}"
+            for key, unit in _FROM_LIBRARY.items()
+            if (found := getattr(known, key)) is not None
+        }
+        return {**taken, **table, "material": known.key}
+
+    def body(self) -> Body:
+        """The body this table describes."""
+        radius = math.inf if self.radius is None else self.radius
+        return Body(radius, self.youngs_modulus, self.poissons_ratio, self.density)
+
+    def from_library(self) -> dict[str, Property[Any]]:
+        """The values that are the library's, with their spread and source."""
+        if self.material is None:
+            return {}
+        known = material(self.material)
+        found = {key: getattr(known, key) for key in _FROM_LIBRARY}
+        return {
+            key: each for key, each in found.items() if each and each.value == getattr(self, key)
+        }
+
+
+YieldRule = tuple[float, Literal["yield_strength", "hardness"]]
+DEFAULT_RULE: YieldRule = (FULL_CONSTRAINT, "yield_strength")
+
+
+def _pressure_or_rule(value: Any) -> float | YieldRule | None:
+    """A pressure in Pa; "2.8 Y" as (2.8, "yield_strength"), "hardness" as (1.0, "hardness").
+
+    "elastic" is an infinite pressure, and None what is left out.
+    """
+    if value is None:
+        return None
+    if value == "elastic":
+        return math.inf
+    if value == "hardness":
+        return 1.0, "hardness"
+    short = isinstance(value, str) and len(value) <= LONGEST
+    match = _STRENGTHS.fullmatch(value) if short else None
+    if match is None:
+        return read_positive(value, "Pa")
+    if not 0.5 <= (factor := float(match[1])) <= 10:
+        raise ValueError(f"{shown(value)} is no contact pressure; it is 1.6 Y to about 3 Y")
+    return factor, "yield_strength"
+
+
+@dataclass(frozen=True)
+class Yielding:
+    """How a contact yields: what `Contact` takes, in Pa, and in words where it is from."""
+
+    source: str
+    plasticity: Plasticity = "equilibrium"
+    yield_pressure: float = math.inf
+    yield_strength: float = math.inf
+    tangent_modulus: float = 0.0
+
+    @property
+    def hardness(self) -> float:
+        """Pressure of a fully plastic contact, Pa; inf for elastic bodies."""
+        return min(self.yield_pressure, FULL_CONSTRAINT * self.yield_strength)
+
+    def arguments(self) -> dict[str, Any]:
+        """The arguments of `Contact` that say how it yields."""
+        found = asdict(self)
+        del found["source"]
+        return found
+
+
+class InterfaceTable(Table):
+    """`[interface]`; omitted: bodies of known strength yield, and none adheres."""
+
+    yield_strength: Pressure | None = None
+    tangent_modulus: Pressure | None = None
+    yield_pressure: Annotated[float | YieldRule | None, BeforeValidator(_pressure_or_rule)] = None
+    plasticity: Plasticity | None = None
+    work_of_adhesion: SurfaceEnergy | None = None
+    approach: Approach = "equilibrium"
+    detachment: Detachment = "crack-closure"
+    equilibrium_separation: Length = 0.3e-9
+
+    @model_validator(mode="after")
+    def _one_model(self) -> InterfaceTable:
+        grows = self.plasticity == "expanding-cavity"
+        if self.yield_pressure is not None:
+            for key in ("yield_strength", "tangent_modulus"):
+                if getattr(self, key) is not None:
+                    raise ValueError(
+                        f"yield_pressure, {key}: give one of them; yield_pressure is a constant "
+                        "bound, and a yield strength (of a tensile test) one that grows with "
+                        "deformation"
+                    )
+            if grows:
+                raise ValueError(
+                    'yield_pressure: plasticity = "expanding-cavity" takes a yield_strength (of a '
+                    "tensile test) instead"
+                )
+        elif self.plasticity is not None and not grows:
+            for key in ("yield_strength", "tangent_modulus"):
+                if getattr(self, key) is not None:
+                    raise ValueError(
+                        f'{key}: plasticity = "{self.plasticity}" takes a yield_pressure instead, '
+                        "about 2.8 times the yield strength"
+                    )
+        return self
+
+    @property
+    def adhesion(self) -> float:
+        """The work of adhesion, J/m²: zero where it is left out."""
+        return self.work_of_adhesion or 0.0
+
+    def yielding(self, first: BodyTable, second: BodyTable) -> Yielding:
+        """How the contact of two bodies yields.
+
+        Of two bodies the softer one does. By default a body of known yield strength has a bound
+        that grows with deformation, and one of known hardness alone (glass) yields at that. Raises
+        `CaseError` where what the model needs is not known.
+        """
+        if self.plasticity in ("equilibrium", "truncated"):
+            rule = DEFAULT_RULE if self.yield_pressure is None else self.yield_pressure
+            return self._at_a_pressure(rule, first, second)
+        if self.yield_pressure is not None:
+            return self._at_a_pressure(self.yield_pressure, first, second)
+        if self.yield_strength is not None:
+            return self._growing(self.yield_strength, "given")
+        found = [
+            (
+                body.yield_strength,
+                f"Y of {_named(name, body)}, {1e-6 * body.yield_strength:.6g} MPa",
+            )
+            if body.yield_strength is not None
+            else None
+            for name, body in (("first", first), ("second", second))
+        ]
+        known = [each for each in found if each is not None]
+        pressure = self._at_a_pressure(DEFAULT_RULE, first, second)
+        if known and pressure.yield_pressure >= (1 - 1e-12) * DEFAULT_RULE[0] * min(known)[0]:
+            return self._growing(*min(known))
+        if self.plasticity is None and self.tangent_modulus is None:
+            return pressure
+        name, body = ("first", first) if found[0] is None else ("second", second)
+        raise CaseError(
+            f"interface.yield_strength: is missing, and so is that of {_named(name, body)}, "
+            "which is the softer body; give it, or a yield_pressure"
+        )
+
+    def _growing(self, yield_strength: float, source: str) -> Yielding:
+        return Yielding(
+            source,
+            "expanding-cavity",
+            yield_strength=yield_strength,
+            tangent_modulus=self.tangent_modulus or 0.0,
+        )
+
+    def _at_a_pressure(
+        self, rule: float | YieldRule, first: BodyTable, second: BodyTable
+    ) -> Yielding:
+        """Yield at one pressure, which `rule` says; a body without Y yields at its hardness."""
+        model = self.plasticity or "equilibrium"
+        if isinstance(rule, float):
+            source = "elastic" if math.isinf(rule) else "given"
+            return Yielding(source, model, yield_pressure=rule)
+        factor, quantity = rule
+        found = []
+        for name, body in (("first", first), ("second", second)):
+            of = f"of {_named(name, body)}"
+            if quantity == "yield_strength" and body.yield_strength is not None:
+                Y = body.yield_strength
+                found.append((factor * Y, f"{factor:g} Y {of}, Y = {1e-6 * Y:.6g} MPa"))
+            elif body.hardness is not None:
+                found.append((body.hardness, f"hardness {of}, {1e-6 * body.hardness:.6g} MPa"))
+            else:
+                if self.yield_pressure is None:
+                    raise CaseError(
+                        "interface.yield_strength: is missing, and so are "
+                        f"{name}.yield_strength and {name}.hardness; give one of them, or write "
+                        'yield_pressure = "elastic" for bodies that do not yield'
+                    )
+                raise CaseError(
+                    f"interface.yield_pressure: needs {name}.{quantity}, which is not given"
+                    + (f" and not known of {body.material}" if body.material else "")
+                    + "; give it, or the pressure itself"
+                )
+        pressure, source = min(found)
+        return Yielding(source, model, yield_pressure=pressure)
+
+
+def _named(name: str, body: BodyTable) -> str:
+    return name + (f" ({body.material})" if body.material else "")

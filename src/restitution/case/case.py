@@ -1,0 +1,177 @@
+"""A whole case: its tables together, as data in SI units."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Annotated, Any, cast
+
+from pydantic import BeforeValidator, model_validator
+
+from restitution.case import needs
+from restitution.case.bodies import BodyTable, InterfaceTable, Yielding
+from restitution.case.quantities import Force, Length
+from restitution.case.roughness import MeasuredRoughness, Roughness
+from restitution.case.schema import GridTable, ImpactTable, Series, Table, UnloadingTable
+from restitution.contact.bodies import Pair
+from restitution.contact.contact import Contact, smooth
+from restitution.errors import CaseError
+from restitution.numerics.grid import Grid
+from restitution.surfaces import Surface, composite
+from restitution.surfaces.refine import divided
+
+
+def _one_or_more(value: Any) -> Any:
+    """One table, or a list of them."""
+    return tuple(value) if isinstance(value, list) else (value,)
+
+
+DEPTHS = ("indentation", "load", "impact")  # the tables that may say how deep
+
+
+class Case(Table):
+    """A whole case file, in SI units."""
+
+    title: str = ""
+    total_error: bool = True
+    first: BodyTable
+    second: BodyTable | None = None
+    interface: InterfaceTable = InterfaceTable()
+    roughness: Annotated[tuple[Roughness, ...], BeforeValidator(_one_or_more)] = ()
+    grid: GridTable | None = None
+    indentation: Series[Length] | None = None
+    load: Series[Force] | None = None
+    impact: ImpactTable | None = None
+    unloading: UnloadingTable = UnloadingTable()
+
+    @model_validator(mode="after")
+    def _whole(self) -> Case:
+        given = [name for name in DEPTHS if getattr(self, name) is not None]
+        if len(given) != 1:
+            which = f"[{'] and ['.join(given)}] are" if given else "none of them is"
+            raise ValueError(
+                f"give one of the tables [indentation], [load] and [impact]; {which} in this case"
+            )
+        if self.impact is not None:
+            self._check_masses()
+        elastic = math.isinf(self.yielding().hardness)
+        if self.interface.plasticity == "truncated" and elastic:
+            raise ValueError(
+                'interface.plasticity = "truncated" needs the pressure to cut at, and '
+                'yield_pressure is "elastic"; give a pressure, or leave plasticity out'
+            )
+        if self._own_grid() is None:
+            self._check_scan_brings_grid()
+        if len({part.realisations for part in self.roughness} - {1}) > 1:
+            raise ValueError("roughness.realisations: differs between the tables; give one number")
+        return self
+
+    def _check_masses(self) -> None:
+        for name, body in (("first", self.first), ("second", self.second)):
+            if body is not None and body.radius is not None and body.density is None:
+                raise ValueError(f"{name}.density: is missing; an impact velocity needs it")
+
+    def _check_scan_brings_grid(self) -> None:
+        if len(self.roughness) == 1 and isinstance(self.roughness[0], MeasuredRoughness):
+            if self.roughness[0].extend is None:
+                return
+            why = "roughness.extend says how a scan is continued, not how far"
+        elif self.roughness:
+            why = "only a single measured surface brings its own"
+        else:
+            why = "only a measured surface brings its own"
+        if self.grid is None:
+            raise ValueError(f"the table [grid] is missing; {why}")
+        raise ValueError(f"grid: nodes and spacing are missing; {why}")
+
+    def _own_grid(self) -> Grid | None:
+        return None if self.grid is None else self.grid.grid()
+
+    @property
+    def realisations(self) -> int:
+        """How many surfaces are to be made of this roughness."""
+        return max((part.realisations for part in self.roughness), default=1)
+
+    def realisation(self, number: int) -> Case:
+        """This case with one surface, the `number`th (from 0): so much is added to the seeds."""
+        parts = tuple(
+            part.variant(number).model_copy(update={"realisations": 1})
+            if part.realisations > 1
+            else part
+            for part in self.roughness
+        )
+        return self.model_copy(update={"roughness": parts})
+
+    def variant(self, number: int) -> Case:
+        """This case with another surface of the same kind: every part has another seed or place."""
+        parts = tuple(
+            part.variant(number).model_copy(update={"realisations": 1}) for part in self.roughness
+        )
+        return self.model_copy(update={"roughness": parts})
+
+    def has_library_values(self) -> bool:
+        """Whether a value of the bodies is the library's, which has a spread."""
+        return any(body.from_library() for body in (self.first, self.second) if body is not None)
+
+    def refined(self, factor: int) -> Case:
+        """This case on cells `factor` times as small as [grid] says, whatever its `refine`."""
+        grid = (self.grid or GridTable()).model_copy(update={"refine": factor})
+        return self.model_copy(update={"grid": grid})
+
+    def pair(self) -> Pair:
+        """The two bodies; `CaseError` when both are flat."""
+        first = self.first.body()
+        if math.isinf(first.radius) and self.second is None:
+            raise CaseError(
+                "first.radius: is flat, and the table [second] is left out and so defaults to "
+                "[first]: both are flat; one must be a sphere: write [second], or for [first] "
+                'radius = "500 um"'
+            )
+        return Pair(first, first if self.second is None else self.second.body())
+
+    def yielding(self) -> Yielding:
+        """How the contact yields. Raises `CaseError` where what it needs is not known."""
+        return self.interface.yielding(self.first, self.second or self.first)
+
+    def surface(self, folder: Path) -> Surface:
+        """The composite roughness on the grid; files are relative to `folder`."""
+        grid, factor = self._own_grid(), 1 if self.grid is None else self.grid.factor
+        if grid is None:
+            (scan,) = cast(tuple[MeasuredRoughness], self.roughness)  # _whole
+            return scan.surface(None, folder, factor)
+        if not self.roughness:
+            return smooth(divided(grid, factor))
+        return composite([part.surface(grid, folder, factor) for part in self.roughness])
+
+    def contact(self, folder: Path) -> Contact:
+        """Everything before the first solve; files are relative to `folder`.
+
+        Raises `CaseError` where a run takes more memory than there is.
+        """
+        pair = self.pair()
+        if grid := self._own_grid():
+            fine = divided(grid, self.grid.factor if self.grid else 1)
+            needs.require(self.run_bytes(fine), fine)
+        surface = self.surface(folder)
+        needs.require(self.run_bytes(surface.grid), surface.grid)
+        return Contact(
+            pair,
+            surface,
+            **self.yielding().arguments(),
+            work_of_adhesion=self.interface.adhesion,
+            approach=self.interface.approach,
+            detachment=self.interface.detachment,
+        )
+
+    def run_bytes(self, grid: Grid) -> float:
+        """Memory that a run on `grid` takes."""
+        yielding = self.yielding()
+        plasticity = "none" if math.isinf(yielding.hardness) else yielding.plasticity
+        adhesive = self.interface.adhesion > 0
+        return needs.run_bytes(grid, plasticity=plasticity, adhesive=adhesive)
+
+    def depths(self) -> list[float]:
+        """The indentations (m), loads (N) or impact velocities (m/s) asked for, increasing."""
+        table = self.indentation or self.load or self.impact
+        assert table is not None  # _whole
+        return table.series()

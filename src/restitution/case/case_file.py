@@ -1,0 +1,192 @@
+"""The case file: read, turned into a `Case`, and what is said of one that is wrong."""
+
+from __future__ import annotations
+
+import difflib
+import re
+import stat
+import tomllib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from restitution.case.bodies import BodyTable, InterfaceTable
+from restitution.case.case import Case
+from restitution.case.quantities import Force, Length
+from restitution.case.roughness import CropTable, GeneratedRoughness, MeasuredRoughness
+from restitution.case.schema import (
+    MOST_STEPS,
+    GridTable,
+    ImpactTable,
+    Series,
+    Table,
+    UnloadingTable,
+)
+from restitution.errors import CaseError, SurfaceError, shown
+
+_LARGEST = 2**22  # bytes of a case file
+_DEEPEST = 32  # tables and lists within each other, and parts of a key
+_NAMED = 3  # further keys with a problem
+
+
+def read_case(path: Path) -> tuple[Case, str]:
+    """Read and check a case file; return it with its text. Raises `CaseError`, naming the key."""
+    text = read_text(path)
+    with naming(path):
+        return parse_case(text), text
+
+
+def read_text(path: Path) -> str:
+    """The text of a case file. Raises `CaseError`, naming the file."""
+    try:
+        kind = path.stat()
+        if not (stat.S_ISREG(kind.st_mode) or stat.S_ISDIR(kind.st_mode)):
+            raise CaseError(
+                f"{path}: is not a regular file (a device, pipe or socket); name a case file"
+            )
+        if kind.st_size > _LARGEST:
+            raise CaseError(
+                f"{path}: has {kind.st_size} bytes, more than the {_LARGEST} a case file may have; "
+                "name a case file"
+            )
+        return path.read_text(encoding="utf-8-sig")  # editors on Windows write a byte order mark
+    except UnicodeDecodeError:
+        raise CaseError(f"{path}: is not a text file; a case file is TOML in UTF-8") from None
+    except OSError as error:
+        raise CaseError(f"{path}: cannot be read ({error.strerror}); name a case file") from None
+
+
+@contextmanager
+def naming(path: Path) -> Iterator[None]:
+    """Put the name of the case file before what is wrong with what it describes."""
+    try:
+        yield
+    except (CaseError, SurfaceError) as error:
+        raise type(error)(f"{path}: {error}") from error
+
+
+def parse_toml(text: str) -> dict[str, Any]:
+    """The tables of a TOML file. Raises `CaseError`."""
+    try:
+        _check_dots(text)
+        content = tomllib.loads(text)
+        _check_depth(content)
+        return content
+    except CaseError:  # a ValueError, too
+        raise
+    except RecursionError:
+        raise _too_deep() from None
+    except tomllib.TOMLDecodeError as error:
+        raise CaseError(f"not valid TOML: {error}") from None
+    except ValueError:  # Python refuses to read an integer of more than 4300 digits
+        raise CaseError("holds a number of thousands of digits; correct it") from None
+
+
+def _too_deep() -> CaseError:
+    return CaseError("not valid TOML: nested too deeply; correct the brackets or the dotted keys")
+
+
+def _check_dots(text: str) -> None:
+    """Refuse keys of very many parts, for which the reader of TOML takes minutes."""
+    for word in re.split(r"[^\w.\-\"']+", text):
+        if word.count(".") > _DEEPEST and ".." not in word.strip("."):
+            raise _too_deep()
+
+
+def _check_depth(content: dict[str, Any]) -> None:
+    """Refuse tables so deep that showing them would fail."""
+    level: list[Any] = [content]
+    for _ in range(_DEEPEST):
+        inner = [v.values() if isinstance(v, dict) else v for v in level]
+        level = [v for values in inner for v in values if isinstance(v, (dict, list))]
+        if not level:
+            return
+    raise _too_deep()
+
+
+def parse_case(text: str) -> Case:
+    """Check the text of a case file. Raises `CaseError`, naming the key."""
+    content = parse_toml(text)
+    try:
+        return Case.model_validate(content)
+    except ValidationError as error:
+        # A key that is not known explains one that is missing, not the other way round.
+        problems = error.errors(include_url=False)
+        problems.sort(key=lambda problem: problem["type"] != "extra_forbidden")
+        raise CaseError(_in_words(problems[0]) + _others(problems)) from None
+
+
+def _others(problems: list[Any]) -> str:
+    """The other keys with a problem, up to three by name."""
+    names = list(dict.fromkeys(_key_of(problem) for problem in problems))[1:]
+    if not names:
+        return ""
+    more = [f"{len(names) - _NAMED} more"] if len(names) > _NAMED else []
+    return f" (also wrong: {', '.join(names[:_NAMED] + more)})"
+
+
+# pydantic's kinds of problem in the words of a case file.
+_WORDS = {
+    "model_type": "a table",
+    "model_attributes_type": "a table",
+    "dict_type": "a table",
+    "list_type": "a list",
+    "too_short": "a list with at least one value",
+    "too_long": f"a list with at most {MOST_STEPS} values",
+    "string_type": "a text",
+    "string_too_short": "a text that is not empty",
+    "bool_type": "true or false",
+    "float_type": "a number",
+    "int_type": "a whole number",
+    "int_parsing_size": "a smaller number",
+}
+
+
+def _keys(problem: Any) -> list[str]:
+    # The tags of a union ("gaussian") and the places in a list are not keys of the file.
+    tags = {"exponential", "gaussian", "self-affine", "measured"}
+    return [str(k) for k in problem["loc"] if isinstance(k, str) and k not in tags]
+
+
+def _key_of(problem: Any) -> str:
+    return ".".join(shown(key)[1:-1] for key in _keys(problem))
+
+
+def _in_words(problem: Any) -> str:
+    """One line for one of pydantic's problems: the key, what is wrong, the remedy."""
+    keys, key = _keys(problem), _key_of(problem)
+    prefix = f"{key}: " if key else ""
+    kind, context = problem["type"], problem.get("ctx", {})
+    if kind == "extra_forbidden":
+        known = _keys_of(keys[:-1], problem["loc"])
+        near = difflib.get_close_matches(keys[-1], known, n=1)
+        hint = f'did you mean "{near[0]}"?' if near else f"known keys: {', '.join(known)}"
+        return f"{key}: unknown key; {hint}"
+    if kind == "missing":
+        what = f"the table [{key}]" if len(keys) == 1 else f'the key "{key}"'
+        return f"{what} is missing"
+    if kind == "union_tag_not_found":
+        return f'{key}.kind is missing; write "exponential", "gaussian" or "measured"'
+    if kind == "union_tag_invalid":
+        return f"{key}.kind: {shown(context['tag'])} is not one of {context['expected_tags']}"
+    if kind == "value_error":
+        return f"{prefix}{context['error']}"
+    should_be = _WORDS.get(kind, problem["msg"].removeprefix("Input should be "))
+    return f"{prefix}{shown(problem['input'])} should be {should_be}"
+
+
+def _keys_of(path: list[str], loc: tuple[Any, ...]) -> list[str]:
+    """The keys that the table at `path` knows, as written in the file."""
+    if path[:2] == ["roughness", "crop"]:
+        return list(CropTable.model_fields)
+    tables: dict[str, type[Table]] = {
+        "first": BodyTable, "second": BodyTable, "interface": InterfaceTable, "grid": GridTable,
+        "indentation": Series[Length], "load": Series[Force], "impact": ImpactTable,
+        "unloading": UnloadingTable,
+        "roughness": MeasuredRoughness if "measured" in loc else GeneratedRoughness,
+    }  # fmt: skip
+    model = tables[path[0]] if path else Case
+    return [field.alias or name for name, field in model.model_fields.items()]

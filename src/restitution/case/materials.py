@@ -1,0 +1,93 @@
+"""A library of materials: elasticity, density, yield strength and hardness, each sourced."""
+
+from __future__ import annotations
+
+import difflib
+import re
+import tomllib
+from functools import cache
+from importlib.resources import files
+from typing import Annotated, Generic, Self, TypeVar
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from restitution.case.quantities import Density, Pressure
+from restitution.case.schema import Table
+from restitution.errors import CaseError, shown
+
+Quantity = TypeVar("Quantity", bound=float)
+PoissonsRatio = Annotated[float, Field(gt=-1, le=0.5)]
+Text = Annotated[str, Field(min_length=1)]
+
+
+class Property(Table, Generic[Quantity]):
+    """One quantity of a material, in SI units.
+
+    `low` and `high` are the spread among sources and grades. `verified` says that `value` was read
+    in the source or a copy of it, or computed from what was read there.
+    """
+
+    value: Quantity
+    low: Quantity
+    high: Quantity
+    source: Text
+    verified: bool
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Self:
+        if not self.low <= self.value <= self.high:
+            raise ValueError("value must lie between low and high")
+        return self
+
+
+class Material(Table):
+    """A material: E and ν of its bulk, true density (kg/m³), Y and H (Pa) where there are any.
+
+    `yield_strength` Y is uniaxial; `hardness` H is a mean contact pressure, force over projected
+    area. What `note` says belongs to every value.
+    """
+
+    key: Text
+    name: Text
+    aliases: Annotated[tuple[Text, ...], BeforeValidator(tuple)]
+    note: Text
+    youngs_modulus: Property[Pressure]
+    poissons_ratio: Property[PoissonsRatio]
+    density: Property[Density]
+    yield_strength: Property[Pressure] | None = None
+    hardness: Property[Pressure] | None = None
+
+
+def material(name: str) -> Material:
+    """The material of that name or alias, in upper or lower case.
+
+    Raises `CaseError` when there is none.
+    """
+    known = {
+        _plain(each): found
+        for found in materials().values()
+        for each in (found.key, *found.aliases)
+    }
+    if found := known.get(_plain(name)):
+        return found
+    near = difflib.get_close_matches(_plain(name), known, n=1)
+    hint = f'did you mean "{near[0]}"? ' if near else ""
+    raise CaseError(
+        f"{shown(name)} is not a material of the library; {hint}"
+        f"known materials: {', '.join(materials())}"
+    )
+
+
+@cache
+def materials() -> dict[str, Material]:
+    """All materials by key."""
+    text = (files("restitution.case") / "materials.toml").read_text("utf-8")
+    return {
+        key: Material.model_validate({"key": key, **content})
+        for key, content in tomllib.loads(text).items()
+    }
+
+
+def _plain(name: str) -> str:
+    """`name` as keys are written: lower case, with hyphens."""
+    return re.sub(r"[\s_-]+", "-", name.strip().lower())

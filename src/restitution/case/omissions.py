@@ -1,0 +1,82 @@
+"""What a case leaves out and what is taken instead, in words: nothing is ideal without a word."""
+
+from __future__ import annotations
+
+import math
+
+from restitution.case.case import Case
+from restitution.case.roughness import GeneratedRoughness
+from restitution.theory import hertz, sticking
+
+TYPICAL_ADHESION = 0.05  # J/m²: within the 0.01 to 0.09 of Ghanbarzadeh et al. (2019)
+# Adhesion takes (V_s/V)² from e² (Thornton and Ning 1998): 0.01 of e = 0.7 at 8.5 V_s.
+_MATTERS = 8.5
+
+
+def omissions(case: Case) -> list[str]:
+    """One line for each key that is left out where an ideal or a default value is taken."""
+    lines = (_default_yield(case), _no_adhesion(case), _no_shortest_wave(case))
+    return [line for line in lines if line]
+
+
+def adhesion_matters_below(case: Case) -> float | None:
+    """Impact velocity (m/s) below which adhesion would change COR by more than about 0.01.
+
+    For smooth bodies, so an upper bound for rough ones. None where the case gives a work of
+    adhesion, or no masses.
+    """
+    pair = case.pair()
+    if case.interface.work_of_adhesion is not None or pair.mass is None:
+        return None
+    arguments = pair.radius, pair.contact_modulus, TYPICAL_ADHESION, pair.mass
+    return _MATTERS * float(sticking.sticking_velocity(*arguments))
+
+
+def _default_yield(case: Case) -> str | None:
+    interface = case.interface
+    if interface.yield_pressure is not None or interface.yield_strength is not None:
+        return None
+    yielding = case.yielding()
+    how = f"yields at {1e-6 * yielding.yield_pressure:.4g} MPa ({yielding.source})"
+    if math.isfinite(yielding.yield_strength):
+        how = f"yields by {yielding.source}"
+    return (
+        f"interface.yield_strength is left out: the contact {how}; write a strength or a pressure, "
+        'or yield_pressure = "elastic" for bodies that do not yield'
+    )
+
+
+def _no_adhesion(case: Case) -> str | None:
+    below = adhesion_matters_below(case)
+    if below is None or _lowest_velocity(case) >= below:
+        return None
+    return (
+        f"interface.work_of_adhesion is left out, and nothing adheres: at {TYPICAL_ADHESION} J/m2, "
+        f"a common value, adhesion changes COR by more than 0.01 below about {below:.2g} m/s "
+        '(smooth bodies); give it, or "0 J/m^2"'
+    )
+
+
+def _lowest_velocity(case: Case) -> float:
+    """The lowest impact velocity, m/s: prescribed, or that of smooth elastic bodies."""
+    first, pair = case.depths()[0], case.pair()
+    if case.impact is not None:
+        return first
+    assert pair.mass is not None  # adhesion_matters_below
+    if case.load is not None:
+        first = float(hertz.indentation_from_force(first, pair.radius, pair.contact_modulus))
+    work = float(hertz.stored_energy(first, pair.radius, pair.contact_modulus))
+    return math.sqrt(2 * work / pair.mass)
+
+
+def _no_shortest_wave(case: Case) -> str | None:
+    for part in case.roughness:
+        if not isinstance(part, GeneratedRoughness) or part.kind == "gaussian":
+            continue
+        if part.shortest is None:
+            return (
+                f'roughness.shortest is left out: a surface of kind = "{part.kind}" has no '
+                "smallest asperity, and this one ends at waves of two grid spacings; shallow COR "
+                "depends on that, and total_error does not include it"
+            )
+    return None

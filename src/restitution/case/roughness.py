@@ -1,0 +1,203 @@
+"""`[roughness]`: a surface to generate, or a scan to read, and how it is placed on the grid."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
+
+from restitution.case import needs
+from restitution.case.quantities import Angle, Length, Position
+from restitution.case.schema import PairOf, Table
+from restitution.errors import SurfaceError, shown
+from restitution.numerics.grid import Grid
+from restitution.surfaces import (
+    Surface,
+    crop,
+    extend,
+    generate_surface,
+    level,
+    place_on_grid,
+    read_surface,
+    refine,
+    remove_outliers,
+)
+from restitution.surfaces.cache import kept
+from restitution.surfaces.extend import Extension
+from restitution.surfaces.generate import RoughnessKind
+from restitution.surfaces.refine import divided
+from restitution.surfaces.shift import place_of
+
+MOST_REALISATIONS = 1000
+MOST_PLACES = 10_000  # of a scan
+
+
+def _range(value: Any) -> Any:
+    """A list of two positions, the second above the first."""
+    if not isinstance(value, list) or len(value) != 2:
+        raise ValueError(f"{shown(value)} should be a list of two positions")
+    return tuple(value)
+
+
+def _ascending(value: tuple[float, float]) -> tuple[float, float]:
+    if not value[0] < value[1]:
+        raise ValueError("the first of the two positions must be below the second")
+    return value
+
+
+Range = Annotated[tuple[Position, Position], BeforeValidator(_range), AfterValidator(_ascending)]
+
+
+Realisations = Annotated[int, Field(ge=1, le=MOST_REALISATIONS)]
+Seed = Annotated[int, Field(ge=0, lt=2**63)]
+
+
+@contextmanager
+def _naming(arguments: Mapping[str, Any]) -> Iterator[None]:
+    """Turn the name of an argument at the head of a refusal into the key of the case file."""
+    try:
+        yield
+    except SurfaceError as error:
+        name = str(error).split(":", 1)[0]
+        raise SurfaceError(f"roughness.{error}" if name in arguments else str(error)) from None
+
+
+class GeneratedRoughness(Table):
+    """`[roughness]` with `kind` exponential, gaussian or self-affine."""
+
+    kind: RoughnessKind
+    rms: Length
+    seed: Seed
+    realisations: Realisations = 1
+    correlation_length: Annotated[tuple[Length, Length], PairOf] | None = None
+    lay: Angle = 0.0
+    hurst: float | None = None
+    rolloff: Length | None = None
+    shortest: Length | None = None
+    skewness: float = 0.0
+    kurtosis: float = 3.0
+    periodic: bool = True
+
+    def variant(self, number: int) -> Self:
+        """Another surface of the same statistics; 0 is the surface itself."""
+        return self.model_copy(update={"seed": self.seed + number})
+
+    def surface(self, grid: Grid, _: Path, factor: int = 1) -> Surface:
+        """The roughness of `grid`, its waves continued on cells `factor` times as small."""
+        fine = divided(grid, factor)
+        normal = (self.skewness, self.kurtosis) == (0.0, 3.0)
+        made = needs.generated_bytes(grid, normal=normal, periodic=self.periodic)
+        needs.require(max(made, needs.generated_bytes(fine, normal=True, periodic=True)), fine)
+        asked = self.model_dump(exclude={"realisations"})
+        key = {"generated": asked, "nodes": grid.nodes, "spacing": grid.spacing, "refine": factor}
+        with _naming(asked):
+            return kept(key, lambda: refine(generate_surface(grid, **asked), factor))
+
+
+class CropTable(Table):
+    """`roughness.crop`: what part of a scan is used."""
+
+    x: Range | None = None
+    y: Range | None = None
+
+
+class MeasuredRoughness(Table):
+    """`[roughness]` with `kind = "measured"`."""
+
+    kind: Literal["measured"]
+    file: Annotated[str, Field(min_length=1)]
+    channel: Annotated[int, Field(ge=0)] | None = None
+    size: Annotated[tuple[Length, Length], PairOf] | None = None
+    undefined: Literal["error", "interpolate"] = "error"
+    crop: CropTable = CropTable()
+    outliers: Annotated[float, Field(gt=0)] | None = None
+    detrend: Literal["none", "center", "tilt", "curvature"] = "none"
+    extend: Extension | None = None
+    seed: Seed | None = None
+    place: Annotated[int, Field(ge=0, le=MOST_PLACES)] = 0
+    realisations: Realisations = 1
+
+    @model_validator(mode="after")
+    def _twins(self) -> Self:
+        if self.extend == "twin" and self.seed is None:
+            raise ValueError('extend = "twin" draws a random surface and needs a seed; give one')
+        if self.seed is not None and self.extend != "twin":
+            raise ValueError(
+                'seed belongs to extend = "twin"; a scan is one surface, and has places: leave '
+                "seed out, or give place"
+            )
+        if self.place and self.extend == "twin":
+            raise ValueError("place belongs to a scan; a twin has a seed instead: leave place out")
+        return self
+
+    def variant(self, number: int) -> Self:
+        """Another twin, or another place of the scan; 0 is the surface itself."""
+        if self.extend == "twin":
+            assert self.seed is not None  # _twins
+            return self.model_copy(update={"seed": self.seed + number})
+        return self.model_copy(update={"place": self.place + number})
+
+    def scan(self, folder: Path) -> Surface:
+        """What was measured, cleaned and levelled; `file` is relative to `folder`."""
+        scan = read_surface(
+            folder / self.file, channel=self.channel, size=self.size, undefined=self.undefined
+        )
+        if self.crop != CropTable():
+            scan = crop(scan, x=self.crop.x, y=self.crop.y)
+        if self.outliers is not None:
+            scan = remove_outliers(scan, self.outliers)
+        # Levelled as a whole before a grid's part is cut out: the form belongs to the scan.
+        return place_of(level(scan, self.detrend), self.place)
+
+    def surface(self, grid: Grid | None, folder: Path, factor: int = 1) -> Surface:
+        """The roughness on cells `factor` times as small as those of `grid`, or as the pixels.
+
+        Smaller cells get the scan's shorter waves, down to its pixel; below, no waves are added.
+        """
+        scan = self.scan(folder)
+        grid = grid or scan.grid
+        whole = divided(grid, factor)
+        needs.require(needs.measured_bytes(whole, scan.grid, twin=self.extend == "twin"), whole)
+        asked = {
+            "measured": self.model_dump(exclude={"realisations"}),
+            "path": str(folder / self.file),
+            "sha256": scan.provenance["file_sha256"],
+            "nodes": grid.nodes,
+            "spacing": grid.spacing,
+            "refine": factor,
+        }
+        return kept(asked, lambda: self._placed(scan, grid, factor))
+
+    def _placed(self, scan: Surface, grid: Grid, factor: int) -> Surface:
+        """The `scan`, continued if asked for, on cells `factor` times as small as `grid`'s."""
+        if self.extend == "twin":
+            # The waves of a twin have no nodes to continue them from: all grids are alike.
+            placed, steps = extend(scan, divided(grid, factor), "twin", seed=self.seed), factor
+        else:
+            steps = self._steps_to_pixel(grid, scan.grid, factor)
+            fine = divided(grid, steps)
+            placed = extend(scan, fine, self.extend) if self.extend else place_on_grid(scan, fine)
+        if factor == 1:
+            return placed
+        finer = refine(placed, factor // steps)
+        how = f"placed on cells {steps} times as small"
+        if factor > steps:
+            how += f", then {finer.provenance['refinement']}"
+        return replace(finer, provenance={**finer.provenance, "refined": factor, "refinement": how})
+
+    def _steps_to_pixel(self, grid: Grid, pixels: Grid, factor: int) -> int:
+        """The part of `factor` after which cells of `grid` are no longer larger than the pixel."""
+        steps = 1
+        while factor % (2 * steps) == 0 and any(
+            h / steps > pixel * (1 + 1e-9)
+            for h, pixel in zip(grid.spacing, pixels.spacing, strict=True)
+        ):
+            steps *= 2
+        return steps
+
+
+Roughness = Annotated[GeneratedRoughness | MeasuredRoughness, Field(discriminator="kind")]

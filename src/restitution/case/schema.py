@@ -1,0 +1,138 @@
+"""The tables of a case file: what all have in common, and those of grid, depths and unloading."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Generic, Literal, Self, TypeVar, cast
+
+import numpy as np
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+
+from restitution.case.quantities import Length, Velocity
+from restitution.collision import UnloadingMethod
+from restitution.contact.separation import RESTITUTION_ERROR
+from restitution.errors import shown
+from restitution.numerics.grid import Grid
+
+MOST_NODES = 2**27  # of a grid: more do not fit into the memory of common machines
+MOST_STEPS = 10_000  # of a curve
+
+
+class Table(BaseModel):
+    """A table: no key that is not known, no value of another type."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, populate_by_name=True)
+
+
+def _two(value: Any) -> Any:
+    """One value for both axes, or a list of two."""
+    if not isinstance(value, list):
+        return value, value
+    if len(value) != 2:
+        raise ValueError(f"{shown(value)} should be one value, or a list of two (for x and y)")
+    return tuple(value)
+
+
+Nodes = Annotated[int, Field(gt=0)]
+PairOf = BeforeValidator(_two)
+
+
+def _few_enough(nodes: tuple[int, int]) -> tuple[int, int]:
+    if nodes[0] * nodes[1] > MOST_NODES:
+        raise ValueError(
+            f"{shown(nodes[0])} x {shown(nodes[1])} nodes are more than a grid may have "
+            f"({MOST_NODES} in all); give fewer, or a larger spacing"
+        )
+    return nodes
+
+
+class GridTable(Table):
+    """`[grid]`; `nodes` and `spacing` may be omitted for a scan, which brings its own."""
+
+    nodes: Annotated[tuple[Nodes, Nodes], PairOf, AfterValidator(_few_enough)] | None = None
+    spacing: Annotated[tuple[Length, Length], PairOf] | None = None
+    refine: Literal[1, 2, 4, 8, 16, "auto"] = 1
+
+    @model_validator(mode="after")
+    def _whole(self) -> Self:
+        if (self.nodes is None) != (self.spacing is None):
+            missing = "nodes" if self.nodes is None else "spacing"
+            raise ValueError(f'the key "{missing}" is missing; nodes and spacing belong together')
+        if self.nodes is not None:
+            _few_enough((self.factor * self.nodes[0], self.factor * self.nodes[1]))
+        return self
+
+    @property
+    def factor(self) -> int:
+        """Cells along x and y that one is divided into; 1 where that is still to be found."""
+        return 1 if self.refine == "auto" else self.refine
+
+    def grid(self) -> Grid | None:
+        """The grid before it is refined, None if it is that of the scan."""
+        if self.nodes is None or self.spacing is None:
+            return None
+        return Grid(self.nodes, self.spacing)
+
+
+Quantity = TypeVar("Quantity")
+
+
+class Series(Table, Generic[Quantity]):
+    """`[indentation]`, `[load]` and `[impact]`: a span with steps, or a list of values."""
+
+    from_: Annotated[Quantity | None, Field(alias="from")] = None
+    to: Quantity | None = None
+    steps: Annotated[int, Field(gt=0, le=MOST_STEPS)] | None = None
+    scale: Literal["log", "linear"] = "log"
+    values: Annotated[list[Quantity], Field(min_length=1, max_length=MOST_STEPS)] | None = None
+
+    list_key: ClassVar[str] = "values"
+
+    @model_validator(mode="after")
+    def _one_way(self) -> Self:
+        span = (self.from_, self.to, self.steps)
+        if self.values is not None:
+            if span != (None, None, None):
+                raise ValueError(f"give either {self.list_key} or from, to and steps, not both")
+        elif None in span:
+            raise ValueError(f"give from, to and steps (or {self.list_key} = [...])")
+        elif self.from_ == self.to:
+            raise ValueError(
+                f"from and to are the same; for a single one use {self.list_key} = [...]"
+            )
+        elif not cast(float, self.from_) < cast(float, self.to):
+            raise ValueError("from must be smaller than to")
+        elif self.steps == 1:
+            raise ValueError(
+                "steps = 1 does not reach from one to the other; give at least 2, or for a single "
+                f"one use {self.list_key} = [...]"
+            )
+        return self
+
+    def series(self) -> list[float]:
+        """The values asked for, in SI units, increasing."""
+        if self.values is not None:
+            return sorted(cast(set[float], set(self.values)))
+        space = np.geomspace if self.scale == "log" else np.linspace
+        first, last = cast(float, self.from_), cast(float, self.to)
+        return [float(v) for v in space(first, last, cast(int, self.steps))]
+
+
+class ImpactTable(Series[Velocity]):
+    """`[impact]`: a span of velocities with steps, or the list `velocity`."""
+
+    values: Annotated[
+        list[Velocity] | None,
+        BeforeValidator(lambda value: value if isinstance(value, list) else [value]),
+        Field(alias="velocity", min_length=1, max_length=MOST_STEPS),
+    ] = None
+
+    list_key: ClassVar[str] = "velocity"
+
+
+class UnloadingTable(Table):
+    """`[unloading]`: which curves are written, and how unloading is computed."""
+
+    curves: Annotated[int, Field(ge=0, le=MOST_STEPS)] = 3
+    steps: Annotated[int, Field(ge=4, le=MOST_STEPS)] = 16
+    method: UnloadingMethod = "path"
+    restitution_error: Annotated[float, Field(gt=0, lt=1)] = RESTITUTION_ERROR

@@ -1,0 +1,1 @@
+"""Results in files: written safely, and read and checked in one place."""

@@ -1,0 +1,177 @@
+"""Two runs or two studies side by side: what differs in them, and by how much."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from restitution.case.case_file import parse_toml
+from restitution.errors import OutputError
+from restitution.results.reader import RunResults, StudyResults
+
+_Row = Mapping[str, float]
+_SAME = 1e-9  # relative difference of depths that are the same
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Rows with the values of both and their difference, inputs that differ, and notes.
+
+    A row has what the cases have of the swept values, `indentation_m`, and for COR
+    `restitution_a`, `restitution_b`, `difference` (b − a), its `error` (see `_error`),
+    `significant` (the difference is larger), `resolved` (by both grids), and `force_ratio` (b over
+    a).
+    """
+
+    rows: list[dict[str, Any]]
+    inputs: list[tuple[str, str, str]]
+    notes: list[str]
+
+
+def compare(a: Path, b: Path) -> Comparison:
+    """Compare the results in the folders `a` and `b`. Raises `OutputError`."""
+    kinds = {_kind(a), _kind(b)}
+    if len(kinds) > 1:
+        raise OutputError(f"{a}, {b}: one is a run and one a study; compare two of a kind")
+    if kinds == {"run"}:
+        (of_a, case_a), (of_b, case_b) = _run(a), _run(b)
+        rows, notes = _curves(of_a, of_b, {})
+        return Comparison(rows, _inputs(case_a, case_b), notes)
+    return _studies(a, b)
+
+
+def _kind(folder: Path) -> str:
+    if (folder / "study.toml").is_file():
+        return "study"
+    if (folder / "curve.csv").is_file():
+        return "run"
+    raise OutputError(f"{folder}: holds no results of a run or study; name the folder of -o")
+
+
+def _studies(a: Path, b: Path) -> Comparison:
+    studies = StudyResults(a), StudyResults(b)
+    of_a, of_b = map(_complete_cases, studies)
+    common = [key for key in of_a if key in of_b]
+    if not common:
+        raise OutputError(
+            f"{a}, {b}: these studies have no case with the same swept values in common"
+        )
+    rows, notes = [], []
+    for key in common:
+        found, said = _curves(of_a[key], of_b[key], dict(key))
+        rows += found
+        notes += [note for note in said if note not in notes]
+    for name, this, other in ((a, of_a, of_b), (b, of_b, of_a)):
+        if alone := len(this) - len([key for key in this if key in other]):
+            notes.append(f"{alone} of {len(this)} cases are in {name} only")
+    return Comparison(rows, _inputs(*(study.text for study in studies)), notes)
+
+
+def _curves(
+    a: Sequence[_Row], b: Sequence[_Row], swept: Mapping[str, str]
+) -> tuple[list[dict[str, Any]], list[str]]:
+    """Rows at the depths of `a` that `b` spans; between its depths `b` is interpolated."""
+    depth_b = np.array([row["indentation_m"] for row in b])
+    rows, between, beyond = [], 0, 0
+    for row in a:
+        depth = row["indentation_m"]
+        same = np.flatnonzero(np.abs(depth_b - depth) <= _SAME * depth)
+        if same.size:
+            k = int(same[0])
+            other, weights = [b[k]], [1.0]
+        elif depth_b.size > 1 and depth_b[0] < depth < depth_b[-1]:
+            k = int(np.searchsorted(depth_b, depth))
+            other, between = [b[k - 1], b[k]], between + 1
+            # COR is nearly straight in the logarithm of depth between neighbours.
+            share = math.log(depth / depth_b[k - 1]) / math.log(depth_b[k] / depth_b[k - 1])
+            weights = [1 - share, share]
+        else:
+            beyond += 1
+            continue
+
+        def of_b(name: str, other: Any = other, weights: Any = weights) -> float:
+            return float(np.dot(weights, [o[name] for o in other]))
+
+        cor_a, cor_b = row["restitution"], of_b("restitution")
+        error = math.hypot(_error(row), max(map(_error, other)))
+        rows.append(
+            {
+                **swept,
+                "indentation_m": depth,
+                "restitution_a": cor_a,
+                "restitution_b": cor_b,
+                "difference": cor_b - cor_a,
+                "error": error,
+                "significant": abs(cor_b - cor_a) > error,
+                "resolved": all(one["resolved"] for one in (row, *other)),
+                "force_ratio": _ratio(of_b("force_N"), row["force_N"]),
+            }
+        )
+    notes = []
+    if between:
+        notes.append("depths differ: the second is interpolated between its own")
+    if beyond:
+        notes.append("depths of the first that the second does not reach are left out")
+    if any(math.isnan(row["discretisation_error"]) for row in (*a, *b)):
+        notes.append(
+            "errors do not hold that of the grid, which one run cannot tell (restitution converge)"
+        )
+    return rows, notes
+
+
+def _error(row: _Row) -> float:
+    """Error of COR: of unloading, of the grid, and of the mean of an ensemble, in quadrature."""
+    parts = [row["restitution_error"], row["discretisation_error"]]
+    if "restitution_low" in row:
+        parts.append(0.5 * (row["restitution_high"] - row["restitution_low"]))
+    return math.hypot(*(part for part in parts if not math.isnan(part)))
+
+
+def _ratio(over: float, under: float) -> float:
+    return over / under if under else math.nan
+
+
+def _complete_cases(
+    study: StudyResults,
+) -> dict[tuple[tuple[str, str], ...], list[dict[str, float]]]:
+    """Rows of the complete cases of a study by their swept values."""
+    return {
+        tuple(case.swept.items()): case.curve.rows
+        for case in study.cases
+        if case.status == "complete"
+    }
+
+
+def _run(folder: Path) -> tuple[list[dict[str, float]], str]:
+    """Rows and case of a run; of one that was killed, which has its curve alone, no case."""
+    run = RunResults(folder)
+    if not (folder / "summary.json").exists() and not (folder / "results.nc").exists():
+        return run.curve.rows, ""
+    run.check()
+    return run.curve.rows, run.case_text
+
+
+def _inputs(a: str, b: str) -> list[tuple[str, str, str]]:
+    """Keys whose values differ between two TOML texts, with the values of both."""
+    flat_a, flat_b = (dict(_flat(parse_toml(text))) for text in (a, b))
+    return [
+        (key, flat_a.get(key, "–"), flat_b.get(key, "–"))
+        for key in dict.fromkeys([*flat_a, *flat_b])
+        if flat_a.get(key) != flat_b.get(key)
+    ]
+
+
+def _flat(table: Any, before: str = "") -> Iterator[tuple[str, str]]:
+    if isinstance(table, dict):
+        for key, value in table.items():
+            yield from _flat(value, f"{before}.{key}" if before else key)
+    elif isinstance(table, list) and table and isinstance(table[0], dict):
+        for number, value in enumerate(table, 1):
+            yield from _flat(value, f"{before}.{number}")
+    else:
+        yield before, str(table)

@@ -1,0 +1,47 @@
+"""Keep a second process out of a folder while one writes there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from filelock import FileLock, Timeout
+
+from restitution.errors import OutputError
+from restitution.results.interruption import hold_signals
+from restitution.results.schema import LOCK
+from restitution.results.writer import writing
+
+
+@contextmanager
+def locked(folder: Path) -> Iterator[None]:
+    """Make `folder`, and keep other processes out of it.
+
+    The lock file is removed at the end, and the folder as well if it is new and still empty. Raises
+    `OutputError` while another process works there, and where the folder cannot be written.
+    """
+    lock = FileLock(folder / LOCK)
+    try:
+        with writing(folder):
+            new = not folder.exists()
+            folder.mkdir(parents=True, exist_ok=True)
+            lock.acquire(blocking=False)
+    except OutputError as error:
+        if not isinstance(error.__cause__, Timeout):
+            raise
+        raise OutputError(
+            f"{folder}: another process is writing there; wait for it or stop it, or name another "
+            "folder with -o"
+        ) from None
+    try:
+        yield
+    finally:
+        with hold_signals():
+            # Removed before it is released: filelock gives nobody a lock on a removed file.
+            with suppress(OSError):
+                (folder / LOCK).unlink()
+            lock.release()
+            if new:
+                with suppress(OSError):  # it is not empty
+                    folder.rmdir()

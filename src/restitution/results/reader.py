@@ -1,0 +1,364 @@
+"""Read stored results, and refuse damaged ones: a damaged file must not pass for numbers.
+
+Every reader of `curve.csv`, `summary.json`, `results.nc`, `table.csv` and `study.nc` is here. Files
+are compared with their checksums where there are any, and their content with what a run can write.
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, NonNegativeInt, ValidationError
+
+from restitution.case.case import Case
+from restitution.case.case_file import parse_case
+from restitution.errors import CaseError, OutputError, one_line
+from restitution.results.checksums import check_file
+from restitution.results.interruption import hold_signals
+from restitution.results.schema import ALL_COLUMNS, COLUMNS, SPREAD_COLUMNS, STATUS, Column
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Curve:
+    """The rows of a curve: as numbers (NaN where empty, flags 0 or 1), and as the file has them."""
+
+    rows: list[dict[str, float]]
+    cells: list[dict[str, str]]
+
+
+class _Model(BaseModel):
+    model_config = ConfigDict(extra="allow", strict=True)
+    plasticity: str
+    adhesion: str
+    nodes: Annotated[list[int], Field(min_length=2, max_length=2)]
+    spacing: Annotated[list[FiniteFloat], Field(min_length=2, max_length=2)]
+
+
+class _Trust(BaseModel):
+    model_config = ConfigDict(extra="allow", strict=True)
+    largest_residual: FiniteFloat
+
+
+class _Summary(BaseModel):
+    """What readers take from `summary.json`."""
+
+    model_config = ConfigDict(extra="allow", strict=True)
+    title: str
+    status: str
+    reason: str
+    depths_asked: NonNegativeInt
+    depths_computed: NonNegativeInt
+    warnings: list[str]
+    model: _Model
+    conventions: dict[str, str]
+    derived: dict[str, FiniteFloat | None]
+    trust: _Trust
+    convolutions: NonNegativeInt
+    versions: dict[str, str]
+
+
+@dataclass(frozen=True)
+class UnloadingCurve:
+    """Indentation (m), rising, and force (N) on the way back from the depth `start` (m)."""
+
+    start: float
+    indentation: Array
+    force: Array
+
+
+@dataclass(frozen=True)
+class RunResults:
+    """The results of one run or convergence study in `folder`.
+
+    Each file is read when it is first asked for, and raises `OutputError` where it is missing or
+    damaged.
+    """
+
+    folder: Path
+
+    @cached_property
+    def curve(self) -> Curve:
+        """The rows of `curve.csv`."""
+        path = self.folder / "curve.csv"
+        cells = _cells(path)
+        curve = Curve([_numbers(path, line, row) for line, row in enumerate(cells, 2)], cells)
+        check_file(path)
+        return curve
+
+    @cached_property
+    def summary(self) -> dict[str, Any]:
+        """The content of `summary.json`."""
+        path = self.folder / "summary.json"
+        content = read_json(path)
+        try:
+            _Summary.model_validate_json(json.dumps(content))
+        except ValidationError as error:
+            first = error.errors()[0]
+            raise damaged(path, f"{'.'.join(map(str, first['loc']))}: {first['msg']}") from None
+        return content
+
+    @cached_property
+    def dataset(self) -> xr.Dataset:
+        """The whole of `results.nc`, in memory."""
+        results = read_netcdf(self._netcdf)
+        for name, column in ((column.variable, column) for column in COLUMNS.values()):
+            if name not in results or results[name].dims != ("indentation_max",):
+                raise damaged(self._netcdf, f"{name} is missing")
+            for value in results[name].values.tolist():
+                _check_number(self._netcdf, name, column, float(value))
+        for name in ("case", "derived_reduced_radius_m", "derived_contact_modulus_Pa"):
+            if name not in results.attrs:
+                raise damaged(self._netcdf, f"the attribute {name} is missing")
+        return results
+
+    def smooth(self) -> xr.Dataset:
+        """The curves of the smooth bodies in `results.nc`, with all of its attributes."""
+        with _opened(self._netcdf) as stored:
+            return stored[[name for name in stored if str(name).startswith("smooth_")]].load()
+
+    @cached_property
+    def case_text(self) -> str:
+        """The text of the case file."""
+        return self._case_and_depths[0]
+
+    @cached_property
+    def case(self) -> Case:
+        """The case."""
+        try:
+            return parse_case(self.case_text)
+        except CaseError as error:
+            raise damaged(self._netcdf, f"its case: {error}") from None
+
+    @cached_property
+    def unloading(self) -> tuple[UnloadingCurve, ...]:
+        """The unloading curves, the one from the least depth first; empty where none is stored."""
+        results, curves = self.dataset, []
+        if "unloading_from" not in results:
+            return ()
+        names = ("unloading_from", "unloading_indentation", "unloading_force")
+        try:
+            for start, x, F in zip(*(results[name].values for name in names), strict=True):
+                known = np.isfinite(x)
+                falls = known.any() and (np.diff(x[known]) < 0).all()
+                if not falls or not np.isfinite(F[known]).all():
+                    raise ValueError("an unloading curve has gaps, or does not lead upwards")
+                curves.append(UnloadingCurve(float(start), x[known][::-1], F[known][::-1]))
+        except (KeyError, ValueError, IndexError, TypeError) as error:
+            raise damaged(self._netcdf, f"{type(error).__name__}: {error}") from None
+        return tuple(sorted(curves, key=lambda curve: curve.start))
+
+    @property
+    def _netcdf(self) -> Path:
+        return self.folder / "results.nc"
+
+    @cached_property
+    def _case_and_depths(self) -> tuple[str, int | None]:
+        with _opened(self._netcdf) as stored:
+            case, depths = stored.attrs.get("case"), stored.sizes.get("indentation_max")
+        if not isinstance(case, str):
+            raise damaged(self._netcdf, "the attribute case is missing")
+        return case, depths
+
+    def check(self) -> None:
+        """Raise `OutputError` unless the three files are there and belong together."""
+        computed, rows = self.summary["depths_computed"], len(self.curve.rows)
+        _, depths = self._case_and_depths
+        if not rows == depths == computed:
+            raise OutputError(
+                f"{self.folder}: curve.csv has {rows} depths, results.nc {depths}, and the run "
+                f"computed {computed}; a file is damaged: run the case again"
+            )
+
+
+@dataclass(frozen=True)
+class EnsembleResults(RunResults):
+    """The results of one case on several surfaces: rows are means over them."""
+
+    @property
+    def surfaces(self) -> int:
+        """How many surfaces were computed, failed ones included."""
+        return len(self.summary["realisations"])
+
+
+@dataclass(frozen=True)
+class StoredCase:
+    """One case of a study: its folder's name, how it ended, its swept values and its curve."""
+
+    name: str
+    status: str
+    reason: str
+    swept: dict[str, str]
+    curve: Curve
+
+
+@dataclass(frozen=True)
+class StudyResults:
+    """The results of a study in `folder`; files are read and refused as those of a run."""
+
+    folder: Path
+
+    @cached_property
+    def cases(self) -> list[StoredCase]:
+        """The cases in `table.csv`."""
+        path = self.folder / "table.csv"
+        found: dict[str, StoredCase] = {}
+        for line, cells in enumerate(_cells(path, "case", "status", "reason"), 2):
+            swept = dict(list(cells.items())[: list(cells).index("indentation_m")])
+            status = cells["status"]
+            if status not in STATUS:
+                raise damaged(path, f"line {line}: status is {status!r}")
+            name = cells["case"]
+            case = found.setdefault(
+                name, StoredCase(name, status, cells["reason"], swept, Curve([], []))
+            )
+            if (case.status, case.swept) != (status, swept):
+                raise damaged(
+                    path, f"line {line}: the rows of {name} differ in status or swept values"
+                )
+            if status == "complete":
+                case.curve.rows.append(_numbers(path, line, cells))
+                case.curve.cells.append(cells)
+        check_file(path)
+        if not found:
+            raise damaged(path, "it has no rows")
+        return list(found.values())
+
+    @cached_property
+    def text(self) -> str:
+        """The study file."""
+        return read_text(self.folder / "study.toml")
+
+    @cached_property
+    def dataset(self) -> xr.Dataset:
+        """The whole of `study.nc`, in memory."""
+        return read_netcdf(self.folder / "study.nc")
+
+    def run(self, name: str) -> RunResults:
+        """The results of the case of that name."""
+        return RunResults(self.folder / "cases" / name)
+
+
+def read_run(folder: Path) -> RunResults:
+    """The results in `folder`, those of several surfaces as `EnsembleResults`.
+
+    Raises `OutputError`.
+    """
+    run = RunResults(folder)
+    return EnsembleResults(folder) if "realisations" in run.summary else run
+
+
+def damaged(path: Path, why: object) -> OutputError:
+    """The refusal of a file that is not as it was written."""
+    return OutputError(f"{path}: is damaged ({one_line(str(why))}); compute it again")
+
+
+@contextmanager
+def reading(path: Path) -> Iterator[None]:
+    """Turn what the system and decoders raise for an unreadable `path` into `OutputError`."""
+    try:
+        yield
+    except FileNotFoundError:
+        raise OutputError(f"{path}: does not exist; name the folder of -o of a command") from None
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be read ({error.strerror or error})") from None
+    except (ValueError, csv.Error, RecursionError) as error:
+        raise damaged(path, error) from None
+
+
+def read_text(path: Path) -> str:
+    """The text of a file of results. Raises `OutputError`."""
+    with reading(path):
+        text = path.read_text(encoding="utf-8")
+    check_file(path)
+    return text
+
+
+def read_json(path: Path) -> dict[str, Any]:
+    """The content of a JSON file that holds a table of names. Raises `OutputError`."""
+    with reading(path):
+        content = json.loads(read_text(path))
+    if not isinstance(content, dict):
+        raise damaged(path, "no table of names and values")
+    return content
+
+
+def read_netcdf(path: Path) -> xr.Dataset:
+    """A netCDF file, in memory. Raises `OutputError`."""
+    with _opened(path) as stored:
+        return stored.load()
+
+
+def _cells(path: Path, *more: str) -> list[dict[str, str]]:
+    """The rows of a table with the columns of a curve and `more`."""
+    with reading(path), open(path, newline="", encoding="utf-8") as file:
+        reader = csv.DictReader(file, strict=True)
+        rows = list(reader)
+        columns = list(reader.fieldnames or ())
+    missing = [name for name in (*COLUMNS, *more) if name not in columns]
+    if missing:
+        raise damaged(path, f"column {missing[0]} is missing")
+    if len(set(columns)) < len(columns):
+        raise damaged(path, "two columns have one name")
+    for line, row in enumerate(rows, 2):
+        if None in row or None in row.values():
+            raise damaged(path, f"line {line} has not {len(columns)} cells")
+    return rows
+
+
+def _numbers(path: Path, line: int, cells: Mapping[str, str]) -> dict[str, float]:
+    """The values of the columns of a curve in one row."""
+    found = {}
+    for name, column in ALL_COLUMNS.items():
+        if name in SPREAD_COLUMNS and name not in cells:
+            continue
+        text, where = cells[name], f"line {line}: {name}"
+        if column.flag:
+            if text not in ("true", "false"):
+                raise damaged(path, f"{where} is {text!r}, not true or false")
+            found[name] = float(text == "true")
+            continue
+        try:
+            found[name] = float(text) if text else math.nan
+        except ValueError:
+            raise damaged(path, f"{where} is {text!r}, not a number") from None
+        if text and math.isnan(found[name]):
+            raise damaged(path, f"{where} is {text!r}, not a number")
+        _check_number(path, where, column, found[name])
+    return found
+
+
+def _check_number(path: Path, where: str, column: Column, value: float) -> None:
+    if math.isnan(value):
+        if not column.optional:
+            raise damaged(path, f"{where} has no value")
+        return
+    if math.isinf(value) or not column.low <= value <= column.high:
+        raise damaged(path, f"{where} is {value:g}")
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[xr.Dataset]:
+    """A netCDF file, with signals held back: they would leave the library's locks taken."""
+    with reading(path):
+        open(path, "rb").close()  # says why, where the library does not
+    check_file(path)
+    try:
+        with hold_signals(), xr.open_dataset(path, engine="netcdf4") as stored:
+            yield stored
+    except MemoryError:
+        raise
+    except Exception as error:  # a damaged file may raise anything
+        raise damaged(path, f"{type(error).__name__}: {error}") from None

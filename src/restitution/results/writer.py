@@ -1,0 +1,304 @@
+"""The results folder: what is written where, in which units, and safely.
+
+`curve.csv` and `unloading.csv` grow row by row while a case runs, so that whatever stops it leaves
+what was computed. `results.nc` and `summary.json` are written once, at the end or on interruption,
+each into a temporary file that is then renamed. Signals are held back while a file is written.
+"""
+
+from __future__ import annotations
+
+import csv
+import importlib.metadata
+import json
+import math
+import os
+import platform
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import IO, Any
+
+import numpy as np
+import xarray as xr
+
+from restitution.collision import Collision
+from restitution.contact.model_error import model_error
+from restitution.contact.resolution import (
+    ADHESIVE_NODES,
+    adhesive_nodes,
+    median_patch,
+    resolves,
+)
+from restitution.contact.state import State
+from restitution.errors import OutputError, one_line
+from restitution.results.checksums import CHECKSUMS, checksums
+from restitution.results.interruption import hold_signals
+from restitution.results.schema import ALL_COLUMNS, COLUMNS, LOCK, UNLOADING_COLUMNS
+
+_BLOCK = 1 << 16  # bytes
+
+
+def curve_row(state: State, collision: Collision) -> dict[str, float]:
+    """The row of `curve.csv` for one state of loading; NaN where there is no answer."""
+    patches = state.patch_sizes()
+    median = median_patch(patches)
+    velocity = collision.impact_velocity
+    values = (
+        state.indentation,
+        state.force,
+        state.contact_area,
+        state.stored_energy,
+        state.plastic_work,
+        collision.loading_work,
+        collision.unloading_work,
+        collision.restitution,
+        math.nan if velocity is None else velocity,
+        state.contact_nodes,
+        patches.size,
+        int(patches[0]) if patches.size else 0,
+        state.residual,
+        state.convolutions + collision.convolutions,
+        collision.pull_off_force,
+        collision.separation_indentation,
+        collision.restitution_error,
+        collision.sticks,
+        adhesive_nodes(state) >= ADHESIVE_NODES,
+        median,
+        resolves(median),
+        *(math.nan,) * 4,  # one curve cannot tell: see `error_budget`
+        model_error(state, collision.restitution),
+    )
+    return dict(zip(COLUMNS, values, strict=True))
+
+
+def versions() -> dict[str, str]:
+    """Versions of this program and of what its numbers depend on."""
+    packages = ("restitution", "numpy", "scipy", "ducc0", "xarray", "netCDF4")
+    found = {name: importlib.metadata.version(name) for name in packages}
+    return {**found, "python": platform.python_version()}
+
+
+class ResultsFolder:
+    """A folder that holds the results of one run and nothing else's."""
+
+    def __init__(self, path: Path) -> None:
+        """Make the folder. Raises `OutputError` when it holds anything or cannot be written."""
+        self.path = path
+        self.rows: list[dict[str, float]] = []
+        self.unloading: list[tuple[float, list[tuple[float, float]]]] = []
+        self._new = make_folder(path)
+
+    @contextmanager
+    def tables(self) -> Iterator[None]:
+        """Keep the two tables open for `add` and `add_unloading`."""
+        with (
+            writing(self.path),
+            open(self.path / "curve.csv", "w", newline="") as curve,
+            open(self.path / "unloading.csv", "w", newline="") as unloading,
+        ):
+            self._curve, self._unloading = curve, unloading
+            _write_row(curve, list(COLUMNS))
+            _write_row(unloading, list(UNLOADING_COLUMNS))
+            yield
+
+    def add(self, state: State, collision: Collision) -> None:
+        """Write the row of a state of loading."""
+        row = curve_row(state, collision)
+        with hold_signals():
+            _write_row(self._curve, [written(value) for value in row.values()])
+            self.rows.append(row)
+
+    def part(self, name: str) -> ResultsFolder:
+        """A folder of results within this one, for one of several runs."""
+        return ResultsFolder(self.path / name)
+
+    def put_curve(self, rows: list[dict[str, float]]) -> None:
+        """Write the whole of `curve.csv`: rows that follow from those of several runs."""
+        self.rows = rows
+        write_table(self.path / "curve.csv", rows)
+
+    def add_unloading(self, path: list[State]) -> None:
+        """Write one unloading curve, from its deepest state to separation."""
+        deepest = path[0].indentation
+        points = [(state.indentation, state.force) for state in path]
+        with hold_signals():
+            for point in points:
+                _write_row(self._unloading, [repr(v) for v in (deepest, *point)])
+            self.unloading.append((deepest, points))
+
+    def discard(self) -> None:
+        """Take back a folder in which nothing was computed, so that it can be named again."""
+        for name in ("curve.csv", "unloading.csv"):
+            (self.path / name).unlink(missing_ok=True)
+        if self._new:
+            self.path.rmdir()
+
+    def write(self, dataset: xr.Dataset, summary: Mapping[str, Any]) -> None:
+        """Write `results.nc`, `summary.json` and the checksums of all tables and of these two.
+
+        Where `results.nc` cannot be written, `summary.json` says so. Raises `OutputError`.
+        """
+        maps = {"height", "pressure", "plastic_displacement"} & set(dataset)
+        packed = {str(name): {"zlib": True, "complevel": 1} for name in maps}
+        with hold_signals():
+            try:
+                write_netcdf(self.path / "results.nc", dataset, packed)
+            except OutputError as error:
+                failed = {**summary, "status": "failed", "reason": one_line(str(error))}
+                with suppress(OutputError):
+                    write_json(self.path / "summary.json", failed)
+                raise
+            write_json(self.path / "summary.json", summary)
+            tables = sorted(path.name for path in self.path.glob("*.csv"))
+            write_checksums(self.path, [*tables, "results.nc", "summary.json"])
+
+
+def make_folder(path: Path, remedy: str = "move it away") -> bool:
+    """Make the folder `path`, and return whether it is new.
+
+    Raises `OutputError` where it holds anything or cannot be written; `remedy` is what the user can
+    do besides naming another folder.
+    """
+    with writing(path):
+        new = not path.exists()
+        path.mkdir(parents=True, exist_ok=True)
+        if any(file.name != LOCK for file in path.iterdir()):
+            raise OutputError(
+                f"{path}: this folder is not empty, and nothing in it is overwritten; name another "
+                f"one with -o, or {remedy}"
+            )
+    return new
+
+
+def require_new_file(path: Path | None) -> None:
+    """Raise `OutputError` where there is a file `path`; None is no file."""
+    if path is not None and path.exists():
+        raise OutputError(f"{path}: exists, and nothing is overwritten; name another file")
+
+
+def write_checksums(folder: Path, names: Sequence[str]) -> None:
+    """Write `SHA256SUMS` for the files `names` in `folder`. Raises `OutputError`."""
+    replace_file(
+        folder / CHECKSUMS, lambda to: to.write_text(checksums(folder, names), encoding="utf-8")
+    )
+
+
+def write_netcdf(
+    path: Path, dataset: xr.Dataset, encoding: Mapping[str, Any] | None = None
+) -> None:
+    """Write `dataset` as netCDF, all of it or nothing. Raises `OutputError`."""
+
+    def write(to: Path) -> None:
+        try:
+            dataset.to_netcdf(to, engine="netcdf4", encoding=encoding or {})
+        except (RuntimeError, OSError) as error:
+            # The library raises "HDF error", or names another reason, where the disk is full.
+            with open(to, "ab") as file:
+                file.write(bytes(_BLOCK))
+            raise OSError(f"{path.name}: {error}") from error
+
+    replace_file(path, write)
+
+
+def write_json(path: Path, content: Mapping[str, Any]) -> None:
+    """Write `content` as JSON, all of it or nothing. Raises `OutputError`."""
+    text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    replace_file(path, lambda to: to.write_text(text, encoding="utf-8"))
+
+
+def write_table(path: Path, rows: Sequence[Mapping[str, float | str]]) -> None:
+    """Write `rows`, whose keys are the columns, as CSV, all of it or nothing."""
+
+    def write(to: Path) -> None:
+        with open(to, "w", newline="") as file:
+            if rows:
+                _write_row(file, list(rows[0]))
+            for row in rows:
+                _write_row(file, [written(value) for value in row.values()])
+
+    replace_file(path, write)
+
+
+def replace_file(path: Path, write: Callable[[Path], object]) -> None:
+    """Let `write` fill a temporary file and rename it to `path`. Raises `OutputError`.
+
+    Signals are held back meanwhile.
+    """
+    temporary = path.with_name(f".{path.name}.part")
+    with hold_signals(), writing(path.parent):
+        try:
+            write(temporary)
+            os.replace(temporary, path)
+        except BaseException:
+            with suppress(OSError):  # a library may hold the file open, and so its room on the disk
+                os.truncate(temporary, 0)
+            raise
+        finally:
+            temporary.unlink(missing_ok=True)
+
+
+def results_dataset(folder: ResultsFolder, deepest: State) -> xr.Dataset:
+    """Everything that was computed, with units: curves, unloading curves and maps."""
+    data = curve_variables(folder.rows)
+    if folder.unloading:
+        depths, curves = zip(*folder.unloading, strict=True)
+        # Curves of different length end in NaN.
+        points = np.full((len(curves), max(map(len, curves)), 2), np.nan)
+        for k, curve in enumerate(curves):
+            points[k, : len(curve)] = curve
+        indentation, force = np.moveaxis(points, -1, 0)
+        along = ("unloading", "unloading_step")
+        data["unloading_from"] = (
+            "unloading", np.array(depths), {"units": "m", "long_name": "maximum indentation"}
+        )  # fmt: skip
+        data["unloading_indentation"] = (along, indentation, {"units": "m"})
+        data["unloading_force"] = (along, force, {"units": "N"})
+    grid = deepest.contact.grid
+    coordinates = {"x": ("x", grid.x, {"units": "m"}), "y": ("y", grid.y, {"units": "m"})}
+    maps = {
+        "height": (deepest.contact.surface.height, "m", "composite roughness"),
+        "pressure": (deepest.pressure, "Pa", "contact pressure at the deepest point"),
+        "plastic_displacement": (
+            deepest.plastic_displacement, "m", "lowering of the surface by yielding"
+        ),
+    }  # fmt: skip
+    for name, (values, unit, meaning) in maps.items():
+        data[name] = (("x", "y"), values, {"units": unit, "long_name": meaning})
+    return xr.Dataset(data, coordinates)
+
+
+def curve_variables(rows: Sequence[Mapping[str, float]]) -> dict[str, Any]:
+    """The variables of `results.nc` for the rows of a curve."""
+    data: dict[str, Any] = {}
+    for name, column in ALL_COLUMNS.items():
+        if rows and name in rows[0]:
+            values = np.array([row[name] for row in rows])
+            attributes = {"units": column.unit, "long_name": column.meaning}
+            data[column.variable] = ("indentation_max", values, attributes)
+    return data
+
+
+def written(value: float | str) -> str:
+    """A value as tables have it: true and false, nothing for NaN, all digits."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return value
+    return "" if math.isnan(value) else repr(value)
+
+
+def _write_row(file: IO[str], values: list[str]) -> None:
+    csv.writer(file, lineterminator="\n").writerow(values)
+    file.flush()
+
+
+@contextmanager
+def writing(path: Path) -> Iterator[None]:
+    """Turn the system's refusals into one line."""
+    try:
+        yield
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise OutputError(
+            f"{path}: cannot be written ({reason}); name another folder with -o, or make room"
+        ) from error

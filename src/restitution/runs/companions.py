@@ -1,0 +1,162 @@
+"""Curves beside the one of a run, on cells twice as large: what moves its COR, and by how much.
+
+They cost a fifth of the run each, and are compared with it at the same loading work, that is, at
+the same impact velocity.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.case.bodies import BodyTable, Yielding
+from restitution.case.case import Case
+from restitution.collision import UnloadingMethod, collide
+from restitution.contact.bodies import Pair
+from restitution.contact.contact import Contact, smooth
+from restitution.contact.path import loading_path
+from restitution.errors import CaseError, DomainError, RestitutionError
+from restitution.runs.log import Say, ignore
+from restitution.surfaces.refine import coarsen
+
+Array = NDArray[np.float64]
+
+SURFACES = 7  # other surfaces whose curves show the scatter
+_TOLERANCE = 0.005  # of COR, for the steps of adhesive unloading
+_SHALLOWER, _DEEPER = 0.5, 1.3  # times the depths: other surfaces need them for the same work
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Loading works (J), increasing, and the coefficient of restitution at each."""
+
+    work: Array
+    restitution: Array
+
+    def at(self, work: Array) -> Array:
+        """COR at other works, by a monotone cubic in ln W; beyond the ends that of the end."""
+        from scipy.interpolate import PchipInterpolator
+
+        if self.work.size == 0:
+            return np.full(np.shape(work), math.nan)
+        if self.work.size == 1:
+            return np.full(np.shape(work), self.restitution[0])
+        inside = np.clip(work, self.work[0], self.work[-1])
+        found: Array = PchipInterpolator(np.log(self.work), self.restitution)(np.log(inside))
+        return found
+
+
+def curve_of(
+    contact: Contact,
+    depths: Sequence[float],
+    method: UnloadingMethod,
+    tolerance: float = _TOLERANCE,
+) -> Curve:
+    """The curve of `contact` over `depths` (m) and one beyond either end.
+
+    `tolerance` is the error of COR that adhesive unloading may have. A depth that fails is left
+    out; the first contact that reaches the edge of the grid ends the curve.
+    """
+    works: list[float] = []
+    restitutions: list[float] = []
+    for depth in (_SHALLOWER * depths[0], *depths, _DEEPER * depths[-1]):
+        try:
+            (state,) = loading_path(contact, [depth])
+            collision = collide(state, method=method, tolerance=tolerance)
+        except DomainError:
+            break
+        except RestitutionError:
+            continue
+        if collision.loading_work > (works[-1] if works else 0.0):
+            works.append(collision.loading_work)
+            restitutions.append(collision.restitution)
+    return Curve(np.array(works), np.array(restitutions))
+
+
+@dataclass(frozen=True)
+class Companions:
+    """The curves beside that of `case` (files relative to `folder`) over `depths` (m)."""
+
+    case: Case
+    folder: Path
+    depths: Sequence[float]
+
+    def own(self) -> Curve:
+        """The curve of the case itself on cells twice as large, without its shortest waves."""
+        return self._curve(self._coarse(self.case))
+
+    def others(self, progress: Say = ignore) -> Iterator[Curve]:
+        """Curves of other surfaces of the same kind: other seeds, or other places of the scan."""
+        for number in range(1, SURFACES + 1):
+            progress(f"error: surface {number} of {SURFACES}")
+            yield self._curve(self._coarse(self.case.variant(number)))
+
+    def materials(self, work: Array) -> list[Array]:
+        """Changes of COR at `work` (J): by elasticity, yield pressure and density of the library.
+
+        Each is the larger of those at the low and the high end of the library's spread, which both
+        bodies have together. Empty where no value is the library's.
+        """
+        coarse = self._coarse(self.case)
+        ends = [_spread(self.case, end) for end in ("low", "high")]
+        curve = self._curve(coarse)
+        here, mass = curve.at(work), coarse.pair.mass
+        changes = []
+        stiff = [replace(coarse, pair=_with_modulus_of(coarse.pair, case.pair())) for case in ends]
+        strong = [replace(coarse, **_yielding(case).arguments()) for case in ends]
+        for pair in (stiff, strong):
+            if any(contact != coarse for contact in pair):
+                found = [self._curve(contact).at(work) for contact in pair]
+                changes.append(np.maximum(*(np.abs(values - here) for values in found)))
+        masses = [case.pair().mass for case in ends]
+        if mass is not None and any(m != mass for m in masses):
+            moved = [curve.at(work * m / mass) for m in masses if m is not None]
+            changes.append(np.max([np.abs(values - here) for values in moved], axis=0))
+        return changes
+
+    def _coarse(self, case: Case) -> Contact:
+        contact = case.contact(self.folder)
+        coarser = coarsen(contact.surface)
+        if contact.surface.provenance.get("source") == "smooth":
+            coarser = smooth(coarser.grid)
+        return replace(contact, surface=coarser)
+
+    def _curve(self, contact: Contact) -> Curve:
+        return curve_of(contact, self.depths, self.case.unloading.method)
+
+
+def _with_modulus_of(pair: Pair, other: Pair) -> Pair:
+    """`pair` with the elasticity of another: masses and radii stay."""
+    first, second = (
+        replace(body, youngs_modulus=its.youngs_modulus, poissons_ratio=its.poissons_ratio)
+        for body, its in ((pair.first, other.first), (pair.second, other.second))
+    )
+    return Pair(first, second)
+
+
+def _yielding(case: Case) -> Yielding:
+    """How `case` yields; by its default model where a body without a yield strength is softer."""
+    try:
+        return case.yielding()
+    except CaseError:
+        default = {"plasticity": None, "tangent_modulus": None}
+        interface = case.interface.model_copy(update=default)
+        return case.model_copy(update={"interface": interface}).yielding()
+
+
+def _spread(case: Case, end: str) -> Case:
+    """`case` with the values of its library materials at the `low` or `high` end of spread."""
+
+    def moved(body: BodyTable) -> BodyTable:
+        found = body.from_library()
+        return body.model_copy(update={key: getattr(its, end) for key, its in found.items()})
+
+    bodies = {"first": moved(case.first)}
+    if case.second is not None:
+        bodies["second"] = moved(case.second)
+    return case.model_copy(update=bodies)

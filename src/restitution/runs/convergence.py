@@ -1,0 +1,286 @@
+"""One case on successively finer grids: what is left of each number's dependence on the grid.
+
+With COR f₁, f₂, f₃ on cells h, h/2, h/4 of one and the same surface,
+
+    error of f₃ = max(1.5 |f₃ − f₂|, 0.5 |f₂ − f₁|),   observed order = log₂((f₂ − f₁)/(f₃ − f₂)).
+
+Between grids COR of rough contacts goes up and down more often than it follows a power of h, so
+that Richardson's extrapolation (Roache 1994, J. Fluids Eng. 116, 405–413) would mostly divide by
+chance. The error is what a convergence of first order would leave of either difference, with a
+margin of 1.5 on the last; it held in 95 % of the cases of docs/resolution.md. On two grids it is
+3 |f₂ − f₁|.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from restitution.case.case import Case
+from restitution.case.schema import MOST_NODES
+from restitution.errors import CaseError
+from restitution.results.reader import RunResults
+from restitution.results.schema import COLUMNS
+from restitution.results.writer import ResultsFolder, curve_variables, write_table
+from restitution.runs.error_budget import (
+    MISSING_BAND,
+    Band,
+    add_errors,
+    total,
+    total_error_summary,
+    widened_error,
+)
+from restitution.runs.log import RunLog, Say, ignore
+from restitution.runs.refinement import settled
+from restitution.runs.run import run_case
+
+_Row = dict[str, float]
+_Runs = dict[int, tuple[float, list[_Row]]]  # refine → how much later (m) it touches, its rows
+
+
+def run_convergence(
+    case: Case,
+    text: str,
+    folder: Path,
+    out: ResultsFolder,
+    grids: int = 3,
+    progress: Say = ignore,
+    warn: Say = ignore,
+) -> dict[str, Any]:
+    """Run `case` on its grid and on ones with cells 2, 4 … times smaller; return the summary.
+
+    With `grid.refine = "auto"` the first grid is the one that is settled on (`refinement`).
+    Each grid has its run in a folder `refine-<n>` of `out`; the curve of `out` is that of the
+    finest with its `discretisation_error`, and `convergence.csv` has a row for every depth and
+    grid. Depths count from the first touch on the finest grid: between the nodes of a coarser one
+    the highest summit is missed, so it is pressed less deep by that difference. What stops a run
+    stops the rest, and what was done is kept.
+    """
+    log, runs = RunLog(progress, warn), _Runs()
+    unsettled: list[str] = []
+
+    def compute() -> None:
+        nonlocal case
+        case = settled(case, folder, log.warn)
+        unsettled[:] = log.warnings
+        for factor, later in _levels(case, folder, grids).items():
+            part, refined = out.part(f"refine-{factor}"), _pressed_less(case, later)
+            if not refined.depths():
+                warn(f"refine = {factor}: misses the contact at every depth")
+                part.discard()
+                continue
+            try:
+                run_case(
+                    refined.refined(factor), text, folder, part,
+                    log.progress_of(f"refine = {factor}"),
+                    ignore if runs else log.warnings_of(part), errors=False,
+                )  # fmt: skip
+            finally:
+                if part.rows:
+                    runs[factor] = later, part.rows
+        if case.total_error and runs:
+            _add_errors(case, folder, runs, progress)
+
+    def keep() -> dict[str, Any] | None:
+        return _keep(case, folder, out, runs, log, unsettled) if runs else None
+
+    summary = log.record(out, compute, keep)
+    assert summary is not None  # the finest grid does not miss the contact
+    return summary
+
+
+def _add_errors(
+    case: Case,
+    folder: Path,
+    runs: _Runs,
+    progress: Say,
+) -> None:
+    """Put the errors of surface and materials into the finest rows, from the coarsest grid."""
+    coarsest, finest = case.refined(min(runs)), runs[max(runs)][1]
+    alone = [dict(row) for row in finest]
+    add_errors(coarsest, folder, coarsest.surface(folder), alone, progress)
+    for row, errors in zip(finest, alone, strict=True):
+        row.update({name: errors[name] for name in ("surface_scatter", "material_error")})
+
+
+def _levels(case: Case, folder: Path, grids: int) -> dict[int, float]:
+    """Factors of refinement, and how much later (m) first touch is met than on the finest."""
+    if grids < 2:
+        raise CaseError(f"grids: {grids} do not show a convergence; give 2 or more")
+    if case.realisations > 1:
+        raise CaseError(
+            "roughness.realisations: convergence is of one surface; leave it out, or give 1"
+        )
+    coarsest = case.grid.factor if case.grid else 1
+    factors = [coarsest * 2**k for k in range(grids)]
+    own = case.grid.grid() if case.grid else None
+    nx, ny = own.nodes if own else case.refined(1).surface(folder).grid.nodes
+    if nx * ny * factors[-1] ** 2 > MOST_NODES:
+        raise CaseError(
+            f"grids: the last of them, {nx * factors[-1]} x {ny * factors[-1]} nodes, would be "
+            f"larger than a grid may be ({MOST_NODES} nodes); give fewer, or a coarser first grid"
+        )
+    R, touch = case.pair().radius, {}
+    for factor in factors:
+        surface = case.refined(factor).surface(folder)
+        x, y = surface.grid.x[:, None], surface.grid.y[None, :]
+        touch[factor] = float(((x * x + y * y) / (2 * R) - surface.height).min())
+    return {factor: touch[factor] - touch[factors[-1]] for factor in factors}
+
+
+def _pressed_less(case: Case, later: float) -> Case:
+    """`case` with its depths less `later` (m), without those that do not make contact then."""
+    if case.indentation is None:
+        return case  # a load or a velocity is the same on every grid
+    depths = [depth - later for depth in case.depths() if depth > later]
+    table = case.indentation.model_construct(values=depths)
+    return case.model_copy(update={"indentation": table})
+
+
+def _keep(
+    case: Case,
+    folder: Path,
+    out: ResultsFolder,
+    runs: _Runs,
+    log: RunLog,
+    unsettled: list[str],
+) -> dict[str, Any]:
+    """Write the curve of the finest grid, the table of all, and the summary, which is returned."""
+    depths = _by_depth(case, runs)
+    finest = [rows[max(runs)] for rows in depths if max(runs) in rows]
+    lacking = _with_grid_errors(case, folder, finest) if case.total_error else 0
+    order = observed_order(depths)
+    out.put_curve([{key: row[key] for key in COLUMNS} for row in finest])
+    write_table(
+        out.path / "convergence.csv",
+        [
+            {"refine": factor, **{key: row[key] for key in (*COLUMNS, "observed_order")}}
+            for rows in depths
+            for factor, row in rows.items()
+        ],
+    )
+    one = RunResults(out.path / f"refine-{max(runs)}")
+    summary = one.summary | {
+        "status": log.status,
+        "reason": log.reason,
+        "warnings": unsettled + one.summary["warnings"],
+        "title": case.title,
+        "grids": sorted(runs),
+        "observed_order": None if math.isnan(order) else order,
+        "seconds": log.seconds,
+        "convolutions": sum(int(row["convolutions"]) for _, rows in runs.values() for row in rows),
+    }
+    errors = [row["discretisation_error"] for row in finest]
+    known = [error for error in errors if not math.isnan(error)]
+    summary["trust"] = {
+        **one.summary["trust"],
+        "largest_discretisation_error": max(known, default=None),
+        **total_error_summary(case, finest),
+    }
+    if lacking:
+        summary["warnings"].append(
+            f"{lacking} of {len(finest)} depths are not resolved: even the finest grid leaves out "
+            "waves of the scan that move COR; give more grids, or a smaller grid.spacing"
+        )
+    if len(known) < len(errors):
+        summary["warnings"].append(
+            f"{len(errors) - len(known)} of {len(errors)} depths have no discretisation_error: "
+            "coarser grids miss the contact there; begin deeper, or with a finer grid (grid.refine)"
+        )
+    dataset = one.dataset.assign(curve_variables(out.rows))
+    coarser = sorted(runs)[:-1]
+    values = [
+        [rows[factor]["restitution"] if factor in rows else math.nan for rows in depths
+         if max(runs) in rows] for factor in coarser
+    ]  # fmt: skip
+    dataset["coarser_restitution"] = (
+        ("refine", "indentation_max"), np.reshape(values, (len(coarser), len(finest))),
+        {"units": "1", "long_name": "coefficient of restitution on coarser grids"},
+    )  # fmt: skip
+    dataset["refine"] = coarser
+    dataset.attrs |= {"title": case.title, "status": log.status}
+    dataset.attrs["warnings"] = "\n".join(summary["warnings"])
+    out.write(dataset, summary)
+    return summary
+
+
+def _with_grid_errors(case: Case, folder: Path, rows: list[_Row]) -> int:
+    """Widen the discretisation error of the finest rows by what differences do not show.
+
+    That is what contacts of so few nodes are off by, so that no difference is zero by chance, and
+    the waves that the finest grid leaves out of a scan. Returns how many rows these leave
+    unresolved.
+    """
+    octaves = Band.of(case.refined(int(max(row["refine"] for row in rows))).surface(folder)).octaves
+    lacking = 0
+    for row in rows:
+        if math.isnan(row["discretisation_error"]) or not row["loading_work_J"] > 0:
+            continue
+        widened, band = widened_error(row["discretisation_error"], row["last_change"], row, octaves)
+        row["discretisation_error"] = widened
+        if band > MISSING_BAND:
+            row["resolved"], lacking = False, lacking + 1
+        row["total_error"] = total(row)
+    return lacking
+
+
+def _by_depth(case: Case, runs: _Runs) -> list[dict[int, _Row]]:
+    """For each depth its row on every grid that reached it, with error and order."""
+    asked = case.depths()
+    found: list[dict[int, _Row]] = [{} for _ in asked]
+    for factor, (later, rows) in sorted(runs.items()):
+        # A coarse grid misses the shallowest depths; a run that was stopped, the deepest.
+        missed = sum(depth <= later for depth in asked) if case.indentation else 0
+        for number, row in enumerate(rows, missed):
+            values = [other["restitution"] for other in found[number].values()]
+            error, order = discretisation([*values, row["restitution"]])
+            indentation = asked[number] if case.indentation else row["indentation_m"]
+            found[number][factor] = {
+                **row,
+                "indentation_m": indentation,
+                "refine": factor,
+                "last_change": abs(values[-1] - row["restitution"]) if values else math.nan,
+                "discretisation_error": error,
+                "observed_order": order,
+            }
+    return found
+
+
+def discretisation(values: Sequence[float]) -> tuple[float, float]:
+    """Error of the last of `values`, each on cells half as large as before, and observed order.
+
+    See the head of this module. NaN where there are too few values, and for the order where they
+    do not approach a limit from one side.
+    """
+    if len(values) < 2:
+        return math.nan, math.nan
+    last = values[-1] - values[-2]
+    if len(values) == 2:
+        return 3 * abs(last), math.nan
+    before = values[-2] - values[-3]
+    order = math.log2(before / last) if last * before > 0 else math.nan
+    return max(1.5 * abs(last), 0.5 * abs(before)), order
+
+
+def observed_order(depths: Sequence[dict[int, _Row]]) -> float:
+    """log₂ of how much closer the last two of three grids are than the first two, or NaN.
+
+    Closeness is the root mean square difference of COR over the depths that the finest grid
+    resolves and all three reach: single depths cross and scatter.
+    """
+    factors = sorted({factor for rows in depths for factor in rows})[-3:]
+    steps = np.array(
+        [
+            np.diff([rows[factor]["restitution"] for factor in factors])
+            for rows in depths
+            if all(factor in rows for factor in factors) and rows[factors[-1]]["resolved"]
+        ]
+    )
+    if len(factors) < 3 or not steps.size or not np.all(np.any(steps, axis=0)):
+        return math.nan
+    before, last = np.sqrt(np.mean(steps**2, axis=0))
+    return float(np.log2(before / last))

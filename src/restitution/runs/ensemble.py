@@ -1,0 +1,229 @@
+"""One case on several surfaces of the same statistics: mean, spread and confidence of its curve."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from restitution.case.case import Case
+from restitution.contact.resolution import unresolved_warning
+from restitution.errors import RestitutionError
+from restitution.results.reader import RunResults
+from restitution.results.schema import COLUMNS
+from restitution.results.writer import ResultsFolder, curve_variables, write_table
+from restitution.runs.error_budget import MISSING_BAND, add_errors, total, total_error_summary
+from restitution.runs.log import RunLog, Say, ignore
+from restitution.runs.refinement import settled
+from restitution.runs.run import run_case
+
+CONFIDENCE = 0.95
+_Row = dict[str, float]
+# Columns of an ensemble's curve that are not means over its surfaces.
+_WORST: dict[str, Callable[[list[float]], float]] = {
+    "residual": max, "model_error": max, "median_patch_nodes": min, "convolutions": sum
+}  # fmt: skip
+_ALL = {"sticks", "adhesion_resolved", "resolved"}
+
+
+def run_realisations(
+    case: Case,
+    text: str,
+    folder: Path,
+    out: ResultsFolder,
+    progress: Say = ignore,
+    warn: Say = ignore,
+) -> dict[str, Any]:
+    """Run `case` on each of its surfaces, as `run_case` does on one, and return the summary.
+
+    With one surface it is `run_case`. With more, each has its run in a folder `realisation-<n>`
+    (n from 1; n − 1 is added to the seed), and the curve of `out` holds their means (`mean_rows`).
+    A surface that fails is recorded, and the others go on; when all fail, the first failure is
+    raised. `grid.refine = "auto"` is settled first (`refinement`), for all alike.
+    """
+    if case.realisations == 1:
+        return run_case(case, text, folder, out, progress, warn)
+    ensemble = _Ensemble(case, text, folder, out, RunLog(progress, warn))
+    summary = ensemble.log.record(out, ensemble.compute, ensemble.keep)
+    if summary is None:
+        raise ensemble.failures[0]
+    return summary
+
+
+class _Ensemble:
+    """What an ensemble has come to."""
+
+    def __init__(
+        self, case: Case, text: str, folder: Path, out: ResultsFolder, log: RunLog
+    ) -> None:
+        self.case, self.text, self.folder, self.out, self.log = case, text, folder, out, log
+        self.curves: dict[int, list[_Row]] = {}
+        self.failures: list[RestitutionError] = []
+        self.ended: list[dict[str, Any]] = []
+        self.errors: list[_Row] = []
+        self.band_errors: list[float] = []
+
+    def compute(self) -> None:
+        """Run every surface, and find the errors of their mean."""
+        self.case = settled(self.case, self.folder, self.log.warn)
+        for number in range(self.case.realisations):
+            self._run(number)
+        self._add_errors()
+
+    def _run(self, number: int) -> None:
+        name = f"realisation {number + 1} of {self.case.realisations}"
+        case = self.case.realisation(number)
+        title = f"{case.title}, {name}" if case.title else name
+        part = self.out.part(f"realisation-{number + 1}")
+        reason = ""
+        try:
+            # What is foreseen of the first is foreseen of most.
+            run_case(
+                case.model_copy(update={"title": title}), self.text, self.folder, part,
+                progress=self.log.progress_of(name),
+                warn=ignore if number else self.log.warnings_of(part), errors=False,
+            )  # fmt: skip
+        except RestitutionError as error:
+            self.failures.append(error)
+            reason = str(error)
+            self.log.tell(f"{name}: {reason}")
+        except KeyboardInterrupt:
+            reason = "stopped by the user"
+            raise
+        finally:
+            if part.rows:
+                self.curves[number] = part.rows
+            depths = len(part.rows)
+            self.ended.append({"realisation": number + 1, "depths": depths, "reason": reason})
+
+    def _add_errors(self) -> None:
+        """Find the errors of grid and materials, on the surface that has reached most depths.
+
+        The scatter between surfaces is known from the ensemble itself.
+        """
+        if not self.curves or not self.case.total_error:
+            return
+        number = max(self.curves, key=lambda k: len(self.curves[k]))
+        case, rows = self.case.realisation(number), self.curves[number]
+        alone = [dict(row) for row in rows]
+        try:
+            self.band_errors = add_errors(
+                case,
+                self.folder,
+                case.surface(self.folder),
+                alone,
+                self.log.progress,
+                scattered=False,
+            )
+        except RestitutionError as error:
+            self.log.warnings.append(f"total_error is not known: {error}")
+        self.errors = alone
+
+    def keep(self) -> dict[str, Any] | None:
+        """Write the curve of the ensemble, its summary and the table of all surfaces."""
+        if not self.curves:
+            return None
+        rows = mean_rows(list(self.curves.values()), self.errors)
+        self.out.put_curve(rows)
+        write_table(
+            self.out.path / "realisations.csv",
+            [{"realisation": k + 1, **row} for k, of in self.curves.items() for row in of],
+        )
+        one = RunResults(self.out.path / f"realisation-{min(self.curves) + 1}")
+        summary = self._summary(one.summary)
+        dataset = one.smooth().assign(curve_variables(rows))
+        dataset.attrs |= {key: summary[key] for key in ("title", "status")}
+        dataset.attrs["warnings"] = "\n".join(summary["warnings"])
+        self.out.write(dataset, summary)
+        return summary
+
+    def _summary(self, one: dict[str, Any]) -> dict[str, Any]:
+        whole = [row for of in self.curves.values() for row in of]
+        warnings = [
+            unresolved_warning(
+                [row["indentation_m"] for row in whole],
+                [row["median_patch_nodes"] for row in whole],
+            ),
+            self._unlike(),
+        ]
+        lacking = sum(error > MISSING_BAND for error in self.band_errors)
+        if lacking:
+            warnings.append(
+                f"{lacking} of {len(self.band_errors)} depths are not resolved: the grid leaves "
+                "out waves of the scan that move COR; use a smaller grid.spacing or grid.refine"
+            )
+        return {
+            "title": self.case.title,
+            "status": self.log.status,
+            "reason": self.log.reason,
+            "realisations_asked": self.case.realisations,
+            "realisations": self.ended,
+            "confidence": CONFIDENCE,
+            "depths_asked": len(self.case.depths()),
+            "depths_computed": len(self.out.rows),
+            "warnings": self.log.warnings + [warning for warning in warnings if warning],
+            **{
+                key: one[key]
+                for key in ("model", "materials", "conventions", "derived", "device", "versions")
+            },
+            "trust": {
+                f"largest_{name}": max(row[name] for row in whole)
+                for name in ("residual", "restitution_error")
+            }
+            | total_error_summary(self.case, self.out.rows),
+            "convolutions": sum(int(row["convolutions"]) for row in whole),
+            "seconds": self.log.seconds,
+        }
+
+    def _unlike(self) -> str | None:
+        """One line on depths that not all surfaces have reached, or None."""
+        numbers = [row["realisations"] for row in self.out.rows]
+        if not numbers or min(numbers) == self.case.realisations:
+            return None
+        return (
+            f"some depths are means of only {min(numbers):.0f} of {self.case.realisations} "
+            "surfaces (column realisations of curve.csv): the others ended before"
+        )
+
+
+def mean_rows(curves: Sequence[Sequence[_Row]], errors: Sequence[_Row] = ()) -> list[_Row]:
+    """The curve of an ensemble: a row for each depth, over the surfaces that have reached it.
+
+    Columns are means, but for the largest residual, the smallest median patch, the sum of the
+    convolutions, and flags, which are true where all are. Besides: the number of surfaces, the
+    standard deviation s of COR (of the sample), and the ends of the 95 % confidence interval of its
+    mean, mean ± t s/√n with Student's t (NaN for one surface); COR being bounded, they are cut at
+    0 and 1. `errors` are rows of one of the surfaces with the errors of grid and materials, which
+    are those of the mean, too; `surface_scatter` is half of the interval.
+    """
+    from scipy.stats import t
+
+    rows = []
+    for depth in range(max(map(len, curves), default=0)):
+        of = [curve[depth] for curve in curves if len(curve) > depth]
+        row: _Row = {}
+        for name in COLUMNS:
+            values = [surface[name] for surface in of]
+            if name in _ALL:
+                row[name] = all(values)
+            else:
+                row[name] = float(_WORST[name](values) if name in _WORST else np.mean(values))
+        restitution = [surface["restitution"] for surface in of]
+        n = len(of)
+        std = float(np.std(restitution, ddof=1)) if n > 1 else math.nan
+        half = float(t.ppf(0.5 * (1 + CONFIDENCE), n - 1)) * std / math.sqrt(n) if n > 1 else std
+        row["realisations"] = n
+        row["restitution_std"] = std
+        row["restitution_low"] = max(row["restitution"] - half, 0.0)
+        row["restitution_high"] = min(row["restitution"] + half, 1.0)
+        if depth < len(errors) and not math.isnan(errors[depth]["total_error"]):
+            for name in ("discretisation_error", "material_error"):
+                row[name] = errors[depth][name]
+            row["resolved"] = bool(row["resolved"]) and bool(errors[depth]["resolved"])
+            row["surface_scatter"] = half
+            row["total_error"] = total(row)
+        rows.append(row)
+    return rows

@@ -1,0 +1,239 @@
+"""The total error of every COR of a run: solver, grid, surface, materials, and what is not in it.
+
+    total² = restitution_error² + discretisation_error² + surface_scatter² + material_error²
+
+It is that of the COR of the pair at the impact velocity of the row: the mean over surfaces of the
+same kind, on a grid that carries all waves of the surface. With ΔCOR the difference of the run from
+itself on cells twice as large, without its shortest octave of waves (`companions`),
+
+    discretisation_error² = ΔCOR² [1 + (1.5 n)²] + (s f)²,   n = ln(S/S_h)/ln(S_h/S_2h).
+
+S is the rms slope of the scan, S_h and S_2h what cells of h and 2h carry of it: COR changes with
+the logarithm of the rms slope about as much beyond the grid as in its last octave. Of generated
+surfaces, whose shortest wave belongs to their definition, n = 0. f is the error that contacts of so
+many nodes in the median patch had on finer grids (docs/resolution.md), and s a small share of it
+that keeps chance from making the error zero, a large one where the contact is not resolved.
+
+The constants were chosen on some 260 random cases, 30 of them adhesive, and checked on others
+(docs/error.md).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.case.case import Case
+from restitution.contact.resolution import resolves
+from restitution.runs.companions import SURFACES, Companions
+from restitution.runs.log import Say, ignore
+from restitution.surfaces import Surface, rms_slope
+from restitution.surfaces.refine import coarsen
+
+Array = NDArray[np.float64]
+Row = dict[str, float]
+
+_BAND = 1.5  # of the change of COR expected from the waves that the grid does not carry
+_SHARE_RESOLVED = 0.03
+_FEW_NODES, _SHARE_UNRESOLVED = (3, 7), (0.6, 0.1)
+# About 90 % of contacts with so many nodes in the median patch were within this COR of a finer
+# grid's. A single node yields late and all at once, so its COR may be off by nearly all of it.
+_PATCH_NODES = (1, 3, 7, 14, 30, 100, 400)
+_PATCH_ERROR = (0.9, 0.4, 0.15, 0.08, 0.05, 0.024, 0.008)
+_SCATTER = 1.5  # standard deviations of COR between surfaces: about 88 % with eight of them
+# ln W over which neighbouring rows tell about a row: single differences may be zero by chance.
+_NEAR_GRID, _NEAR_SURFACE = 2.0, 1.0
+MOST_AFFORDABLE = 2**24  # nodes: minutes and some 2 GB
+MISSING_BAND = 0.03  # of COR: from there on a row is not resolved for the waves it lacks
+
+NOT_INCLUDED = (
+    "the model (of plasticity: model_error; half-space; no range of attraction), values that the "
+    "case gives, rate effects, elastic waves"
+)
+
+
+@dataclass(frozen=True)
+class Band:
+    """What a grid leaves out of a scan: shares of its rms slope, and the spacing that carries all.
+
+    `octaves` is how much more of the slope there is, in units of the last octave that the grid
+    carries (n above); 0 where nothing is left out.
+    """
+
+    octaves: float
+    removed_slope: float
+    pixel: float
+
+    @classmethod
+    def of(cls, surface: Surface) -> Band:
+        """The band that `surface` has lost on its way to the grid."""
+        provenance = surface.provenance
+        removed = float(provenance.get("removed_slope", 0.0))
+        pixel = max(float(provenance.get(f"pixel_{axis}_m", 0.0)) for axis in "xy")
+        coarser = rms_slope(coarsen(surface))
+        if removed < 1e-3 or coarser == 0:
+            return cls(0.0, removed, pixel)
+        beyond = -0.5 * math.log(max(1 - removed**2, 1e-4))
+        last = math.log(max(rms_slope(surface) / coarser, 1.05))
+        return cls(beyond / last, removed, pixel)
+
+
+def grid_error(
+    change: Array, work: Array, rows: Sequence[Row], octaves: float
+) -> tuple[Array, Array]:
+    """Discretisation error of COR of `rows`, and the part of it by waves that the grid leaves out.
+
+    `change` is the difference of COR from that on cells twice as large, at `work` (J).
+    """
+    near = np.sqrt(_smoothed(change**2, work, _NEAR_GRID))
+    band = _BAND * octaves * near
+    return np.sqrt(near**2 + band**2 + np.array([_floor(row) for row in rows]) ** 2), band
+
+
+def widened_error(
+    error: float, last_change: float, row: Row, octaves: float
+) -> tuple[float, float]:
+    """Discretisation error found on several grids with what these do not show, and its band part.
+
+    `last_change` is the difference of COR on the last two of them.
+    """
+    band = _BAND * octaves * last_change
+    return math.hypot(error, band, _floor(row)), band
+
+
+def scatter(restitution: Array, work: Array) -> Array:
+    """Scatter of COR between surfaces, NaN where fewer than two of them have a curve.
+
+    `restitution` has a row for each surface.
+    """
+    known = restitution[np.isfinite(restitution).all(axis=1)]
+    if len(known) < 2:
+        return np.full(work.size, math.nan)
+    variance = np.var(known, axis=0, ddof=1)
+    return np.asarray(_SCATTER * np.sqrt(_smoothed(variance, work, _NEAR_SURFACE)))
+
+
+def add_errors(
+    case: Case,
+    folder: Path,
+    surface: Surface,
+    rows: Sequence[Row],
+    progress: Say = ignore,
+    *,
+    scattered: bool = True,
+) -> list[float]:
+    """Put the errors of grid, surface and materials, and their total, into the rows of a run.
+
+    `surface` is the one that was solved on; without `scattered` the scatter between surfaces is
+    left out. A row without a positive loading work, which no impact reaches, gets no error; nor
+    does one of which a part is not known. Returns the part of the error by waves that the grid
+    leaves out.
+    """
+    reached = [row for row in rows if row["loading_work_J"] > 0]
+    if not reached:
+        return []
+    work = np.array([row["loading_work_J"] for row in reached])
+    restitution = np.array([row["restitution"] for row in reached])
+    companions = Companions(case, folder, sorted(row["indentation_m"] for row in reached))
+    progress("error: cells twice as large")
+    own = companions.own().at(work)
+    errors, band = grid_error(restitution - own, work, reached, Band.of(surface).octaves)
+    columns = {"discretisation_error": errors}
+    if case.roughness and scattered:
+        others = [curve.at(work) for curve in companions.others(progress)]
+        columns["surface_scatter"] = scatter(np.array([own, *others]), work)
+    if case.has_library_values():
+        progress("error: materials")
+        changes = companions.materials(work)
+        columns["material_error"] = np.sqrt(sum((c**2 for c in changes), np.zeros(work.size)))
+    for k, row in enumerate(reached):
+        row.update({name: float(values[k]) for name, values in columns.items()})
+        row["resolved"] = bool(row["resolved"]) and not band[k] > MISSING_BAND
+        if all(math.isfinite(values[k]) for values in columns.values()):
+            row["total_error"] = total(row)
+    return [float(error) for error in band]
+
+
+def band_warning(surface: Surface, band_errors: Sequence[float]) -> str | None:
+    """One line on what the grid leaves out of a scan, where that moves COR, or None.
+
+    It says how fine a grid would have to be, and whether that can be had.
+    """
+    band = Band.of(surface)
+    lacking = [error for error in band_errors if error > MISSING_BAND]
+    if not lacking:
+        return None
+    nodes = [math.ceil(edge / band.pixel) for edge in surface.grid.size]
+    needed = f"cells of {1e6 * band.pixel:.3g} um ({nodes[0]} x {nodes[1]} nodes) carry them"
+    if nodes[0] * nodes[1] > MOST_AFFORDABLE:
+        needed += ", more than can be computed here; take a smaller grid, or trust larger depths"
+    return (
+        f"the grid leaves out waves of the scan with {band.removed_slope:.0%} of its rms slope, "
+        f"and {len(lacking)} of {len(band_errors)} depths are not resolved for that (COR may be "
+        f"off by {max(lacking):.2g}): {needed}; use a smaller grid.spacing or grid.refine"
+    )
+
+
+def total_error_summary(case: Case, rows: Sequence[Row]) -> dict[str, object]:
+    """What `summary.json` says of the total error of `rows`: the largest, what it includes."""
+    known = [row["total_error"] for row in rows if not math.isnan(row["total_error"])]
+    return {
+        "largest_total_error": max(known, default=None),
+        "largest_model_error": max((row["model_error"] for row in rows), default=None),
+        "total_error_includes": ", ".join(included(case)) if known else "",
+        "total_error_does_not_include": NOT_INCLUDED,
+    }
+
+
+def included(case: Case) -> list[str]:
+    """What the total error of a curve of `case` consists of, in words."""
+    words = ["solver", "grid"]
+    if any(part.kind == "measured" for part in case.roughness):
+        words.append("waves of the scan that the grid leaves out")
+    if case.roughness:
+        n = case.realisations
+        words.append(
+            f"95 % interval of the mean of {n} surfaces"
+            if n > 1
+            else f"scatter of one surface among {SURFACES + 1}"
+        )
+    if case.has_library_values():
+        words.append("spread of the library's materials")
+    return words
+
+
+def steps(case: Case) -> int:
+    """How many times the errors of a run or ensemble of `case` report progress."""
+    if not case.total_error:
+        return 0
+    surfaces = SURFACES if case.roughness and case.realisations == 1 else 0
+    return 1 + surfaces + int(case.has_library_values())
+
+
+def total(row: Mapping[str, float]) -> float:
+    """All errors of a row that are known, in quadrature; at most what COR can be off, in [0, 1]."""
+    parts = ("restitution_error", "discretisation_error", "surface_scatter", "material_error")
+    known = [error for name in parts if not math.isnan(error := row.get(name, math.nan))]
+    return min(math.hypot(*known), max(row["restitution"], 1 - row["restitution"]))
+
+
+def _floor(row: Row) -> float:
+    """The least discretisation error of a row, whatever differences between grids say."""
+    nodes = max(row["median_patch_nodes"], 1.0)
+    expected = math.exp(np.interp(math.log(nodes), np.log(_PATCH_NODES), np.log(_PATCH_ERROR)))
+    if resolves(nodes) and row["adhesion_resolved"]:
+        return expected * _SHARE_RESOLVED
+    return expected * float(np.interp(nodes, _FEW_NODES, _SHARE_UNRESOLVED))
+
+
+def _smoothed(values: Array, work: Array, near: float) -> Array:
+    """Mean of `values` weighted by exp(−|Δ ln W|/near); NaN where one is undefined."""
+    L = np.log(work)
+    weights = np.exp(-np.abs(L[:, None] - L) / near)
+    smoothed: Array = weights @ values / weights.sum(axis=1)
+    return smoothed

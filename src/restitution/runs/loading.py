@@ -1,0 +1,23 @@
+"""The contact of a case, solved at one of the depths that the case asks for."""
+
+from __future__ import annotations
+
+from restitution.case.case import Case
+from restitution.contact.contact import Contact
+from restitution.contact.impact import solve_at_velocity
+from restitution.contact.load import solve_at_force
+from restitution.contact.loading import solve
+from restitution.contact.state import State
+
+
+def load_to(case: Case, contact: Contact, depth: float, start: State | None = None) -> State:
+    """The state of `contact` at `depth`, one of `case.depths()` (m, N or m/s).
+
+    `start` is the state at a shallower depth. Raises as `solve`, `solve_at_force` and
+    `solve_at_velocity`.
+    """
+    if case.load is not None:
+        return solve_at_force(contact, depth, start=start)
+    if case.impact is not None:
+        return solve_at_velocity(contact, depth, start=start)
+    return solve(contact, depth, start=start)

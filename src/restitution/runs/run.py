@@ -1,0 +1,337 @@
+"""Run one case: every depth loaded, some unloaded, everything kept."""
+
+from __future__ import annotations
+
+import math
+import time
+from contextlib import suppress
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+from restitution.case.case import Case
+from restitution.case.derived import deepest_indentation, derived_quantities
+from restitution.case.omissions import omissions
+from restitution.collision import Collision, collide
+from restitution.contact.contact import FULL_CONSTRAINT, Contact
+from restitution.contact.path import unloading_path
+from restitution.contact.plausibility import implausible, require_small
+from restitution.contact.resolution import (
+    adhesion_warning,
+    adhesive_nodes,
+    foreseen_warnings,
+    refuse_coarse_scan,
+    unresolved_warning,
+)
+from restitution.contact.state import State
+from restitution.errors import DomainError, NotConvergedError, RestitutionError
+from restitution.numerics.device import current
+from restitution.numerics.quadrature import integrate_curve
+from restitution.results.interruption import hold_signals
+from restitution.results.writer import ResultsFolder, results_dataset, versions
+from restitution.runs.error_budget import add_errors, band_warning, total_error_summary
+from restitution.runs.loading import load_to
+from restitution.runs.log import RunLog, Say, ignore
+from restitution.runs.refinement import settled
+from restitution.runs.smooth import smooth_curve
+from restitution.surfaces import describe
+
+CONVENTIONS = {
+    "end_of_contact": "separation, where the force is back to zero",
+    "indentation_zero": "first touch of the undeformed bodies (highest asperity)",
+    "restitution": "sqrt(unloading work / loading work), quasi-static normal impact",
+}
+YIELD_PRESSURE = "largest contact pressure, a hardness: about 2.8 times the yield strength"
+FULL_PRESSURE = (
+    f"pressure of a fully plastic contact, {FULL_CONSTRAINT} times the yield strength; contacts "
+    "begin to yield at about 1.6 times the yield strength"
+)
+
+_VELOCITY = 1e-3  # difference of an impact velocity from that asked for that is worth a warning
+_IMPRECISE = 0.02  # numerical error of COR that is worth a warning
+_BALANCE = 0.01  # difference of unloading work and stored energy that is worth a warning
+
+
+@dataclass
+class _Run(RunLog):
+    """A run, with what bears on how far it can be trusted."""
+
+    deepest: State | None = None
+    loading_work_errors: list[float] = field(default_factory=list)
+    asked: list[float] = field(default_factory=list)
+    adhesive_nodes: list[float] = field(default_factory=list)
+    band_errors: list[float] = field(default_factory=list)
+    depth_seconds: list[float] = field(default_factory=list)
+    unloading_checks: list[dict[str, float]] = field(default_factory=list)
+
+
+def run_case(
+    case: Case,
+    text: str,
+    folder: Path,
+    out: ResultsFolder,
+    progress: Say = ignore,
+    warn: Say = ignore,
+    *,
+    errors: bool = True,
+) -> dict[str, Any]:
+    """Run `case` (whose text was `text`, with files relative to `folder`) and return the summary.
+
+    With `errors` (and unless the case says total_error = false) every row gets its total error
+    (`error_budget`). With `errors` a depth that does not converge is left out, and the others go
+    on; without, as one of several runs whose rows are compared by their number, it ends the curve.
+    So does contact at the edge of the grid. Either makes the run a failed one in the end.
+
+    It is of one surface (see `ensemble`); `grid.refine = "auto"` is settled first (`refinement`).
+    `progress` is called with a few words after every depth, `warn` with every warning: what is
+    foreseen before the first solve, what the results show at the end, whichever end it is.
+    Whatever stops the run is raised again once everything computed until then, and the reason, are
+    in the folder; when nothing was, the folder is taken back.
+    """
+    run = _Run(progress, warn)
+
+    def compute() -> None:
+        nonlocal case
+        case = settled(case, folder, run.warn)
+        contact = case.contact(folder)
+        foreseen = deepest_indentation(case)
+        require_small(contact, foreseen)
+        refuse_coarse_scan(contact, foreseen)
+        warnings = omissions(case) + foreseen_warnings(contact, foreseen)
+        for warning in warnings + implausible(contact, foreseen):
+            run.warn(warning)
+        with out.tables():
+            failure = _load_and_unload(contact, case, out, run, go_on=errors)
+        if errors and case.total_error and out.rows:
+            _add_errors(case, folder, contact, out, run)
+        if failure is not None:
+            raise failure
+
+    def keep() -> dict[str, Any] | None:
+        return None if run.deepest is None else _keep(case, text, out, run, run.deepest)
+
+    summary = run.record(out, compute, keep)
+    assert summary is not None  # where no depth is computed, `compute` raises
+    return summary
+
+
+def _keep(case: Case, text: str, out: ResultsFolder, run: _Run, deepest: State) -> dict[str, Any]:
+    """Write what the run has come to, and return its summary."""
+    summary = _summarise(case, deepest.contact, out, run)
+    summary["seconds"] = run.seconds
+    dataset = results_dataset(out, deepest)
+    with suppress(RestitutionError):  # a reference that fails is no reason to fail
+        dataset = dataset.assign(smooth_curve(deepest.contact, out.rows))
+    dataset.attrs = _attributes(summary, text)
+    out.write(dataset, summary)
+    return summary
+
+
+def _load_and_unload(
+    contact: Contact,
+    case: Case,
+    out: ResultsFolder,
+    run: _Run,
+    *,
+    go_on: bool,
+) -> RestitutionError | None:
+    """Every depth, one after the other; what stopped the first of those that failed."""
+    depths, curves = case.depths(), case.unloading.curves
+    # Evenly apart in number, the deepest among them.
+    unloaded = {len(depths) - 1 - (k * len(depths)) // curves for k in range(curves)}
+    began = time.perf_counter()
+    before: State | None = None
+    failure: RestitutionError | None = None
+    for number, depth in enumerate(depths):
+        try:
+            state = load_to(case, contact, depth, before)
+        except (NotConvergedError, DomainError) as error:
+            failure = failure or error
+            if not go_on or isinstance(error, DomainError):  # deeper ones reach the edge, too
+                break
+            run.progress(f"{number + 1} of {len(depths)} depths")
+            continue
+        before = state
+        followed = contact.adhesive and case.unloading.method == "path"
+        back: list[State] = []
+        if followed or number in unloaded:
+            back = list(
+                unloading_path(
+                    state, steps=case.unloading.steps, tolerance=case.unloading.restitution_error
+                )
+            )
+        collision = collide(state, back if followed else None, method=case.unloading.method)
+        with hold_signals():  # an interruption leaves no row without what belongs to it
+            run.asked.append(depth)
+            run.adhesive_nodes.append(adhesive_nodes(state))
+            run.loading_work_errors.append(state.work_error / max(abs(state.loading_work), 1e-300))
+            out.add(state, collision)
+            run.deepest = state
+        if number in unloaded and state.contact_nodes:
+            out.add_unloading(back)
+            run.unloading_checks.append(_check(state, back, collision))
+        run.depth_seconds.append(round(time.perf_counter() - began, 4))
+        began = time.perf_counter()
+        run.progress(f"{number + 1} of {len(depths)} depths")
+    return failure
+
+
+def _add_errors(
+    case: Case,
+    folder: Path,
+    contact: Contact,
+    out: ResultsFolder,
+    run: _Run,
+) -> None:
+    """Put the total error into the rows, and warn of what the grid leaves out of the surface."""
+    try:
+        run.band_errors = add_errors(case, folder, contact.surface, out.rows, run.progress)
+    except RestitutionError as error:
+        run.warnings.append(f"total_error is not known: {error}")
+    out.put_curve(out.rows)
+
+
+def _check(state: State, back: list[State], collision: Collision) -> dict[str, float]:
+    """The work of an unloading curve beside what energies say it should be."""
+    work = -integrate_curve([s.indentation for s in back], [s.force for s in back])
+    estimate = collide(state, method="energy-estimate")
+    return {
+        "indentation_m": state.indentation,
+        "unloading_work_J": work,
+        "adhesive_loss_J": collision.adhesive_loss,
+        "relative_to_stored_energy": (work + collision.adhesive_loss) / state.stored_energy - 1,
+        "restitution_from_energy_estimate": estimate.restitution,
+        "separation_indentation_m": back[-1].indentation,
+    }
+
+
+def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> dict[str, Any]:
+    patches = [row["median_patch_nodes"] for row in out.rows]
+    depths = [row["indentation_m"] for row in out.rows]
+    nodes = run.adhesive_nodes[: len(depths)]  # interrupted, there may be one more
+    found = [unresolved_warning(depths, patches), adhesion_warning(depths, nodes)]
+    found.append(band_warning(contact.surface, run.band_errors))
+    found += [_imprecise(out, case), _velocities_missed(out, case, run.asked)]
+    if not contact.adhesive:
+        found.append(_unbalanced(run.unloading_checks))
+    elastic = math.isinf(contact.hardness)
+    return {
+        "title": case.title,
+        "status": run.status,
+        "reason": run.reason,
+        "depths_asked": len(case.depths()),
+        "depths_computed": len(out.rows),
+        "warnings": run.warnings + [warning for warning in found if warning],
+        "model": {
+            "plasticity": "none" if elastic else contact.plasticity,
+            **_adhesion_of(contact, case),
+            "half_space": "free, Love cells, zero-padded FFT",
+            **asdict(contact.grid),
+            "refine": case.grid.factor if case.grid else 1,
+            "yield_pressure": case.yielding().source,
+        },
+        "materials": _materials(case),
+        "conventions": {
+            **CONVENTIONS,
+            "yield_pressure": FULL_PRESSURE if contact.grows else YIELD_PRESSURE,
+        },
+        "derived": derived_quantities(case, contact),
+        "surface": dict(contact.surface.provenance),
+        "surface_statistics": describe(contact.surface),
+        "trust": {
+            "largest_residual": max(row["residual"] for row in out.rows),
+            "largest_loading_work_error": max(run.loading_work_errors),
+            "largest_restitution_error": max(row["restitution_error"] for row in out.rows),
+            **total_error_summary(case, out.rows),
+            "unloading_checks": run.unloading_checks,
+        },
+        "device": current().name,
+        "convolutions": sum(int(row["convolutions"]) for row in out.rows),
+        "seconds_by_depth": run.depth_seconds,
+        "versions": versions(),
+    }
+
+
+def _materials(case: Case) -> dict[str, Any]:
+    """The values of the bodies that are the library's, with their spread and source."""
+    bodies = {"first": case.first, "second": case.second or case.first}
+    return {
+        name: {
+            "material": body.material,
+            **{key: found.model_dump() for key, found in body.from_library().items()},
+        }
+        for name, body in bodies.items()
+        if body.material is not None
+    }
+
+
+def _imprecise(out: ResultsFolder, case: Case) -> str | None:
+    """One line on depths whose restitution is not as precise as asked for, or None."""
+    asked = max(_IMPRECISE, case.unloading.restitution_error)
+    missed = [row for row in out.rows if row["restitution_error"] > asked]
+    if not missed:
+        return None
+    worst = max(missed, key=lambda row: row["restitution_error"])
+    why = "contact comes and goes in jumps there; use a finer grid"
+    if case.unloading.method == "energy-estimate":
+        why = 'unloading is an estimate; set unloading.method = "path"'
+    return (
+        f"restitution_error is above {asked:g} at {len(missed)} of {len(out.rows)} depths, at "
+        f"worst {worst['restitution_error']:.2g} at {1e9 * worst['indentation_m']:.4g} nm: {why}"
+    )
+
+
+def _velocities_missed(out: ResultsFolder, case: Case, computed: list[float]) -> str | None:
+    """One line on impact velocities that are not those asked for, or None."""
+    if case.impact is None:
+        return None
+    pairs = zip((row["impact_velocity_m_per_s"] for row in out.rows), computed, strict=False)
+    off = {asked: abs(met / asked - 1) for met, asked in pairs}
+    missed = [asked for asked, miss in off.items() if not miss <= _VELOCITY]
+    if not missed:
+        return None
+    worst = max(missed, key=lambda asked: off[asked])
+    return (
+        f"{len(missed)} of {len(off)} impact velocities are met only within the error of the work, "
+        f"at worst {worst:g} m/s within {off[worst]:.1%}: curve.csv has those that were met"
+    )
+
+
+def _adhesion_of(contact: Contact, case: Case) -> dict[str, Any]:
+    if not contact.adhesive:
+        return {"adhesion": "none"}
+    return {
+        "adhesion": "JKR limit",
+        "approach": contact.approach,
+        "detachment": contact.detachment,
+        "unloading": case.unloading.method,
+    }
+
+
+def _unbalanced(checks: list[dict[str, float]]) -> str | None:
+    """One line on unloading curves whose work is not the stored energy, or None."""
+    off = [check for check in checks if not abs(check["relative_to_stored_energy"]) <= _BALANCE]
+    if not off:
+        return None
+    worst = max(off, key=lambda check: abs(check["relative_to_stored_energy"]))
+    return (
+        f"{len(off)} of {len(checks)} unloading curves return another work than was stored, at "
+        f"worst {worst['relative_to_stored_energy']:+.1%} from "
+        f"{1e9 * worst['indentation_m']:.4g} nm: raise unloading.steps, or refine the grid"
+    )
+
+
+def _attributes(summary: dict[str, Any], text: str) -> dict[str, str]:
+    """Attributes of results.nc: flat texts."""
+    groups = ("model", "conventions", "derived", "surface", "surface_statistics", "versions")
+    return {
+        "title": summary["title"],
+        "status": summary["status"],
+        "warnings": "\n".join(summary["warnings"]),
+        "case": text,
+        **{
+            f"{group}_{key}": str(value)
+            for group in groups
+            for key, value in summary[group].items()
+        },
+    }

@@ -1,1 +1,0 @@
-"""Case file to stored results."""

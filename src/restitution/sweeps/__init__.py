@@ -1,0 +1,1 @@
+"""Studies: a case swept over values, computed on many processes."""

@@ -1,0 +1,50 @@
+"""Swept values as coordinates of `study.nc`: numbers in SI units where they are quantities."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from typing import Any
+
+from restitution.case.quantities import read_quantity
+
+# The units of quantities in a case file, as netCDF writes them.
+_UNITS = {
+    "m": "m",
+    "Pa": "Pa",
+    "kg/m^3": "kg m-3",
+    "N": "N",
+    "J/m^2": "J m-2",
+    "m/s": "m s-1",
+    "rad": "rad",
+}
+AS_WRITTEN = "as_written"
+"""The attribute that holds the values as they stand in the study, a JSON list of texts."""
+
+
+def as_text(value: Any) -> str:
+    """A swept value as it stands in the study: "0.1 um", 3, true, [1, 2]."""
+    if isinstance(value, str):
+        return value
+    return json.dumps(value, ensure_ascii=False, default=str)
+
+
+def coordinate(values: Sequence[Any]) -> tuple[list[Any], dict[str, str]]:
+    """The values of a swept key and their attributes.
+
+    Quantities of one kind ("0.1 um") are numbers with the attribute `units`, numbers stay numbers,
+    and everything else is text as in the study.
+    """
+    texts = [as_text(value) for value in values]
+    attributes = {AS_WRITTEN: json.dumps(texts, ensure_ascii=False)}
+    if all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values):
+        return list(values), attributes
+    for unit, written in _UNITS.items():
+        try:
+            return [read_quantity(value, unit) for value in values], {
+                "units": written,
+                **attributes,
+            }
+        except ValueError:
+            continue
+    return texts, attributes

@@ -1,0 +1,160 @@
+"""Processes that compute cases: on this machine, or those of a Dask cluster.
+
+Both are a `concurrent.futures.Executor` with a number of places and a channel for progress, so that
+`scheduler` does not tell them apart.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass
+from multiprocessing.managers import SyncManager
+from queue import Empty
+from typing import Any
+
+from restitution.errors import OutputError
+from restitution.results.interruption import hold_signals
+from restitution.sweeps.task import Channel
+
+PATIENCE = "15s"  # with a scheduler that does not answer
+
+
+@dataclass(frozen=True)
+class Workers:
+    """`places` cases are computed at a time, each with `threads` threads.
+
+    `renewed` makes another executor after one of its processes has died; `heard` is what has come
+    through `channel` since it was last called.
+    """
+
+    executor: Executor
+    places: int
+    threads: int
+    channel: Channel
+    heard: Callable[[], list[tuple[int, int]]]
+    renewed: Callable[[int], Executor]
+
+
+@contextmanager
+def local_workers(count: int | None) -> Iterator[Workers]:
+    """`count` processes on this machine (one for each core it may use), its cores shared out."""
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    places = count or cores or 1
+    threads = max(1, (cores or 1) // places)
+    # Processes are begun afresh: a fork would copy threads' locks in whatever state they are.
+    context = multiprocessing.get_context("spawn")
+    started: list[ProcessPoolExecutor] = []
+
+    def begin(size: int) -> Executor:
+        pool = _Pool(size, mp_context=context, initializer=_serve)
+        started.append(pool)
+        return pool
+
+    manager = SyncManager(ctx=context)
+    with hold_signals(), _without_interrupts():
+        manager.start(_serve)
+    with manager:
+        queue = manager.Queue()
+
+        def heard() -> list[tuple[int, int]]:
+            messages = []
+            while True:
+                try:
+                    messages.append(queue.get_nowait())
+                except Empty:
+                    return messages
+
+        try:
+            yield Workers(begin(places), places, threads, queue, heard, begin)
+        finally:
+            with hold_signals():
+                for pool in started:
+                    # Cases in flight are given up: their results would not be kept.
+                    for process in list((pool._processes or {}).values()):
+                        process.terminate()
+                    pool.shutdown(cancel_futures=True)
+
+
+class _Pool(ProcessPoolExecutor):
+    """Begins its processes, as tasks are submitted, without Ctrl-C."""
+
+    def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        with _without_interrupts():
+            return super().submit(function, *args, **kwargs)
+
+
+@contextmanager
+def _without_interrupts() -> Iterator[None]:
+    """Block SIGINT for the processes that are begun here, until they ignore it (`_serve`).
+
+    Ctrl-C reaches all processes of a terminal, and before that would end them with a traceback.
+    """
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    from multiprocessing import resource_tracker
+
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGHUP})
+    try:
+        # It would be begun with the first process, and unblock SIGINT. It keeps SIGHUP blocked:
+        # where a terminal closes, it has to outlive this process.
+        resource_tracker.ensure_running()
+        signal.pthread_sigmask(signal.SIG_SETMASK, before | {signal.SIGINT})
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _serve() -> None:
+    """Leave it to the process that keeps the results when to end, and end when it is gone."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = multiprocessing.parent_process()
+
+    def end_with_parent() -> None:
+        if parent is not None:
+            parent.join()
+            os._exit(1)
+
+    threading.Thread(target=end_with_parent, daemon=True).start()
+
+
+@contextmanager
+def cluster_workers(address: str) -> Iterator[Workers]:
+    """The workers of the Dask cluster whose scheduler is at `address`.
+
+    Raises `OutputError` when there is no such cluster, or Dask is not installed.
+    """
+    try:
+        from distributed import Client, Queue
+    except ImportError:
+        raise OutputError(
+            "scheduler: Dask is not installed; install the extra cluster, from a checkout with "
+            '`pip install ".[cluster]"`'
+        ) from None
+    try:
+        client = Client(address, timeout=PATIENCE, set_as_default=False)
+    except (OSError, ValueError, TimeoutError) as error:
+        raise OutputError(
+            f"scheduler: {address} does not answer ({error}); start one with `dask scheduler`"
+        ) from None
+    with client:
+        places = sum(client.ncores().values())
+        if not places:
+            raise OutputError(
+                f"scheduler: {address} has no workers; start some with `dask worker {address}`"
+            )
+        queue = Queue(client=client)
+
+        def heard() -> list[tuple[int, int]]:
+            messages: list[tuple[int, int]] = queue.get(batch=True)
+            return [(number, done) for number, done in messages]
+
+        # The cluster replaces a dead worker's tasks by itself, up to its own number of times.
+        executor = client.get_executor(pure=False)
+        yield Workers(executor, places, 1, queue, heard, lambda _: executor)

@@ -1,0 +1,123 @@
+"""All cases of a study, on as many processes as there are, each kept as soon as it is done."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, wait
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from restitution.errors import OutputError, one_line
+from restitution.results.interruption import hold_signals
+from restitution.sweeps.executors import Workers
+from restitution.sweeps.study_folder import StudyFolder
+from restitution.sweeps.sweep import Study, SweptCase
+from restitution.sweeps.task import Outcome, compute
+
+_POLL = 0.2  # s between looks at the progress
+_DEATHS = 3  # of its worker, before a case is held to be the cause
+
+
+@dataclass
+class Tally:
+    """How a study stands: cases done, failed and in flight with the depths they have done."""
+
+    cases: int
+    done: int = 0
+    failed: int = 0
+    in_flight: dict[int, int] = field(default_factory=dict)
+
+
+def run_study(
+    study: Study,
+    folder: Path,
+    out: StudyFolder,
+    workers: Workers,
+    progress: Callable[[Tally], None] = lambda _: None,
+    *,
+    retry_failed: bool = False,
+) -> Tally:
+    """Compute every case of `study` that `out` does not hold yet, and write its tables.
+
+    Measured surfaces are relative to `folder`. A case that fails is kept with its reason and is
+    not computed again without `retry_failed`. Whatever ends the study, the cases done are kept.
+    A case whose worker dies is computed again, by itself: three deaths are its failure.
+    """
+    out.clear()
+    known = {case.number: out.reason(case) for case in study.cases}
+    missing = [
+        case
+        for case in study.cases
+        if known[case.number] is None or (retry_failed and known[case.number])
+    ]
+    tally = Tally(len(study.cases), done=len(study.cases) - len(missing))
+    tally.failed = sum(bool(known[c.number]) for c in study.cases if c not in missing)
+    progress(tally)
+    try:
+        _compute_all(deque(missing), folder, out, workers, tally, progress)
+    finally:
+        with hold_signals():
+            out.write_tables()
+    return tally
+
+
+def _compute_all(
+    waiting: deque[SweptCase],
+    folder: Path,
+    out: StudyFolder,
+    workers: Workers,
+    tally: Tally,
+    progress: Callable[[Tally], None],
+) -> None:
+    executor, size, deaths = workers.executor, workers.places, dict[int, int]()
+    suspects: deque[SweptCase] = deque()
+    running: dict[Future[Outcome], SweptCase] = {}
+    broken = False
+    while waiting or suspects or running:
+        # Cases whose worker has died go alone, so that only the one to blame dies again.
+        places = 1 if suspects else workers.places
+        if broken or (places != size and not running):
+            executor, size, broken = workers.renewed(places), places, False
+        source = suspects or waiting
+        while source and len(running) < min(places, size):
+            case = source[0]
+            try:
+                future = executor.submit(
+                    compute, case.text, str(folder), case.number, workers.threads, workers.channel
+                )
+            except BrokenExecutor:  # a worker has died since the last look
+                broken = True
+                break
+            running[future] = source.popleft()
+            tally.in_flight[case.number] = 0
+        done, _ = wait(running, timeout=_POLL, return_when=FIRST_COMPLETED)
+        for future in done:
+            case = running.pop(future)
+            tally.in_flight.pop(case.number, None)
+            try:
+                outcome = future.result()
+            except BrokenExecutor:
+                broken = True
+                deaths[case.number] = deaths.get(case.number, 0) + 1
+                if deaths[case.number] < _DEATHS:
+                    suspects.append(case)
+                    continue
+                outcome = Outcome({}, f"its worker died {_DEATHS} times: killed, or out of memory")
+            except OutputError:  # no room for any case
+                raise
+            except Exception as error:  # a bug, or a cluster's own: this case fails, others go on
+                outcome = Outcome({}, one_line(f"{type(error).__name__}: {error}"))
+            out.put(case, outcome)
+            tally.done += 1
+            tally.failed += bool(outcome.reason)
+        if broken:
+            # All that ran on it have ended with it.
+            for case in running.values():
+                suspects.append(case)
+                tally.in_flight.pop(case.number, None)
+            running.clear()
+        for number, depths in workers.heard():
+            if number in tally.in_flight:
+                tally.in_flight[number] = depths
+        progress(tally)

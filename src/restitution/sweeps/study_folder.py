@@ -1,0 +1,177 @@
+"""The folder of a study: one folder for each case, and tables over all of them.
+
+A case is written to a folder of another name, which is then renamed: it is there whole, or not at
+all. The tables follow from the cases and are written anew, each into a temporary file first.
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import shutil
+from contextlib import AbstractContextManager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from restitution.errors import OutputError
+from restitution.results.interruption import hold_signals
+from restitution.results.locking import locked
+from restitution.results.reader import RunResults, read_json, read_text
+from restitution.results.schema import ALL_COLUMNS, COLUMNS
+from restitution.results.writer import (
+    make_folder,
+    replace_file,
+    write_checksums,
+    write_netcdf,
+    writing,
+)
+from restitution.sweeps.coordinates import as_text, coordinate
+from restitution.sweeps.sweep import Study, SweptCase
+from restitution.sweeps.task import Outcome
+
+FAILED = "failed.json"
+
+
+class StudyFolder:
+    """OUT: `study.toml`, `cases/case-00001/` and so on, `table.csv` and `study.nc`."""
+
+    def __init__(self, path: Path, study: Study, *, resume: bool) -> None:
+        """Take the folder for `study`.
+
+        Raises `OutputError` when it holds something else (or, without `resume`, anything), when
+        there is nothing to resume, and when it cannot be written.
+        """
+        self.path, self.study = path, study
+        self._cases = path / "cases"
+        held = path / "study.toml"
+        if resume:
+            if not held.is_file():
+                raise OutputError(f"{path}: holds no study; leave out --resume to begin one")
+            if read_text(held) != study.text:
+                raise OutputError(
+                    f"{path}: holds another study (its study.toml differs); name another folder "
+                    "with -o, or the file it was begun with"
+                )
+        else:
+            make_folder(path, "go on with --resume" if held.is_file() else "move it away")
+        with writing(path):
+            self._cases.mkdir(parents=True, exist_ok=True)
+        replace_file(held, lambda to: to.write_text(study.text, encoding="utf-8"))
+
+    def locked(self) -> AbstractContextManager[None]:
+        """Keep other processes out. Raises `OutputError` while one is at work here."""
+        return locked(self.path)
+
+    def clear(self) -> None:
+        """Remove what a process that was killed has left half written."""
+        for left in self._cases.glob(".*"):
+            shutil.rmtree(left, ignore_errors=True)
+
+    def put(self, case: SweptCase, outcome: Outcome) -> None:
+        """Keep what has come of a case. Raises `OutputError` when it cannot be written."""
+        part, whole = self._cases / f".{case.name}", self._cases / case.name
+        with hold_signals(), writing(self.path):
+            shutil.rmtree(part, ignore_errors=True)
+            for name, content in outcome.files.items():
+                file = part / name
+                file.parent.mkdir(parents=True, exist_ok=True)
+                file.write_bytes(content)
+            part.mkdir(exist_ok=True)
+            (part / "case.toml").write_text(case.text, encoding="utf-8")
+            if outcome.reason:
+                why = json.dumps({"reason": outcome.reason}, ensure_ascii=False)
+                (part / FAILED).write_text(why, encoding="utf-8")
+            shutil.rmtree(whole, ignore_errors=True)
+            part.rename(whole)
+
+    def reason(self, case: SweptCase) -> str | None:
+        """Why a case failed, "" when it is complete, None when it is missing or damaged.
+
+        A case is complete when its files are as they were written (`reader`); one whose text
+        differs is another case.
+        """
+        folder = self._cases / case.name
+        try:
+            if (folder / "case.toml").read_text(encoding="utf-8") != case.text:
+                return None
+            if (folder / FAILED).is_file():
+                return str(read_json(folder / FAILED)["reason"]) or None
+            run = RunResults(folder)
+            run.check()
+        except (OutputError, OSError, ValueError, KeyError):
+            return None
+        return "" if run.curve.rows and run.summary["status"] == "complete" else None
+
+    def write_tables(self) -> None:
+        """Write `table.csv` and `study.nc` from the cases there are."""
+        known = {case.number: self.reason(case) for case in self.study.cases}
+        curves = {
+            case.number: RunResults(self._cases / case.name).curve
+            for case in self.study.cases
+            if known[case.number] == ""
+        }
+        cells = {number: curve.cells for number, curve in curves.items()}
+        rows = {number: curve.rows for number, curve in curves.items()}
+        replace_file(self.path / "table.csv", lambda to: self._write_csv(to, known, cells))
+        write_netcdf(self.path / "study.nc", self._dataset(known, rows))
+        write_checksums(self.path, ["study.nc", "study.toml", "table.csv"])
+
+    def _write_csv(
+        self, to: Path, known: dict[int, str | None], curves: dict[int, list[dict[str, str]]]
+    ) -> None:
+        """Swept values, then the columns of `curve.csv`; cases without a curve have one row."""
+        columns = next((list(rows[0]) for rows in curves.values() if rows), list(COLUMNS))
+        with open(to, "w", newline="", encoding="utf-8") as file:
+            table = csv.writer(file, lineterminator="\n")
+            table.writerow([*self.study.swept, *columns, "case", "status", "reason"])
+            for case in self.study.cases:
+                reason = known[case.number]
+                status = _status(reason)
+                values = [as_text(value) for value in case.values.values()]
+                for row in curves.get(case.number, [{}]):
+                    cells = [row.get(column, "") for column in columns]
+                    table.writerow([*values, *cells, case.name, status, reason or ""])
+
+    def _dataset(
+        self, known: dict[int, str | None], curves: dict[int, list[dict[str, float]]]
+    ) -> xr.Dataset:
+        """All curves, their dimensions named by the swept quantities, and by depth."""
+        study = self.study
+        depths = max((len(rows) for rows in curves.values()), default=0)
+        if study.mode == "paired":
+            dims: tuple[str, ...] = ("case",)
+            coordinates: dict[str, Any] = {
+                key: ("case", *coordinate(values)) for key, values in study.swept.items()
+            }
+        else:
+            dims = tuple(study.swept)
+            coordinates = {key: (key, *coordinate(values)) for key, values in study.swept.items()}
+        data: dict[str, Any] = {}
+        for name, column in ALL_COLUMNS.items():
+            if not any(name in rows[0] for rows in curves.values()):
+                continue
+            values = np.full((len(study.cases), depths), np.nan)
+            for row, case in enumerate(study.cases):
+                for k, numbers in enumerate(curves.get(case.number, [])):
+                    values[row, k] = numbers.get(name, math.nan)
+            data[column.variable] = (
+                (*dims, "depth"), values.reshape(*study.shape, depths),
+                {"units": column.unit, "long_name": column.meaning},
+            )  # fmt: skip
+        reasons = [known[case.number] for case in study.cases]
+        data["status"] = (
+            dims,
+            np.reshape([_status(reason) for reason in reasons], study.shape),
+        )  # fmt: skip
+        attributes = {"title": study.title, "study": study.text}
+        return xr.Dataset(data, coordinates, attributes)
+
+
+def _status(reason: str | None) -> str:
+    if reason is None:
+        return "missing"
+    return "failed" if reason else "complete"

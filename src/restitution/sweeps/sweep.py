@@ -1,0 +1,145 @@
+"""The study file: a case and a table [sweep] of what varies in it, turned into cases."""
+
+from __future__ import annotations
+
+import copy
+import itertools
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import tomli_w
+
+from restitution.case.case_file import parse_case, parse_toml, read_text
+from restitution.errors import CaseError, shown
+
+MOST_CASES = 100_000
+_MODES = ("grid", "paired")
+
+
+@dataclass(frozen=True)
+class SweptCase:
+    """One case of a study: its number from 1, what it has of the swept values, and its text."""
+
+    number: int
+    values: Mapping[str, Any]
+    text: str
+
+    @property
+    def name(self) -> str:
+        """Of its folder."""
+        return f"case-{self.number:05d}"
+
+
+@dataclass(frozen=True)
+class Study:
+    """A study file, checked: every case of it is a valid one.
+
+    `swept` maps each path of a key ("roughness.rms") to its values as they stand in the file.
+    """
+
+    title: str
+    text: str
+    swept: Mapping[str, list[Any]]
+    mode: Literal["grid", "paired"]
+    cases: tuple[SweptCase, ...]
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Numbers of values along the swept quantities; (cases,) when they are paired."""
+        if self.mode == "paired":
+            return (len(self.cases),)
+        return tuple(len(values) for values in self.swept.values())
+
+
+def read_study(path: Path) -> Study:
+    """Read and check a study file. Raises `CaseError`, naming the file and the key."""
+    text = read_text(path)
+    try:
+        return parse_study(text)
+    except CaseError as error:
+        raise CaseError(f"{path}: {error}") from None
+
+
+def parse_study(text: str) -> Study:
+    """Check the text of a study file and all cases that follow. Raises `CaseError`."""
+    content = parse_toml(text)
+    sweep = content.pop("sweep", None)
+    if not isinstance(sweep, dict):
+        raise CaseError("the table [sweep] is missing; it names what varies")
+    mode = sweep.pop("mode", "grid")
+    if mode not in _MODES:
+        raise CaseError(f'sweep.mode: {shown(mode)} should be "grid" or "paired"')
+    swept = dict(_paths(sweep))
+    _check_values(swept, mode)
+    cases = []
+    for number, values in enumerate(_combinations(swept, mode), 1):
+        case = copy.deepcopy(content)
+        for key, value in values.items():
+            _put(case, key, value)
+        case_text = tomli_w.dumps(case)
+        try:
+            parse_case(case_text)
+        except CaseError as error:
+            where = ", ".join(f"{key} = {shown(value)}" for key, value in values.items())
+            raise CaseError(f"in the case with {where}: {error}") from None
+        cases.append(SweptCase(number, values, case_text))
+    return Study(str(content.get("title", "")), text, swept, mode, tuple(cases))
+
+
+def _paths(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, list[Any]]]:
+    """Dotted paths and values: `"roughness.rms" = …` and `roughness.rms = …` are the same."""
+    for key, value in table.items():
+        if isinstance(value, dict):
+            yield from _paths(value, f"{before}{key}.")
+        else:
+            yield before + key, value
+
+
+def _check_values(swept: Mapping[str, Any], mode: str) -> None:
+    if not swept:
+        raise CaseError(
+            'sweep: is empty; name what varies, such as "roughness.rms" = ["0.1 um", "0.2 um"]'
+        )
+    count = 1
+    for key, values in swept.items():
+        if not isinstance(values, list) or not values:
+            raise CaseError(f"sweep.{key}: {shown(values)} should be a list of values")
+        count *= len(values)
+    lengths = {key: len(values) for key, values in swept.items()}
+    if mode == "paired":
+        if len(set(lengths.values())) > 1:
+            each = ", ".join(f"{key} {n}" for key, n in lengths.items())
+            raise CaseError(f'sweep: mode = "paired" needs lists of one length; there are {each}')
+    elif count > MOST_CASES:
+        raise CaseError(f"sweep: makes {count} cases; give at most {MOST_CASES}")
+
+
+def _combinations(swept: Mapping[str, list[Any]], mode: str) -> Iterator[dict[str, Any]]:
+    """Values of each case; in a grid the last quantity varies fastest."""
+    rows = zip(*swept.values(), strict=True) if mode == "paired" else itertools.product(
+        *swept.values()
+    )  # fmt: skip
+    for row in rows:
+        yield dict(zip(swept, row, strict=True))
+
+
+def _put(case: dict[str, Any], path: str, value: Any) -> None:
+    """Set the key at `path`; of several [[roughness]] tables by their number, from 1."""
+    table: Any = case
+    *way, last = path.split(".")
+    for step in way:
+        if isinstance(table, list):
+            if not (step.isdigit() and 1 <= int(step) <= len(table)):
+                raise CaseError(
+                    f"sweep.{path}: {shown(step)} is not the number of one of {len(table)} tables"
+                )
+            table = table[int(step) - 1]
+        else:
+            table = table.setdefault(step, {})
+        if not isinstance(table, (dict, list)):
+            raise CaseError(f"sweep.{path}: {shown(step)} is a value, not a table")
+    if isinstance(table, list):
+        raise CaseError(f"sweep.{path}: there are {len(table)} tables; say which, such as 1.{last}")
+    table[last] = value

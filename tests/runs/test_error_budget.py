@@ -1,0 +1,219 @@
+"""The total error of COR: what it is made of, and that each part of it counts."""
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from restitution.case.case_file import parse_case
+from restitution.errors import NotConvergedError
+from restitution.results.writer import ResultsFolder
+from restitution.runs import loading
+from restitution.runs.companions import Curve
+from restitution.runs.convergence import run_convergence
+from restitution.runs.ensemble import run_realisations
+from restitution.runs.error_budget import Band, grid_error, scatter, total, widened_error
+from tolerance import approx
+
+TOPOGRAPHIES = Path(__file__).parents[3] / "shared" / "topographies"
+PARTS = ("restitution_error", "discretisation_error", "surface_scatter", "material_error")
+
+
+def row(**more):
+    values = {"median_patch_nodes": 500.0, "adhesion_resolved": True, "restitution": 0.5}
+    return {**values, **dict.fromkeys(PARTS, 0.0), **more}
+
+
+def run(text, path):
+    out = ResultsFolder(path)
+    summary = run_realisations(parse_case(text), text, path.parent, out)
+    return out.rows, summary
+
+
+def test_the_total_is_the_root_of_the_squares_within_what_cor_can_be_off():
+    parts = dict(zip(PARTS, (0.01, 0.02, 0.03, math.nan), strict=True))
+    assert total(row(**parts)) == approx(math.sqrt(0.0014), rel=1e-12)
+    assert total(row(restitution=0.9, surface_scatter=5.0)) == approx(0.9, rel=1e-12)
+
+
+def test_every_row_of_a_run_has_a_total_of_its_parts(case_text, tmp_path):
+    rows, summary = run(case_text, tmp_path / "out")
+    for each in rows:
+        known = [each[name] for name in PARTS if not math.isnan(each[name])]
+        assert len(known) == 3  # no value is the library's
+        assert each["discretisation_error"] > 0
+        assert each["surface_scatter"] > 0
+        limit = max(each["restitution"], 1 - each["restitution"])
+        assert each["total_error"] == approx(min(math.hypot(*known), limit), rel=1e-12)
+    assert summary["trust"]["largest_total_error"] == max(each["total_error"] for each in rows)
+    assert "scatter of one surface among 8" in summary["trust"]["total_error_includes"]
+    assert "of plasticity: model_error" in summary["trust"]["total_error_does_not_include"]
+
+
+def test_it_can_be_left_out(case_text, tmp_path):
+    rows, summary = run("total_error = false\n" + case_text, tmp_path / "out")
+    assert all(math.isnan(each["total_error"]) for each in rows)
+    assert summary["trust"]["largest_total_error"] is None
+
+
+def test_library_values_bring_their_spread(case_text, tmp_path):
+    begin, end = case_text.index("[first]"), case_text.index("[roughness]")
+    steel = 'first = { material = "steel", radius = "500 um" }\n'
+    rows, _ = run(case_text[:begin] + steel + case_text[end:], tmp_path / "out")
+    assert all(each["material_error"] > 0.005 for each in rows[2:])  # where asperities yield
+    for each in rows:
+        assert each["total_error"] >= min(each["material_error"], 1 - each["restitution"]) - 1e-12
+
+
+def test_scatter_is_that_of_the_surfaces(case_text, tmp_path):
+    """Twelve other seeds lie within about twice the stated scatter of their mean."""
+    rows, _ = run(case_text, tmp_path / "out")
+    quick = "total_error = false\n" + case_text
+    found = np.array(
+        [
+            [
+                each["restitution"]
+                for each in run(quick.replace("seed = 1", f"seed = {s}"), tmp_path / f"s{s}")[0]
+            ]
+            for s in range(100, 112)
+        ]
+    )
+    stated = np.array([each["surface_scatter"] for each in rows]) / 1.5
+    ratio = found.std(axis=0, ddof=1) / stated
+    assert (ratio > 0.3).all()
+    assert (ratio < 2.5).all()
+
+
+def test_a_difference_that_is_zero_by_chance_makes_no_error_zero():
+    work = np.geomspace(1e-9, 1e-6, 4)
+    change = np.array([0.04, 0.0, 0.04, 0.04])
+    error, band = grid_error(change, work, [row()] * 4, octaves=0.0)
+    assert error[1] > 0.015
+    assert (band == 0).all()
+    for nodes, least in ((1, 0.4), (5, 0.05), (500, 1e-4)):
+        unseen, _ = grid_error(np.zeros(4), work, [row(median_patch_nodes=nodes)] * 4, 0.0)
+        assert (unseen > least).all()
+
+
+def test_waves_beyond_the_grid_count_by_the_slope_they_have():
+    work = np.geomspace(1e-9, 1e-6, 3)
+    change = np.full(3, 0.02)
+    without, _ = grid_error(change, work, [row()] * 3, octaves=0.0)
+    error, band = grid_error(change, work, [row()] * 3, octaves=2.0)
+    assert band == approx(np.full(3, 0.06), rel=1e-12)
+    assert error == approx(np.hypot(without, 0.06), rel=1e-12)
+
+
+def test_what_no_companion_tells_is_not_known():
+    work = np.geomspace(1e-9, 1e-6, 3)
+    assert np.isnan(grid_error(np.full(3, math.nan), work, [row()] * 3, 0.0)[0]).all()
+    assert np.isnan(scatter(np.array([[0.5, 0.5, 0.5], [math.nan] * 3]), work)).all()
+
+
+def test_a_depth_that_fails_leaves_the_others_a_total_error(case_text, tmp_path, monkeypatch):
+    real, calls = loading.solve, []
+
+    def solve(*arguments, **options):
+        calls.append(arguments)
+        if len(calls) == 2:
+            raise NotConvergedError("the second depth")
+        return real(*arguments, **options)
+
+    monkeypatch.setattr(loading, "solve", solve)
+    out = ResultsFolder(tmp_path / "out")
+    with pytest.raises(NotConvergedError, match="the second depth"):
+        run_realisations(parse_case(case_text), case_text, tmp_path, out)
+    depths = parse_case(case_text).depths()
+    assert [each["indentation_m"] for each in out.rows] == [depths[0], *depths[2:]]
+    assert all(each["total_error"] > 0 for each in out.rows)
+    summary = json.loads((out.path / "summary.json").read_text())
+    assert (summary["status"], summary["reason"]) == ("failed", "the second depth")
+
+
+def test_scatter_grows_with_the_spread_of_curves():
+    work = np.geomspace(1e-9, 1e-6, 3)
+    rng = np.random.default_rng(1)
+    curves = 0.5 + 0.05 * rng.standard_normal((4000, 3))
+    assert scatter(curves, work) == approx(np.full(3, 1.5 * 0.05), rel=0.05)
+
+
+def test_a_curve_is_not_extrapolated():
+    curve = Curve(np.array([1.0, 10.0, 100.0]), np.array([0.9, 0.7, 0.6]))
+    assert curve.at(np.array([0.1, 1.0, 10.0, 1e4])) == approx([0.9, 0.9, 0.7, 0.6], rel=1e-12)
+    assert np.isnan(Curve(np.array([]), np.array([])).at(np.array([1.0]))).all()
+
+
+def test_grids_that_agree_without_resolving_have_an_error():
+    """`converge` gave 1.0000 ± 0.0000 where 16 times finer cells give 0.979."""
+    error, _ = widened_error(0.0, 0.0, row(median_patch_nodes=1, restitution=1.0), 0.0)
+    assert error > 0.4
+
+
+def test_converge_states_no_zero_error(case_text, tmp_path):
+    text = case_text.replace('"20 nm"', '"0.5 nm"').replace('"300 nm"', '"40 nm"')
+    out = ResultsFolder(tmp_path / "out")
+    summary = run_convergence(parse_case(text), text, tmp_path, out, 2)
+    assert summary["trust"]["largest_total_error"] > 0
+    for each in out.rows:
+        if not math.isnan(each["total_error"]):
+            assert each["total_error"] > (1e-4 if each["resolved"] else 0.02)
+
+
+TWIN = """
+first = {{ material = "glass", radius = "500 um" }}
+second = "steel"
+[roughness]
+kind = "measured"
+file = "{file}"
+detrend = "tilt"
+extend = "twin"
+seed = 1
+[grid]
+nodes = [96, 96]
+spacing = "0.25 um"
+[impact]
+velocity = ["0.003 m/s", "0.01 m/s", "0.03 m/s"]
+"""
+
+
+@pytest.mark.skipif(not TOPOGRAPHIES.is_dir(), reason="../shared/topographies is not there")
+def test_the_error_holds_what_the_grid_took_from_a_twin(tmp_path):
+    """On 0.25 um cells COR was 0.9418 ± 0.0042, `resolved`; eight times finer ones give 0.84."""
+    text = TWIN.format(file=(TOPOGRAPHIES / "di-3.di").as_posix())
+    rows, summary = run(text, tmp_path / "out")
+    case = parse_case(text)
+    assert Band.of(case.surface(tmp_path)).octaves > 1
+    finer = parse_case("total_error = false\n" + text).refined(8)
+    fine = ResultsFolder(tmp_path / "fine")
+    run_realisations(finer, text, tmp_path, fine)
+    for coarse, reference in zip(rows, fine.rows, strict=True):
+        assert abs(coarse["restitution"] - reference["restitution"]) < coarse["total_error"]
+        assert not coarse["resolved"]
+    (warning,) = [each for each in summary["warnings"] if "leaves out waves" in each]
+    assert "615 x 615 nodes" in warning
+    assert "cells of 0.0391 um" in warning
+
+
+@pytest.mark.skipif(not TOPOGRAPHIES.is_dir(), reason="../shared/topographies is not there")
+def test_a_scan_has_places(tmp_path):
+    text = TWIN.replace('extend = "twin"\nseed = 1\n', "").replace("[96, 96]", "[40, 40]")
+    case = parse_case(text.format(file=(TOPOGRAPHIES / "di-3.di").as_posix()))
+    surfaces = [case.variant(number).surface(tmp_path) for number in range(4)]
+    assert surfaces[0].height == approx(case.surface(tmp_path).height, rel=1e-12)
+    for k, one in enumerate(surfaces):
+        for other in surfaces[:k]:
+            assert abs(np.corrcoef(one.height.ravel(), other.height.ravel())[0, 1]) < 0.6
+
+
+def test_another_body_may_be_the_softer_one_at_an_end_of_the_spread(tmp_path):
+    """Steel is softer than glass, but not at the low ends: glass then yields at its hardness."""
+    text = (
+        'first = { material = "steel", radius = "500 um" }\nsecond = "glass"\n[interface]\n'
+        'plasticity = "expanding-cavity"\n[grid]\nnodes = 64\nspacing = "3 um"\n'
+        '[indentation]\nvalues = ["8 um"]\n'
+    )
+    rows, _ = run(text, tmp_path / "out")
+    assert rows[0]["material_error"] > 0
+    assert rows[0]["total_error"] >= rows[0]["material_error"] - 1e-12

@@ -1,0 +1,109 @@
+"""Imports point up the list of rooms in docs/design.md only, and never in a circle."""
+
+import ast
+import re
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PACKAGE = ROOT / "src" / "restitution"
+ROOMS = (
+    "errors", "theory", "numerics", "surfaces", "contact", "collision", "case", "results", "runs",
+    "sweeps", "dem", "reports", "reproduce", "cli", "__main__",
+)  # fmt: skip
+SOLVERS = {
+    "solve", "step", "solve_at_force", "solve_at_velocity", "solve_batch", "loading_path",
+    "unloading_path", "separate", "collide", "equilibrate",
+}  # fmt: skip
+
+
+def name_of(path):
+    """The module in the file `path`, without the name of the package: "case.schema"."""
+    return ".".join(path.relative_to(PACKAGE).with_suffix("").parts)
+
+
+MODULES = {name_of(path): path.read_text(encoding="utf-8") for path in PACKAGE.rglob("*.py")}
+del MODULES["__init__"]  # the names for Python users, from any room
+
+
+def imported(module, source):
+    """Module and name of every import from this package, those in functions included."""
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            yield from ((alias.name, "") for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            above = f"restitution.{module}".split(".")[: -node.level] if node.level else []
+            of = ".".join([*above, *filter(None, [node.module])])
+            yield from ((of, alias.name) for alias in node.names)
+
+
+def graph(modules):
+    """The modules that each of `modules` (their sources by name) imports."""
+
+    def one(of, name):
+        inner = of.removeprefix("restitution").removeprefix(".")
+        candidates = (f"{inner}.{name}".strip("."), inner, f"{inner}.__init__")
+        return next(each for each in candidates if each in modules)
+
+    return {
+        module: {
+            one(of, name)
+            for of, name in imported(module, source)
+            if of.split(".")[0] == "restitution"
+        }
+        for module, source in modules.items()
+    }
+
+
+def room(module):
+    return module.split(".")[0]
+
+
+def wrong_way(edges):
+    """Imports of a room from one that is not above it in the list."""
+    return [
+        f"{module} imports {other}"
+        for module, others in edges.items()
+        for other in sorted(others)
+        if room(module) != room(other) and ROOMS.index(room(other)) > ROOMS.index(room(module))
+    ]
+
+
+def test_imports_point_up_the_list_only():
+    assert {room(module) for module in MODULES} == set(ROOMS)
+    assert wrong_way(graph(MODULES)) == []
+
+
+def test_no_modules_import_each_other_in_a_circle():
+    TopologicalSorter(graph(MODULES)).prepare()
+
+
+def test_the_case_calls_no_solver():
+    names = {name for module, source in MODULES.items() if room(module) == "case"
+             for _, name in imported(module, source)}  # fmt: skip
+    assert names.isdisjoint(SOLVERS)
+
+
+def test_the_design_names_the_rooms_in_this_order():
+    text = (ROOT / "docs" / "design.md").read_text(encoding="utf-8")
+    named = re.findall(r"^\| `(\w+)(?:/|\.py)` \|", text, flags=re.MULTILINE)
+    assert named == [name for name in ROOMS if name != "__main__"]
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "from restitution.case.case import Case",
+        "import restitution.case.case",
+        "from restitution.case import case",
+        "from ..case import case",
+        "def late():\n    from restitution.case.case import Case",
+    ],
+)
+def test_an_import_down_the_list_and_a_circle_are_found(line):
+    modules = {"contact.contact": line, "case.case": "from restitution.contact.contact import x"}
+    assert wrong_way(graph(modules)) == ["contact.contact imports case.case"]
+    with pytest.raises(CycleError):
+        TopologicalSorter(graph(modules)).prepare()
