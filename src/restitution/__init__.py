@@ -4,7 +4,6 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from restitution.collision import Collision, collide
-    from restitution.contact.batch import solve_batch
     from restitution.contact.bodies import Body, Pair
     from restitution.contact.contact import Contact, smooth
     from restitution.contact.impact import solve_at_velocity
@@ -55,7 +54,6 @@ __all__ = [
     "solve",
     "solve_at_force",
     "solve_at_velocity",
-    "solve_batch",
     "step",
     "unloading_path",
 ]
@@ -64,7 +62,6 @@ __all__ = [
 # package, too, and is to answer (and to be stopped) before numpy is loaded.
 _HOMES = {
     "collision": ("Collision", "collide"),
-    "contact.batch": ("solve_batch",),
     "contact.bodies": ("Body", "Pair"),
     "contact.contact": ("Contact", "smooth"),
     "contact.impact": ("solve_at_velocity",),

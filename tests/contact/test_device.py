@@ -203,11 +203,10 @@ def test_a_gpu_that_does_not_answer_is_said_so(monkeypatch):
 def test_what_measures_a_gpu_runs():
     """Here on this machine, and small: where there is a GPU it must not fail."""
     script = Path(__file__).parents[2] / "benchmarks" / "gpu.py"
-    options = ["--device", "cpu", "--nodes", "256", "--realisations", "2"]
+    options = ["--device", "cpu", "--nodes", "256"]
     found = subprocess.run([sys.executable, script, *options], capture_output=True, text=True)
     assert found.returncode == 0, found.stderr
     assert "256 x 256 rough" in found.stdout
-    assert "2 realisations of 24 depths" in found.stdout
 
 
 def test_cupy_answers_as_this_machine(rough_contact):

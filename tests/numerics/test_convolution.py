@@ -211,15 +211,6 @@ def test_two_users_do_not_meet():
     assert (one.count, other.count) == (4, 2)
 
 
-def test_a_batch_is_one_after_the_other():
-    p = np.random.default_rng(3).normal(size=(4, 60, 50)) * 10.0 ** np.arange(4)[:, None, None]
-    K = FreeConvolution(point_load((1.0, 2.0)), (60, 50))
-    assert_array_equal(K(p), [K(item) for item in p])
-    assert_array_equal(K.quick(p), [K.quick(item) for item in p])
-    steep = SpectralFilter(lambda qx, qy: 1 + qx + qy, (60, 50))
-    assert_array_equal(steep(p), [steep(item) for item in p])
-
-
 def loops():
     return pytest.importorskip("restitution.numerics.loops", reason="built without a compiler")
 

@@ -24,7 +24,6 @@ from restitution.contact.state import State
 from restitution.errors import DomainError, NotConvergedError
 from restitution.numerics.convolution import FreeConvolution, SpectralFilter
 from restitution.numerics.device import current
-from restitution.numerics.items import every
 from restitution.numerics.minimise import minimise_quadratic
 from restitution.numerics.nesting import System, minimise_nested
 from restitution.numerics.window import NOWHERE, Box, bounding_box, shape_of, widen
@@ -58,9 +57,9 @@ def equilibrate(
     adhesion. Raises `NotConvergedError`. Contact at the rim is let pass.
     """
     device, shape = current(), shape_of(box)
-    b = overlap(contact, indentation, box, history)
-    scale = scale_of(contact, indentation, b)
-    system = system_of(contact)
+    b = _overlap(contact, indentation, box, history)
+    scale = _scale_of(contact, indentation, b)
+    system = _system_of(contact)
     upper = limit
     if isinstance(limit, np.ndarray):
         upper = device.put(np.ascontiguousarray(limit[box]))
@@ -82,26 +81,19 @@ def equilibrate(
             max_iterations=MAX_ITERATIONS,
         )
         convolutions = K.count
-    reached = float(found.residual.max()) / scale
-    if not every(found.converged):
-        raise not_converged("the solve", indentation, reached, residual, found.iterations)
+    reached = found.residual / scale
+    if not found.converged:
+        raise NotConvergedError(
+            f"the solve at an indentation of {1e9 * indentation:.6g} nm stopped at a residual of "
+            f"{reached:.1e} (asked: {residual:.0e}) after {found.iterations} iterations; ask for a "
+            "larger residual, or smooth or refine the surface"
+        )
     return settled(contact, indentation, box, b, device.get(found.point),
                    device.get(found.gradient), limit=limit, history=history, residual=reached,
                    convolutions=convolutions)  # fmt: skip
 
 
-def not_converged(
-    what: str, indentation: float, reached: float, asked: float, iterations: int
-) -> NotConvergedError:
-    """The refusal of a solve at `indentation` (m) that stopped at the residual `reached`."""
-    return NotConvergedError(
-        f"{what} at an indentation of {1e9 * indentation:.6g} nm stopped at a residual of "
-        f"{reached:.1e} (asked: {asked:.0e}) after {iterations} iterations; ask for a larger "
-        "residual, or smooth or refine the surface"
-    )
-
-
-def overlap(contact: Contact, indentation: float, box: Box, history: State | None = None) -> Array:
+def _overlap(contact: Contact, indentation: float, box: Box, history: State | None = None) -> Array:
     """δ − h on `box`: how far the bodies would go into each other there, m."""
     b: Array = indentation - contact.gap[box]
     if history is not None:
@@ -109,12 +101,12 @@ def overlap(contact: Contact, indentation: float, box: Box, history: State | Non
     return b
 
 
-def scale_of(contact: Contact, indentation: float, b: Array) -> float:
+def _scale_of(contact: Contact, indentation: float, b: Array) -> float:
     """What residuals are measured against: how far the surfaces overlap, or adhesion's length."""
     return contact.length_at(indentation) if contact.adhesive else float(b.max())
 
 
-def system_of(contact: Contact) -> System:
+def _system_of(contact: Contact) -> System:
     """The half-space of a contact and its approximate inverse."""
     E_star, (hx, hy) = contact.pair.contact_modulus, contact.grid.spacing
 

@@ -92,7 +92,7 @@ def half_space(
 ) -> FreeConvolution:
     """The operator p ↦ u on a block of nodes of the free (non-periodic) half-space.
 
-    Arrays are of shape (*batch, *shape), on the current device.
+    Arrays are of that shape, on the current device.
     """
     return _kept(_half_space, shape)(shape, spacing, contact_modulus, current()).fresh()
 

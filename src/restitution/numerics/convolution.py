@@ -37,7 +37,7 @@ def fast_size(minimum: int) -> int:
 class _Spectral:
     """Multiplication of the waves of an array by a real and even spectrum, in a period of its own.
 
-    Arrays are (*batch, *shape). The memory that takes is kept from its first use on: see `fresh`.
+    The memory that takes is kept from its first use on: see `fresh`.
     """
 
     def __init__(self, shape: tuple[int, int], periods: tuple[int, int], device: Device) -> None:
@@ -55,9 +55,7 @@ class _Spectral:
         other.__dict__.pop("_room", None)
         return other
 
-    def _convolve(
-        self, p: Array, spectrum: NDArray[Any], out: Array | None, scale: Array | float
-    ) -> Array:
+    def _convolve(self, p: Array, spectrum: NDArray[Any], out: Array | None, scale: float) -> Array:
         result = np.empty_like(p, dtype=np.float64, order="C") if out is None else out
         self._device.convolve(p, spectrum, self._periods, scale, self._room, result)
         return result
@@ -122,4 +120,4 @@ class SpectralFilter(_Spectral):
         """Return the filtered array, same shape as `r`: in a new array, or in `out`."""
         # What is far below the largest value is lost in single precision, wherever that lies.
         scale = passes.peak(r)
-        return self._convolve(r, self._symbol, out, scale + (scale == 0))
+        return self._convolve(r, self._symbol, out, scale if scale != 0 else 1.0)

@@ -52,14 +52,14 @@ class Device(Protocol):
         """The memory that `convolve` needs for arrays of that shape."""
 
     def convolve(
-        self, values: Array, spectrum: Array, periods: tuple[int, int], scale: Any, room: Array,
+        self, values: Array, spectrum: Array, periods: tuple[int, int], scale: float, room: Array,
         out: Array,
     ) -> None:  # fmt: skip
-        """Multiply the waves of values, (*batch, nx, ny), by a real and even spectrum, in `out`.
+        """Multiply the waves of values, (nx, ny), by a real and even spectrum, in `out`.
 
         The values are filled up with zeros to `periods`. `spectrum` is a quadrant as
         `even_spectrum` makes it but transposed; its precision is that of the work. Values are
-        divided by `scale`, one for each item, and what comes out is multiplied by it.
+        divided by `scale`, and what comes out is multiplied by it.
         """
 
 
@@ -91,18 +91,12 @@ class _Compiled:
         return np.empty((1, self._loops.bytes_of_room(shape[1], periods[0] // 2 + 1)), np.uint8)
 
     def convolve(
-        self, values: Array, spectrum: Array, periods: tuple[int, int], scale: Any, room: Array,
+        self, values: Array, spectrum: Array, periods: tuple[int, int], scale: float, room: Array,
         out: Array,
     ) -> None:  # fmt: skip
-        if values.ndim > 2:
-            for item, its_values in enumerate(values):
-                its_scale = scale[item] if np.ndim(scale) else scale
-                self.convolve(its_values, spectrum, periods, its_scale, room, out[item])
-            return
         if values.strides[-1] != values.itemsize:
             values = np.ascontiguousarray(values)
-        factor = float(scale.item() if isinstance(scale, np.ndarray) else scale)
-        self._loops.convolve(values, 1 / factor, spectrum, *periods, room, factor, out)
+        self._loops.convolve(values, 1 / scale, spectrum, *periods, room, scale, out)
 
 
 class _Arrays:
@@ -135,21 +129,22 @@ class _Arrays:
         return np.empty(0)  # transforms find their own
 
     def convolve(
-        self, values: Array, spectrum: Array, periods: tuple[int, int], scale: Any, room: Array,
+        self, values: Array, spectrum: Array, periods: tuple[int, int], scale: float, room: Array,
         out: Array,
     ) -> None:  # fmt: skip
-        nx, ny = values.shape[-2:]
+        nx, ny = values.shape
         px, py = periods
+        scaled = np.divide(values, scale, dtype=np.float64)
         # One axis after the other: the rows that are padding are not transformed.
-        modes = self._fft.rfft((values / scale).astype(spectrum.dtype), n=py, axis=-1)
-        modes = self._fft.fft(modes, n=px, axis=-2)
+        modes = self._fft.rfft(scaled.astype(spectrum.dtype), n=py, axis=1)
+        modes = self._fft.fft(modes, n=px, axis=0)
         weights, last = spectrum.T, px // 2
-        modes[..., : last + 1, :] *= weights
+        modes[: last + 1] *= weights
         # The negative waves; of an odd period the largest, too, has a negative one.
-        modes[..., last + 1 :, :] *= weights[px - last - 1 : 0 : -1]
-        modes = self._fft.ifft(modes, axis=-2, norm="forward", overwrite_x=True)[..., :nx, :]
-        padded = self._fft.irfft(modes, n=py, axis=-1, norm="forward")
-        np.multiply(padded[..., :ny], scale, out=out, dtype=out.dtype)
+        modes[last + 1 :] *= weights[px - last - 1 : 0 : -1]
+        modes = self._fft.ifft(modes, axis=0, norm="forward", overwrite_x=True)[:nx]
+        padded = self._fft.irfft(modes, n=py, axis=1, norm="forward")
+        np.multiply(padded[:, :ny], scale, out=out, dtype=out.dtype)
 
 
 def accelerator(name: str, arrays: Any, fft: Any) -> Device:

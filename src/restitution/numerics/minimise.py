@@ -9,13 +9,11 @@ solution is characterised by (Karush–Kuhn–Tucker)
 
 The largest violation of these three conditions is the `residual`. What the bounds mean (contact,
 yield, adhesion) is the caller's affair.
-
-Arrays are of shape (*batch, nx, ny): each item of a batch is a problem of its own, with
-steps and residuals of its own (`items`).
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -23,7 +21,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.numerics import passes
-from restitution.numerics.items import Flag, Number, choose, every, ratio, some
 from restitution.numerics.passes import Bound
 
 Array = NDArray[np.float64]
@@ -49,15 +46,14 @@ class Operator(Protocol):
 class Minimum:
     """Where the minimiser stopped: the point, its gradient, and how far both can be trusted.
 
-    `residual` is the violation with the error of the gradient. `residual` and `converged` are
-    numbers, one for each item.
+    `residual` is the violation with the error of the gradient.
     """
 
     point: Array
     gradient: Array
-    residual: Number
+    residual: float
     iterations: int
-    converged: Flag
+    converged: bool
 
 
 def minimise_quadratic(
@@ -68,7 +64,7 @@ def minimise_quadratic(
     *,
     start: Array,
     precondition: Operator,
-    tolerance: Bound,
+    tolerance: float,
     max_iterations: int,
     quick: Operator | None = None,
     rough: bool = False,
@@ -86,14 +82,13 @@ def minimise_quadratic(
     inverse of K, which need not be symmetric, or point down.
 
     `start` is overwritten, and so is `product`, that of `quick` with a `start` within the bounds,
-    where it is known. `tolerance` is on the violation, in the units of `b`; an item that is there
-    rests until all are. The gradient at `start` is that of K, unless `product` is known or the
-    solve `rough`, and then follows the steps with the products of `quick`, which may be K in single
-    precision. What rounding them may have done is added up, as independent errors are, and the
-    gradient is computed anew where the violation is no longer well above that. The result is
-    accepted only on a gradient computed there; or, if `rough`, on one that the steps led to, when
-    the violation and its error are within `tolerance` together. Not converging is reported in the
-    result, never raised.
+    where it is known. `tolerance` is on the violation, in the units of `b`. The gradient at `start`
+    is that of K, unless `product` is known or the solve `rough`, and then follows the steps with
+    the products of `quick`, which may be K in single precision. What rounding them may have done is
+    added up, as independent errors are, and the gradient is computed anew where the violation is no
+    longer well above that. The result is accepted only on a gradient computed there; or, if
+    `rough`, on one that the steps led to, when the violation and its error are within `tolerance`
+    together. Not converging is reported in the result, never raised.
     """
     # What only leads to the next step need not be more exact than what makes it.
     kind: Any = np.float64 if quick is None else np.float32
@@ -103,61 +98,54 @@ def minimise_quadratic(
     lower, upper = passes.as_rows(lower, p), passes.as_rows(upper, p)
     first = quick if rough or product is not None else K
     if product is None:
-        product = first(p) if some(passes.peak(p) > 0) else np.zeros_like(p)
-    error = (first is not K) * rounding * passes.peak(product)
+        product = first(p) if passes.peak(p) > 0 else np.zeros_like(p)
+    error = 0.0 if first is K else rounding * passes.peak(product)
     d, r_old = (np.zeros_like(p, dtype=kind) for _ in range(2))
     r, z, Kd = (np.empty_like(p, dtype=kind) for _ in range(3))
     g = product  # as soon as b is taken off
     residual = passes.downhill(p, g, b, lower, upper, r)
-    rz_old, stuck = np.zeros_like(residual), residual < 0
-    stretch = np.ones_like(residual)  # the last change of
-    length = _FIRST * stretch  # the next trial step
-    iteration = 0
+    rz_old, iteration = 0.0, 0
+    stretch = 1.0  # the last change of
+    length = _FIRST  # the next trial step
 
     for iteration in range(1, max_iterations + 1):
-        going = ~stuck & (residual > np.maximum(tolerance, _CLEAR * error))
-        if not some(going):
-            if every(error == 0) or (rough and every(residual + error <= tolerance)):
+        if not (residual > tolerance and residual > _CLEAR * error):
+            if error == 0 or (rough and residual + error <= tolerance):
                 iteration -= 1
                 break
-            g, error = K(p, out=g), np.zeros_like(residual)
+            g, error = K(p, out=g), 0.0
             residual = passes.downhill(p, g, b, lower, upper, r)
         else:
-            if not every(going):
-                r *= going
             z = precondition(r, out=z)
             rz, overlap = passes.products(z, r, r_old)
-            kept = ratio(rz - np.maximum(overlap, 0.0), rz_old)
-            kept = choose(kept > 0, kept, 0.0) * stretch
+            kept = (rz - max(overlap, 0.0)) / rz_old if rz_old > 0 else 0.0
+            kept = kept * stretch if kept > 0 else 0.0
             # What only approximates an inverse may point up.
-            down = np.copysign(length, rz)
+            down = math.copysign(length, rz)
             slope, cut = passes.direct(d, kept, z, down, p, g, r, lower, upper)
             Kd = quick(d, out=Kd)
             curvature, largest = passes.curvature(d, Kd)
-            stuck |= ~(curvature < np.inf) | ((slope < 0) & (curvature <= 0))
-            if every(stuck):
+            if not curvature < math.inf or (slope < 0 and curvature <= 0):
                 break
-            step = ratio(-slope, curvature)
-            taken = choose(cut & (step > _NEARLY), 1.0, np.maximum(step, 0.0))
-            if some(taken > 1):
-                outside = passes.leaves(p, d, taken, lower, upper)
-                taken = choose((taken > 1) & outside, 1.0, taken)
+            step = -slope / curvature if curvature > 0 else 0.0
+            taken = 1.0 if cut and step > _NEARLY else max(step, 0.0)
+            if taken > 1 and passes.leaves(p, d, taken, lower, upper):
+                taken = 1.0
             r, r_old = r_old, r
             residual = passes.advance(p, g, d, Kd, taken, lower, upper, r)
-            error = np.hypot(error, rounding * taken * largest)
+            error = float(np.hypot(error, rounding * taken * largest))
             rz_old = rz
-            stretch = np.minimum(np.maximum(step, _SHORTER), _LONGER) ** _DAMPED
-            stretch = choose(going, stretch, 1.0)
-            length = length * stretch
+            stretch = min(max(step, _SHORTER), _LONGER) ** _DAMPED
+            length *= stretch
 
-    if not rough and some(error > 0):
-        g, error = K(p, out=g), np.zeros_like(residual)
+    if not rough and error > 0:
+        g, error = K(p, out=g), 0.0
         residual = passes.downhill(p, g, b, lower, upper, r)
     residual = residual + error
     return Minimum(p, g, residual, iteration, converged=residual <= tolerance)
 
 
-def violation(p: Array, product: Array, b: Array, lower: Bound, upper: Bound) -> Number:
+def violation(p: Array, product: Array, b: Array, lower: Bound, upper: Bound) -> float:
     """Largest violation of the optimality conditions, in the units of the gradient.
 
     `product`, that of K with `p`, becomes the gradient.

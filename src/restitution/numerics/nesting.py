@@ -4,37 +4,25 @@ The problem is that of `minimise` with lower = 0 on a uniform grid. Averaged ove
 the same problem on half as many nodes each way, whose solution is a first guess for all but the
 shortest waves (nested iteration; Venner and Lubrecht 2000, *Multilevel Methods in Lubrication*).
 The guess also shows where the pressure is and where it is missing: the fine problem is solved on
-that window, and the conditions are checked on all nodes, where they may widen it. The items of a
-batch share it.
+that window, and the conditions are checked on all nodes, where they may widen it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 from numpy.typing import NDArray
 
 from restitution.numerics import passes
 from restitution.numerics.convolution import FreeConvolution, SpectralFilter
-from restitution.numerics.items import (
-    Mask,
-    Number,
-    count,
-    dot,
-    every,
-    highest,
-    ratio,
-    some,
-    somewhere,
-    total,
-)
 from restitution.numerics.minimise import Minimum, Operator, minimise_quadratic, violation
 from restitution.numerics.passes import Bound
 from restitution.numerics.window import Box, bounding_box, shape_of, union, widen
 
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 
 # The operator and its approximate inverse on a block of so many nodes 2ⁿ as wide as the finest.
 System = Callable[[tuple[int, int], int], tuple[FreeConvolution, SpectralFilter]]
@@ -58,21 +46,21 @@ def minimise_nested(
     b: Array,
     upper: Bound,
     *,
-    tolerance: Bound,
+    tolerance: float,
     max_iterations: int,
 ) -> tuple[Minimum, int]:
     """Minimise with 0 ≤ p ≤ `upper`; the result and the products with K on the finest grid."""
-    everywhere: Box = (slice(0, b.shape[-2]), slice(0, b.shape[-1]))
+    everywhere: Box = (slice(0, b.shape[0]), slice(0, b.shape[1]))
     size = shape_of(everywhere)
     p, Kp, products = np.zeros_like(b), None, 0
     whole, its_inverse = system(size, 0)  # first: smaller blocks have the same coefficients
     if min(size) >= _WORTH_A_GUESS:
         p = _first_guess(system, b, upper, level=1)
-    window = bounding_box(somewhere(p > 0))
+    window = bounding_box(p > 0)
     if window is not None and _saves(window, size):
         # The coarser grids do not see all that touches: what the guess leaves closed may, too.
         Kp = whole.quick(p)
-        window = bounding_box(somewhere((p > 0) | (Kp < b)))
+        window = bounding_box((p > 0) | (Kp < b))
     window = everywhere if window is None else widen(window, _MARGIN, size)
     while True:
         if not _saves(window, size):
@@ -80,18 +68,15 @@ def minimise_nested(
         K, inverse = whole, its_inverse
         if window != everywhere:
             K, inverse = system(shape_of(window), 0)
-        inside = (..., *window)
-        bound: Any = upper
-        if _varies(upper):
-            bound = bound[inside]
+        bound = upper[window] if _is_array(upper) else upper
         found = minimise_quadratic(
             K,
-            b[inside],
+            b[window],
             0.0,
             bound,
-            start=p[inside],
-            product=None if Kp is None else Kp[inside],
-            precondition=_with_less_mean(inverse, p[inside], b[inside], bound),
+            start=p[window],
+            product=None if Kp is None else Kp[window],
+            precondition=_with_less_mean(inverse, p[window], b[window], bound),
             quick=K.quick,
             rough=window != everywhere,  # the check will see
             tolerance=tolerance,
@@ -100,14 +85,14 @@ def minimise_nested(
         if window == everywhere:
             return found, products + whole.count
         products += K.count
-        iterations, converged = found.iterations, every(found.converged)
+        iterations, converged = found.iterations, found.converged
         del K, inverse, found  # their arrays make room for those of the check
         g = whole(p, out=Kp)
         residual = violation(p, g, b, 0.0, upper)
-        if every(residual <= tolerance) or not converged:
+        if residual <= tolerance or not converged:
             checked = Minimum(p, g, residual, iterations, residual <= tolerance)
             return checked, products + whole.count
-        wider = union(window, bounding_box(somewhere(g < -tolerance)))
+        wider = union(window, bounding_box(g < -tolerance))
         Kp = np.add(g, b, out=g)
         # The same window again: what the last digits of the check leave, all nodes mend.
         window = everywhere if wider is None or wider == window else widen(wider, _MARGIN, size)
@@ -124,18 +109,19 @@ def _with_less_mean(inverse: Operator, p: Array, b: Array, upper: Bound) -> Oper
     8 × 8 places stand for what is nearly constant.
     """
     free, nodes, touching = _between_the_bounds(p, upper)
-    if every(nodes <= 0.5 * touching):  # no guess, or where most yields: edges
+    if nodes <= 0.5 * touching:  # no guess, or where most yields: edges
         return inverse
     constant: Any = free.astype(np.float32)
     made = inverse(constant, out=np.empty_like(constant))
-    flexible, stiff = ratio(dot(b, constant), total(p)), ratio(dot(made, constant), touching)
-    kept = _USUAL / np.maximum(np.multiply(flexible, stiff), _USUAL)
-    if every(kept > _WORTH_LESS):
+    flexible = passes.dot(b, constant) / float(p.sum())
+    stiff = passes.dot(made, constant) / touching
+    kept = _USUAL / max(flexible * stiff, _USUAL)
+    if kept > _WORTH_LESS:
         return inverse
 
     def less(r: Array, out: Array | None = None) -> Array:
         lowered = np.empty_like(r) if out is None else out
-        sums, nodes = np.empty_like(b, shape=(2, *r.shape[:-2], _PLACES, _PLACES))
+        sums, nodes = np.empty_like(b, shape=(2, _PLACES, _PLACES))
         passes.levels(r, sums, nodes)
         passes.lower(r, 1.0 - kept, sums, nodes, lowered)
         return inverse(lowered, out=lowered)
@@ -143,16 +129,16 @@ def _with_less_mean(inverse: Operator, p: Array, b: Array, upper: Bound) -> Oper
     return less
 
 
-def _varies(bound: Bound) -> bool:
-    """Whether each node has a bound of its own (those of a batch have one for all its nodes)."""
-    return np.ndim(bound) >= 2 and bound.shape[-1] > 1  # type: ignore[union-attr]
+def _is_array(bound: Bound) -> TypeGuard[Array]:
+    """Whether each node has a bound of its own."""
+    return np.ndim(bound) > 0
 
 
-def _between_the_bounds(p: Array, upper: Bound) -> tuple[Mask, Number, Number]:
+def _between_the_bounds(p: Array, upper: Bound) -> tuple[Mask, int, int]:
     """The nodes with 0 < p < `upper`; how many they are, and how many with 0 < p."""
     touching = p > 0
     free = touching & (p < upper)
-    return free, count(free), count(touching)
+    return free, int(np.count_nonzero(free)), int(np.count_nonzero(touching))
 
 
 def _saves(window: Box, size: tuple[int, int]) -> bool:
@@ -163,16 +149,16 @@ def _saves(window: Box, size: tuple[int, int]) -> bool:
 
 def _first_guess(system: System, b: Array, upper: Bound, level: int) -> Array:
     """The solution on the next coarser grid, itself begun on one coarser; zero on the coarsest."""
-    if min(b.shape[-2:]) < _COARSEST:
+    if min(b.shape) < _COARSEST:
         return np.zeros_like(b)
-    *batch, rows, columns = b.shape
+    rows, columns = b.shape
     size = (rows + 1) // 2, (columns + 1) // 2
-    coarse = np.empty_like(b, shape=(*batch, *size), order="C")
+    coarse = np.empty_like(b, shape=size, order="C")
     passes.coarsen(b, coarse)
-    bound: Any = upper
-    if _varies(upper):
+    bound = upper
+    if _is_array(upper):
         bound = np.empty_like(coarse)
-        passes.coarsen(upper, bound)  # type: ignore[arg-type]
+        passes.coarsen(upper, bound)
     K, inverse = system(size, level)
     start = _first_guess(system, coarse, bound, level + 1)
     found = minimise_quadratic(
@@ -184,16 +170,15 @@ def _first_guess(system: System, b: Array, upper: Bound, level: int) -> Array:
         precondition=_with_less_mean(inverse, start, coarse, bound),
         quick=K.quick,
         rough=True,
-        tolerance=_COARSE_ACCURACY * np.maximum(highest(b), 0.0),
+        tolerance=_COARSE_ACCURACY * max(float(b.max()), 0.0),
         max_iterations=_COARSE_ITERATIONS,
     )
     guess = np.empty_like(b, order="C")
     _, free, touching = _between_the_bounds(found.point, bound)
-    jumps = free <= _NEARLY_NONE * touching
-    if not some(jumps):
+    if free > _NEARLY_NONE * touching:
         passes.refine(found.point, guess)
         return guess
     # Where nearly all that touches yields, pressure ends in a jump somewhere between two nodes. By
     # how much one of them gives way, and the other gapes, tells where.
-    passes.refine(found.point - jumps * _OF_THE_GAP / K.own * found.gradient, guess)
+    passes.refine(found.point - _OF_THE_GAP / K.own * found.gradient, guess)
     return np.clip(guess, 0.0, upper, out=guess)

@@ -1,8 +1,8 @@
 """What the solver does at the nodes but for its transforms, several steps at a time.
 
-Each function is written here as an expression of whole arrays, which holds for batches and on any
-device (`device`). For one problem on this machine the loop of the same name in `loops` does the
-same in one pass over memory; the tests hold one to the other. The bounds `lower` and `upper` are
+Each function is written here as an expression of whole arrays, which holds on any device
+(`device`). On this machine the loop of the same name in `loops` does the same in one pass over
+memory; the tests hold one to the other. The bounds `lower` and `upper` are
 numbers or arrays that go with p.
 """
 
@@ -15,9 +15,6 @@ from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-
-from restitution.numerics import items
-from restitution.numerics.items import Flag, Number, anywhere, largest
 
 try:
     loops: Any = import_module("restitution.numerics.loops")
@@ -38,26 +35,16 @@ def _by_loop(expression: Callable[Arguments, Result]) -> Callable[Arguments, Res
 
     @wraps(expression)
     def either(*args: Any) -> Any:
-        if not _is_plain(args[0]):
-            return expression(*args)  # type: ignore[call-arg]
-        found = loop(*args)
-        return tuple(map(_number, found)) if isinstance(found, tuple) else _number(found)
+        return loop(*args) if _is_plain(args[0]) else expression(*args)  # type: ignore[call-arg]
 
     return either  # type: ignore[return-value]
 
 
 def _is_plain(values: Any) -> bool:
-    """Whether these are values of one problem, on this machine, and each row in one piece."""
+    """Whether this is a matrix on this machine, and each row in one piece."""
     if type(values) is not np.ndarray or values.ndim != 2:
         return False
     return values.strides[1] == values.itemsize or values.shape[1] < 2
-
-
-def _number(found: Any) -> Any:
-    """What a loop returns as a number of `items`."""
-    if found is None:
-        return None
-    return np.bool_(found) if isinstance(found, bool) else np.float64(found)
 
 
 def as_rows(bound: Bound, p: Array) -> Bound:
@@ -68,7 +55,7 @@ def as_rows(bound: Bound, p: Array) -> Bound:
 
 
 @_by_loop
-def downhill(p: Array, g: Array, b: Array, lower: Bound, upper: Bound, out: Array) -> Number:
+def downhill(p: Array, g: Array, b: Array, lower: Bound, upper: Bound, out: Array) -> float:
     """Turn K p, in `g`, into the gradient K p − b; its largest value where p may follow it down.
 
     Going down means within the bounds. `out` is the gradient there, else zero.
@@ -76,14 +63,14 @@ def downhill(p: Array, g: Array, b: Array, lower: Bound, upper: Bound, out: Arra
     g -= b
     slope = g * _free(p, g, lower, upper)
     out[...] = slope
-    return largest(slope)
+    return peak(slope)
 
 
 @_by_loop
 def levels(r: Array, sums: Array, nodes: Array) -> None:
     """Σ r, and at how many nodes it is not zero, around places all over, in `sums` and `nodes`.
 
-    Both are of shape (*batch, places, places); between the middles of two places a node counts to
+    Both are of shape (places, places); between the middles of two places a node counts to
     either of them, linearly.
     """
     over_x, over_y = _hats(r, sums)
@@ -92,7 +79,7 @@ def levels(r: Array, sums: Array, nodes: Array) -> None:
 
 
 @_by_loop
-def lower(r: Array, share: Number, sums: Array, nodes: Array, out: Array) -> None:
+def lower(r: Array, share: float, sums: Array, nodes: Array, out: Array) -> None:
     """r less `share` of its mean around each node, where it is not zero, else zero, in `out`."""
     over_x, over_y = _hats(r, sums)
     total, count = (over_x @ at_places @ over_y.T for at_places in (sums, nodes))
@@ -100,53 +87,53 @@ def lower(r: Array, share: Number, sums: Array, nodes: Array, out: Array) -> Non
 
 
 @_by_loop
-def products(z: Array, r: Array, r_old: Array) -> tuple[Number, Number]:
+def products(z: Array, r: Array, r_old: Array) -> tuple[float, float]:
     """r·z and r_old·z."""
-    return items.dot(r, z), items.dot(r_old, z)
+    return dot(r, z), dot(r_old, z)
 
 
 @_by_loop
-def curvature(d: Array, Kd: Array) -> tuple[Number, Number]:
+def curvature(d: Array, Kd: Array) -> tuple[float, float]:
     """d·Kd and the largest magnitude of Kd."""
-    return items.dot(d, Kd), largest(Kd)
+    return dot(d, Kd), peak(Kd)
 
 
 @_by_loop
 def direct(
     d: Array,
-    kept: Number,
+    kept: float,
     z: Array,
-    length: Number,
+    length: float,
     p: Array,
     g: Array,
     r: Array,
     lower: Bound,
     upper: Bound,
-) -> tuple[Number, Flag]:
+) -> tuple[float, bool]:
     """Turn the step d at p to `kept` d − `length` z on the free nodes, and end it at the bounds.
 
     Returns r·d and whether some of it was cut off.
     """
-    d *= kept
-    d -= length * z
+    np.multiply(d, kept, out=d, dtype=np.float64)
+    np.subtract(d, np.multiply(z, length, dtype=np.float64), out=d)
     d *= _free(p, g, lower, upper)
     end = p + d
     cut = _outside(end, lower, upper)
     np.clip(end, lower, upper, out=end)
     np.subtract(end, p, out=d)
-    return items.dot(r, d), cut
+    return dot(r, d), cut
 
 
 @_by_loop
-def leaves(p: Array, d: Array, taken: Number, lower: Bound, upper: Bound) -> Flag:
+def leaves(p: Array, d: Array, taken: float, lower: Bound, upper: Bound) -> bool:
     """Whether p + `taken` d lies outside the bounds somewhere."""
-    return _outside(p + taken * d, lower, upper)
+    return _outside(p + np.multiply(d, taken, dtype=np.float64), lower, upper)
 
 
 @_by_loop
 def advance(
-    p: Array, g: Array, d: Array, Kd: Array, taken: Number, lower: Bound, upper: Bound, out: Array
-) -> Number:
+    p: Array, g: Array, d: Array, Kd: Array, taken: float, lower: Bound, upper: Bound, out: Array
+) -> float:
     """Go to p + `taken` d, where the gradient is g + `taken` Kd; `out` and result as of `downhill`.
 
     A step that ended at a bound, and is taken whole, gets there without a rounding.
@@ -154,36 +141,36 @@ def advance(
     low, high = (
         (taken == 1) & (d == (bound - p).astype(d.dtype, copy=False)) for bound in (lower, upper)
     )
-    p += taken * d
+    p += np.multiply(d, taken, dtype=np.float64)
     np.clip(p, np.where(high, upper, lower), np.where(low, lower, upper), out=p)
-    g += taken * Kd
+    g += np.multiply(Kd, taken, dtype=np.float64)
     np.multiply(g, _free(p, g, lower, upper), out=out)
-    return largest(out)
+    return peak(out)
 
 
 @_by_loop
-def peak(values: Array) -> Number:
+def peak(values: Array) -> float:
     """The largest magnitude."""
-    return largest(values)
+    return float(np.maximum(values.max(), -values.min()))
 
 
 @_by_loop
 def coarsen(fine: Array, coarse: Array) -> None:
     """Means over 2 × 2 nodes, in `coarse`; a last odd row or column counts twice."""
-    rows, columns = (n % 2 for n in fine.shape[-2:])
-    fine = np.pad(fine, [(0, 0)] * (fine.ndim - 2) + [(0, rows), (0, columns)], mode="edge")
-    np.add(fine[..., ::2, ::2], fine[..., 1::2, ::2], out=coarse)
-    coarse += fine[..., ::2, 1::2]
-    coarse += fine[..., 1::2, 1::2]
+    rows, columns = (n % 2 for n in fine.shape)
+    fine = np.pad(fine, [(0, rows), (0, columns)], mode="edge")
+    np.add(fine[::2, ::2], fine[1::2, ::2], out=coarse)
+    coarse += fine[::2, 1::2]
+    coarse += fine[1::2, 1::2]
     coarse *= 0.25
 
 
 @_by_loop
 def refine(coarse: Array, fine: Array) -> None:
     """Linear interpolation of what `coarsen` makes, in `fine`; constant at the ends."""
-    rows, columns = fine.shape[-2:]
-    taller = _refined(coarse)[..., :rows, :].swapaxes(-1, -2)
-    fine[...] = _refined(taller)[..., :columns, :].swapaxes(-1, -2)
+    rows, columns = fine.shape
+    taller = _refined(coarse)[:rows].T
+    fine[...] = _refined(taller)[:columns].T
 
 
 @_by_loop
@@ -214,7 +201,7 @@ def spread(neighbours: NDArray[np.intp], weights: Array, steps: int, sums: Array
 def _hats(r: Array, places: Array) -> list[Array]:
     """How much each row, and each column, of `r` counts to each of the places."""
     hats = []
-    for n, m in zip(r.shape[-2:], places.shape[-2:], strict=True):
+    for n, m in zip(r.shape, places.shape, strict=True):
         node, place = (np.cumsum(np.ones_like(places, shape=k)) for k in (n, m))
         middle = np.clip((node - 0.5) * m / n + 0.5, 1, m)
         hats.append(np.maximum(0.0, 1.0 - np.abs(middle[:, None] - place)))
@@ -223,12 +210,12 @@ def _hats(r: Array, places: Array) -> list[Array]:
 
 def _refined(coarse: Array) -> Array:
     """Linear interpolation from rows twice as wide; constant at the ends."""
-    before = np.concatenate([coarse[..., :1, :], coarse[..., :-1, :]], axis=-2)
-    after = np.concatenate([coarse[..., 1:, :], coarse[..., -1:, :]], axis=-2)
-    *batch, n, columns = coarse.shape
-    fine = np.empty_like(coarse, shape=(*batch, 2 * n, columns), order="C")
-    fine[..., ::2, :] = 0.75 * coarse + 0.25 * before
-    fine[..., 1::2, :] = 0.75 * coarse + 0.25 * after
+    before = np.concatenate([coarse[:1], coarse[:-1]])
+    after = np.concatenate([coarse[1:], coarse[-1:]])
+    n, columns = coarse.shape
+    fine = np.empty_like(coarse, shape=(2 * n, columns), order="C")
+    fine[::2] = 0.75 * coarse + 0.25 * before
+    fine[1::2] = 0.75 * coarse + 0.25 * after
     return fine
 
 
@@ -244,12 +231,18 @@ def _free(p: Array, g: Array, lower: Bound, upper: Bound) -> NDArray[np.bool_]:
     return free
 
 
-def _outside(p: Array, lower: Bound, upper: Bound) -> Flag:
-    """Whether each item leaves its bounds somewhere."""
+def _outside(p: Array, lower: Bound, upper: Bound) -> bool:
+    """Whether p leaves its bounds somewhere."""
     outside = p < lower
     if not _is_absent(upper):
         outside |= p > upper
-    return anywhere(outside)
+    return bool(outside.any())
+
+
+def dot(a: Array, b: Array) -> float:
+    """Σ a b."""
+    # Not np.vdot: its threads wait for each other longer than these products take.
+    return float(np.einsum("ij,ij->", a, b, dtype=np.float64))
 
 
 def _is_absent(upper: Bound) -> bool:
