@@ -3,7 +3,7 @@ PYTHON ?= python3
 PEER_PYTHON ?= python3.11
 VENV := .venv
 BIN := $(VENV)/bin
-BUILD := pyproject.toml setup.py $(wildcard src/restitution/numerics/*.cpp src/restitution/numerics/*.h)
+BUILD := pyproject.toml setup.py $(foreach kind,cpp h,$(wildcard src/restitution/numerics/*.$(kind) src/restitution/numerics/*/*.$(kind)))
 
 .PHONY: demo test fuzz lint bench bench-peers clean
 

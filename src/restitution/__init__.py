@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from restitution.contact.path import loading_path, unloading_path
     from restitution.contact.state import State
     from restitution.errors import RestitutionError
-    from restitution.numerics.device import on_device
+    from restitution.numerics.convolution.device import on_device
     from restitution.numerics.grid import Grid
     from restitution.surfaces import (
         Surface,
@@ -70,7 +70,7 @@ _HOMES = {
     "contact.path": ("loading_path", "unloading_path"),
     "contact.state": ("State",),
     "errors": ("RestitutionError",),
-    "numerics.device": ("on_device",),
+    "numerics.convolution.device": ("on_device",),
     "numerics.grid": ("Grid",),
     "surfaces": (
         "Surface",

@@ -18,8 +18,8 @@ from numpy.testing import assert_allclose
 from restitution import Contact, solve, unloading_path
 from restitution.contact.influence import half_space, inverse_half_space
 from restitution.errors import CaseError
-from restitution.numerics import device as device_module
-from restitution.numerics.device import accelerator, current, on_device
+from restitution.numerics.convolution import device as device_module
+from restitution.numerics.convolution.device import accelerator, current, on_device
 from tolerance import approx
 
 DEPTH = 40e-9

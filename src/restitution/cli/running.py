@@ -58,7 +58,7 @@ def carry_out(
 
     from restitution.cli.console import answers, errors, warn
     from restitution.cli.signals import Stopped, received
-    from restitution.numerics.device import on_device
+    from restitution.numerics.convolution.device import on_device
     from restitution.reports.figures import write_figures
     from restitution.studies.case import naming, read_case
     from restitution.studies.error_budget import steps

@@ -34,7 +34,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.contact.contact import Contact
-from restitution.contact.equilibrium import equilibrate, reach
+from restitution.contact.equilibrium import candidate_box, solve_pressure
 
 Array = NDArray[np.float64]
 
@@ -54,10 +54,10 @@ def yield_bound(contact: Contact, indentation: float, residual: float) -> tuple[
     onset = contact.first_yield_pressure
     bound = np.full(contact.grid.nodes, onset)
     deeper = _DEEPER * indentation
-    box = reach(contact, deeper)
+    box = candidate_box(contact, deeper)
     if box is None:
         return bound, 0
-    elastic = equilibrate(contact, deeper, box, limit=math.inf, residual=_LOOSER * residual)
+    elastic = solve_pressure(contact, deeper, box, limit=math.inf, residual=_LOOSER * residual)
     measure = elastic.box_pressure / math.sqrt(_DEEPER)
     bound[box] = bound_of(contact, measure)
     return bound, elastic.convolutions

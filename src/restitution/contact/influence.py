@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.numerics import passes
-from restitution.numerics.convolution import FreeConvolution, SpectralFilter
-from restitution.numerics.device import CPU, Device, current
+from restitution.numerics.convolution.device import CPU, Device, current
+from restitution.numerics.convolution.operators import FreeConvolution, SpectralFilter
+from restitution.numerics.multipoles import multipoles
 
 if TYPE_CHECKING:
     from functools import _lru_cache_wrapper
@@ -64,7 +64,7 @@ def far_displacement(x: Array, y: Array, hx: float, hy: float, contact_modulus: 
     )
     moments = np.array([[1.0, 0.0, 0.0], second, fourth]) * (hx * hy / (np.pi * contact_modulus))
     far: Array = np.empty_like(x, shape=np.broadcast_shapes(x.shape, y.shape), dtype=np.float64)
-    passes.multipoles(x, y, moments, far)
+    multipoles(x, y, moments, far)
     return far
 
 
@@ -94,7 +94,9 @@ def half_space(
 
     Arrays are of that shape, on the current device.
     """
-    return _kept(_half_space, shape)(shape, spacing, contact_modulus, current()).fresh()
+    return _kept(_half_space, shape)(
+        shape, spacing, contact_modulus, current()
+    ).with_own_workspace()
 
 
 def inverse_half_space(
@@ -102,7 +104,7 @@ def inverse_half_space(
 ) -> SpectralFilter:
     """An approximate inverse, u ↦ |q| E*/2 u: exact on a periodic half-space (Johnson 1985)."""
     build = _kept(_inverse_half_space, shape)
-    return build(shape, spacing, contact_modulus, current()).fresh()
+    return build(shape, spacing, contact_modulus, current()).with_own_workspace()
 
 
 def _kept(build: _lru_cache_wrapper[Operator], shape: tuple[int, int]) -> Callable[..., Operator]:

@@ -16,12 +16,18 @@ from numpy.typing import NDArray
 from restitution.contact.adhesion import attach, pull
 from restitution.contact.cavity import yield_bound
 from restitution.contact.contact import Contact
-from restitution.contact.equilibrium import RESIDUAL, equilibrate, parted, reach, refuse_edge
+from restitution.contact.equilibrium import (
+    RESIDUAL,
+    candidate_box,
+    refuse_edge,
+    separated_state,
+    solve_pressure,
+)
 from restitution.contact.influence import half_space
 from restitution.contact.state import State
 from restitution.errors import CaseError
+from restitution.numerics.box import Box, bounding_box, shape_of
 from restitution.numerics.quadrature import integrate_adaptively
-from restitution.numerics.window import Box, bounding_box, shape_of
 
 Array = NDArray[np.float64]
 
@@ -109,7 +115,7 @@ def load(contact: Contact, indentation: float, *, start: State | None, residual:
                        first_guess=None if start is None else start.pressure_on(box),
                        residual=residual)  # fmt: skip
     elif contact.adhesive and contact.approach == "seed":
-        # The pull may let go of everything: the state is then parted, with zero force.
+        # The pull may let go of everything: the state is then separated, with zero force.
         pressed = _press(contact, indentation + SEED_PULL, limit, residual)
         state = pull(pressed, indentation, residual=residual)
         state = replace(state, adhesive_work=0.0, virgin=True)
@@ -138,10 +144,12 @@ def _press(
     history: State | None = None,
 ) -> State:
     """The contact without adhesion, always from nothing: coarser grids beat any earlier state."""
-    box = reach(contact, indentation, history)
+    box = candidate_box(contact, indentation, history)
     if box is None:
-        return parted(contact, indentation, history)
-    return equilibrate(contact, indentation, box, limit=limit, history=history, residual=residual)
+        return separated_state(contact, indentation, history)
+    return solve_pressure(
+        contact, indentation, box, limit=limit, history=history, residual=residual
+    )
 
 
 def _cut(elastic: State) -> State:

@@ -23,7 +23,7 @@ from restitution.contact.resolution import (
 )
 from restitution.contact.state import State
 from restitution.errors import DomainError, NotConvergedError, RestitutionError, one_line
-from restitution.numerics.device import current
+from restitution.numerics.convolution.device import current
 from restitution.numerics.quadrature import integrate_curve
 from restitution.studies.case import Case
 from restitution.studies.derived import deepest_indentation, derived_quantities

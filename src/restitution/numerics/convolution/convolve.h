@@ -199,7 +199,7 @@ inline void store_modes(const Lanes<T>& x, std::complex<T>* to, Index some) {
 template <class T>
 struct Columns {
     const Plan<T>& plan;
-    Lanes<T>* x;  // room for a period
+    Lanes<T>* x;  // as long as a period
 
     // x[i] is to be set for i < values.
     void transform(Index values) {
@@ -235,8 +235,8 @@ struct Convolution {
 
     // Two blocks of real columns are transformed as the real and the imaginary part of one.
     template <class From>
-    void into_waves(Rows<const From> values, double factor, Index first, Lanes<T>* room) const {
-        Columns<T> columns{along_x, room};
+    void into_waves(Rows<const From> values, double factor, Index first, Lanes<T>* workspace) const {
+        Columns<T> columns{along_x, workspace};
         for (Index i = 0; i < values.count; ++i) {
             const From* row = values[i] + first;
             columns.x[i] = {load<T>(row, factor, values.length - first),
@@ -264,8 +264,8 @@ struct Convolution {
     }
 
     template <class To>
-    void out_of_waves(Rows<To> out, double factor, Index first, Lanes<T>* room) const {
-        Columns<T> columns{along_x, room};
+    void out_of_waves(Rows<To> out, double factor, Index first, Lanes<T>* workspace) const {
+        Columns<T> columns{along_x, workspace};
         for (Index k0 = 0; k0 < modes.length; k0 += count) {
             const Index waves = std::min<Index>(count, modes.length - k0);
             Vector re[2][count], im[2][count];
@@ -293,8 +293,8 @@ struct Convolution {
         }
     }
 
-    void weigh(Index first, Lanes<T>* room) const {
-        Columns<T> columns{along_y, room};
+    void weigh(Index first, Lanes<T>* workspace) const {
+        Columns<T> columns{along_y, workspace};
         const Index some = std::min<Index>(count, modes.length - first);
         for (Index i = 0; i < modes.count; ++i) columns.x[i] = load_modes(modes[i] + first, some);
         columns.transform(modes.count);
@@ -312,29 +312,31 @@ struct Convolution {
 };
 
 // `out` = `factor_back` K ∗ (`factor` `values`), circular in (px, py). `weights` (py/2 + 1, px/2 + 1)
-// are a quadrant of the spectrum of K, real, even and transposed; `room` is that of `bytes_of_room`.
+// are a quadrant of the spectrum of K, real, even and transposed. `workspace` has `workspace_bytes`.
 template <class From, class T, class To>
 void convolve(Rows<const From> values, double factor, Rows<const T> weights, Index px, Index py,
-              Rows<unsigned char> room, double factor_back, Rows<To> out) {
+              Rows<unsigned char> workspace, double factor_back, Rows<To> out) {
     if (out.count != values.count || out.length != values.length || weights.count != py / 2 + 1 ||
-        weights.length != px / 2 + 1 || room.length < bytes_of_room<T>(values.length, px / 2 + 1))
-        throw std::invalid_argument("arrays that do not go with each other");
-    const auto modes = rows_in<std::complex<T>>(room, values.length, px / 2 + 1);
+        weights.length != px / 2 + 1 ||
+        workspace.length < workspace_bytes<T>(values.length, px / 2 + 1))
+        throw std::invalid_argument("shapes do not match");
+    const auto modes = rows_in<std::complex<T>>(workspace, values.length, px / 2 + 1);
     const auto along_x = plan_for<T>(values.count, px), along_y = plan_for<T>(values.length, py);
     const Convolution<T> convolution{*along_x, *along_y, weights, modes};
     constexpr int count = Lanes<T>::count;
     const int threads = threads_for(values.count * values.length * Index(sizeof(T)));
     const Index each = std::max(px, py);
-    const auto memory = room_for(threads * each * Index(sizeof(Lanes<T>)));
+    const auto memory = allocate(threads * each * Index(sizeof(Lanes<T>)));
     Crew crew;
     crew.run(threads, [&](int k) {
-        Lanes<T>* its_room = static_cast<Lanes<T>*>(memory.get()) + k * each;
+        Lanes<T>* its_workspace = static_cast<Lanes<T>*>(memory.get()) + k * each;
         crew.share(values.length, 2 * count, [&](Index first) {
-            convolution.into_waves(values, factor, first, its_room);
+            convolution.into_waves(values, factor, first, its_workspace);
         });
-        crew.share(modes.length, count, [&](Index first) { convolution.weigh(first, its_room); });
+        crew.share(modes.length, count,
+                   [&](Index first) { convolution.weigh(first, its_workspace); });
         crew.share(values.length, 2 * count, [&](Index first) {
-            convolution.out_of_waves(out, factor_back, first, its_room);
+            convolution.out_of_waves(out, factor_back, first, its_workspace);
         });
     });
 }
@@ -351,5 +353,5 @@ inline void define_convolve(py::module_& module) {
     define_between<float, float>(module);
     define_between<double, double>(module);
     define_between<float, double>(module);
-    module.def("bytes_of_room", &bytes_of_room<double>);
+    module.def("workspace_bytes", &workspace_bytes<double>);
 }

@@ -1,8 +1,8 @@
-"""Where arrays live and who convolves them: this machine's compiled loops, or a GPU and CuPy.
+"""Devices: where arrays are stored and convolved, in compiled loops on the CPU or by CuPy on a GPU.
 
-The solver is written for any arrays that follow NumPy's protocols (`__array_ufunc__`, NEP 13, and
-`__array_function__`, NEP 18), as CuPy's do; what has no such protocol, making arrays and
-convolving them, is a method of a `Device`. Solves run on the `current` one:
+The solver accepts any arrays that follow NumPy's protocols (`__array_ufunc__`, NEP 13, and
+`__array_function__`, NEP 18), as CuPy's do. The operations without such a protocol, creation and
+convolution of arrays, are methods of a `Device`. Solves run on the `current` device:
 
     with on_device("gpu"):
         state = solve(contact, 1e-6)
@@ -21,56 +21,61 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.errors import CaseError
-from restitution.numerics import passes
+from restitution.numerics import compiled
 
 Array = NDArray[Any]
 DeviceName = Literal["cpu", "gpu", "auto"]
 
 
 class Device(Protocol):
-    """Makes arrays, and convolves them."""
+    """Creates arrays and convolves them."""
 
     name: str
 
     def put(self, values: Array) -> Array:
-        """An array of this machine's memory, on the device."""
+        """Copy an array from the host's memory to the device."""
 
     def get(self, values: Array) -> Array:
-        """An array of the device, in this machine's memory."""
+        """Copy an array of the device to the host's memory."""
 
     def arange(self, n: int) -> Array:
-        """0 … n − 1."""
+        """The integers 0 … n − 1."""
 
     def even_spectrum(self, quadrant: Array) -> Array:
-        """Spectrum of a real array that is even along both axes, of which this is one quadrant.
+        """Spectrum of a real array that is even along both axes, given one quadrant of it.
 
-        It is over the number of values, so that transforming back takes no factor. The quadrant may
-        be overwritten.
+        It is divided by the number of values, so that the inverse transform needs no factor. The
+        quadrant may be overwritten.
         """
 
-    def room(self, shape: tuple[int, int], periods: tuple[int, int]) -> Array:
-        """The memory that `convolve` needs for arrays of that shape."""
+    def workspace(self, shape: tuple[int, int], periods: tuple[int, int]) -> Array:
+        """A work array for `convolve`, for arrays of that shape."""
 
     def convolve(
-        self, values: Array, spectrum: Array, periods: tuple[int, int], scale: float, room: Array,
+        self,
+        values: Array,
+        spectrum: Array,
+        periods: tuple[int, int],
+        scale: float,
+        workspace: Array,
         out: Array,
-    ) -> None:  # fmt: skip
-        """Multiply the waves of values, (nx, ny), by a real and even spectrum, in `out`.
+    ) -> None:
+        """Multiply the Fourier modes of `values` by a real, even spectrum; write to `out`.
 
-        The values are filled up with zeros to `periods`. `spectrum` is a quadrant as
-        `even_spectrum` makes it but transposed; its precision is that of the work. Values are
-        divided by `scale`, and what comes out is multiplied by it.
+        `values` and `out` have shape (nx, ny); zeros pad the values to `periods`. `spectrum` is the
+        transpose of a quadrant made by `even_spectrum`; its precision is that of the computation.
+        Values are divided by `scale` before, and the result is multiplied by it.
         """
 
 
 class _Compiled:
-    """NumPy arrays, convolved by the compiled `loops`."""
+    """NumPy arrays, convolved by the compiled loops."""
 
     name = "cpu"
 
     def __init__(self, loops: Any) -> None:
         self._loops = loops
-        # As many as ducc0's, which `DUCC0_NUM_THREADS` sets.
+        # The number of threads of ducc0, which `DUCC0_NUM_THREADS` sets.
         loops.use_threads(ducc0.misc.thread_pool_size())
 
     def put(self, values: Array) -> Array:
@@ -87,20 +92,25 @@ class _Compiled:
         ducc0.fft.dct(quadrant, type=1, inorm=2, out=quadrant, nthreads=threads)
         return quadrant
 
-    def room(self, shape: tuple[int, int], periods: tuple[int, int]) -> Array:
-        return np.empty((1, self._loops.bytes_of_room(shape[1], periods[0] // 2 + 1)), np.uint8)
+    def workspace(self, shape: tuple[int, int], periods: tuple[int, int]) -> Array:
+        return np.empty((1, self._loops.workspace_bytes(shape[1], periods[0] // 2 + 1)), np.uint8)
 
     def convolve(
-        self, values: Array, spectrum: Array, periods: tuple[int, int], scale: float, room: Array,
+        self,
+        values: Array,
+        spectrum: Array,
+        periods: tuple[int, int],
+        scale: float,
+        workspace: Array,
         out: Array,
-    ) -> None:  # fmt: skip
+    ) -> None:
         if values.strides[-1] != values.itemsize:
             values = np.ascontiguousarray(values)
-        self._loops.convolve(values, 1 / scale, spectrum, *periods, room, scale, out)
+        self._loops.convolve(values, 1 / scale, spectrum, *periods, workspace, scale, out)
 
 
 class _Arrays:
-    """Arrays of a library like NumPy, `arrays`, transformed by one like scipy.fft, `fft`."""
+    """Arrays of a library like NumPy (`arrays`), transformed by one like scipy.fft (`fft`)."""
 
     def __init__(self, name: str, arrays: Any, fft: Any) -> None:
         self.name = name
@@ -117,7 +127,7 @@ class _Arrays:
         return self._arrays.arange(n)  # type: ignore[no-any-return]
 
     def even_spectrum(self, quadrant: Array) -> Array:
-        # CuPy has no DCT-I: the transform of the whole even array, which is real.
+        # CuPy has no DCT-I: transform the whole even array; the result is real.
         columns = np.concatenate([quadrant, quadrant[:, -2:0:-1]], axis=1)
         modes = self._fft.rfft(columns, axis=1, norm="forward").real
         rows = np.concatenate([modes, modes[-2:0:-1]], axis=0)
@@ -125,22 +135,27 @@ class _Arrays:
         waves = self._fft.rfft(rows, axis=0, norm="forward").real
         return waves[:half].copy()  # type: ignore[no-any-return]
 
-    def room(self, shape: tuple[int, int], periods: tuple[int, int]) -> Array:
-        return np.empty(0)  # transforms find their own
+    def workspace(self, shape: tuple[int, int], periods: tuple[int, int]) -> Array:
+        return np.empty(0)  # the library allocates its own
 
     def convolve(
-        self, values: Array, spectrum: Array, periods: tuple[int, int], scale: float, room: Array,
+        self,
+        values: Array,
+        spectrum: Array,
+        periods: tuple[int, int],
+        scale: float,
+        workspace: Array,
         out: Array,
-    ) -> None:  # fmt: skip
+    ) -> None:
         nx, ny = values.shape
         px, py = periods
         scaled = np.divide(values, scale, dtype=np.float64)
-        # One axis after the other: the rows that are padding are not transformed.
+        # One axis after the other, so that rows of padding are not transformed.
         modes = self._fft.rfft(scaled.astype(spectrum.dtype), n=py, axis=1)
         modes = self._fft.fft(modes, n=px, axis=0)
         weights, last = spectrum.T, px // 2
         modes[: last + 1] *= weights
-        # The negative waves; of an odd period the largest, too, has a negative one.
+        # Negative wave numbers. In an odd period the largest one has a negative counterpart, too.
         modes[last + 1 :] *= weights[px - last - 1 : 0 : -1]
         modes = self._fft.ifft(modes, axis=0, norm="forward", overwrite_x=True)[:nx]
         padded = self._fft.irfft(modes, n=py, axis=1, norm="forward")
@@ -148,13 +163,13 @@ class _Arrays:
 
 
 def accelerator(name: str, arrays: Any, fft: Any) -> Device:
-    """A device whose arrays are those of a library like CuPy (`arrays`) and of its scipy.fft."""
+    """A device that uses a library like CuPy (`arrays`) and its version of scipy.fft (`fft`)."""
     return _Arrays(name, arrays, fft)
 
 
 def _host() -> Device:
-    if passes.loops is not None:
-        return _Compiled(passes.loops)
+    if compiled.loops is not None:
+        return _Compiled(compiled.loops)
     import scipy.fft
 
     return _Arrays("cpu", np, scipy.fft)
@@ -165,15 +180,15 @@ _current: ContextVar[Device] = ContextVar("device", default=CPU)
 
 
 def current() -> Device:
-    """The device that solves run on here and now."""
+    """The device on which solves run in the current context."""
     return _current.get()
 
 
 @contextmanager
 def on_device(device: DeviceName | Device) -> Iterator[Device]:
-    """Let solves run on a device: "cpu", "gpu", or "auto", which is a GPU where there is one.
+    """Run solves on a device: "cpu", "gpu", or "auto", a GPU if one is available.
 
-    Raises `CaseError` for "gpu" where CuPy or a device is missing.
+    Raises `CaseError` for "gpu" if CuPy or a usable GPU is missing.
     """
     chosen = _named(device) if isinstance(device, str) else device
     token = _current.set(chosen)
@@ -200,7 +215,7 @@ def _gpu() -> Device:
         import cupy
         import cupyx.scipy.fft
 
-        cupy.cuda.Device().use()  # raises where there is none
+        cupy.cuda.Device().use()  # raises if there is no GPU
     except ImportError as error:
         raise CaseError(
             f"device: gpu needs CuPy ({error}); install the extra gpu, from a checkout with "

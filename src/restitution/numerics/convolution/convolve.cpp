@@ -100,10 +100,10 @@ constexpr Index LINE = 64;
 struct Free {
     void operator()(void* memory) const { std::free(memory); }
 };
-inline std::unique_ptr<void, Free> room_for(Index bytes) {
-    std::unique_ptr<void, Free> room(std::aligned_alloc(LINE, (bytes + LINE - 1) / LINE * LINE));
-    if (!room) throw std::bad_alloc();
-    return room;
+inline std::unique_ptr<void, Free> allocate(Index bytes) {
+    std::unique_ptr<void, Free> memory(std::aligned_alloc(LINE, (bytes + LINE - 1) / LINE * LINE));
+    if (!memory) throw std::bad_alloc();
+    return memory;
 }
 
 // Rows that begin with a line, an odd number of lines apart: at a power of two they would drive each
@@ -111,14 +111,14 @@ inline std::unique_ptr<void, Free> room_for(Index bytes) {
 inline Index bytes_of_row(Index bytes) { return ((bytes + LINE - 1) / LINE | 1) * LINE; }
 
 template <class T>
-Index bytes_of_room(Index rows, Index length) {
+Index workspace_bytes(Index rows, Index length) {
     return rows * bytes_of_row(length * Index(sizeof(std::complex<T>))) + LINE;
 }
 
 template <class T>
-Rows<T> rows_in(Rows<unsigned char> room, Index rows, Index length) {
-    void* first = room.first;
-    std::size_t bytes = room.length;
+Rows<T> rows_in(Rows<unsigned char> workspace, Index rows, Index length) {
+    void* first = workspace.first;
+    std::size_t bytes = workspace.length;
     return {static_cast<T*>(std::align(LINE, 1, first, bytes)), rows, length,
             bytes_of_row(length * Index(sizeof(T))) / Index(sizeof(T))};
 }
@@ -126,7 +126,7 @@ Rows<T> rows_in(Rows<unsigned char> room, Index rows, Index length) {
 #ifndef __has_builtin
 #define __has_builtin(name) 0
 #endif
-#define LOOPS "convolve.h"
+#define LOOPS "convolution/convolve.h"
 #include "each_processor.h"
 
 void define_narrow_convolve(py::module_& module) { narrow::define_convolve(module); }

@@ -21,8 +21,8 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.numerics import passes
-from restitution.numerics.device import CPU, Device
+from restitution.numerics.convolution.device import CPU, Device
+from restitution.numerics.reductions import max_magnitude
 
 Array = NDArray[np.float64]
 # Values at lags i and j, integers of shapes that broadcast, in an array that is then overwritten.
@@ -37,7 +37,7 @@ def fast_size(minimum: int) -> int:
 class _Spectral:
     """Multiplication of the waves of an array by a real and even spectrum, in a period of its own.
 
-    The memory that takes is kept from its first use on: see `fresh`.
+    The workspace is allocated on first use and kept: see `with_own_workspace`.
     """
 
     def __init__(self, shape: tuple[int, int], periods: tuple[int, int], device: Device) -> None:
@@ -46,25 +46,25 @@ class _Spectral:
         self._device = device
 
     @cached_property
-    def _room(self) -> NDArray[Any]:
-        return self._device.room(self.shape, self._periods)
+    def _workspace(self) -> NDArray[Any]:
+        return self._device.workspace(self.shape, self._periods)
 
-    def fresh(self) -> Self:
-        """The same operator with memory and a count of its own, for another user."""
+    def with_own_workspace(self) -> Self:
+        """The same operator with a workspace and a count of its own, for another solve."""
         other = copy(self)
-        other.__dict__.pop("_room", None)
+        other.__dict__.pop("_workspace", None)
         return other
 
     def _convolve(self, p: Array, spectrum: NDArray[Any], out: Array | None, scale: float) -> Array:
         result = np.empty_like(p, dtype=np.float64, order="C") if out is None else out
-        self._device.convolve(p, spectrum, self._periods, scale, self._room, result)
+        self._device.convolve(p, spectrum, self._periods, scale, self._workspace, result)
         return result
 
 
 class FreeConvolution(_Spectral):
-    """Convolution of arrays with one kernel; `count` tells how often it was applied.
+    """Convolution of arrays with one kernel; `count` is the number of products so far.
 
-    `own` is the kernel at lag (0, 0): what a node's value makes at the node itself.
+    `diagonal` is the kernel at lag (0, 0): the effect of a node's value at the node itself.
     """
 
     def __init__(self, kernel: Kernel, shape: tuple[int, int], device: Device = CPU) -> None:
@@ -72,14 +72,14 @@ class FreeConvolution(_Spectral):
         super().__init__(shape, (px, py), device)
         # Transposed, as `Device.convolve` wants it.
         lags = kernel(device.arange(px // 2 + 1)[None, :], device.arange(py // 2 + 1)[:, None])
-        self.own = float(lags[0, 0])
+        self.diagonal = float(lags[0, 0])
         self._spectrum = device.even_spectrum(lags)
         self._single_spectrum = self._spectrum.astype(np.float32)
         self.count = 0
 
-    def fresh(self) -> Self:
-        """The same operator with memory and a count of its own, for another user."""
-        other = super().fresh()
+    def with_own_workspace(self) -> Self:
+        """The same operator with a workspace and a count of its own, for another solve."""
+        other = super().with_own_workspace()
         other.count = 0
         return other
 
@@ -88,8 +88,8 @@ class FreeConvolution(_Spectral):
         self.count += 1
         return self._convolve(p, self._spectrum, out, 1.0)
 
-    def quick(self, p: Array, out: Array | None = None) -> Array:
-        """The same for work in single precision: an error of up to 9e-7 of the largest value."""
+    def single_precision(self, p: Array, out: Array | None = None) -> Array:
+        """K ∗ p computed in single precision: errors up to 9e-7 of the largest value."""
         self.count += 1
         return self._convolve(p, self._single_spectrum, out, 1.0)
 
@@ -118,6 +118,6 @@ class SpectralFilter(_Spectral):
 
     def __call__(self, r: Array, out: Array | None = None) -> Array:
         """Return the filtered array, same shape as `r`: in a new array, or in `out`."""
-        # What is far below the largest value is lost in single precision, wherever that lies.
-        scale = passes.peak(r)
+        # Scaled to values around one: single precision has a limited range.
+        scale = max_magnitude(r)
         return self._convolve(r, self._symbol, out, scale if scale != 0 else 1.0)
