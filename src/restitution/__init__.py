@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from restitution.contact.path import loading_path, unloading_path
     from restitution.contact.state import State
     from restitution.errors import RestitutionError
+    from restitution.numerics.convolution.cache import operator_cache
     from restitution.numerics.convolution.device import on_device
     from restitution.numerics.grid import Grid
     from restitution.surfaces import (
@@ -46,6 +47,7 @@ __all__ = [
     "level",
     "loading_path",
     "on_device",
+    "operator_cache",
     "place_on_grid",
     "read_surface",
     "refine",
@@ -70,6 +72,7 @@ _HOMES = {
     "contact.path": ("loading_path", "unloading_path"),
     "contact.state": ("State",),
     "errors": ("RestitutionError",),
+    "numerics.convolution.cache": ("operator_cache",),
     "numerics.convolution.device": ("on_device",),
     "numerics.grid": ("Grid",),
     "surfaces": (

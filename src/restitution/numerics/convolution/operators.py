@@ -14,8 +14,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from copy import copy
-from functools import cached_property
 from itertools import count
+from threading import Lock
 from typing import Any, Self
 
 import numpy as np
@@ -35,34 +35,41 @@ def fast_size(minimum: int) -> int:
 
 
 class _Spectral:
-    """Multiplication of the waves of an array by a real and even spectrum, in a period of its own.
+    """Multiplication of the Fourier modes of an array by a real, even spectrum, zero-padded.
 
-    The workspace is allocated on first use and kept: see `with_own_workspace`.
+    `count` is the number of products so far.
+
+    An operator may be used by several threads; a lock around its workspace makes them take turns.
+    To work at the same time, each takes an operator `with_own_workspace`. The workspace is
+    allocated on first use and kept.
     """
 
     def __init__(self, shape: tuple[int, int], periods: tuple[int, int], device: Device) -> None:
         self.shape = shape
         self._periods = periods
         self._device = device
-
-    @cached_property
-    def _workspace(self) -> NDArray[Any]:
-        return self._device.workspace(self.shape, self._periods)
+        self.count = 0
+        self._lock = Lock()
+        self._workspace: NDArray[Any] | None = None
 
     def with_own_workspace(self) -> Self:
         """The same operator with a workspace and a count of its own, for another solve."""
         other = copy(self)
-        other.__dict__.pop("_workspace", None)
+        other._lock, other._workspace, other.count = Lock(), None, 0
         return other
 
     def _convolve(self, p: Array, spectrum: NDArray[Any], out: Array | None, scale: float) -> Array:
         result = np.empty_like(p, dtype=np.float64, order="C") if out is None else out
-        self._device.convolve(p, spectrum, self._periods, scale, self._workspace, result)
+        with self._lock:
+            if self._workspace is None:
+                self._workspace = self._device.workspace(self.shape, self._periods)
+            self._device.convolve(p, spectrum, self._periods, scale, self._workspace, result)
+            self.count += 1
         return result
 
 
 class FreeConvolution(_Spectral):
-    """Convolution of arrays with one kernel; `count` is the number of products so far.
+    """Convolution of arrays with one kernel.
 
     `diagonal` is the kernel at lag (0, 0): the effect of a node's value at the node itself.
     """
@@ -75,22 +82,18 @@ class FreeConvolution(_Spectral):
         self.diagonal = float(lags[0, 0])
         self._spectrum = device.even_spectrum(lags)
         self._single_spectrum = self._spectrum.astype(np.float32)
-        self.count = 0
 
-    def with_own_workspace(self) -> Self:
-        """The same operator with a workspace and a count of its own, for another solve."""
-        other = super().with_own_workspace()
-        other.count = 0
-        return other
+    @property
+    def nbytes(self) -> int:
+        """Size of the spectra, bytes."""
+        return int(self._spectrum.nbytes + self._single_spectrum.nbytes)
 
     def __call__(self, p: Array, out: Array | None = None) -> Array:
         """K ∗ p, same shape as `p`: in a new array, or in `out`."""
-        self.count += 1
         return self._convolve(p, self._spectrum, out, 1.0)
 
     def single_precision(self, p: Array, out: Array | None = None) -> Array:
         """K ∗ p computed in single precision: errors up to 9e-7 of the largest value."""
-        self.count += 1
         return self._convolve(p, self._single_spectrum, out, 1.0)
 
 
@@ -115,6 +118,11 @@ class SpectralFilter(_Spectral):
         values = symbol(2 * np.pi / mx * i, 2 * np.pi / my * j)
         values /= mx * my
         self._symbol = values.astype(np.float32)
+
+    @property
+    def nbytes(self) -> int:
+        """Size of the symbol, bytes."""
+        return int(self._symbol.nbytes)
 
     def __call__(self, r: Array, out: Array | None = None) -> Array:
         """Return the filtered array, same shape as `r`: in a new array, or in `out`."""
