@@ -194,7 +194,7 @@ def test_a_gpu_that_does_not_answer_is_said_so(monkeypatch):
     monkeypatch.setitem(sys.modules, "cupyx.scipy.fft", Broken)
     device_module._gpu.cache_clear()
     with (
-        pytest.raises(CaseError, match=r"no GPU answers \(no CUDA-capable device is detected\)"),
+        pytest.raises(CaseError, match=r"no usable GPU \(no CUDA-capable device is detected\)"),
         on_device("gpu"),
     ):
         pass

@@ -31,7 +31,7 @@ OutFolder = Annotated[
     Path, typer.Option("-o", "--out", help="Folder for the results; new or empty.", readable=False)
 ]
 OnDevice = Annotated[
-    Device, typer.Option(help="Where to solve; auto is the GPU where one answers (needs CuPy).")
+    Device, typer.Option(help="Where to solve; auto uses a GPU if available (needs CuPy).")
 ]
 
 

@@ -1,10 +1,9 @@
-// Convolution of an array with an even kernel: transforms along both axes, weights, and back. What
-// depends on the processor is in convolve.h.
+// Convolution of an array with an even kernel: transform along both axes, multiply by the spectrum,
+// transform back. The code that depends on the processor is in convolve.h.
 //
-// Transforms are made of some columns at a time, which stay in the cache, and zeros that only pad are
-// neither stored nor transformed: n values in a period of 2 m ≥ 2 n have as their even waves those of
-// a transform of length m, and as their odd ones those of the same transform of the values turned by
-// half a turn over the m.
+// A few columns at a time are transformed, so that they stay in the cache. Zero padding is neither
+// stored nor transformed: for n values in a period of 2 m ≥ 2 n, a transform of length m gives the
+// modes of even wave number, and the same transform of the values times exp(−πi j/m) the odd ones.
 
 #include "crew.h"
 #include "rows.h"
@@ -24,8 +23,8 @@
 #include <utility>
 #include <vector>
 
-// How to transform a period, on any processor. One of which at least half is padding is transformed
-// in two parts, the even waves and the odd ones.
+// Plan of the transform of a period, for any processor. If at least half of the period is padding, it
+// is transformed in two parts, the even modes and the odd ones.
 template <class T>
 struct Plan {
     Index period;
@@ -34,12 +33,12 @@ struct Plan {
     std::vector<int> radices;
     std::vector<std::vector<std::complex<T>>> twiddles;  // of each stage
     std::vector<std::complex<T>> half_turn;              // exp(−πi j/length)
-    std::vector<Index> places;                           // where `forward` leaves each wave
+    std::vector<Index> places;                           // where `forward` stores each mode
 
     Plan(Index period, int parts)
         : period(period), parts(parts), length(period / parts), places(period) {
-        Index rest = length;  // what the stages so far have left of it
-        for (int radix : {4, 2, 3, 5, 7})  // in this order the fastest of five that were tried
+        Index rest = length;  // the factor that is left after these stages
+        for (int radix : {4, 2, 3, 5, 7})  // the fastest of five orders tried
             for (; rest % radix == 0; rest /= radix) radices.push_back(radix);
         if (rest != 1) throw std::invalid_argument("only factors 2, 3, 5 and 7 are transformed");
         rest = length;
@@ -81,10 +80,10 @@ struct Roots {
 template <class T, int r>
 const Roots<T, r> ROOTS;
 
-// The plan for so many values in a period. Plans are kept: making one takes longer than following it.
+// The plan for `values` in a period. Plans are kept, since making one takes longer than a transform.
 template <class T>
 std::shared_ptr<const Plan<T>> plan_for(Index values, Index period) {
-    if (values > period) throw std::invalid_argument("more values than a period holds");
+    if (values > period) throw std::invalid_argument("more values than the period holds");
     const int parts = period % 2 == 0 && 2 * values <= period ? 2 : 1;
     static std::mutex mutex;
     static std::map<std::pair<Index, int>, std::shared_ptr<const Plan<T>>> known;
@@ -94,7 +93,7 @@ std::shared_ptr<const Plan<T>> plan_for(Index values, Index period) {
     return plan;
 }
 
-// Memory in lines of the cache.
+// Size of a cache line, to which memory is aligned.
 constexpr Index LINE = 64;
 
 struct Free {
@@ -106,8 +105,8 @@ inline std::unique_ptr<void, Free> allocate(Index bytes) {
     return memory;
 }
 
-// Rows that begin with a line, an odd number of lines apart: at a power of two they would drive each
-// other out of the cache.
+// Rows begin at cache lines, an odd number of lines apart: rows a power of two apart would evict each
+// other from the cache.
 inline Index bytes_of_row(Index bytes) { return ((bytes + LINE - 1) / LINE | 1) * LINE; }
 
 template <class T>

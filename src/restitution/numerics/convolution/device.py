@@ -224,6 +224,6 @@ def _gpu() -> Device:
     except Exception as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise CaseError(
-            f"device: no GPU answers ({reason}); check its driver, or use --device cpu"
+            f"device: no usable GPU ({reason}); check its driver, or use --device cpu"
         ) from error
     return accelerator("gpu", cupy, cupyx.scipy.fft)

@@ -5,9 +5,9 @@ Conventions: for nodes (i, j) of a grid of shape (nx, ny),
     u[i, j] = Σ_kl  K[|i − k|, |j − l|] p[k, l].
 
 Zero padding to any size ≥ 2n − 1 makes the circular convolution equal to the linear one (Liu, Wang
-and Liu 2000, Wear 243, 101–111, "DC-FFT"); lags beyond n − 1 never meet, whatever the kernel says
-there. The kernel is even along both axes, so its spectrum is a DCT-I of one quadrant and real: a
-quarter of the storage.
+and Liu 2000, Wear 243, 101–111, "DC-FFT"); kernel values at lags beyond n − 1 have no effect. The
+kernel is even along both axes, so its spectrum is real and the DCT-I of one quadrant, which takes
+a quarter of the storage.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from restitution.numerics.convolution.device import CPU, Device
 from restitution.numerics.reductions import max_magnitude
 
 Array = NDArray[np.float64]
-# Values at lags i and j, integers of shapes that broadcast, in an array that is then overwritten.
+# Values of the kernel at lags i and j, integers that broadcast. The operator overwrites the array.
 Kernel = Callable[[NDArray[np.int64], NDArray[np.int64]], Array]
 
 
 def fast_size(minimum: int) -> int:
-    """The smallest size of a fast transform, at least `minimum`: its factors are 2, 3, 5 and 7."""
+    """The smallest size ≥ `minimum` whose only factors are 2, 3, 5 and 7."""
     return next(size for size in count(minimum) if pow(2 * 3 * 5 * 7, 64, size) == 0)
 
 
@@ -77,7 +77,7 @@ class FreeConvolution(_Spectral):
     def __init__(self, kernel: Kernel, shape: tuple[int, int], device: Device = CPU) -> None:
         px, py = (2 * fast_size(n) for n in shape)
         super().__init__(shape, (px, py), device)
-        # Transposed, as `Device.convolve` wants it.
+        # Transposed, as `Device.convolve` expects.
         lags = kernel(device.arange(px // 2 + 1)[None, :], device.arange(py // 2 + 1)[:, None])
         self.diagonal = float(lags[0, 0])
         self._spectrum = device.even_spectrum(lags)
@@ -101,8 +101,8 @@ class SpectralFilter(_Spectral):
     """Multiplication by a real, even symbol of the wave vector; a cheap approximate operator.
 
     `symbol(qx, qy)` takes the angular wave numbers (rad per cell, ≥ 0) as arrays that broadcast and
-    makes a new one. The array is padded only to a fast size, so the filter is periodic, and works
-    in single precision: good enough for a preconditioner.
+    returns a new array. Arrays are padded only to a fast size, so the filter is periodic. It works
+    in single precision, which suffices for a preconditioner.
     """
 
     def __init__(
@@ -113,7 +113,7 @@ class SpectralFilter(_Spectral):
     ) -> None:
         mx, my = (fast_size(n) for n in shape)
         super().__init__(shape, (mx, my), device)
-        # Transposed, as `Device.convolve` wants it.
+        # Transposed, as `Device.convolve` expects.
         i, j = device.arange(mx // 2 + 1)[None, :], device.arange(my // 2 + 1)[:, None]
         values = symbol(2 * np.pi / mx * i, 2 * np.pi / my * j)
         values /= mx * my

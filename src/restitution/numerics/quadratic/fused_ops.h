@@ -70,7 +70,7 @@ std::pair<double, double> curvature(Rows<const T> d, Rows<const T> Kd) {
 }
 
 template <class T>
-std::pair<double, bool> projected_direction(Rows<T> d, double kept, Rows<const T> z, double length,
+std::pair<double, bool> projected_direction(Rows<T> d, double beta, Rows<const T> z, double length,
                                Rows<const double> p, Rows<const double> g, Rows<const T> r,
                                Rows<const double> lower, Rows<const double> upper) {
     const auto some = [&](Index begin, Index end) {
@@ -79,13 +79,13 @@ std::pair<double, bool> projected_direction(Rows<T> d, double kept, Rows<const T
             T* di = d[i];
             const double *pi = p[i], *gi = g[i], *low = lower[i], *high = upper[i];
             const T *zi = z[i], *ri = r[i];
-            // Without branches, and all that may be needed is computed: else it takes no vectors.
+            // Free of branches, with all alternatives computed, or the compiler does not vectorise it.
 #pragma omp simd reduction(+ : slope, cut)
             for (Index j = 0; j < p.length; ++j) {
                 const bool falls = (pi[j] > low[j]) | (gi[j] < 0);
                 const bool rises = (pi[j] < high[j]) | (gi[j] > 0);
                 const double to_low = low[j] - pi[j], to_high = high[j] - pi[j];
-                double wanted = kept * di[j] - length * zi[j];
+                double wanted = beta * di[j] - length * zi[j];
                 wanted = (falls & rises) ? wanted : 0.0;
                 double step = wanted > to_low ? wanted : to_low;
                 step = step < to_high ? step : to_high;
@@ -101,7 +101,7 @@ std::pair<double, bool> projected_direction(Rows<T> d, double kept, Rows<const T
 }
 
 template <class T>
-bool violates_bounds(Rows<const double> p, Rows<const T> d, double taken, Rows<const double> lower,
+bool violates_bounds(Rows<const double> p, Rows<const T> d, double step, Rows<const double> lower,
             Rows<const double> upper) {
     expect_one_shape(p, d, lower, upper);
     for (Index i = 0; i < p.count; ++i) {
@@ -110,7 +110,7 @@ bool violates_bounds(Rows<const double> p, Rows<const T> d, double taken, Rows<c
         double outside = 0;
 #pragma omp simd reduction(+ : outside)
         for (Index j = 0; j < p.length; ++j) {
-            const double end = pi[j] + taken * di[j];
+            const double end = pi[j] + step * di[j];
             outside += ((end < low[j]) | (end > high[j])) ? 1.0 : 0.0;
         }
         if (outside > 0) return true;
@@ -119,7 +119,7 @@ bool violates_bounds(Rows<const double> p, Rows<const T> d, double taken, Rows<c
 }
 
 template <bool whole, class T>
-double take_step_by(Rows<double> p, Rows<double> g, Rows<const T> d, Rows<const T> Kd, double taken,
+double take_step_by(Rows<double> p, Rows<double> g, Rows<const T> d, Rows<const T> Kd, double step,
                   Rows<const double> lower, Rows<const double> upper, Rows<T> out) {
     const auto some = [&](Index begin, Index end) {
         T most = 0, doubt = 0;
@@ -130,7 +130,7 @@ double take_step_by(Rows<double> p, Rows<double> g, Rows<const T> d, Rows<const 
             T* result = out[i];
 #pragma omp simd reduction(max : most) reduction(+ : doubt)
             for (Index j = 0; j < p.length; ++j) {
-                double end = pi[j] + taken * di[j];
+                double end = pi[j] + step * di[j];
                 bool at_low = end < low[j], at_high = end > high[j];
                 if (whole) {
                     at_low |= di[j] == T(low[j] - pi[j]);
@@ -138,7 +138,7 @@ double take_step_by(Rows<double> p, Rows<double> g, Rows<const T> d, Rows<const 
                 }
                 end = at_low ? low[j] : end;
                 end = at_high ? high[j] : end;
-                const double gradient = gi[j] + taken * Kdi[j];
+                const double gradient = gi[j] + step * Kdi[j];
                 pi[j] = end;
                 gi[j] = gradient;
                 const T slope = T(free_gradient(end, gradient, low[j], high[j]));
@@ -153,10 +153,10 @@ double take_step_by(Rows<double> p, Rows<double> g, Rows<const T> d, Rows<const 
 }
 
 template <class T>
-double take_step(Rows<double> p, Rows<double> g, Rows<const T> d, Rows<const T> Kd, double taken,
+double take_step(Rows<double> p, Rows<double> g, Rows<const T> d, Rows<const T> Kd, double step,
                Rows<const double> lower, Rows<const double> upper, Rows<T> out) {
-    return taken == 1 ? take_step_by<true>(p, g, d, Kd, taken, lower, upper, out)
-                      : take_step_by<false>(p, g, d, Kd, taken, lower, upper, out);
+    return step == 1 ? take_step_by<true>(p, g, d, Kd, step, lower, upper, out)
+                      : take_step_by<false>(p, g, d, Kd, step, lower, upper, out);
 }
 
 template <class T>
