@@ -1,7 +1,7 @@
 // The compiled module: loops and convolutions for the widest vectors of this processor. Its submodule
 // `narrow` has those for the next narrower vectors.
 
-#include "crew.h"
+#include "thread_team.h"
 #include "rows.h"
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 // stored nor transformed: for n values in a period of 2 m ≥ 2 n, a transform of length m gives the
 // modes of even wave number, and the same transform of the values times exp(−πi j/m) the odd ones.
 
-#include "crew.h"
+#include "thread_team.h"
 #include "rows.h"
 
 #include <algorithm>

@@ -328,15 +328,15 @@ void convolve(Rows<const From> values, double factor, Rows<const T> weights, Ind
     const int threads = threads_for(values.count * values.length * Index(sizeof(T)));
     const Index each = std::max(px, py);
     const auto memory = allocate(threads * each * Index(sizeof(Lanes<T>)));
-    Crew crew;
-    crew.run(threads, [&](int k) {
+    ThreadTeam team;
+    team.run(threads, [&](int k) {
         Lanes<T>* its_workspace = static_cast<Lanes<T>*>(memory.get()) + k * each;
-        crew.share(values.length, 2 * count, [&](Index first) {
+        team.parallel_for(values.length, 2 * count, [&](Index first) {
             convolution.into_waves(values, factor, first, its_workspace);
         });
-        crew.share(modes.length, count,
+        team.parallel_for(modes.length, count,
                    [&](Index first) { convolution.weigh(first, its_workspace); });
-        crew.share(values.length, 2 * count, [&](Index first) {
+        team.parallel_for(values.length, 2 * count, [&](Index first) {
             convolution.out_of_waves(out, factor_back, first, its_workspace);
         });
     });
