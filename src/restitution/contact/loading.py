@@ -115,7 +115,7 @@ def load(contact: Contact, indentation: float, *, start: State | None, residual:
                        first_guess=None if start is None else start.pressure_on(box),
                        residual=residual)  # fmt: skip
     elif contact.adhesive and contact.approach == "seed":
-        # The pull may let go of everything: the state is then separated, with zero force.
+        # The pull may let go of everything: the state is then parted, with zero force.
         pressed = _press(contact, indentation + SEED_PULL, limit, residual)
         state = pull(pressed, indentation, residual=residual)
         state = replace(state, adhesive_work=0.0, virgin=True)
