@@ -3,7 +3,7 @@ PYTHON ?= python3
 PEER_PYTHON ?= python3.11
 VENV := .venv
 BIN := $(VENV)/bin
-BUILD := pyproject.toml setup.py $(wildcard src/restitution/numerics/*.cpp src/restitution/numerics/*.h)
+BUILD := pyproject.toml setup.py $(foreach kind,cpp h,$(wildcard src/restitution/numerics/*.$(kind) src/restitution/numerics/*/*.$(kind)))
 
 .PHONY: demo test fuzz lint bench bench-peers clean
 
@@ -23,11 +23,9 @@ lint: $(VENV)/test.installed  ## style, format and types
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
 
-bench: $(VENV)/test.installed  ## time whole curves, one solve against the size of the grid, each trick and part, and the start
+bench: $(VENV)/test.installed  ## time whole curves, one solve against the size of the grid, and the start
 	$(BIN)/python benchmarks/curves.py
 	$(BIN)/python benchmarks/scaling.py
-	$(BIN)/python benchmarks/tricks.py
-	$(BIN)/python benchmarks/products.py
 	$(BIN)/python benchmarks/start.py
 
 PEERS := $(patsubst benchmarks/peers/%.txt,.venv-peers/%/installed,$(wildcard benchmarks/peers/*.txt))

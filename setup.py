@@ -1,12 +1,12 @@
 """The part that is compiled. Where that fails NumPy does its work, more slowly."""
 
 import sys
+from pathlib import Path
 
 from pybind11.setup_helpers import Pybind11Extension, build_ext
 from setuptools import setup
 
-FOLDER = "src/restitution/numerics"
-HEADERS = ("rows", "crew", "each_processor", "loops", "grids", "convolve")
+FOLDER = Path("src/restitution/numerics")
 # Products and sums are fused, whatever the compiler's habit; no error numbers, no traps.
 FLAGS = ["-O3", "-fopenmp-simd", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=fast"]
 
@@ -14,8 +14,9 @@ setup(
     ext_modules=[
         Pybind11Extension(
             "restitution.numerics.loops",
-            [f"{FOLDER}/loops.cpp", f"{FOLDER}/convolve.cpp"],
-            depends=[f"{FOLDER}/{name}.h" for name in HEADERS],
+            sorted(str(path) for path in FOLDER.rglob("*.cpp")),
+            depends=sorted(str(path) for path in FOLDER.rglob("*.h")),
+            include_dirs=[str(FOLDER)],
             cxx_std=17,
             extra_compile_args=[] if sys.platform == "win32" else FLAGS,
             optional=True,

@@ -1,23 +1,20 @@
-"""A GPU beside this machine: one large solve, and many realisations of one curve.
+"""A GPU beside this machine: one large solve.
 
 Needs CuPy and a GPU (`pip install "restitution[gpu]"`); `--device cpu` runs the same on this
-machine. `--nodes` and `--realisations` make it smaller.
+machine. `--nodes` makes it smaller.
 """
 
 from __future__ import annotations
 
 import argparse
-import math
 import statistics
 import time
 
 import numpy as np
-from curves import EXAMPLE
 from scaling import PAIR, indentation, surface_of
 from unit import machine, today
 
-from restitution import Contact, Grid, collide, generate_surface, on_device, solve, solve_batch
-from restitution.case.case_file import read_case
+from restitution import Contact, on_device, solve
 
 BANDWIDTH = 3.35e12  # bytes/s: H100 SXM5, its data sheet
 
@@ -60,38 +57,14 @@ def large(device: str, n: int) -> None:
         print(f"  largest difference of pressure from this machine's: {off:.1e} of the largest")
 
 
-def many(device: str, realisations: int) -> None:
-    """The 24 depths of the example on many surfaces, one depth after the other."""
-    case, _ = read_case(EXAMPLE)
-    example = case.contact(EXAMPLE.parent)
-    (rough,) = case.roughness
-    contacts = [
-        Contact(example.pair, generate_surface(
-            Grid(example.grid.nodes, example.grid.spacing), kind=rough.kind, rms=rough.rms,
-            correlation_length=rough.correlation_length, seed=seed), example.yield_pressure)
-        for seed in range(realisations)
-    ]  # fmt: skip
-    for contact in contacts:
-        assert math.isfinite(contact.gap[0, 0])  # made here, not in what is timed
-    began = time.perf_counter()
-    with on_device(device):
-        curves = [solve_batch(contacts, [depth] * len(contacts)) for depth in case.depths()]
-    t = time.perf_counter() - began
-    print(f"{realisations} realisations of {len(curves)} depths, {example.grid.nodes[0]}²: "
-          f"{t:.1f} s on {device}, mean restitution at the deepest "
-          f"{np.mean([collide(state).restitution for state in curves[-1]]):.4f}")  # fmt: skip
-
-
 def main() -> None:
-    """Print both."""
+    """Print the time of the solve."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--device", default="gpu")
     parser.add_argument("--nodes", type=int, default=4096)
-    parser.add_argument("--realisations", type=int, default=256)
     options = parser.parse_args()
     print(f"{today()}, {machine()}")
     large(options.device, options.nodes)
-    many(options.device, options.realisations)
 
 
 if __name__ == "__main__":

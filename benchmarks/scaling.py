@@ -22,8 +22,7 @@ import numpy as np
 import scipy.fft
 from unit import machine, measure_unit, today
 
-from restitution import Body, Contact, Grid, Pair, Surface, generate_surface, solve
-from restitution.contact import influence
+from restitution import Body, Contact, Grid, Pair, Surface, generate_surface, operator_cache, solve
 
 OUT = Path(__file__).parents[1] / "docs" / "benchmarks"
 COARSEST = 256
@@ -95,7 +94,7 @@ def measure(n: int, limit: str, depth: str) -> dict:
     surface = surface_of(n)
     times: list[float] = []
     while len(times) <= FEWEST or (sum(times) < REPEAT_SECONDS and len(times) <= MOST):
-        forget()
+        operator_cache.clear()
         began = time.perf_counter()
         state = solve(Contact(PAIR, surface, yield_pressure=LIMITS[limit]), delta)
         times.append(time.perf_counter() - began)
@@ -107,16 +106,6 @@ def measure(n: int, limit: str, depth: str) -> dict:
     return {"seconds": statistics.median(times[1:]), "least_s": min(times[1:]),
             "first_s": times[0], "solves": len(times) - 1, "peak_bytes": peak,
             "arrays_per_node": peak / (8 * n * n)} | found  # fmt: skip
-
-
-def forget() -> None:
-    """Empty every cache of the package, so that kernels count."""
-    for name, module in list(sys.modules.items()):
-        if name.startswith("restitution"):
-            for value in vars(module).values():
-                if hasattr(value, "cache_clear"):
-                    value.cache_clear()
-    influence._known.clear()
 
 
 def in_its_own_process(*arguments: object) -> dict:

@@ -10,17 +10,17 @@ from pathlib import Path
 
 import pytest
 
-from restitution.numerics import passes
+from restitution.numerics import compiled
 
 SOURCES = Path(__file__).parents[1] / "src" / "restitution" / "numerics"
 
 
 def pytest_sessionstart():
     """Refuse to test compiled loops that are older than their sources."""
-    if passes.loops is None:
+    if compiled.loops is None:
         return
-    built = Path(passes.loops.__file__).stat().st_mtime
-    sources = [*SOURCES.glob("*.cpp"), *SOURCES.glob("*.h")]
+    built = Path(compiled.loops.__file__).stat().st_mtime
+    sources = [*SOURCES.rglob("*.cpp"), *SOURCES.rglob("*.h")]
     newer = [path.name for path in sources if path.stat().st_mtime > built]
     if newer:
         raise pytest.UsageError(

@@ -15,7 +15,7 @@ ROOMS = (
 )  # fmt: skip
 SOLVERS = {
     "solve", "step", "solve_at_force", "solve_at_velocity", "solve_batch", "loading_path",
-    "unloading_path", "separate", "collide", "equilibrate",
+    "unloading_path", "separate", "collide", "solve_pressure",
 }  # fmt: skip
 
 

@@ -4,7 +4,6 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from restitution.collision import Collision, collide
-    from restitution.contact.batch import solve_batch
     from restitution.contact.bodies import Body, Pair
     from restitution.contact.contact import Contact, smooth
     from restitution.contact.impact import solve_at_velocity
@@ -13,7 +12,8 @@ if TYPE_CHECKING:
     from restitution.contact.path import loading_path, unloading_path
     from restitution.contact.state import State
     from restitution.errors import RestitutionError
-    from restitution.numerics.device import on_device
+    from restitution.numerics.convolution.cache import operator_cache
+    from restitution.numerics.convolution.device import on_device
     from restitution.numerics.grid import Grid
     from restitution.surfaces import (
         Surface,
@@ -47,6 +47,7 @@ __all__ = [
     "level",
     "loading_path",
     "on_device",
+    "operator_cache",
     "place_on_grid",
     "read_surface",
     "refine",
@@ -55,7 +56,6 @@ __all__ = [
     "solve",
     "solve_at_force",
     "solve_at_velocity",
-    "solve_batch",
     "step",
     "unloading_path",
 ]
@@ -64,7 +64,6 @@ __all__ = [
 # package, too, and is to answer (and to be stopped) before numpy is loaded.
 _HOMES = {
     "collision": ("Collision", "collide"),
-    "contact.batch": ("solve_batch",),
     "contact.bodies": ("Body", "Pair"),
     "contact.contact": ("Contact", "smooth"),
     "contact.impact": ("solve_at_velocity",),
@@ -73,7 +72,8 @@ _HOMES = {
     "contact.path": ("loading_path", "unloading_path"),
     "contact.state": ("State",),
     "errors": ("RestitutionError",),
-    "numerics.device": ("on_device",),
+    "numerics.convolution.cache": ("operator_cache",),
+    "numerics.convolution.device": ("on_device",),
     "numerics.grid": ("Grid",),
     "surfaces": (
         "Surface",

@@ -115,7 +115,7 @@ def test_the_same_case_gives_the_same_numbers(cli, done, tmp_path):
 
 
 def test_the_device_is_chosen_and_recorded(cli, case_text, tmp_path, monkeypatch):
-    from restitution.numerics import device
+    from restitution.numerics.convolution import device
 
     monkeypatch.setitem(sys.modules, "cupy", None)
     device._gpu.cache_clear()

@@ -19,7 +19,7 @@ from restitution.contact.detachment import (
 )
 from restitution.contact.influence import half_space
 from restitution.contact.separation import separate, separation_of
-from restitution.numerics import passes
+from restitution.numerics.diffusion import diffuse
 from restitution.theory import kendall
 from tolerance import approx
 
@@ -163,7 +163,7 @@ def test_smoothing_conserves_the_sum_and_stays_on_its_patch():
     for start in (0, i.size // 2, i.size - 1):
         both = np.zeros((i.size, 2))
         both[start] = 1.0
-        passes.spread(neighbours, weights, detachment._SMOOTHING_STEPS, both)
+        diffuse(neighbours, weights, detachment._SMOOTHING_STEPS, both)
         amount = both[:, 0]
         assert amount.sum() == approx(1.0, rel=1e-12)
         assert amount.min() >= 0

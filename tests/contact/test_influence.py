@@ -1,9 +1,5 @@
 """Displacement under one cell, against the integral of the point load over it."""
 
-import threading
-from contextlib import suppress
-
-import ducc0
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
@@ -11,7 +7,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from scipy.integrate import dblquad, quad
 
-from restitution.contact import influence
+from restitution import operator_cache
 from restitution.contact.influence import (
     far_displacement,
     half_space,
@@ -187,63 +183,62 @@ def test_one_node_has_an_approximate_inverse_too():
     assert 0 < value[0, 0] < np.inf
 
 
-def test_two_threads_do_not_disturb_each_other(monkeypatch):
-    """Both fill their rows before either transforms them."""
-    meet = threading.Barrier(2)
-    transform = ducc0.fft.r2c
+@pytest.fixture
+def small_cache():
+    """Give the cache a size in bytes; afterwards it has the former one."""
+    before = operator_cache.max_bytes
 
-    def late_transform(*arguments, **options):
-        with suppress(threading.BrokenBarrierError):  # one at a time is a remedy as well
-            meet.wait(timeout=1.0)
-        return transform(*arguments, **options)
+    def limit(size):
+        operator_cache.max_bytes = size
 
-    shape, spacing = (6, 5), (1.0, 1.0)
-    loads = np.random.default_rng(0).random((2, *shape))
-    alone = [half_space(shape, spacing, E_STAR)(p) for p in loads]
-    monkeypatch.setattr(ducc0.fft, "r2c", late_transform)
-    together = [None, None]
-
-    def work(number):
-        together[number] = half_space(shape, spacing, E_STAR)(loads[number])
-
-    threads = [threading.Thread(target=work, args=(number,)) for number in (0, 1)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert_allclose(together, alone, rtol=1e-12)
+    operator_cache.clear()
+    yield limit
+    operator_cache.max_bytes = before
+    operator_cache.clear()
 
 
-def test_large_operators_are_not_kept(monkeypatch):
+def test_an_operator_is_kept_until_the_cache_is_cleared(small_cache):
+    arguments = ((30, 20), (1.0, 1.0), E_STAR)
+    half_space(*arguments)
+    assert len(operator_cache) == 2  # and its coefficients
+    size = operator_cache.nbytes
+    half_space(*arguments)
+    assert operator_cache.nbytes == size
+    operator_cache.clear()
+    assert (len(operator_cache), operator_cache.nbytes) == (0, 0)
+
+
+def test_large_operators_are_not_kept(small_cache):
     """Their spectra would fill the memory as a contact grows."""
-    influence._half_space.cache_clear()
-    monkeypatch.setattr(influence, "_MOST_KEPT", 100)
-    for shape in ((10, 10), (11, 10)):
+    small = half_space((10, 10), (1.0, 1.0), E_STAR)
+    operator_cache.clear()
+    small_cache(15 * small.nbytes)
+    for shape in ((10, 10), (14, 10)):
         half_space(shape, (1.0, 1.0), E_STAR)
-    assert influence._half_space.cache_info().currsize == 1
+    assert len(operator_cache) == 2  # the small one, and the coefficients
+    half_space((10, 10), (1.0, 1.0), E_STAR)
+    assert len(operator_cache) == 2
 
 
 @pytest.mark.parametrize("aspect", [1.0, 0.4])
 def test_coefficients_of_a_smaller_or_larger_block_are_the_same(aspect):
-    influence._known.clear()
+    operator_cache.clear()
     blocks = [influence_coefficients(*lags(*n), (1.0, aspect), 1.0)
               for n in ((30, 60), (50, 20), (40, 40))]  # fmt: skip
-    influence._known.clear()
+    operator_cache.clear()
     whole = influence_coefficients(*lags(60, 60), (1.0, aspect), 1.0)
     for k in blocks:
         assert_allclose(k, whole[: k.shape[0], : k.shape[1]], rtol=1e-14)
 
 
-def test_a_block_that_is_too_large_is_not_kept(monkeypatch):
-    monkeypatch.setattr(influence, "_MOST_KNOWN", 100)
-    influence._known.clear()
+def test_a_block_that_is_too_large_is_not_kept(small_cache):
+    small_cache(1200)  # 100 coefficients
     influence_coefficients(*lags(20, 20), (1.0, 1.0), 1.0)
-    assert not influence._known
+    assert len(operator_cache) == 0
 
 
-def test_blocks_that_are_long_both_ways_make_no_larger_one(monkeypatch):
-    monkeypatch.setattr(influence, "_MOST_KNOWN", 1000)
-    influence._known.clear()
+def test_blocks_that_are_long_both_ways_make_no_larger_one(small_cache):
+    small_cache(12 * 1000 + 11)
     for n in ((100, 10), (10, 100)):
         influence_coefficients(*lags(*n), (1.0, 1.0), 1.0)
-        assert [known.shape for known in influence._known.values()] == [n]
+        assert operator_cache.nbytes == 8 * 1000

@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from restitution.numerics.minimise import minimise_quadratic
+from restitution.numerics.quadratic.minimise import minimise_quadratic
 
 
 @pytest.fixture(params=[1, 2, 3, 40])

@@ -9,8 +9,8 @@ from numpy.testing import assert_allclose
 from restitution import Body, Contact, Grid, Pair, solve, step
 from restitution.contact import adhesion, loading
 from restitution.contact.influence import half_space, inverse_half_space
-from restitution.numerics.convolution import FreeConvolution
-from restitution.numerics.minimise import minimise_quadratic
+from restitution.numerics.convolution.operators import FreeConvolution
+from restitution.numerics.quadratic.minimise import minimise_quadratic
 from restitution.surfaces import generate_surface
 from tolerance import approx
 
@@ -60,8 +60,8 @@ def test_adhesive(seed, monkeypatch):
     fast = pulled()
     nx, ny = contact.grid.nodes
     for module in (adhesion, loading):
-        monkeypatch.setattr(module, "reach", lambda *_: (slice(0, nx), slice(0, ny)))
-    monkeypatch.setattr(FreeConvolution, "quick", FreeConvolution.__call__)
+        monkeypatch.setattr(module, "candidate_box", lambda *_: (slice(0, nx), slice(0, ny)))
+    monkeypatch.setattr(FreeConvolution, "single_precision", FreeConvolution.__call__)
     plain = pulled()
     assert fast[1].contact_nodes < fast[0].contact_nodes
     for state, expected in zip(fast, plain, strict=True):

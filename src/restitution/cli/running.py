@@ -31,7 +31,7 @@ OutFolder = Annotated[
     Path, typer.Option("-o", "--out", help="Folder for the results; new or empty.", readable=False)
 ]
 OnDevice = Annotated[
-    Device, typer.Option(help="Where to solve; auto is the GPU where one answers (needs CuPy).")
+    Device, typer.Option(help="Where to solve; auto uses a GPU if available (needs CuPy).")
 ]
 
 
@@ -59,7 +59,7 @@ def carry_out(
     from restitution.case.case_file import naming, read_case
     from restitution.cli.console import answers, errors, warn
     from restitution.cli.signals import Stopped, received
-    from restitution.numerics.device import on_device
+    from restitution.numerics.convolution.device import on_device
     from restitution.reports.figures import write_figures
     from restitution.results.locking import locked
     from restitution.results.schema import LOCK

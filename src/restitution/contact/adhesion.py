@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from restitution.contact.contact import Contact
 from restitution.contact.detachment import Mask, criterion, tension_limit
-from restitution.contact.equilibrium import equilibrate, parted, reach
+from restitution.contact.equilibrium import candidate_box, separated_state, solve_pressure
 from restitution.contact.state import State
-from restitution.numerics.window import Box, bounding_box, reframe, union, widen
+from restitution.numerics.box import Box, bounding_box, reframe, union, widen
 
 Array = NDArray[np.float64]
 
@@ -33,9 +33,9 @@ def peel(
     after the last.
     """
     grid, pair = contact.grid, contact.pair
-    around = union(reach(contact, indentation, history), bounding_box(held, box))
+    around = union(candidate_box(contact, indentation, history), bounding_box(held, box))
     if around is None:
-        state = parted(contact, indentation, history)
+        state = separated_state(contact, indentation, history)
         return state, state
     around = widen(around, 2, grid.nodes)
     held = reframe(held, box, around).copy()
@@ -52,7 +52,7 @@ def peel(
     pulled: State | None = None
     convolutions = 0
     while True:
-        state = equilibrate(
+        state = solve_pressure(
             contact,
             indentation,
             around,

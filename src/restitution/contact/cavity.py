@@ -44,8 +44,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.contact.contact import Contact
-from restitution.contact.equilibrium import equilibrate, reach
-from restitution.numerics.window import Box
+from restitution.contact.equilibrium import candidate_box, solve_pressure
+from restitution.numerics.box import Box
 
 Array = NDArray[np.float64]
 
@@ -66,10 +66,10 @@ def yield_bound(contact: Contact, indentation: float, residual: float) -> tuple[
     """
     bound = np.full(contact.grid.nodes, contact.first_yield_pressure)
     deeper = _DEEPER * indentation
-    box = reach(contact, deeper)
+    box = candidate_box(contact, deeper)
     if box is None:
         return bound, 0
-    elastic = equilibrate(contact, deeper, box, limit=math.inf, residual=_LOOSER * residual)
+    elastic = solve_pressure(contact, deeper, box, limit=math.inf, residual=_LOOSER * residual)
     measure = elastic.box_pressure / math.sqrt(_DEEPER)
     merged = np.divide(_smooth_pressure(contact, box, elastic.force), measure,
                        out=np.ones_like(measure), where=measure > 0)  # fmt: skip

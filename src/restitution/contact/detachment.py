@@ -34,7 +34,7 @@ from typing import Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.numerics import passes
+from restitution.numerics.diffusion import diffuse
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -141,7 +141,7 @@ def energy_release_rate(
     opened = np.bincount(node, weights=np.maximum(opening, 0.0), minlength=i.size)
     faces = np.bincount(node, minlength=i.size)
     sums = np.column_stack([-0.5 * p[i, j] * opened, faces])
-    passes.spread(*_diffusion(i, j, touching.shape), _SMOOTHING_STEPS, sums)
+    diffuse(*_diffusion(i, j, touching.shape), _SMOOTHING_STEPS, sums)
     return (i, j), sums[:, 0] / sums[:, 1]
 
 

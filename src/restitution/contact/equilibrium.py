@@ -22,12 +22,11 @@ from restitution.contact.edge import edge_advice
 from restitution.contact.influence import half_space, inverse_half_space
 from restitution.contact.state import State
 from restitution.errors import DomainError, NotConvergedError
-from restitution.numerics.convolution import FreeConvolution, SpectralFilter
-from restitution.numerics.device import current
-from restitution.numerics.items import every
-from restitution.numerics.minimise import minimise_quadratic
-from restitution.numerics.nesting import System, minimise_nested
-from restitution.numerics.window import NOWHERE, Box, bounding_box, shape_of, widen
+from restitution.numerics.box import NOWHERE, Box, bounding_box, shape_of, widen
+from restitution.numerics.convolution.device import current
+from restitution.numerics.convolution.operators import FreeConvolution, SpectralFilter
+from restitution.numerics.quadratic.minimise import minimise_quadratic
+from restitution.numerics.quadratic.multilevel import Operators, solve_multilevel
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -36,7 +35,7 @@ RESIDUAL = 1e-8  # default tolerance: violation of the contact conditions over t
 MAX_ITERATIONS = 1000
 
 
-def equilibrate(
+def solve_pressure(
     contact: Contact,
     indentation: float,
     box: Box,
@@ -48,28 +47,36 @@ def equilibrate(
     first_guess: Array | None = None,
     residual: float = RESIDUAL,
 ) -> State:
-    """Solve for p ≤ `limit` on the surface `history` left; p ≥ 0, or ≥ −`tension` where `held`.
+    """Solve with upper bound `limit` on the surface deformed by `history`.
 
-    `limit` is a number, or an array of the shape of the grid.
+    The lower bound is 0, or −`tension` at the nodes that are `held`. Arguments:
+        indentation: δ, m.
+        box: block of the grid to solve on; contains the `candidate_box` and all held nodes.
+        limit: Pa, a number or an array of the shape of the grid.
+        held, first_guess: arrays on `box`; the guess (Pa) is used only with held nodes.
+        tension: Pa.
+        residual: tolerance of the violation of the contact conditions, as a fraction of the overlap
+            δ − min h, or with adhesion of the indentation or the length scale of adhesion.
 
-    `box` has to hold the `reach` and all nodes that are held; `held` and `first_guess`, where to
-    begin with nodes held, are arrays on it. The violation of the contact conditions is measured
-    against the overlap δ − min h, with adhesion against the indentation or the length scale of
-    adhesion. Raises `NotConvergedError`. Contact at the rim is let pass.
+    Raises `NotConvergedError`. Contact at the grid edge is not checked here.
     """
     device, shape = current(), shape_of(box)
-    b = overlap(contact, indentation, box, history)
-    scale = scale_of(contact, indentation, b)
-    system = system_of(contact)
+    b = _overlap(contact, indentation, box, history)
+    scale = _scale_of(contact, indentation, b)
+    operators = _operators_of(contact)
     upper = limit
     if isinstance(limit, np.ndarray):
         upper = device.put(np.ascontiguousarray(limit[box]))
     if held is None:
-        found, convolutions = minimise_nested(
-            system, device.put(b), upper, tolerance=residual * scale, max_iterations=MAX_ITERATIONS
+        found, convolutions = solve_multilevel(
+            operators,
+            device.put(b),
+            upper,
+            tolerance=residual * scale,
+            max_iterations=MAX_ITERATIONS,
         )
     else:
-        K, inverse = system(shape, 0)
+        K, inverse = operators(shape, 0)
         found = minimise_quadratic(
             K,
             device.put(b),
@@ -77,55 +84,48 @@ def equilibrate(
             upper=upper,
             start=device.put(np.zeros(shape) if first_guess is None else first_guess.copy()),
             precondition=inverse,
-            quick=K.quick,
+            K_single=K.single_precision,
             tolerance=residual * scale,
             max_iterations=MAX_ITERATIONS,
         )
         convolutions = K.count
-    reached = float(found.residual.max()) / scale
-    if not every(found.converged):
-        raise not_converged("the solve", indentation, reached, residual, found.iterations)
-    return settled(contact, indentation, box, b, device.get(found.point),
+    reached = found.residual / scale
+    if not found.converged:
+        raise NotConvergedError(
+            f"the solve at an indentation of {1e9 * indentation:.6g} nm stopped at a residual of "
+            f"{reached:.1e} (asked: {residual:.0e}) after {found.iterations} iterations; ask for a "
+            "larger residual, or smooth or refine the surface"
+        )
+    return build_state(contact, indentation, box, b, device.get(found.point),
                    device.get(found.gradient), limit=limit, history=history, residual=reached,
                    convolutions=convolutions)  # fmt: skip
 
 
-def not_converged(
-    what: str, indentation: float, reached: float, asked: float, iterations: int
-) -> NotConvergedError:
-    """The refusal of a solve at `indentation` (m) that stopped at the residual `reached`."""
-    return NotConvergedError(
-        f"{what} at an indentation of {1e9 * indentation:.6g} nm stopped at a residual of "
-        f"{reached:.1e} (asked: {asked:.0e}) after {iterations} iterations; ask for a larger "
-        "residual, or smooth or refine the surface"
-    )
-
-
-def overlap(contact: Contact, indentation: float, box: Box, history: State | None = None) -> Array:
-    """δ − h on `box`: how far the bodies would go into each other there, m."""
+def _overlap(contact: Contact, indentation: float, box: Box, history: State | None = None) -> Array:
+    """The overlap δ − h of the undeformed bodies on `box`, m."""
     b: Array = indentation - contact.gap[box]
     if history is not None:
         b -= history.plastic_displacement[box]
     return b
 
 
-def scale_of(contact: Contact, indentation: float, b: Array) -> float:
-    """What residuals are measured against: how far the surfaces overlap, or adhesion's length."""
+def _scale_of(contact: Contact, indentation: float, b: Array) -> float:
+    """The length by which residuals are divided: the overlap, or the length of adhesion, m."""
     return contact.length_at(indentation) if contact.adhesive else float(b.max())
 
 
-def system_of(contact: Contact) -> System:
-    """The half-space of a contact and its approximate inverse."""
+def _operators_of(contact: Contact) -> Operators:
+    """The half-space operator of a contact and its approximate inverse, on grids of any level."""
     E_star, (hx, hy) = contact.pair.contact_modulus, contact.grid.spacing
 
-    def system(shape: tuple[int, int], level: int) -> tuple[FreeConvolution, SpectralFilter]:
+    def operators(shape: tuple[int, int], level: int) -> tuple[FreeConvolution, SpectralFilter]:
         cells = 2**level * hx, 2**level * hy
         return half_space(shape, cells, E_star), inverse_half_space(shape, cells, E_star)
 
-    return system
+    return operators
 
 
-def settled(
+def build_state(
     contact: Contact,
     indentation: float,
     box: Box,
@@ -138,10 +138,11 @@ def settled(
     residual: float,
     convolutions: int,
 ) -> State:
-    """The state with that overlap `b`, pressure and deformed gap: what yields has given way.
+    """The state with overlap `b`, `pressure` and deformed gap `gradient` on `box`.
 
-    The displacement takes the place of the `gradient`. Under a limit for each node the plastic work
-    stays that of `history`: `loading` integrates it.
+    Where the pressure is at the limit and the deformed gap is negative, the gap becomes plastic
+    displacement. `gradient` is overwritten by the displacement. With a limit for each node the
+    plastic work stays that of `history`; `loading` integrates it.
     """
     plastic, work, adhesive_work, work_error = _past(contact, history)
     upper = limit[box] if isinstance(limit, np.ndarray) else limit
@@ -158,8 +159,11 @@ def settled(
                  work, adhesive_work, work_error, residual, convolutions)  # fmt: skip
 
 
-def reach(contact: Contact, indentation: float, history: State | None = None) -> Box | None:
-    """The box of the nodes that bodies without adhesion could touch: gap below `indentation`."""
+def candidate_box(contact: Contact, indentation: float, history: State | None = None) -> Box | None:
+    """The box of all nodes with a gap below `indentation`: contact without adhesion lies inside.
+
+    None if there is no such node.
+    """
     nodes = contact.grid.nodes
     if history is None:
         return bounding_box(contact.gap < indentation)
@@ -171,7 +175,7 @@ def reach(contact: Contact, indentation: float, history: State | None = None) ->
     return bounding_box(gap < indentation, region)
 
 
-def parted(contact: Contact, indentation: float, history: State | None = None) -> State:
+def separated_state(contact: Contact, indentation: float, history: State | None = None) -> State:
     """The state without any contact."""
     nothing = np.zeros((0, 0))
     plastic, work, adhesive_work, work_error = _past(contact, history)

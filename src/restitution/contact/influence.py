@@ -8,18 +8,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import lru_cache
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.numerics import passes
-from restitution.numerics.convolution import FreeConvolution, SpectralFilter
-from restitution.numerics.device import CPU, Device, current
-
-if TYPE_CHECKING:
-    from functools import _lru_cache_wrapper
+from restitution.numerics.convolution.cache import operator_cache
+from restitution.numerics.convolution.device import CPU, Device, current
+from restitution.numerics.convolution.operators import FreeConvolution, SpectralFilter
+from restitution.numerics.multipoles import multipoles
 
 Array = NDArray[np.float64]
 Operator = TypeVar("Operator", FreeConvolution, SpectralFilter)
@@ -64,7 +61,7 @@ def far_displacement(x: Array, y: Array, hx: float, hy: float, contact_modulus: 
     )
     moments = np.array([[1.0, 0.0, 0.0], second, fourth]) * (hx * hy / (np.pi * contact_modulus))
     far: Array = np.empty_like(x, shape=np.broadcast_shapes(x.shape, y.shape), dtype=np.float64)
-    passes.multipoles(x, y, moments, far)
+    multipoles(x, y, moments, far)
     return far
 
 
@@ -79,7 +76,7 @@ def influence_coefficients(
     # Lengths scale: u/h depends on the shape of the cells and on the lag alone.
     hx, hy = spacing
     lags, aspect, scale = (i.size, j.size), hy / hx, hx / contact_modulus
-    if i.size * j.size <= _MOST_KNOWN:
+    if i.size * j.size <= _most_coefficients():
         scaled: Array = _unit_coefficients(lags, aspect, device) * scale
     else:
         scaled = _compute_coefficients(lags, (1.0, aspect), device)
@@ -92,41 +89,61 @@ def half_space(
 ) -> FreeConvolution:
     """The operator p ↦ u on a block of nodes of the free (non-periodic) half-space.
 
-    Arrays are of shape (*batch, *shape), on the current device.
+    Arrays are of that shape, on the current device.
     """
-    return _kept(_half_space, shape)(shape, spacing, contact_modulus, current()).fresh()
+    return _operator(_half_space, shape, spacing, contact_modulus)
 
 
 def inverse_half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
 ) -> SpectralFilter:
     """An approximate inverse, u ↦ |q| E*/2 u: exact on a periodic half-space (Johnson 1985)."""
-    build = _kept(_inverse_half_space, shape)
-    return build(shape, spacing, contact_modulus, current()).fresh()
+    return _operator(_inverse_half_space, shape, spacing, contact_modulus)
 
 
-def _kept(build: _lru_cache_wrapper[Operator], shape: tuple[int, int]) -> Callable[..., Operator]:
-    """`build` with its cache, or without it where what it keeps would fill the memory."""
-    return build if shape[0] * shape[1] <= _MOST_KEPT else build.__wrapped__
+# Largest operator and largest block of coefficients that are kept, as fractions of the cache.
+# Larger operators would fill it as a contact grows; the default keeps those of up to 1400² nodes.
+_MAX_OPERATOR, _MAX_COEFFICIENTS = 1 / 15, 2 / 3
 
 
-# Boxes follow the contact, so that most solves want coefficients of a block larger or smaller than
-# the last: the largest block so far is kept, by the aspect ratio of the cells and the device.
-_known: dict[tuple[float, Device], Array] = {}
-_MOST_KNOWN = 2**25  # coefficients: 256 MiB, for 4096² nodes half of that
-_MOST_KEPT = 2**21  # nodes of an operator that is kept: 16 MiB
+def _operator(
+    build: Callable[[tuple[int, int], tuple[float, float], float, Device], Operator],
+    shape: tuple[int, int],
+    spacing: tuple[float, float],
+    contact_modulus: float,
+) -> Operator:
+    """The operator of the cache, or a new one, with a workspace of its own."""
+    key = build, shape, spacing, contact_modulus, current()
+    operator: Operator | None = operator_cache.get(key)
+    if operator is None:
+        operator = build(*key[1:])
+        if operator.nbytes <= _MAX_OPERATOR * operator_cache.max_bytes:
+            operator_cache.put(key, operator)
+    return operator.with_own_workspace()
 
 
 def _unit_coefficients(lags: tuple[int, int], aspect: float, device: Device) -> Array:
-    """Coefficients for cells 1 × `aspect` and E* = 1."""
-    known = _known.get((aspect, device), np.empty((0, 0)))
-    if known.shape[0] < lags[0] or known.shape[1] < lags[1]:
+    """Coefficients for cells 1 × `aspect` and E* = 1; not to be changed.
+
+    Boxes follow the contact, so that most solves need the coefficients of a block that is larger or
+    smaller than the last one. The cache keeps the largest block so far.
+    """
+    key = _compute_coefficients, aspect, device
+    known: Array | None = operator_cache.get(key)
+    if known is not None and known.shape[0] >= lags[0] and known.shape[1] >= lags[1]:
+        return known[: lags[0], : lags[1]]
+    block = lags
+    if known is not None:
         rows, columns = (max(*pair) for pair in zip(known.shape, lags, strict=True))
-        both = (rows, columns) if rows * columns <= _MOST_KNOWN else lags
-        known = _compute_coefficients(both, (1.0, aspect), device)
-        _known.clear()
-        _known[aspect, device] = known
-    return known[: lags[0], : lags[1]]
+        block = (rows, columns) if rows * columns <= _most_coefficients() else lags
+    computed = _compute_coefficients(block, (1.0, aspect), device)
+    operator_cache.put(key, computed)
+    return computed[: lags[0], : lags[1]]
+
+
+def _most_coefficients() -> int:
+    """The largest number of coefficients that are kept."""
+    return int(_MAX_COEFFICIENTS * operator_cache.max_bytes) // np.dtype(np.float64).itemsize
 
 
 def _compute_coefficients(
@@ -143,7 +160,6 @@ def _compute_coefficients(
     return u
 
 
-@lru_cache(maxsize=8)
 def _half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float, device: Device
 ) -> FreeConvolution:
@@ -154,7 +170,6 @@ def _half_space(
     return FreeConvolution(kernel, shape, device)
 
 
-@lru_cache(maxsize=8)
 def _inverse_half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float, device: Device
 ) -> SpectralFilter:

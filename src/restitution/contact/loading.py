@@ -16,12 +16,18 @@ from numpy.typing import NDArray
 from restitution.contact.adhesion import attach, pull
 from restitution.contact.cavity import yield_bound
 from restitution.contact.contact import Contact
-from restitution.contact.equilibrium import RESIDUAL, equilibrate, parted, reach, refuse_edge
+from restitution.contact.equilibrium import (
+    RESIDUAL,
+    candidate_box,
+    refuse_edge,
+    separated_state,
+    solve_pressure,
+)
 from restitution.contact.influence import half_space
 from restitution.contact.state import State
 from restitution.errors import CaseError
+from restitution.numerics.box import Box, bounding_box, shape_of
 from restitution.numerics.quadrature import integrate_adaptively
-from restitution.numerics.window import Box, bounding_box, shape_of
 
 Array = NDArray[np.float64]
 
@@ -138,10 +144,12 @@ def _press(
     history: State | None = None,
 ) -> State:
     """The contact without adhesion, always from nothing: coarser grids beat any earlier state."""
-    box = reach(contact, indentation, history)
+    box = candidate_box(contact, indentation, history)
     if box is None:
-        return parted(contact, indentation, history)
-    return equilibrate(contact, indentation, box, limit=limit, history=history, residual=residual)
+        return separated_state(contact, indentation, history)
+    return solve_pressure(
+        contact, indentation, box, limit=limit, history=history, residual=residual
+    )
 
 
 def _cut(elastic: State) -> State:

@@ -15,7 +15,7 @@ from restitution.contact.bodies import Pair
 from restitution.contact.contact import Contact
 from restitution.contact.state import State
 from restitution.errors import SurfaceError
-from restitution.numerics.window import widen
+from restitution.numerics.box import widen
 
 # Smooth spheres follow the tables to 0.3 % from eight nodes over the contact radius; refining rough
 # surfaces, restitution is within 2 % (root mean square; 5 % at worst) of that on the finest grid

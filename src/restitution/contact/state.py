@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.contact.contact import Contact
-from restitution.numerics.window import Box, reframe
+from restitution.numerics.box import Box, reframe
 
 Array = NDArray[np.float64]
 

@@ -1,1 +1,1 @@
-"""Arrays only: grids, FFT convolution, box-constrained minimiser, path quadrature."""
+"""Numerical methods on arrays, without any notion of contact."""

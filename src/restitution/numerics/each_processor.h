@@ -1,4 +1,5 @@
-// The file LOOPS for each kind of processor, in a namespace, with vectors of LANE_BYTES.
+// Includes the file LOOPS once for each kind of processor, in a namespace of its own. LANE_BYTES is the
+// size of a vector.
 
 #if defined(__x86_64__)
 

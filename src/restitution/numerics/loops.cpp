@@ -1,7 +1,7 @@
-// The compiled module: loops and convolutions, by the widest vectors of the processor at hand, and
-// in `narrow` by the next.
+// The compiled module: loops and convolutions for the widest vectors of this processor. Its submodule
+// `narrow` has those for the next narrower vectors.
 
-#include "crew.h"
+#include "thread_team.h"
 #include "rows.h"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ PYBIND11_MODULE(loops, module) {
     define_narrow_convolve(next);
 #if defined(__x86_64__)
     if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma"))
-        throw py::import_error("this processor has no AVX2, or does not fuse products and sums");
+        throw py::import_error("this processor has no AVX2 or no FMA");
     if (__builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl")) {
         wide::define_loops(module);
         define_wide_convolve(module);

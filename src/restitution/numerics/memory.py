@@ -1,4 +1,4 @@
-"""How much memory this process may take, and refusing what takes more."""
+"""The memory available to this process, and the check before something large is made."""
 
 from __future__ import annotations
 
@@ -8,20 +8,20 @@ from pathlib import Path
 
 from restitution.errors import CaseError
 
-_PAGE = 2**12  # a limit above half of all addresses is none, rounded to pages
+_PAGE = 2**12  # a limit above half of all addresses, rounded to pages, means no limit
 _GROUPS = Path("/sys/fs/cgroup")
 
 
 def available() -> float:
-    """Bytes that this process may take in all: of the machine, its control groups and its limits.
+    """Bytes this process may use in all: the least limit of machine, control groups and process.
 
-    Infinite where the system does not tell.
+    Infinite if the system does not report any.
     """
     return min(_of_machine(), _of_control_groups(), _of_address_space())
 
 
 def require(needed: float, what: str, remedy: str) -> None:
-    """Raise `CaseError` where `what` takes `needed` bytes in all, and there are fewer."""
+    """Raise `CaseError` if `what` needs more memory in all (`needed`, bytes) than is available."""
     there = available()
     if needed > there:
         raise CaseError(
@@ -31,7 +31,7 @@ def require(needed: float, what: str, remedy: str) -> None:
 
 
 def in_words(size: float) -> str:
-    """So many bytes as a message says them."""
+    """A number of bytes in words, for messages."""
     return f"{size / 1e9:.3g} GB" if size >= 1e9 else f"{size / 1e6:.0f} MB"
 
 
@@ -43,7 +43,7 @@ def _of_machine() -> float:
 
 
 def _of_control_groups(groups: str = "/proc/self/cgroup") -> float:
-    """The least limit of the control groups of this process and of those above them."""
+    """The least limit of the control groups of this process and of their parents."""
     least = math.inf
     try:
         lines = Path(groups).read_text(encoding="utf-8").splitlines()
@@ -61,7 +61,7 @@ def _of_control_groups(groups: str = "/proc/self/cgroup") -> float:
         else:
             continue
         group = root / path.lstrip("/")
-        # In a container the path may be the host's, which is not there: its root is.
+        # In a container the path may be that of the host and not exist, but its root does.
         for folder in (group, *group.parents):
             least = min(least, _limit(folder / file))
             if folder == root:
@@ -72,13 +72,13 @@ def _of_control_groups(groups: str = "/proc/self/cgroup") -> float:
 def _limit(file: Path) -> float:
     try:
         limit = float(file.read_text(encoding="ascii"))
-    except (OSError, ValueError):  # none, or "max"
+    except (OSError, ValueError):  # no limit, or "max"
         return math.inf
     return limit if limit < 2**63 - _PAGE else math.inf
 
 
 def _of_address_space() -> float:
-    """What `ulimit -v` leaves, less the addresses that are taken and hold nothing."""
+    """The limit of `ulimit -v`, less addresses that are reserved but not resident."""
     try:
         import resource
     except ImportError:

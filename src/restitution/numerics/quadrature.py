@@ -1,4 +1,4 @@
-"""Work along a path: integrals of a force over an indentation."""
+"""Quadrature along a path: of given points, and adaptive for expensive integrands."""
 
 from __future__ import annotations
 
@@ -38,13 +38,13 @@ def integrate_adaptively(
     """Adaptive Simpson integral of `f` over [a, b], and an estimate of its error.
 
     For integrands that are expensive to evaluate and whose end values `f_a`, `f_b` are known.
-    Intervals are visited from left to right, so that `f` may start from its last answer.
-    `tolerance` is absolute; after `depth` halvings the interval is accepted as it is, and the error
-    says so. The error of the whole is the sum of those of the parts (Lyness 1969).
+    Intervals are visited from left to right, so that `f` may start from its previous result.
+    `tolerance` is absolute. After `depth` halvings an interval is accepted with the error it has.
+    The total error is the sum of the errors of the parts (Lyness 1969).
 
     The estimate compares two rules on the same interval, so it is zero for an integrand that is
-    zero at all five nodes. `panels` equal intervals to begin with guard against that where the
-    integrand may start inside the interval, as a force that is cut at yield does.
+    zero at all five nodes. Starting with `panels` equal intervals guards against that where the
+    integrand may become nonzero inside the interval, as a force truncated at yield does.
     """
     edges = [*(a + (b - a) * k / panels for k in range(panels)), b]
     value, error, left = 0.0, 0.0, f_a
@@ -70,7 +70,7 @@ def _refine(
     f_l, f_r = f(0.5 * (a + m)), f(0.5 * (m + b))
     whole = h / 6 * (f_a + 4 * f_m + f_b)
     halves = h / 12 * (f_a + 4 * f_l + 2 * f_m + 4 * f_r + f_b)
-    error = abs(halves - whole)  # 15 times that of a smooth integrand, but a kink is none
+    error = abs(halves - whole)  # 15 times the error of a smooth integrand; a kink is not smooth
     if error <= tolerance or depth == 0:
         return halves + (halves - whole) / 15, error
     left = _refine(f, a, m, f_a, f_l, f_m, tolerance / 2, depth - 1)

@@ -1,4 +1,4 @@
-// Arrays of two dimensions as the compiled loops take them: each row in one piece.
+// Two-dimensional arrays with contiguous rows, as the compiled loops take them.
 
 #pragma once
 
@@ -26,7 +26,7 @@ void expect_one_shape(const First& a, const Others&... others) {
 }
 
 namespace pybind11::detail {
-// Arrays are taken as they are, or refused: results in a converted copy would be lost.
+// Arrays are taken as they are or rejected: results written to a converted copy would be lost.
 template <class T>
 struct type_caster<Rows<T>> {
     PYBIND11_TYPE_CASTER(Rows<T>, const_name("numpy.ndarray"));
@@ -45,6 +45,6 @@ struct type_caster<Rows<T>> {
 };
 }  // namespace pybind11::detail
 
-// What convolve.cpp adds to the module of loops.cpp.
+// Defined in convolution/convolve.cpp; add its functions to the module.
 void define_narrow_convolve(py::module_& module);
 void define_wide_convolve(py::module_& module);

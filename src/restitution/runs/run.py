@@ -25,7 +25,7 @@ from restitution.contact.resolution import (
 )
 from restitution.contact.state import State
 from restitution.errors import DomainError, NotConvergedError, RestitutionError
-from restitution.numerics.device import current
+from restitution.numerics.convolution.device import current
 from restitution.numerics.quadrature import integrate_curve
 from restitution.results.interruption import hold_signals
 from restitution.results.writer import ResultsFolder, results_dataset, versions

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 from restitution.contact.influence import half_space
-from restitution.numerics.convolution import FreeConvolution, SpectralFilter
-from restitution.numerics.device import accelerator
-from restitution.numerics.minimise import _ROUNDING
+from restitution.numerics.convolution.device import accelerator
+from restitution.numerics.convolution.operators import FreeConvolution, SpectralFilter
+from restitution.numerics.quadratic.minimise import _ROUNDING
 from tolerance import approx
 
 # 1 x 1, single rows, primes and powers of two; up to 19 x 23 the direct sum stays quick.
@@ -92,7 +92,7 @@ def test_what_a_value_makes_at_its_own_node_is_known():
     K = FreeConvolution(point_load((1.0, 1.0)), (9, 7))
     p = np.zeros((9, 7))
     p[2, 3] = 4.0
-    assert K(p)[2, 3] == approx(4.0 * K.own, rel=1e-12)
+    assert K(p)[2, 3] == approx(4.0 * K.diagonal, rel=1e-12)
 
 
 def test_it_is_counted_and_leaves_its_input_and_its_earlier_answers_alone():
@@ -134,9 +134,9 @@ def test_single_precision_errs_by_as_much_as_the_minimiser_counts_on(kind, n):
     elif kind == "one node":
         p = np.where(p == p.max(), 1.0, 0.0)
     p = p.astype(np.float32)
-    K = half_space((n, n), (1.0, 1.0), 1.0).fresh()
+    K = half_space((n, n), (1.0, 1.0), 1.0).with_own_workspace()
     exact = K(p)
-    error = np.abs(K.quick(p) - exact).max() / np.abs(exact).max()
+    error = np.abs(K.single_precision(p) - exact).max() / np.abs(exact).max()
     assert 0 < error < _ROUNDING * np.finfo(np.float32).eps
 
 
@@ -147,11 +147,11 @@ def test_single_precision_is_quick_and_nearly_right(shape, seed):
     p = np.random.default_rng(seed).normal(size=shape)
     K = FreeConvolution(point_load((1.0, 2.0)), shape)
     exact, scale = K(p), np.abs(K(np.abs(p))).max()
-    assert_allclose(K.quick(p), exact, atol=SINGLE * scale)
-    assert K.quick(p).dtype == np.float64
+    assert_allclose(K.single_precision(p), exact, atol=SINGLE * scale)
+    assert K.single_precision(p).dtype == np.float64
     assert_array_equal(K(p), exact)
     out = np.empty(shape)
-    assert K.quick(p, out=out) is out
+    assert K.single_precision(p, out=out) is out
     assert K.count == 6
 
 
@@ -202,22 +202,13 @@ def test_two_users_do_not_meet():
     one = FreeConvolution(point_load((1.0, 2.0)), (90, 70))
     rng = np.random.default_rng(0)
     p, other_p = rng.random((90, 70)), rng.random((90, 70))
-    other = one.fresh()
-    for apply in (lambda K, p: K(p), lambda K, p: K.quick(p)):
+    other = one.with_own_workspace()
+    for apply in (lambda K, p: K(p), lambda K, p: K.single_precision(p)):
         out = apply(one, p)
         other_out = apply(other, other_p)
         assert_array_equal(apply(one, p), out)
         assert not np.array_equal(out, other_out)
     assert (one.count, other.count) == (4, 2)
-
-
-def test_a_batch_is_one_after_the_other():
-    p = np.random.default_rng(3).normal(size=(4, 60, 50)) * 10.0 ** np.arange(4)[:, None, None]
-    K = FreeConvolution(point_load((1.0, 2.0)), (60, 50))
-    assert_array_equal(K(p), [K(item) for item in p])
-    assert_array_equal(K.quick(p), [K.quick(item) for item in p])
-    steep = SpectralFilter(lambda qx, qy: 1 + qx + qy, (60, 50))
-    assert_array_equal(steep(p), [steep(item) for item in p])
 
 
 def loops():
@@ -243,10 +234,10 @@ def test_compiled_convolution_is_that_of_whole_arrays(kinds, vectors, both, data
     spectrum = rng.normal(size=(both[1] // 2 + 1, both[0] // 2 + 1)).astype(kind)
     found, expected = np.empty(shape, result_kind), np.empty(shape)
     module = loops() if vectors == "wide" else loops().narrow
-    room = np.empty((1, module.bytes_of_room(shape[1], both[0] // 2 + 1)), np.uint8)
-    module.convolve(values, 1 / scale, spectrum, *both, room, scale, found)
+    workspace = np.empty((1, module.workspace_bytes(shape[1], both[0] // 2 + 1)), np.uint8)
+    module.convolve(values, 1 / scale, spectrum, *both, workspace, scale, found)
     plain = accelerator("plain", np, scipy.fft)
-    plain.convolve(values.astype("d"), spectrum.astype("d"), both, scale, room, expected)
+    plain.convolve(values.astype("d"), spectrum.astype("d"), both, scale, workspace, expected)
     # No value is larger than all waves together.
     largest = np.abs(values).sum() * np.abs(spectrum).max() * both[0] * both[1]
     assert_allclose(found, expected, atol=(1e-15 if kinds == "ddd" else 5e-7) * largest)
@@ -261,11 +252,11 @@ def test_waves_too_many_for_the_cache(kind, vectors):
     values = rng.normal(size=shape)
     spectrum = rng.random((periods[1] // 2 + 1, periods[0] // 2 + 1)).astype(kind)
     module = loops() if vectors == "wide" else loops().narrow
-    room = np.empty((1, module.bytes_of_room(shape[1], periods[0] // 2 + 1)), np.uint8)
+    workspace = np.empty((1, module.workspace_bytes(shape[1], periods[0] // 2 + 1)), np.uint8)
     found, expected = np.empty(shape), np.empty(shape)
-    module.convolve(values, 1.0, spectrum, *periods, room, 1.0, found)
+    module.convolve(values, 1.0, spectrum, *periods, workspace, 1.0, found)
     plain = accelerator("plain", np, scipy.fft)
-    plain.convolve(values, spectrum.astype("d"), periods, 1.0, room, expected)
+    plain.convolve(values, spectrum.astype("d"), periods, 1.0, workspace, expected)
     assert_allclose(found, expected, atol=(1e-14 if kind == "d" else 2e-6) * np.abs(expected).max())
 
 
@@ -281,15 +272,15 @@ def test_threads_share_the_columns(threads):
 def test_what_does_not_go_together_is_refused():
     convolve = loops().convolve
     p, spectrum, out = np.ones((6, 5)), np.ones((6, 7)), np.empty((6, 5))
-    room = np.empty((1, loops().bytes_of_room(5, 12)), np.uint8)
-    convolve(p, 1.0, spectrum, 12, 10, room, 1.0, out)
+    workspace = np.empty((1, loops().workspace_bytes(5, 12)), np.uint8)
+    convolve(p, 1.0, spectrum, 12, 10, workspace, 1.0, out)
     for change, message in (
-        ({"px": 14}, "go with each other"), ({"out": np.empty((5, 5))}, "go with each other"),
-        ({"room": room[:, :-1]}, "go with each other"),
-        ({"spectrum": np.ones((6, 6))}, "go with each other"),
+        ({"px": 14}, "shapes do not match"), ({"out": np.empty((5, 5))}, "shapes do not match"),
+        ({"workspace": workspace[:, :-1]}, "shapes do not match"),
+        ({"spectrum": np.ones((6, 6))}, "shapes do not match"),
         ({"px": 4, "spectrum": np.ones((6, 3))}, "more values"),
         ({"px": 22, "spectrum": np.ones((6, 12))}, "factors"),
     ):  # fmt: skip
-        its = {"px": 12, "out": out, "room": room, "spectrum": spectrum} | change
+        its = {"px": 12, "out": out, "workspace": workspace, "spectrum": spectrum} | change
         with pytest.raises(ValueError, match=message):
-            convolve(p, 1.0, its["spectrum"], its["px"], 10, its["room"], 1.0, its["out"])
+            convolve(p, 1.0, its["spectrum"], its["px"], 10, its["workspace"], 1.0, its["out"])

@@ -1,6 +1,6 @@
-// Convolving an array with an even kernel, by vectors: each lane belongs to a column of its own, so
-// transforms are those of one column. convolve.cpp, where the method is described, includes this
-// once for each kind of processor, with LANE_BYTES the size of its vectors.
+// Convolution of an array with an even kernel, in vectors. Each lane holds a column of its own, so the
+// code of a transform is that for one column. convolve.cpp describes the method and includes this
+// file once for each kind of processor, with LANE_BYTES the size of its vectors.
 
 template <class T, int n>
 struct VectorOf {
@@ -61,7 +61,7 @@ inline void transform_few(Lanes<T>* x) {
     }
 }
 
-// Between r blocks of `length` places and the waves that each of them holds.
+// One stage: combine r blocks of `length` values (forward), or separate them again (backward).
 template <int r, bool is_forward, class T>
 inline void join(Lanes<T>* x, Index length, const std::complex<T>* twiddle) {
     for (Index j = 0; j < length; ++j, twiddle += r - 1) {
@@ -87,9 +87,9 @@ void join(int radix, Lanes<T>* x, Index length, const std::complex<T>* twiddle) 
     }
 }
 
-// In place, and the waves are left in the order in which the stages part them (decimation in
-// frequency; Gentleman and Sande 1966); `backward` goes the same way back. One part is finished before
-// the next: what is at hand stays in the cache.
+// In place; the modes stay in the order in which the stages produce them (decimation in frequency;
+// Gentleman and Sande 1966). `backward` inverts the stages in reverse order. Each part is finished
+// before the next one begins, so that it stays in the cache.
 template <class T>
 void forward(const Plan<T>& plan, Lanes<T>* x, Index length, std::size_t stage = 0) {
     if (length == 1) return;
@@ -108,7 +108,7 @@ void backward(const Plan<T>& plan, Lanes<T>* x, Index length, std::size_t stage 
     join<false>(radix, x, part, plan.twiddles[stage].data());
 }
 
-// The vector whose k-th value is that at `Order::of(k)` among those of a and, after them, of b.
+// The vector whose k-th value is number `Order::of(k)` of the values of a followed by those of b.
 template <class Order, class Vector, int... k>
 inline Vector shuffle(Vector a, Vector b, std::integer_sequence<int, k...>) {
 #if __has_builtin(__builtin_shufflevector)
@@ -137,7 +137,7 @@ struct Odd {
     static constexpr int of(int k, int) { return 2 * k + 1; }
 };
 
-// As many vectors as each has lanes.
+// Transpose n vectors of n lanes.
 template <int n, class Vector>
 inline void transpose(Vector* x) {
     for (int step = 1; step < n; step *= 2) {
@@ -150,7 +150,7 @@ inline void transpose(Vector* x) {
     }
 }
 
-// Copy `some` values, at most `most`. A copy whose size is known is no call.
+// Copy `some` values, at most `most`. A copy of fixed size compiles to moves, not to a call.
 template <class T, Index most>
 inline void copy_some(void* to, const void* from, Index some) {
     if (some >= most)
@@ -159,7 +159,8 @@ inline void copy_some(void* to, const void* from, Index some) {
         std::memcpy(to, from, some * sizeof(T));
 }
 
-// `some` values of a row as a vector, and back; times a factor, which may be beyond single precision.
+// Load `some` values of a row as a vector, and store them, times a factor that may be outside the
+// range of single precision.
 template <class T, class From>
 inline typename Lanes<T>::Vector load(const From* from, double factor, Index some) {
     constexpr int count = Lanes<T>::count;
@@ -195,13 +196,13 @@ inline void store_modes(const Lanes<T>& x, std::complex<T>* to, Index some) {
     copy_some<std::complex<T>, Lanes<T>::count>(to, pairs, some);
 }
 
-// The transforms of some columns; the rest of their period is filled up with zeros.
+// Transforms of a vector of columns, zero-padded to the period.
 template <class T>
 struct Columns {
     const Plan<T>& plan;
-    Lanes<T>* x;  // room for a period
+    Lanes<T>* x;  // as long as a period
 
-    // x[i] is to be set for i < values.
+    // Expects x[i] for i < values.
     void transform(Index values) {
         const Index length = plan.length;
         for (Index i = values; i < length; ++i) x[i] = Lanes<T>{};
@@ -224,7 +225,7 @@ struct Columns {
     Lanes<T>& negative_wave(Index k) { return x[plan.places[k ? plan.period - k : 0]]; }
 };
 
-// Modes lie transposed, a row of waves for each column of values.
+// Modes are stored transposed: a row of modes for each column of values.
 template <class T>
 struct Convolution {
     static constexpr int count = Lanes<T>::count;
@@ -233,10 +234,10 @@ struct Convolution {
     Rows<const T> weights;
     Rows<std::complex<T>> modes;
 
-    // Two blocks of real columns are transformed as the real and the imaginary part of one.
+    // Two blocks of real columns are transformed together, as real and imaginary part.
     template <class From>
-    void into_waves(Rows<const From> values, double factor, Index first, Lanes<T>* room) const {
-        Columns<T> columns{along_x, room};
+    void into_waves(Rows<const From> values, double factor, Index first, Lanes<T>* workspace) const {
+        Columns<T> columns{along_x, workspace};
         for (Index i = 0; i < values.count; ++i) {
             const From* row = values[i] + first;
             columns.x[i] = {load<T>(row, factor, values.length - first),
@@ -264,8 +265,8 @@ struct Convolution {
     }
 
     template <class To>
-    void out_of_waves(Rows<To> out, double factor, Index first, Lanes<T>* room) const {
-        Columns<T> columns{along_x, room};
+    void out_of_waves(Rows<To> out, double factor, Index first, Lanes<T>* workspace) const {
+        Columns<T> columns{along_x, workspace};
         for (Index k0 = 0; k0 < modes.length; k0 += count) {
             const Index waves = std::min<Index>(count, modes.length - k0);
             Vector re[2][count], im[2][count];
@@ -293,8 +294,8 @@ struct Convolution {
         }
     }
 
-    void weigh(Index first, Lanes<T>* room) const {
-        Columns<T> columns{along_y, room};
+    void weigh(Index first, Lanes<T>* workspace) const {
+        Columns<T> columns{along_y, workspace};
         const Index some = std::min<Index>(count, modes.length - first);
         for (Index i = 0; i < modes.count; ++i) columns.x[i] = load_modes(modes[i] + first, some);
         columns.transform(modes.count);
@@ -312,29 +313,31 @@ struct Convolution {
 };
 
 // `out` = `factor_back` K ∗ (`factor` `values`), circular in (px, py). `weights` (py/2 + 1, px/2 + 1)
-// are a quadrant of the spectrum of K, real, even and transposed; `room` is that of `bytes_of_room`.
+// are a quadrant of the spectrum of K, real, even and transposed. `workspace` has `workspace_bytes`.
 template <class From, class T, class To>
 void convolve(Rows<const From> values, double factor, Rows<const T> weights, Index px, Index py,
-              Rows<unsigned char> room, double factor_back, Rows<To> out) {
+              Rows<unsigned char> workspace, double factor_back, Rows<To> out) {
     if (out.count != values.count || out.length != values.length || weights.count != py / 2 + 1 ||
-        weights.length != px / 2 + 1 || room.length < bytes_of_room<T>(values.length, px / 2 + 1))
-        throw std::invalid_argument("arrays that do not go with each other");
-    const auto modes = rows_in<std::complex<T>>(room, values.length, px / 2 + 1);
+        weights.length != px / 2 + 1 ||
+        workspace.length < workspace_bytes<T>(values.length, px / 2 + 1))
+        throw std::invalid_argument("shapes do not match");
+    const auto modes = rows_in<std::complex<T>>(workspace, values.length, px / 2 + 1);
     const auto along_x = plan_for<T>(values.count, px), along_y = plan_for<T>(values.length, py);
     const Convolution<T> convolution{*along_x, *along_y, weights, modes};
     constexpr int count = Lanes<T>::count;
     const int threads = threads_for(values.count * values.length * Index(sizeof(T)));
     const Index each = std::max(px, py);
-    const auto memory = room_for(threads * each * Index(sizeof(Lanes<T>)));
-    Crew crew;
-    crew.run(threads, [&](int k) {
-        Lanes<T>* its_room = static_cast<Lanes<T>*>(memory.get()) + k * each;
-        crew.share(values.length, 2 * count, [&](Index first) {
-            convolution.into_waves(values, factor, first, its_room);
+    const auto memory = allocate(threads * each * Index(sizeof(Lanes<T>)));
+    ThreadTeam team;
+    team.run(threads, [&](int k) {
+        Lanes<T>* its_workspace = static_cast<Lanes<T>*>(memory.get()) + k * each;
+        team.parallel_for(values.length, 2 * count, [&](Index first) {
+            convolution.into_waves(values, factor, first, its_workspace);
         });
-        crew.share(modes.length, count, [&](Index first) { convolution.weigh(first, its_room); });
-        crew.share(values.length, 2 * count, [&](Index first) {
-            convolution.out_of_waves(out, factor_back, first, its_room);
+        team.parallel_for(modes.length, count,
+                   [&](Index first) { convolution.weigh(first, its_workspace); });
+        team.parallel_for(values.length, 2 * count, [&](Index first) {
+            convolution.out_of_waves(out, factor_back, first, its_workspace);
         });
     });
 }
@@ -351,5 +354,5 @@ inline void define_convolve(py::module_& module) {
     define_between<float, float>(module);
     define_between<double, double>(module);
     define_between<float, double>(module);
-    module.def("bytes_of_room", &bytes_of_room<double>);
+    module.def("workspace_bytes", &workspace_bytes<double>);
 }

@@ -5,10 +5,15 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from restitution.contact.influence import half_space, inverse_half_space
-from restitution.numerics import nesting, passes
-from restitution.numerics.convolution import FreeConvolution
-from restitution.numerics.minimise import minimise_quadratic
-from restitution.numerics.nesting import minimise_nested
+from restitution.numerics.convolution.operators import FreeConvolution
+from restitution.numerics.quadratic import multilevel
+from restitution.numerics.quadratic.grid_transfer import prolong, restrict
+from restitution.numerics.quadratic.minimise import minimise_quadratic
+from restitution.numerics.quadratic.multilevel import (
+    _USUAL_STIFFNESS,
+    mean_damped_preconditioner,
+    solve_multilevel,
+)
 from tolerance import approx
 
 TOLERANCE = 1e-9
@@ -26,7 +31,7 @@ def plain(b, upper):
 
 
 def nested(b, upper, **options):
-    return minimise_nested(system, b, upper, tolerance=TOLERANCE,
+    return solve_multilevel(system, b, upper, tolerance=TOLERANCE,
                            **{"max_iterations": 500} | options)  # fmt: skip
 
 
@@ -66,7 +71,7 @@ def windows(monkeypatch):
         seen.append(b.shape)
         return minimise_quadratic(K, b, *bounds, **options)
 
-    monkeypatch.setattr(nesting, "minimise_quadratic", watched)
+    monkeypatch.setattr(multilevel, "minimise_quadratic", watched)
     return seen
 
 
@@ -98,13 +103,13 @@ def test_a_window_takes_no_product_that_another_tells(windows, monkeypatch):
 
         return product
 
-    for method in (FreeConvolution.__call__, FreeConvolution.quick):
+    for method in (FreeConvolution.__call__, FreeConvolution.single_precision):
         monkeypatch.setattr(FreeConvolution, method.__name__, watched(method))
     found, _ = nested(bowl((200, 200)), np.inf)
     assert found.converged
     assert len(windows) == 3
-    finest = products[products.index(((200, 200), "quick")) :]
-    assert finest[0] == ((200, 200), "quick")
+    finest = products[products.index(((200, 200), "single_precision")) :]
+    assert finest[0] == ((200, 200), "single_precision")
     assert finest[-1] == ((200, 200), "__call__")
     assert {shape for shape, _ in finest[1:-1]} == {windows[-1]}
     assert [name for _, name in finest[1:-1]].count("__call__") == 1
@@ -115,7 +120,7 @@ def test_what_the_guess_does_not_see_widens_the_window(windows, monkeypatch):
     b = bowl_and_spike()
     guess = np.zeros_like(b)
     guess[90:110, 90:110] = 10 * plain(b, np.inf).point.max()
-    monkeypatch.setattr(nesting, "_first_guess", lambda *_, **__: guess)
+    monkeypatch.setattr(multilevel, "_first_guess", lambda *_, **__: guess)
     found, _ = nested(b, np.inf)
     assert found.converged
     assert found.point[10, 15] > 0
@@ -149,7 +154,7 @@ def islands(n, width):
 
 def test_a_constant_on_islands_is_too_stiff_and_less_so_with_less_of_the_mean():
     p, b, inverse = islands(256, 16)
-    less = nesting._with_less_mean(inverse, p, b, np.inf)
+    less = mean_damped_preconditioner(inverse, p, b, np.inf)
     constant = p.astype(np.float32)
 
     def stiffness(precondition):
@@ -158,7 +163,7 @@ def test_a_constant_on_islands_is_too_stiff_and_less_so_with_less_of_the_mean():
 
     plain = stiffness(inverse)
     assert plain > 8
-    assert stiffness(less) == approx(nesting._USUAL, rel=1e-5)
+    assert stiffness(less) == approx(_USUAL_STIFFNESS, rel=1e-5)
     # A checkerboard has no means: nothing changes.
     board = (constant * (-1.0) ** np.add.outer(np.arange(256), np.arange(256))).astype(np.float32)
     assert_allclose(less(board), inverse(board), atol=1e-2 * inverse(board).max())
@@ -175,25 +180,11 @@ def test_the_mean_stays_where_its_inverse_is_as_good_as_any(case):
         yields = np.random.default_rng(7).random(p.shape) < 0.9
         p *= np.where(yields, 1.0, 0.5)
         upper = 1.0
-    assert nesting._with_less_mean(inverse, p, b, upper) is inverse
-
-
-def test_each_item_has_less_of_its_mean():
-    p, b, inverse = islands(128, 16)
-    other = islands(128, 24)
-    both = [np.stack(pair) for pair in ((p, other[0]), (b, other[1]))]
-    r = np.random.default_rng(3).normal(1, 1, (2, 128, 128)).astype(np.float32) * (both[0] > 0)
-    kept = r.copy()
-    found = nesting._with_less_mean(inverse, *both, np.inf)(r)
-    for k, (its_p, its_b) in enumerate(zip(*both, strict=True)):
-        alone = nesting._with_less_mean(inverse, its_p, its_b, np.inf)
-        assert alone is not inverse
-        assert_allclose(found[k], alone(r[k]), atol=1e-5 * np.abs(found).max())
-    assert_allclose(r, kept)
+    assert mean_damped_preconditioner(inverse, p, b, upper) is inverse
 
 
 def guess(b, upper):
-    return nesting._first_guess(system, b, upper, level=1)
+    return multilevel._first_guess(system, b, upper, level=1)
 
 
 @pytest.mark.parametrize("rough", [0.0, 0.02])
@@ -207,7 +198,7 @@ def test_where_nearly_all_yields_the_guess_knows_the_edge(rough, monkeypatch):
     assert found.min() == 0
     assert found.max() == upper
     wrong = np.abs(found - answer).sum()
-    monkeypatch.setattr(nesting, "_NEARLY_NONE", -1.0)
+    monkeypatch.setattr(multilevel, "_MAX_FREE_FRACTION", -1.0)
     assert wrong < 0.6 * np.abs(guess(b, upper) - answer).sum()
 
 
@@ -216,20 +207,8 @@ def test_where_much_is_elastic_the_guess_is_what_pressure_is_between_nodes(monke
     for upper in (np.inf, 0.25):
         found = guess(b, upper)
         with monkeypatch.context() as without:
-            without.setattr(nesting, "_NEARLY_NONE", -1.0)
+            without.setattr(multilevel, "_MAX_FREE_FRACTION", -1.0)
             assert_array_equal(guess(b, upper), found)
-
-
-def test_each_item_yields_by_itself():
-    b = np.stack([bowl((130, 140)), bowl((130, 140), rough=0.02)])
-    for limits in ((0.002, np.inf), (np.inf, 0.002), (0.002, 0.003)):
-        upper = np.array(limits)[:, None, None]
-        together = guess(b, upper)
-        assert (together <= upper).all()
-        for its_b, limit, found in zip(b, limits, together, strict=True):
-            # Items rest until all are there: those of a batch may have gone on.
-            alone = guess(its_b, limit)
-            assert np.abs(found - alone).mean() < 0.01 * alone.max()
 
 
 def test_not_converging_is_reported():
@@ -238,16 +217,20 @@ def test_not_converging_is_reported():
     assert found.residual > TOLERANCE
 
 
-@pytest.mark.parametrize("batch", [(), (1,)])
-def test_a_guess_on_finer_cells_keeps_straight_lines(batch):
-    coarse = np.add.outer(np.arange(9.0), 3 * np.arange(7.0)).reshape(*batch, 9, 7)
-    b = np.repeat(np.repeat(coarse, 2, axis=-2), 2, axis=-1)
+@pytest.mark.parametrize("compiled", [True, False])
+def test_a_guess_on_finer_cells_keeps_straight_lines(compiled):
+    to_coarse, to_fine = (
+        function if compiled else getattr(function, "__wrapped__", function)
+        for function in (restrict, prolong)
+    )
+    coarse = np.add.outer(np.arange(9.0), 3 * np.arange(7.0))
+    b = np.repeat(np.repeat(coarse, 2, axis=0), 2, axis=1)
     found = np.empty_like(coarse)
-    passes.coarsen(b, found)
+    to_coarse(b, found)
     assert_allclose(found, coarse)
-    passes.refine(coarse, b)
+    to_fine(coarse, b)
     expected = np.add.outer(np.arange(18) / 2 - 0.25, 3 * (np.arange(14) / 2 - 0.25))
-    assert_allclose(b[..., 1:-1, 1:-1], expected[1:-1, 1:-1].reshape(*batch, 16, 12), atol=1e-12)
-    odd = np.zeros((*batch, 3, 2))
-    passes.coarsen(np.ones((*batch, 5, 3)), odd)
+    assert_allclose(b[1:-1, 1:-1], expected[1:-1, 1:-1], atol=1e-12)
+    odd = np.zeros((3, 2))
+    to_coarse(np.ones((5, 3)), odd)
     assert_allclose(odd, 1.0)

@@ -1,4 +1,4 @@
-"""Boxes: blocks of a grid, and arrays that are known on one of them."""
+"""Boxes: rectangular blocks of a grid, and arrays on them."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ NOWHERE: Box = (slice(0, 0), slice(0, 0))
 
 
 def shape_of(box: Box) -> tuple[int, int]:
-    """Nodes of the box along x and y."""
+    """The number of nodes of the box along x and y."""
     rows, columns = box
     return rows.stop - rows.start, columns.stop - columns.start
 
 
 def bounding_box(mask: NDArray[np.bool_], within: Box | None = None) -> Box | None:
-    """The smallest block that holds every true node; None when there is none.
+    """The smallest box that contains every true node of `mask`; None if no node is true.
 
-    `within` is the box that `mask` covers; the grid, when it is left out.
+    `within` is the box that `mask` covers; by default the whole grid.
     """
     rows = np.flatnonzero(mask.any(axis=1))
     if rows.size == 0:
@@ -34,7 +34,7 @@ def bounding_box(mask: NDArray[np.bool_], within: Box | None = None) -> Box | No
 
 
 def widen(box: Box, cells: int, nodes: tuple[int, int]) -> Box:
-    """The box with so many cells more on each side, inside a grid of `nodes`."""
+    """The box enlarged by `cells` on each side, within a grid of `nodes`."""
     rows, columns = (
         slice(max(part.start - cells, 0), min(part.stop + cells, n))
         for part, n in zip(box, nodes, strict=True)
@@ -43,7 +43,7 @@ def widen(box: Box, cells: int, nodes: tuple[int, int]) -> Box:
 
 
 def union(first: Box | None, second: Box | None) -> Box | None:
-    """The smallest box that holds both."""
+    """The smallest box that contains both; None stands for an empty box."""
     if first is None or second is None:
         return second if first is None else first
     rows, columns = (
@@ -54,7 +54,7 @@ def union(first: Box | None, second: Box | None) -> Box | None:
 
 
 def reframe(values: NDArray[Scalar], box: Box, wanted: Box) -> NDArray[Scalar]:
-    """What is known on `box` as an array on the box `wanted`: zero where nothing is known."""
+    """Copy `values` on `box` to the box `wanted`, with zeros outside `box`."""
     if box == wanted:
         return values
     framed: NDArray[Any] = np.zeros(shape_of(wanted), dtype=values.dtype)

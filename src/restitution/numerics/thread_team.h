@@ -25,7 +25,7 @@ Index bytes_of(const Rows<T>& rows) {
 inline int threads_for(Index bytes) { return bytes > BYTES_WORTH_THREADS ? most_threads.load() : 1; }
 
 // Threads that do the same steps together.
-class Crew {
+class ThreadTeam {
   public:
     // Let `work(k)` run in `threads` threads, or in as many as there are to be had.
     template <class Work>
@@ -47,7 +47,7 @@ class Crew {
 
     // `step(i)` for i = 0, every, 2 every, … below n, by whoever is free; then wait for the others.
     template <class Step>
-    void share(Index n, Index every, Step step) {
+    void parallel_for(Index n, Index every, Step step) {
         const Index steps = (n + every - 1) / every;
         for (Index i = next_++; i < steps; i = next_++) step(i * every);
         const int round = round_;
@@ -72,9 +72,9 @@ auto over_rows(Some some, const First& rows, const Others&... others) {
     if ((bytes_of(rows) + ... + bytes_of(others)) < LOOP_WORTH_THREADS) return some(0, rows.count);
     constexpr Index parts = 16;
     std::array<decltype(some(0, 0)), parts> found;
-    Crew crew;
-    crew.run(most_threads, [&](int) {
-        crew.share(parts, 1, [&](Index k) {
+    ThreadTeam team;
+    team.run(most_threads, [&](int) {
+        team.parallel_for(parts, 1, [&](Index k) {
             found[k] = some(k * rows.count / parts, (k + 1) * rows.count / parts);
         });
     });

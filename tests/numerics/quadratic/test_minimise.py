@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.linalg import solve_triangular
 from scipy.optimize import lsq_linear
 
-from restitution.numerics.minimise import minimise_quadratic, violation
+from restitution.numerics.quadratic.minimise import minimise_quadratic, violation
 from tolerance import approx
 
 TOLERANCE = 1e-10  # of `minimise`
@@ -145,7 +145,7 @@ def test_a_product_that_is_known_is_not_computed(minimise, random_matrix, random
     bounds = random_bounds(rng, 30)
     start = np.clip(rng.normal(size=30), *bounds)
     found, products = minimise(A, b, *bounds, start=start.copy())
-    known, fewer = minimise(A, b, *bounds, start=start.copy(), product=(A @ start)[:, None])
+    known, fewer = minimise(A, b, *bounds, start=start.copy(), K_start=(A @ start)[:, None])
     assert_array_equal(fewer, products[1:])
     assert_array_equal(known.point, found.point)
 

@@ -5,94 +5,95 @@ Conventions: for nodes (i, j) of a grid of shape (nx, ny),
     u[i, j] = Σ_kl  K[|i − k|, |j − l|] p[k, l].
 
 Zero padding to any size ≥ 2n − 1 makes the circular convolution equal to the linear one (Liu, Wang
-and Liu 2000, Wear 243, 101–111, "DC-FFT"); lags beyond n − 1 never meet, whatever the kernel says
-there. The kernel is even along both axes, so its spectrum is a DCT-I of one quadrant and real: a
-quarter of the storage.
+and Liu 2000, Wear 243, 101–111, "DC-FFT"); kernel values at lags beyond n − 1 have no effect. The
+kernel is even along both axes, so its spectrum is real and the DCT-I of one quadrant, which takes
+a quarter of the storage.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from copy import copy
-from functools import cached_property
 from itertools import count
+from threading import Lock
 from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.numerics import passes
-from restitution.numerics.device import CPU, Device
+from restitution.numerics.convolution.device import CPU, Device
+from restitution.numerics.reductions import max_magnitude
 
 Array = NDArray[np.float64]
-# Values at lags i and j, integers of shapes that broadcast, in an array that is then overwritten.
+# Values of the kernel at lags i and j, integers that broadcast. The operator overwrites the array.
 Kernel = Callable[[NDArray[np.int64], NDArray[np.int64]], Array]
 
 
 def fast_size(minimum: int) -> int:
-    """The smallest size of a fast transform, at least `minimum`: its factors are 2, 3, 5 and 7."""
+    """The smallest size ≥ `minimum` whose only factors are 2, 3, 5 and 7."""
     return next(size for size in count(minimum) if pow(2 * 3 * 5 * 7, 64, size) == 0)
 
 
 class _Spectral:
-    """Multiplication of the waves of an array by a real and even spectrum, in a period of its own.
+    """Multiplication of the Fourier modes of an array by a real, even spectrum, zero-padded.
 
-    Arrays are (*batch, *shape). The memory that takes is kept from its first use on: see `fresh`.
+    `count` is the number of products so far.
+
+    An operator may be used by several threads; a lock around its workspace makes them take turns.
+    To work at the same time, each takes an operator `with_own_workspace`. The workspace is
+    allocated on first use and kept.
     """
 
     def __init__(self, shape: tuple[int, int], periods: tuple[int, int], device: Device) -> None:
         self.shape = shape
         self._periods = periods
         self._device = device
+        self.count = 0
+        self._lock = Lock()
+        self._workspace: NDArray[Any] | None = None
 
-    @cached_property
-    def _room(self) -> NDArray[Any]:
-        return self._device.room(self.shape, self._periods)
-
-    def fresh(self) -> Self:
-        """The same operator with memory and a count of its own, for another user."""
+    def with_own_workspace(self) -> Self:
+        """The same operator with a workspace and a count of its own, for another solve."""
         other = copy(self)
-        other.__dict__.pop("_room", None)
+        other._lock, other._workspace, other.count = Lock(), None, 0
         return other
 
-    def _convolve(
-        self, p: Array, spectrum: NDArray[Any], out: Array | None, scale: Array | float
-    ) -> Array:
+    def _convolve(self, p: Array, spectrum: NDArray[Any], out: Array | None, scale: float) -> Array:
         result = np.empty_like(p, dtype=np.float64, order="C") if out is None else out
-        self._device.convolve(p, spectrum, self._periods, scale, self._room, result)
+        with self._lock:
+            if self._workspace is None:
+                self._workspace = self._device.workspace(self.shape, self._periods)
+            self._device.convolve(p, spectrum, self._periods, scale, self._workspace, result)
+            self.count += 1
         return result
 
 
 class FreeConvolution(_Spectral):
-    """Convolution of arrays with one kernel; `count` tells how often it was applied.
+    """Convolution of arrays with one kernel.
 
-    `own` is the kernel at lag (0, 0): what a node's value makes at the node itself.
+    `diagonal` is the kernel at lag (0, 0): the effect of a node's value at the node itself.
     """
 
     def __init__(self, kernel: Kernel, shape: tuple[int, int], device: Device = CPU) -> None:
         px, py = (2 * fast_size(n) for n in shape)
         super().__init__(shape, (px, py), device)
-        # Transposed, as `Device.convolve` wants it.
+        # Transposed, as `Device.convolve` expects.
         lags = kernel(device.arange(px // 2 + 1)[None, :], device.arange(py // 2 + 1)[:, None])
-        self.own = float(lags[0, 0])
+        self.diagonal = float(lags[0, 0])
         self._spectrum = device.even_spectrum(lags)
         self._single_spectrum = self._spectrum.astype(np.float32)
-        self.count = 0
 
-    def fresh(self) -> Self:
-        """The same operator with memory and a count of its own, for another user."""
-        other = super().fresh()
-        other.count = 0
-        return other
+    @property
+    def nbytes(self) -> int:
+        """Size of the spectra, bytes."""
+        return int(self._spectrum.nbytes + self._single_spectrum.nbytes)
 
     def __call__(self, p: Array, out: Array | None = None) -> Array:
         """K ∗ p, same shape as `p`: in a new array, or in `out`."""
-        self.count += 1
         return self._convolve(p, self._spectrum, out, 1.0)
 
-    def quick(self, p: Array, out: Array | None = None) -> Array:
-        """The same for work in single precision: an error of up to 9e-7 of the largest value."""
-        self.count += 1
+    def single_precision(self, p: Array, out: Array | None = None) -> Array:
+        """K ∗ p computed in single precision: errors up to 9e-7 of the largest value."""
         return self._convolve(p, self._single_spectrum, out, 1.0)
 
 
@@ -100,8 +101,8 @@ class SpectralFilter(_Spectral):
     """Multiplication by a real, even symbol of the wave vector; a cheap approximate operator.
 
     `symbol(qx, qy)` takes the angular wave numbers (rad per cell, ≥ 0) as arrays that broadcast and
-    makes a new one. The array is padded only to a fast size, so the filter is periodic, and works
-    in single precision: good enough for a preconditioner.
+    returns a new array. Arrays are padded only to a fast size, so the filter is periodic. It works
+    in single precision, which suffices for a preconditioner.
     """
 
     def __init__(
@@ -112,14 +113,19 @@ class SpectralFilter(_Spectral):
     ) -> None:
         mx, my = (fast_size(n) for n in shape)
         super().__init__(shape, (mx, my), device)
-        # Transposed, as `Device.convolve` wants it.
+        # Transposed, as `Device.convolve` expects.
         i, j = device.arange(mx // 2 + 1)[None, :], device.arange(my // 2 + 1)[:, None]
         values = symbol(2 * np.pi / mx * i, 2 * np.pi / my * j)
         values /= mx * my
         self._symbol = values.astype(np.float32)
 
+    @property
+    def nbytes(self) -> int:
+        """Size of the symbol, bytes."""
+        return int(self._symbol.nbytes)
+
     def __call__(self, r: Array, out: Array | None = None) -> Array:
         """Return the filtered array, same shape as `r`: in a new array, or in `out`."""
-        # What is far below the largest value is lost in single precision, wherever that lies.
-        scale = passes.peak(r)
-        return self._convolve(r, self._symbol, out, scale + (scale == 0))
+        # Scaled to values around one: single precision has a limited range.
+        scale = max_magnitude(r)
+        return self._convolve(r, self._symbol, out, scale if scale != 0 else 1.0)

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from restitution.numerics.window import NOWHERE, bounding_box, reframe, shape_of, union, widen
+from restitution.numerics.box import NOWHERE, bounding_box, reframe, shape_of, union, widen
 
 
 @st.composite

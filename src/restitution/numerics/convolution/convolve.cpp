@@ -1,12 +1,11 @@
-// Convolution of an array with an even kernel: transforms along both axes, weights, and back. What
-// depends on the processor is in convolve.h.
+// Convolution of an array with an even kernel: transform along both axes, multiply by the spectrum,
+// transform back. The code that depends on the processor is in convolve.h.
 //
-// Transforms are made of some columns at a time, which stay in the cache, and zeros that only pad are
-// neither stored nor transformed: n values in a period of 2 m ≥ 2 n have as their even waves those of
-// a transform of length m, and as their odd ones those of the same transform of the values turned by
-// half a turn over the m.
+// A few columns at a time are transformed, so that they stay in the cache. Zero padding is neither
+// stored nor transformed: for n values in a period of 2 m ≥ 2 n, a transform of length m gives the
+// modes of even wave number, and the same transform of the values times exp(−πi j/m) the odd ones.
 
-#include "crew.h"
+#include "thread_team.h"
 #include "rows.h"
 
 #include <algorithm>
@@ -24,8 +23,8 @@
 #include <utility>
 #include <vector>
 
-// How to transform a period, on any processor. One of which at least half is padding is transformed
-// in two parts, the even waves and the odd ones.
+// Plan of the transform of a period, for any processor. If at least half of the period is padding, it
+// is transformed in two parts, the even modes and the odd ones.
 template <class T>
 struct Plan {
     Index period;
@@ -34,12 +33,12 @@ struct Plan {
     std::vector<int> radices;
     std::vector<std::vector<std::complex<T>>> twiddles;  // of each stage
     std::vector<std::complex<T>> half_turn;              // exp(−πi j/length)
-    std::vector<Index> places;                           // where `forward` leaves each wave
+    std::vector<Index> places;                           // where `forward` stores each mode
 
     Plan(Index period, int parts)
         : period(period), parts(parts), length(period / parts), places(period) {
-        Index rest = length;  // what the stages so far have left of it
-        for (int radix : {4, 2, 3, 5, 7})  // in this order the fastest of five that were tried
+        Index rest = length;  // the factor that is left after these stages
+        for (int radix : {4, 2, 3, 5, 7})  // the fastest of five orders tried
             for (; rest % radix == 0; rest /= radix) radices.push_back(radix);
         if (rest != 1) throw std::invalid_argument("only factors 2, 3, 5 and 7 are transformed");
         rest = length;
@@ -81,10 +80,10 @@ struct Roots {
 template <class T, int r>
 const Roots<T, r> ROOTS;
 
-// The plan for so many values in a period. Plans are kept: making one takes longer than following it.
+// The plan for `values` in a period. Plans are kept, since making one takes longer than a transform.
 template <class T>
 std::shared_ptr<const Plan<T>> plan_for(Index values, Index period) {
-    if (values > period) throw std::invalid_argument("more values than a period holds");
+    if (values > period) throw std::invalid_argument("more values than the period holds");
     const int parts = period % 2 == 0 && 2 * values <= period ? 2 : 1;
     static std::mutex mutex;
     static std::map<std::pair<Index, int>, std::shared_ptr<const Plan<T>>> known;
@@ -94,31 +93,31 @@ std::shared_ptr<const Plan<T>> plan_for(Index values, Index period) {
     return plan;
 }
 
-// Memory in lines of the cache.
+// Size of a cache line, to which memory is aligned.
 constexpr Index LINE = 64;
 
 struct Free {
     void operator()(void* memory) const { std::free(memory); }
 };
-inline std::unique_ptr<void, Free> room_for(Index bytes) {
-    std::unique_ptr<void, Free> room(std::aligned_alloc(LINE, (bytes + LINE - 1) / LINE * LINE));
-    if (!room) throw std::bad_alloc();
-    return room;
+inline std::unique_ptr<void, Free> allocate(Index bytes) {
+    std::unique_ptr<void, Free> memory(std::aligned_alloc(LINE, (bytes + LINE - 1) / LINE * LINE));
+    if (!memory) throw std::bad_alloc();
+    return memory;
 }
 
-// Rows that begin with a line, an odd number of lines apart: at a power of two they would drive each
-// other out of the cache.
+// Rows begin at cache lines, an odd number of lines apart: rows a power of two apart would evict each
+// other from the cache.
 inline Index bytes_of_row(Index bytes) { return ((bytes + LINE - 1) / LINE | 1) * LINE; }
 
 template <class T>
-Index bytes_of_room(Index rows, Index length) {
+Index workspace_bytes(Index rows, Index length) {
     return rows * bytes_of_row(length * Index(sizeof(std::complex<T>))) + LINE;
 }
 
 template <class T>
-Rows<T> rows_in(Rows<unsigned char> room, Index rows, Index length) {
-    void* first = room.first;
-    std::size_t bytes = room.length;
+Rows<T> rows_in(Rows<unsigned char> workspace, Index rows, Index length) {
+    void* first = workspace.first;
+    std::size_t bytes = workspace.length;
     return {static_cast<T*>(std::align(LINE, 1, first, bytes)), rows, length,
             bytes_of_row(length * Index(sizeof(T))) / Index(sizeof(T))};
 }
@@ -126,7 +125,7 @@ Rows<T> rows_in(Rows<unsigned char> room, Index rows, Index length) {
 #ifndef __has_builtin
 #define __has_builtin(name) 0
 #endif
-#define LOOPS "convolve.h"
+#define LOOPS "convolution/convolve.h"
 #include "each_processor.h"
 
 void define_narrow_convolve(py::module_& module) { narrow::define_convolve(module); }

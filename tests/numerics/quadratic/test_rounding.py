@@ -33,7 +33,7 @@ def test_from_nearby_two_gradients_are_computed_exactly_the_first_and_the_last(
     bounds = random_bounds(rng, 20)
     answer = minimise(A, b, *bounds)[0].point
     start = np.clip(answer + far * rng.normal(size=20), *bounds)
-    options = {"start": start.copy(), "quick": rounded(A, []), "tolerance": 1e-9}
+    options = {"start": start.copy(), "K_single": rounded(A, []), "tolerance": 1e-9}
     found, exact = minimise(A, b, *bounds, **options)
     assert found.converged
     assert_array_equal(exact[0], start)
@@ -50,12 +50,14 @@ def test_what_rounding_does_to_the_gradient_is_part_of_a_rough_residual(
     rng = np.random.default_rng(seed)
     A, b = random_matrix(rng, n), 3 * rng.normal(size=n)
     bounds = random_bounds(rng, n)
-    found, exact = minimise(A, b, *bounds, quick=rounded(A, []), rough=True, tolerance=tolerance)
+    found, exact = minimise(
+        A, b, *bounds, K_single=rounded(A, []), accept_estimated_gradient=True, tolerance=tolerance
+    )
     assert found.converged
     assert found.residual <= tolerance
     assert kkt_violation(A, b, found.point, *bounds) <= (1 + 1e-6) * found.residual
     assert len(exact) > 0 or tolerance > 1e-6
-    found, exact = minimise(A, b, *bounds, quick=rounded(A, []), tolerance=tolerance)
+    found, exact = minimise(A, b, *bounds, K_single=rounded(A, []), tolerance=tolerance)
     assert_array_equal(exact[-1], found.point)
     assert found.residual <= tolerance
     assert found.residual == approx(kkt_violation(A, b, found.point, *bounds), rel=1e-6, abs=1e-14)
@@ -76,7 +78,9 @@ def test_a_product_that_is_not_finite_ends_the_solve_at_once(
         found[7] = bad if len(products) == 4 else found[7]
         return found
 
-    found, exact = minimise(A, b, *random_bounds(rng, 20), quick=overflows, rough=rough)
+    found, exact = minimise(
+        A, b, *random_bounds(rng, 20), K_single=overflows, accept_estimated_gradient=rough
+    )
     assert not found.converged
     assert np.isfinite(found.point).all()
     assert len(products) == 4
@@ -98,7 +102,12 @@ def test_a_start_where_rounding_overflows_is_taken_up_exactly(
 
     start = np.clip(rng.normal(size=20), *bounds)
     product = overflows(start[:, None]) if known else None
-    options = {"start": start, "quick": overflows, "product": product, "rough": not known}
+    options = {
+        "start": start,
+        "K_single": overflows,
+        "K_start": product,
+        "accept_estimated_gradient": not known,
+    }
     found, _ = minimise(A, b, *bounds, **options)
     assert found.converged
     assert_allclose(found.point, minimise(A, b, *bounds)[0].point, atol=1e-9)

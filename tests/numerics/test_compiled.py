@@ -9,7 +9,22 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
-from restitution.numerics import passes
+from restitution.numerics import compiled
+from restitution.numerics.diffusion import diffuse
+from restitution.numerics.multipoles import multipoles
+from restitution.numerics.quadratic import fused_ops
+from restitution.numerics.quadratic.fused_ops import (
+    as_rows,
+    curvature,
+    dot_products,
+    projected_direction,
+    projected_gradient,
+    take_step,
+    violates_bounds,
+)
+from restitution.numerics.quadratic.grid_transfer import prolong, restrict
+from restitution.numerics.quadratic.local_mean import local_sums, subtract_local_mean
+from restitution.numerics.reductions import max_magnitude
 from tolerance import approx
 
 pytest.importorskip("restitution.numerics.loops", reason="built without a compiler")
@@ -33,10 +48,10 @@ def point(rng, lower, upper, shape):
     return np.clip(2 * rng.normal(size=shape), lower, upper)
 
 
-def both(name, *args):
+def both(operation, *args):
     """What the expression and the loop return, with the arguments that they have left."""
     outcomes = []
-    for function in (getattr(passes, name).__wrapped__, getattr(passes, name)):
+    for function in (operation.__wrapped__, operation):
         mine = [a.copy() if isinstance(a, np.ndarray) else a for a in args]
         outcomes.append((function(*mine), mine))
     return outcomes
@@ -46,34 +61,36 @@ def both(name, *args):
 @pytest.mark.parametrize("single", [np.float32, np.float64])
 @settings(deadline=None, max_examples=25)
 @given(shapes, seeds, st.sampled_from([0.0, 0.4, 1.0, 1.7]))
-def test_a_step_is_that_of_the_expressions(single, kind, shape, seed, taken):
+def test_a_step_is_that_of_the_expressions(single, kind, shape, seed, step):
     rng = np.random.default_rng(seed)
     lower, upper = bounds(rng, kind, shape)
     p, g = point(rng, lower, upper, shape), rng.normal(size=shape)
-    lower, upper = passes.as_rows(lower, p), passes.as_rows(upper, p)
+    lower, upper = as_rows(lower, p), as_rows(upper, p)
     g[rng.random(shape) < 0.2] = 0.0
     d, r, z, Kd, out = (rng.normal(size=shape).astype(single) for _ in range(5))
 
     b = rng.normal(size=shape)
     (most, (_, slope, *_, left)), (its_most, (_, its_slope, *_, its_left)) = both(
-        "downhill", p, g + b, b, lower, upper, out
+        projected_gradient, p, g + b, b, lower, upper, out
     )
     assert most == its_most == approx(np.abs(left).max(), rel=1e-7)
     assert_array_equal(slope, its_slope)
     assert_array_equal(left, its_left)
 
     (found, (its_d, *_)), (compiled, (compiled_d, *_)) = both(
-        "direct", d, 0.3, z, 0.8, p, g, r, lower, upper
+        projected_direction, d, 0.3, z, 0.8, p, g, r, lower, upper
     )
     assert_allclose(compiled_d, its_d, atol=2e-7)
     assert compiled[0] == approx(found[0], abs=1e-5)
     assert compiled[1] == found[1]
 
-    ends = [bool(outcome) for outcome, _ in both("leaves", p, compiled_d, taken, lower, upper)]
+    ends = [
+        bool(outcome) for outcome, _ in both(violates_bounds, p, compiled_d, step, lower, upper)
+    ]
     assert ends[0] == ends[1]
 
     (most, its), (its_most, compiled) = both(
-        "advance", p, g, compiled_d, Kd, taken, lower, upper, out
+        take_step, p, g, compiled_d, Kd, step, lower, upper, out
     )
     for which in (0, 1, -1):
         assert_allclose(compiled[which], its[which], atol=1e-6)
@@ -81,21 +98,23 @@ def test_a_step_is_that_of_the_expressions(single, kind, shape, seed, taken):
     assert its_most == np.abs(compiled[-1]).max()
 
 
-@pytest.mark.parametrize("batch", [(), (3,)])
+@pytest.mark.parametrize("compiled", [True, False])
 @settings(deadline=None, max_examples=25)
 @given(shapes, seeds)
-def test_a_step_to_a_bound_ends_on_it(batch, shape, seed):
+def test_a_step_to_a_bound_ends_on_it(compiled, shape, seed):
     """Not a rounding away, where the next iteration would find it free."""
     rng = np.random.default_rng(seed)
-    shape = (*batch, *shape)
+    direction, step = (
+        function if compiled else function.__wrapped__
+        for function in (projected_direction, take_step)
+    )
     lower, upper = bounds(rng, "arrays", shape)
     p, g = point(rng, lower, upper, shape), rng.normal(size=shape)
     d, z, r, Kd = np.zeros(shape), 5 * rng.normal(size=shape), g.copy(), rng.normal(size=shape)
-    free = passes._free(p, g, lower, upper)
+    free = fused_ops._free(p, g, lower, upper)
     wanted = np.where(free, p - z, p)
-    one = np.ones((*batch, 1, 1)) if batch else 1.0
-    passes.direct(d, one, z, one, p, g, r, lower, upper)
-    passes.advance(p, g, d, Kd, one, lower, upper, r)
+    direction(d, 1.0, z, 1.0, p, g, r, lower, upper)
+    step(p, g, d, Kd, 1.0, lower, upper, r)
     assert_array_equal(p[wanted <= lower], lower[wanted <= lower])
     assert_array_equal(p[wanted >= upper], upper[wanted >= upper])
 
@@ -106,8 +125,8 @@ def test_a_step_to_a_bound_ends_on_it(batch, shape, seed):
 def test_sums_and_peaks_are_those_of_the_expressions(single, shape, seed):
     rng = np.random.default_rng(seed)
     a, b, c = (rng.normal(size=shape).astype(single) for _ in range(3))
-    for name, *args in (("peak", a), ("curvature", a, b), ("products", a, b, c)):
-        (found, _), (compiled, _) = both(name, *args)
+    for operation, *args in ((max_magnitude, a), (curvature, a, b), (dot_products, a, b, c)):
+        (found, _), (compiled, _) = both(operation, *args)
         assert_allclose(compiled, found, rtol=1e-6, atol=1e-5)
 
 
@@ -119,26 +138,27 @@ def test_means_around_places_are_those_of_the_expressions(single, shape, places,
     r = rng.normal(size=shape).astype(single)
     r[rng.random(shape) < 0.3] = 0.0
     (_, (_, sums, nodes)), (_, (_, its_sums, its_nodes)) = both(
-        "levels", r, np.empty(places), np.empty(places)
+        local_sums, r, np.empty(places), np.empty(places)
     )
     assert_allclose(its_sums, sums, atol=1e-4)
     assert_allclose(its_nodes, nodes, atol=1e-4)
     assert sums.sum() == approx(r.sum(), abs=1e-4)
     assert nodes.sum() == approx(np.count_nonzero(r))
-    (_, (*_, lowered)), (_, (*_, compiled)) = both("lower", r, 0.6, sums, nodes, np.full_like(r, 9))
+    (_, (*_, lowered)), (_, (*_, compiled)) = both(
+        subtract_local_mean, r, 0.6, sums, nodes, np.full_like(r, 9)
+    )
     assert_allclose(compiled, lowered, atol=1e-4)
     assert_array_equal(lowered == 0, r == 0)
 
 
-@pytest.mark.parametrize("batch", [(), (3,)])
-def test_a_constant_on_a_part_is_lowered_to_a_share_of_it(batch):
+def test_a_constant_on_a_part_is_lowered_to_a_share_of_it():
     """Whatever the part; and of what is linear only its means around the places."""
     rng = np.random.default_rng(11)
-    r = 2.0 * (rng.random((*batch, 60, 45)) < 0.4)
-    sums, nodes = np.empty((2, *batch, 8, 8))
-    passes.levels(r, sums, nodes)
+    r = 2.0 * (rng.random((60, 45)) < 0.4)
+    sums, nodes = np.empty((2, 8, 8))
+    local_sums(r, sums, nodes)
     found = np.empty_like(r)
-    passes.lower(r, np.full((*batch, 1, 1), 0.75) if batch else 0.75, sums, nodes, found)
+    subtract_local_mean(r, 0.75, sums, nodes, found)
     assert_allclose(found, 0.25 * r, atol=1e-12)
 
 
@@ -148,7 +168,7 @@ def test_threads_share_the_rows_and_change_nothing(threads):
     shape = (1701, 1300)  # one array in single precision is worth threads
     p, g = rng.random(shape), rng.normal(size=shape)
     d, r, z, r_old, Kd = rng.normal(size=(5, *shape)).astype(np.float32)
-    lower, upper = (passes.as_rows(bound, p) for bound in (0.0, 0.9))
+    lower, upper = (as_rows(bound, p) for bound in (0.0, 0.9))
     sums, nodes = np.empty((2, 8, 8))
     fine, moments = np.empty((2 * shape[0], 2 * shape[1] - 1)), rng.normal(size=(3, 3))
     x, y = (rng.uniform(1, 9, size) for size in ((shape[0], 1), (1, shape[1])))
@@ -156,19 +176,19 @@ def test_threads_share_the_rows_and_change_nothing(threads):
     def everything():
         its_p, its_g, its_d, its_r = p.copy(), g.copy(), d.copy(), r.copy()
         return [
-            passes.downhill(p, its_g, p, lower, upper, its_r), its_r.copy(), its_g.copy(),
-            passes.products(z, r, r_old),
-            passes.direct(its_d, 0.3, z, 0.8, p, g, r, lower, upper), its_d,
-            passes.curvature(its_d, Kd), passes.peak(g),
-            passes.levels(r, sums, nodes), sums.copy(), nodes.copy(),
-            passes.lower(r, 0.1, sums, nodes, its_r), its_r.copy(),
-            passes.advance(its_p, its_g, its_d, Kd, 1.0, lower, upper, its_r), its_p, its_g, its_r,
-            passes.refine(p, fine), fine.copy(), passes.coarsen(fine, its_g), its_g.copy(),
-            passes.multipoles(x, y, moments, its_g), its_g,
+            projected_gradient(p, its_g, p, lower, upper, its_r), its_r.copy(), its_g.copy(),
+            dot_products(z, r, r_old),
+            projected_direction(its_d, 0.3, z, 0.8, p, g, r, lower, upper), its_d,
+            curvature(its_d, Kd), max_magnitude(g),
+            local_sums(r, sums, nodes), sums.copy(), nodes.copy(),
+            subtract_local_mean(r, 0.1, sums, nodes, its_r), its_r.copy(),
+            take_step(its_p, its_g, its_d, Kd, 1.0, lower, upper, its_r), its_p, its_g, its_r,
+            prolong(p, fine), fine.copy(), restrict(fine, its_g), its_g.copy(),
+            multipoles(x, y, moments, its_g), its_g,
         ]  # fmt: skip
 
     found = everything()
-    passes.loops.use_threads(1)
+    compiled.loops.use_threads(1)
     for one, other in zip(found, everything(), strict=True):
         assert_array_equal(one, other)
 
@@ -182,14 +202,14 @@ def test_what_is_not_finite_is_no_small_violation(single, bad, shape, seed):
     rng = np.random.default_rng(seed)
     p, g = rng.random(shape) + 1, rng.normal(size=shape)
     out, d, Kd = np.empty(shape, single), np.zeros(shape, single), np.zeros(shape, single)
-    lower, upper = (passes.as_rows(bound, p) for bound in (0.0, np.inf))
+    lower, upper = (as_rows(bound, p) for bound in (0.0, np.inf))
     g[tuple(rng.integers(0, shape))] = bad
     values = g.astype(single)
     for largest in (
-        passes.downhill(p, g.copy(), p, lower, upper, out),
-        passes.advance(p, g, d, Kd, 1.0, lower, upper, out),
-        passes.peak(values),
-        passes.curvature(d, values)[1],
+        projected_gradient(p, g.copy(), p, lower, upper, out),
+        take_step(p, g, d, Kd, 1.0, lower, upper, out),
+        max_magnitude(values),
+        curvature(d, values)[1],
     ):
         assert not largest < np.inf
 
@@ -199,8 +219,8 @@ def test_what_is_not_finite_is_no_small_violation(single, bad, shape, seed):
 def test_going_between_grids_is_that_of_the_expressions(shape, seed):
     rng = np.random.default_rng(seed)
     fine, coarse = rng.normal(size=shape), rng.normal(size=[(n + 1) // 2 for n in shape])
-    for name, *args in (("coarsen", fine, coarse), ("refine", coarse, fine)):
-        (_, (_, expected)), (_, (_, found)) = both(name, *args)
+    for operation, *args in ((restrict, fine, coarse), (prolong, coarse, fine)):
+        (_, (_, expected)), (_, (_, found)) = both(operation, *args)
         assert_allclose(found, expected, rtol=1e-14, atol=1e-15)
 
 
@@ -210,7 +230,7 @@ def test_spreading_is_that_of_the_expression(nodes, steps, seed):
     rng = np.random.default_rng(seed)
     neighbours, weights = rng.integers(0, nodes, (nodes, 9)), rng.random((nodes, 9)) / 5
     (_, (*_, expected)), (_, (*_, have)) = both(
-        "spread", neighbours, weights, steps, rng.random((nodes, 2))
+        diffuse, neighbours, weights, steps, rng.random((nodes, 2))
     )
     assert_allclose(have, expected, rtol=1e-12)
 
@@ -221,7 +241,7 @@ def test_multipoles_are_those_of_the_expression(shape, seed):
     rng = np.random.default_rng(seed)
     x, y = rng.uniform(1, 9, (shape[0], 1)), rng.uniform(-9, 9, (1, shape[1]))
     (_, (*_, expected)), (_, (*_, have)) = both(
-        "multipoles", x, y, rng.normal(size=(3, 3)), np.empty(shape)
+        multipoles, x, y, rng.normal(size=(3, 3)), np.empty(shape)
     )
     assert_allclose(have, expected, rtol=1e-11, atol=1e-13)
 
@@ -234,19 +254,22 @@ def test_a_loop_refuses_arrays_whose_results_would_be_lost():
         np.broadcast_to(np.zeros(6), (4, 6)),  # read only
     ):
         with pytest.raises(TypeError, match="incompatible function arguments"):
-            passes.coarsen(fine, coarse)
-    for name, *args in (("curvature", fine, np.zeros((8, 13))), ("coarsen", fine, np.zeros((3, 6))),
-                        ("refine", np.zeros((4, 5)), fine),
-                        ("multipoles", fine, fine, np.zeros((3, 3)), fine)):  # fmt: skip
-        with pytest.raises(ValueError, match=r"shape|half as long|go with each other"):
-            getattr(passes, name)(*args)
+            restrict(fine, coarse)
+    for operation, *args in (
+        (curvature, fine, np.zeros((8, 13))),
+        (restrict, fine, np.zeros((3, 6))),
+        (prolong, np.zeros((4, 5)), fine),
+        (multipoles, fine, fine, np.zeros((3, 3)), fine),
+    ):
+        with pytest.raises(ValueError, match=r"shape|half as many|shapes do not match"):
+            operation(*args)
 
 
 @pytest.mark.parametrize("stranger", [-1, 3])
 def test_a_neighbour_that_is_none_is_refused(stranger):
     neighbours = np.array([[0], [1], [stranger]])
-    with pytest.raises(IndexError, match="none of the nodes"):
-        passes.spread(neighbours, np.ones((3, 1)), 1, np.ones((3, 2)))
+    with pytest.raises(IndexError, match="not the index of a node"):
+        diffuse(neighbours, np.ones((3, 1)), 1, np.ones((3, 2)))
 
 
 def test_without_a_compiler_expressions_do_it():
@@ -255,11 +278,26 @@ def test_without_a_compiler_expressions_do_it():
 import sys
 {}
 from restitution import Body, Contact, Grid, Pair, generate_surface, solve
-from restitution.numerics import passes
+from restitution.numerics import compiled
+from restitution.numerics.diffusion import diffuse
+from restitution.numerics.multipoles import multipoles
+from restitution.numerics.quadratic import fused_ops
+from restitution.numerics.quadratic.fused_ops import (
+    as_rows,
+    curvature,
+    dot_products,
+    projected_direction,
+    projected_gradient,
+    take_step,
+    violates_bounds,
+)
+from restitution.numerics.quadratic.grid_transfer import prolong, restrict
+from restitution.numerics.quadratic.local_mean import local_sums, subtract_local_mean
+from restitution.numerics.reductions import max_magnitude
 grid = Grid((64, 64), (0.25e-6, 0.25e-6))
 body = Body(500e-6, 210e9, 0.25)
 surface = generate_surface(grid, kind="gaussian", rms=2e-8, correlation_length=1e-6, seed=1)
-print(passes.loops is None, solve(Contact(Pair(body, body), surface, 4e9), 60e-9).force)
+print(compiled.loops is None, solve(Contact(Pair(body, body), surface, 4e9), 60e-9).force)
 """
     hidden = "sys.modules['restitution.numerics.loops'] = None"
     found = [

@@ -1,0 +1,229 @@
+"""Devices: where arrays are stored and convolved, in compiled loops on the CPU or by CuPy on a GPU.
+
+The solver accepts any arrays that follow NumPy's protocols (`__array_ufunc__`, NEP 13, and
+`__array_function__`, NEP 18), as CuPy's do. The operations without such a protocol, creation and
+convolution of arrays, are methods of a `Device`. Solves run on the `current` device:
+
+    with on_device("gpu"):
+        state = solve(contact, 1e-6)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from functools import lru_cache
+from typing import Any, Literal, Protocol
+
+import ducc0
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.errors import CaseError
+from restitution.numerics import compiled
+
+Array = NDArray[Any]
+DeviceName = Literal["cpu", "gpu", "auto"]
+
+
+class Device(Protocol):
+    """Creates arrays and convolves them."""
+
+    name: str
+
+    def put(self, values: Array) -> Array:
+        """Copy an array from the host's memory to the device."""
+
+    def get(self, values: Array) -> Array:
+        """Copy an array of the device to the host's memory."""
+
+    def arange(self, n: int) -> Array:
+        """The integers 0 … n − 1."""
+
+    def even_spectrum(self, quadrant: Array) -> Array:
+        """Spectrum of a real array that is even along both axes, given one quadrant of it.
+
+        It is divided by the number of values, so that the inverse transform needs no factor. The
+        quadrant may be overwritten.
+        """
+
+    def workspace(self, shape: tuple[int, int], periods: tuple[int, int]) -> Array:
+        """A work array for `convolve`, for arrays of that shape."""
+
+    def convolve(
+        self,
+        values: Array,
+        spectrum: Array,
+        periods: tuple[int, int],
+        scale: float,
+        workspace: Array,
+        out: Array,
+    ) -> None:
+        """Multiply the Fourier modes of `values` by a real, even spectrum; write to `out`.
+
+        `values` and `out` have shape (nx, ny); zeros pad the values to `periods`. `spectrum` is the
+        transpose of a quadrant made by `even_spectrum`; its precision is that of the computation.
+        Values are divided by `scale` before, and the result is multiplied by it.
+        """
+
+
+class _Compiled:
+    """NumPy arrays, convolved by the compiled loops."""
+
+    name = "cpu"
+
+    def __init__(self, loops: Any) -> None:
+        self._loops = loops
+        # The number of threads of ducc0, which `DUCC0_NUM_THREADS` sets.
+        loops.use_threads(ducc0.misc.thread_pool_size())
+
+    def put(self, values: Array) -> Array:
+        return values
+
+    def get(self, values: Array) -> Array:
+        return values
+
+    def arange(self, n: int) -> Array:
+        return np.arange(n)
+
+    def even_spectrum(self, quadrant: Array) -> Array:
+        threads = self._loops.threads_for(quadrant.nbytes)
+        ducc0.fft.dct(quadrant, type=1, inorm=2, out=quadrant, nthreads=threads)
+        return quadrant
+
+    def workspace(self, shape: tuple[int, int], periods: tuple[int, int]) -> Array:
+        return np.empty((1, self._loops.workspace_bytes(shape[1], periods[0] // 2 + 1)), np.uint8)
+
+    def convolve(
+        self,
+        values: Array,
+        spectrum: Array,
+        periods: tuple[int, int],
+        scale: float,
+        workspace: Array,
+        out: Array,
+    ) -> None:
+        if values.strides[-1] != values.itemsize:
+            values = np.ascontiguousarray(values)
+        self._loops.convolve(values, 1 / scale, spectrum, *periods, workspace, scale, out)
+
+
+class _Arrays:
+    """Arrays of a library like NumPy (`arrays`), transformed by one like scipy.fft (`fft`)."""
+
+    def __init__(self, name: str, arrays: Any, fft: Any) -> None:
+        self.name = name
+        self._arrays, self._fft = arrays, fft
+
+    def put(self, values: Array) -> Array:
+        return self._arrays.asarray(values)  # type: ignore[no-any-return]
+
+    def get(self, values: Array) -> Array:
+        here: Array = getattr(self._arrays, "asnumpy", np.asarray)(values)
+        return here
+
+    def arange(self, n: int) -> Array:
+        return self._arrays.arange(n)  # type: ignore[no-any-return]
+
+    def even_spectrum(self, quadrant: Array) -> Array:
+        # CuPy has no DCT-I: transform the whole even array; the result is real.
+        columns = np.concatenate([quadrant, quadrant[:, -2:0:-1]], axis=1)
+        modes = self._fft.rfft(columns, axis=1, norm="forward").real
+        rows = np.concatenate([modes, modes[-2:0:-1]], axis=0)
+        half = quadrant.shape[0]
+        waves = self._fft.rfft(rows, axis=0, norm="forward").real
+        return waves[:half].copy()  # type: ignore[no-any-return]
+
+    def workspace(self, shape: tuple[int, int], periods: tuple[int, int]) -> Array:
+        return np.empty(0)  # the library allocates its own
+
+    def convolve(
+        self,
+        values: Array,
+        spectrum: Array,
+        periods: tuple[int, int],
+        scale: float,
+        workspace: Array,
+        out: Array,
+    ) -> None:
+        nx, ny = values.shape
+        px, py = periods
+        scaled = np.divide(values, scale, dtype=np.float64)
+        # One axis after the other, so that rows of padding are not transformed.
+        modes = self._fft.rfft(scaled.astype(spectrum.dtype), n=py, axis=1)
+        modes = self._fft.fft(modes, n=px, axis=0)
+        weights, last = spectrum.T, px // 2
+        modes[: last + 1] *= weights
+        # Negative wave numbers. In an odd period the largest one has a negative counterpart, too.
+        modes[last + 1 :] *= weights[px - last - 1 : 0 : -1]
+        modes = self._fft.ifft(modes, axis=0, norm="forward", overwrite_x=True)[:nx]
+        padded = self._fft.irfft(modes, n=py, axis=1, norm="forward")
+        np.multiply(padded[:, :ny], scale, out=out, dtype=out.dtype)
+
+
+def accelerator(name: str, arrays: Any, fft: Any) -> Device:
+    """A device that uses a library like CuPy (`arrays`) and its version of scipy.fft (`fft`)."""
+    return _Arrays(name, arrays, fft)
+
+
+def _host() -> Device:
+    if compiled.loops is not None:
+        return _Compiled(compiled.loops)
+    import scipy.fft
+
+    return _Arrays("cpu", np, scipy.fft)
+
+
+CPU = _host()
+_current: ContextVar[Device] = ContextVar("device", default=CPU)
+
+
+def current() -> Device:
+    """The device on which solves run in the current context."""
+    return _current.get()
+
+
+@contextmanager
+def on_device(device: DeviceName | Device) -> Iterator[Device]:
+    """Run solves on a device: "cpu", "gpu", or "auto", a GPU if one is available.
+
+    Raises `CaseError` for "gpu" if CuPy or a usable GPU is missing.
+    """
+    chosen = _named(device) if isinstance(device, str) else device
+    token = _current.set(chosen)
+    try:
+        yield chosen
+    finally:
+        _current.reset(token)
+
+
+def _named(name: str) -> Device:
+    if name == "cpu":
+        return CPU
+    try:
+        return _gpu()
+    except CaseError:
+        if name == "auto":
+            return CPU
+        raise
+
+
+@lru_cache
+def _gpu() -> Device:
+    try:
+        import cupy
+        import cupyx.scipy.fft
+
+        cupy.cuda.Device().use()  # raises if there is no GPU
+    except ImportError as error:
+        raise CaseError(
+            f"device: gpu needs CuPy ({error}); install the extra gpu, from a checkout with "
+            '`pip install ".[gpu]"`, or use --device cpu'
+        ) from error
+    except Exception as error:
+        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+        raise CaseError(
+            f"device: no usable GPU ({reason}); check its driver, or use --device cpu"
+        ) from error
+    return accelerator("gpu", cupy, cupyx.scipy.fft)

@@ -1,0 +1,21 @@
+"""Diffusion on a graph of nodes."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.numerics.compiled import use_loop
+
+Array = NDArray[np.float64]
+
+
+@use_loop
+def diffuse(neighbours: NDArray[np.intp], weights: Array, steps: int, values: Array) -> None:
+    """Replace the two values at each node by the weighted sums over its neighbours, `steps` times.
+
+    `neighbours` (indices of nodes) and `weights` have shape (nodes, neighbours), `values` has shape
+    (nodes, 2) and is overwritten. Raises `IndexError` for an index that is not that of a node.
+    """
+    for _ in range(steps):
+        values[...] = np.einsum("ij,ijk->ik", weights, values[neighbours])

@@ -1,0 +1,25 @@
+"""Multipole series of an even source, on a grid."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.numerics.compiled import use_loop
+
+Array = NDArray[np.float64]
+
+
+@use_loop
+def multipoles(x: Array, y: Array, moments: Array, out: Array) -> None:
+    """Write Σ_kl moments[k, l] c^l / r^(2k + 1) at (x, y), a column and a row, into `out`.
+
+    c = x²/r² is the squared direction cosine along x; `moments` has shape (3, 3).
+    """
+    s = 1.0 / (x * x + y * y)
+    c = x * x * s
+    out[...] = 0.0
+    for row in moments[::-1]:
+        out *= s
+        out += (row[2] * c + row[1]) * c + row[0]
+    out *= np.sqrt(s)

@@ -1,0 +1,1 @@
+"""Box-constrained minimisation of a convex quadratic, and its multilevel start."""

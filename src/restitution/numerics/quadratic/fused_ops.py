@@ -1,0 +1,128 @@
+"""Steps of the minimiser on whole arrays, several operations in one pass over memory.
+
+Arguments are those of `minimise`: the point p, its gradient g, the bounds (numbers, or arrays of
+the shape of p), the projected gradient r, the preconditioned one z, the step d and its product Kd.
+p, g and the bounds are of double precision, the others of double or single precision.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.numerics.compiled import loop_takes, use_loop
+from restitution.numerics.reductions import dot, max_magnitude
+
+Array = NDArray[Any]
+Bound = NDArray[np.float64] | float
+
+
+def as_rows(bound: Bound, p: Array) -> Bound:
+    """The bound as loops take it: a number becomes an array like p that stores a single row."""
+    if isinstance(bound, np.ndarray) or not loop_takes(p):
+        return bound
+    return np.broadcast_to(np.full(p.shape[1], bound), p.shape)
+
+
+@use_loop
+def projected_gradient(
+    p: Array, g: Array, b: Array, lower: Bound, upper: Bound, out: Array
+) -> float:
+    """Turn the product K p in `g` into the gradient K p − b, and project it into `out`.
+
+    The projected gradient is zero at nodes on a bound whose gradient pushes them onto it. Returns
+    its largest magnitude, the violation of the optimality conditions.
+    """
+    g -= b
+    free = g * _free(p, g, lower, upper)
+    out[...] = free
+    return max_magnitude(free)
+
+
+@use_loop
+def dot_products(z: Array, r: Array, r_old: Array) -> tuple[float, float]:
+    """r·z and r_old·z."""
+    return dot(r, z), dot(r_old, z)
+
+
+@use_loop
+def curvature(d: Array, Kd: Array) -> tuple[float, float]:
+    """d·Kd and the largest magnitude of Kd."""
+    return dot(d, Kd), max_magnitude(Kd)
+
+
+@use_loop
+def projected_direction(
+    d: Array,
+    beta: float,
+    z: Array,
+    length: float,
+    p: Array,
+    g: Array,
+    r: Array,
+    lower: Bound,
+    upper: Bound,
+) -> tuple[float, bool]:
+    """Turn the step d at p into `beta` d − `length` z on the free nodes, cut off at the bounds.
+
+    Returns r·d, and whether any node was cut off.
+    """
+    np.multiply(d, beta, out=d, dtype=np.float64)
+    np.subtract(d, np.multiply(z, length, dtype=np.float64), out=d)
+    d *= _free(p, g, lower, upper)
+    end = p + d
+    cut = _is_outside(end, lower, upper)
+    np.clip(end, lower, upper, out=end)
+    np.subtract(end, p, out=d)
+    return dot(r, d), cut
+
+
+@use_loop
+def violates_bounds(p: Array, d: Array, step: float, lower: Bound, upper: Bound) -> bool:
+    """Whether p + `step` d is outside the bounds at any node."""
+    return _is_outside(p + np.multiply(d, step, dtype=np.float64), lower, upper)
+
+
+@use_loop
+def take_step(
+    p: Array, g: Array, d: Array, Kd: Array, step: float, lower: Bound, upper: Bound, out: Array
+) -> float:
+    """Move p to p + `step` d and g to g + `step` Kd; `out` and result as in `projected_gradient`.
+
+    A full step (1) that was cut off at a bound ends exactly on it, without rounding.
+    """
+    low, high = (
+        (step == 1) & (d == (bound - p).astype(d.dtype, copy=False)) for bound in (lower, upper)
+    )
+    p += np.multiply(d, step, dtype=np.float64)
+    np.clip(p, np.where(high, upper, lower), np.where(low, lower, upper), out=p)
+    g += np.multiply(Kd, step, dtype=np.float64)
+    np.multiply(g, _free(p, g, lower, upper), out=out)
+    return max_magnitude(out)
+
+
+def _free(p: Array, g: Array, lower: Bound, upper: Bound) -> NDArray[np.bool_]:
+    """Nodes that can move downhill: between the bounds, or on one and pushed off it."""
+    free = p > lower
+    free |= g < 0
+    if _is_unbounded(upper):
+        return free
+    below = p < upper
+    below |= g > 0
+    free &= below
+    return free
+
+
+def _is_outside(p: Array, lower: Bound, upper: Bound) -> bool:
+    """Whether p is outside its bounds at any node."""
+    outside = p < lower
+    if not _is_unbounded(upper):
+        outside |= p > upper
+    return bool(outside.any())
+
+
+def _is_unbounded(upper: Bound) -> bool:
+    """Whether there is no upper bound at all, so that nothing needs to be compared with it."""
+    return isinstance(upper, float) and upper == np.inf

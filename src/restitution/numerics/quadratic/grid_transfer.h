@@ -1,0 +1,55 @@
+// Restriction to a coarser grid and prolongation back, in double precision. They compute the same as
+// the expressions in grid_transfer.py.
+
+template <class Coarse, class Fine>
+void expect_halves(const Coarse& coarse, const Fine& fine) {
+    if (coarse.count != (fine.count + 1) / 2 || coarse.length != (fine.length + 1) / 2)
+        throw std::invalid_argument("the coarse array must have half as many rows and columns");
+}
+
+inline void restrict_grid(Rows<const double> fine, Rows<double> coarse) {
+    expect_halves(coarse, fine);
+    const auto some = [&](Index begin, Index end) {
+        for (Index i = begin; i < end; ++i) {
+            const double *one = fine[2 * i], *two = fine[std::min(2 * i + 1, fine.count - 1)];
+            double* mean = coarse[i];
+            for (Index j = 0; j < fine.length / 2; ++j)
+                mean[j] = 0.25 * (one[2 * j] + two[2 * j] + one[2 * j + 1] + two[2 * j + 1]);
+            const Index last = fine.length - 1;
+            if (fine.length % 2) mean[last / 2] = 0.5 * (one[last] + two[last]);
+        }
+        return Sums{};
+    };
+    over_rows(some, coarse);
+}
+
+inline void prolong_grid(Rows<const double> coarse, Rows<double> fine) {
+    expect_halves(coarse, fine);
+    const auto some = [&](Index begin, Index end) {
+        std::vector<double> padded(coarse.length + 2);
+        double* row = padded.data() + 1;
+        for (Index i = begin; i < end; ++i) {
+            const Index beside =
+                i % 2 ? std::min(i / 2 + 1, coarse.count - 1) : std::max(i / 2 - 1, Index(0));
+            const double *near = coarse[i / 2], *far = coarse[beside];
+            for (Index j = 0; j < coarse.length; ++j) row[j] = 0.75 * near[j] + 0.25 * far[j];
+            row[-1] = row[0];
+            row[coarse.length] = row[coarse.length - 1];
+            double* out = fine[i];
+#pragma omp simd
+            for (Index j = 0; j < fine.length / 2; ++j) {
+                out[2 * j] = 0.75 * row[j] + 0.25 * row[j - 1];
+                out[2 * j + 1] = 0.75 * row[j] + 0.25 * row[j + 1];
+            }
+            const Index last = fine.length / 2;
+            if (fine.length % 2) out[2 * last] = 0.75 * row[last] + 0.25 * row[last - 1];
+        }
+        return Sums{};
+    };
+    over_rows(some, fine);
+}
+
+inline void define_grid_transfer(py::module_& module) {
+    module.def("restrict", &restrict_grid);
+    module.def("prolong", &prolong_grid);
+}

@@ -1,0 +1,43 @@
+"""Restriction to a grid of cells twice as wide, and prolongation back.
+
+Cells are merged in pairs along each axis, from the first on; a last odd one stands alone.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.numerics.compiled import use_loop
+
+Array = NDArray[np.float64]
+
+
+@use_loop
+def restrict(fine: Array, coarse: Array) -> None:
+    """Write the means of 2 × 2 nodes into `coarse`; a last odd row or column counts twice."""
+    rows, columns = (n % 2 for n in fine.shape)
+    fine = np.pad(fine, [(0, rows), (0, columns)], mode="edge")
+    np.add(fine[::2, ::2], fine[1::2, ::2], out=coarse)
+    coarse += fine[::2, 1::2]
+    coarse += fine[1::2, 1::2]
+    coarse *= 0.25
+
+
+@use_loop
+def prolong(coarse: Array, fine: Array) -> None:
+    """Write the linear interpolation of `coarse` into `fine`; constant beyond the outer centres."""
+    rows, columns = fine.shape
+    taller = _doubled_rows(coarse)[:rows].T
+    fine[...] = _doubled_rows(taller)[:columns].T
+
+
+def _doubled_rows(coarse: Array) -> Array:
+    """Linear interpolation along the first axis to twice as many rows."""
+    before = np.concatenate([coarse[:1], coarse[:-1]])
+    after = np.concatenate([coarse[1:], coarse[-1:]])
+    n, columns = coarse.shape
+    fine = np.empty_like(coarse, shape=(2 * n, columns), order="C")
+    fine[::2] = 0.75 * coarse + 0.25 * before
+    fine[1::2] = 0.75 * coarse + 0.25 * after
+    return fine

@@ -1,0 +1,45 @@
+"""Means of an array around a few evenly spaced places of the grid, over its nonzero nodes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.numerics.compiled import use_loop
+
+Array = NDArray[Any]  # of double or single precision
+
+
+@use_loop
+def local_sums(r: Array, sums: Array, nodes: Array) -> None:
+    """Write Σ r and the number of nodes where r ≠ 0, around each place, into `sums` and `nodes`.
+
+    Both have shape (places, places), with at least two places. Between the centres of two places a
+    node is shared between them, linearly (hat functions).
+    """
+    over_x, over_y = _hat_weights(r, sums)
+    sums[...] = over_x.T @ r @ over_y
+    nodes[...] = over_x.T @ (r != 0).astype(np.float64) @ over_y
+
+
+@use_loop
+def subtract_local_mean(r: Array, share: float, sums: Array, nodes: Array, out: Array) -> None:
+    """Write r less `share` of its mean around each node into `out`, and zero where r = 0.
+
+    `sums` and `nodes` are those of `local_sums`, interpolated between the places.
+    """
+    over_x, over_y = _hat_weights(r, sums)
+    total, count = (over_x @ at_places @ over_y.T for at_places in (sums, nodes))
+    np.multiply(r - share * total / (count + (r == 0)), r != 0, out=out)
+
+
+def _hat_weights(r: Array, places: Array) -> list[Array]:
+    """Weights of each row and of each column of `r` at each of the places."""
+    hats = []
+    for n, m in zip(r.shape, places.shape, strict=True):
+        node, place = (np.cumsum(np.ones_like(places, shape=k)) for k in (n, m))
+        position = np.clip((node - 0.5) * m / n + 0.5, 1, m)
+        hats.append(np.maximum(0.0, 1.0 - np.abs(position[:, None] - place)))
+    return hats

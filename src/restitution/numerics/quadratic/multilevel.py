@@ -1,0 +1,205 @@
+"""Box-constrained minimisation with a multilevel start: coarser grids first, then a window.
+
+The problem is that of `minimise` with lower = 0 on a uniform grid. Restricted to means over 2 × 2
+nodes it is the same problem on a grid with half as many nodes along each axis. Its solution is a
+first guess of all but the shortest waves (nested iteration; Venner and Lubrecht 2000, *Multilevel
+Methods in Lubrication*). The guess also shows where the pressure is, so the fine problem is solved
+on a window around it. The optimality conditions are then checked on all nodes; violations outside
+widen the window.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeGuard
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.numerics.box import Box, bounding_box, shape_of, union, widen
+from restitution.numerics.convolution.operators import FreeConvolution, SpectralFilter
+from restitution.numerics.quadratic.fused_ops import Bound
+from restitution.numerics.quadratic.grid_transfer import prolong, restrict
+from restitution.numerics.quadratic.local_mean import local_sums, subtract_local_mean
+from restitution.numerics.quadratic.minimise import (
+    Minimum,
+    Operator,
+    minimise_quadratic,
+    violation,
+)
+from restitution.numerics.reductions import dot
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+# Builds the operator and its approximate inverse on a block of that many nodes, which are 2ⁿ times
+# as wide as the finest at level n.
+Operators = Callable[[tuple[int, int], int], tuple[FreeConvolution, SpectralFilter]]
+
+# Nodes along the shorter edge: below the first number a guess costs more than it saves, below the
+# second one the coarsest grid has been reached.
+_MIN_NODES_FOR_GUESS, _MIN_NODES_TO_COARSEN = 120, 80
+# Tolerance on coarser grids, as a fraction of the largest b. Prolongation loses anything finer.
+_COARSE_ACCURACY = 1e-2
+_COARSE_ITERATIONS = 60
+_MARGIN = 3  # nodes around the guess
+# Largest window, as a fraction of all nodes: the check of a larger one costs more than it saves.
+_MAX_WINDOW_FRACTION = 0.7
+_PLACES = 8  # places along each axis around which means are taken
+# Largest fraction of contact nodes strictly between the bounds for which the guess corrects the
+# edge of the contact by the gradient; and the part of the pressure that would close a gap at one
+# node alone that the correction uses (0.15 to 0.5 are nearly as good).
+_MAX_FREE_FRACTION, _GAP_FRACTION = 0.05, 0.3
+# Rayleigh quotient of K·M, M the approximate inverse, on the free nodes above which the mean is
+# damped; and the largest damping factor that is worth its cost.
+_USUAL_STIFFNESS, _MAX_DAMPING_FACTOR = 3.5, 0.7
+
+
+def solve_multilevel(
+    operators: Operators,
+    b: Array,
+    upper: Bound,
+    *,
+    tolerance: float,
+    max_iterations: int,
+) -> tuple[Minimum, int]:
+    """Minimise with 0 ≤ p ≤ `upper` from a multilevel start.
+
+    `b` has shape (nx, ny); `upper` is a number or an array of that shape. `tolerance` is on the
+    violation, in the units of `b`. Returns the result and the number of products with K on the
+    finest grid. If the solve does not converge, the result says so; nothing is raised.
+    """
+    whole_grid: Box = (slice(0, b.shape[0]), slice(0, b.shape[1]))
+    size = shape_of(whole_grid)
+    p, Kp, products = np.zeros_like(b), None, 0
+    whole_K, whole_inverse = operators(size, 0)  # first: smaller blocks share its coefficients
+    if min(size) >= _MIN_NODES_FOR_GUESS:
+        p = _first_guess(operators, b, upper, level=1)
+    window = bounding_box(p > 0)
+    if window is not None and _is_worth_its_check(window, size):
+        # Coarse grids miss some contact. Include the nodes that the guess leaves closed.
+        Kp = whole_K.single_precision(p)
+        window = bounding_box((p > 0) | (Kp < b))
+    window = whole_grid if window is None else widen(window, _MARGIN, size)
+    while True:
+        if not _is_worth_its_check(window, size):
+            window = whole_grid
+        K, inverse = whole_K, whole_inverse
+        if window != whole_grid:
+            K, inverse = operators(shape_of(window), 0)
+        bound = upper[window] if _is_array(upper) else upper
+        found = minimise_quadratic(
+            K,
+            b[window],
+            0.0,
+            bound,
+            start=p[window],
+            precondition=mean_damped_preconditioner(inverse, p[window], b[window], bound),
+            tolerance=tolerance,
+            max_iterations=max_iterations,
+            K_single=K.single_precision,
+            K_start=None if Kp is None else Kp[window],
+            accept_estimated_gradient=window != whole_grid,  # the full-grid check below decides
+        )
+        if window == whole_grid:
+            return found, products + whole_K.count
+        products += K.count
+        iterations, converged = found.iterations, found.converged
+        del K, inverse, found  # frees their arrays before the check allocates its own
+        g = whole_K(p, out=Kp)
+        residual = violation(p, g, b, 0.0, upper)
+        if residual <= tolerance or not converged:
+            checked = Minimum(p, g, residual, iterations, residual <= tolerance)
+            return checked, products + whole_K.count
+        wider = union(window, bounding_box(g < -tolerance))
+        Kp = np.add(g, b, out=g)
+        # If the window did not grow, only rounding is left: solve on the whole grid.
+        window = whole_grid if wider is None or wider == window else widen(wider, _MARGIN, size)
+
+
+def mean_damped_preconditioner(inverse: Operator, p: Array, b: Array, upper: Bound) -> Operator:
+    """`inverse`, with the local mean of its argument damped where `inverse` overestimates it.
+
+    A constant on a part of the nodes ends in steps. The inverse of a smoothing operator amplifies
+    the short waves of a step, the more the finer the grid (McLean and Steinbach 1999, Adv. Comput.
+    Math. 11, 271–286), and so overestimates the constant: up to 30 times on rough contacts, far
+    more than everything else, and conjugate gradients would have to correct it again whenever nodes
+    change sides. The guess `p` tells by how much, because K p = b on its nodes. Means around 8 × 8
+    places stand for the nearly constant part.
+    """
+    free, free_nodes, contact_nodes = _between_the_bounds(p, upper)
+    if free_nodes <= 0.5 * contact_nodes:  # no guess, or mostly yielding
+        return inverse
+    constant: Any = free.astype(np.float32)
+    image = inverse(constant, out=np.empty_like(constant))
+    stiffness = dot(b, constant) / float(p.sum()) * (dot(image, constant) / contact_nodes)
+    factor = _USUAL_STIFFNESS / max(stiffness, _USUAL_STIFFNESS)
+    if factor > _MAX_DAMPING_FACTOR:
+        return inverse
+
+    def damped(r: Array, out: Array | None = None) -> Array:
+        result = np.empty_like(r) if out is None else out
+        sums, nodes = np.empty_like(b, shape=(2, _PLACES, _PLACES))
+        local_sums(r, sums, nodes)
+        subtract_local_mean(r, 1.0 - factor, sums, nodes, result)
+        return inverse(result, out=result)
+
+    return damped
+
+
+def _is_array(bound: Bound) -> TypeGuard[Array]:
+    """Whether each node has a bound of its own."""
+    return np.ndim(bound) > 0
+
+
+def _between_the_bounds(p: Array, upper: Bound) -> tuple[Mask, int, int]:
+    """The nodes with 0 < p < `upper`, their number, and the number of nodes with 0 < p."""
+    touching = p > 0
+    free = touching & (p < upper)
+    return free, int(np.count_nonzero(free)), int(np.count_nonzero(touching))
+
+
+def _is_worth_its_check(window: Box, size: tuple[int, int]) -> bool:
+    """Whether a window on a grid of that size saves more than the check of all nodes costs."""
+    rows, columns = shape_of(window)
+    return rows * columns <= _MAX_WINDOW_FRACTION * size[0] * size[1]
+
+
+def _first_guess(operators: Operators, b: Array, upper: Bound, level: int) -> Array:
+    """The prolonged solution on the grid of `level`, itself begun on the next coarser one.
+
+    On the coarsest grid the guess is zero.
+    """
+    if min(b.shape) < _MIN_NODES_TO_COARSEN:
+        return np.zeros_like(b)
+    rows, columns = b.shape
+    size = (rows + 1) // 2, (columns + 1) // 2
+    coarse = np.empty_like(b, shape=size, order="C")
+    restrict(b, coarse)
+    bound = upper
+    if _is_array(upper):
+        bound = np.empty_like(coarse)
+        restrict(upper, bound)
+    K, inverse = operators(size, level)
+    start = _first_guess(operators, coarse, bound, level + 1)
+    found = minimise_quadratic(
+        K,
+        coarse,
+        0.0,
+        bound,
+        start=start,
+        precondition=mean_damped_preconditioner(inverse, start, coarse, bound),
+        tolerance=_COARSE_ACCURACY * max(float(b.max()), 0.0),
+        max_iterations=_COARSE_ITERATIONS,
+        K_single=K.single_precision,
+        accept_estimated_gradient=True,
+    )
+    guess = np.empty_like(b, order="C")
+    _, free_nodes, contact_nodes = _between_the_bounds(found.point, bound)
+    if free_nodes > _MAX_FREE_FRACTION * contact_nodes:
+        prolong(found.point, guess)
+        return guess
+    # In a nearly fully plastic contact the pressure jumps to zero somewhere between two nodes. The
+    # gradient at both, plastic displacement at the one and gap at the other, places the jump.
+    prolong(found.point - _GAP_FRACTION / K.diagonal * found.gradient, guess)
+    return np.clip(guess, 0.0, upper, out=guess)
