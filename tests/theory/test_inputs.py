@@ -168,8 +168,8 @@ IMPACT_LAWS: list[type[ImpactLaw]] = [
     law for law, name, names, _ in QUANTITIES
     if name == "restitution" and names == ("velocity", "mass")
 ]  # fmt: skip
-HELD_AT_ZERO = (JKR, "force"), (JKR, "contact_radius"), (JKR, "unloading_work")  # to their break
-# of which the quantity is made without one of the law's parameters
+HELD_AT_ZERO = (JKR, "force"), (JKR, "contact_radius"), (JKR, "unloading_work")  # to the break
+# parameters of the law that a quantity does not depend on
 LEFT_OUT = {
     (Hertz, "contact_radius"): ("contact_modulus",),
     (Hertz, "contact_area"): ("contact_modulus",),

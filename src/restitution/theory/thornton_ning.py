@@ -102,8 +102,8 @@ class ThorntonNing:
         again, and the force is `loading_force`.
         """
         d, R_p = touching(indentation), self.unloading_radius(maximum_indentation)
-        left = touching(d - self.residual_indentation(maximum_indentation))
-        unloading = 4 / 3 * self.contact_modulus * R_p**0.5 * left**1.5
+        left = d - self.residual_indentation(maximum_indentation)
+        unloading = (R_p / self.radius) ** 0.5 * self.elastic.force(left)
         beyond = d > touching(maximum_indentation)
         return scalar_or_array(np.where(beyond, self.loading_force(d), unloading))
 
