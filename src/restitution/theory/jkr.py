@@ -17,8 +17,8 @@ With a_b = (πwR*²/8E*)^{1/3}, F_c = 3/2 πwR* and U = E*a_b⁵/R*², all is po
     s³ = 4    δ = 0, where an approaching pair jumps in:  F = −8/9 F_c
     s³ = 6    no load:  a = (9πwR*²/2E*)^{1/3}
 
-s ≥ 1 is stable at fixed grips, s < 1 unstable. Functions of the contact radius hold on both
-branches, functions of the indentation on the stable one: it exists from δ_b up, but a pair enters
+s ≥ 1 is stable at fixed grips, s < 1 unstable. Methods of the contact radius hold on both
+branches, methods of the indentation on the stable one: it exists from δ_b up, but a pair enters
 it only by jumping in at δ = 0 (F is 0 before) and leaves it only at δ_b. Nothing touches below
 δ_b, so all is 0 there. One cycle from apart to apart loses the same energy however deep it went,
 what the jump in and the break shed,
@@ -35,7 +35,7 @@ With V the velocity before the jump in, an elastic impact of reduced mass m* sti
 (the same authors print 14.18; 2 × 7.092 = 14.184 exactly, used here).
 
 Valid for quasi-static normal impacts where Hertz is (a ≪ R*, nothing yields: V and V_s below
-`FirstYield.velocity`) and for forces of short range, which the Tabor parameter says
+`FirstYield.velocity`) and for forces of short range, that is for a large Tabor parameter
 
     μ = (R*w²/(E*²z₀³))^{1/3}
 
