@@ -9,7 +9,7 @@ import numpy as np
 
 from restitution import Body, Contact, Grid, Pair, Surface, solve
 from restitution.contact.separation import separate, separation_of
-from restitution.theory import jkr
+from restitution.theory import JKR
 
 OFFSETS = ((0, 0), (0.5, 0.5), (0.5, 0), (0.23, 0.41), (0.37, 0.12), (0.08, 0.29))
 W = 0.09
@@ -22,9 +22,9 @@ def sphere(nodes_over_pull_off_radius, offset, detachment, depth, approach="hert
     """
     body = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25, density=7850)
     pair = Pair(body, body)
-    material = pair.radius, pair.contact_modulus, W
-    h = float(jkr.pull_off_radius(*material)) / nodes_over_pull_off_radius
-    deep = -3 * float(jkr.break_indentation(*material)) if depth is None else depth
+    smooth = JKR(pair.radius, pair.contact_modulus, W)
+    h = float(smooth.pull_off_radius) / nodes_over_pull_off_radius
+    deep = -3 * float(smooth.break_indentation) if depth is None else depth
     n = 2 * int(1.5 * np.sqrt(2.8 * pair.radius * deep) / h + 6) + 1
     grid = Grid((n, n), (h, h))
     x, y = grid.x[:, None], grid.y[None, :]
@@ -39,7 +39,8 @@ def pull_off(nodes, offset, detachment, depth=None):
     """Pull-off force over its exact value, from `depth` (m) or from three break indentations."""
     contact, deep = sphere(nodes, offset, detachment, depth)
     path = list(separate(solve(contact, deep)))
-    return separation_of(path).pull_off_force / float(jkr.pull_off_force(250e-6, W))
+    exact = JKR(250e-6, contact.pair.contact_modulus, W).pull_off_force
+    return separation_of(path).pull_off_force / float(exact)
 
 
 def row(what, found):

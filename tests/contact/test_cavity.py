@@ -14,7 +14,7 @@ from restitution.contact.load import solve_at_force
 from restitution.contact.loading import solve, step
 from restitution.contact.path import loading_path, unloading_path
 from restitution.errors import CaseError
-from restitution.theory import hertz
+from restitution.theory import Hertz
 from tolerance import approx
 
 Y = 1e9
@@ -265,7 +265,7 @@ def test_adhesion_on_top():
 def test_an_elastic_sphere_below_first_yield_is_hertz():
     state = solve(ball(2, 128), 0.5 * FIRST)
     E_star, R = PAIR.contact_modulus, PAIR.radius
-    assert state.force == approx(float(hertz.force(0.5 * FIRST, R, E_star)), rel=5e-3)
+    assert state.force == approx(float(Hertz(R, E_star).force(0.5 * FIRST)), rel=5e-3)
     assert collide(state).restitution == 1.0
     assert state.work_error == 0.0
 

@@ -20,7 +20,7 @@ from restitution.contact.detachment import (
 from restitution.contact.influence import half_space
 from restitution.contact.separation import separate, separation_of
 from restitution.numerics.diffusion import diffuse
-from restitution.theory import kendall
+from restitution.theory import Kendall
 from tolerance import approx
 
 E_STAR, W = 112e9, 0.09
@@ -84,7 +84,7 @@ def test_the_edge_of_a_punch_is_a_crack(nodes):
     """G = K²/2E* = F²/(8πE*a³): w at Kendall's force."""
     contact, disc, radius = punch(nodes)
     E, w = contact.pair.contact_modulus, 0.1
-    state, fields = drawn(contact, disc, float(kendall.pull_off_displacement(radius, E, w)))
+    state, fields = drawn(contact, disc, float(Kendall(E, w).pull_off_displacement(radius)))
     G = energy_release_rate(*fields)[1]
     expected = state.force**2 / (8 * math.pi * E * radius**3)
     assert expected == approx(w, rel=0.02)
@@ -206,7 +206,7 @@ def test_crack_closure_releases_nodes_apart_from_each_other():
     """Beyond w everywhere along the edge: the tensest go, none beside another."""
     contact, disc, radius = punch(20.4)
     E, w = contact.pair.contact_modulus, 0.1
-    far = 1.3 * float(kendall.pull_off_displacement(radius, E, w))
+    far = 1.3 * float(Kendall(E, w).pull_off_displacement(radius))
     _, (p, u, h, touching) = drawn(contact, disc, far)
     released = CrackClosure(w, math.inf).releases(p, u, h, touching)
     assert 4 <= released.sum() < 40
@@ -215,7 +215,7 @@ def test_crack_closure_releases_nodes_apart_from_each_other():
     apart = np.maximum(abs(i[:, None] - i), abs(j[:, None] - j))
     assert apart[~np.eye(i.size, dtype=bool)].min() > 1
     assert p[released].max() < 0
-    near = 0.8 * float(kendall.pull_off_displacement(radius, E, w))
+    near = 0.8 * float(Kendall(E, w).pull_off_displacement(radius))
     _, fields = drawn(contact, disc, near)
     assert not CrackClosure(w, math.inf).releases(*fields).any()
 
@@ -224,7 +224,7 @@ def test_rounding_does_not_choose_between_nodes():
     """Of nodes that are equal by symmetry the same one goes, whatever the last digits are."""
     contact, disc, radius = punch(20.4)
     E, w = contact.pair.contact_modulus, 0.1
-    far = 1.3 * float(kendall.pull_off_displacement(radius, E, w))
+    far = 1.3 * float(Kendall(E, w).pull_off_displacement(radius))
     _, (p, u, h, touching) = drawn(contact, disc, far)
     released = [
         CrackClosure(w, math.inf).releases(noisy, u, h, touching)

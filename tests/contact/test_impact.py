@@ -10,7 +10,7 @@ from restitution.contact.loading import solve
 from restitution.contact.path import loading_path
 from restitution.errors import CaseError, DomainError
 from restitution.numerics.grid import Grid
-from restitution.theory import thornton_ning
+from restitution.theory import ThorntonNing
 from tolerance import approx
 
 UM, NM = 1e-6, 1e-9
@@ -49,9 +49,8 @@ def test_smooth_spheres_sink_as_hertz_says_on_a_wall_and_on_each_other():
     for second in (steel, wall, small):
         pair = Pair(steel, second)
         depth = (4 * UM) ** 2 / pair.radius
-        velocity = thornton_ning.impact_velocity(
-            depth, pair.radius, pair.contact_modulus, 1e12, pair.mass
-        )
+        elastic = ThorntonNing(pair.radius, pair.contact_modulus, 1e12)
+        velocity = elastic.impact_velocity(depth, pair.mass)
         state = solve_at_velocity(Contact(pair, smooth(grid)), float(velocity))
         assert state.indentation == approx(depth, rel=2e-3)
 

@@ -9,10 +9,11 @@ from restitution.dem.compact import compact_fit
 from restitution.dem.fitted import fitted_laws
 from restitution.dem.law_files import table
 from restitution.reports.law_figure import figure
-from restitution.theory import thornton_ning, yielding
+from restitution.theory import ThorntonNing
 from tolerance import approx
 
 R, E_STAR, P_Y, MASS = 250e-6, 112e9, 750e6, 2e-6
+SMOOTH = ThorntonNing(R, E_STAR, P_Y)
 
 
 @pytest.fixture
@@ -38,15 +39,15 @@ def with_ratios(law):
 
 
 def test_thornton_and_nings_law_and_its_elastic_range(with_ratios):
-    V_y = float(yielding.yield_velocity(R, E_STAR, P_Y, MASS))
+    V_y = float(SMOOTH.first_yield.velocity(MASS))
     V = V_y * np.geomspace(0.3, 300, 25)
-    e = thornton_ning.restitution(V, R, E_STAR, P_Y, MASS)
+    e = SMOOTH.restitution(V, MASS)
     fit = compact_fit(with_ratios(V, e**2))
     assert fit.adhesion == 0
     assert V[0] < fit.elastic_below <= V_y
     assert fit.worst < 0.01
     fine = V_y * np.geomspace(0.3, 300, 400)
-    miss = fit.restitution(fine) - thornton_ning.restitution(fine, R, E_STAR, P_Y, MASS)
+    miss = fit.restitution(fine) - SMOOTH.restitution(fine, MASS)
     assert np.abs(miss).max() < 0.02
     assert (fit.lowest, fit.highest) == (V[0], V[-1])
 
@@ -65,9 +66,9 @@ def test_an_elastic_adhesive_pair_is_its_sticking_velocity(with_ratios):
 
 def test_both(with_ratios):
     """Additive losses, as Thornton and Ning have them."""
-    V_y = float(yielding.yield_velocity(R, E_STAR, P_Y, MASS))
+    V_y = float(SMOOTH.first_yield.velocity(MASS))
     V = V_y * np.geomspace(1.2, 100, 20)
-    e = thornton_ning.restitution(V, R, E_STAR, P_Y, MASS)
+    e = SMOOTH.restitution(V, MASS)
     V_s = 1.5 * V_y
     fit = compact_fit(with_ratios(V, e**2 - (V_s / V) ** 2, work_of_adhesion=0.1, sticks_below=V_s))
     assert np.sqrt(fit.adhesion) == approx(V_s, rel=0.15)

@@ -46,11 +46,11 @@ def test_materials_have_both_moduli(mixed):
 
 
 def test_springs_are_those_at_the_velocity(law):
-    from restitution.theory import walton_braun
+    from restitution.theory import WaltonBraun
 
     found = law(laws=(SPRINGS,))
     (row,) = rows(write(matrix_of([found]), 0.7)["restitution_edem.csv"])
-    e = walton_braun.restitution(0.7, 1e6, 1.5e6, 2e5, found.mass)
+    e = WaltonBraun(1e6, 1.5e6, 2e5).restitution(0.7, found.mass)
     assert float(row["hysteretic_restitution"]) == approx(e)
     ratio = float(row["hysteretic_K1_N_per_m"]) / float(row["hysteretic_K2_N_per_m"])
     assert ratio == approx(e**2)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 from restitution.dem.interpolation import RatioCurve
-from restitution.theory import thornton_ning
+from restitution.theory import ThorntonNing
 from tolerance import approx
 
 BETWEEN = Path(__file__).parents[2] / "docs" / "studies" / "between_velocities.csv"
@@ -31,7 +31,7 @@ def test_adhesion_and_yield_together():
     V = np.geomspace(0.02, 3, 12)
 
     def exact(v):
-        e = thornton_ning.restitution(v, R, E_STAR, P_Y, MASS)
+        e = ThorntonNing(R, E_STAR, P_Y).restitution(v, MASS)
         return e**2 - (0.05 / v) ** 2
 
     curve = RatioCurve(V, exact(V), adhesive=True)

@@ -4,10 +4,10 @@ import re
 
 import pytest
 
+from restitution import theory
 from restitution.dem.codes.lammps import write
 from restitution.dem.law import FittedLaw
 from restitution.dem.matrix import matrix_of
-from restitution.theory import mdr
 from tolerance import approx
 
 MDR = FittedLaw(
@@ -58,7 +58,7 @@ def test_one_type_is_offered_a_line_with_its_range(law):
 
 
 def test_the_line_runs_when_its_comment_is_opened(law, lammps, texts):
-    expected = mdr.restitution(0.5, 1e-3, 7e10, 0.25, 3e8, 2 * law().mass)
+    expected = theory.MDR(1e-3, 7e10, 0.25, 3e8).restitution(0.5, 2 * law().mass)
     folder = texts(opened([law(laws=(MDR,))]))
     assert lammps.pair(folder, 1, 1) == approx(expected, abs=0.01)
 
@@ -69,9 +69,9 @@ def test_the_line_of_a_wall_runs_beside_that_of_the_spheres(law, plate, lammps, 
     assert "# variable wall_1_2 string 'granular mdr 7e+10 0.25 200000000" in said
     assert "No mdr line" not in said
     folder = texts(opened(laws))
-    expected = mdr.restitution(1.0, 1e-3, 7e10, 0.25, 2e8, laws[1].mass)
+    expected = theory.MDR(1e-3, 7e10, 0.25, 2e8).restitution(1.0, laws[1].mass)
     assert lammps.pair(folder, 1, 2) == approx(expected, abs=0.01)
-    expected = mdr.restitution(0.5, 1e-3, 7e10, 0.25, 3e8, laws[1].mass)
+    expected = theory.MDR(1e-3, 7e10, 0.25, 3e8).restitution(0.5, laws[1].mass)
     assert lammps.pair(folder, 1, 1) == approx(expected, abs=0.01)
 
 

@@ -14,7 +14,7 @@ from restitution.dem.reference import StoredForce, collide_in_time, course, stor
 from restitution.errors import CaseError, DomainError, OutputError
 from restitution.results.writer import ResultsFolder
 from restitution.runs.ensemble import run_realisations
-from restitution.theory import thornton_ning
+from restitution.theory import ThorntonNing
 from tolerance import approx
 
 STEEL = Body(500e-6, 210e9, 0.25, 7850.0)
@@ -25,18 +25,18 @@ P_Y = 750e6
 
 def closed_form(pair, p_y, depths):
     """Thornton and Ning's force law, as exact as it is stored."""
-    material = pair.radius, pair.contact_modulus, p_y
+    smooth = ThorntonNing(pair.radius, pair.contact_modulus, p_y)
     curves = []
     for deepest in depths:
-        end = float(thornton_ning.residual_indentation(deepest, *material))
+        end = float(smooth.residual_indentation(deepest))
         x = end + (deepest - end) * np.linspace(0, 1, 60) ** 2
-        curves.append((x, thornton_ning.unloading_force(x, deepest, *material)))
+        curves.append((x, smooth.unloading_force(x, deepest)))
     return StoredForce(
         pair=pair,
         deepest=float(depths[-1]),
-        highest=float(thornton_ning.impact_velocity(depths[-1], *material, pair.mass)),
-        loading=lambda x: float(thornton_ning.loading_force(max(x, 0.0), *material)),
-        separation=lambda x: float(thornton_ning.residual_indentation(x, *material)),
+        highest=float(smooth.impact_velocity(depths[-1], pair.mass)),
+        loading=lambda x: float(smooth.loading_force(max(x, 0.0))),
+        separation=lambda x: float(smooth.residual_indentation(x)),
         unloading_from=np.asarray(depths),
         unloading=tuple(curves),
     )
@@ -45,14 +45,14 @@ def closed_form(pair, p_y, depths):
 @pytest.mark.parametrize("second", [STEEL, SMALL, WALL])
 def test_thornton_and_nings_spheres(second):
     pair = Pair(STEEL, second)
-    material = pair.radius, pair.contact_modulus, P_Y
+    smooth = ThorntonNing(pair.radius, pair.contact_modulus, P_Y)
     depths = np.geomspace(20e-9, 2e-6, 6)
     law = closed_form(pair, P_Y, depths)
     for deepest in depths[1:]:
-        velocity = float(thornton_ning.impact_velocity(deepest, *material, pair.mass))
+        velocity = float(smooth.impact_velocity(deepest, pair.mass))
         found = collide_in_time(law, velocity)
         assert found.largest_indentation == approx(deepest, rel=1e-6)
-        exact = thornton_ning.restitution(velocity, *material, pair.mass)
+        exact = smooth.restitution(velocity, pair.mass)
         assert found.restitution == approx(float(exact), abs=2e-4)
         assert not found.blended
 

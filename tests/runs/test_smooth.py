@@ -2,13 +2,13 @@ import numpy as np
 
 from restitution import Body, Contact, Grid, Pair, smooth
 from restitution.runs.smooth import smooth_curve
-from restitution.theory import hertz, yielding
+from restitution.theory import FirstYield, Hertz
 from tolerance import approx
 
 STEEL = Body(500e-6, 210e9, 0.25, density=7850)
 PAIR = Pair(STEEL, STEEL)
 P_Y = 750e6
-YIELD = float(yielding.yield_indentation(PAIR.radius, PAIR.contact_modulus, P_Y))
+YIELD = float(FirstYield(PAIR.radius, PAIR.contact_modulus, P_Y).indentation)
 GRID = Grid((8, 8), (1e-6, 1e-6))
 
 
@@ -43,7 +43,7 @@ def test_up_to_yield_it_is_hertz():
     found = values(contact, rows(1e-8, 3e-7))
     assert (found["smooth_restitution"] == 1).all()
     assert found["smooth_force"] == approx(
-        hertz.force(found["smooth_indentation"], PAIR.radius, PAIR.contact_modulus)
+        Hertz(PAIR.radius, PAIR.contact_modulus).force(found["smooth_indentation"])
     )
 
 

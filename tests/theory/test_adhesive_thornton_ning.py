@@ -4,35 +4,34 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
-from restitution.theory import adhesive_thornton_ning as atn
-from restitution.theory import jkr, sticking, thornton_ning, yielding
+from restitution.theory import JKR, AdhesiveThorntonNing, FirstYield, ThorntonNing
 from tolerance import approx
 
 R, E_STAR, P_Y, MASS = 250e-6, 112e9, 750e6, 2e-6
 SHARP = (R, E_STAR, P_Y)
-V_Y = yielding.yield_velocity(*SHARP, MASS)
+V_Y = FirstYield(*SHARP).velocity(MASS)
 
 
 def adhesion(ratio):
     """The work of adhesion that makes V_s/V_y equal to `ratio`: V_s grows as w^{5/6}."""
-    return (ratio * V_Y / sticking.sticking_velocity(R, E_STAR, 1.0, MASS)) ** 1.2
+    return (ratio * V_Y / JKR(R, E_STAR, 1.0).sticking_velocity(MASS)) ** 1.2
 
 
 def restitution(v, ratio):
     """e at V/V_y and V_s/V_y."""
-    return atn.restitution(v * V_Y, *SHARP, adhesion(ratio), MASS)
+    return AdhesiveThorntonNing(R, E_STAR, P_Y, adhesion(ratio)).restitution(v * V_Y, MASS)
 
 
 @given(st.floats(1.0 + 1e-9, 1e3), st.floats(1e-4, 0.999))
 def test_the_losses_are_added_beyond_yield(v, ratio):
-    e_p = thornton_ning.restitution(v * V_Y, *SHARP, MASS)
+    e_p = ThorntonNing(*SHARP).restitution(v * V_Y, MASS)
     assert_allclose(restitution(v, ratio) ** 2, e_p**2 - (ratio / v) ** 2, rtol=1e-11, atol=1e-14)
 
 
 @given(st.floats(1e-3, 1.0 - 1e-9), st.floats(1e-4, 10.0))
 def test_below_yield_it_is_elastic_and_adhesive(v, ratio):
     w = adhesion(ratio)
-    e = jkr.restitution(v * V_Y, R, E_STAR, w, MASS)
+    e = JKR(R, E_STAR, w).restitution(v * V_Y, MASS)
     assert_allclose(restitution(v, ratio) ** 2, e**2, rtol=1e-11, atol=1e-13)
     if v < 0.999 * ratio:
         assert restitution(v, ratio) == 0
@@ -53,7 +52,7 @@ def test_restitution_rises_from_sticking_to_a_peak_beyond_yield_and_falls(ratio)
 
 def test_without_adhesion_it_is_thornton_and_ning():
     v = np.array([0.5, 1.0, 2.0, 10.0])
-    expected = thornton_ning.restitution(v * V_Y, *SHARP, MASS)
+    expected = ThorntonNing(*SHARP).restitution(v * V_Y, MASS)
     assert_allclose(restitution(v, 1e-9), expected, rtol=1e-14)
 
 
@@ -67,14 +66,14 @@ def test_ammonium_fluorescein_is_such_a_pair():
     R, density, E, nu, w, p_y = 2.45e-6, 1350.0, 1.2e9, 0.3, 0.2, 35.3e6
     E_star = 1 / ((1 - nu**2) / E + (1 - nu**2) / 182e9)
     mass = 4 / 3 * np.pi * R**3 * density
-    V_s = sticking.sticking_velocity(R, E_star, w, mass)
-    V_y = yielding.yield_velocity(R, E_star, p_y, mass)
+    V_s = JKR(R, E_star, w).sticking_velocity(mass)
+    V_y = FirstYield(R, E_star, p_y).velocity(mass)
     assert round(float(V_s), 3) == 0.567
     assert round(float(V_y), 3) == 0.183
     V = np.array([0.1, 0.183, 0.184, V_s, 1.6, 10.0])
-    e = atn.restitution(V, R, E_star, p_y, w, mass)
+    e = AdhesiveThorntonNing(R, E_star, p_y, w).restitution(V, mass)
     assert_array_equal(e, [0, 0, np.nan, np.nan, np.nan, np.nan])
-    assert sticking.tabor_parameter(R, E_star, w, 3e-10) > 5  # JKR applies, additivity does not
+    assert JKR(R, E_star, w).tabor_parameter(3e-10) > 5  # JKR applies, additivity does not
     # one array of works of adhesion spans both sides of the range
-    e = atn.restitution(1.0, R, E_star, p_y, np.array([1e-3, 0.2]), mass)
+    e = AdhesiveThorntonNing(R, E_star, p_y, np.array([1e-3, 0.2])).restitution(1.0, mass)
     assert_array_equal(np.isnan(e), [False, True])

@@ -1,4 +1,7 @@
-"""The rules every closed form shares: shapes, no contact, no body."""
+"""The rules every law shares: shapes, no contact, no body."""
+
+from dataclasses import FrozenInstanceError, fields, replace
+from operator import attrgetter
 
 import numpy as np
 import pytest
@@ -6,20 +9,21 @@ from numpy.testing import assert_array_equal
 
 from restitution.errors import CaseError
 from restitution.theory import (
-    adhesive_thornton_ning,
-    brilliantov,
-    eepa,
-    hertz,
-    jackson_green,
-    jkr,
-    johnson,
-    kendall,
-    luding,
-    mdr,
-    sticking,
-    thornton_ning,
-    walton_braun,
-    yielding,
+    EEPA,
+    JKR,
+    MDR,
+    AdhesiveThorntonNing,
+    Brilliantov,
+    FirstYield,
+    Hertz,
+    ImpactLaw,
+    JacksonGreen,
+    Johnson,
+    Kendall,
+    Luding,
+    ThorntonNing,
+    WaltonBraun,
+    yield_coefficient,
 )
 
 MATERIAL = {
@@ -27,15 +31,10 @@ MATERIAL = {
     "contact_modulus": 112e9,
     "yield_pressure": 750e6,
     "yield_strength": 270e6,
-    "poisson_ratio": 0.25,
-    "mass": 2e-6,
     "work_of_adhesion": 0.05,
-    "equilibrium_separation": 3e-10,
-    "sticking_velocity": 1e-3,
     "youngs_modulus": 100e9,
     "poissons_ratio": 0.25,
     "dissipation": 0.1,
-    "dissipative_time": 1e-6,
     "loading_stiffness": 1e6,
     "unloading_stiffness": 3e6,
     "limit_stiffness": 3e6,
@@ -51,13 +50,17 @@ STATE = {
     "maximum_indentation": 2e-7,
     "contact_radius": 1e-6,
     "force": 1e-2,
+    "energy": 1e-6,
     "velocity": 0.1,
 }
 
+# arguments of a quantity that have to be positive, as a material's
+GIVEN = {"mass": 2e-6, "equilibrium_separation": 3e-10, "restitution": 0.3}
+VALUES = MATERIAL | STATE | GIVEN
+
 NOT_POSITIVE = (0.0, -1.0, np.inf, np.nan)
-REFUSED = dict.fromkeys(MATERIAL, NOT_POSITIVE) | {
-    "poisson_ratio": (-1.0, 0.51, np.nan),
-    "poissons_ratio": (-0.1, 0.51, np.nan),
+REFUSED = dict.fromkeys(MATERIAL | GIVEN, NOT_POSITIVE) | {
+    "poissons_ratio": (-1.0, 0.51, np.nan),
     "unloading_stiffness": (0.9e6, np.inf, np.nan),
     "limit_stiffness": (0.9e6, np.inf, np.nan),
     "adhesive_stiffness": (-1.0, np.inf, np.nan),
@@ -66,176 +69,246 @@ REFUSED = dict.fromkeys(MATERIAL, NOT_POSITIVE) | {
     "exponent": (0.9, np.inf, np.nan),
 }
 
-SHARED = ("radius", "contact_modulus")
-SHARP = (*SHARED, "yield_pressure")
-SOFT = (*SHARED, "yield_strength", "poisson_ratio")
-STICKY = (*SHARED, "work_of_adhesion")
-STRONG = (*SHARED, "yield_strength")
-SPRINGS = ("loading_stiffness", "unloading_stiffness")
-LIMITED = ("radius", "loading_stiffness", "limit_stiffness")
-POWER = (*SPRINGS, "adhesive_stiffness", "constant_force", "exponent")
-SPHERE = ("radius", "youngs_modulus", "poissons_ratio", "yield_strength")
 UNLOADING = ("indentation", "maximum_indentation")
-FUNCTIONS = [
-    (hertz.force, ("indentation", *SHARED), 0),
-    (hertz.indentation_from_force, ("force", *SHARED), 0),
-    (hertz.contact_radius, ("indentation", "radius"), 0),
-    (hertz.contact_area, ("indentation", "radius"), 0),
-    (hertz.stored_energy, ("indentation", *SHARED), 0),
-    (hertz.peak_pressure, ("indentation", *SHARED), 0),
-    (yielding.yield_indentation, SHARP, None),
-    (yielding.yield_force, SHARP, None),
-    (yielding.yield_velocity, (*SHARP, "mass"), None),
-    (thornton_ning.loading_force, ("indentation", *SHARP), 0),
-    (thornton_ning.loading_work, ("indentation", *SHARP), 0),
-    (thornton_ning.unloading_force, ("indentation", "maximum_indentation", *SHARP), 0),
-    (thornton_ning.unloading_work, ("maximum_indentation", *SHARP), 0),
-    (thornton_ning.unloading_radius, ("maximum_indentation", *SHARP), MATERIAL["radius"]),
-    (thornton_ning.residual_indentation, ("maximum_indentation", *SHARP), 0),
-    (thornton_ning.impact_velocity, ("maximum_indentation", *SHARP, "mass"), 0),
-    (thornton_ning.indentation_from_velocity, ("velocity", *SHARP, "mass"), 0),
-    (thornton_ning.restitution, ("velocity", *SHARP, "mass"), 1),
-    (thornton_ning.restitution_at_indentation, ("maximum_indentation", *SHARP), 1),
-    (jackson_green.yield_coefficient, ("poisson_ratio",), None),
-    (jackson_green.critical_indentation, SOFT, None),
-    (jackson_green.critical_force, SOFT, None),
-    (jackson_green.contact_area, ("indentation", *SOFT), 0),
-    (jackson_green.contact_radius, ("indentation", *SOFT), 0),
-    (jackson_green.hardness, ("contact_radius", "radius", "yield_strength"), 2.84 * 270e6),
-    (jackson_green.loading_force, ("indentation", *SOFT), 0),
-    (jkr.force, ("indentation", *STICKY), 0),
-    (jkr.contact_radius, ("indentation", *STICKY), 0),
-    (jkr.force_at_contact_radius, ("contact_radius", *STICKY), 0),
-    (jkr.indentation_at_contact_radius, ("contact_radius", *STICKY), 0),
-    (jkr.stored_energy_at_contact_radius, ("contact_radius", *STICKY), 0),
-    (jkr.total_energy_at_contact_radius, ("contact_radius", *STICKY), 0),
-    (jkr.pull_off_force, ("radius", "work_of_adhesion"), None),
-    (jkr.pull_off_radius, STICKY, None),
-    (jkr.pull_off_indentation, STICKY, None),
-    (jkr.break_force, ("radius", "work_of_adhesion"), None),
-    (jkr.break_radius, STICKY, None),
-    (jkr.break_indentation, STICKY, None),
-    (jkr.jump_in_force, ("radius", "work_of_adhesion"), None),
-    (jkr.zero_load_radius, STICKY, None),
-    (jkr.loading_work, ("indentation", *STICKY), 0),
-    (jkr.unloading_work, ("indentation", *STICKY), 0),
-    (jkr.hysteresis_loss, STICKY, None),
-    (jkr.impact_velocity, ("maximum_indentation", *STICKY, "mass"), 0),
-    (jkr.restitution, ("velocity", *STICKY, "mass"), 1),
-    (jkr.restitution_at_indentation, ("maximum_indentation", *STICKY), 1),
-    (kendall.pull_off_force, ("contact_radius", "contact_modulus", "work_of_adhesion"), 0),
-    (kendall.pull_off_displacement, ("contact_radius", "contact_modulus", "work_of_adhesion"), 0),
-    (sticking.sticking_velocity, (*STICKY, "mass"), None),
-    (sticking.restitution, ("velocity", "sticking_velocity"), 1),
-    (sticking.tabor_parameter, (*STICKY, "equilibrium_separation"), None),
-    (adhesive_thornton_ning.restitution, ("velocity", *SHARP, "work_of_adhesion", "mass"), 1),
-    (johnson.restitution, ("velocity", *STRONG, "mass"), 1),
-    (walton_braun.loading_force, ("indentation", "loading_stiffness"), 0),
-    (walton_braun.unloading_force, (*UNLOADING, *SPRINGS, "hardening"), 0),
-    (walton_braun.residual_indentation, ("maximum_indentation", *SPRINGS, "hardening"), 0),
-    (walton_braun.restitution, ("velocity", *SPRINGS, "hardening", "mass"), 1),
-    (luding.limit_indentation, (*LIMITED, "plasticity_depth"), None),
-    (luding.loading_force, ("indentation", *LIMITED, "plasticity_depth"), 0),
-    (luding.unloading_force, (*UNLOADING, *LIMITED, "adhesive_stiffness", "plasticity_depth"), 0),
-    (luding.residual_indentation, ("maximum_indentation", *LIMITED, "plasticity_depth"), 0),
-    (
-        luding.pull_off_force,
-        ("maximum_indentation", *LIMITED, "adhesive_stiffness", "plasticity_depth"),
-        0,
-    ),
-    (luding.loading_work, ("indentation", *LIMITED, "plasticity_depth"), 0),
-    (
-        luding.unloading_work,
-        ("maximum_indentation", *LIMITED, "adhesive_stiffness", "plasticity_depth"),
-        0,
-    ),
-    (luding.indentation_from_velocity, ("velocity", *LIMITED, "plasticity_depth", "mass"), 0),
-    (
-        luding.restitution,
-        ("velocity", *LIMITED, "adhesive_stiffness", "plasticity_depth", "mass"),
-        1,
-    ),
-    (
-        eepa.loading_force,
-        ("indentation", "loading_stiffness", "constant_force", "exponent"),
-        0,
-    ),
-    (eepa.unloading_force, (*UNLOADING, *POWER), 0),
-    (eepa.residual_indentation, ("maximum_indentation", *SPRINGS, "exponent"), 0),
-    (eepa.pull_off_force, ("maximum_indentation", *POWER), 0),
-    (
-        eepa.loading_work,
-        ("indentation", "loading_stiffness", "constant_force", "exponent"),
-        0,
-    ),
-    (eepa.unloading_work, ("maximum_indentation", *POWER), 0),
-    (
-        eepa.indentation_from_velocity,
-        ("velocity", "loading_stiffness", "constant_force", "exponent", "mass"),
-        0,
-    ),
-    (eepa.restitution, ("velocity", *POWER, "mass"), 1),
-    (brilliantov.restitution, ("velocity", "dissipation"), 1),
-    (
-        brilliantov.dissipation_from_material,
-        ("radius", "contact_modulus", "dissipative_time", "mass"),
-        None,
-    ),
-    (mdr.yield_pressure, ("indentation", "radius", "yield_strength"), 2.75 * 270e6),
-    (mdr.yield_indentation, SPHERE, None),
-    (mdr.loading_force, ("indentation", *SPHERE), 0),
-    (mdr.loading_work, ("indentation", *SPHERE), 0),
-    (mdr.unloading_force, (*UNLOADING, *SPHERE), 0),
-    (mdr.residual_indentation, ("maximum_indentation", *SPHERE), 0),
-    (mdr.unloading_work, ("maximum_indentation", *SPHERE), 0),
-    (mdr.indentation_from_velocity, ("velocity", *SPHERE, "mass"), 0),
-    (mdr.restitution, ("velocity", *SPHERE, "mass"), 1),
+DEEPEST = ("maximum_indentation",)
+# law, quantity, its arguments, and its value where nothing touches
+QUANTITIES = [
+    (Hertz, "force", ("indentation",), 0),
+    (Hertz, "force_at_contact_radius", ("contact_radius",), 0),
+    (Hertz, "indentation", ("force",), 0),
+    (Hertz, "indentation_from_energy", ("energy",), 0),
+    (Hertz, "contact_radius", ("indentation",), 0),
+    (Hertz, "contact_area", ("indentation",), 0),
+    (Hertz, "stored_energy", ("indentation",), 0),
+    (Hertz, "impact_velocity", ("indentation", "mass"), 0),
+    (Hertz, "peak_pressure", ("indentation",), 0),
+    (FirstYield, "indentation", None, None),
+    (FirstYield, "force", None, None),
+    (FirstYield, "velocity", ("mass",), None),
+    (ThorntonNing, "loading_force", ("indentation",), 0),
+    (ThorntonNing, "indentation", ("force",), 0),
+    (ThorntonNing, "loading_work", ("indentation",), 0),
+    (ThorntonNing, "unloading_force", UNLOADING, 0),
+    (ThorntonNing, "unloading_work", DEEPEST, 0),
+    (ThorntonNing, "unloading_radius", DEEPEST, MATERIAL["radius"]),
+    (ThorntonNing, "residual_indentation", DEEPEST, 0),
+    (ThorntonNing, "impact_velocity", (*DEEPEST, "mass"), 0),
+    (ThorntonNing, "indentation_from_velocity", ("velocity", "mass"), 0),
+    (ThorntonNing, "restitution", ("velocity", "mass"), 1),
+    (ThorntonNing, "restitution_at_indentation", DEEPEST, 1),
+    (JacksonGreen, "first_yield.indentation", None, None),
+    (JacksonGreen, "first_yield.force", None, None),
+    (JacksonGreen, "contact_area", ("indentation",), 0),
+    (JacksonGreen, "contact_radius", ("indentation",), 0),
+    (JacksonGreen, "hardness", ("contact_radius",), 2.84 * 270e6),
+    (JacksonGreen, "loading_force", ("indentation",), 0),
+    (JKR, "force", ("indentation",), 0),
+    (JKR, "contact_radius", ("indentation",), 0),
+    (JKR, "force_at_contact_radius", ("contact_radius",), 0),
+    (JKR, "indentation_at_contact_radius", ("contact_radius",), 0),
+    (JKR, "stored_energy_at_contact_radius", ("contact_radius",), 0),
+    (JKR, "total_energy_at_contact_radius", ("contact_radius",), 0),
+    (JKR, "pull_off_force", None, None),
+    (JKR, "pull_off_radius", None, None),
+    (JKR, "pull_off_indentation", None, None),
+    (JKR, "break_force", None, None),
+    (JKR, "break_radius", None, None),
+    (JKR, "break_indentation", None, None),
+    (JKR, "jump_in_force", None, None),
+    (JKR, "zero_load_radius", None, None),
+    (JKR, "adhesive_length", None, None),
+    (JKR, "loading_work", ("indentation",), 0),
+    (JKR, "unloading_work", ("indentation",), 0),
+    (JKR, "hysteresis_loss", None, None),
+    (JKR, "impact_velocity", (*DEEPEST, "mass"), 0),
+    (JKR, "sticking_velocity", ("mass",), None),
+    (JKR, "restitution", ("velocity", "mass"), 1),
+    (JKR, "restitution_at_indentation", DEEPEST, 1),
+    (JKR, "tabor_parameter", ("equilibrium_separation",), None),
+    (Kendall, "pull_off_force", ("contact_radius",), 0),
+    (Kendall, "pull_off_displacement", ("contact_radius",), 0),
+    (AdhesiveThorntonNing, "restitution", ("velocity", "mass"), 1),
+    (Johnson, "restitution", ("velocity", "mass"), 1),
+    (Johnson, "velocity_at_restitution", ("restitution", "mass"), None),
+    (Johnson, "velocity_at_full_radius", ("mass",), None),
+    (WaltonBraun, "loading_force", ("indentation",), 0),
+    (WaltonBraun, "unloading_force", UNLOADING, 0),
+    (WaltonBraun, "residual_indentation", DEEPEST, 0),
+    (WaltonBraun, "restitution", ("velocity", "mass"), 1),
+    (Luding, "limit_indentation", None, None),
+    (Luding, "loading_force", ("indentation",), 0),
+    (Luding, "unloading_force", UNLOADING, 0),
+    (Luding, "residual_indentation", DEEPEST, 0),
+    (Luding, "pull_off_force", DEEPEST, 0),
+    (Luding, "loading_work", ("indentation",), 0),
+    (Luding, "unloading_work", DEEPEST, 0),
+    (Luding, "indentation_from_velocity", ("velocity", "mass"), 0),
+    (Luding, "restitution", ("velocity", "mass"), 1),
+    (EEPA, "loading_force", ("indentation",), 0),
+    (EEPA, "unloading_force", UNLOADING, 0),
+    (EEPA, "residual_indentation", DEEPEST, 0),
+    (EEPA, "pull_off_force", DEEPEST, 0),
+    (EEPA, "loading_work", ("indentation",), 0),
+    (EEPA, "unloading_work", DEEPEST, 0),
+    (EEPA, "indentation_from_velocity", ("velocity", "mass"), 0),
+    (EEPA, "restitution", ("velocity", "mass"), 1),
+    (Brilliantov, "restitution", ("velocity",), 1),
+    (MDR, "yield_pressure", ("indentation",), 2.75 * 270e6),
+    (MDR, "yield_indentation", None, None),
+    (MDR, "loading_force", ("indentation",), 0),
+    (MDR, "loading_work", ("indentation",), 0),
+    (MDR, "unloading_force", UNLOADING, 0),
+    (MDR, "residual_indentation", DEEPEST, 0),
+    (MDR, "unloading_work", DEEPEST, 0),
+    (MDR, "indentation_from_velocity", ("velocity", "mass"), 0),
+    (MDR, "restitution", ("velocity", "mass"), 1),
 ]
-HELD_AT_ZERO = jkr.force, jkr.contact_radius, jkr.unloading_work  # down to their break
-IDS = [f"{f.__module__.rsplit('.', 1)[1]}.{f.__name__}" for f, _, _ in FUNCTIONS]
-every_function = pytest.mark.parametrize(("function", "names", "untouched"), FUNCTIONS, ids=IDS)
-VALUES = MATERIAL | STATE
+LAWS = list(dict.fromkeys(law for law, *_ in QUANTITIES))
+IMPACT_LAWS: list[type[ImpactLaw]] = [
+    law for law, name, names, _ in QUANTITIES
+    if name == "restitution" and names == ("velocity", "mass")
+]  # fmt: skip
+HELD_AT_ZERO = (JKR, "force"), (JKR, "contact_radius"), (JKR, "unloading_work")  # to the break
+# parameters of the law that a quantity does not depend on
+LEFT_OUT = {
+    (Hertz, "contact_radius"): ("contact_modulus",),
+    (Hertz, "contact_area"): ("contact_modulus",),
+    (JacksonGreen, "hardness"): ("contact_modulus", "poissons_ratio"),
+    (JKR, "pull_off_force"): ("contact_modulus",),
+    (JKR, "break_force"): ("contact_modulus",),
+    (JKR, "jump_in_force"): ("contact_modulus",),
+    (WaltonBraun, "loading_force"): ("unloading_stiffness", "hardening"),
+    (MDR, "yield_pressure"): ("youngs_modulus", "poissons_ratio"),
+    (Luding, "limit_indentation"): ("adhesive_stiffness",),
+    (Luding, "loading_force"): ("adhesive_stiffness",),
+    (Luding, "residual_indentation"): ("adhesive_stiffness",),
+    (Luding, "loading_work"): ("adhesive_stiffness",),
+    (Luding, "indentation_from_velocity"): ("adhesive_stiffness",),
+    (EEPA, "loading_force"): ("unloading_stiffness", "adhesive_stiffness"),
+    (EEPA, "residual_indentation"): ("adhesive_stiffness", "constant_force"),
+    (EEPA, "loading_work"): ("unloading_stiffness", "adhesive_stiffness"),
+    (EEPA, "indentation_from_velocity"): ("unloading_stiffness", "adhesive_stiffness"),
+    (Johnson, "velocity_at_full_radius"): ("contact_modulus",),
+}
+every_law = pytest.mark.parametrize("law", LAWS, ids=lambda law: law.__name__)
+every_quantity = pytest.mark.parametrize(
+    ("law", "quantity", "names", "untouched"),
+    QUANTITIES,
+    ids=[f"{law.__name__}.{quantity}" for law, quantity, *_ in QUANTITIES],
+)
 
 
-@every_function
-def test_numbers_give_a_number_and_arrays_broadcast(function, names, untouched):
-    arguments = {name: VALUES[name] for name in names}
-    number = function(**arguments)
+def parameters(law):
+    return [field.name for field in fields(law)]
+
+
+def made(law, **other):
+    """The law of the material, with other parameters where they are given."""
+    return law(**{name: other.get(name, MATERIAL[name]) for name in parameters(law)})
+
+
+def found(law, quantity, names, values=VALUES):
+    """The quantity of a law, at the arguments in `values`."""
+    value = attrgetter(quantity)(made(law, **values))
+    return value if names is None else value(**{name: values[name] for name in names})
+
+
+@every_quantity
+def test_numbers_give_a_number_and_arrays_broadcast(law, quantity, names, untouched):
+    number = found(law, quantity, names)
     assert isinstance(number, float)
-    for axis, name in enumerate(names):
-        shape = [1] * len(names)
+    left_out = LEFT_OUT.get((law, quantity), ())
+    varied = [name for name in (*parameters(law), *(names or ())) if name not in left_out]
+    values = dict(VALUES)
+    for axis, name in enumerate(varied):
+        shape = [1] * len(varied)
         shape[axis] = 2
-        arguments[name] = np.full(shape, arguments[name])
-    result = function(**arguments)
-    assert result.shape == (2,) * len(names)
+        values[name] = np.full(shape, values[name])
+    result = found(law, quantity, names, values)
+    assert result.shape == (2,) * len(varied)
     assert_array_equal(result, number)
 
 
-@every_function
-def test_no_contact_is_an_answer(function, names, untouched):
-    states = [name for name in names if name in STATE]
+@every_quantity
+def test_no_contact_is_an_answer(law, quantity, names, untouched):
+    states = [name for name in names or () if name in STATE]
     for state in states:
-        for value in (-1e-7,) if function in HELD_AT_ZERO else (0.0, -1e-7):
-            arguments = {name: VALUES[name] for name in names} | {state: value}
+        for value in (-1e-7,) if (law, quantity) in HELD_AT_ZERO else (0.0, -1e-7):
+            values = VALUES | {state: value}
             if state == "maximum_indentation":  # below it nothing has touched either
-                arguments |= dict.fromkeys(states, value)
-            assert function(**arguments) == untouched
-        undefined = {name: VALUES[name] for name in names} | {state: np.nan}
-        assert np.isnan(function(**undefined))
+                values |= dict.fromkeys(states, value)
+            assert found(law, quantity, names, values) == untouched
+        assert np.isnan(found(law, quantity, names, VALUES | {state: np.nan}))
 
 
-@every_function
-def test_a_body_that_cannot_be_is_refused_by_name(function, names, untouched):
-    for name in names:
+@every_quantity
+def test_an_argument_that_cannot_be_is_refused_by_name(law, quantity, names, untouched):
+    for name in names or ():
         for value in REFUSED.get(name, ()):
-            arguments = {n: VALUES[n] for n in names} | {name: np.array([VALUES[name], value])}
             with pytest.raises(CaseError, match=f"^{name}: "):
-                function(**arguments)
+                found(law, quantity, names, VALUES | {name: np.array([VALUES[name], value])})
+
+
+@every_law
+def test_a_body_that_cannot_be_is_refused_by_name(law):
+    for name in parameters(law):
+        for value in REFUSED[name]:
+            with pytest.raises(CaseError, match=f"^{name}: "):
+                made(law, **{name: np.array([MATERIAL[name], value])})
+
+
+def test_mdr_takes_no_negative_poissons_ratio():
+    with pytest.raises(CaseError, match=r"^poissons_ratio: -0\.1 is not a finite number from 0 to"):
+        made(MDR, poissons_ratio=-0.1)
+
+
+@every_law
+def test_a_law_is_frozen(law):
+    for name in parameters(law):
+        values = np.full(2, MATERIAL[name])
+        several = made(law, **{name: values})
+        with pytest.raises(FrozenInstanceError):
+            setattr(several, name, 1.0)
+        with pytest.raises(ValueError, match="read-only"):
+            getattr(several, name)[0] = 1.0
+        values[0] = np.nan  # the law has its own
+        assert np.isfinite(getattr(several, name)).all()
+    law = made(law)
+    assert law == law
+    assert law != replace(law)
+    assert len({law, replace(law)}) == 2
+
+
+@pytest.mark.parametrize("law", IMPACT_LAWS, ids=lambda law: law.__name__)
+def test_every_law_of_an_impact_answers_with_a_part_of_the_velocity(law):
+    impact: ImpactLaw = made(law)
+    e = impact.restitution(np.geomspace(1e-6, 10, 50), 2e-6)
+    assert np.all((e >= 0) & (e <= 1))
+
+
+def test_the_dissipation_of_a_material_broadcasts_and_refuses_by_name():
+    material = {"radius": 250e-6, "contact_modulus": 112e9, "dissipative_time": 1e-6, "mass": 2e-6}
+    number = Brilliantov.from_material(**material).dissipation
+    for name in material:
+        several = Brilliantov.from_material(**material | {name: np.full(2, material[name])})
+        assert_array_equal(several.dissipation, np.full(2, number))
+        for value in NOT_POSITIVE:
+            with pytest.raises(CaseError, match=f"^{name}: "):
+                Brilliantov.from_material(**material | {name: value})
+
+
+def test_the_yield_coefficient_broadcasts_and_refuses_by_name():
+    number = yield_coefficient(0.25)
+    assert isinstance(number, float)
+    assert_array_equal(yield_coefficient(np.full((2, 1), 0.25)), np.full((2, 1), number))
+    for value in (-1.0, 0.51, np.nan):
+        with pytest.raises(CaseError, match=r"^poissons_ratio: "):
+            yield_coefficient(np.array([0.25, value]))
 
 
 def test_the_refusal_is_a_value_error_that_says_what_to_give():
     with pytest.raises(ValueError, match="radius: -1 is not a positive finite number; give radius"):
-        hertz.force(1e-6, -1.0, 1e9)
+        Hertz(-1.0, 1e9)
 
 
 def test_the_refusal_names_the_range():
@@ -244,4 +317,4 @@ def test_the_refusal_names_the_range():
         "give unloading_stiffness in SI units, within that range"
     )
     with pytest.raises(ValueError, match=f"^{message}$"):
-        walton_braun.restitution(1.0, np.array([1.0, 2.0]), 1.0, 0.0, 1.0)
+        WaltonBraun(np.array([1.0, 2.0]), 1.0, 0.0)

@@ -9,14 +9,15 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
-from restitution.theory import hertz, mdr, thornton_ning
+from restitution.theory import MDR, Hertz, ThorntonNing
 from tolerance import approx
 
 R, E, NU, Y = 1e-3, 70e9, 0.33, 300e6
-MATERIAL = (R, E, NU, Y)
+LAW = MDR(R, E, NU, Y)
 E_STAR = E / (1 - NU**2)
+HERTZ = Hertz(R, E_STAR)
 MASS = 4 / 3 * np.pi * R**3 * 2700
-D_Y = mdr.yield_indentation(*MATERIAL)
+D_Y = LAW.yield_indentation
 plastic_depths = st.floats(1.0, 500.0).map(lambda x: x * D_Y)
 
 ONE_SPHERE = f"""
@@ -56,22 +57,22 @@ velocity lower set 0 0 {{V}}
 
 
 def test_yield_is_where_the_mean_hertz_pressure_reaches_that_of_the_yielded_contact():
-    mean = hertz.force(D_Y, R, E_STAR) / hertz.contact_area(D_Y, R)
-    assert_allclose(mdr.yield_pressure(D_Y, R, Y), mean, rtol=1e-13)
+    mean = HERTZ.force(D_Y) / HERTZ.contact_area(D_Y)
+    assert_allclose(LAW.yield_pressure(D_Y), mean, rtol=1e-13)
     assert 2.7 < mean / Y < 2.75
-    assert mdr.yield_pressure(R, R, Y) == approx(1.02 * Y, rel=0.01)
+    assert LAW.yield_pressure(R) == approx(1.02 * Y, rel=0.01)
 
 
 def test_first_loading_is_hertz_up_to_yield_and_continuous_there():
     d = np.array([0.1, 0.5, 1.0]) * D_Y
-    assert_allclose(mdr.loading_force(d, *MATERIAL), hertz.force(d, R, E_STAR), rtol=1e-14)
-    below, above = mdr.loading_force(np.array([1 - 1e-9, 1 + 1e-9]) * D_Y, *MATERIAL)
+    assert_allclose(LAW.loading_force(d), HERTZ.force(d), rtol=1e-14)
+    below, above = LAW.loading_force(np.array([1 - 1e-9, 1 + 1e-9]) * D_Y)
     assert above == approx(below, rel=1e-8)
 
 
 def test_a_yielded_contact_spreads_over_the_section_of_the_sphere():
     d = 0.1 * R
-    area = mdr.loading_force(d, *MATERIAL) / mdr.yield_pressure(d, R, Y)
+    area = LAW.loading_force(d) / LAW.yield_pressure(d)
     assert_allclose(area, np.pi * (2 * R * d - d**2 - D_Y * (R - D_Y)), rtol=1e-13)
 
 
@@ -79,101 +80,101 @@ def test_a_yielded_contact_spreads_over_the_section_of_the_sphere():
 def test_the_works_are_the_integrals_of_the_forces(x):
     d = x * D_Y
     W_l = sum(
-        quad(mdr.loading_force, low, high, args=MATERIAL, epsabs=0, epsrel=1e-8)[0]
+        quad(LAW.loading_force, low, high, epsabs=0, epsrel=1e-8)[0]
         for low, high in ((0, D_Y), (D_Y, d))
     )
-    assert_allclose(mdr.loading_work(d, *MATERIAL), W_l, rtol=1e-7)
-    low = mdr.residual_indentation(d, *MATERIAL)
-    W_u, _ = quad(mdr.unloading_force, low, d, args=(d, *MATERIAL), epsabs=0, epsrel=1e-7)
-    assert_allclose(mdr.unloading_work(d, *MATERIAL), W_u, rtol=1e-6)
+    assert_allclose(LAW.loading_work(d), W_l, rtol=1e-7)
+    low = LAW.residual_indentation(d)
+    W_u, _ = quad(LAW.unloading_force, low, d, args=(d,), epsabs=0, epsrel=1e-7)
+    assert_allclose(LAW.unloading_work(d), W_u, rtol=1e-6)
 
 
 @settings(deadline=None, max_examples=30)
 @given(plastic_depths)
 def test_unloading_starts_at_the_loading_force_and_ends_at_zero(d):
-    F, d_p = mdr.loading_force(d, *MATERIAL), mdr.residual_indentation(d, *MATERIAL)
+    F, d_p = LAW.loading_force(d), LAW.residual_indentation(d)
     assert 0 <= d_p < d
-    assert_allclose(mdr.unloading_force(d, d, *MATERIAL), F, rtol=1e-12)
-    assert mdr.unloading_force(d_p * (1 - 1e-12), d, *MATERIAL) == approx(0, abs=1e-9 * F)
+    assert_allclose(LAW.unloading_force(d, d), F, rtol=1e-12)
+    assert LAW.unloading_force(d_p * (1 - 1e-12), d) == approx(0, abs=1e-9 * F)
     further = 1.5 * d
-    assert mdr.unloading_force(further, d, *MATERIAL) == mdr.loading_force(further, *MATERIAL)
+    assert LAW.unloading_force(further, d) == LAW.loading_force(further)
 
 
 def test_unloading_starts_as_a_flat_punch_stiffened_by_the_recovery():
     # dF/dδ of the ellipse at half its height is 2E*a, over 1 + δ_R/d < 1 of the finite sphere
     d = 20 * D_Y
     h = 1e-6 * d
-    slope = (mdr.loading_force(d, *MATERIAL) - mdr.unloading_force(d - h, d, *MATERIAL)) / h
-    a = (mdr.loading_force(d, *MATERIAL) / (np.pi * mdr.yield_pressure(d, R, Y))) ** 0.5
-    depth = 2 * mdr.yield_pressure(d, R, Y) * a / E_STAR
-    recovered = (d - mdr.residual_indentation(d, *MATERIAL)) / depth
+    slope = (LAW.loading_force(d) - LAW.unloading_force(d - h, d)) / h
+    a = (LAW.loading_force(d) / (np.pi * LAW.yield_pressure(d))) ** 0.5
+    depth = 2 * LAW.yield_pressure(d) * a / E_STAR
+    recovered = (d - LAW.residual_indentation(d)) / depth
     assert 0.8 < recovered < 1
     assert slope == approx(2 * E_STAR * a / recovered, rel=1e-4)
 
 
 def test_nothing_is_lost_below_yield():
     d = 0.7 * D_Y
-    assert mdr.residual_indentation(d, *MATERIAL) == 0
-    assert mdr.unloading_work(d, *MATERIAL) == mdr.loading_work(d, *MATERIAL)
-    assert_allclose(mdr.unloading_force(0.3 * D_Y, d, *MATERIAL), hertz.force(0.3 * D_Y, R, E_STAR))
-    V = (2 * mdr.loading_work(d, *MATERIAL) / MASS) ** 0.5
-    assert mdr.restitution(V, *MATERIAL, MASS) == 1
+    assert LAW.residual_indentation(d) == 0
+    assert LAW.unloading_work(d) == LAW.loading_work(d)
+    assert_allclose(LAW.unloading_force(0.3 * D_Y, d), HERTZ.force(0.3 * D_Y))
+    V = (2 * LAW.loading_work(d) / MASS) ** 0.5
+    assert LAW.restitution(V, MASS) == 1
 
 
 def test_restitution_by_velocity_is_the_root_of_the_ratio_of_the_works():
     V = np.geomspace(0.3, 50, 20)
-    d = mdr.indentation_from_velocity(V, *MATERIAL, MASS)
-    W_l = mdr.loading_work(d, *MATERIAL)
+    d = LAW.indentation_from_velocity(V, MASS)
+    W_l = LAW.loading_work(d)
     assert_allclose(W_l, 0.5 * MASS * V**2, rtol=1e-10)
-    e = mdr.restitution(V, *MATERIAL, MASS)
-    assert_allclose(e, (mdr.unloading_work(d, *MATERIAL) / W_l) ** 0.5, rtol=1e-9)
+    e = LAW.restitution(V, MASS)
+    assert_allclose(e, (LAW.unloading_work(d) / W_l) ** 0.5, rtol=1e-9)
     assert np.all(np.diff(e[1:]) < 0)
 
 
 @pytest.mark.parametrize("yield_strain", [1e-5, 1e-3, 1e-2])
 def test_restitution_leaves_one_by_a_step(yield_strain):
     # at one p_Y and a: W_l = ⅖Fδ_Y with p_Y = 4E*a/3πR, and W_u = (1 + δ_R/d) 8p_Y²a³/3E*
-    material = R, E, NU, yield_strain * E
-    depth = mdr.yield_indentation(*material)
-    V_Y = (2 * mdr.loading_work(depth, *material) / MASS) ** 0.5
-    below, above = mdr.restitution(np.array([1 - 1e-6, 1 + 1e-6]) * V_Y, *material, MASS)
+    law = MDR(R, E, NU, yield_strain * E)
+    depth = law.yield_indentation
+    V_Y = (2 * law.loading_work(depth) / MASS) ** 0.5
+    below, above = law.restitution(np.array([1 - 1e-6, 1 + 1e-6]) * V_Y, MASS)
     a, d = (R * depth) ** 0.5, depth * (1 + 1e-6)
-    p_Y = mdr.yield_pressure(depth, R, yield_strain * E)
-    recovered = (d - mdr.residual_indentation(d, *material)) * E_STAR / (2 * p_Y * a)
+    p_Y = law.yield_pressure(depth)
+    recovered = (d - law.residual_indentation(d)) * E_STAR / (2 * p_Y * a)
     assert below == 1
     assert above == approx((recovered * 8 / 3 / (0.3 * np.pi**2)) ** 0.5, rel=1e-4)
 
 
 def test_only_ratios_matter():
-    scaled = 3 * R, 2 * E, NU, 2 * Y
-    e = mdr.restitution(2.0, *MATERIAL, MASS)
-    assert_allclose(mdr.restitution(2.0, *scaled, 27 * 2 * MASS), e, rtol=1e-12)
+    scaled = MDR(3 * R, 2 * E, NU, 2 * Y)
+    e = LAW.restitution(2.0, MASS)
+    assert_allclose(scaled.restitution(2.0, 27 * 2 * MASS), e, rtol=1e-12)
 
 
 def test_it_lies_near_thornton_and_ning_at_the_same_peak_pressure():
     # 2.75 Y on average is 4.1 Y at the peak of Hertz's pressure (LAMMPS, V = 0.5 and 2.5 m/s)
     V = np.array([0.5, 2.5])
-    other = thornton_ning.restitution(V, R, E_STAR, 4.1 * Y, MASS)
-    assert_allclose(mdr.restitution(V, *MATERIAL, MASS), other, rtol=0.15)
+    other = ThorntonNing(R, E_STAR, 4.1 * Y).restitution(V, MASS)
+    assert_allclose(LAW.restitution(V, MASS), other, rtol=0.15)
 
 
 def test_a_sphere_driven_in_by_more_than_its_radius_has_no_answer():
-    assert np.isnan(mdr.loading_force(1.01 * R, *MATERIAL))
-    assert np.isnan(mdr.unloading_work(1.01 * R, *MATERIAL))
-    assert np.isnan(mdr.restitution(1e5, *MATERIAL, MASS))
-    assert np.isfinite(mdr.restitution(100.0, *MATERIAL, MASS))
+    assert np.isnan(LAW.loading_force(1.01 * R))
+    assert np.isnan(LAW.unloading_work(1.01 * R))
+    assert np.isnan(LAW.restitution(1e5, MASS))
+    assert np.isfinite(LAW.restitution(100.0, MASS))
 
 
 @pytest.mark.parametrize("V", [0.25, 0.27, 1.0, 5.0])  # yield: 0.2611 m/s
 def test_the_restitution_of_lammps_on_a_wall(V, lammps):
     path = lammps(ONE_SPHERE + WALL.replace("{V}", str(V)), V)
-    assert path[-1, 1] / V == approx(mdr.restitution(V, *MATERIAL, MASS), abs=3e-4)
+    assert path[-1, 1] / V == approx(LAW.restitution(V, MASS), abs=3e-4)
 
 
 @pytest.mark.parametrize(("V", "published"), [(0.5, 0.908), (2.5, 0.613)])
 def test_the_restitution_of_lammps_of_two_equal_spheres(V, published, lammps):
     path = lammps(ONE_SPHERE + PAIR.replace("{V}", str(V)), V)
-    e = mdr.restitution(V, *MATERIAL, MASS)
+    e = LAW.restitution(V, MASS)
     assert path[-1, 1] / V == approx(e, abs=3e-4)
     assert round(float(e), 3) == published
 
@@ -184,8 +185,8 @@ def test_the_force_of_lammps(lammps):
     turn = np.argmax(d)
     ours = np.concatenate(
         [
-            mdr.loading_force(d[: turn + 1], *MATERIAL),
-            mdr.unloading_force(d[turn + 1 :], d[turn], *MATERIAL),
+            LAW.loading_force(d[: turn + 1]),
+            LAW.unloading_force(d[turn + 1 :], d[turn]),
         ]
     )
     assert_allclose(ours, F, rtol=0, atol=1e-3 * F.max())

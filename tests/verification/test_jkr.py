@@ -13,16 +13,16 @@ import pytest
 from restitution import Body, Contact, Grid, Pair, Surface, solve
 from restitution.contact.loading import load
 from restitution.contact.separation import separate, separation_of
-from restitution.theory import jkr
+from restitution.theory import JKR
 from tolerance import approx
 
 W = 0.09
 STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25, density=7850.0)
 PAIR = Pair(STEEL, STEEL)
-MATERIAL = PAIR.radius, PAIR.contact_modulus, W
-F_C = float(jkr.pull_off_force(PAIR.radius, W))
-BREAK = -float(jkr.break_indentation(*MATERIAL))
-A_C = float(jkr.pull_off_radius(*MATERIAL))
+SMOOTH = JKR(PAIR.radius, PAIR.contact_modulus, W)
+F_C = float(SMOOTH.pull_off_force)
+BREAK = -float(SMOOTH.break_indentation)
+A_C = float(SMOOTH.pull_off_radius)
 DEEP = 3 * BREAK
 # Where the apex lies between the nodes, in cells: aligned, in the middle, at random.
 OFFSETS = ((0, 0), (0.5, 0.5), (0.5, 0), (0.23, 0.41), (0.37, 0.12), (0.08, 0.29))
@@ -34,7 +34,7 @@ def sphere(nodes, offset=(0, 0), approach="equilibrium", detachment="crack-closu
     Indentation counts from the highest node, theory from the apex.
     """
     h = A_C / nodes
-    n = 2 * int(1.3 * float(jkr.contact_radius(DEEP, *MATERIAL)) / h + 4) + 1
+    n = 2 * int(1.3 * float(SMOOTH.contact_radius(DEEP)) / h + 4) + 1
     grid = Grid((n, n), (h, h))
     x, y = grid.x[:, None], grid.y[None, :]
     shifted = (x - offset[0] * h) ** 2 + (y - offset[1] * h) ** 2
@@ -65,7 +65,7 @@ def test_the_unloading_branch():
     path = cycle("equilibrium")[1]
     depths = np.linspace(-BREAK, DEEP, 2001)
     force = np.interp(depths, [s.indentation for s in path[::-1]], [s.force for s in path[::-1]])
-    error = (force - jkr.force(depths, *MATERIAL)) / F_C
+    error = (force - SMOOTH.force(depths)) / F_C
     assert math.sqrt(np.mean(error**2)) < 0.025
 
 
@@ -80,7 +80,7 @@ def test_the_break():
 def test_the_loading_branch(depth):
     contact, _ = sphere(16)
     state = load(contact, depth * BREAK, start=None, residual=1e-6)
-    expected = float(jkr.force(depth * BREAK, *MATERIAL))
+    expected = float(SMOOTH.force(depth * BREAK))
     # One cell of contact radius is worth 0.18 F_c at the deepest; measured 0.011 to 0.040.
     assert state.force == approx(expected, abs=0.05 * F_C)
 
@@ -88,16 +88,16 @@ def test_the_loading_branch(depth):
 def test_the_jump_in():
     contact, _ = sphere(16)
     state = load(contact, 0.0, start=None, residual=1e-6)
-    assert state.force == approx(float(jkr.jump_in_force(PAIR.radius, W)), rel=0.05)
+    assert state.force == approx(float(SMOOTH.jump_in_force), rel=0.05)
 
 
 def test_a_cycle_loses_the_jump_in_and_the_break():
     state, path = cycle("equilibrium")
     separation = separation_of(path)
     lost = state.loading_work - separation.unloading_work
-    assert lost == approx(float(jkr.hysteresis_loss(*MATERIAL)), abs=0.02 * F_C * BREAK)
+    assert lost == approx(float(SMOOTH.hysteresis_loss), abs=0.02 * F_C * BREAK)
     # Each side by itself carries what the lattice holds back over 4 |δ_b|.
-    expected = float(jkr.loading_work(DEEP, *MATERIAL)), float(jkr.unloading_work(DEEP, *MATERIAL))
+    expected = float(SMOOTH.loading_work(DEEP)), float(SMOOTH.unloading_work(DEEP))
     assert state.loading_work == approx(expected[0], abs=0.12 * F_C * BREAK)
     assert separation.unloading_work == approx(expected[1], abs=0.12 * F_C * BREAK)
 
@@ -106,7 +106,7 @@ def test_a_hertzian_approach_returns_the_energy_it_released():
     """U_T(Hertz) − U_T(break): nothing is lost from the largest contact to the break."""
     state, path = cycle("hertzian")
     area = math.pi * PAIR.radius * DEEP  # Hertz; counting nodes would add an error of its own
-    broken = jkr.total_energy_at_contact_radius(jkr.break_radius(*MATERIAL), *MATERIAL)
+    broken = SMOOTH.total_energy_at_contact_radius(SMOOTH.break_radius)
     expected = state.stored_energy - W * area - float(broken)
     assert separation_of(path).unloading_work == approx(expected, abs=0.03 * F_C * BREAK)
 

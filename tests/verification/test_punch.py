@@ -7,7 +7,7 @@ import pytest
 
 from restitution import Body, Contact, Grid, Pair, Surface, smooth, solve
 from restitution.contact.separation import separate, separation_of
-from restitution.theory import jkr, kendall
+from restitution.theory import JKR, Kendall
 from tolerance import approx
 
 A, W = 10e-6, 0.1
@@ -38,7 +38,7 @@ def test_kendall(detachment, nodes, offset, ratio):
     pair, surface, radius = punch(nodes, offset, ratio)
     contact = Contact(pair, surface, work_of_adhesion=W, approach="hertzian", detachment=detachment)
     path = list(separate(solve(contact, 1e-10), tolerance=0.01))
-    expected = float(kendall.pull_off_force(radius, pair.contact_modulus, W))
+    expected = float(Kendall(pair.contact_modulus, W).pull_off_force(radius))
     assert separation_of(path).pull_off_force == approx(expected, rel=0.02)
 
 
@@ -47,13 +47,13 @@ def test_jkr_on_rectangular_cells(ratio):
     """Cells of the same area: the same sphere, the same numbers."""
     steel = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25)
     pair, w = Pair(steel, steel), 0.09
-    material = pair.radius, pair.contact_modulus, w
-    depth = -2.5 * float(jkr.break_indentation(*material))
+    jkr = JKR(pair.radius, pair.contact_modulus, w)
+    depth = -2.5 * float(jkr.break_indentation)
     reach = 1.4 * math.sqrt(pair.radius * depth)
-    F_c = float(jkr.pull_off_force(pair.radius, w))
+    F_c = float(jkr.pull_off_force)
     found = []
     for r in (1, ratio):
-        h = float(jkr.pull_off_radius(*material)) / 8
+        h = float(jkr.pull_off_radius) / 8
         hx, hy = h * math.sqrt(r), h / math.sqrt(r)
         grid = Grid((2 * int(reach / hx) + 1, 2 * int(reach / hy) + 1), (hx, hy))
         contact = Contact(pair, smooth(grid), work_of_adhesion=w, approach="hertzian")

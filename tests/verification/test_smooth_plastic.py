@@ -5,7 +5,7 @@ import math
 import pytest
 
 from restitution import Body, Contact, Grid, Pair, collide, smooth, solve
-from restitution.theory import jackson_green, thornton_ning, yielding
+from restitution.theory import FirstYield, JacksonGreen, ThorntonNing
 from tolerance import approx
 
 P_Y = 750e6
@@ -13,12 +13,12 @@ P_Y = 750e6
 
 def at(pair, x, nodes_over_yield_radius, p_y=P_Y, plasticity="equilibrium"):
     """The state at δ = x δ_y on a grid that just holds it, with δ_y and F_y."""
-    material = pair.radius, pair.contact_modulus, p_y
-    depth_y = float(yielding.yield_indentation(*material))
+    onset = FirstYield(pair.radius, pair.contact_modulus, p_y)
+    depth_y = float(onset.indentation)
     h = math.sqrt(pair.radius * depth_y) / nodes_over_yield_radius
     n = 2 * int(1.2 * math.sqrt(2 * pair.radius * x * depth_y) / h) + 1
     contact = Contact(pair, smooth(Grid((n, n), (h, h))), p_y, plasticity)
-    return solve(contact, x * depth_y), depth_y, float(yielding.yield_force(*material))
+    return solve(contact, x * depth_y), depth_y, float(onset.force)
 
 
 @pytest.mark.parametrize(
@@ -58,20 +58,16 @@ def test_truncated_table(pair, x, cor):
     state, depth_y, _ = at(pair, x, 12, plasticity="truncated")
     assert collide(state).restitution == approx(cor, rel=3e-3)
     assert state.work_error < 1e-3 * state.loading_work  # nodes yield one after the other
-    material = pair.radius, pair.contact_modulus, P_Y
-    assert state.loading_work == approx(
-        float(thornton_ning.loading_work(x * depth_y, *material)), rel=1e-3
-    )
+    law = ThorntonNing(pair.radius, pair.contact_modulus, P_Y)
+    assert state.loading_work == approx(float(law.loading_work(x * depth_y)), rel=1e-3)
 
 
 @pytest.mark.parametrize("x", [2, 8, 32])
 def test_truncated_follows_thornton_and_ning(pair, x):
     state, depth_y, _ = at(pair, x, 24, plasticity="truncated")
-    material = pair.radius, pair.contact_modulus, P_Y
-    assert state.force == approx(
-        float(thornton_ning.loading_force(x * depth_y, *material)), rel=5e-4
-    )
-    cor = float(thornton_ning.restitution_at_indentation(x * depth_y, *material))
+    law = ThorntonNing(pair.radius, pair.contact_modulus, P_Y)
+    assert state.force == approx(float(law.loading_force(x * depth_y)), rel=5e-4)
+    cor = float(law.restitution_at_indentation(x * depth_y))
     assert collide(state).restitution == approx(cor, rel=0.06)
 
 
@@ -93,9 +89,9 @@ def test_equilibrium_follows_finite_elements(ratio, omega):
     body = Body(radius=1e-3, youngs_modulus=200e9, poissons_ratio=0.25)
     pair = Pair(body, body)
     strength = ratio * pair.contact_modulus
-    arguments = pair.radius, pair.contact_modulus, strength, 0.25
-    depth = omega * float(jackson_green.critical_indentation(*arguments))
+    fit = JacksonGreen(pair.radius, pair.contact_modulus, strength, 0.25)
+    depth = omega * float(fit.first_yield.indentation)
     h = math.sqrt(2 * pair.radius * depth) / 60
     contact = Contact(pair, smooth(Grid((151, 151), (h, h))), 2.8 * strength)
-    force = float(jackson_green.loading_force(depth, *arguments))
+    force = float(fit.loading_force(depth))
     assert solve(contact, depth).force == approx(force, rel=0.09)

@@ -7,7 +7,7 @@ import math
 from restitution.case.case import Case
 from restitution.contact.contact import Contact
 from restitution.contact.resolution import expected_pull_off_error, foreseen_radius
-from restitution.theory import hertz, jkr, sticking, thornton_ning, yielding
+from restitution.theory import JKR, FirstYield, Hertz, ThorntonNing
 
 
 def deepest_indentation(case: Case) -> float:
@@ -20,15 +20,12 @@ def deepest_indentation(case: Case) -> float:
     if case.indentation is not None:
         return last
     if case.load is not None:
-        return float(hertz.indentation_from_force(last, pair.radius, pair.contact_modulus))
+        return float(Hertz(pair.radius, pair.contact_modulus).indentation(last))
     assert pair.mass is not None  # Case._check_masses
     # As good as elastic: beyond any pressure of a contact.
     p_y = min(case.yielding().hardness, pair.contact_modulus)
-    return float(
-        thornton_ning.indentation_from_velocity(
-            last, pair.radius, pair.contact_modulus, p_y, pair.mass
-        )
-    )
+    smooth = ThorntonNing(pair.radius, pair.contact_modulus, p_y)
+    return float(smooth.indentation_from_velocity(last, pair.mass))
 
 
 def derived_quantities(case: Case, contact: Contact) -> dict[str, float | None]:
@@ -38,17 +35,19 @@ def derived_quantities(case: Case, contact: Contact) -> dict[str, float | None]:
     radius = foreseen_radius(pair, deepest, p_y)
     elastic = math.isinf(p_y)
     mass = pair.mass
-    arguments = (pair.radius, pair.contact_modulus, contact.first_yield_pressure)
+    first = None
+    if not elastic:
+        first = FirstYield(pair.radius, pair.contact_modulus, contact.first_yield_pressure)
     return {
         "reduced_radius_m": pair.radius,
         "contact_modulus_Pa": pair.contact_modulus,
         "reduced_mass_kg": mass,
         "yield_strength_Pa": contact.yield_strength if contact.grows else None,
         "yield_pressure_Pa": None if elastic else p_y,
-        "yield_indentation_m": None if elastic else float(yielding.yield_indentation(*arguments)),
-        "yield_force_N": None if elastic else float(yielding.yield_force(*arguments)),
+        "yield_indentation_m": None if first is None else float(first.indentation),
+        "yield_force_N": None if first is None else float(first.force),
         "yield_velocity_m_per_s": (
-            None if elastic or mass is None else float(yielding.yield_velocity(*arguments, mass))
+            None if first is None or mass is None else float(first.velocity(mass))
         ),
         **_adhesion(case, contact),
         "deepest_indentation_m": deepest,
@@ -62,18 +61,16 @@ def _adhesion(case: Case, contact: Contact) -> dict[str, float | None]:
     if not contact.adhesive:
         return {}
     pair, w = contact.pair, contact.work_of_adhesion
-    arguments = (pair.radius, pair.contact_modulus, w)
-    a_c = float(jkr.pull_off_radius(*arguments))
+    smooth = JKR(pair.radius, pair.contact_modulus, w)
+    a_c = float(smooth.pull_off_radius)
     return {
         "work_of_adhesion_J_per_m2": w,
-        "pull_off_force_smooth_N": float(jkr.pull_off_force(pair.radius, w)),
+        "pull_off_force_smooth_N": float(smooth.pull_off_force),
         "pull_off_radius_m": a_c,
         "nodes_over_pull_off_radius": a_c / max(contact.grid.spacing),
         "expected_pull_off_error": expected_pull_off_error(contact),
-        "tabor_parameter": float(
-            sticking.tabor_parameter(*arguments, case.interface.equilibrium_separation)
-        ),
+        "tabor_parameter": float(smooth.tabor_parameter(case.interface.equilibrium_separation)),
         "sticking_velocity_m_per_s": (
-            None if pair.mass is None else float(sticking.sticking_velocity(*arguments, pair.mass))
+            None if pair.mass is None else float(smooth.sticking_velocity(pair.mass))
         ),
     }

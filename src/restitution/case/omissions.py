@@ -6,7 +6,7 @@ import math
 
 from restitution.case.case import Case
 from restitution.case.roughness import GeneratedRoughness
-from restitution.theory import hertz, sticking
+from restitution.theory import JKR, Hertz
 
 TYPICAL_ADHESION = 0.05  # J/m²: within the 0.01 to 0.09 of Ghanbarzadeh et al. (2019)
 # Adhesion takes (V_s/V)² from e² (Thornton and Ning 1998): 0.01 of e = 0.7 at 8.5 V_s.
@@ -28,8 +28,8 @@ def adhesion_matters_below(case: Case) -> float | None:
     pair = case.pair()
     if case.interface.work_of_adhesion is not None or pair.mass is None:
         return None
-    arguments = pair.radius, pair.contact_modulus, TYPICAL_ADHESION, pair.mass
-    return _MATTERS * float(sticking.sticking_velocity(*arguments))
+    smooth = JKR(pair.radius, pair.contact_modulus, TYPICAL_ADHESION)
+    return _MATTERS * float(smooth.sticking_velocity(pair.mass))
 
 
 def _default_yield(case: Case) -> str | None:
@@ -63,10 +63,10 @@ def _lowest_velocity(case: Case) -> float:
     if case.impact is not None:
         return first
     assert pair.mass is not None  # adhesion_matters_below
+    smooth = Hertz(pair.radius, pair.contact_modulus)
     if case.load is not None:
-        first = float(hertz.indentation_from_force(first, pair.radius, pair.contact_modulus))
-    work = float(hertz.stored_energy(first, pair.radius, pair.contact_modulus))
-    return math.sqrt(2 * work / pair.mass)
+        first = float(smooth.indentation(first))
+    return float(smooth.impact_velocity(first, pair.mass))
 
 
 def _no_shortest_wave(case: Case) -> str | None:

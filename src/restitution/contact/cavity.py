@@ -7,9 +7,9 @@ cavity does (Johnson 1970, J. Mech. Phys. Solids 18, 115–126; Johnson 1985, §
 
     bound = Y · min(c₀ + c₁ ln(m/(c₀ Y)), c₂).
 
-c₀ = 1.295 exp(0.736 ν) is the largest pressure over Y at first yield of a sphere (Jackson and Green
-2005, J. Tribol. 127, 343–354). m is the measure of strain: on a sphere E*a/R times 2/π, which is
-the largest pressure of an elastic contact. On a rough surface
+c₀ is the largest pressure over Y at first yield of a sphere (`yield_coefficient` in `theory`). m is
+the measure of strain: on a sphere E*a/R times 2/π, which is the largest pressure of an elastic
+contact. On a rough surface
 
     m = p_e(2δ)/√2,
 

@@ -20,6 +20,7 @@ from restitution.contact.detachment import Detachment
 from restitution.errors import CaseError
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface, rms_slope
+from restitution.theory import JKR, yield_coefficient
 
 Plasticity = Literal["expanding-cavity", "equilibrium", "truncated"]
 Approach = Literal["equilibrium", "hertzian", "seed"]
@@ -116,13 +117,13 @@ class Contact:
     def first_yield_pressure(self) -> float:
         """Largest pressure (Pa) under which smooth bodies stay elastic; inf for elastic bodies.
 
-        1.295 exp(0.736 ν) times the yield strength (Jackson and Green 2005, ν the mean of both
-        bodies), or the yield pressure.
+        `yield_coefficient` times the yield strength, with the mean Poisson's ratio of both bodies,
+        or the yield pressure.
         """
         if not self.grows:
             return self.yield_pressure
         nu = 0.5 * (self.pair.first.poissons_ratio + self.pair.second.poissons_ratio)
-        return 1.295 * math.exp(0.736 * nu) * self.yield_strength
+        return float(yield_coefficient(nu)) * self.yield_strength
 
     @property
     def hardening_modulus(self) -> float:
@@ -142,9 +143,11 @@ class Contact:
 
     @property
     def adhesive_length(self) -> float:
-        """Length scale of adhesion, (w²R*/E*²)^⅓, m: a JKR sphere breaks off at −1.61 of it."""
-        w, E_star = self.work_of_adhesion, self.pair.contact_modulus
-        return float((w * w * self.pair.radius / E_star**2) ** (1 / 3))
+        """Length scale of adhesion, (w²R*/E*²)^⅓, m; 0 without adhesion."""
+        if not self.adhesive:
+            return 0.0
+        pair = self.pair
+        return float(JKR(pair.radius, pair.contact_modulus, self.work_of_adhesion).adhesive_length)
 
     @property
     def opening(self) -> float:

@@ -10,6 +10,7 @@ from restitution.contact.equilibrium import RESIDUAL, refuse_edge
 from restitution.contact.loading import load, with_work, work_is_integrated
 from restitution.contact.state import State
 from restitution.errors import CaseError, NotConvergedError
+from restitution.theory import Hertz
 
 VELOCITY_TOLERANCE = 1e-6
 # Where the work is integrated, it is known no better than some parts in a thousand.
@@ -52,8 +53,8 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
         return math.copysign((abs(state.loading_work) / work) ** 0.4, state.loading_work) - 1
 
     # Hertz's depth for this work; yield and roughness make it deeper.
-    R, E_star = contact.pair.radius, contact.pair.contact_modulus
-    high = (15 * work / (8 * E_star * math.sqrt(R))) ** 0.4
+    smooth = Hertz(contact.pair.radius, contact.pair.contact_modulus)
+    high = float(smooth.indentation_from_energy(work))
     low, above = 0.0, excess(high)
     while above < 0:
         low, high = high, high * min(_WIDEST, max(1.05, 1.05 / max(1 + above, 1e-9)))

@@ -9,6 +9,7 @@ from restitution.contact.contact import Contact
 from restitution.contact.loading import load, solve
 from restitution.contact.state import State
 from restitution.errors import CaseError, DomainError, NotConvergedError
+from restitution.theory import Hertz
 
 FORCE_TOLERANCE = 1e-8
 _SOLVE_RESIDUAL = 1e-10  # so that the noise of a solve stays well below the force tolerance
@@ -43,8 +44,7 @@ def solve_at_force(contact: Contact, force: float, *, start: State | None = None
         convolutions += state.convolutions
         return state.force / force - 1
 
-    R, E_star = contact.pair.radius, contact.pair.contact_modulus
-    hertz = (0.75 * force / (E_star * math.sqrt(R))) ** (2 / 3)
+    hertz = float(Hertz(contact.pair.radius, contact.pair.contact_modulus).indentation(force))
     low, high = 0.0, max(hertz, start.indentation if start is not None else 0.0)
     while excess(high) < 0:
         low, high = high, 1.5 * high

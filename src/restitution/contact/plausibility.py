@@ -11,6 +11,7 @@ from restitution.contact.edge import edge_advice, first_touch
 from restitution.contact.resolution import foreseen_radius
 from restitution.errors import CaseError
 from restitution.surfaces import level, rms_slope
+from restitution.theory import Hertz, Kendall
 
 _TILTED = 0.5  # of the variance of the heights that a plane explains
 _OBLONG = 0.01  # difference of the edges of a pixel
@@ -87,15 +88,19 @@ def _closed_gap(contact: Contact, indentation: float, distance: float) -> float:
     """The undeformed gap up to which bodies are foreseen to touch `distance` off the centre, m.
 
     It is the indentation less the displacement F/(πE*r) outside a smooth contact. Adhesion deepens
-    the indentation by sqrt(2πaw/E*) (JKR). Where the roughness is as high as the indentation is
-    deep, single asperities carry the load, and displace little.
+    the indentation by the pull-off displacement of a punch as wide as the contact (JKR). Where the
+    roughness is as high as the indentation is deep, single asperities carry the load, and displace
+    little.
     """
     pair, p_y, w = contact.pair, contact.hardness, contact.work_of_adhesion
     E_star, deeper = pair.contact_modulus, indentation
     for _ in range(10):  # a fixed point: `radius` grows with its square root at most
         radius = foreseen_radius(pair, deeper, p_y)
-        deeper = indentation + math.sqrt(2 * math.pi * radius * w / E_star)
-    force = min(4 * E_star * radius**3 / (3 * pair.radius), math.pi * radius**2 * p_y)
+        if not contact.adhesive:
+            break
+        deeper = indentation + float(Kendall(E_star, w).pull_off_displacement(radius))
+    elastic = float(Hertz(pair.radius, E_star).force_at_contact_radius(radius))
+    force = min(elastic, math.pi * radius**2 * p_y)
     share = max(_DISPLACED - float(np.std(contact.surface.height)) / indentation, 0.0)
     return deeper - share * force / (math.pi * E_star * distance)
 

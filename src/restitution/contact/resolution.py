@@ -16,6 +16,7 @@ from restitution.contact.contact import Contact
 from restitution.contact.state import State
 from restitution.errors import SurfaceError
 from restitution.numerics.box import widen
+from restitution.theory import JKR, FirstYield, Hertz
 
 # Smooth spheres follow the tables to 0.3 % from eight nodes over the contact radius; refining rough
 # surfaces, restitution is within 2 % (root mean square; 5 % at worst) of that on the finest grid
@@ -31,10 +32,12 @@ _HALF_SPACE = 0.2  # contact radius over R*, beyond which a sphere is not a half
 def foreseen_radius(pair: Pair, indentation: float, yield_pressure: float = math.inf) -> float:
     """Contact radius of the smooth bodies, m: Hertz sqrt(R*δ), or sqrt(2R*δ) once fully plastic."""
     R = pair.radius
-    yielded = (math.pi * yield_pressure / (2 * pair.contact_modulus)) ** 2 * R
+    yielded = math.inf
+    if math.isfinite(yield_pressure):
+        yielded = float(FirstYield(R, pair.contact_modulus, yield_pressure).indentation)
     # Between first yield and the fully plastic limit the area per πR*δ grows from 1 to 2.
     fullness = 1.0 if indentation <= yielded else 2.0 - (yielded / indentation) ** 0.25
-    return math.sqrt(fullness * R * indentation)
+    return float(Hertz(fullness * R, pair.contact_modulus).contact_radius(indentation))
 
 
 def adhesive_nodes(state: State) -> float:
@@ -63,8 +66,8 @@ def adhesive_nodes(state: State) -> float:
 
 def pull_off_radius(contact: Contact, radius: float) -> float:
     """Contact radius a_c at which a sphere of `radius` pulls off (JKR), m."""
-    w, E_star = contact.work_of_adhesion, contact.pair.contact_modulus
-    return float((9 * math.pi * w * radius**2 / (8 * E_star)) ** (1 / 3))
+    sphere = JKR(radius, contact.pair.contact_modulus, contact.work_of_adhesion)
+    return float(sphere.pull_off_radius)
 
 
 def expected_pull_off_error(contact: Contact) -> float:

@@ -19,6 +19,7 @@ from restitution.contact.equilibrium import refuse_edge
 from restitution.contact.state import State
 from restitution.errors import NotConvergedError
 from restitution.numerics.quadrature import integrate_curve
+from restitution.theory import Kendall
 
 RESTITUTION_ERROR = 0.002
 _ACCURACY = 1e-3  # of the solves on the way, in parts of the opening at the edge
@@ -167,18 +168,22 @@ def _plan(state: State, tolerance: float) -> tuple[float, float]:
 
 
 def _tension_reach(state: State) -> float:
-    """Displacement sqrt(2πaw/E*) at which a punch of the same area breaks off (Kendall 1971)."""
-    a = math.sqrt(state.contact_area / math.pi)
-    contact = state.contact
-    return math.sqrt(2 * math.pi * a * contact.work_of_adhesion / contact.pair.contact_modulus)
+    """Displacement (m) at which a punch of the same area breaks off (Kendall 1971)."""
+    punch, a = _punch(state)
+    return float(punch.pull_off_displacement(a))
 
 
 def _punch_force(state: State) -> float:
-    """Pull-off force sqrt(8πE*wa³) of a punch of the same area (Kendall 1971)."""
-    a = math.sqrt(state.contact_area / math.pi)
+    """Pull-off force (N) of a punch of the same area (Kendall 1971)."""
+    punch, a = _punch(state)
+    return float(punch.pull_off_force(a))
+
+
+def _punch(state: State) -> tuple[Kendall, float]:
+    """Punches of these bodies, and the radius (m) of the one that has the area of the contact."""
     contact = state.contact
-    E_star, w = contact.pair.contact_modulus, contact.work_of_adhesion
-    return math.sqrt(8 * math.pi * E_star * w * a**3)
+    punch = Kendall(contact.pair.contact_modulus, contact.work_of_adhesion)
+    return punch, math.sqrt(state.contact_area / math.pi)
 
 
 def _predict(previous: State | None, state: State, step: float) -> NDArray[np.float64] | None:

@@ -22,15 +22,7 @@ from numpy.typing import NDArray
 
 from restitution.case.case import Case
 from restitution.errors import CaseError
-from restitution.theory import (
-    adhesive_thornton_ning,
-    hertz,
-    johnson,
-    mdr,
-    sticking,
-    thornton_ning,
-    yielding,
-)
+from restitution.theory import JKR, MDR, AdhesiveThorntonNing, Hertz, Johnson, ThorntonNing
 
 Array = NDArray[np.float64]
 
@@ -100,6 +92,21 @@ class Bodies:
         )
 
     @property
+    def hertz(self) -> Hertz:
+        """The elastic contact."""
+        return Hertz(self.R, self.E)
+
+    @property
+    def yielding(self) -> ThorntonNing:
+        """The contact that yields, without adhesion."""
+        return ThorntonNing(self.R, self.E, self.p_y)
+
+    @property
+    def sticking(self) -> JKR:
+        """The elastic contact with adhesion."""
+        return JKR(self.R, self.E, self.w)
+
+    @property
     def elastic(self) -> bool:
         """Whether nothing yields."""
         return math.isinf(self.p_y)
@@ -109,20 +116,19 @@ class Bodies:
         """V_y; infinite if elastic."""
         if self.elastic:
             return math.inf
-        return float(yielding.yield_velocity(self.R, self.E, self.p_y, self.m))
+        return float(self.yielding.first_yield.velocity(self.m))
 
     @cached_property
     def sticking_velocity(self) -> float:
         """V_s; zero without adhesion."""
         if self.w == 0:
             return 0.0
-        return float(sticking.sticking_velocity(self.R, self.E, self.w, self.m))
+        return float(self.sticking.sticking_velocity(self.m))
 
     @cached_property
     def small_velocity(self) -> float:
         """V up to which a Hertz contact is small beside the spheres."""
-        W = float(hertz.stored_energy(_SMALL * self.R, self.R, self.E))
-        return math.sqrt(2 * W / self.m)
+        return float(self.hertz.impact_velocity(_SMALL * self.R, self.m))
 
     @property
     def strength(self) -> float:
@@ -147,18 +153,12 @@ class Bodies:
     def velocity(self, indentation: Array) -> Array:
         """V (m/s) of the impact that reaches `indentation` (m)."""
         if self.elastic:
-            return np.asarray(
-                np.sqrt(2 * hertz.stored_energy(indentation, self.R, self.E) / self.m)
-            )
-        return thornton_ning.impact_velocity(indentation, self.R, self.E, self.p_y, self.m)
+            return self.hertz.impact_velocity(indentation, self.m)
+        return self.yielding.impact_velocity(indentation, self.m)
 
     def depth_under(self, force: Array) -> Array:
-        """Indentation (m) under `force` (N): Hertz, then the line f = (3x − 1)/2."""
-        if self.elastic:
-            return hertz.indentation_from_force(force, self.R, self.E)
-        f = force / float(yielding.yield_force(self.R, self.E, self.p_y))
-        d_y = float(yielding.yield_indentation(self.R, self.E, self.p_y))
-        return np.asarray(d_y * np.where(f <= 1, f ** (2 / 3), (2 * f + 1) / 3))
+        """Indentation (m) under `force` (N): Hertz's, or Thornton and Ning's."""
+        return (self.hertz if self.elastic else self.yielding).indentation(force)
 
 
 @dataclass(frozen=True)
@@ -191,7 +191,7 @@ def _sticking(b: Bodies, V: Array) -> Form | str:
     limit = min(V_y, b.small_velocity) if V_s < V_y else 0.0
     failing = "" if V_s < V_y else ", so nowhere here"
     return Form(
-        within(limit >= V, sticking.restitution(V, V_s)),
+        within(limit >= V, b.sticking.restitution(V, b.m)),
         f"nothing yields and the contact is small, {_elastic_range(b)}; V_s = {speed(V_s)} below "
         f"V_y{failing}; {_tabor(b)}",
         {"sticking_velocity_m_per_s": V_s, "work_of_adhesion_J_per_m2": b.w},
@@ -202,15 +202,14 @@ def _sticking(b: Bodies, V: Array) -> Form | str:
 def _thornton_ning(b: Bodies, V: Array) -> Form | str:
     if b.elastic:
         return _ELASTIC
-    bodies = b.R, b.E, b.p_y
-    depth = thornton_ning.indentation_from_velocity(V, *bodies, b.m)
-    limit = float(thornton_ning.impact_velocity(b.R, *bodies, b.m))
+    depth = b.yielding.indentation_from_velocity(V, b.m)
+    limit = float(b.yielding.impact_velocity(b.R, b.m))
     deepest = math.sqrt(float(np.max(depth, initial=0.0)) / b.R)
     small = f"a << R* (here a/R* up to {deepest:.2g}; no answer from a = R* on, {speed(limit)})"
     inside = depth < b.R
     parameters = {"yield_pressure_Pa": b.p_y}
     if b.w == 0:
-        e = thornton_ning.restitution(V, *bodies, b.m)
+        e = b.yielding.restitution(V, b.m)
         return Form(within(inside, e), f"quasi-static impacts, {small}", parameters)
     V_s, V_y = b.sticking_velocity, b.yield_velocity
     additive = (
@@ -219,7 +218,7 @@ def _thornton_ning(b: Bodies, V: Array) -> Form | str:
         else f"up to V_y = {speed(V_y)} only, for V_s = {speed(V_s)} lies above"
     )
     return Form(
-        within(inside, adhesive_thornton_ning.restitution(V, *bodies, b.w, b.m)),
+        within(inside, AdhesiveThorntonNing(b.R, b.E, b.p_y, b.w).restitution(V, b.m)),
         f"{additive}; {small}; {_tabor(b)}",
         {**parameters, "work_of_adhesion_J_per_m2": b.w, "sticking_velocity_m_per_s": V_s},
         with_adhesion=True,
@@ -229,13 +228,10 @@ def _thornton_ning(b: Bodies, V: Array) -> Form | str:
 def _johnson(b: Bodies, V: Array) -> Form | str:
     if b.elastic:
         return _ELASTIC
-    Y = b.strength
-    e = johnson.restitution(V, b.R, b.E, Y, b.m)
-    # ½m*V²/YR*³ where e is 0.6, and where a = R*: W = π 3Y a⁴/4R*.
-    lowest, highest = (
-        math.sqrt(2 * reduced * Y * b.R**3 / b.m)
-        for reduced in ((johnson.COEFFICIENT**2 * Y / b.E) ** 4 / _JOHNSON**8, 0.75 * math.pi)
-    )
+    law = Johnson(b.R, b.E, b.strength)
+    e = law.restitution(V, b.m)
+    lowest = float(law.velocity_at_restitution(_JOHNSON, b.m))
+    highest = float(law.velocity_at_full_radius(b.m))
     return Form(
         within((e < _JOHNSON) & (highest > V), e),
         f"fully plastic, e < {_JOHNSON:g}: above {speed(lowest)}; a << R* (no answer from a = R* "
@@ -256,14 +252,14 @@ def _mdr(b: Bodies, V: Array) -> Form | str:
         return "it takes no negative Poisson ratio"
     n = 2 if b.equal else 1
     E = n * b.E * (1 - nu**2)
-    sphere = n * b.R, E, nu, b.strength
-    limit = n * math.sqrt(2 * float(mdr.loading_work(n * b.R, *sphere)) / (n * b.m))
+    sphere = MDR(n * b.R, E, nu, b.strength)
+    limit = n * math.sqrt(2 * float(sphere.loading_work(n * b.R)) / (n * b.m))
     flat = (
         "two equal spheres, a flat between them" if b.equal
         else "a sphere on a rigid flat, the wall's compliance put into E"
     )  # fmt: skip
     return Form(
-        mdr.restitution(V / n, *sphere, n * b.m),
+        sphere.restitution(V / n, n * b.m),
         f"{flat}; up to {speed(limit)}, where the indentation is the radius",
         {"youngs_modulus_Pa": E, "poissons_ratio": nu},
         takes_strength=True,
@@ -286,7 +282,7 @@ def _elastic_range(b: Bodies) -> str:
 
 
 def _tabor(b: Bodies) -> str:
-    mu = float(sticking.tabor_parameter(b.R, b.E, b.w, b.separation))
+    mu = float(b.sticking.tabor_parameter(b.separation))
     beside = f"here {mu:.2g}" + (", so it sticks less than this says" if mu < 5 else "")
     return f"JKR, a Tabor parameter above 5 ({beside})"
 

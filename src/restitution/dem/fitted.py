@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.dem.law import LOSS, FittedLaw, Law
-from restitution.theory import eepa, luding, mdr, sticking, thornton_ning, walton_braun
+from restitution.theory import EEPA, JKR, MDR, Luding, ThorntonNing, WaltonBraun
 
 Array = NDArray[np.float64]
 Parameters = dict[str, float]
@@ -95,12 +95,12 @@ def _thornton_ning(law: Law) -> Iterator[FittedLaw]:
     V, force = _seen(law, "velocity"), _seen(law, "force")
 
     def forces(x: Array) -> Array:
-        d = thornton_ning.indentation_from_velocity(V, *smooth, math.exp(x[0]), law.mass)
-        F = thornton_ning.loading_force(d, *smooth, math.exp(x[0]))
+        bodies = ThorntonNing(*smooth, math.exp(x[0]))
+        F = bodies.loading_force(bodies.indentation_from_velocity(V, law.mass))
         return np.asarray(np.log(F / np.maximum(force, 1e-300)))[force > 0]
 
     def restitution(velocity: Array, p_y: float, V_s: float) -> Array:
-        e_p = thornton_ning.restitution(velocity, *smooth, p_y, law.mass)
+        e_p = ThorntonNing(*smooth, p_y).restitution(velocity, law.mass)
         return np.asarray(np.sqrt(np.maximum(e_p**2 - (V_s / velocity) ** 2, 0.0)))
 
     source = "C. Thornton, Z. Ning, Powder Technology 99 (1998) 154-162"
@@ -136,7 +136,7 @@ def _adhesion_of(law: Law, V_s: float) -> Parameters:
     """The sticking velocity and the work of adhesion of the smooth elastic bodies that have it."""
     if V_s <= 0:
         return {}
-    unit = sticking.sticking_velocity(law.radius, law.contact_modulus, 1.0, law.mass)
+    unit = JKR(law.radius, law.contact_modulus, 1.0).sticking_velocity(law.mass)
     return {
         "sticking_velocity_m_per_s": V_s,
         "work_of_adhesion_J_per_m2": float((V_s / unit) ** 1.2),
@@ -151,7 +151,7 @@ def _walton_braun(law: Law) -> FittedLaw:
         return k1, k1 * math.exp(x[0]), scale * float(x[1]) ** 2
 
     def restitution(V: Array, x: Array) -> Array:
-        return walton_braun.restitution(V, *springs(x), law.mass)
+        return WaltonBraun(*springs(x)).restitution(V, law.mass)
 
     x = _fit(law, restitution, [0.1, 1.0], [0.0, 0.0])
     return _judged(
@@ -171,7 +171,7 @@ def _luding(law: Law) -> FittedLaw:
         return k1, k1 * math.exp(x[0]), k_c, deepest / (2 * law.radius) * math.exp(x[1])
 
     def restitution(V: Array, x: Array) -> Array:
-        return luding.restitution(V, law.radius, *springs(x), law.mass)
+        return Luding(law.radius, *springs(x)).restitution(V, law.mass)
 
     adhesive = [0.1] if law.work_of_adhesion > 0 else []
     stiff = -2 * math.log(max(float(_seen(law, "restitution").mean()), 0.05))
@@ -193,7 +193,7 @@ def _eepa(law: Law) -> FittedLaw:
         return k1, k1 * math.exp(x[0]), k_adh, f0, n
 
     def restitution(V: Array, x: Array) -> Array:
-        return eepa.restitution(V, *springs(x), law.mass)
+        return EEPA(*springs(x)).restitution(V, law.mass)
 
     adhesive = [0.01, 0.01] if law.work_of_adhesion > 0 else []
     x = _fit(law, restitution, [1.0, *adhesive], [0.0, *(0.0 for _ in adhesive)])
@@ -219,7 +219,7 @@ def _mdr(law: Law) -> FittedLaw | None:
         return None
 
     def restitution(V: Array, x: Array) -> Array:
-        return mdr.restitution(share * V, sphere.radius or math.nan, E, nu, math.exp(x[0]), mass)
+        return MDR(sphere.radius or math.nan, E, nu, math.exp(x[0])).restitution(share * V, mass)
 
     start = math.log((law.yield_pressure or 0.03 * law.contact_modulus) / 2.8)
     x = _fit(law, restitution, [start], [start - 7], [start + 7])

@@ -13,7 +13,7 @@ from restitution.case.case import Case
 from restitution.dem.closed_forms import FORMS, SOURCES, Bodies, speed, within
 from restitution.dem.law import LOSS, FittedLaw, Law
 from restitution.errors import CaseError
-from restitution.theory import brilliantov
+from restitution.theory import Brilliantov
 
 Array = NDArray[np.float64]
 
@@ -157,7 +157,7 @@ def _of_law(bodies: Bodies, law: Law, V: Array) -> Iterator[Theory]:
                              fitted(_restitution_of(each)))  # fmt: skip
     if not _cannot_fit(law):
         beta = _dissipation(law)
-        e = brilliantov.restitution(own, beta)
+        e = Brilliantov(beta).restitution(own)
         miss = (e - law.column("restitution"))[law.column("resolved").astype(bool)]
         yield Theory(
             "brilliantov",
@@ -213,7 +213,7 @@ def _dissipation(law: Law) -> float:
     V, e = (law.column(name, resolved=True) for name in ("velocity", "restitution"))
 
     def misfit(log_beta: float) -> float:
-        return float(np.sum((brilliantov.restitution(V, math.exp(log_beta)) - e) ** 2))
+        return float(np.sum((Brilliantov(math.exp(log_beta)).restitution(V) - e) ** 2))
 
     # e is nearly 1 at every velocity at the one end, nearly 0 at the other.
     first, last = math.log(1e-6 / law.highest**0.2), math.log(1e6 / law.lowest**0.2)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from restitution.contact.resolution import NODES_PER_PATCH
 from restitution.results.reader import RunResults
 from restitution.results.writer import replace_file
-from restitution.theory import adhesive_thornton_ning, hertz, jkr, thornton_ning
+from restitution.theory import JKR, AdhesiveThorntonNing, Hertz, ImpactLaw, ThorntonNing
 
 _SIZE = (6.4, 4.4)
 _WIDE = (10.4, 4.4)
@@ -82,14 +82,15 @@ def load_displacement(results: xr.Dataset) -> Figure:
             axes.plot(1e6 * results["smooth_indentation"], results["smooth_force"], "-", lw=1,
                       color="0.4", label=_SMOOTH)  # fmt: skip
         if w > 0:
-            reach = np.append(np.linspace(float(jkr.break_indentation(R, E_star, w)), 0, 60), fine)
-            elastic, law = jkr.force(reach, R, E_star, w), "JKR, smooth elastic"
+            jkr = JKR(R, E_star, w)
+            reach = np.append(np.linspace(float(jkr.break_indentation), 0, 60), fine)
+            elastic, law = jkr.force(reach), "JKR, smooth elastic"
         else:
-            reach, elastic, law = fine, hertz.force(fine, R, E_star), "Hertz, smooth"
+            reach, elastic, law = fine, Hertz(R, E_star).force(fine), "Hertz, smooth"
         shown = elastic <= 1.3 * force.max()
         axes.plot(1e6 * reach[shown], elastic[shown], ":", color="0.4", label=law)
         if np.isfinite(p_y):
-            axes.plot(1e6 * fine, thornton_ning.loading_force(fine, R, E_star, p_y), "--",
+            axes.plot(1e6 * fine, ThorntonNing(R, E_star, p_y).loading_force(fine), "--",
                       color="0.4", label=_THORNTON_NING)  # fmt: skip
         axes.set(xlabel="indentation (µm)", ylabel="normal force (N)")
     linear.set_title(plain(results.attrs.get("title", "")))
@@ -116,11 +117,11 @@ def restitution_against_indentation(results: xr.Dataset) -> Figure:
     R, E_star, p_y = _parameters(results)
     if np.isfinite(p_y):
         fine = _between(depth)
-        reference = thornton_ning.restitution_at_indentation(fine, R, E_star, p_y)
+        reference = ThorntonNing(R, E_star, p_y).restitution_at_indentation(fine)
         axes.plot(1e6 * fine, reference, "--", color="0.4", label=_THORNTON_NING)
     if (w := _work_of_adhesion(results)) > 0:
         fine = _between(depth)
-        reference = jkr.restitution_at_indentation(fine, R, E_star, w)
+        reference = JKR(R, E_star, w).restitution_at_indentation(fine)
         axes.plot(1e6 * fine, reference, ":", color="0.4", label="JKR, smooth elastic")
     figure.legend(frameon=False, fontsize="small", loc="outside lower center", ncols=2)
     return figure
@@ -135,18 +136,17 @@ def restitution_against_velocity(results: xr.Dataset) -> Figure:
     R, E_star, p_y = _parameters(results)
     w, fine = _work_of_adhesion(results), _between(velocity)
     mass = float(results.attrs["derived_reduced_mass_kg"])
-    if w > 0:
+    law: ImpactLaw | None = None
+    if w > 0 and np.isfinite(p_y):
         # Where adhesion and yield do not simply add, this law has no answer and no line.
-        law = (
-            adhesive_thornton_ning.restitution(fine, R, E_star, p_y, w, mass)
-            if np.isfinite(p_y)
-            else jkr.restitution(fine, R, E_star, w, mass)
-        )
-        label = "smooth, Thornton–Ning with adhesion" if np.isfinite(p_y) else "JKR, smooth elastic"
-        axes.plot(fine, law, "--", color="0.4", label=label)
+        law = AdhesiveThorntonNing(R, E_star, p_y, w)
+        label = "smooth, Thornton–Ning with adhesion"
+    elif w > 0:
+        law, label = JKR(R, E_star, w), "JKR, smooth elastic"
     elif np.isfinite(p_y):
-        reference = thornton_ning.restitution(fine, R, E_star, p_y, mass)
-        axes.plot(fine, reference, "--", color="0.4", label=_THORNTON_NING)
+        law, label = ThorntonNing(R, E_star, p_y), _THORNTON_NING
+    if law is not None:
+        axes.plot(fine, law.restitution(fine, mass), "--", color="0.4", label=label)
     figure.legend(frameon=False, fontsize="small", loc="outside lower center", ncols=2)
     return figure
 

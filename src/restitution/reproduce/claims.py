@@ -17,7 +17,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from restitution.sweeps.coordinates import AS_WRITTEN
-from restitution.theory import hertz, jkr, thornton_ning, yielding
+from restitution.theory import JKR, Hertz, ThorntonNing
 
 Array = NDArray[np.float64]
 Studies = Mapping[str, xr.Dataset]
@@ -89,7 +89,7 @@ def _resolved(*of: Curve) -> str:
 
 def _figure_5(studies: Studies) -> Finding:
     (curve,) = curves(studies["hertz"])
-    off = float(np.abs(curve.force / hertz.force(curve.depth, R, E_STAR) - 1).max())
+    off = float(np.abs(curve.force / Hertz(R, E_STAR).force(curve.depth) - 1).max())
     return Finding(
         "5", "The elastic solution agrees with Hertz's.",
         f"Force within {off:.2%} of Hertz's at all depths.", off,
@@ -99,11 +99,12 @@ def _figure_5(studies: Studies) -> Finding:
 
 def _figure_6(studies: Studies) -> Finding:
     off = {}
-    yielded = 2 * float(yielding.yield_indentation(R, E_STAR, P_Y))
+    smooth = ThorntonNing(R, E_STAR, P_Y)
+    yielded = 2 * float(smooth.first_yield.indentation)
     found = curves(studies["thornton-ning"])
     for curve in found:
         deep = curve.depth > yielded
-        law = thornton_ning.loading_force(curve.depth[deep], R, E_STAR, P_Y)
+        law = smooth.loading_force(curve.depth[deep])
         off[curve.label] = float(np.max(np.abs(curve.force[deep] / law - 1)))
     return Finding(
         "6", "Loading and unloading with a yield cut-off agree with Thornton and Ning (1998).",
@@ -117,8 +118,9 @@ def _figure_6(studies: Studies) -> Finding:
 
 def _figure_7(studies: Studies) -> Finding:
     (curve,) = curves(studies["jkr"])
-    loading = float(np.abs(curve.force / jkr.force(curve.depth, R, E_STAR, 0.09) - 1).max())
-    off = np.abs(curve.pull_off / jkr.pull_off_force(R, 0.09) - 1)
+    jkr = JKR(R, E_STAR, 0.09)
+    loading = float(np.abs(curve.force / jkr.force(curve.depth) - 1).max())
+    off = np.abs(curve.pull_off / jkr.pull_off_force - 1)
     worst, deepest = max(loading, float(off.max())), float(off[-1])
     verdict: Verdict = "agrees" if worst < 0.05 else "does not agree"
     if verdict != "agrees" and max(loading, deepest) < 0.05:

@@ -26,7 +26,7 @@ from restitution.reproduce.claims import (
 )
 from restitution.reproduce.studies import NAMES, Size
 from restitution.results.reader import StudyResults
-from restitution.theory import hertz, jkr, thornton_ning
+from restitution.theory import JKR, Hertz, ThorntonNing
 
 PAPER = (
     "Ghanbarzadeh, Hassanpour and Neville (2019), Powder Technology 345, 203–212, "
@@ -99,14 +99,14 @@ def _drawings(studies: dict[str, xr.Dataset], findings: list[Finding]) -> list[D
     return [
         _lines("Figure 5: force on smooth elastic spheres", "force (N)", words("5"),
                [(c, c.force) for c in curves(studies["hertz"])],
-               [("Hertz", lambda d: hertz.force(d, R, E_STAR))], log=True),
+               [("Hertz", Hertz(R, E_STAR).force)], log=True),
         _lines("Figure 6: force on smooth elastic–plastic spheres", "force (N)", words("6"),
                [(c, c.force) for c in curves(studies["thornton-ning"])],
-               [("Thornton and Ning", lambda d: thornton_ning.loading_force(d, R, E_STAR, P_Y))],
+               [("Thornton and Ning", ThorntonNing(R, E_STAR, P_Y).loading_force)],
                log=True),
         _lines("Figure 7: force on smooth elastic adhesive spheres", "force (N)", words("7"),
                [(c, c.force) for c in curves(studies["jkr"])],
-               [("JKR", lambda d: jkr.force(d, R, E_STAR, 0.09))]),
+               [("JKR", JKR(R, E_STAR, 0.09).force)]),
         _lines("Figure 8: smooth adhesive spheres, yield pressure", "COR", words("8"),
                [(c, c.cor) for c in curves(studies["smooth-yield"])]),
         _lines("Figure 9: smooth adhesive spheres, interface energy", "COR", words("9"),

@@ -13,7 +13,7 @@ from restitution.contact.contact import Contact, smooth
 from restitution.contact.loading import solve
 from restitution.contact.resolution import foreseen_radius
 from restitution.numerics.grid import Grid
-from restitution.theory import hertz, yielding
+from restitution.theory import FirstYield, Hertz
 
 # The error of restitution is below 0.3 % from eight nodes over the contact radius.
 _NODES = 80
@@ -35,20 +35,18 @@ def smooth_curve(contact: Contact, rows: list[dict[str, float]]) -> dict[str, An
     last = max(row["indentation_m"] for row in rows)
     # Smooth bodies need less depth for the same work.
     least = min(row["loading_work_J"] for row in rows)
-    same_work = (15 * least / (8 * E_star * math.sqrt(R))) ** 0.4
+    hertz = Hertz(R, E_star)
+    same_work = float(hertz.indentation_from_energy(least))
     first = min(same_work, *(row["indentation_m"] for row in rows))
     first_yield = contact.first_yield_pressure
     elastic = math.isinf(first_yield)
-    onset = math.inf if elastic else float(yielding.yield_indentation(R, E_star, first_yield))
+    onset = math.inf if elastic else float(FirstYield(R, E_star, first_yield).indentation)
     depths = np.unique(np.append(first, np.geomspace(min(max(first, onset), last), last, _DEPTHS)))
     force, cor, velocity = (np.empty(depths.size) for _ in range(3))
     for k, depth in enumerate(depths):
         if depth <= onset:
-            work = float(hertz.stored_energy(depth, R, E_star))
-            force[k], collision = (
-                hertz.force(depth, R, E_star),
-                Collision(work, work, pair.mass),
-            )
+            work = float(hertz.stored_energy(depth))
+            force[k], collision = hertz.force(depth), Collision(work, work, pair.mass)
         else:
             spacing = _WIDTH * foreseen_radius(pair, depth, p_y) / _NODES
             grid = Grid((_NODES, _NODES), (spacing, spacing))

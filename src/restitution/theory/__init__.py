@@ -1,6 +1,10 @@
-"""Closed forms for smooth spheres, one module a theory; each module states where it holds.
+"""Closed forms for smooth spheres, one law a module; each module states where it holds.
 
-Shared by every function of this room:
+A law is a frozen object: its parameters are fields, checked once when it is made, and its
+quantities are properties and methods, `Hertz(radius, contact_modulus).force(indentation)`. Laws of
+an impact follow `ImpactLaw`: `restitution(velocity, mass)`.
+
+Shared by every law of this room:
 
 - **Units** SI throughout: m, Pa, N, J, kg, m/s. `radius` is the reduced radius R*,
   `contact_modulus` E*, `mass` the reduced mass m*: 1/R* = 1/R₁ + 1/R₂, 1/m* = 1/m₁ + 1/m₂,
@@ -13,41 +17,40 @@ Shared by every function of this room:
   that adheres holds on at negative indentation; nothing touches below its break. Spheres that
   touch and stick have restitution 0. NaN stays NaN.
 - **No answer is NaN** Where a formula has no answer for bodies and states that can be, the result
-  is NaN there, and the function says where that is.
+  is NaN there, and the method says where that is.
 - **No body is an error** A radius, modulus, pressure, strength or mass that is not positive and
   finite raises `CaseError` (a `ValueError`) naming the argument.
 """
 
-from . import (
-    adhesive_thornton_ning,
-    brilliantov,
-    eepa,
-    hertz,
-    jackson_green,
-    jkr,
-    johnson,
-    kendall,
-    luding,
-    mdr,
-    sticking,
-    thornton_ning,
-    walton_braun,
-    yielding,
-)
+from .adhesive_thornton_ning import AdhesiveThorntonNing
+from .brilliantov import Brilliantov
+from .eepa import EEPA
+from .hertz import Hertz
+from .jackson_green import JacksonGreen
+from .jkr import JKR
+from .johnson import Johnson
+from .kendall import Kendall
+from .law import ImpactLaw
+from .luding import Luding
+from .mdr import MDR
+from .thornton_ning import ThorntonNing
+from .walton_braun import WaltonBraun
+from .yielding import FirstYield, yield_coefficient
 
 __all__ = [
-    "adhesive_thornton_ning",
-    "brilliantov",
-    "eepa",
-    "hertz",
-    "jackson_green",
-    "jkr",
-    "johnson",
-    "kendall",
-    "luding",
-    "mdr",
-    "sticking",
-    "thornton_ning",
-    "walton_braun",
-    "yielding",
+    "EEPA",
+    "JKR",
+    "MDR",
+    "AdhesiveThorntonNing",
+    "Brilliantov",
+    "FirstYield",
+    "Hertz",
+    "ImpactLaw",
+    "JacksonGreen",
+    "Johnson",
+    "Kendall",
+    "Luding",
+    "ThorntonNing",
+    "WaltonBraun",
+    "yield_coefficient",
 ]

@@ -1,4 +1,4 @@
-"""What the closed forms accept: numbers or arrays, with one rule for what does not touch."""
+"""What the laws accept: numbers or arrays, checked by name, with one rule for no contact."""
 
 from __future__ import annotations
 
@@ -50,12 +50,30 @@ def between(low: Values, high: Values, **quantities: Values) -> tuple[Array, ...
     return tuple(arrays)
 
 
+def keep_positive(law: object, *names: str) -> None:
+    """Check the named fields of a frozen `law` by `positive` and keep them as read-only arrays."""
+    for name in names:
+        keep(law, name, *positive(**{name: getattr(law, name)}))
+
+
+def keep_between(law: object, name: str, low: Values, high: Values = np.inf) -> None:
+    """Check a field of a frozen `law` by `between` and keep it as a read-only array."""
+    keep(law, name, *between(low, high, **{name: getattr(law, name)}))
+
+
 def touching(value: Values) -> Array:
     """Return a state variable (indentation, force, velocity) with negative values set to zero."""
     return scalar_or_array(np.maximum(np.asarray(value, dtype=np.float64), 0.0))
 
 
-def scalar_or_array(values: Array) -> Array:
+def scalar_or_array(values: Values) -> Array:
     """Return a NumPy scalar in place of an array without dimensions, any other array as it is."""
-    result: Array = values[()]
+    result: Array = np.asarray(values, dtype=np.float64)[()]
     return result
+
+
+def keep(law: object, name: str, value: Values) -> None:
+    """Keep a field of a frozen `law` as a read-only array of its own."""
+    kept = np.array(value, dtype=np.float64)
+    kept.flags.writeable = False
+    object.__setattr__(law, name, kept)

@@ -22,32 +22,39 @@ Units, shapes and errors are those of `restitution.theory`.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import Self
+
 import numpy as np
 
-from ._inputs import Array, Values, positive, scalar_or_array, touching
+from ._inputs import Array, Values, keep_positive, positive, scalar_or_array, touching
+from .hertz import Hertz
 
 _NUMERATOR = 0.501086, 1.0
 _DENOMINATOR = 0.532178, 0.577977, 1.15345, 0.501086, 1.0
 
 
-def dissipation_from_material(
-    radius: Values, contact_modulus: Values, dissipative_time: Values, mass: Values
-) -> Array:
-    """β = 3/2 A (4E*R*^½/3m*)^{2/5}, in (s/m)^{1/5}, of the dissipative constant A (s)."""
-    R, E_star, A, m = positive(
-        radius=radius,
-        contact_modulus=contact_modulus,
-        dissipative_time=dissipative_time,
-        mass=mass,
-    )
-    return 1.5 * A * (4 / 3 * E_star * R**0.5 / m) ** 0.4
+@dataclass(frozen=True, eq=False)
+class Brilliantov:
+    """Viscoelastic spheres with `dissipation` β = γ/k^{3/5}, in (s/m)^{1/5}."""
 
+    dissipation: Values
 
-def restitution(velocity: Values, dissipation: Values) -> Array:
-    """Coefficient of restitution e after an impact at relative normal `velocity` (m/s).
+    def __post_init__(self) -> None:
+        keep_positive(self, "dissipation")
 
-    `dissipation` is β = γ/k^{3/5} in (s/m)^{1/5}. 1 at and below zero velocity.
-    """
-    (beta,) = positive(dissipation=dissipation)
-    v = beta**0.5 * touching(velocity) ** 0.1
-    return scalar_or_array(np.polyval(_NUMERATOR, v) / np.polyval(_DENOMINATOR, v))
+    @classmethod
+    def from_material(
+        cls, radius: Values, contact_modulus: Values, dissipative_time: Values, mass: Values
+    ) -> Self:
+        """The law with β = 3/2 A (4E*R*^½/3m*)^{2/5} of the dissipative constant A (s)."""
+        A, m = positive(dissipative_time=dissipative_time, mass=mass)
+        return cls(1.5 * A * (Hertz(radius, contact_modulus).force(1.0) / m) ** 0.4)
+
+    def restitution(self, velocity: Values) -> Array:
+        """Coefficient of restitution e after an impact at relative normal `velocity` (m/s).
+
+        1 at and below zero velocity.
+        """
+        v = self.dissipation**0.5 * touching(velocity) ** 0.1
+        return scalar_or_array(np.polyval(_NUMERATOR, v) / np.polyval(_DENOMINATOR, v))

@@ -25,162 +25,111 @@ be below k₁ nor n below 1, and k_adh and f₀ may be zero.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from ._inputs import Array, Values, between, positive, scalar_or_array, touching
+from ._inputs import (
+    Array,
+    Values,
+    keep_between,
+    keep_positive,
+    positive,
+    scalar_or_array,
+    touching,
+)
 from ._roots import increasing_root
+from .law import restitution_of_work
 
 
-def loading_force(
-    indentation: Values, loading_stiffness: Values, constant_force: Values, exponent: Values
-) -> Array:
-    """Normal force (N) on first loading; f₀ alone as soon as they touch."""
-    d = touching(indentation)
-    (k1,) = positive(loading_stiffness=loading_stiffness)
-    f0, n = _shape(constant_force, exponent)
-    return scalar_or_array(np.where(d == 0, 0.0, f0 + k1 * d**n))
+@dataclass(frozen=True, eq=False)
+class EEPA:
+    """Springs `loading_stiffness` k₁, `unloading_stiffness` k₂, `adhesive_stiffness` k_adh (N/mⁿ).
 
-
-def unloading_force(
-    indentation: Values,
-    maximum_indentation: Values,
-    loading_stiffness: Values,
-    unloading_stiffness: Values,
-    adhesive_stiffness: Values,
-    constant_force: Values,
-    exponent: Values,
-) -> Array:
-    """Normal force (N) at `indentation` after first loading to `maximum_indentation` (both m).
-
-    Above `maximum_indentation` the contact is loading again, and the force is `loading_force`.
+    `constant_force` is f₀ ≤ 0 (N), `exponent` n ≥ 1.
     """
-    d, d_max = touching(indentation), touching(maximum_indentation)
-    k1, k2, k_adh = _springs(loading_stiffness, unloading_stiffness, adhesive_stiffness)
-    f0, n = _shape(constant_force, exponent)
-    unloading = f0 + np.maximum(k2 * d**n - (k2 - k1) * d_max**n, -k_adh * d**n)
-    loading = loading_force(d, loading_stiffness, constant_force, exponent)
-    return scalar_or_array(np.where((d > d_max) | (d == 0), loading, unloading))
 
+    loading_stiffness: Values
+    unloading_stiffness: Values
+    adhesive_stiffness: Values
+    constant_force: Values
+    exponent: Values
 
-def residual_indentation(
-    maximum_indentation: Values,
-    loading_stiffness: Values,
-    unloading_stiffness: Values,
-    exponent: Values,
-) -> Array:
-    """Indentation δ_p (m) at which the force of unloading from `maximum_indentation` is f₀."""
-    k1, k2, _ = _springs(loading_stiffness, unloading_stiffness, 0.0)
-    _, n = _shape(0.0, exponent)
-    return (1 - k1 / k2) ** (1 / n) * touching(maximum_indentation)
+    def __post_init__(self) -> None:
+        keep_positive(self, "loading_stiffness")
+        keep_between(self, "unloading_stiffness", self.loading_stiffness)
+        keep_between(self, "adhesive_stiffness", 0.0)
+        keep_between(self, "constant_force", -np.inf, 0.0)
+        keep_between(self, "exponent", 1.0)
 
+    def loading_force(self, indentation: Values) -> Array:
+        """Normal force (N) on first loading; f₀ alone as soon as they touch."""
+        d = touching(indentation)
+        F = self.constant_force + self.loading_stiffness * d**self.exponent
+        return scalar_or_array(np.where(d == 0, 0.0, F))
 
-def pull_off_force(
-    maximum_indentation: Values,
-    loading_stiffness: Values,
-    unloading_stiffness: Values,
-    adhesive_stiffness: Values,
-    constant_force: Values,
-    exponent: Values,
-) -> Array:
-    """Greatest attraction k_adhδ_minⁿ − f₀ (N, positive) on unloading from `maximum_indentation`.
+    def unloading_force(self, indentation: Values, maximum_indentation: Values) -> Array:
+        """Normal force (N) at `indentation` after first loading to `maximum_indentation` (both m).
 
-    Zero where nothing has touched.
-    """
-    d = touching(maximum_indentation)
-    k1, k2, k_adh = _springs(loading_stiffness, unloading_stiffness, adhesive_stiffness)
-    f0, n = _shape(constant_force, exponent)
-    F_c = k_adh * (k2 - k1) / (k2 + k_adh) * d**n - f0
-    return scalar_or_array(np.where(d == 0, 0.0, F_c))
+        Above `maximum_indentation` the contact is loading again, and the force is `loading_force`.
+        """
+        d, d_max = touching(indentation), touching(maximum_indentation)
+        k1, k2, k_adh = self._springs
+        f0, n = self.constant_force, self.exponent
+        unloading = f0 + np.maximum(k2 * d**n - (k2 - k1) * d_max**n, -k_adh * d**n)
+        onwards = (d > d_max) | (d == 0)
+        return scalar_or_array(np.where(onwards, self.loading_force(d), unloading))
 
+    def residual_indentation(self, maximum_indentation: Values) -> Array:
+        """Indentation δ_p (m) at which the force of unloading from `maximum_indentation` is f₀."""
+        k1, k2, _ = self._springs
+        return (1 - k1 / k2) ** (1 / self.exponent) * touching(maximum_indentation)
 
-def loading_work(
-    indentation: Values, loading_stiffness: Values, constant_force: Values, exponent: Values
-) -> Array:
-    """Work W_l = ∫F dδ (J) from first touch to `indentation`; negative where f₀ draws them in."""
-    d = touching(indentation)
-    (k1,) = positive(loading_stiffness=loading_stiffness)
-    f0, n = _shape(constant_force, exponent)
-    return f0 * d + k1 * d ** (n + 1) / (n + 1)
+    def pull_off_force(self, maximum_indentation: Values) -> Array:
+        """Greatest attraction k_adhδ_minⁿ − f₀ (N, positive) on unloading.
 
+        Zero where nothing has touched.
+        """
+        d, (k1, k2, k_adh) = touching(maximum_indentation), self._springs
+        F_c = k_adh * (k2 - k1) / (k2 + k_adh) * d**self.exponent - self.constant_force
+        return scalar_or_array(np.where(d == 0, 0.0, F_c))
 
-def unloading_work(
-    maximum_indentation: Values,
-    loading_stiffness: Values,
-    unloading_stiffness: Values,
-    adhesive_stiffness: Values,
-    constant_force: Values,
-    exponent: Values,
-) -> Array:
-    """Work W_u (J) given back from `maximum_indentation` to δ = 0; negative where they stick."""
-    d = touching(maximum_indentation)
-    k1, k2, k_adh = _springs(loading_stiffness, unloading_stiffness, adhesive_stiffness)
-    f0, n = _shape(constant_force, exponent)
-    mu = ((k2 - k1) / (k2 + k_adh)) ** (1 / n)
-    k_u = k2 - (n + 1) * (k2 - k1) + n * (k2 + k_adh) * mu ** (n + 1)
-    return f0 * d + k_u * d ** (n + 1) / (n + 1)
+    def loading_work(self, indentation: Values) -> Array:
+        """Work W_l = ∫F dδ (J) from first touch on; negative if f₀ pulls them in."""
+        d, n = touching(indentation), self.exponent
+        return self.constant_force * d + self.loading_stiffness * d ** (n + 1) / (n + 1)
 
+    def unloading_work(self, maximum_indentation: Values) -> Array:
+        """Work W_u (J) given back down to δ = 0; negative where they stick."""
+        d, n = touching(maximum_indentation), self.exponent
+        k1, k2, k_adh = self._springs
+        mu = ((k2 - k1) / (k2 + k_adh)) ** (1 / n)
+        k_u = k2 - (n + 1) * (k2 - k1) + n * (k2 + k_adh) * mu ** (n + 1)
+        return self.constant_force * d + k_u * d ** (n + 1) / (n + 1)
 
-def indentation_from_velocity(
-    velocity: Values,
-    loading_stiffness: Values,
-    constant_force: Values,
-    exponent: Values,
-    mass: Values,
-) -> Array:
-    """Largest indentation (m) of an impact at relative normal `velocity` (m/s).
+    def indentation_from_velocity(self, velocity: Values, mass: Values) -> Array:
+        """Largest indentation (m) of an impact at relative normal `velocity` (m/s).
 
-    With K = ½m*V², the root lies between the greater and the sum of a = ((n + 1) K/k₁)^{1/(n+1)},
-    the depth without f₀, and b = (−(n + 1) f₀/k₁)^{1/n}, the depth that f₀ alone draws to.
-    """
-    k1, m = positive(loading_stiffness=loading_stiffness, mass=mass)
-    f0, n = _shape(constant_force, exponent)
-    K = 0.5 * m * touching(velocity) ** 2
-    a, b = ((n + 1) * K / k1) ** (1 / (n + 1)), (-(n + 1) * f0 / k1) ** (1 / n)
-    d = increasing_root(
-        lambda d: loading_work(d, loading_stiffness, constant_force, exponent) - K,
-        np.maximum(a, b),
-        a + b,
-    )
-    return scalar_or_array(np.where(np.asarray(velocity) <= 0, 0.0, d))
+        With K = ½m*V², the root lies between the greater and the sum of a = ((n + 1)
+        K/k₁)^{1/(n+1)}, the depth without f₀, and b = (−(n + 1) f₀/k₁)^{1/n}, the depth that f₀
+        alone draws to.
+        """
+        (m,) = positive(mass=mass)
+        k1, f0, n = self.loading_stiffness, self.constant_force, self.exponent
+        K = 0.5 * m * touching(velocity) ** 2
+        a, b = ((n + 1) * K / k1) ** (1 / (n + 1)), (-(n + 1) * f0 / k1) ** (1 / n)
+        d = increasing_root(lambda d: self.loading_work(d) - K, np.maximum(a, b), a + b)
+        return scalar_or_array(np.where(np.asarray(velocity) <= 0, 0.0, d))
 
+    def restitution(self, velocity: Values, mass: Values) -> Array:
+        """Coefficient of restitution e = (W_u/W_l)^½ after an impact at `velocity` (m/s).
 
-def restitution(
-    velocity: Values,
-    loading_stiffness: Values,
-    unloading_stiffness: Values,
-    adhesive_stiffness: Values,
-    constant_force: Values,
-    exponent: Values,
-    mass: Values,
-) -> Array:
-    """Coefficient of restitution e = (W_u/W_l)^½ after an impact at `velocity` (m/s).
+        0 where they stick; 1 at and below zero velocity, where none approaches.
+        """
+        W_u = self.unloading_work(self.indentation_from_velocity(velocity, mass))
+        return restitution_of_work(W_u, velocity, mass)
 
-    `loading_stiffness` k₁, `unloading_stiffness` k₂ and `adhesive_stiffness` k_adh in N/mⁿ,
-    `constant_force` f₀ ≤ 0 in N. 0 where they stick; 1 at and below zero velocity, where none
-    approaches.
-    """
-    (m,) = positive(mass=mass)
-    d = indentation_from_velocity(velocity, loading_stiffness, constant_force, exponent, mass)
-    springs = loading_stiffness, unloading_stiffness, adhesive_stiffness
-    W_u = unloading_work(d, *springs, constant_force, exponent)
-    none = np.asarray(velocity) <= 0
-    W_l = 0.5 * m * touching(velocity) ** 2
-    e = (touching(W_u) / np.where(W_l > 0, W_l, 1.0)) ** 0.5
-    return scalar_or_array(np.where(none, 1.0, np.minimum(e, 1.0)))
-
-
-def _springs(
-    loading_stiffness: Values, unloading_stiffness: Values, adhesive_stiffness: Values
-) -> tuple[Array, Array, Array]:
-    """k₁, k₂ and k_adh (N/mⁿ)."""
-    (k1,) = positive(loading_stiffness=loading_stiffness)
-    (k2,) = between(k1, np.inf, unloading_stiffness=unloading_stiffness)
-    (k_adh,) = between(0.0, np.inf, adhesive_stiffness=adhesive_stiffness)
-    return k1, k2, k_adh
-
-
-def _shape(constant_force: Values, exponent: Values) -> tuple[Array, Array]:
-    """f₀ (N) and n."""
-    (f0,) = between(-np.inf, 0.0, constant_force=constant_force)
-    (n,) = between(1.0, np.inf, exponent=exponent)
-    return f0, n
+    @property
+    def _springs(self) -> tuple[Values, Values, Values]:
+        """k₁, k₂ and k_adh (N/mⁿ)."""
+        return self.loading_stiffness, self.unloading_stiffness, self.adhesive_stiffness

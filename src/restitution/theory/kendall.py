@@ -17,24 +17,29 @@ Units, shapes and errors are those of `restitution.theory`.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from ._inputs import Array, Values, positive, touching
+from ._inputs import Array, Values, keep_positive, scalar_or_array, touching
 
 
-def pull_off_force(
-    contact_radius: Values, contact_modulus: Values, work_of_adhesion: Values
-) -> Array:
-    """Tension (8πE*wa³)^½ (N), as a magnitude, that parts the punch."""
-    a = touching(contact_radius)
-    E_star, w = positive(contact_modulus=contact_modulus, work_of_adhesion=work_of_adhesion)
-    return (8 * np.pi * E_star * w) ** 0.5 * a**1.5
+@dataclass(frozen=True, eq=False)
+class Kendall:
+    """A punch on a half-space of `contact_modulus` E* (Pa), `work_of_adhesion` w (J/m²)."""
 
+    contact_modulus: Values
+    work_of_adhesion: Values
 
-def pull_off_displacement(
-    contact_radius: Values, contact_modulus: Values, work_of_adhesion: Values
-) -> Array:
-    """Distance (2πwa/E*)^½ (m), as a magnitude, by which the punch is drawn out when it parts."""
-    a = touching(contact_radius)
-    E_star, w = positive(contact_modulus=contact_modulus, work_of_adhesion=work_of_adhesion)
-    return (2 * np.pi * w * a / E_star) ** 0.5
+    def __post_init__(self) -> None:
+        keep_positive(self, "contact_modulus", "work_of_adhesion")
+
+    def pull_off_force(self, contact_radius: Values) -> Array:
+        """Tension (8πE*wa³)^½ (N), as a magnitude, that parts a punch of `contact_radius` (m)."""
+        E_star, w, a = self.contact_modulus, self.work_of_adhesion, touching(contact_radius)
+        return scalar_or_array(np.sqrt(8 * np.pi * E_star * w * a**3))
+
+    def pull_off_displacement(self, contact_radius: Values) -> Array:
+        """Distance (2πwa/E*)^½ (m), as a magnitude, by which the punch is drawn out as it parts."""
+        E_star, w, a = self.contact_modulus, self.work_of_adhesion, touching(contact_radius)
+        return scalar_or_array(np.sqrt(2 * np.pi * a * w / E_star))

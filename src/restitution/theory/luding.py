@@ -24,203 +24,124 @@ is elastic), and k_c may be zero.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from ._inputs import Array, Values, between, positive, scalar_or_array, touching
+from ._inputs import (
+    Array,
+    Values,
+    keep_between,
+    keep_positive,
+    positive,
+    scalar_or_array,
+    touching,
+)
+from .law import restitution_of_work
 
 
-def limit_indentation(
-    radius: Values, loading_stiffness: Values, limit_stiffness: Values, plasticity_depth: Values
-) -> Array:
-    """Indentation δ* (m) beyond which loading is elastic too; infinite where k̂₂ = k₁."""
-    k1, k2_hat = _springs(loading_stiffness, limit_stiffness)
-    with np.errstate(divide="ignore"):  # k̂₂ = k₁: nothing is plastic at any depth
-        d_star: Array = k2_hat / (k2_hat - k1) * _limit_residual(radius, plasticity_depth)
-    return d_star
+@dataclass(frozen=True, eq=False)
+class Luding:
+    """Springs `loading_stiffness` k₁, `limit_stiffness` k̂₂ and `adhesive_stiffness` k_c (N/m).
 
-
-def loading_force(
-    indentation: Values,
-    radius: Values,
-    loading_stiffness: Values,
-    limit_stiffness: Values,
-    plasticity_depth: Values,
-) -> Array:
-    """Normal force (N) on first loading: k₁δ up to δ*, the elastic limit k̂₂(δ − δ₀*) beyond."""
-    d, springs = touching(indentation), (loading_stiffness, limit_stiffness, plasticity_depth)
-    k2, d0 = _unloading_line(d, radius, *springs)
-    return k2 * (d - d0)
-
-
-def unloading_force(
-    indentation: Values,
-    maximum_indentation: Values,
-    radius: Values,
-    loading_stiffness: Values,
-    limit_stiffness: Values,
-    adhesive_stiffness: Values,
-    plasticity_depth: Values,
-) -> Array:
-    """Normal force (N) at `indentation` after first loading to `maximum_indentation` (both m).
-
-    Negative, attractive, below `residual_indentation`. Above `maximum_indentation` the contact is
-    loading again, and the force is `loading_force`.
+    `radius` is R* (m); `plasticity_depth` φ_f is a number.
     """
-    d, springs = touching(indentation), (loading_stiffness, limit_stiffness, plasticity_depth)
-    (k_c,) = between(0.0, np.inf, adhesive_stiffness=adhesive_stiffness)
-    k2, d0 = _unloading_line(maximum_indentation, radius, *springs)
-    unloading = np.maximum(k2 * (d - d0), -k_c * d)
-    beyond = d > touching(maximum_indentation)
-    return scalar_or_array(np.where(beyond, loading_force(d, radius, *springs), unloading))
 
+    radius: Values
+    loading_stiffness: Values
+    limit_stiffness: Values
+    adhesive_stiffness: Values
+    plasticity_depth: Values
 
-def residual_indentation(
-    maximum_indentation: Values,
-    radius: Values,
-    loading_stiffness: Values,
-    limit_stiffness: Values,
-    plasticity_depth: Values,
-) -> Array:
-    """Indentation δ₀ (m) at which the force of unloading from `maximum_indentation` is zero."""
-    springs = loading_stiffness, limit_stiffness, plasticity_depth
-    return scalar_or_array(_unloading_line(maximum_indentation, radius, *springs)[1])
+    def __post_init__(self) -> None:
+        keep_positive(self, "radius", "loading_stiffness", "plasticity_depth")
+        keep_between(self, "limit_stiffness", self.loading_stiffness)
+        keep_between(self, "adhesive_stiffness", 0.0)
 
+    @property
+    def limit_indentation(self) -> Array:
+        """Indentation δ* (m) beyond which loading is elastic too; infinite where k̂₂ = k₁."""
+        k1, k2_hat = self.loading_stiffness, self.limit_stiffness
+        with np.errstate(divide="ignore"):  # k̂₂ = k₁: nothing is plastic at any depth
+            return scalar_or_array(k2_hat / (k2_hat - k1) * self._limit_residual)
 
-def pull_off_force(
-    maximum_indentation: Values,
-    radius: Values,
-    loading_stiffness: Values,
-    limit_stiffness: Values,
-    adhesive_stiffness: Values,
-    plasticity_depth: Values,
-) -> Array:
-    """Greatest attraction k_cδ_min (N, positive) on unloading from `maximum_indentation`."""
-    (k_c,) = between(0.0, np.inf, adhesive_stiffness=adhesive_stiffness)
-    springs = loading_stiffness, limit_stiffness, plasticity_depth
-    k2, d0 = _unloading_line(maximum_indentation, radius, *springs)
-    return k_c * k2 / (k2 + k_c) * d0
+    def loading_force(self, indentation: Values) -> Array:
+        """Normal force (N) on first loading: k₁δ up to δ*, the elastic limit k̂₂(δ − δ₀*) beyond."""
+        d = touching(indentation)
+        k2, d0 = self._unloading_line(d)
+        return k2 * (d - d0)
 
+    def unloading_force(self, indentation: Values, maximum_indentation: Values) -> Array:
+        """Normal force (N) at `indentation` after first loading to `maximum_indentation` (both m).
 
-def loading_work(
-    indentation: Values,
-    radius: Values,
-    loading_stiffness: Values,
-    limit_stiffness: Values,
-    plasticity_depth: Values,
-) -> Array:
-    """Work W_l = ∫F dδ (J) done from first touch to `indentation` on first loading.
+        Negative, attractive, below `residual_indentation`. Above `maximum_indentation` the contact
+        is loading again, and the force is `loading_force`.
+        """
+        d = touching(indentation)
+        k2, d0 = self._unloading_line(maximum_indentation)
+        unloading = np.maximum(k2 * (d - d0), -self.adhesive_stiffness * d)
+        beyond = d > touching(maximum_indentation)
+        return scalar_or_array(np.where(beyond, self.loading_force(d), unloading))
 
-    What unloading without adhesion gives back, and ½k₁ min(δ, δ*) δ₀ that is lost.
-    """
-    d, springs = touching(indentation), (loading_stiffness, limit_stiffness, plasticity_depth)
-    (k1,) = positive(loading_stiffness=loading_stiffness)
-    k2, d0 = _unloading_line(d, radius, *springs)
-    plastic = d / np.maximum(_depth(d, radius, *springs), 1.0)
-    return 0.5 * k2 * (d - d0) ** 2 + 0.5 * k1 * plastic * d0
+    def residual_indentation(self, maximum_indentation: Values) -> Array:
+        """Indentation δ₀ (m) at which the force of unloading from `maximum_indentation` is zero."""
+        return scalar_or_array(self._unloading_line(maximum_indentation)[1])
 
+    def pull_off_force(self, maximum_indentation: Values) -> Array:
+        """Greatest attraction k_cδ_min (N, positive) on unloading from `maximum_indentation`."""
+        k_c, (k2, d0) = self.adhesive_stiffness, self._unloading_line(maximum_indentation)
+        return k_c * k2 / (k2 + k_c) * d0
 
-def unloading_work(
-    maximum_indentation: Values,
-    radius: Values,
-    loading_stiffness: Values,
-    limit_stiffness: Values,
-    adhesive_stiffness: Values,
-    plasticity_depth: Values,
-) -> Array:
-    """Work W_u (J) given back from `maximum_indentation` to δ = 0; negative where they stick."""
-    springs = loading_stiffness, limit_stiffness, plasticity_depth
-    k2, d0 = _unloading_line(maximum_indentation, radius, *springs)
-    F_c = pull_off_force(
-        maximum_indentation,
-        radius,
-        loading_stiffness,
-        limit_stiffness,
-        adhesive_stiffness,
-        plasticity_depth,
-    )
-    return 0.5 * k2 * (touching(maximum_indentation) - d0) ** 2 - 0.5 * F_c * d0
+    def loading_work(self, indentation: Values) -> Array:
+        """Work W_l = ∫F dδ (J) done from first touch to `indentation` on first loading.
 
+        It is ½k₂(δ − δ₀)² that unloading without adhesion gives back, and ½k₁ min(δ, δ*) δ₀ that is
+        lost.
+        """
+        d = touching(indentation)
+        k2, d0 = self._unloading_line(d)
+        plastic = d / np.maximum(self._depth(d), 1.0)
+        return 0.5 * k2 * (d - d0) ** 2 + 0.5 * self.loading_stiffness * plastic * d0
 
-def indentation_from_velocity(
-    velocity: Values,
-    radius: Values,
-    loading_stiffness: Values,
-    limit_stiffness: Values,
-    plasticity_depth: Values,
-    mass: Values,
-) -> Array:
-    """Largest indentation (m) of an impact at relative normal `velocity` (m/s).
+    def unloading_work(self, maximum_indentation: Values) -> Array:
+        """Work W_u (J) given back down to δ = 0; negative where they stick."""
+        d = touching(maximum_indentation)
+        k2, d0 = self._unloading_line(d)
+        return 0.5 * k2 * (d - d0) ** 2 - 0.5 * self.pull_off_force(d) * d0
 
-    d₁ = V (m*/k₁)^½ up to δ*; beyond, k̂₂(δ − δ₀*)² = k₁(d₁² − δ*δ₀*).
-    """
-    k1, m = positive(loading_stiffness=loading_stiffness, mass=mass)
-    (k2_hat,) = positive(limit_stiffness=limit_stiffness)
-    d1 = touching(velocity) * (m / k1) ** 0.5
-    x = _depth(d1, radius, loading_stiffness, limit_stiffness, plasticity_depth)
-    d_star, d0_star = d1 / np.maximum(x, 1.0), _limit_residual(radius, plasticity_depth)
-    limit = d0_star + (k1 / k2_hat * touching(d1**2 - d_star * d0_star)) ** 0.5
-    return scalar_or_array(np.where(x > 1, limit, d1))
+    def indentation_from_velocity(self, velocity: Values, mass: Values) -> Array:
+        """Largest indentation (m) of an impact at relative normal `velocity` (m/s).
 
+        d₁ = V (m*/k₁)^½ up to δ*; beyond, k̂₂(δ − δ₀*)² = k₁(d₁² − δ*δ₀*).
+        """
+        (m,), k1 = positive(mass=mass), self.loading_stiffness
+        d1 = touching(velocity) * (m / k1) ** 0.5
+        x = self._depth(d1)
+        d_star, d0_star = d1 / np.maximum(x, 1.0), self._limit_residual
+        released = touching(d1**2 - d_star * d0_star)
+        limit = d0_star + (k1 / self.limit_stiffness * released) ** 0.5
+        return scalar_or_array(np.where(x > 1, limit, d1))
 
-def restitution(
-    velocity: Values,
-    radius: Values,
-    loading_stiffness: Values,
-    limit_stiffness: Values,
-    adhesive_stiffness: Values,
-    plasticity_depth: Values,
-    mass: Values,
-) -> Array:
-    """Coefficient of restitution e = (W_u/W_l)^½ after an impact at `velocity` (m/s).
+    def restitution(self, velocity: Values, mass: Values) -> Array:
+        """Coefficient of restitution e = (W_u/W_l)^½ after an impact at `velocity` (m/s).
 
-    Stiffnesses k₁, k̂₂ and k_c in N/m; `plasticity_depth` φ_f is a number. 0 where they stick; 1 at
-    and below zero velocity, where none approaches.
-    """
-    (m,) = positive(mass=mass)
-    springs = loading_stiffness, limit_stiffness
-    d = indentation_from_velocity(velocity, radius, *springs, plasticity_depth, mass)
-    W_u = unloading_work(d, radius, *springs, adhesive_stiffness, plasticity_depth)
-    none = np.asarray(velocity) <= 0
-    W_l = 0.5 * m * touching(velocity) ** 2
-    e = (touching(W_u) / np.where(W_l > 0, W_l, 1.0)) ** 0.5
-    return scalar_or_array(np.where(none, 1.0, np.minimum(e, 1.0)))
+        0 where they stick; 1 at and below zero velocity, where none approaches.
+        """
+        W_u = self.unloading_work(self.indentation_from_velocity(velocity, mass))
+        return restitution_of_work(W_u, velocity, mass)
 
+    @property
+    def _limit_residual(self) -> Values:
+        """δ₀* (m)."""
+        return self.plasticity_depth * 2 * self.radius
 
-def _springs(loading_stiffness: Values, limit_stiffness: Values) -> tuple[Array, Array]:
-    """k₁ and k̂₂ (N/m)."""
-    (k1,) = positive(loading_stiffness=loading_stiffness)
-    (k2_hat,) = between(k1, np.inf, limit_stiffness=limit_stiffness)
-    return k1, k2_hat
+    def _depth(self, indentation: Values) -> Array:
+        """x = δ/δ*, zero where k̂₂ = k₁."""
+        rise = 1 - self.loading_stiffness / self.limit_stiffness
+        return touching(indentation) * rise / self._limit_residual
 
-
-def _limit_residual(radius: Values, plasticity_depth: Values) -> Array:
-    """δ₀* (m)."""
-    R, phi_f = positive(radius=radius, plasticity_depth=plasticity_depth)
-    return phi_f * 2 * R
-
-
-def _depth(
-    indentation: Values,
-    radius: Values,
-    loading_stiffness: Values,
-    limit_stiffness: Values,
-    plasticity_depth: Values,
-) -> Array:
-    """x = δ/δ*, zero where k̂₂ = k₁."""
-    k1, k2_hat = _springs(loading_stiffness, limit_stiffness)
-    return touching(indentation) * (1 - k1 / k2_hat) / _limit_residual(radius, plasticity_depth)
-
-
-def _unloading_line(
-    maximum_indentation: Values,
-    radius: Values,
-    loading_stiffness: Values,
-    limit_stiffness: Values,
-    plasticity_depth: Values,
-) -> tuple[Array, Array]:
-    """k₂ (N/m) and δ₀ (m)."""
-    k1, k2_hat = _springs(loading_stiffness, limit_stiffness)
-    x = _depth(maximum_indentation, radius, loading_stiffness, limit_stiffness, plasticity_depth)
-    k2 = k1 + (k2_hat - k1) * np.minimum(x, 1.0)
-    d0_star = _limit_residual(radius, plasticity_depth)
-    return k2, np.minimum((1 - k1 / k2) * touching(maximum_indentation), d0_star)
+    def _unloading_line(self, maximum_indentation: Values) -> tuple[Array, Array]:
+        """k₂ (N/m) and δ₀ (m)."""
+        d, k1 = touching(maximum_indentation), self.loading_stiffness
+        k2 = k1 + (self.limit_stiffness - k1) * np.minimum(self._depth(d), 1.0)
+        return k2, np.minimum((1 - k1 / k2) * d, self._limit_residual)

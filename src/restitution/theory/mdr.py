@@ -33,217 +33,156 @@ to ½ raises `CaseError` too, as LAMMPS refuses it.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from . import hertz
-from ._inputs import Array, Values, between, positive, scalar_or_array, touching
+from ._inputs import (
+    Array,
+    Values,
+    keep_between,
+    keep_positive,
+    positive,
+    scalar_or_array,
+    touching,
+)
 from ._roots import increasing_root
+from .hertz import Hertz
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)  # exact to rounding for a smooth law
 
 
-def yield_pressure(indentation: Values, radius: Values, yield_strength: Values) -> Array:
-    """Mean pressure p_Y (Pa) of a yielded contact: 2.75 Y at first, falling to Y as it deepens."""
-    R, Y = positive(radius=radius, yield_strength=yield_strength)
-    return Y * (1 + 1.75 * np.exp(-4.4 * touching(indentation) / R))
+@dataclass(frozen=True, eq=False)
+class MDR:
+    """One sphere of `radius` R (m), `youngs_modulus` E and `yield_strength` Y (Pa) on a rigid flat.
 
-
-def yield_indentation(
-    radius: Values, youngs_modulus: Values, poissons_ratio: Values, yield_strength: Values
-) -> Array:
-    """Indentation δ_Y (m) at which the mean Hertz pressure reaches `yield_pressure`.
-
-    s²R with s the root of s = c (1 + 1.75 exp(−4.4s²)), c = 3πY/4E*.
+    `poissons_ratio` ν is from 0 to ½.
     """
-    (E,) = positive(youngs_modulus=youngs_modulus)
-    (nu,) = between(0.0, 0.5, poissons_ratio=poissons_ratio)
-    R, Y = positive(radius=radius, yield_strength=yield_strength)
-    c = 0.75 * np.pi * Y * (1 - nu**2) / E
-    s = increasing_root(lambda s: s - c * (1 + 1.75 * np.exp(-4.4 * s**2)), c, 2.75 * c)
-    return scalar_or_array(s**2 * R)
 
+    radius: Values
+    youngs_modulus: Values
+    poissons_ratio: Values
+    yield_strength: Values
 
-def loading_force(
-    indentation: Values,
-    radius: Values,
-    youngs_modulus: Values,
-    poissons_ratio: Values,
-    yield_strength: Values,
-) -> Array:
-    """Normal force (N) on first loading; NaN beyond δ = R."""
-    sphere = _sphere(radius, youngs_modulus, poissons_ratio, yield_strength)
-    return scalar_or_array(sphere.force(sphere.depth(indentation)))
+    def __post_init__(self) -> None:
+        keep_positive(self, "radius", "youngs_modulus", "yield_strength")
+        keep_between(self, "poissons_ratio", 0.0, 0.5)
 
+    @cached_property
+    def elastic(self) -> Hertz:
+        """The contact up to yield."""
+        return Hertz(self.radius, self.youngs_modulus / (1 - self.poissons_ratio**2))
 
-def loading_work(
-    indentation: Values,
-    radius: Values,
-    youngs_modulus: Values,
-    poissons_ratio: Values,
-    yield_strength: Values,
-) -> Array:
-    """Work W_l = ∫F dδ (J) done from first touch to `indentation` on first loading.
+    def yield_pressure(self, indentation: Values) -> Array:
+        """Mean pressure p_Y (Pa) of a yielded contact: 2.75 Y at first, falling to Y."""
+        d = touching(indentation)
+        return self.yield_strength * (1 + 1.75 * np.exp(-4.4 * d / self.radius))
 
-    Hertz's up to δ_Y, Gauss–Legendre quadrature beyond; NaN beyond δ = R.
-    """
-    sphere = _sphere(radius, youngs_modulus, poissons_ratio, yield_strength)
-    return scalar_or_array(sphere.work(sphere.depth(indentation)))
+    @cached_property
+    def yield_indentation(self) -> Array:
+        """Indentation δ_Y (m) at which the mean Hertz pressure reaches `yield_pressure`.
 
+        s²R with s the root of s = c (1 + 1.75 exp(−4.4s²)), c = 3πY/4E*.
+        """
+        nu = self.poissons_ratio
+        c = 0.75 * np.pi * self.yield_strength * (1 - nu**2) / self.youngs_modulus
+        s = increasing_root(lambda s: s - c * (1 + 1.75 * np.exp(-4.4 * s**2)), c, 2.75 * c)
+        return scalar_or_array(s**2 * self.radius)
 
-def unloading_force(
-    indentation: Values,
-    maximum_indentation: Values,
-    radius: Values,
-    youngs_modulus: Values,
-    poissons_ratio: Values,
-    yield_strength: Values,
-) -> Array:
-    """Normal force (N) at `indentation` after first loading to `maximum_indentation` (both m).
+    def loading_force(self, indentation: Values) -> Array:
+        """Normal force (N) on first loading; NaN beyond δ = R."""
+        return scalar_or_array(self._force(self._inside(indentation)))
 
-    Zero at and below `residual_indentation`. Above `maximum_indentation` the contact is loading
-    again, and the force is `loading_force`. NaN beyond δ = R.
-    """
-    sphere = _sphere(radius, youngs_modulus, poissons_ratio, yield_strength)
-    d, d_max = sphere.depth(indentation), sphere.depth(maximum_indentation)
-    left = np.clip((d_max - d) / sphere.recovery(d_max), 0.0, 1.0)
-    theta = np.arccos(left)  # δ_e/d = 1 − cos θ
-    relative = (theta - np.sin(theta) * np.cos(theta)) * 2 / np.pi
-    onwards = (d > d_max) | (d_max <= sphere.depth_at_yield)
-    return scalar_or_array(np.where(onwards, sphere.force(d), relative * sphere.force(d_max)))
+    def loading_work(self, indentation: Values) -> Array:
+        """Work W_l = ∫F dδ (J) done from first touch to `indentation` on first loading.
 
+        Hertz's up to δ_Y, Gauss–Legendre quadrature beyond; NaN beyond δ = R.
+        """
+        return scalar_or_array(self._work(self._inside(indentation)))
 
-def residual_indentation(
-    maximum_indentation: Values,
-    radius: Values,
-    youngs_modulus: Values,
-    poissons_ratio: Values,
-    yield_strength: Values,
-) -> Array:
-    """Indentation δ_max − (d + δ_R) (m) at which unloading ends; 0 if none yielded."""
-    sphere = _sphere(radius, youngs_modulus, poissons_ratio, yield_strength)
-    d_max = sphere.depth(maximum_indentation)
-    return scalar_or_array(
-        np.where(d_max <= sphere.depth_at_yield, 0.0, d_max - sphere.recovery(d_max))
-    )
+    def unloading_force(self, indentation: Values, maximum_indentation: Values) -> Array:
+        """Normal force (N) at `indentation` after first loading to `maximum_indentation` (both m).
 
+        Zero at and below `residual_indentation`. Above `maximum_indentation` the contact is loading
+        again, and the force is `loading_force`. NaN beyond δ = R.
+        """
+        d, d_max = self._inside(indentation), self._inside(maximum_indentation)
+        left = np.clip((d_max - d) / self._recovery(d_max), 0.0, 1.0)
+        theta = np.arccos(left)  # δ_e/d = 1 − cos θ
+        relative = (theta - np.sin(theta) * np.cos(theta)) * 2 / np.pi
+        onwards = (d > d_max) | (d_max <= self.yield_indentation)
+        return scalar_or_array(np.where(onwards, self._force(d), relative * self._force(d_max)))
 
-def unloading_work(
-    maximum_indentation: Values,
-    radius: Values,
-    youngs_modulus: Values,
-    poissons_ratio: Values,
-    yield_strength: Values,
-) -> Array:
-    """Work W_u (J) given back from `maximum_indentation` to separation; W_l if none yielded."""
-    sphere = _sphere(radius, youngs_modulus, poissons_ratio, yield_strength)
-    return scalar_or_array(sphere.returned(sphere.depth(maximum_indentation)))
+    def residual_indentation(self, maximum_indentation: Values) -> Array:
+        """Indentation δ_max − (d + δ_R) (m) at which unloading ends; 0 if none yielded."""
+        d = self._inside(maximum_indentation)
+        return scalar_or_array(np.where(d <= self.yield_indentation, 0.0, d - self._recovery(d)))
 
+    def unloading_work(self, maximum_indentation: Values) -> Array:
+        """Work W_u (J) given back from `maximum_indentation` to separation; W_l if none yielded."""
+        return scalar_or_array(self._returned(self._inside(maximum_indentation)))
 
-def indentation_from_velocity(
-    velocity: Values,
-    radius: Values,
-    youngs_modulus: Values,
-    poissons_ratio: Values,
-    yield_strength: Values,
-    mass: Values,
-) -> Array:
-    """Largest indentation (m) of an impact at normal `velocity` (m/s); NaN where beyond δ = R."""
-    sphere = _sphere(radius, youngs_modulus, poissons_ratio, yield_strength)
-    (m,) = positive(mass=mass)
-    K = 0.5 * m * touching(velocity) ** 2
-    d = increasing_root(lambda d: sphere.work(d) - K, 0 * K, sphere.R)
-    d = np.where(sphere.work(sphere.R) < K, np.nan, d)
-    return scalar_or_array(np.where(np.asarray(velocity) <= 0, 0.0, d))
+    def indentation_from_velocity(self, velocity: Values, mass: Values) -> Array:
+        """Largest indentation (m) of an impact at normal `velocity` (m/s); NaN where beyond R."""
+        (m,) = positive(mass=mass)
+        K = 0.5 * m * touching(velocity) ** 2
+        d = increasing_root(lambda d: self._work(d) - K, 0 * K, self.radius)
+        d = np.where(self._work(self.radius) < K, np.nan, d)
+        return scalar_or_array(np.where(np.asarray(velocity) <= 0, 0.0, d))
 
+    def restitution(self, velocity: Values, mass: Values) -> Array:
+        """Coefficient of restitution e = (W_u/W_l)^½ of one sphere that meets a rigid flat.
 
-def restitution(
-    velocity: Values,
-    radius: Values,
-    youngs_modulus: Values,
-    poissons_ratio: Values,
-    yield_strength: Values,
-    mass: Values,
-) -> Array:
-    """Coefficient of restitution e = (W_u/W_l)^½ of one sphere that meets a rigid flat.
+        `velocity` (m/s) and `mass` (kg) are the sphere's; for two equal spheres give half their
+        relative velocity. 1 up to yield; NaN where the indentation would exceed the radius.
+        """
+        d, d_Y = self.indentation_from_velocity(velocity, mass), self.yield_indentation
+        e = (self._returned(d) / self._work(np.maximum(d, d_Y))) ** 0.5
+        return scalar_or_array(np.where(d <= d_Y, 1.0, np.minimum(e, 1.0)))
 
-    `velocity` (m/s), `radius` (m) and `mass` (kg) are the sphere's; for two equal spheres give half
-    their relative velocity. 1 up to yield; NaN where the indentation would exceed the radius.
-    """
-    sphere = _sphere(radius, youngs_modulus, poissons_ratio, yield_strength)
-    material = radius, youngs_modulus, poissons_ratio, yield_strength
-    d = indentation_from_velocity(velocity, *material, mass)
-    e = (sphere.returned(d) / sphere.work(np.maximum(d, sphere.depth_at_yield))) ** 0.5
-    return scalar_or_array(np.where(d <= sphere.depth_at_yield, 1.0, np.minimum(e, 1.0)))
-
-
-@dataclass(frozen=True)
-class _Sphere:
-    """The law of one sphere at depths δ ≤ R already checked."""
-
-    R: Array
-    E_star: Array
-    nu: Array
-    Y: Array
-    depth_at_yield: Array
-
-    def depth(self, indentation: Values) -> Array:
+    def _inside(self, indentation: Values) -> Array:
         """δ (m), zero where nothing touches and NaN beyond R."""
         d = touching(indentation)
-        return np.where(d > self.R, np.nan, d)
+        return np.where(d > self.radius, np.nan, d)
 
-    def pressure(self, d: Array) -> Array:
-        """p_Y (Pa)."""
-        return yield_pressure(d, self.R, self.Y)
-
-    def contact_radius(self, d: Array) -> Array:
+    def _contact_radius(self, d: Values) -> Array:
         """a (m) of the yielded contact, Hertz's at yield and held there below."""
-        t = touching(d - self.depth_at_yield)
-        a: Array = (
-            self.R * self.depth_at_yield + t * (2 * (self.R - self.depth_at_yield) - t)
-        ) ** 0.5
+        R, d_Y = self.radius, self.yield_indentation
+        t = touching(d - d_Y)
+        a: Array = (R * d_Y + t * (2 * (R - d_Y) - t)) ** 0.5
         return a
 
-    def force(self, d: Array) -> Array:
+    def _force(self, d: Values) -> Array:
         """F (N) on first loading."""
-        plastic = np.pi * self.contact_radius(d) ** 2 * self.pressure(d)
-        return np.where(d <= self.depth_at_yield, hertz.force(d, self.R, self.E_star), plastic)
+        plastic = np.pi * self._contact_radius(d) ** 2 * self.yield_pressure(d)
+        return np.where(d <= self.yield_indentation, self.elastic.force(d), plastic)
 
-    def work(self, d: Array) -> Array:
+    def _work(self, d: Values) -> Array:
         """W_l (J)."""
-        half = touching(d - self.depth_at_yield) / 2
-        depths = (self.depth_at_yield + half * (1 + node) for node in _NODES)
-        forces = sum(w * self.force(x) for w, x in zip(_WEIGHTS, depths, strict=True))
-        return (
-            hertz.stored_energy(np.minimum(d, self.depth_at_yield), self.R, self.E_star)
-            + half * forces
+        d_Y = self.yield_indentation
+        half = touching(d - d_Y) / 2
+        forces = sum(
+            w * self._force(d_Y + half * (1 + node))
+            for w, node in zip(_WEIGHTS, _NODES, strict=True)
         )
+        return self.elastic.stored_energy(np.minimum(d, d_Y)) + half * forces
 
-    def elastic_depth(self, d: Array) -> Array:
+    def _elastic_depth(self, d: Values) -> Array:
         """d = A/2 (m), the transformed depth at full load."""
-        return 2 * self.pressure(d) * self.contact_radius(d) / self.E_star
+        return 2 * self.yield_pressure(d) * self._contact_radius(d) / self.elastic.contact_modulus
 
-    def recovery(self, d: Array) -> Array:
+    def _recovery(self, d: Values) -> Array:
         """d + δ_R (m); F_max/(2πGa²d) = E*/(4Ga) = 1/(2a(1 − ν))."""
-        a, d_e = self.contact_radius(d), self.elastic_depth(d)
-        z = self.R - d + d_e
+        a, d_e, nu = self._contact_radius(d), self._elastic_depth(d), self.poissons_ratio
+        z = self.radius - d + d_e
         s = (a**2 + z**2) ** 0.5
-        grip = (1 - 2 * self.nu) * z * (s - z) - 2 * (1 - self.nu) * a**2
-        recovery: Array = d_e * (1 + grip / (2 * (1 - self.nu) * a * s))
+        grip = (1 - 2 * nu) * z * (s - z) - 2 * (1 - nu) * a**2
+        recovery: Array = d_e * (1 + grip / (2 * (1 - nu) * a * s))
         return recovery
 
-    def returned(self, d: Array) -> Array:
+    def _returned(self, d: Values) -> Array:
         """W_u (J): (1 + δ_R/d) E*A²B/12 with the indenter's height A = 2d and width B = 2a."""
-        plastic = 2 / 3 * self.E_star * self.elastic_depth(d) * self.contact_radius(d)
-        elastic = hertz.stored_energy(d, self.R, self.E_star)
-        return np.where(d <= self.depth_at_yield, elastic, plastic * self.recovery(d))
-
-
-def _sphere(
-    radius: Values, youngs_modulus: Values, poissons_ratio: Values, yield_strength: Values
-) -> _Sphere:
-    (E,) = positive(youngs_modulus=youngs_modulus)
-    (nu,) = between(0.0, 0.5, poissons_ratio=poissons_ratio)
-    R, Y = positive(radius=radius, yield_strength=yield_strength)
-    depth_at_yield = yield_indentation(radius, youngs_modulus, poissons_ratio, yield_strength)
-    return _Sphere(R, E / (1 - nu**2), nu, Y, depth_at_yield)
+        E_star = self.elastic.contact_modulus
+        plastic = 2 / 3 * E_star * self._elastic_depth(d) * self._contact_radius(d)
+        elastic = self.elastic.stored_energy(d)
+        return np.where(d <= self.yield_indentation, elastic, plastic * self._recovery(d))

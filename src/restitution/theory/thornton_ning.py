@@ -1,6 +1,6 @@
 """Thornton & Ning (1998): elastic, then perfectly plastic spheres, here without adhesion.
 
-With adhesion: `adhesive_thornton_ning`.
+With adhesion: `AdhesiveThorntonNing`.
 C. Thornton, Z. Ning, Powder Technology 99 (1998) 154–162; the plastic law is that of Thornton,
 J. Appl. Mech. 64 (1997) 383–386. The Hertz pressure is cut off at p_y; the rest of the contact is
 not brought back into equilibrium and keeps a² = R*δ. With x = δ/δ_y, f = F/F_y, W in F_y δ_y:
@@ -18,164 +18,147 @@ v = V/V_y, f² = (6v² − 1)/5 turns one into the other exactly.
 Valid for quasi-static, normal, frictionless impacts of smooth spheres with a ≪ R*. Up to yield it
 is Hertz; beyond, it carries less load than a contact in equilibrium at the same p_y, the more so
 the deeper, because a yielded contact spreads towards 2πR*δ while this one keeps πR*δ. Its p_y is
-that of `restitution.theory.yielding`: a contact pressure, not the yield strength.
+that of `FirstYield`: a contact pressure, not the yield strength.
 Units, shapes and errors are those of `restitution.theory`.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
+
 import numpy as np
 
-from . import hertz
-from ._inputs import Array, Values, positive, scalar_or_array, touching
-from .yielding import yield_force, yield_indentation, yield_velocity
+from ._inputs import Array, Values, keep_positive, positive, scalar_or_array, touching
+from .hertz import Hertz
+from .yielding import FirstYield
 
 
-def loading_force(
-    indentation: Values, radius: Values, contact_modulus: Values, yield_pressure: Values
-) -> Array:
-    """Normal force (N) on first loading: Hertz up to δ_y, its tangent there beyond."""
-    d = touching(indentation)
-    R, p_y = positive(radius=radius, yield_pressure=yield_pressure)
-    d_y = yield_indentation(radius, contact_modulus, yield_pressure)
-    F_y = yield_force(radius, contact_modulus, yield_pressure)
-    elastic = hertz.force(d, radius, contact_modulus)
-    return scalar_or_array(np.where(d <= d_y, elastic, F_y + np.pi * p_y * R * (d - d_y)))
+@dataclass(frozen=True, eq=False)
+class ThorntonNing:
+    """Spheres that yield where the contact pressure reaches `yield_pressure` p_y (Pa).
 
-
-def loading_work(
-    indentation: Values, radius: Values, contact_modulus: Values, yield_pressure: Values
-) -> Array:
-    """Work W_l = ∫F dδ (J) done from first touch to `indentation` on first loading."""
-    d = touching(indentation)
-    R, p_y = positive(radius=radius, yield_pressure=yield_pressure)
-    d_y = yield_indentation(radius, contact_modulus, yield_pressure)
-    F_y = yield_force(radius, contact_modulus, yield_pressure)
-    elastic = hertz.stored_energy(d, radius, contact_modulus)
-    t = d - d_y
-    plastic = 0.4 * F_y * d_y + F_y * t + 0.5 * np.pi * p_y * R * t**2
-    return scalar_or_array(np.where(d <= d_y, elastic, plastic))
-
-
-def unloading_radius(
-    maximum_indentation: Values, radius: Values, contact_modulus: Values, yield_pressure: Values
-) -> Array:
-    """Reduced radius R_p (m) of the flattened spheres on unloading; R* if nothing yielded.
-
-    R_p = R* x^{3/2}/f is the published (4E*/3F) [(2F + F_y)/(2πp_y)]^{3/2}, whose bracket is a².
+    `radius` is R* (m), `contact_modulus` E* (Pa).
     """
-    (R,) = positive(radius=radius)
-    x = _yielded(maximum_indentation, radius, contact_modulus, yield_pressure)
-    return R * x**1.5 / _line(x)
 
+    radius: Values
+    contact_modulus: Values
+    yield_pressure: Values
 
-def residual_indentation(
-    maximum_indentation: Values, radius: Values, contact_modulus: Values, yield_pressure: Values
-) -> Array:
-    """Indentation δ_p (m) at which unloading from `maximum_indentation` ends; 0 if none yielded."""
-    d_y = yield_indentation(radius, contact_modulus, yield_pressure)
-    x = _yielded(maximum_indentation, radius, contact_modulus, yield_pressure)
-    s = x**0.5
-    # x − f/s with f = (3s² − 1)/2, factored so that nothing cancels near yield
-    return d_y * ((x - 1) / (s + 1)) ** 2 * (s + 0.5) / s
+    def __post_init__(self) -> None:
+        keep_positive(self, "radius", "contact_modulus", "yield_pressure")
 
+    @cached_property
+    def elastic(self) -> Hertz:
+        """The contact up to yield."""
+        return Hertz(self.radius, self.contact_modulus)
 
-def unloading_force(
-    indentation: Values,
-    maximum_indentation: Values,
-    radius: Values,
-    contact_modulus: Values,
-    yield_pressure: Values,
-) -> Array:
-    """Normal force (N) at `indentation` after first loading to `maximum_indentation` (both m).
+    @cached_property
+    def first_yield(self) -> FirstYield:
+        """Where Hertz's contact ends."""
+        return FirstYield(self.radius, self.contact_modulus, self.yield_pressure)
 
-    Zero at and below `residual_indentation`. Above `maximum_indentation` the contact is loading
-    again, and the force is `loading_force`.
-    """
-    d = touching(indentation)
-    (E_star,) = positive(contact_modulus=contact_modulus)
-    material = radius, contact_modulus, yield_pressure
-    R_p = unloading_radius(maximum_indentation, *material)
-    d_p = residual_indentation(maximum_indentation, *material)
-    unloading = 4 / 3 * E_star * R_p**0.5 * touching(d - d_p) ** 1.5
-    beyond = d > touching(maximum_indentation)
-    return scalar_or_array(np.where(beyond, loading_force(d, *material), unloading))
+    def loading_force(self, indentation: Values) -> Array:
+        """Normal force (N) on first loading: Hertz up to δ_y, its tangent there beyond."""
+        d, d_y, F_y = touching(indentation), self.first_yield.indentation, self.first_yield.force
+        plastic = F_y + np.pi * self.yield_pressure * self.radius * (d - d_y)
+        return scalar_or_array(np.where(d <= d_y, self.elastic.force(d), plastic))
 
+    def indentation(self, force: Values) -> Array:
+        """Indentation (m) under `force` (N) on first loading; the inverse of `loading_force`."""
+        f, d_y = touching(force) / self.first_yield.force, self.first_yield.indentation
+        return scalar_or_array(d_y * np.where(f <= 1, f ** (2 / 3), (2 * f + 1) / 3))
 
-def unloading_work(
-    maximum_indentation: Values, radius: Values, contact_modulus: Values, yield_pressure: Values
-) -> Array:
-    """Work W_u (J) given back from `maximum_indentation` to separation; W_l if none yielded."""
-    d = touching(maximum_indentation)
-    d_y = yield_indentation(radius, contact_modulus, yield_pressure)
-    F_y = yield_force(radius, contact_modulus, yield_pressure)
-    x = _yielded(d, radius, contact_modulus, yield_pressure)
-    elastic = hertz.stored_energy(d, radius, contact_modulus)
-    return scalar_or_array(np.where(d <= d_y, elastic, 0.4 * F_y * d_y * _line(x) ** 2 / x**0.5))
+    def loading_work(self, indentation: Values) -> Array:
+        """Work W_l = ∫F dδ (J) done from first touch to `indentation` on first loading."""
+        d, d_y, F_y = touching(indentation), self.first_yield.indentation, self.first_yield.force
+        t = d - d_y
+        plastic = 0.4 * F_y * d_y + F_y * t + 0.5 * np.pi * self.yield_pressure * self.radius * t**2
+        return scalar_or_array(np.where(d <= d_y, self.elastic.stored_energy(d), plastic))
 
+    def unloading_radius(self, maximum_indentation: Values) -> Array:
+        """Reduced radius R_p (m) of the flattened spheres on unloading; R* if nothing yielded.
 
-def impact_velocity(
-    maximum_indentation: Values,
-    radius: Values,
-    contact_modulus: Values,
-    yield_pressure: Values,
-    mass: Values,
-) -> Array:
-    """Relative normal velocity V (m/s) that reaches `maximum_indentation`: ½ m* V² = W_l."""
-    (m,) = positive(mass=mass)
-    W_l = loading_work(maximum_indentation, radius, contact_modulus, yield_pressure)
-    return (2 * W_l / m) ** 0.5
+        R_p = R* x^{3/2}/f is the published (4E*/3F) [(2F + F_y)/(2πp_y)]^{3/2}, whose bracket is
+        a².
+        """
+        x = self._yielded(maximum_indentation)
+        return self.radius * x**1.5 / _line(x)
 
+    def residual_indentation(self, maximum_indentation: Values) -> Array:
+        """Indentation δ_p (m) at which unloading from `maximum_indentation` ends.
 
-def indentation_from_velocity(
-    velocity: Values, radius: Values, contact_modulus: Values, yield_pressure: Values, mass: Values
-) -> Array:
-    """Largest indentation (m) of an impact at relative normal `velocity` (m/s).
+        0 where nothing yielded.
+        """
+        x = self._yielded(maximum_indentation)
+        s = x**0.5
+        # x − f/s with f = (3s² − 1)/2, factored so that nothing cancels near yield
+        return self.first_yield.indentation * ((x - 1) / (s + 1)) ** 2 * (s + 0.5) / s
 
-    The inverse of `impact_velocity`: x = (V/V_y)^{4/5} up to yield, beyond it x = (1 + 2f)/3
-    with f² = (6 (V/V_y)² − 1)/5.
-    """
-    d_y = yield_indentation(radius, contact_modulus, yield_pressure)
-    v = touching(velocity) / yield_velocity(radius, contact_modulus, yield_pressure, mass)
-    f = ((6 * np.maximum(v, 1.0) ** 2 - 1) / 5) ** 0.5
-    return scalar_or_array(d_y * np.where(v <= 1, v**0.8, (1 + 2 * f) / 3))
+    def unloading_force(self, indentation: Values, maximum_indentation: Values) -> Array:
+        """Normal force (N) at `indentation` after first loading to `maximum_indentation` (both m).
 
+        Zero at and below `residual_indentation`. Above `maximum_indentation` the contact is loading
+        again, and the force is `loading_force`.
+        """
+        d, R_p = touching(indentation), self.unloading_radius(maximum_indentation)
+        left = d - self.residual_indentation(maximum_indentation)
+        unloading = (R_p / self.radius) ** 0.5 * self.elastic.force(left)
+        beyond = d > touching(maximum_indentation)
+        return scalar_or_array(np.where(beyond, self.loading_force(d), unloading))
 
-def restitution(
-    velocity: Values, radius: Values, contact_modulus: Values, yield_pressure: Values, mass: Values
-) -> Array:
-    """Coefficient of restitution e after an impact at relative normal `velocity` (m/s).
+    def unloading_work(self, maximum_indentation: Values) -> Array:
+        """Work W_u (J) given back from `maximum_indentation` to separation.
 
-    1 up to the yield velocity; with q = V_y/V beyond it (Thornton & Ning 1998)
-    e = (6√3/5)^½ (1 − q²/6)^½ [q/(q + 2(6/5 − q²/5)^½)]^¼, which tends to 1.185 q^¼.
-    """
-    V = touching(velocity)
-    V_y = yield_velocity(radius, contact_modulus, yield_pressure, mass)
-    q = V_y / np.maximum(V, V_y)
-    tail = q / (q + 2 * (6 / 5 - q**2 / 5) ** 0.5)
-    e = (6 * 3**0.5 / 5) ** 0.5 * (1 - q**2 / 6) ** 0.5 * tail**0.25
-    return scalar_or_array(np.where(V_y >= V, 1.0, np.minimum(e, 1.0)))
+        W_l where nothing yielded.
+        """
+        d, first = touching(maximum_indentation), self.first_yield
+        x = self._yielded(d)
+        plastic = 0.4 * first.force * first.indentation * _line(x) ** 2 / x**0.5
+        elastic = self.elastic.stored_energy(d)
+        return scalar_or_array(np.where(d <= first.indentation, elastic, plastic))
 
+    def impact_velocity(self, maximum_indentation: Values, mass: Values) -> Array:
+        """Relative normal velocity V (m/s) that reaches `maximum_indentation`: ½ m* V² = W_l."""
+        (m,) = positive(mass=mass)
+        return (2 * self.loading_work(maximum_indentation) / m) ** 0.5
 
-def restitution_at_indentation(
-    maximum_indentation: Values, radius: Values, contact_modulus: Values, yield_pressure: Values
-) -> Array:
-    """Coefficient of restitution e = (W_u/W_l)^½ after loading to `maximum_indentation` (m).
+    def indentation_from_velocity(self, velocity: Values, mass: Values) -> Array:
+        """Largest indentation (m) of an impact at relative normal `velocity` (m/s).
 
-    The same number as `restitution` at `impact_velocity(maximum_indentation, …)`; 1 up to δ_y.
-    """
-    x = _yielded(maximum_indentation, radius, contact_modulus, yield_pressure)
-    W_l = 0.4 + (x - 1) + 0.75 * (x - 1) ** 2
-    return (0.4 * _line(x) ** 2 / x**0.5 / W_l) ** 0.5
+        The inverse of `impact_velocity`: x = (V/V_y)^{4/5} up to yield, beyond it x = (1 + 2f)/3
+        with f² = (6 (V/V_y)² − 1)/5.
+        """
+        v = touching(velocity) / self.first_yield.velocity(mass)
+        f = ((6 * np.maximum(v, 1.0) ** 2 - 1) / 5) ** 0.5
+        x = np.where(v <= 1, v**0.8, (1 + 2 * f) / 3)
+        return scalar_or_array(self.first_yield.indentation * x)
 
+    def restitution(self, velocity: Values, mass: Values) -> Array:
+        """Coefficient of restitution e after an impact at relative normal `velocity` (m/s).
 
-def _yielded(
-    maximum_indentation: Values, radius: Values, contact_modulus: Values, yield_pressure: Values
-) -> Array:
-    """x = δ/δ_y, held at 1 below yield, where every ratio to Hertz is 1."""
-    d_y = yield_indentation(radius, contact_modulus, yield_pressure)
-    x: Array = np.maximum(touching(maximum_indentation) / d_y, 1.0)
-    return x
+        1 up to the yield velocity; with q = V_y/V beyond it (Thornton & Ning 1998)
+        e = (6√3/5)^½ (1 − q²/6)^½ [q/(q + 2(6/5 − q²/5)^½)]^¼, which tends to 1.185 q^¼.
+        """
+        V, V_y = touching(velocity), self.first_yield.velocity(mass)
+        q = V_y / np.maximum(V, V_y)
+        tail = q / (q + 2 * (6 / 5 - q**2 / 5) ** 0.5)
+        e = (6 * 3**0.5 / 5) ** 0.5 * (1 - q**2 / 6) ** 0.5 * tail**0.25
+        return scalar_or_array(np.where(V_y >= V, 1.0, np.minimum(e, 1.0)))
+
+    def restitution_at_indentation(self, maximum_indentation: Values) -> Array:
+        """Coefficient of restitution e = (W_u/W_l)^½ after loading to `maximum_indentation` (m).
+
+        The same number as `restitution` at `impact_velocity(maximum_indentation, …)`; 1 up to δ_y.
+        """
+        x = self._yielded(maximum_indentation)
+        W_l = 0.4 + (x - 1) + 0.75 * (x - 1) ** 2
+        return (0.4 * _line(x) ** 2 / x**0.5 / W_l) ** 0.5
+
+    def _yielded(self, maximum_indentation: Values) -> Array:
+        """x = δ/δ_y, held at 1 below yield, where every ratio to Hertz is 1."""
+        x: Array = np.maximum(touching(maximum_indentation) / self.first_yield.indentation, 1.0)
+        return x
 
 
 def _line(x: Array) -> Array:

@@ -19,75 +19,65 @@ be zero.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from ._inputs import Array, Values, between, positive, scalar_or_array, touching
+from ._inputs import (
+    Array,
+    Values,
+    keep_between,
+    keep_positive,
+    positive,
+    scalar_or_array,
+    touching,
+)
 
 
-def loading_force(indentation: Values, loading_stiffness: Values) -> Array:
-    """Normal force (N) on first loading; `loading_stiffness` k₁ in N/m."""
-    (k1,) = positive(loading_stiffness=loading_stiffness)
-    return k1 * touching(indentation)
+@dataclass(frozen=True, eq=False)
+class WaltonBraun:
+    """Springs `loading_stiffness` k₁ and `unloading_stiffness` k_u (N/m), `hardening` S (1/m)."""
 
+    loading_stiffness: Values
+    unloading_stiffness: Values
+    hardening: Values
 
-def unloading_force(
-    indentation: Values,
-    maximum_indentation: Values,
-    loading_stiffness: Values,
-    unloading_stiffness: Values,
-    hardening: Values,
-) -> Array:
-    """Normal force (N) at `indentation` after first loading to `maximum_indentation` (both m).
+    def __post_init__(self) -> None:
+        keep_positive(self, "loading_stiffness")
+        keep_between(self, "unloading_stiffness", self.loading_stiffness)
+        keep_between(self, "hardening", 0.0)
 
-    Zero at and below `residual_indentation`. Above `maximum_indentation` the contact is loading
-    again, and the force is `loading_force`.
-    """
-    d, springs = touching(indentation), (loading_stiffness, unloading_stiffness, hardening)
-    k2 = _stiffness(maximum_indentation, *springs)
-    unloading = k2 * touching(d - residual_indentation(maximum_indentation, *springs))
-    beyond = d > touching(maximum_indentation)
-    return scalar_or_array(np.where(beyond, loading_force(d, loading_stiffness), unloading))
+    def loading_force(self, indentation: Values) -> Array:
+        """Normal force (N) on first loading."""
+        return self.loading_stiffness * touching(indentation)
 
+    def unloading_force(self, indentation: Values, maximum_indentation: Values) -> Array:
+        """Normal force (N) at `indentation` after first loading to `maximum_indentation` (both m).
 
-def residual_indentation(
-    maximum_indentation: Values,
-    loading_stiffness: Values,
-    unloading_stiffness: Values,
-    hardening: Values,
-) -> Array:
-    """Indentation δ₀ (m) at which unloading from `maximum_indentation` ends."""
-    (k1,) = positive(loading_stiffness=loading_stiffness)
-    k2 = _stiffness(maximum_indentation, loading_stiffness, unloading_stiffness, hardening)
-    return (1 - k1 / k2) * touching(maximum_indentation)
+        Zero at and below `residual_indentation`. Above `maximum_indentation` the contact is loading
+        again, and the force is `loading_force`.
+        """
+        d, k2 = touching(indentation), self._stiffness(maximum_indentation)
+        unloading = k2 * touching(d - self.residual_indentation(maximum_indentation))
+        beyond = d > touching(maximum_indentation)
+        return scalar_or_array(np.where(beyond, self.loading_force(d), unloading))
 
+    def residual_indentation(self, maximum_indentation: Values) -> Array:
+        """Indentation δ₀ (m) at which unloading from `maximum_indentation` ends."""
+        k2 = self._stiffness(maximum_indentation)
+        return (1 - self.loading_stiffness / k2) * touching(maximum_indentation)
 
-def restitution(
-    velocity: Values,
-    loading_stiffness: Values,
-    unloading_stiffness: Values,
-    hardening: Values,
-    mass: Values,
-) -> Array:
-    """Coefficient of restitution e = (k₁/k₂)^½ after an impact at relative normal `velocity` (m/s).
+    def restitution(self, velocity: Values, mass: Values) -> Array:
+        """Coefficient of restitution e = (k₁/k₂)^½ after an impact at `velocity` (m/s).
 
-    `loading_stiffness` k₁ and `unloading_stiffness` k_u in N/m, `hardening` S in 1/m. 1 at and
-    below zero velocity, where none approaches.
-    """
-    k1, m = positive(loading_stiffness=loading_stiffness, mass=mass)
-    d = touching(velocity) * (m / k1) ** 0.5
-    e = (k1 / _stiffness(d, loading_stiffness, unloading_stiffness, hardening)) ** 0.5
-    return scalar_or_array(np.where(np.asarray(velocity) <= 0, 1.0, e))
+        1 at and below zero velocity, where none approaches.
+        """
+        (m,), k1 = positive(mass=mass), self.loading_stiffness
+        d = touching(velocity) * (m / k1) ** 0.5
+        e = (k1 / self._stiffness(d)) ** 0.5
+        return scalar_or_array(np.where(np.asarray(velocity) <= 0, 1.0, e))
 
-
-def _stiffness(
-    maximum_indentation: Values,
-    loading_stiffness: Values,
-    unloading_stiffness: Values,
-    hardening: Values,
-) -> Array:
-    """k₂ (N/m)."""
-    (k1,) = positive(loading_stiffness=loading_stiffness)
-    (k_u,) = between(k1, np.inf, unloading_stiffness=unloading_stiffness)
-    (S,) = between(0.0, np.inf, hardening=hardening)
-    k2: Array = k_u + S * k1 * touching(maximum_indentation)
-    return k2
+    def _stiffness(self, maximum_indentation: Values) -> Array:
+        """k₂ (N/m)."""
+        d = touching(maximum_indentation)
+        return self.unloading_stiffness + self.hardening * self.loading_stiffness * d
