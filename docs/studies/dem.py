@@ -20,10 +20,11 @@ import numpy as np
 from shared import write_table
 
 from restitution.dem.export import export, write_export
-from restitution.dem.from_run import bare_law, law_of
-from restitution.dem.law import Law
-from restitution.dem.reference import collide_in_time, stored_force
-from restitution.dem.write import write_law
+from restitution.laws.from_results import bare_law, law_of
+from restitution.laws.law import Law
+from restitution.laws.time_integration import collide_in_time, stored_force
+from restitution.reports.figures import write_figure
+from restitution.reports.law_figure import law_figure
 from restitution.studies.case import parse_case
 from restitution.studies.results import ResultsFolder
 from restitution.studies.run import run_case
@@ -144,9 +145,8 @@ def main() -> None:
         fits(law)
         in_time(out, law)
         coverage(text, place)
-        write_law(law, place / "law")
         if len(sys.argv) > 1:
-            shutil.copy(place / "law" / "law.png", Path(sys.argv[1]) / "dem-law.png")
+            write_figure(Path(sys.argv[1]) / "dem-law.png", law_figure(law))
         equal = text.replace('second = "steel"', "")
         in_codes(law_of(run(equal, place / "equal")), place)
 

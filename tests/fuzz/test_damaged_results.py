@@ -16,8 +16,8 @@ from pathlib import Path
 
 import pytest
 
-from restitution.dem.from_run import law_of
-from restitution.dem.write import write_law
+from restitution.laws.from_results import law_of
+from restitution.laws.law_files import write_law
 from restitution.studies import workers
 from restitution.studies.case import parse_case
 from restitution.studies.convergence import run_convergence

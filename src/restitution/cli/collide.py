@@ -29,10 +29,10 @@ def collide(
     from rich.table import Table
 
     from restitution.cli.console import answers
-    from restitution.dem.from_run import bare_law
-    from restitution.dem.law import velocity_of
-    from restitution.dem.reference import collide_in_time, course, stored_force
     from restitution.errors import OutputError
+    from restitution.laws.from_results import bare_law
+    from restitution.laws.law import velocity_of
+    from restitution.laws.time_integration import collide_in_time, course, stored_force
     from restitution.studies.results import write_table
 
     if out is not None and out.exists():

@@ -39,7 +39,7 @@ def export(
     from restitution.cli.console import answers, warn
     from restitution.dem.export import export as exported
     from restitution.dem.export import write_export
-    from restitution.dem.law import read_law, velocity_of
+    from restitution.laws.law import read_law, velocity_of
 
     read = [read_law(law) for law in laws]
     at = None if velocity is None else velocity_of(velocity)

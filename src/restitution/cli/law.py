@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from restitution.dem.law import FittedLaw, Law
+    from restitution.laws.law import FittedLaw, Law
 
 
 def law(
@@ -35,12 +35,14 @@ def law(
         def say(words: str) -> None:
             bar.update(task, description=words, refresh=True)
 
-        from restitution.dem.from_run import law_of
-        from restitution.dem.write import write_law
+        from restitution.laws.from_results import law_of
+        from restitution.laws.law_files import write_law
+        from restitution.reports.law_figure import write_law_figure
 
         found = law_of(results, lambda name, k, n: say(f"fitting {name} ({k} of {n})"))
-        say("drawing the figure")
         written = write_law(found, out)
+        say("drawing the figure")
+        written.append(write_law_figure(found, out))
     for warning in found.warnings:
         warn(warning)
     answers.print(
@@ -64,7 +66,7 @@ def law(
 
 
 def _in_words(law: "Law") -> list[str]:
-    from restitution.dem.law import LOSS
+    from restitution.laws.law import LOSS
 
     lines = []
     if law.sticks_below is not None:

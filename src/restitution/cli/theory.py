@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from restitution.dem.theories import Theory
+    from restitution.laws.theories import Theory
 
 
 def theory(
@@ -36,9 +36,10 @@ def theory(
 ) -> None:
     """Print COR against velocity of every published closed form for the smooth bodies of CASE."""
     from restitution.cli.console import answers
-    from restitution.dem import theories as room
-    from restitution.dem.law import read_law
-    from restitution.dem.theory_figure import write_theories
+    from restitution.laws import theories as room
+    from restitution.laws.law import read_law
+    from restitution.laws.law_files import write_theories
+    from restitution.reports.theory_figure import write_theory_figure
     from restitution.studies.case import naming, read_case
 
     read, _ = read_case(case)
@@ -49,7 +50,12 @@ def theory(
         velocities = room.velocities_of(read, points)
         found = room.theories(read, velocities, points)
         missing = room.left_out(read, points)
-    written = [] if out is None else write_theories(read, velocities, found, out, points)
+    written = []
+    if out is not None:
+        written = [
+            write_theories(velocities, found, out),
+            write_theory_figure(read, velocities, found, out, points),
+        ]
 
     def say(line: str) -> None:
         answers.print(line, markup=False, soft_wrap=True)

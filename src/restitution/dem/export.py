@@ -8,10 +8,10 @@ from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
 
-from restitution.dem.law import Law
-from restitution.dem.matrix import Matrix, matrix_of
-from restitution.dem.write import table
+from restitution.dem.pair_table import PairTable, pair_table
 from restitution.errors import CaseError, OutputError
+from restitution.laws.law import Law
+from restitution.laws.law_files import law_rows
 from restitution.studies.results import replace_file, writing, written
 
 CODES = ("lammps", "liggghts", "yade", "mercurydpm", "edem", "csv")
@@ -38,9 +38,9 @@ def export(laws: Sequence[Law], code: str, velocity: float | None) -> dict[str, 
     Raises `CaseError` where they are not given one, for pairs that lack a law and for what a code
     cannot take; `DomainError` for a velocity beyond those that were computed.
     """
-    matrix = matrix_of(laws)
+    table = pair_table(laws)
     if code == "csv":
-        return {TABLE: _table(matrix, velocity)}
+        return {TABLE: _table(table, velocity)}
     if velocity is None:
         law = laws[0]
         raise CaseError(
@@ -48,7 +48,7 @@ def export(laws: Sequence[Law], code: str, velocity: float | None) -> dict[str, 
             f'velocity; give it with --velocity, such as "{law.lowest:.3g} m/s" to '
             f'"{law.highest:.3g} m/s"'
         )
-    texts: dict[str, str] = import_module(f"restitution.dem.codes.{code}").write(matrix, velocity)
+    texts: dict[str, str] = import_module(f"restitution.dem.codes.{code}").write(table, velocity)
     return texts
 
 
@@ -66,10 +66,10 @@ def write_export(texts: dict[str, str], out: Path) -> list[Path]:
     return [out / name for name in texts]
 
 
-def _table(matrix: Matrix, velocity: float | None) -> str:
+def _table(table: PairTable, velocity: float | None) -> str:
     """The tables of all pairs, one below the other; or the estimates at one velocity."""
     rows: list[dict[str, float | str]] = []
-    for i, j, law in matrix.pairs():
+    for i, j, law in table.pairs():
         pair: dict[str, float | str] = {
             "type_1": i,
             "type_2": j,
@@ -77,7 +77,7 @@ def _table(matrix: Matrix, velocity: float | None) -> str:
             "second": str(law.second),
         }
         if velocity is None:
-            rows += [{**pair, **row} for row in table(law)]
+            rows += [{**pair, **row} for row in law_rows(law)]
             continue
         estimate = law.at(velocity)
         values: dict[str, float | str] = {
@@ -86,7 +86,7 @@ def _table(matrix: Matrix, velocity: float | None) -> str:
             "restitution_error": estimate.error,
             "resolved": estimate.resolved,
         }
-        rows.append({**pair, **values, **{key: table(law)[0][key] for key in _WHOLE}})
+        rows.append({**pair, **values, **{key: law_rows(law)[0][key] for key in _WHOLE}})
     text = io.StringIO()
     writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
     writer.writeheader()

@@ -1,1 +1,1 @@
-"""One DEM code a module: `write(matrix, velocity)` returns its input as texts by file name."""
+"""One DEM code a module: `write(table, velocity)` returns its input as texts by file name."""

@@ -12,7 +12,7 @@ import io
 import math
 from collections.abc import Sequence
 
-from restitution.dem.codes.fragment import (
+from restitution.dem.export_common import (
     FRICTION,
     PLACEHOLDER,
     Pair,
@@ -22,7 +22,7 @@ from restitution.dem.codes.fragment import (
     number,
     pairs_at,
 )
-from restitution.dem.matrix import Matrix
+from restitution.dem.pair_table import PairTable
 
 CODE = "EDEM"
 INTERACTIONS, MATERIALS = "restitution_edem.csv", "restitution_edem_materials.csv"
@@ -41,14 +41,14 @@ _NOTES = [
 ]
 
 
-def write(matrix: Matrix, velocity: float) -> dict[str, str]:
+def write(table: PairTable, velocity: float) -> dict[str, str]:
     """The two tables, as texts by file name. Raises `DomainError`."""
-    pairs = pairs_at(matrix, velocity, CODE, 0.0)
-    head = header(matrix, pairs, velocity, code=CODE, ends=_ENDS) + _NOTES
+    pairs = pairs_at(table, velocity, CODE, 0.0)
+    head = header(table, pairs, velocity, code=CODE, ends=_ENDS) + _NOTES
     comments = commented(head, "#")
     return {
         INTERACTIONS: comments + _csv([_interaction(pair, velocity) for pair in pairs]),
-        MATERIALS: comments + _csv(_materials(matrix)),
+        MATERIALS: comments + _csv(_materials(table)),
     }
 
 
@@ -86,7 +86,7 @@ def _springs(pair: Pair, velocity: float) -> tuple[float, float] | None:
     return None
 
 
-def _materials(matrix: Matrix) -> list[dict[str, str]]:
+def _materials(table: PairTable) -> list[dict[str, str]]:
     return [
         {
             "material": identifier(body, k),
@@ -96,7 +96,7 @@ def _materials(matrix: Matrix) -> list[dict[str, str]]:
             "shear_modulus_Pa": number(body.youngs_modulus / (2 * (1 + body.poissons_ratio))),
             "radius_m": "" if body.radius is None else number(body.radius),
         }
-        for k, body in enumerate(matrix.particles, 1)
+        for k, body in enumerate(table.particles, 1)
     ]
 
 

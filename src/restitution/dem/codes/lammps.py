@@ -9,7 +9,8 @@ raise e, and `damping tsuji` has an error of √2 in released versions.
 
 from __future__ import annotations
 
-from restitution.dem.codes.fragment import (
+from restitution.dem.codes.lammps_mdr import mdr_lines
+from restitution.dem.export_common import (
     FRICTION,
     PLACEHOLDER,
     STEPS,
@@ -23,8 +24,7 @@ from restitution.dem.codes.fragment import (
     pairs_at,
     summary,
 )
-from restitution.dem.codes.lammps_mdr import mdr_lines
-from restitution.dem.matrix import Matrix
+from restitution.dem.pair_table import PairTable
 
 CODE = "LAMMPS"
 LOWEST = 0.001  # reproduced within 0.5 % with `STEPS` steps a contact
@@ -35,20 +35,20 @@ _ENDS = (
 )
 
 
-def write(matrix: Matrix, velocity: float) -> dict[str, str]:
+def write(table: PairTable, velocity: float) -> dict[str, str]:
     """The fragment to include and a collision that shows its e, as texts by file name.
 
     Raises `CaseError`, `DomainError`.
     """
-    walls_only = all(j > len(matrix.spheres) for _, j in matrix.laws)
+    walls_only = all(j > len(table.spheres) for _, j in table.laws)
     if not walls_only:
-        matrix.require_spheres(CODE)
-    pairs = pairs_at(matrix, velocity, CODE, LOWEST)
-    head = header(matrix, pairs, velocity, code=CODE, ends=_ENDS)
+        table.require_spheres(CODE)
+    pairs = pairs_at(table, velocity, CODE, LOWEST)
+    head = header(table, pairs, velocity, code=CODE, ends=_ENDS)
     short = summary(pairs, velocity, code=CODE, ends=_ENDS, fragment=FRAGMENT)
     return {
         FRAGMENT: commented(head, "#") + _fragment(pairs, velocity),
-        COLLISION: commented(short, "#") + _collision(matrix, pairs, velocity),
+        COLLISION: commented(short, "#") + _collision(table, pairs, velocity),
     }
 
 
@@ -91,15 +91,15 @@ def _pair_coeff(pair: Pair) -> str:
     return f"pair_coeff {pair.i} {pair.j} {_model(pair)}"
 
 
-def _collision(matrix: Matrix, pairs: list[Pair], velocity: float) -> str:
-    count = len(matrix.spheres)
-    bodies = list(enumerate(matrix.particles, 1))
+def _collision(table: PairTable, pairs: list[Pair], velocity: float) -> str:
+    count = len(table.spheres)
+    bodies = list(enumerate(table.particles, 1))
     densities = [(k, density_of(body)) for k, body in bodies if not body.wall]
-    size = max(body.radius or 0.0 for body in matrix.spheres)
+    size = max(body.radius or 0.0 for body in table.spheres)
     lines = [
         "",
         "# One head-on collision of types I and J, I <= J"
-        + (f"; J from {count + 1} on is a wall:" if matrix.walls else ":"),
+        + (f"; J from {count + 1} on is a wall:" if table.walls else ":"),
         f"#   lmp -in {COLLISION} -var V {number(velocity)} "
         f"-var I {pairs[0].i} -var J {pairs[0].j}",
         f"# Time step: 1/{STEPS} of {TIME_STEP}",
@@ -149,7 +149,7 @@ def _collision(matrix: Matrix, pairs: list[Pair], velocity: float) -> str:
         "variable rebound equal vz[1]",
     ]
     lines += _choice(f"$J <= {count}", sphere)
-    if matrix.walls:
+    if table.walls:
         lines += _choice(f"$J > {count}", wall)
     lines += [
         f'if "$I == {p.i} && $J == {p.j}" then &\n'

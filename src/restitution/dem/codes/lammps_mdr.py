@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import math
 
-from restitution.dem.codes.fragment import FRICTION, Pair, number, plain
-from restitution.dem.law import FittedLaw
+from restitution.dem.export_common import FRICTION, Pair, number, plain
+from restitution.laws.law import FittedLaw
 
 NAME = "lammps-mdr"
 _FAR = 0.1  # of e: a fitted law that is further off is not offered

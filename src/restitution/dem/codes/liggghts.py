@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
-from restitution.dem.codes.fragment import (
+from restitution.dem.export_common import (
     FRICTION,
     PLACEHOLDER,
     STEPS,
@@ -23,7 +23,7 @@ from restitution.dem.codes.fragment import (
     pairs_at,
     summary,
 )
-from restitution.dem.matrix import Matrix
+from restitution.dem.pair_table import PairTable
 
 CODE = "LIGGGHTS"
 LOWEST = 0.0501  # "0.05 < coefficientRestitution <= 1 required"
@@ -35,27 +35,27 @@ _ENDS = (
 _HARD, _SOFT = 1e9, 5e6  # Pa; LIGGGHTS refuses E beyond unless told
 
 
-def write(matrix: Matrix, velocity: float) -> dict[str, str]:
+def write(table: PairTable, velocity: float) -> dict[str, str]:
     """The fragment to include and a collision that shows its e, as texts by file name.
 
     Raises `CaseError`, `DomainError`.
     """
-    matrix.require_all(CODE)
-    pairs = pairs_at(matrix, velocity, CODE, LOWEST)
-    head = header(matrix, pairs, velocity, code=CODE, ends=_ENDS)
+    table.require_all(CODE)
+    pairs = pairs_at(table, velocity, CODE, LOWEST)
+    head = header(table, pairs, velocity, code=CODE, ends=_ENDS)
     short = summary(pairs, velocity, code=CODE, ends=_ENDS, fragment=FRAGMENT)
     return {
-        FRAGMENT: commented(head, "#") + _fragment(matrix, pairs),
-        COLLISION: commented(short, "#") + _collision(matrix, pairs, velocity),
+        FRAGMENT: commented(head, "#") + _fragment(table, pairs),
+        COLLISION: commented(short, "#") + _collision(table, pairs, velocity),
     }
 
 
-def _fragment(matrix: Matrix, pairs: list[Pair]) -> str:
-    bodies = matrix.particles
+def _fragment(table: PairTable, pairs: list[Pair]) -> str:
+    bodies = table.particles
     e = {(p.i, p.j): p.restitution for p in pairs}
     walls = [
         "# Walls are types, too: "
-        + ", ".join(str(k) for k, b in enumerate(matrix.particles, 1) if b.wall),
+        + ", ".join(str(k) for k, b in enumerate(table.particles, 1) if b.wall),
         "#   fix floor all wall/gran model hertz tangential history primitive type K zplane 0.0",
         "# Walls do not meet each other: their coefficient below is a 1 without meaning.",
     ]
@@ -63,22 +63,22 @@ def _fragment(matrix: Matrix, pairs: list[Pair]) -> str:
         "",
         f"# To include after create_box with {len(bodies)} types (a particle of type 1 must",
         "# exist), `units si`, `atom_style granular`, `newton off`"
-        + (f" and `{_range(matrix)}`." if _range(matrix) else "."),
+        + (f" and `{_range(table)}`." if _range(table) else "."),
         f"# {PLACEHOLDER}",
-        *(walls if matrix.walls else ()),
+        *(walls if table.walls else ()),
         _property("youngsModulus peratomtype", (number(b.youngs_modulus) for b in bodies)),
         _property("poissonsRatio peratomtype", (number(b.poissons_ratio) for b in bodies)),
-        _table(matrix, "coefficientRestitution", lambda i, j: number(e.get((i, j), 1.0))),
-        _table(matrix, "coefficientFriction", lambda i, j: str(FRICTION)),
+        _table(table, "coefficientRestitution", lambda i, j: number(e.get((i, j), 1.0))),
+        _table(table, "coefficientFriction", lambda i, j: str(FRICTION)),
         "pair_style gran model hertz tangential history",
         "pair_coeff * *",
     ]
     return "\n".join(lines) + "\n"
 
 
-def _range(matrix: Matrix) -> str:
+def _range(table: PairTable) -> str:
     """The command that lets LIGGGHTS take these E, "" where it needs none."""
-    E = [body.youngs_modulus for body in matrix.particles]
+    E = [body.youngs_modulus for body in table.particles]
     if max(E) > _HARD:
         return "hard_particles yes"
     return "soft_particles yes" if min(E) < _SOFT else ""
@@ -88,22 +88,22 @@ def _property(what: str, values: Iterable[str]) -> str:
     return f"fix {what.split()[0]} all property/global {what} {' '.join(values)}"
 
 
-def _table(matrix: Matrix, what: str, value: Callable[[int, int], str]) -> str:
-    numbers = range(1, len(matrix.particles) + 1)
+def _table(table: PairTable, what: str, value: Callable[[int, int], str]) -> str:
+    numbers = range(1, len(table.particles) + 1)
     rows = [" ".join(value(min(i, j), max(i, j)) for j in numbers) for i in numbers]
     return " &\n  ".join(
         [f"fix {what} all property/global {what} peratomtypepair {len(rows)}", *rows]
     )
 
 
-def _collision(matrix: Matrix, pairs: list[Pair], velocity: float) -> str:
-    count = len(matrix.spheres)
-    size = max(body.radius or 0.0 for body in matrix.spheres)
-    bodies = list(enumerate(matrix.particles, 1))
+def _collision(table: PairTable, pairs: list[Pair], velocity: float) -> str:
+    count = len(table.spheres)
+    size = max(body.radius or 0.0 for body in table.spheres)
+    bodies = list(enumerate(table.particles, 1))
     lines = [
         "",
         "# One head-on collision of types I and J, I <= J"
-        + (f"; J from {count + 1} on is a wall:" if matrix.walls else ":"),
+        + (f"; J from {count + 1} on is a wall:" if table.walls else ":"),
         f"#   liggghts -in {COLLISION} -var V {number(velocity)} -var I {pairs[0].i} "
         f"-var J {pairs[0].j}",
         f"# Time step: 1/{STEPS} of {TIME_STEP}.",
@@ -132,7 +132,7 @@ def _collision(matrix: Matrix, pairs: list[Pair], velocity: float) -> str:
         "boundary f f f",
         "communicate single vel yes",
         "newton off",
-        *filter(None, [_range(matrix)]),
+        *filter(None, [_range(table)]),
         f"region box block {_box(size)} units box",
         f"create_box {len(bodies)} box",
         f"neighbor {number(0.1 * size)} bin",
@@ -141,8 +141,8 @@ def _collision(matrix: Matrix, pairs: list[Pair], velocity: float) -> str:
         "",
         "# LIGGGHTS wants a particle of type 1 to exist: this one rests aside.",
         f"create_atoms 1 single {number(2.5 * size)} 0 {number(2.5 * size)} units box",
-        f"set atom 1 diameter {number(2 * (matrix.spheres[0].radius or 0))} density "
-        f"{number(density_of(matrix.spheres[0]))}",
+        f"set atom 1 diameter {number(2 * (table.spheres[0].radius or 0))} density "
+        f"{number(density_of(table.spheres[0]))}",
         "create_atoms $I single 0 0 ${above} units box",
         "set atom 2 diameter ${Di} density ${rho_i}",
         "group one id 2",
@@ -150,7 +150,7 @@ def _collision(matrix: Matrix, pairs: list[Pair], velocity: float) -> str:
         "variable gap equal z[2]-v_Ri",
         "variable rebound equal vz[2]",
         *_spheres(count),
-        *_walls(matrix),
+        *_walls(table),
         "timestep ${dt}",
         "fix move all nve/sphere",
         "thermo 100000000",
@@ -185,11 +185,11 @@ def _spheres(count: int) -> list[str]:
     ]
 
 
-def _walls(matrix: Matrix) -> list[str]:
-    if not matrix.walls:
+def _walls(table: PairTable) -> list[str]:
+    if not table.walls:
         return []
     return [
-        f'if "$J > {len(matrix.spheres)}" then &\n'
+        f'if "$J > {len(table.spheres)}" then &\n'
         '  "fix wall all wall/gran model hertz tangential history primitive type $J zplane 0.0"'
     ]
 

@@ -7,7 +7,7 @@ turns e into the damping of Antypov & Elliott (EPL 94 (2011) 50004); force and d
 
 from __future__ import annotations
 
-from restitution.dem.codes.fragment import (
+from restitution.dem.export_common import (
     FRICTION,
     PLACEHOLDER,
     Pair,
@@ -18,8 +18,8 @@ from restitution.dem.codes.fragment import (
     number,
     pairs_at,
 )
-from restitution.dem.law import Particle
-from restitution.dem.matrix import Matrix
+from restitution.dem.pair_table import PairTable
+from restitution.laws.law import Particle
 
 CODE = "MercuryDPM"
 FILE = "restitution_mercury.h"
@@ -62,19 +62,19 @@ _AFTER = """    return species;
 """
 
 
-def write(matrix: Matrix, velocity: float) -> dict[str, str]:
+def write(table: PairTable, velocity: float) -> dict[str, str]:
     """The header to include, as text by file name. Raises `CaseError`, `DomainError`."""
-    matrix.require_all(CODE)
-    pairs = pairs_at(matrix, velocity, CODE, 0.0)
-    head = header(matrix, pairs, velocity, code=CODE, ends=_ENDS)
+    table.require_all(CODE)
+    pairs = pairs_at(table, velocity, CODE, 0.0)
+    head = header(table, pairs, velocity, code=CODE, ends=_ENDS)
     own = {pair.i: pair for pair in pairs if pair.i == pair.j}
     lines = [
         line
-        for k, body in enumerate(matrix.particles, 1)
+        for k, body in enumerate(table.particles, 1)
         for line in (_wall(k, body) if body.wall else _sphere(k, own[k]))
     ]
     lines += [_mixed(pair) for pair in pairs if pair.i != pair.j]
-    before = _BEFORE.format(placeholder=PLACEHOLDER, friction=FRICTION, count=len(matrix.particles))
+    before = _BEFORE.format(placeholder=PLACEHOLDER, friction=FRICTION, count=len(table.particles))
     code = "".join(f"    {line}\n" for line in lines)
     return {FILE: commented(head, "//") + before + code + _AFTER}
 

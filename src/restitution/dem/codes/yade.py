@@ -18,7 +18,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from restitution.dem.codes.fragment import (
+from restitution.dem.export_common import (
     FRICTION,
     PLACEHOLDER,
     TIME_STEP,
@@ -32,8 +32,8 @@ from restitution.dem.codes.fragment import (
     pairs_at,
     summary,
 )
-from restitution.dem.law import Law, Particle
-from restitution.dem.matrix import Matrix
+from restitution.dem.pair_table import PairTable
+from restitution.laws.law import Law, Particle
 
 CODE = "YADE"
 LOWEST = 0.01  # of the fit
@@ -205,23 +205,23 @@ print("restitution = %.6f" % (rebound / V))
 """
 
 
-def write(matrix: Matrix, velocity: float) -> dict[str, str]:
+def write(table: PairTable, velocity: float) -> dict[str, str]:
     """The module to import and a collision that shows its e, as texts by file name.
 
     Raises `CaseError`, `DomainError`.
     """
-    matrix.require_all(CODE)
-    pairs = pairs_at(matrix, velocity, CODE, LOWEST)
-    head = header(matrix, pairs, velocity, code=CODE, ends=_ENDS)
+    table.require_all(CODE)
+    pairs = pairs_at(table, velocity, CODE, LOWEST)
+    head = header(table, pairs, velocity, code=CODE, ends=_ENDS)
     short = summary(pairs, velocity, code=CODE, ends=_ENDS, fragment=FRAGMENT)
     return {
-        FRAGMENT: commented(head, "#") + _module(matrix, pairs, velocity),
-        COLLISION: commented(short, "#") + _collision(matrix, pairs, velocity),
+        FRAGMENT: commented(head, "#") + _module(table, pairs, velocity),
+        COLLISION: commented(short, "#") + _collision(table, pairs, velocity),
     }
 
 
-def _module(matrix: Matrix, pairs: list[Pair], velocity: float) -> str:
-    bodies = list(enumerate(matrix.particles, 1))
+def _module(table: PairTable, pairs: list[Pair], velocity: float) -> str:
+    bodies = list(enumerate(table.particles, 1))
     return _MODULE.format(
         placeholder=PLACEHOLDER,
         friction=FRICTION,
@@ -238,12 +238,12 @@ def _module(matrix: Matrix, pairs: list[Pair], velocity: float) -> str:
     )
 
 
-def _collision(matrix: Matrix, pairs: list[Pair], velocity: float) -> str:
-    count = len(matrix.spheres)
-    radii = (f"{k}: {number(b.radius or 0)}" for k, b in enumerate(matrix.spheres, 1))
+def _collision(table: PairTable, pairs: list[Pair], velocity: float) -> str:
+    count = len(table.spheres)
+    radii = (f"{k}: {number(b.radius or 0)}" for k, b in enumerate(table.spheres, 1))
     times = (f"({p.i}, {p.j}): {number(_contact_time(p))}" for p in pairs)
     return _SCRIPT.format(
-        walls=f"; J from {count + 1} on is a wall" if matrix.walls else "",
+        walls=f"; J from {count + 1} on is a wall" if table.walls else "",
         collision=COLLISION,
         velocity=number(velocity),
         i=pairs[0].i,

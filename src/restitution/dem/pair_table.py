@@ -1,4 +1,4 @@
-"""Which law holds between which particles: the pair matrix that most DEM codes ask for."""
+"""Which law holds between which particles: the pair table that most DEM codes ask for."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations_with_replacement, product
 
-from restitution.dem.law import Law, Particle
 from restitution.errors import CaseError
+from restitution.laws.law import Law, Particle
 
 
 @dataclass(frozen=True)
-class Matrix:
+class PairTable:
     """Particle types, walls, and the law of every pair that was computed.
 
     Types are numbered from 1 as DEM codes do; walls follow the spheres. Keys of `laws` are
@@ -59,8 +59,8 @@ class Matrix:
             )
 
 
-def matrix_of(laws: Sequence[Law]) -> Matrix:
-    """The matrix of `laws`. Bodies with the same values are one type.
+def pair_table(laws: Sequence[Law]) -> PairTable:
+    """The table of `laws`. Bodies with the same values are one type.
 
     Raises `CaseError` for two laws of one pair.
     """
@@ -76,4 +76,4 @@ def matrix_of(laws: Sequence[Law]) -> Matrix:
                 f"two laws are given for {law.pair}; give one, or let the particles differ in name"
             )
         found[i, j] = law
-    return Matrix(spheres, walls, found)
+    return PairTable(spheres, walls, found)

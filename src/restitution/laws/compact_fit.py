@@ -17,7 +17,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.dem.law import CompactFit, Law
+from restitution.laws.law import CompactFit, Law
 
 Array = NDArray[np.float64]
 

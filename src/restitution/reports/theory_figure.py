@@ -1,4 +1,4 @@
-"""Theories as files: a table and a figure."""
+"""The figure of theories beside one another, and beside a law."""
 
 from __future__ import annotations
 
@@ -10,37 +10,23 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from restitution.dem.closed_forms import FORMS
-from restitution.dem.law import Law
-from restitution.dem.theories import COMPUTED, Theory, marks, theories
-from restitution.errors import OutputError
-from restitution.reports.figures import write_figure
+from restitution.laws.closed_forms import FORMS
+from restitution.laws.law import Law
+from restitution.laws.theories import COMPUTED, Theory, marks, theories
+from restitution.reports.figures import plain, write_figure
 from restitution.studies.case import Case
-from restitution.studies.results import write_table, writing
 
 Array = NDArray[np.float64]
 
 _FINE = 600  # points of a line in the figure
 
 
-def write_theories(
+def write_theory_figure(
     case: Case, velocities: Array, found: list[Theory], out: Path, law: Law | None = None
-) -> list[Path]:
-    """Write `theory.csv` and `theory.png` into `out`, new or empty. Raises `OutputError`."""
-
-    with writing(out):
-        out.mkdir(parents=True, exist_ok=True)
-        if any(out.iterdir()):
-            raise OutputError(
-                f"{out}: this folder is not empty, and nothing in it is overwritten; name another"
-            )
-    rows = [
-        {"velocity_m_per_s": float(V), **{each.name: float(each.restitution[k]) for each in found}}
-        for k, V in enumerate(velocities)
-    ]
-    write_table(out / "theory.csv", rows)
-    write_figure(out / "theory.png", figure(case, velocities, found, law))
-    return [out / "theory.csv", out / "theory.png"]
+) -> Path:
+    """Draw `theory.png` into the folder `out`; return its path. Raises `OutputError`."""
+    write_figure(out / "theory.png", theory_figure(case, velocities, found, law))
+    return out / "theory.png"
 
 
 # Colour, dashes and width of each line; those that often run along e = 1 lie under one another.
@@ -58,12 +44,10 @@ _LINES: dict[str, tuple[str, str | tuple[int, tuple[int, ...]], float]] = {
 }
 
 
-def figure(case: Case, velocities: Array, found: list[Theory], law: Law | None = None) -> Figure:
+def theory_figure(
+    case: Case, velocities: Array, found: list[Theory], law: Law | None = None
+) -> Figure:
     """Restitution against velocity: a line a theory, our own points as markers."""
-    from matplotlib.figure import Figure
-
-    from restitution.reports.figures import plain
-
     drawing = Figure(figsize=(8.6, 5.0), layout="constrained")
     axes = drawing.add_subplot()
     low, high = float(velocities[0]), float(velocities[-1])

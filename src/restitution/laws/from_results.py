@@ -8,10 +8,10 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from restitution.dem.compact import compact_fit
-from restitution.dem.fitted import Begin, fitted_laws
-from restitution.dem.law import LAW_FILE, Conventions, Law, Particle, Point
 from restitution.errors import CaseError, OutputError, one_line
+from restitution.laws.compact_fit import compact_fit
+from restitution.laws.force_law_fits import Begin, fitted_laws
+from restitution.laws.law import LAW_FILE, Conventions, Law, Particle, Point
 from restitution.studies.error_budget import total
 from restitution.studies.particles import BodyTable
 from restitution.studies.reader import StoredRun, read_run, stored_case

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from restitution.dem.interpolation import RatioCurve
 from restitution.errors import CaseError, DomainError, OutputError, one_line
+from restitution.laws.interpolation import RatioCurve
 from restitution.studies.checksums import check_file
 from restitution.studies.quantities import read_positive
 

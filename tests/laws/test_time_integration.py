@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from restitution.contact.bodies import Body, Pair
-from restitution.dem.from_run import bare_law
-from restitution.dem.reference import StoredForce, collide_in_time, course, stored_force
 from restitution.errors import CaseError, DomainError, OutputError
+from restitution.laws.from_results import bare_law
+from restitution.laws.time_integration import StoredForce, collide_in_time, course, stored_force
 from restitution.studies.case import parse_case
 from restitution.studies.ensemble import run_realisations
 from restitution.studies.results import ResultsFolder

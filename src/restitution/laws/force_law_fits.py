@@ -16,7 +16,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.dem.law import LOSS, FittedLaw, Law
+from restitution.laws.law import LOSS, FittedLaw, Law
 from restitution.theory import eepa, luding, mdr, sticking, thornton_ning, walton_braun
 
 Array = NDArray[np.float64]

@@ -1,4 +1,4 @@
-"""A law as files: `law.json` (all of it), `table.csv`, `laws.csv` and a figure."""
+"""Laws as files (`law.json` with all of it, `table.csv`, `laws.csv`), and theories as a table."""
 
 from __future__ import annotations
 
@@ -6,39 +6,45 @@ import math
 from pathlib import Path
 
 import numpy as np
-from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
-from restitution.dem.law import LAW_FILE, Law
 from restitution.errors import OutputError
-from restitution.reports.figures import plain, write_figure
+from restitution.laws.law import LAW_FILE, Law
+from restitution.laws.theories import Theory
 from restitution.studies.interruption import hold_signals
 from restitution.studies.results import replace_file, write_checksums, write_table, writing
-
-_FINE = 400
 
 
 def write_law(law: Law, out: Path) -> list[Path]:
     """Write every file of `law` into `out`, which must be new or empty. Raises `OutputError`."""
-    with writing(out):
-        out.mkdir(parents=True, exist_ok=True)
-        if any(out.iterdir()):
-            raise OutputError(
-                f"{out}: this folder is not empty, and nothing in it is overwritten; name another"
-            )
+    _make_empty(out)
     text = law.model_dump_json(indent=2) + "\n"
     names = [LAW_FILE, "table.csv"]
     with hold_signals():
         replace_file(out / LAW_FILE, lambda to: to.write_text(text, encoding="utf-8"))
-        write_table(out / "table.csv", table(law))
+        write_table(out / "table.csv", law_rows(law))
         if law.laws:
             write_table(out / "laws.csv", _laws(law))
             names.append("laws.csv")
         write_checksums(out, names)
-    write_figure(out / "law.png", figure(law))
-    return [out / name for name in (*names, "law.png")]
+    return [out / name for name in names]
 
 
-def table(law: Law) -> list[dict[str, float | str]]:
+def write_theories(velocities: NDArray[np.float64], found: list[Theory], out: Path) -> Path:
+    """Write `theory.csv` into `out`, which must be new or empty. Raises `OutputError`.
+
+    `found` has the restitution of each theory at `velocities` (m/s).
+    """
+    _make_empty(out)
+    rows = [
+        {"velocity_m_per_s": float(V), **{each.name: float(each.restitution[k]) for each in found}}
+        for k, V in enumerate(velocities)
+    ]
+    write_table(out / "theory.csv", rows)
+    return out / "theory.csv"
+
+
+def law_rows(law: Law) -> list[dict[str, float | str]]:
     """The points, with what belongs to the whole law in every row, so that a row stands alone."""
     fit = [math.nan] * len(law.points)
     if law.fit is not None:
@@ -70,30 +76,13 @@ def table(law: Law) -> list[dict[str, float | str]]:
     ]
 
 
-def figure(law: Law) -> Figure:
-    """Plot the computed COR with its error, and the fits over the velocities they are fitted to."""
-    drawing = Figure(figsize=(7.6, 4.8), layout="constrained")
-    axes = drawing.add_subplot()
-    V, e = law.column("velocity"), law.column("restitution")
-    axes.errorbar(V, e, yerr=law.column("error"), fmt="o", ms=4, color="C0", zorder=3,
-                  label="computed")  # fmt: skip
-    unresolved = ~law.column("resolved").astype(bool)
-    if unresolved.any():
-        axes.plot(V[unresolved], e[unresolved], "o", ms=4, mfc="white", mec="C0", zorder=4,
-                  ls="none", label="not resolved")  # fmt: skip
-    if law.fit is not None:
-        fine = np.geomspace(law.fit.lowest, law.fit.highest, _FINE)
-        axes.plot(fine, law.fit.restitution(fine), "-", color="C0", lw=1,
-                  label=f"compact fit (within {law.fit.worst:.1g})")  # fmt: skip
-    for k, other in enumerate(law.laws):
-        values = [math.nan if value is None else value for value in other.restitution]
-        axes.plot(V, values, "--", lw=1, color=f"C{k + 1}",
-                  label=f"{other.name} ({other.worst:.2g})")  # fmt: skip
-    axes.set(xscale="log", ylim=(0, 1.05), xlabel="impact velocity (m/s)",
-             ylabel="coefficient of restitution", title=plain(law.title))  # fmt: skip
-    axes.legend(fontsize="small", loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False,
-                title="largest difference in brackets")  # fmt: skip
-    return drawing
+def _make_empty(out: Path) -> None:
+    with writing(out):
+        out.mkdir(parents=True, exist_ok=True)
+        if any(out.iterdir()):
+            raise OutputError(
+                f"{out}: this folder is not empty, and nothing in it is overwritten; name another"
+            )
 
 
 def _laws(law: Law) -> list[dict[str, float | str]]:

@@ -8,10 +8,10 @@ import shutil
 import numpy as np
 import pytest
 
-from restitution.dem.from_run import bare_law, law_of
-from restitution.dem.law import Law, read_law
-from restitution.dem.write import write_law
 from restitution.errors import CaseError, DomainError, OutputError
+from restitution.laws.from_results import bare_law, law_of
+from restitution.laws.law import Law, read_law
+from restitution.laws.law_files import write_law
 from tolerance import approx
 
 HEAD = """
@@ -112,7 +112,7 @@ def test_nothing_is_extrapolated(rough, factor):
 def test_a_law_is_read_as_it_was_written(rough, tmp_path):
     law = law_of(rough)
     names = {path.name for path in write_law(law, tmp_path / "law")}
-    assert names == {"law.json", "table.csv", "laws.csv", "law.png"}
+    assert names == {"law.json", "table.csv", "laws.csv"}
     assert read_law(tmp_path / "law") == law
     with open(tmp_path / "law" / "table.csv", newline="") as file:
         rows = list(csv.DictReader(file))

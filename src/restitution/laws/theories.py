@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.dem.closed_forms import FORMS, SOURCES, Bodies, speed, within
-from restitution.dem.law import LOSS, FittedLaw, Law
 from restitution.errors import CaseError
+from restitution.laws.closed_forms import FORMS, SOURCES, Bodies, speed, within
+from restitution.laws.law import LOSS, FittedLaw, Law
 from restitution.studies.case import Case
 from restitution.theory import brilliantov
 

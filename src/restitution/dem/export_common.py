@@ -15,9 +15,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 
-from restitution.dem.law import Law, Particle
-from restitution.dem.matrix import Matrix
+from restitution.dem.pair_table import PairTable
 from restitution.errors import CaseError, one_line
+from restitution.laws.law import Law, Particle
 
 FRICTION = 0.5
 PLACEHOLDER = f"Friction {FRICTION} is a placeholder: no friction was computed here, give yours."
@@ -69,14 +69,14 @@ class Pair:
         return 2 * (1 - nu**2) * self.law.contact_modulus, nu
 
 
-def pairs_at(matrix: Matrix, velocity: float, code: str, lowest: float) -> list[Pair]:
-    """All pairs of `matrix` with their e at `velocity` (m/s).
+def pairs_at(table: PairTable, velocity: float, code: str, lowest: float) -> list[Pair]:
+    """All pairs of `table` with their e at `velocity` (m/s).
 
     Raises `CaseError` where e is below `lowest`, the least that `code` reproduces, and
     `DomainError` beyond the velocities that were computed.
     """
     found = []
-    for i, j, law in matrix.pairs():
+    for i, j, law in table.pairs():
         e = law.at(velocity).restitution
         if e < lowest:
             raise CaseError(
@@ -84,7 +84,7 @@ def pairs_at(matrix: Matrix, velocity: float, code: str, lowest: float) -> list[
                 f"coefficient of restitution below {lowest:g}; export at a higher velocity, or "
                 "use an adhesive contact model there"
             )
-        found.append(Pair(i, j, matrix.particles[i - 1], matrix.particles[j - 1], law, e))
+        found.append(Pair(i, j, table.particles[i - 1], table.particles[j - 1], law, e))
     return found
 
 
@@ -109,12 +109,12 @@ def identifier(particle: Particle, number: int) -> str:
 
 
 def header(
-    matrix: Matrix, pairs: Sequence[Pair], velocity: float, *, code: str, ends: str
+    table: PairTable, pairs: Sequence[Pair], velocity: float, *, code: str, ends: str
 ) -> list[str]:
     """Comment lines above the export for `code`, which takes `ends` as the end of a contact."""
     lines = _origin(velocity, code, ends)
     lines += ["", "Types:"]
-    lines += [f"  {k}: {particle}" for k, particle in enumerate(matrix.particles, 1)]
+    lines += [f"  {k}: {particle}" for k, particle in enumerate(table.particles, 1)]
     for pair in pairs:
         lines += ["", *_about(pair, velocity)]
     return _wrapped(lines)
