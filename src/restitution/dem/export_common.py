@@ -13,7 +13,10 @@ import textwrap
 import unicodedata
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from restitution.dem.pair_table import PairTable
 from restitution.errors import CaseError, one_line
@@ -131,8 +134,16 @@ def summary(
 
 
 def commented(lines: Iterable[str], sign: str) -> str:
-    """`lines` as comments, each ended by a line break."""
-    return "".join(f"{sign} {line}".rstrip() + "\n" for line in lines)
+    """`lines` as comments, which begin with `sign`."""
+    return "\n".join(f"{sign} {line}".rstrip() for line in lines)
+
+
+def render(name: str, **values: object) -> str:
+    """The text of the file `name`, from its template `templates/NAME.j2` with `values`.
+
+    Templates know, besides, the names and the filters of `_environment`.
+    """
+    return _environment().get_template(f"{name}.j2").render(values)
 
 
 def plain(text: str) -> str:
@@ -153,6 +164,27 @@ def program_version() -> str:
         return version("restitution")
     except PackageNotFoundError:  # run from the sources
         return "(version unknown)"
+
+
+@cache
+def _environment() -> Environment:
+    environment = Environment(
+        loader=PackageLoader("restitution.dem"),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    environment.filters |= {"number": number, "plain": plain}
+    environment.globals |= {
+        "friction": FRICTION,
+        "placeholder": PLACEHOLDER,
+        "time_step": TIME_STEP,
+        "contact_time": contact_time,
+        "density_of": density_of,
+        "identifier": identifier,
+    }
+    return environment
 
 
 def _origin(velocity: float, code: str, ends: str) -> list[str]:

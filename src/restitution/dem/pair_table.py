@@ -27,6 +27,11 @@ class PairTable:
         """Spheres, then walls."""
         return self.spheres + self.walls
 
+    @property
+    def largest_radius(self) -> float:
+        """The radius of the largest sphere, m."""
+        return max(body.radius or 0.0 for body in self.spheres)
+
     def pairs(self) -> Iterator[tuple[int, int, Law]]:
         """Numbers and law of every pair, in order."""
         for (i, j), law in sorted(self.laws.items()):

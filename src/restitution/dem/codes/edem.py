@@ -45,7 +45,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
     """The two tables, as texts by file name. Raises `DomainError`."""
     pairs = pairs_at(table, velocity, CODE, 0.0)
     head = header(table, pairs, velocity, code=CODE, ends=_ENDS) + _NOTES
-    comments = commented(head, "#")
+    comments = commented(head, "#") + "\n"
     return {
         INTERACTIONS: comments + _csv([_interaction(pair, velocity) for pair in pairs]),
         MATERIALS: comments + _csv(_materials(table)),
