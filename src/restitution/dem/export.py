@@ -16,7 +16,7 @@ from restitution.studies.results import replace_file, writing, written
 
 CODES = ("lammps", "liggghts", "yade", "mercurydpm", "edem", "csv")
 TABLE = "restitution.csv"
-# What belongs to the whole law.
+# Quantities of the whole law.
 _WHOLE = (
     "yield_velocity_smooth_m_per_s",
     "sticking_velocity_smooth_m_per_s",
@@ -32,11 +32,11 @@ _WHOLE = (
 
 
 def export(laws: Sequence[Law], code: str, velocity: float | None) -> dict[str, str]:
-    """The input of `code` (one of `CODES`) for the pairs of `laws`, as texts by file name.
+    """The input of `code` (one of `CODES`) for the pairs of `laws`: file names and their texts.
 
-    All codes but `csv` take one coefficient of restitution a pair, and so a `velocity` (m/s).
-    Raises `CaseError` where they are not given one, for pairs that lack a law and for what a code
-    cannot take; `DomainError` for a velocity beyond those that were computed.
+    All codes but `csv` take one coefficient of restitution for each pair and need a `velocity`
+    (m/s). Raises `CaseError` without a velocity, for pairs without a law, and for values that the
+    code does not accept; `DomainError` for a velocity outside the computed ones.
     """
     table = pair_table(laws)
     if code == "csv":
@@ -53,7 +53,7 @@ def export(laws: Sequence[Law], code: str, velocity: float | None) -> dict[str, 
 
 
 def write_export(texts: dict[str, str], out: Path) -> list[Path]:
-    """Write the files into `out`, over none that is there. Raises `OutputError`."""
+    """Write the files into `out`; existing files are never overwritten. Raises `OutputError`."""
     with writing(out):
         out.mkdir(parents=True, exist_ok=True)
         there = [name for name in texts if (out / name).exists()]
@@ -67,7 +67,7 @@ def write_export(texts: dict[str, str], out: Path) -> list[Path]:
 
 
 def _table(table: PairTable, velocity: float | None) -> str:
-    """The tables of all pairs, one below the other; or the estimates at one velocity."""
+    """One CSV text: the points of all pairs, or the estimates at `velocity` (m/s)."""
     rows: list[dict[str, float | str]] = []
     for i, j, law in table.pairs():
         pair: dict[str, float | str] = {

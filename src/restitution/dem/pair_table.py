@@ -1,4 +1,4 @@
-"""Which law holds between which particles: the pair table that most DEM codes ask for."""
+"""The pair table that most DEM codes ask for: one law for each pair of particle types."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from restitution.laws.law import Law, Particle
 
 @dataclass(frozen=True)
 class PairTable:
-    """Particle types, walls, and the law of every pair that was computed.
+    """Particle types, walls, and the law of every given pair.
 
-    Types are numbered from 1 as DEM codes do; walls follow the spheres. Keys of `laws` are
-    (i, j), i ≤ j.
+    Types are numbered from 1, as in DEM codes; walls follow the spheres. The keys of `laws` are
+    (i, j) with i ≤ j.
     """
 
     spheres: tuple[Particle, ...]
@@ -33,7 +33,7 @@ class PairTable:
         return max(body.radius or 0.0 for body in self.spheres)
 
     def pairs(self) -> Iterator[tuple[int, int, Law]]:
-        """Numbers and law of every pair, in order."""
+        """The type numbers and the law of every pair, in order."""
         for (i, j), law in sorted(self.laws.items()):
             yield i, j, law
 
@@ -43,7 +43,7 @@ class PairTable:
         self._require(code, combinations_with_replacement(numbers, 2), "pair of particle types")
 
     def require_all(self, code: str) -> None:
-        """The same, and of every sphere on every wall."""
+        """As `require_spheres`, and a law for every sphere on every wall."""
         self.require_spheres(code)
         spheres, last = len(self.spheres), len(self.particles)
         pairs = product(range(1, spheres + 1), range(spheres + 1, last + 1))
@@ -65,7 +65,7 @@ class PairTable:
 
 
 def pair_table(laws: Sequence[Law]) -> PairTable:
-    """The table of `laws`. Bodies with the same values are one type.
+    """The table of `laws`. Bodies with equal values become one type.
 
     Raises `CaseError` for two laws of one pair.
     """

@@ -45,7 +45,7 @@ def write_theories(velocities: NDArray[np.float64], found: list[Theory], out: Pa
 
 
 def law_rows(law: Law) -> list[dict[str, float | str]]:
-    """The points, with what belongs to the whole law in every row, so that a row stands alone."""
+    """One row for each point; the quantities of the whole law are repeated in every row."""
     fit = [math.nan] * len(law.points)
     if law.fit is not None:
         fit = [float(e) for e in law.fit.restitution(law.column("velocity"))]

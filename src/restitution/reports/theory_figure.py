@@ -29,7 +29,7 @@ def write_theory_figure(
     return out / "theory.png"
 
 
-# Colour, dashes and width of each line; those that often run along e = 1 lie under one another.
+# Colour, dashes and width of each line. Lines that often coincide at e = 1 differ in width.
 _LINES: dict[str, tuple[str, str | tuple[int, tuple[int, ...]], float]] = {
     "hertz": ("0.75", "-", 5.0),
     "sticking": ("#f0a830", "-", 3.2),
@@ -47,7 +47,7 @@ _LINES: dict[str, tuple[str, str | tuple[int, tuple[int, ...]], float]] = {
 def theory_figure(
     case: Case, velocities: Array, found: list[Theory], law: Law | None = None
 ) -> Figure:
-    """Restitution against velocity: a line a theory, our own points as markers."""
+    """COR against velocity: one line for each theory, the computed points as markers."""
     drawing = Figure(figsize=(8.6, 5.0), layout="constrained")
     axes = drawing.add_subplot()
     low, high = float(velocities[0]), float(velocities[-1])
@@ -76,7 +76,7 @@ def theory_figure(
 
 
 def _fine(case: Case, velocities: Array, found: list[Theory]) -> list[tuple[Array, Array]]:
-    """Velocity and restitution of each line: closed forms on many points, others as they are."""
+    """Velocity and COR of each line: closed forms at many velocities, others at the given ones."""
     if velocities.size == 1:
         return [(velocities, each.restitution) for each in found]
     V = np.geomspace(velocities[0], velocities[-1], _FINE)
@@ -97,7 +97,7 @@ def _draw_points(axes: Axes, law: Law) -> None:
 
 
 def _draw_marks(axes: Axes, velocities: Mapping[str, float], low: float, high: float) -> None:
-    """Upright lines, named at the foot: the lower one to its left, the higher to its right."""
+    """Vertical lines with labels at the foot: left of the lower one, right of the higher one."""
     order = sorted(velocities, key=velocities.__getitem__)
     for name, V in velocities.items():
         if not low <= V <= high:

@@ -1,10 +1,10 @@
 """LAMMPS: `pair_style granular` with `hertz/material` and `damping coeff_restitution`.
 
-LAMMPS takes the E and ν of a pair_coeff for both bodies, on walls, too: E* = E/2(1 − ν²),
-G* = E/4(2 − ν)(1 + ν). Each pair gets the E and ν with its own E* and G*; LAMMPS' mixing of two
-materials, which applies the ½ twice, is not used. Force and damping (Antypov & Elliott, EPL 94
-(2011) 50004) go on to δ = 0, with a tension at the end; `limit_damping` would cut it off and
-raise e, and `damping tsuji` has an error of √2 in released versions.
+LAMMPS uses the E and ν of a pair_coeff for both bodies, also at walls: E* = E/2(1 − ν²),
+G* = E/4(2 − ν)(1 + ν). Each pair is given the E and ν that yield its own E* and G*. LAMMPS' mixing
+of two materials applies the ½ twice and is not used. Force and damping (Antypov & Elliott, EPL 94
+(2011) 50004) act until δ = 0, with a tension at the end; `limit_damping` would cut the tension off
+and raise e. `damping tsuji` has an error of √2 in released versions.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _ENDS = (
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """The fragment to include and a collision that shows its e, as texts by file name.
+    """The fragment to include and a test collision that prints its e: file names and texts.
 
     Raises `CaseError`, `DomainError`.
     """

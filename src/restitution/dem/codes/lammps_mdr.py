@@ -1,9 +1,9 @@
-"""The fitted `mdr` law as comments in the export to LAMMPS: where it can be used, and where not.
+"""The fitted `mdr` law as comments in the export to LAMMPS, for the pairs that can use it.
 
-What LAMMPS 22Jul2025 does (tried, `tests/dem/test_lammps_mdr.py`): pair_style granular takes one
-mdr model, with the same values for every pair of types, and refuses any other normal model beside
-it. A wall with mdr crashes it unless pair_style has mdr, too; fix wall/gran then takes values of
-its own (or another model), fix wall/gran/region only those of pair_style.
+LAMMPS 22Jul2025 behaves as follows (`tests/dem/test_lammps_mdr.py`): pair_style granular accepts
+one mdr model, with the same values for every pair of types, and no other normal model besides. A
+wall with mdr crashes LAMMPS unless pair_style has mdr as well; fix wall/gran then accepts its own
+values (or another model), fix wall/gran/region only those of pair_style.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from restitution.dem.export_common import Pair
 from restitution.laws.law import FittedLaw
 
 NAME = "lammps-mdr"
-_FAR = 0.1  # of e: a fitted law that is further off is not offered
+_FAR = 0.1  # largest difference in e of a fitted law that is offered
 
 
 def mdr_offers(pairs: list[Pair], velocity: float) -> list[tuple[Pair, FittedLaw | None, str]]:
-    """For every pair: its fitted mdr law, and why it is not offered (empty if it is)."""
+    """Every pair, its fitted mdr law, and the reason not to offer it (empty: offered)."""
     return [(pair, _fit_of(pair), _obstacle(pairs, pair, velocity)) for pair in pairs]
 
 
@@ -27,7 +27,7 @@ def _fit_of(pair: Pair) -> FittedLaw | None:
 
 
 def _obstacle(pairs: list[Pair], pair: Pair, velocity: float) -> str:
-    """Why `pair` gets no mdr line; empty if it gets one."""
+    """The reason why `pair` gets no mdr line; empty if it gets one."""
     spheres = [other for other in pairs if not other.wall]
     if not pair.wall and len(spheres) > 1:
         return (
@@ -43,7 +43,7 @@ def _obstacle(pairs: list[Pair], pair: Pair, velocity: float) -> str:
 
 
 def _unfit(pair: Pair, velocity: float) -> str:
-    """Why the fit of `pair` itself is not offered."""
+    """The reason in the fit of `pair` itself; empty if the fit can be offered."""
     fit = _fit_of(pair)
     if fit is None and not pair.law.laws:
         return "no law was fitted to it"

@@ -1,8 +1,9 @@
 """LIGGGHTS: `pair_style gran model hertz tangential history`, properties by type and pair of types.
 
-LIGGGHTS makes E* of a pair from the E and ν of its types, walls included, so those are the
-materials' own; m* and R* are the law's. Force and damping (Tsuji's form, with the coefficient of
-Antypov & Elliott) go on to δ = 0, with a tension at the end; `limitForce on` would cut it off.
+LIGGGHTS computes E* of a pair from the E and ν of its types, including walls, so the types have
+the values of the materials; m* and R* then agree with the law. Force and damping (Tsuji's form with
+the coefficient of Antypov & Elliott) act until δ = 0, with a tension at the end; `limitForce on`
+would cut the tension off.
 """
 
 from __future__ import annotations
@@ -17,11 +18,11 @@ _ENDS = (
     "the overlap is back to zero. The damping pulls shortly before; do not add `limitForce on`, "
     "which cuts that off and raises e (0.397 for 0.3)."
 )
-_HARD, _SOFT = 1e9, 5e6  # Pa; LIGGGHTS refuses E beyond unless told
+_HARD, _SOFT = 1e9, 5e6  # Pa; LIGGGHTS refuses E outside without a command
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """The fragment to include and a collision that shows its e, as texts by file name.
+    """The fragment to include and a test collision that prints its e: file names and texts.
 
     Raises `CaseError`, `DomainError`.
     """

@@ -1,8 +1,8 @@
 """MercuryDPM: `HertzianViscoelasticMindlinSpecies`, one for each type and one for each pair.
 
-`setEffectiveElasticModulusAndRestitutionCoefficient(E*, e)` takes the modulus of the contact and
-turns e into the damping of Antypov & Elliott (EPL 94 (2011) 50004); force and damping go on to
-δ = 0, with a tension at the end (its sources, read; nothing was run).
+`setEffectiveElasticModulusAndRestitutionCoefficient(E*, e)` takes the contact modulus and converts
+e to the damping of Antypov & Elliott (EPL 94 (2011) 50004). Force and damping act until δ = 0, with
+a tension at the end. This follows MercuryDPM's sources; MercuryDPM was not run.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ _ENDS = "the overlap is back to zero. The damping pulls shortly before."
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """The header to include, as text by file name. Raises `CaseError`, `DomainError`."""
+    """The header to include: file name and text. Raises `CaseError`, `DomainError`."""
     table.require_all(CODE)
     pairs = pairs_at(table, velocity, CODE, 0.0)
     head = header(table, pairs, velocity, code=CODE, ends=_ENDS)

@@ -1,15 +1,16 @@
-"""YADE: `Ip2_FrictMat_FrictMat_MindlinPhys` with one `betan` a pair of materials, or e(V) itself.
+"""YADE: `Ip2_FrictMat_FrictMat_MindlinPhys` with a `betan` for each pair of materials, or e(V).
 
-YADE adds a damping 2β(m* dF/dδ)^½ dδ/dt to Hertz's F and does not let the sum pull: a contact ends
-where the force is back to zero. Its own `en` becomes β by a fit (Thornton et al., Powder Technol.
-233 (2013) 30, eqs. B6, B7) that returns 0.979 for 0.99 and 0.948 for 0.95; other releases do it in
-other ways. So β (`betan`) is written, by a fit of ours to this equation of motion, for e from 0.01:
+YADE adds a damping 2β(m* dF/dδ)^½ dδ/dt to Hertz's F and does not let the sum become attractive: a
+contact ends when the force returns to zero. YADE converts its own `en` to β by a fit (Thornton et
+al., Powder Technol. 233 (2013) 30, eqs. B6, B7) that returns 0.979 for 0.99 and 0.948 for 0.95;
+other releases convert it differently. The export therefore writes β (`betan`), by a new fit to this
+equation of motion for e from 0.01:
 
     β = L exp(Σ c_k L^k),  L = −ln e,  within 10⁻⁵ of e
 
-E* is made of the two materials; R* on a wall is R/2 in YADE, which makes that contact softer by √2
-and does not change e. `betan` is each contact's own, so that the law itself can be followed: it is
-set at first touch, from the velocity there.
+YADE computes E* from the two materials. On a wall it takes R/2 for R*, which makes the contact
+softer by √2 and does not change e. Each contact has its own `betan`, so that a simulation can
+follow the law: `betan` is set at first touch, from the velocity there.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ from restitution.dem.pair_table import PairTable
 from restitution.laws.law import Law, Particle
 
 CODE = "YADE"
-LOWEST = 0.01  # of the fit
+LOWEST = 0.01  # lowest e of the fit
 FRAGMENT, COLLISION = "restitution_yade.py", "collision_yade.py"
 _ENDS = (
     "the force is back to zero, before the overlap is: the damping does not pull. e is given as "
@@ -38,14 +39,14 @@ _ENDS = (
     "R*: the contact is softer by sqrt(2), with the same e."
 )
 _STEPS = 2000
-_WALL_DENSITY = 1000.0  # of a wall without a density in the case: YADE asks for one
-_SAMPLES = 4  # of the law between two velocities that were computed
+_WALL_DENSITY = 1000.0  # kg/m³, of a wall without a density: YADE needs one
+_SAMPLES = 4  # intervals of the table between two computed velocities
 
 _FIT = (-1.23589, 0.202669, 0.0108748, 0.000410051, -3.09169e-5, -1.19887e-6)
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """The module to import and a collision that shows its e, as texts by file name.
+    """The module to import and a test collision that prints its e: file names and texts.
 
     Raises `CaseError`, `DomainError`.
     """
@@ -78,15 +79,12 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
 
 
 def _density(body: Particle) -> float:
-    """Density (kg/m³); of a wall that has none, a number that moves nothing."""
+    """The density (kg/m³); a wall without one gets a value, which has no effect."""
     return _WALL_DENSITY if body.wall and body.density is None else density_of(body)
 
 
 def _points(law: Law) -> list[tuple[float, float]]:
-    """V (m/s) and e between and at the points of `law`, near enough for straight lines.
-
-    Never below `LOWEST`.
-    """
+    """V (m/s) and e (at least `LOWEST`) of `law`, dense enough for linear interpolation."""
     V = law.column("velocity")
     fine = np.interp(
         np.arange((V.size - 1) * _SAMPLES + 1) / _SAMPLES, np.arange(V.size), np.log(V)
@@ -95,5 +93,5 @@ def _points(law: Law) -> list[tuple[float, float]]:
 
 
 def _contact_time(pair: Pair) -> float:
-    """Elastic contact time at 1 m/s, with YADE's R/2 on a wall."""
+    """Elastic contact time (s) at 1 m/s, with YADE's R/2 on a wall."""
     return contact_time(pair.law, pair.law.radius / (2 if pair.wall else 1))
