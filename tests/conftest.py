@@ -1,4 +1,4 @@
-"""What tests of the command line, of studies and of pages share."""
+"""Fixtures that several test folders share."""
 
 import os
 import re
@@ -8,8 +8,11 @@ import sys
 import tempfile
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from restitution.laws.force_law_fits import fitted_laws
+from restitution.laws.law import Law, Particle, Point
 from restitution.numerics import compiled
 
 SOURCES = Path(__file__).parents[1] / "src" / "restitution" / "numerics"
@@ -97,6 +100,73 @@ def refused(cli):
         return re.sub(r"\s+", " ", lines[0])
 
     return call
+
+
+GLASS = Particle(
+    name="glass", radius=1e-3, youngs_modulus=70e9, poissons_ratio=0.25, density=2500.0
+)
+
+
+def _law_of(first=GLASS, second=GLASS, at=1.0, **changes):
+    """A law whose e falls from 0.95 at 0.01 m/s to 0.3 at 10 m/s, `at` times sooner."""
+    bodies = first, second
+    E = 1 / sum((1 - body.poissons_ratio**2) / body.youngs_modulus for body in bodies)
+    R = 1 / sum(0 if body.wall else 1 / body.radius for body in bodies)
+    m = 1 / sum(
+        0 if body.wall else 1 / (body.density * 4 / 3 * np.pi * body.radius**3) for body in bodies
+    )
+    V = np.geomspace(0.01, 10, 13)
+    e = np.maximum(0.95 - 0.65 * (np.log10(V * at) + 2) / 3, 0.1)
+    points = tuple(
+        Point(
+            velocity=v,
+            restitution=float(c),
+            error=0.004,
+            ratio=float(c**2),
+            loading_work=0.5 * m * v**2,
+            indentation=1e-6,
+            force=1.0,
+            pull_off_force=None,
+            resolved=True,
+        )
+        for v, c in zip(V.tolist(), e, strict=True)
+    )
+    values = {
+        "title": "by hand",
+        "first": first,
+        "second": second,
+        "radius": R,
+        "contact_modulus": E,
+        "mass": m,
+        "yield_pressure": 1e9,
+        "work_of_adhesion": 0.0,
+        "model": {},
+        "conventions": {
+            "yield_pressure": "mean pressure of a plastic contact",
+            "end_of_contact": "the force is back to zero",
+            "indentation_zero": "first touch",
+            "restitution": "by hand",
+            "restitution_error": "numerical error",
+        },
+        "yield_velocity": 0.001,
+        "sticking_velocity": None,
+        "sticks_below": None,
+        "points": points,
+    }
+    return Law(**values | changes)
+
+
+@pytest.fixture(scope="session")
+def law():
+    """Make a law by hand (`_law_of`)."""
+    return _law_of
+
+
+@pytest.fixture(scope="session")
+def points(law):
+    """The law of two glass spheres, with what is fitted to it."""
+    found = law(yield_pressure=560e6)
+    return found.model_copy(update={"laws": fitted_laws(found)})
 
 
 @pytest.fixture(scope="session")

@@ -21,9 +21,9 @@ from shared import write_table
 
 from restitution.case.case_file import parse_case
 from restitution.dem.export import export, write_export
-from restitution.dem.from_run import bare_law, law_of
-from restitution.dem.law import Law
-from restitution.dem.reference import collide_in_time, stored_force
+from restitution.laws.from_results import bare_law, law_of
+from restitution.laws.law import Law
+from restitution.laws.time_integration import collide_in_time, stored_force
 from restitution.reports.law_figure import write_law_figure
 from restitution.results.writer import ResultsFolder
 from restitution.runs.run import run_case

@@ -10,8 +10,8 @@ import sys
 import pytest
 
 from restitution.cli.environment import prepare
-from restitution.dem import reference
 from restitution.errors import CaseError
+from restitution.laws import time_integration
 
 _PR_CAPBSET_DROP = 24
 _CAP_DAC_OVERRIDE, _CAP_DAC_READ_SEARCH = 1, 2
@@ -133,9 +133,9 @@ def test_a_restitution_in_time_has_its_error(cli, case_text, tmp_path, monkeypat
     """Stored curves may return a little more than was given; the error says how much."""
     (tmp_path / "case.toml").write_text(case_text)
     assert cli("run", tmp_path / "case.toml", "-o", tmp_path / "out")[0] == 0
-    real = reference.collide_in_time
+    real = time_integration.collide_in_time
     monkeypatch.setattr(
-        reference,
+        time_integration,
         "collide_in_time",
         lambda *arguments: dataclasses.replace(real(*arguments), restitution=1.00012),
     )

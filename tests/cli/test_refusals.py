@@ -364,8 +364,8 @@ def test_the_other_keys_that_are_wrong_are_named(refused_case):
 
 
 def test_a_law_with_a_wrong_value_is_said_in_plain_words(tmp_path):
-    from restitution.dem.law_files import read_law
     from restitution.errors import CaseError
+    from restitution.laws.law_files import read_law
 
     (tmp_path / "law.json").write_text("{}")
     with pytest.raises(CaseError) as caught:

@@ -1,85 +1,18 @@
-"""Laws built by hand, and the DEM programs that run what was exported."""
+"""Pair tables of laws made by hand, and the DEM programs that run what was exported."""
 
 import re
 import shutil
 import subprocess
 
-import numpy as np
 import pytest
 
-from restitution.dem.fitted import fitted_laws
-from restitution.dem.law import Law, Particle, Point
-from restitution.dem.matrix import Matrix, matrix_of
+from restitution.dem.pair_table import PairTable, pair_table
+from restitution.laws.law import Particle
 
-GLASS = Particle(
-    name="glass", radius=1e-3, youngs_modulus=70e9, poissons_ratio=0.25, density=2500.0
-)
 STEEL = Particle(
     name="steel", radius=0.4e-3, youngs_modulus=200e9, poissons_ratio=0.3, density=7800.0
 )
 PLATE = Particle(name="plate", radius=None, youngs_modulus=3e9, poissons_ratio=0.4, density=None)
-
-
-def law_of(first=GLASS, second=GLASS, at=1.0, **changes):
-    """A law whose e falls from 0.95 at 0.01 m/s to 0.3 at 10 m/s, `at` times sooner."""
-    bodies = first, second
-    E = 1 / sum((1 - body.poissons_ratio**2) / body.youngs_modulus for body in bodies)
-    R = 1 / sum(0 if body.wall else 1 / body.radius for body in bodies)
-    m = 1 / sum(
-        0 if body.wall else 1 / (body.density * 4 / 3 * np.pi * body.radius**3) for body in bodies
-    )
-    V = np.geomspace(0.01, 10, 13)
-    e = np.maximum(0.95 - 0.65 * (np.log10(V * at) + 2) / 3, 0.1)
-    points = tuple(
-        Point(
-            velocity=v,
-            restitution=float(c),
-            error=0.004,
-            ratio=float(c**2),
-            loading_work=0.5 * m * v**2,
-            indentation=1e-6,
-            force=1.0,
-            pull_off_force=None,
-            resolved=True,
-        )
-        for v, c in zip(V.tolist(), e, strict=True)
-    )
-    values = {
-        "title": "by hand",
-        "first": first,
-        "second": second,
-        "radius": R,
-        "contact_modulus": E,
-        "mass": m,
-        "yield_pressure": 1e9,
-        "work_of_adhesion": 0.0,
-        "model": {},
-        "conventions": {
-            "yield_pressure": "mean pressure of a plastic contact",
-            "end_of_contact": "the force is back to zero",
-            "indentation_zero": "first touch",
-            "restitution": "by hand",
-            "restitution_error": "numerical error",
-        },
-        "yield_velocity": 0.001,
-        "sticking_velocity": None,
-        "sticks_below": None,
-        "points": points,
-    }
-    return Law(**values | changes)
-
-
-@pytest.fixture(scope="session")
-def law():
-    """The maker of laws, `law_of`."""
-    return law_of
-
-
-@pytest.fixture(scope="session")
-def points(law):
-    """The law of two glass spheres, with what is fitted to it."""
-    found = law(yield_pressure=560e6)
-    return found.model_copy(update={"laws": fitted_laws(found)})
 
 
 @pytest.fixture(scope="session")
@@ -95,36 +28,36 @@ def constant():
 
 
 @pytest.fixture(scope="session")
-def equal() -> Matrix:
+def equal(law) -> PairTable:
     """Two equal spheres."""
-    return matrix_of([law_of()])
+    return pair_table([law()])
 
 
 @pytest.fixture(scope="session")
-def mixed() -> Matrix:
+def mixed(law) -> PairTable:
     """Two unlike spheres, all pairs of them, and both on a wall."""
-    return matrix_of(
+    return pair_table(
         [
-            law_of(),
-            law_of(STEEL, GLASS, at=1.5),
-            law_of(STEEL, STEEL, at=0.8),
-            law_of(GLASS, PLATE, at=2.0),
-            law_of(PLATE, STEEL, at=3.0),
+            law(),
+            law(STEEL, at=1.5),
+            law(STEEL, STEEL, at=0.8),
+            law(second=PLATE, at=2.0),
+            law(PLATE, STEEL, at=3.0),
         ]
     )
 
 
 @pytest.fixture(scope="session")
-def on_wall() -> Matrix:
+def on_wall(law) -> PairTable:
     """A sphere on a wall, and nothing else."""
-    return matrix_of([law_of(GLASS, PLATE)])
+    return pair_table([law(second=PLATE)])
 
 
 @pytest.fixture
-def hostile() -> Particle:
+def hostile(law) -> Particle:
     """A sphere whose name tries to leave every comment and script."""
     name = '"""\n*/ } shell rm\r\n${x} $(y) \\'
-    return GLASS.model_copy(update={"name": name + "\nquit 1\u2028 ' ; # Größe µ €&"})
+    return law().first.model_copy(update={"name": name + "\nquit 1\u2028 ' ; # Größe µ €&"})
 
 
 @pytest.fixture

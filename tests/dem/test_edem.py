@@ -3,8 +3,8 @@
 import csv
 
 from restitution.dem.codes.edem import write
-from restitution.dem.law import FittedLaw
-from restitution.dem.matrix import matrix_of
+from restitution.dem.pair_table import pair_table
+from restitution.laws.law import FittedLaw
 from tolerance import approx
 
 SPRINGS = FittedLaw(
@@ -49,7 +49,7 @@ def test_springs_are_those_at_the_velocity(law):
     from restitution.theory import WaltonBraun
 
     found = law(laws=(SPRINGS,))
-    (row,) = rows(write(matrix_of([found]), 0.7)["restitution_edem.csv"])
+    (row,) = rows(write(pair_table([found]), 0.7)["restitution_edem.csv"])
     e = WaltonBraun(1e6, 1.5e6, 2e5).restitution(0.7, found.mass)
     assert float(row["hysteretic_restitution"]) == approx(e)
     ratio = float(row["hysteretic_K1_N_per_m"]) / float(row["hysteretic_K2_N_per_m"])
@@ -61,9 +61,9 @@ def test_springs_are_left_out_beyond_the_velocities_they_were_fitted_to(law):
     coarse = tuple(
         point.model_copy(update={"resolved": point.velocity > 0.05}) for point in law().points
     )
-    matrix = matrix_of([law(laws=(SPRINGS,), points=coarse)])
+    table = pair_table([law(laws=(SPRINGS,), points=coarse)])
     for V, known in ((0.03, False), (0.1, True)):
-        (row,) = rows(write(matrix, V)["restitution_edem.csv"])
+        (row,) = rows(write(table, V)["restitution_edem.csv"])
         assert row["coefficient_of_restitution"]
         assert bool(row["hysteretic_K2_N_per_m"]) == known
 
@@ -74,12 +74,12 @@ def test_laws_with_walls_only_are_enough(on_wall):
 
 
 def test_pairs_that_stick_are_named(law, constant):
-    said = write(matrix_of([constant(law(), 0.0)]), 1.0)["restitution_edem.csv"]
+    said = write(pair_table([constant(law(), 0.0)]), 1.0)["restitution_edem.csv"]
     assert "# WARNING: pair 1 1 sticks at 1" in said
 
 
 def test_names_are_escaped_and_warnings_carried(hostile, law):
-    files = write(matrix_of([law(hostile, hostile, warnings=("coarse\n=1+1",))]), 1.0)
+    files = write(pair_table([law(hostile, hostile, warnings=("coarse\n=1+1",))]), 1.0)
     for text in files.values():
         assert text.isascii()
         assert "# WARNING: pair 1 1: coarse/n=1+1" in text

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from restitution.dem.export import CODES, export
-from restitution.dem.law_files import read_law, write_law
+from restitution.laws.law_files import read_law, write_law
 from tolerance import approx
 
 CASE = """
@@ -139,7 +139,7 @@ def test_the_contact_time_is_that_of_a_hertzian_impact(law):
     """½ m* V² = ½ m* v² + (8/15) E* √R* δ^(5/2), integrated from touch to touch."""
     from scipy.integrate import quad
 
-    from restitution.dem.codes.fragment import contact_time
+    from restitution.dem.export_common import contact_time
 
     found = law()
     deepest = (15 * found.mass / (16 * found.contact_modulus * found.radius**0.5)) ** 0.4

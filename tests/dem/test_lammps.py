@@ -5,7 +5,7 @@ import re
 import pytest
 
 from restitution.dem.codes.lammps import LOWEST, write
-from restitution.dem.matrix import matrix_of
+from restitution.dem.pair_table import pair_table
 from restitution.errors import CaseError, DomainError
 from tolerance import approx
 
@@ -40,13 +40,13 @@ def test_e_is_that_of_the_velocity_of_the_export_at_any_other(equal, lammps, tex
 
 @pytest.mark.parametrize(("e", "rel"), [(1.0, 1e-6), (0.05, 1e-3), (LOWEST, 0.01)])
 def test_restitution_is_reproduced_from_the_least_to_one(lammps, law, constant, texts, e, rel):
-    matrix = matrix_of([constant(law(), e)])
-    assert lammps.pair(texts(write(matrix, 1.0)), 1, 1) == approx(e, rel=rel)
+    table = pair_table([constant(law(), e)])
+    assert lammps.pair(texts(write(table, 1.0)), 1, 1) == approx(e, rel=rel)
 
 
 def test_contact_has_the_stiffness_of_the_law(lammps, mixed, constant, texts):
     """The least distance of an elastic collision is Hertz's: δ = (15 m* V²/16 E* R*^½)^⅖."""
-    elastic = matrix_of([constant(found, 1.0) for _, _, found in mixed.pairs()])
+    elastic = pair_table([constant(found, 1.0) for _, _, found in mixed.pairs()])
     files = write(elastic, 1.0)
     deepest = "variable depth equal -v_gap\nfix deepest all ave/time 1 1 1 v_depth mode scalar"
     files["collision.in"] = files["collision.in"].replace(
@@ -63,14 +63,14 @@ def test_contact_has_the_stiffness_of_the_law(lammps, mixed, constant, texts):
 
 def test_names_and_titles_stay_in_their_comments(hostile, lammps, law, texts):
     bad = law(hostile, hostile, title='a &\n"""\nquit 1', warnings=('too & \n"""quit 1 &',))
-    files = write(matrix_of([bad]), 1.0)
+    files = write(pair_table([bad]), 1.0)
     assert all(text.isascii() for text in files.values())
     asked = bad.at(1.0).restitution
     assert lammps.pair(texts(files), 1, 1) == approx(asked, rel=5e-4)
 
 
 def test_comments_tell_where_e_comes_from_and_how_far_to_trust_it(law):
-    said = " ".join(write(matrix_of([law()]), 1.0)["restitution.lmp"].replace("#", "").split())
+    said = " ".join(write(pair_table([law()]), 1.0)["restitution.lmp"].replace("#", "").split())
     assert "written by restitution" in said
     assert "e = 0.516667 +/- 0.004 at 1 m/s" in said
     assert "0.5819 at 0.5 m/s" in said
@@ -86,7 +86,7 @@ def test_comments_tell_where_e_comes_from_and_how_far_to_trust_it(law):
 
 
 def test_velocities_beyond_the_law_are_not_named(law):
-    said = write(matrix_of([law()]), 10.0)["restitution.lmp"]
+    said = write(pair_table([law()]), 10.0)["restitution.lmp"]
     assert "at 5 m/s" in said
     assert "20 m/s" not in said
 
@@ -95,18 +95,18 @@ def test_warnings_are_carried_into_every_file(law):
     point = law().points[0].model_copy(update={"resolved": False})
     found = law(warnings=("the grid is coarse",), work_of_adhesion=0.2)
     found = found.model_copy(update={"points": (point, *found.points[1:])})
-    files = write(matrix_of([found]), 0.012)
+    files = write(pair_table([found]), 0.012)
     for text in files.values():
         assert re.search("^# WARNING: unresolved at 0.012 m/s", text, re.MULTILINE)
         assert "# WARNING: pair 1 1: the grid is coarse" in text
     assert "pull-off force is not modelled" in files["restitution.lmp"].replace("\n#    ", "")
-    assert "unresolved" not in write(matrix_of([found]), 1.0)["restitution.lmp"]
+    assert "unresolved" not in write(pair_table([found]), 1.0)["restitution.lmp"]
 
 
 def test_pairs_that_stick_are_refused(law, constant):
     sticking = constant(law(sticks_below=0.3), 0.0)
     with pytest.raises(CaseError, match=r"sticks \(e = 0\) at every velocity.*LAMMPS.*0.001"):
-        write(matrix_of([sticking]), 0.1)
+        write(pair_table([sticking]), 0.1)
 
 
 def test_velocities_that_were_not_computed_are_refused(equal):
@@ -117,4 +117,4 @@ def test_velocities_that_were_not_computed_are_refused(equal):
 def test_missing_pairs_are_named(mixed):
     some = [law for i, j, law in mixed.pairs() if (i, j) != (1, 2)]
     with pytest.raises(CaseError, match=r"LAMMPS needs a law for every pair.*glass.*steel"):
-        write(matrix_of(some), 1.0)
+        write(pair_table(some), 1.0)

@@ -6,8 +6,8 @@ import pytest
 
 from restitution import theory
 from restitution.dem.codes.lammps import write
-from restitution.dem.law import FittedLaw
-from restitution.dem.matrix import matrix_of
+from restitution.dem.pair_table import pair_table
+from restitution.laws.law import FittedLaw
 from tolerance import approx
 
 MDR = FittedLaw(
@@ -30,7 +30,7 @@ def plate(law):
 
 
 def fragment(laws, V=1.0):
-    return write(matrix_of(laws), V)["restitution.lmp"]
+    return write(pair_table(laws), V)["restitution.lmp"]
 
 
 def without_breaks(text):
@@ -39,7 +39,7 @@ def without_breaks(text):
 
 def opened(laws):
     """The files with every mdr line in place of what stands there."""
-    files = write(matrix_of(laws), 1.0)
+    files = write(pair_table(laws), 1.0)
     text = files["restitution.lmp"]
     for kind in ("pair_coeff", "variable wall_"):
         if re.search(f"^# {kind}", text, re.MULTILINE):

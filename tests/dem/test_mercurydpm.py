@@ -7,7 +7,7 @@ import subprocess
 import pytest
 
 from restitution.dem.codes.mercurydpm import write
-from restitution.dem.matrix import matrix_of
+from restitution.dem.pair_table import pair_table
 from restitution.errors import CaseError
 from tolerance import approx
 
@@ -53,9 +53,9 @@ def test_types_and_pairs_get_their_moduli_and_restitution(mixed):
 def test_it_is_valid_beside_stand_ins(mixed, hostile, law, texts):
     compiler = shutil.which("g++") or pytest.skip("g++ is not installed")
     bad = law(hostile, hostile, title="*/ x \\", warnings=("??/\nint y; \\",))
-    for number, matrix in enumerate((mixed, matrix_of([bad]))):
+    for number, table in enumerate((mixed, pair_table([bad]))):
         main = '#include "restitution_mercury.h"\nvoid f(DPMBase& d) { addRestitutionSpecies(d); }'
-        folder = texts({**write(matrix, 1.0), "DPMBase.h": DPM_BASE, "f.cc": main}, str(number))
+        folder = texts({**write(table, 1.0), "DPMBase.h": DPM_BASE, "f.cc": main}, str(number))
         (folder / "Species").mkdir()
         (folder / "Species" / "HertzianViscoelasticMindlinSpecies.h").write_text(SPECIES)
         command = [compiler, "-std=c++17", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-I."]
@@ -67,18 +67,18 @@ def test_a_wall_keeps_its_density(law):
     plate = law().first.model_copy(update={"name": "plate", "radius": None, "density": 7850.0})
     for density, written in ((7850.0, "7850"), (None, "1000")):
         wall = plate.model_copy(update={"density": density})
-        text = write(matrix_of([law(), law(law().first, wall)]), 1.0)["restitution_mercury.h"]
+        text = write(pair_table([law(), law(law().first, wall)]), 1.0)["restitution_mercury.h"]
         assert re.findall(r"setDensity\((\S+)\)", text) == ["2500", written]
 
 
 def test_warnings_are_carried(law):
-    text = write(matrix_of([law(warnings=("the grid is coarse",))]), 1.0)["restitution_mercury.h"]
+    text = write(pair_table([law(warnings=("the grid is coarse",))]), 1.0)["restitution_mercury.h"]
     assert "// WARNING: pair 1 1: the grid is coarse" in text
 
 
 def test_missing_pairs_are_named(mixed):
     laws = {(i, j): law for i, j, law in mixed.pairs()}
     with pytest.raises(CaseError, match=r"MercuryDPM needs a law for every pair"):
-        write(matrix_of([law for pair, law in laws.items() if pair != (1, 2)]), 1.0)
+        write(pair_table([law for pair, law in laws.items() if pair != (1, 2)]), 1.0)
     with pytest.raises(CaseError, match=r"MercuryDPM needs .* steel .* and plate"):
-        write(matrix_of([law for pair, law in laws.items() if pair != (2, 3)]), 1.0)
+        write(pair_table([law for pair, law in laws.items() if pair != (2, 3)]), 1.0)

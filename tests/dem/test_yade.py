@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from restitution.dem.codes.yade import write
-from restitution.dem.matrix import matrix_of
+from restitution.dem.pair_table import pair_table
 from restitution.errors import CaseError
 from tolerance import approx
 
@@ -40,11 +40,11 @@ def collide(yade, texts):
 
 def test_collisions_rebound_as_exported(equal, mixed, collide, texts):
     jobs, asked = [], []
-    for name, matrix in (("equal", equal), ("mixed", mixed)):
+    for name, table in (("equal", equal), ("mixed", mixed)):
         for V in VELOCITIES:
-            folder = texts(write(matrix, V), f"{name}-{V}")
-            jobs += [(folder, V, i, j) for i, j, _ in matrix.pairs()]
-            asked += [law.at(V).restitution for _, _, law in matrix.pairs()]
+            folder = texts(write(table, V), f"{name}-{V}")
+            jobs += [(folder, V, i, j) for i, j, _ in table.pairs()]
+            asked += [law.at(V).restitution for _, _, law in table.pairs()]
     assert collide(jobs) == approx(asked, rel=1e-3)
 
 
@@ -87,7 +87,7 @@ def test_damping_returns_its_restitution(equal, e):
 
 def test_the_table_of_the_law_is_fine_enough_for_straight_lines(law):
     found = law()
-    text = module(matrix_of([found]))
+    text = module(pair_table([found]))
     for V in np.geomspace(0.01, 10, 101):
         e = text["restitution"](text["LAWS"][1, 1], V)
         assert e == approx(found.at(V).restitution, abs=1e-3)
@@ -95,26 +95,26 @@ def test_the_table_of_the_law_is_fine_enough_for_straight_lines(law):
 
 def test_names_and_titles_break_out_of_nothing(hostile, law):
     bad = law(hostile, hostile, title='"""\n{x} quit(', warnings=('"""\nquit(',))
-    files = write(matrix_of([bad]), 1.0)
+    files = write(pair_table([bad]), 1.0)
     assert all(text.isascii() for text in files.values())
     for name, text in files.items():
         compile(text, name, "exec")
-    assert module(matrix_of([bad]))["MATERIALS"][0][1:] == (7e10, 0.25, 2500)
+    assert module(pair_table([bad]))["MATERIALS"][0][1:] == (7e10, 0.25, 2500)
 
 
 def test_warnings_are_carried_into_every_file(law):
-    for text in write(matrix_of([law(warnings=("the grid is coarse",))]), 1.0).values():
+    for text in write(pair_table([law(warnings=("the grid is coarse",))]), 1.0).values():
         assert "# WARNING: pair 1 1: the grid is coarse" in text
 
 
 def test_pairs_that_stick_or_are_missing_are_refused(law, constant, mixed):
     with pytest.raises(CaseError, match=r"sticks \(e = 0\) at every velocity .*YADE"):
-        write(matrix_of([constant(law(), 0.0)]), 1.0)
+        write(pair_table([constant(law(), 0.0)]), 1.0)
     laws = {(i, j): found for i, j, found in mixed.pairs()}
     with pytest.raises(CaseError, match=r"YADE needs a law for every pair"):
-        write(matrix_of([found for pair, found in laws.items() if pair != (1, 1)]), 1.0)
+        write(pair_table([found for pair, found in laws.items() if pair != (1, 1)]), 1.0)
     with pytest.raises(CaseError, match=r"YADE needs .* glass .* and plate"):
-        write(matrix_of([found for pair, found in laws.items() if pair != (1, 3)]), 1.0)
+        write(pair_table([found for pair, found in laws.items() if pair != (1, 3)]), 1.0)
 
 
 def test_beyond_the_law_it_warns_once_a_pair_or_raises(mixed):
@@ -147,8 +147,8 @@ def test_a_run_beyond_the_law_is_told_once_or_stopped(equal, yade, texts):
 
 def test_a_wall_keeps_its_density(law):
     def densities(wall):
-        matrix = matrix_of([law(), law(law().first, wall)])
-        return [row[3] for row in module(matrix)["MATERIALS"]]
+        table = pair_table([law(), law(law().first, wall)])
+        return [row[3] for row in module(table)["MATERIALS"]]
 
     plate = law().first.model_copy(update={"name": "plate", "radius": None, "density": 7850.0})
     assert densities(plate) == [2500.0, 7850.0]
@@ -156,7 +156,7 @@ def test_a_wall_keeps_its_density(law):
     assert densities(unknown) == [2500.0, 1000.0]
 
 
-def module(matrix):
+def module(table):
     """The names of the module that is exported, with a stand-in for YADE."""
     stand_in = type(sys)("yade")
     for name in ("O", "FrictMat", "Ip2_FrictMat_FrictMat_MindlinPhys", "MatchMaker"):
@@ -165,7 +165,7 @@ def module(matrix):
     saved = sys.modules.get("yade")
     sys.modules["yade"] = stand_in
     try:
-        exec(write(matrix, 1.0)["restitution_yade.py"], names)
+        exec(write(table, 1.0)["restitution_yade.py"], names)
     finally:
         del sys.modules["yade"]
         if saved is not None:

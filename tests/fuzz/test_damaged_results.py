@@ -17,8 +17,8 @@ from pathlib import Path
 import pytest
 
 from restitution.case.case_file import parse_case
-from restitution.dem.from_run import law_of
-from restitution.dem.law_files import write_law
+from restitution.laws.from_results import law_of
+from restitution.laws.law_files import write_law
 from restitution.results.writer import ResultsFolder
 from restitution.runs.convergence import run_convergence
 from restitution.runs.ensemble import run_realisations

@@ -14,13 +14,13 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from restitution.dem.compact import compact_fit
 from restitution.dem.export import CODES, export
-from restitution.dem.fitted import fitted_laws
-from restitution.dem.law import Law, Particle, Point
-from restitution.dem.law_files import table
 from restitution.errors import DomainError, RestitutionError
-from restitution.reports.law_figure import figure
+from restitution.laws.compact_fit import compact_fit
+from restitution.laws.force_law_fits import fitted_laws
+from restitution.laws.law import Law, Particle, Point
+from restitution.laws.law_files import law_rows
+from restitution.reports.law_figure import law_figure
 
 FUZZ = float(os.environ.get("FUZZ", "1"))
 CONVENTIONS = {
@@ -150,7 +150,7 @@ def test_the_compact_fit_holds_between_the_resolved_velocities_only(law, inside,
         V = min(max(low ** (1 - share) * high**share, low), high)
         assert 0 <= law.fit.restitution(V) <= 1
     assert math.isnan(law.fit.restitution(factor * (high if factor > 1 else low)))
-    for row in table(law):
+    for row in law_rows(law):
         within = low <= row["velocity_m_per_s"] <= high
         assert math.isnan(row["compact_fit"]) != within
 
@@ -204,7 +204,7 @@ def test_fitted_laws_are_silent_where_nothing_is_resolved(law):
         assert 0 <= each.rms <= each.worst * (1 + 1e-12) <= 1 + 1e-9
         for point, e in zip(found.points, each.restitution, strict=True):
             assert e is None or (0 <= e <= 1 and low <= point.velocity <= high)
-    for line in figure(found).axes[0].lines:
+    for line in law_figure(found).axes[0].lines:
         if line.get_linestyle() in ("-", "--"):
             drawn = line.get_xdata()[np.isfinite(np.asarray(line.get_ydata(), float))]
             assert all(low * (1 - 1e-9) <= V <= high * (1 + 1e-9) for V in drawn)

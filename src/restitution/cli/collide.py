@@ -29,9 +29,9 @@ def collide(
     from rich.table import Table
 
     from restitution.cli.console import answers
-    from restitution.dem.from_run import bare_law
-    from restitution.dem.law import velocity_of
-    from restitution.dem.reference import collide_in_time, course, stored_force
+    from restitution.laws.from_results import bare_law
+    from restitution.laws.law import velocity_of
+    from restitution.laws.time_integration import collide_in_time, course, stored_force
     from restitution.results.writer import require_new_file, write_table
 
     require_new_file(out)

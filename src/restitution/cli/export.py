@@ -39,8 +39,8 @@ def export(
     from restitution.cli.console import answers, warn
     from restitution.dem.export import export as exported
     from restitution.dem.export import write_export
-    from restitution.dem.law import velocity_of
-    from restitution.dem.law_files import read_law
+    from restitution.laws.law import velocity_of
+    from restitution.laws.law_files import read_law
 
     read = [read_law(law) for law in laws]
     at = None if velocity is None else velocity_of(velocity)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from restitution.dem.law import FittedLaw, Law
+    from restitution.laws.law import FittedLaw, Law
 
 
 def law(
@@ -35,8 +35,8 @@ def law(
         def say(words: str) -> None:
             bar.update(task, description=words, refresh=True)
 
-        from restitution.dem.from_run import law_of
-        from restitution.dem.law_files import write_law
+        from restitution.laws.from_results import law_of
+        from restitution.laws.law_files import write_law
         from restitution.reports.law_figure import write_law_figure
 
         found = law_of(results, lambda name, k, n: say(f"fitting {name} ({k} of {n})"))
@@ -66,7 +66,7 @@ def law(
 
 
 def _in_words(law: "Law") -> list[str]:
-    from restitution.dem.law import LOSS
+    from restitution.laws.law import LOSS
 
     lines = []
     if law.sticks_below is not None:

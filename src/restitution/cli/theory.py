@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from restitution.dem.theories import Theory
+    from restitution.laws.theories import Theory
 
 
 def theory(
@@ -37,9 +37,9 @@ def theory(
     """Print COR against velocity of every published closed form for the smooth bodies of CASE."""
     from restitution.case.case_file import naming, read_case
     from restitution.cli.console import answers
-    from restitution.dem import theories as room
-    from restitution.dem.law_files import read_law
-    from restitution.reports.theory_figure import write_theories
+    from restitution.laws import theories as room
+    from restitution.laws.law_files import read_law, write_theories
+    from restitution.reports.theory_figure import write_theory_figure
 
     read, _ = read_case(case)
     points = None if law is None else read_law(law)
@@ -49,7 +49,12 @@ def theory(
         velocities = room.velocities_of(read, points)
         found = room.theories(read, velocities, points)
         missing = room.left_out(read, points)
-    written = [] if out is None else write_theories(read, velocities, found, out, points)
+    written = []
+    if out is not None:
+        written = [
+            write_theories(velocities, found, out),
+            write_theory_figure(read, velocities, found, out, points),
+        ]
 
     def say(line: str) -> None:
         answers.print(line, markup=False, soft_wrap=True)

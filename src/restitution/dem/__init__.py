@@ -1,1 +1,1 @@
-"""What was found of one pair, in the form in which DEM codes take it."""
+"""Laws as the input of DEM codes."""

@@ -8,15 +8,15 @@ from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
 
-from restitution.dem.law import Law
-from restitution.dem.law_files import table
-from restitution.dem.matrix import Matrix, matrix_of
+from restitution.dem.pair_table import PairTable, pair_table
 from restitution.errors import CaseError, OutputError
+from restitution.laws.law import Law
+from restitution.laws.law_files import law_rows
 from restitution.results.writer import replace_file, writing, written
 
 CODES = ("lammps", "liggghts", "yade", "mercurydpm", "edem", "csv")
 TABLE = "restitution.csv"
-# What belongs to the whole law.
+# Quantities of the whole law.
 _WHOLE = (
     "yield_velocity_smooth_m_per_s",
     "sticking_velocity_smooth_m_per_s",
@@ -32,15 +32,15 @@ _WHOLE = (
 
 
 def export(laws: Sequence[Law], code: str, velocity: float | None) -> dict[str, str]:
-    """The input of `code` (one of `CODES`) for the pairs of `laws`, as texts by file name.
+    """The input of `code` (one of `CODES`) for the pairs of `laws`: file names and their texts.
 
-    All codes but `csv` take one coefficient of restitution a pair, and so a `velocity` (m/s).
-    Raises `CaseError` where they are not given one, for pairs that lack a law and for what a code
-    cannot take; `DomainError` for a velocity beyond those that were computed.
+    All codes but `csv` take one coefficient of restitution for each pair and need a `velocity`
+    (m/s). Raises `CaseError` without a velocity, for pairs without a law, and for values that the
+    code does not accept; `DomainError` for a velocity outside the computed ones.
     """
-    matrix = matrix_of(laws)
+    table = pair_table(laws)
     if code == "csv":
-        return {TABLE: _table(matrix, velocity)}
+        return {TABLE: _table(table, velocity)}
     if velocity is None:
         law = laws[0]
         raise CaseError(
@@ -48,12 +48,12 @@ def export(laws: Sequence[Law], code: str, velocity: float | None) -> dict[str, 
             f'velocity; give it with --velocity, such as "{law.lowest:.3g} m/s" to '
             f'"{law.highest:.3g} m/s"'
         )
-    texts: dict[str, str] = import_module(f"restitution.dem.codes.{code}").write(matrix, velocity)
+    texts: dict[str, str] = import_module(f"restitution.dem.codes.{code}").write(table, velocity)
     return texts
 
 
 def write_export(texts: dict[str, str], out: Path) -> list[Path]:
-    """Write the files into `out`, over none that is there. Raises `OutputError`."""
+    """Write the files into `out`; existing files are never overwritten. Raises `OutputError`."""
     with writing(out):
         out.mkdir(parents=True, exist_ok=True)
         there = [name for name in texts if (out / name).exists()]
@@ -66,10 +66,10 @@ def write_export(texts: dict[str, str], out: Path) -> list[Path]:
     return [out / name for name in texts]
 
 
-def _table(matrix: Matrix, velocity: float | None) -> str:
-    """The tables of all pairs, one below the other; or the estimates at one velocity."""
+def _table(table: PairTable, velocity: float | None) -> str:
+    """One CSV text: the points of all pairs, or the estimates at `velocity` (m/s)."""
     rows: list[dict[str, float | str]] = []
-    for i, j, law in matrix.pairs():
+    for i, j, law in table.pairs():
         pair: dict[str, float | str] = {
             "type_1": i,
             "type_2": j,
@@ -77,7 +77,7 @@ def _table(matrix: Matrix, velocity: float | None) -> str:
             "second": str(law.second),
         }
         if velocity is None:
-            rows += [{**pair, **row} for row in table(law)]
+            rows += [{**pair, **row} for row in law_rows(law)]
             continue
         estimate = law.at(velocity)
         values: dict[str, float | str] = {
@@ -86,7 +86,7 @@ def _table(matrix: Matrix, velocity: float | None) -> str:
             "restitution_error": estimate.error,
             "resolved": estimate.resolved,
         }
-        rows.append({**pair, **values, **{key: table(law)[0][key] for key in _WHOLE}})
+        rows.append({**pair, **values, **{key: law_rows(law)[0][key] for key in _WHOLE}})
     text = io.StringIO()
     writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
     writer.writeheader()

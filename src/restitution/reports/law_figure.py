@@ -1,4 +1,4 @@
-"""The figure of a law: what was computed, and what was fitted to it."""
+"""The figure of a law."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from restitution.dem.law import Law
+from restitution.laws.law import Law
 from restitution.reports.figures import plain, write_figure
 
-_FINE = 400
+_FINE = 400  # points of the line of the compact fit
 
 
 def write_law_figure(law: Law, out: Path) -> Path:
-    """Write `law.png` into `out`, and return it. Raises `OutputError`."""
-    write_figure(out / "law.png", figure(law))
+    """Draw `law.png` into the folder `out`; return its path. Raises `OutputError`."""
+    write_figure(out / "law.png", law_figure(law))
     return out / "law.png"
 
 
-def figure(law: Law) -> Figure:
+def law_figure(law: Law) -> Figure:
     """Plot the computed COR with its error, and the fits over the velocities they are fitted to."""
     drawing = Figure(figsize=(7.6, 4.8), layout="constrained")
     axes = drawing.add_subplot()

@@ -1,4 +1,4 @@
-"""Theories as files: a table and a figure."""
+"""The figure of theories beside one another, and beside a law."""
 
 from __future__ import annotations
 
@@ -11,32 +11,25 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from restitution.case.case import Case
-from restitution.dem.closed_forms import FORMS
-from restitution.dem.law import Law
-from restitution.dem.theories import COMPUTED, Theory, marks, theories
-from restitution.reports.figures import write_figure
-from restitution.results.writer import make_folder, write_table
+from restitution.laws.closed_forms import FORMS
+from restitution.laws.law import Law
+from restitution.laws.theories import COMPUTED, Theory, marks, theories
+from restitution.reports.figures import plain, write_figure
 
 Array = NDArray[np.float64]
 
 _FINE = 600  # points of a line in the figure
 
 
-def write_theories(
+def write_theory_figure(
     case: Case, velocities: Array, found: list[Theory], out: Path, law: Law | None = None
-) -> list[Path]:
-    """Write `theory.csv` and `theory.png` into `out`, new or empty. Raises `OutputError`."""
-    make_folder(out)
-    rows = [
-        {"velocity_m_per_s": float(V), **{each.name: float(each.restitution[k]) for each in found}}
-        for k, V in enumerate(velocities)
-    ]
-    write_table(out / "theory.csv", rows)
-    write_figure(out / "theory.png", figure(case, velocities, found, law))
-    return [out / "theory.csv", out / "theory.png"]
+) -> Path:
+    """Draw `theory.png` into the folder `out`; return its path. Raises `OutputError`."""
+    write_figure(out / "theory.png", theory_figure(case, velocities, found, law))
+    return out / "theory.png"
 
 
-# Colour, dashes and width of each line; those that often run along e = 1 lie under one another.
+# Colour, dashes and width of each line. Lines that often coincide at e = 1 differ in width.
 _LINES: dict[str, tuple[str, str | tuple[int, tuple[int, ...]], float]] = {
     "hertz": ("0.75", "-", 5.0),
     "sticking": ("#f0a830", "-", 3.2),
@@ -51,12 +44,10 @@ _LINES: dict[str, tuple[str, str | tuple[int, tuple[int, ...]], float]] = {
 }
 
 
-def figure(case: Case, velocities: Array, found: list[Theory], law: Law | None = None) -> Figure:
-    """Restitution against velocity: a line a theory, our own points as markers."""
-    from matplotlib.figure import Figure
-
-    from restitution.reports.figures import plain
-
+def theory_figure(
+    case: Case, velocities: Array, found: list[Theory], law: Law | None = None
+) -> Figure:
+    """COR against velocity: one line for each theory, the computed points as markers."""
     drawing = Figure(figsize=(8.6, 5.0), layout="constrained")
     axes = drawing.add_subplot()
     low, high = float(velocities[0]), float(velocities[-1])
@@ -85,7 +76,7 @@ def figure(case: Case, velocities: Array, found: list[Theory], law: Law | None =
 
 
 def _fine(case: Case, velocities: Array, found: list[Theory]) -> list[tuple[Array, Array]]:
-    """Velocity and restitution of each line: closed forms on many points, others as they are."""
+    """Velocity and COR of each line: closed forms at many velocities, others at the given ones."""
     if velocities.size == 1:
         return [(velocities, each.restitution) for each in found]
     V = np.geomspace(velocities[0], velocities[-1], _FINE)
@@ -106,7 +97,7 @@ def _draw_points(axes: Axes, law: Law) -> None:
 
 
 def _draw_marks(axes: Axes, velocities: Mapping[str, float], low: float, high: float) -> None:
-    """Upright lines, named at the foot: the lower one to its left, the higher to its right."""
+    """Vertical lines with labels at the foot: left of the lower one, right of the higher one."""
     order = sorted(velocities, key=velocities.__getitem__)
     for name, V in velocities.items():
         if not low <= V <= high:

@@ -1,1 +1,1 @@
-"""One DEM code a module: `write(matrix, velocity)` returns its input as texts by file name."""
+"""One module for each DEM code: `write(table, velocity)` returns file names and their texts."""

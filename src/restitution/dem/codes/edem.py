@@ -1,8 +1,8 @@
-"""EDEM: tables of interactions and materials, to be typed into its panels; EDEM was not run.
+"""EDEM: tables of interactions and materials, to be typed into its panels. EDEM was not run.
 
-Its Hertz–Mindlin model has Tsuji's damping with the coefficient of Antypov & Elliott (Altair's
-documentation). Its hysteretic spring model is Walton & Braun's with K1 = 5 R* min(Y1, Y2) and
-e = (K1/K2)^½ at every velocity, so K2 is the one at the velocity of the export.
+EDEM's Hertz–Mindlin model has Tsuji's damping with the coefficient of Antypov & Elliott (Altair's
+documentation). Its hysteretic spring model is that of Walton & Braun with K1 = 5 R* min(Y1, Y2) and
+e = (K1/K2)^½ at every velocity, so the export gives K2 at its own velocity.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import io
 import math
 from collections.abc import Sequence
 
-from restitution.dem.codes.fragment import (
+from restitution.dem.export_common import (
     FRICTION,
     PLACEHOLDER,
     Pair,
@@ -22,7 +22,7 @@ from restitution.dem.codes.fragment import (
     number,
     pairs_at,
 )
-from restitution.dem.matrix import Matrix
+from restitution.dem.pair_table import PairTable
 
 CODE = "EDEM"
 INTERACTIONS, MATERIALS = "restitution_edem.csv", "restitution_edem_materials.csv"
@@ -41,14 +41,14 @@ _NOTES = [
 ]
 
 
-def write(matrix: Matrix, velocity: float) -> dict[str, str]:
-    """The two tables, as texts by file name. Raises `DomainError`."""
-    pairs = pairs_at(matrix, velocity, CODE, 0.0)
-    head = header(matrix, pairs, velocity, code=CODE, ends=_ENDS) + _NOTES
-    comments = commented(head, "#")
+def write(table: PairTable, velocity: float) -> dict[str, str]:
+    """The two tables: file names and texts. Raises `DomainError`."""
+    pairs = pairs_at(table, velocity, CODE, 0.0)
+    head = header(table, pairs, velocity, code=CODE, ends=_ENDS) + _NOTES
+    comments = commented(head, "#") + "\n"
     return {
         INTERACTIONS: comments + _csv([_interaction(pair, velocity) for pair in pairs]),
-        MATERIALS: comments + _csv(_materials(matrix)),
+        MATERIALS: comments + _csv(_materials(table)),
     }
 
 
@@ -73,7 +73,7 @@ def _interaction(pair: Pair, velocity: float) -> dict[str, str]:
 def _springs(pair: Pair, velocity: float) -> tuple[float, float] | None:
     """K1 and K2 (N/m) of the fitted Walton–Braun law: K2 = k_u + S V (m* K1)^½.
 
-    None without such a fit, and at a velocity outside of those it was fitted to.
+    None without such a fit, and outside the velocities to which it was fitted.
     """
     if not pair.law.fits_hold_at(velocity):
         return None
@@ -86,7 +86,7 @@ def _springs(pair: Pair, velocity: float) -> tuple[float, float] | None:
     return None
 
 
-def _materials(matrix: Matrix) -> list[dict[str, str]]:
+def _materials(table: PairTable) -> list[dict[str, str]]:
     return [
         {
             "material": identifier(body, k),
@@ -96,7 +96,7 @@ def _materials(matrix: Matrix) -> list[dict[str, str]]:
             "shear_modulus_Pa": number(body.youngs_modulus / (2 * (1 + body.poissons_ratio))),
             "radius_m": "" if body.radius is None else number(body.radius),
         }
-        for k, body in enumerate(matrix.particles, 1)
+        for k, body in enumerate(table.particles, 1)
     ]
 
 

@@ -1,4 +1,4 @@
-"""What the closed forms, and laws fitted to a law of ours, say at the velocities of a case."""
+"""COR at the velocities of a case: closed forms, and theories fitted to a computed law."""
 
 from __future__ import annotations
 
@@ -10,28 +10,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.case.case import Case
-from restitution.dem.closed_forms import FORMS, SOURCES, Bodies, speed, within
-from restitution.dem.law import LOSS, FittedLaw, Law
 from restitution.errors import CaseError
+from restitution.laws.closed_forms import FORMS, SOURCES, Bodies, speed, within
+from restitution.laws.law import LOSS, FittedLaw, Law
 from restitution.theory import Brilliantov
 
 Array = NDArray[np.float64]
 
 STEPS = 25
-"""How many velocities a span has."""
+"""Number of velocities from the first to the last."""
 COMPUTED = "computed"
-"""The name of our own points among the theories."""
+"""The name of the computed points among the theories."""
 
-_SAME = 1e-6  # of R*, E*, m*
-_FITTED = ("constant", "walton-braun", "luding", "eepa")  # what only a fit gives parameters to
+_SAME = 1e-6  # R*, E* and m* are equal within this relative difference
+_FITTED = ("constant", "walton-braun", "luding", "eepa")  # their parameters need a fit
 
 
 @dataclass(frozen=True)
 class Theory:
-    """One theory at some velocities.
+    """COR of one theory at some velocities.
 
-    `holds` is its range in words; `parameters` are keyed with their units; `restitution` is NaN
-    outside of the range.
+    `holds` is its range in words; the keys of `parameters` carry the units; `restitution` is NaN
+    outside the range.
     """
 
     name: str
@@ -44,8 +44,8 @@ class Theory:
 def velocities_of(case: Case, law: Law | None = None) -> Array:
     """The velocities (m/s) to tabulate: the law's own, or the span of the case.
 
-    Of indentations and loads it is the span that smooth bodies have there: Thornton and Ning's, or
-    Hertz's if nothing yields. Raises `CaseError`.
+    A case with indentations or loads gives the velocities at which smooth bodies reach the first
+    and the last of them, by Thornton and Ning, or by Hertz if elastic. Raises `CaseError`.
     """
     if law is not None:
         return law.column("velocity")
@@ -57,10 +57,10 @@ def velocities_of(case: Case, law: Law | None = None) -> Array:
 
 
 def theories(case: Case, velocities: Array, law: Law | None = None) -> list[Theory]:
-    """Every theory that applies to `case`, at `velocities`; with `law` also those fitted to it.
+    """Every theory that applies to `case`, at `velocities` (m/s); with `law` also fits to it.
 
-    What is from the law has values at its own points only, and what is fitted to it only between
-    the resolved ones. Raises `CaseError`: a density is missing, the law is of another pair.
+    The computed COR has values at the points of the law only, the fits only between its resolved
+    points. Raises `CaseError` if a density is missing, or if the law belongs to another pair.
     """
     V = np.asarray(velocities, dtype=float)
     found = [answer for answer in _answers(case, V) if isinstance(answer, Theory)]
@@ -71,7 +71,7 @@ def theories(case: Case, velocities: Array, law: Law | None = None) -> list[Theo
 
 
 def left_out(case: Case, law: Law | None = None) -> dict[str, str]:
-    """The theories that do not apply to `case`, each with the reason."""
+    """The names of the theories that do not apply to `case`, with the reasons."""
     reasons = dict(
         answer for answer in _answers(case, np.ones(1)) if not isinstance(answer, Theory)
     )
@@ -81,14 +81,14 @@ def left_out(case: Case, law: Law | None = None) -> dict[str, str]:
 
 
 def marks(case: Case) -> dict[str, float]:
-    """V_y and V_s (m/s) of the smooth bodies, where there is yield, or adhesion."""
+    """V_y and V_s (m/s) of the smooth bodies, if they yield or adhere."""
     bodies = Bodies.of(case)
     found = {"V_y": bodies.yield_velocity, "V_s": bodies.sticking_velocity}
     return {name: value for name, value in found.items() if 0 < value < math.inf}
 
 
 def check_same_pair(case: Case, law: Law) -> None:
-    """Raise `CaseError` unless R*, E* and m* of the two agree to 1e-6, naming what differs."""
+    """Raise `CaseError` with the differing values unless R*, E* and m* agree to 1e-6."""
     bodies = Bodies.of(case)
     quantities = {
         "R*": (law.radius, bodies.R, "m"),
@@ -108,7 +108,7 @@ def check_same_pair(case: Case, law: Law) -> None:
 
 
 def _answers(case: Case, V: Array) -> Iterator[Theory | tuple[str, str]]:
-    """Each closed form at V, or its name and why it does not apply."""
+    """Each closed form at V (m/s), or its name and the reason why it does not apply."""
     bodies = Bodies.of(case)
     for name, form in FORMS.items():
         answer = form(bodies, V)
@@ -125,7 +125,7 @@ def _answers(case: Case, V: Array) -> Iterator[Theory | tuple[str, str]]:
 
 
 def _of_law(bodies: Bodies, law: Law, V: Array) -> Iterator[Theory]:
-    """Our own points, and the theories whose parameters are fitted to them."""
+    """The computed points, and the theories whose parameters are fitted to them."""
     own = law.column("velocity")
     equal = np.isclose(V[:, np.newaxis], own, rtol=1e-9, atol=0.0)
     at, here = equal.argmax(axis=1), np.asarray(equal.any(axis=1))
@@ -175,7 +175,7 @@ def _unresolved(law: Law) -> str:
 
 
 def _other_interface(bodies: Bodies, law: Law) -> str:
-    """What the law was computed with, if that is not the case's."""
+    """The yield pressure and adhesion of the law, if they differ from those of the case."""
     differing = []
     p_y = math.inf if law.yield_pressure is None else law.yield_pressure
     if not math.isclose(p_y, bodies.p_y, rel_tol=_SAME):
@@ -197,7 +197,7 @@ def _restitution_of(each: FittedLaw) -> Array:
 
 
 def _cannot_fit(law: Law) -> str:
-    """Why nothing can be fitted to `law`; empty if it can."""
+    """The reason why nothing can be fitted to `law`; empty if fits are possible."""
     e = law.column("restitution", resolved=True)
     if not e.size:
         return "no velocity of the law is resolved by its grid, and there is nothing to fit to"
@@ -207,7 +207,7 @@ def _cannot_fit(law: Law) -> str:
 
 
 def _dissipation(law: Law) -> float:
-    """β of `brilliantov` whose restitution is nearest to the law's, by least squares."""
+    """β of `brilliantov`, fitted to the COR of the law by least squares."""
     from scipy.optimize import minimize_scalar
 
     V, e = (law.column(name, resolved=True) for name in ("velocity", "restitution"))
@@ -215,7 +215,7 @@ def _dissipation(law: Law) -> float:
     def misfit(log_beta: float) -> float:
         return float(np.sum((Brilliantov(math.exp(log_beta)).restitution(V) - e) ** 2))
 
-    # e is nearly 1 at every velocity at the one end, nearly 0 at the other.
+    # e is nearly 1 at every velocity for the first β, nearly 0 for the last.
     first, last = math.log(1e-6 / law.highest**0.2), math.log(1e6 / law.lowest**0.2)
     steps = np.linspace(first, last, 200)
     best = int(np.argmin([misfit(step) for step in steps]))

@@ -1,4 +1,4 @@
-"""Which law holds between which particles: the pair matrix that most DEM codes ask for."""
+"""The pair table that most DEM codes ask for: one law for each pair of particle types."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations_with_replacement, product
 
-from restitution.dem.law import Law, Particle
 from restitution.errors import CaseError
+from restitution.laws.law import Law, Particle
 
 
 @dataclass(frozen=True)
-class Matrix:
-    """Particle types, walls, and the law of every pair that was computed.
+class PairTable:
+    """Particle types, walls, and the law of every given pair.
 
-    Types are numbered from 1 as DEM codes do; walls follow the spheres. Keys of `laws` are
-    (i, j), i ≤ j.
+    Types are numbered from 1, as in DEM codes; walls follow the spheres. The keys of `laws` are
+    (i, j) with i ≤ j.
     """
 
     spheres: tuple[Particle, ...]
@@ -27,8 +27,13 @@ class Matrix:
         """Spheres, then walls."""
         return self.spheres + self.walls
 
+    @property
+    def largest_radius(self) -> float:
+        """The radius of the largest sphere, m."""
+        return max(body.radius or 0.0 for body in self.spheres)
+
     def pairs(self) -> Iterator[tuple[int, int, Law]]:
-        """Numbers and law of every pair, in order."""
+        """The type numbers and the law of every pair, in order."""
         for (i, j), law in sorted(self.laws.items()):
             yield i, j, law
 
@@ -38,7 +43,7 @@ class Matrix:
         self._require(code, combinations_with_replacement(numbers, 2), "pair of particle types")
 
     def require_all(self, code: str) -> None:
-        """The same, and of every sphere on every wall."""
+        """As `require_spheres`, and a law for every sphere on every wall."""
         self.require_spheres(code)
         spheres, last = len(self.spheres), len(self.particles)
         pairs = product(range(1, spheres + 1), range(spheres + 1, last + 1))
@@ -59,8 +64,8 @@ class Matrix:
             )
 
 
-def matrix_of(laws: Sequence[Law]) -> Matrix:
-    """The matrix of `laws`. Bodies with the same values are one type.
+def pair_table(laws: Sequence[Law]) -> PairTable:
+    """The table of `laws`. Bodies with equal values become one type.
 
     Raises `CaseError` for two laws of one pair.
     """
@@ -76,4 +81,4 @@ def matrix_of(laws: Sequence[Law]) -> Matrix:
                 f"two laws are given for {law.pair}; give one, or let the particles differ in name"
             )
         found[i, j] = law
-    return Matrix(spheres, walls, found)
+    return PairTable(spheres, walls, found)

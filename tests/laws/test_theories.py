@@ -1,5 +1,6 @@
 """Theories beside one another: each is its own module's, and silent outside of its range."""
 
+import csv
 import math
 
 import numpy as np
@@ -7,10 +8,11 @@ import pytest
 
 from restitution import theory
 from restitution.case.case_file import parse_case
-from restitution.dem import theories as room
-from restitution.dem.fitted import fitted_laws
-from restitution.dem.law import Particle
-from restitution.errors import CaseError
+from restitution.errors import CaseError, OutputError
+from restitution.laws import theories as room
+from restitution.laws.force_law_fits import fitted_laws
+from restitution.laws.law import Particle
+from restitution.laws.law_files import write_theories
 from restitution.theory import (
     JKR,
     MDR,
@@ -336,3 +338,20 @@ def test_nothing_is_fitted_to_what_is_not_resolved(law):
     found = law(points=coarse)
     assert "brilliantov" not in by_name(case_of(), V, found)
     assert "no velocity of the law is resolved" in room.left_out(case_of(), found)["brilliantov"]
+
+
+def test_the_table(points, tmp_path):
+    case = case_of()
+    V = room.velocities_of(case, points)
+    found = room.theories(case, V, points)
+    path = write_theories(V, found, tmp_path / "out")
+    assert path == tmp_path / "out" / "theory.csv"
+    with open(path, newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert list(rows[0]) == ["velocity_m_per_s", *(each.name for each in found)]
+    for each in found:
+        column = [float(row[each.name] or "nan") for row in rows]
+        np.testing.assert_array_equal(column, each.restitution)
+    assert rows[0]["johnson"] == ""
+    with pytest.raises(OutputError, match="not empty"):
+        write_theories(V, found, tmp_path / "out")

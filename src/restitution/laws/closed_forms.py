@@ -1,13 +1,13 @@
-"""The published closed forms for the smooth bodies of a case, each within its own range.
+"""Published closed forms for the smooth bodies of a case, each within its range of validity.
 
-The ranges are those that the modules of `restitution.theory` state. Outside of its range a theory
-has no answer here: NaN, even where its formula would give a number. Roughness is in none of them.
+The modules of `restitution.theory` state the ranges. Outside its range a theory gives NaN here,
+even if its formula gives a number. No theory includes roughness.
 
-Two quantities are called yield stress. p_y is the contact pressure of the case, and Hertz, sticking
-and Thornton–Ning take it. The others take the yield strength Y of a tensile test: that of the
-softer body where every body has a `yield_strength`, and p_y/2.8 where one lacks it.
+Two quantities are called yield stress. Hertz, sticking and Thornton–Ning take the contact pressure
+p_y of the case. The others take the yield strength Y of a tensile test: that of the softer body if
+every body has a `yield_strength`, otherwise p_y/2.8.
 
-Velocities in m/s, one value of e for each; every other unit is SI, too.
+All units are SI; arrays of velocities and of e have the same shape.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from restitution.theory import JKR, MDR, AdhesiveThorntonNing, Hertz, Johnson, T
 Array = NDArray[np.float64]
 
 STRENGTHS = 2.8
-"""p_y/Y where the bodies do not give Y."""
+"""p_y/Y for bodies without a yield strength."""
 
 _SMALL = 0.01  # δ/R* up to which Hertz holds
 _JOHNSON = 0.6  # e below which Johnson's formula holds
@@ -45,7 +45,10 @@ SOURCES = {
 
 @dataclass(frozen=True)
 class Bodies:
-    """The smooth bodies of a case, as the theories take them."""
+    """The smooth bodies of a case: the arguments of the theories, in SI units.
+
+    `R`, `E` and `m` are R*, E* and m*.
+    """
 
     R: float
     E: float
@@ -53,16 +56,16 @@ class Bodies:
     p_y: float  # infinite: elastic
     w: float
     walls: int
-    equal: bool  # two spheres that are the same
+    equal: bool  # two identical spheres
     sphere_poisson: float
-    strengths: tuple[float, float] | None  # of both bodies, or of none
+    strengths: tuple[float, float] | None  # Y of both bodies; None unless both have one
     labels: tuple[str, str]
     sphere_is_first: bool
     separation: float
 
     @classmethod
     def of(cls, case: Case) -> Bodies:
-        """Those of `case`. Raises `CaseError` where a density is missing."""
+        """The smooth bodies of `case`. Raises `CaseError` if a density is missing."""
         pair = case.pair()
         for name, body in (("first", pair.first), ("second", pair.second)):
             if body.mass is None:
@@ -72,7 +75,7 @@ class Bodies:
                 )
         assert pair.mass is not None  # just checked
         tables = case.first, case.second or case.first
-        # A strength of the interface stands above those of the bodies.
+        # A yield strength of the interface overrides those of the bodies.
         own = case.interface.yield_strength is None
         Y_1, Y_2 = (table.yield_strength if own else None for table in tables)
         walls = [math.isinf(body.radius) for body in (pair.first, pair.second)]
@@ -108,19 +111,19 @@ class Bodies:
 
     @property
     def elastic(self) -> bool:
-        """Whether nothing yields."""
+        """Whether the bodies are purely elastic."""
         return math.isinf(self.p_y)
 
     @cached_property
     def yield_velocity(self) -> float:
-        """V_y; infinite if elastic."""
+        """V_y (m/s); infinite if elastic."""
         if self.elastic:
             return math.inf
         return float(self.yielding.first_yield.velocity(self.m))
 
     @cached_property
     def sticking_velocity(self) -> float:
-        """V_s; zero without adhesion."""
+        """V_s (m/s); zero without adhesion."""
         if self.w == 0:
             return 0.0
         return float(self.sticking.sticking_velocity(self.m))
@@ -132,12 +135,12 @@ class Bodies:
 
     @property
     def strength(self) -> float:
-        """Y of the softer body, or p_y/2.8."""
+        """Y (Pa) of the softer body, or p_y/2.8."""
         return self.p_y / STRENGTHS if self.strengths is None else min(self.strengths)
 
     @property
     def convention(self) -> str:
-        """Where `strength` is from, in words."""
+        """The origin of `strength`, in words."""
         if self.strengths is None:
             return f"Y = p_y/{STRENGTHS:g} = {1e-6 * self.strength:.4g} MPa"
         softer = self.labels[int(self.strengths[1] < self.strengths[0])]
@@ -145,13 +148,13 @@ class Bodies:
 
     @property
     def yielding_wall(self) -> bool | None:
-        """Whether the wall is softer than the sphere; None where that is not known, or no wall."""
+        """Whether the wall is softer than the sphere; None if unknown, or without a wall."""
         if not self.walls or self.strengths is None or self.strengths[0] == self.strengths[1]:
             return None
         return (self.strengths[1] < self.strengths[0]) == self.sphere_is_first
 
     def velocity(self, indentation: Array) -> Array:
-        """V (m/s) of the impact that reaches `indentation` (m)."""
+        """The impact velocity V (m/s) that reaches `indentation` (m)."""
         if self.elastic:
             return self.hertz.impact_velocity(indentation, self.m)
         return self.yielding.impact_velocity(indentation, self.m)
@@ -163,7 +166,7 @@ class Bodies:
 
 @dataclass(frozen=True)
 class Form:
-    """What one closed form answers."""
+    """The result of one closed form: e, its range in words, and its parameters."""
 
     restitution: Array
     holds: str
@@ -288,7 +291,7 @@ def _tabor(b: Bodies) -> str:
 
 
 def within(inside: NDArray[np.bool_], e: Array) -> Array:
-    """`e` where it holds, NaN elsewhere."""
+    """`e` where `inside`, NaN elsewhere."""
     return np.where(inside, e, np.nan)
 
 

@@ -1,14 +1,10 @@
-"""Theories as files and as a figure."""
-
-import csv
+"""The figure of theories."""
 
 import numpy as np
-import pytest
 
 from restitution.case.case_file import parse_case
-from restitution.dem import theories as room
-from restitution.dem.closed_forms import FORMS
-from restitution.errors import OutputError
+from restitution.laws import theories as room
+from restitution.laws.closed_forms import FORMS
 from restitution.reports import theory_figure as drawn
 
 CASE = """
@@ -35,27 +31,18 @@ def case_of(more="", adhesion=""):
     return parse_case(CASE.format(more=more) + adhesion)
 
 
-def test_the_files(points, tmp_path):
+def test_the_file(points, tmp_path):
     case = case_of()
     V = room.velocities_of(case, points)
-    found = room.theories(case, V, points)
-    written = drawn.write_theories(case, V, found, tmp_path / "out", points)
-    assert [path.name for path in written] == ["theory.csv", "theory.png"]
-    with open(written[0], newline="") as file:
-        rows = list(csv.DictReader(file))
-    assert list(rows[0]) == ["velocity_m_per_s", *(each.name for each in found)]
-    for each in found:
-        column = [float(row[each.name] or "nan") for row in rows]
-        np.testing.assert_array_equal(column, each.restitution)
-    assert rows[0]["johnson"] == ""
-    with pytest.raises(OutputError, match="not empty"):
-        drawn.write_theories(case, V, found, tmp_path / "out")
+    path = drawn.write_theory_figure(case, V, room.theories(case, V, points), tmp_path, points)
+    assert path == tmp_path / "theory.png"
+    assert path.read_bytes().startswith(b"\x89PNG")
 
 
 def test_the_figure_draws_what_has_an_answer_and_marks_yield_and_sticking(points):
     case = case_of(WALL, 'work_of_adhesion = "0.01 J/m^2"\n')
     V = np.geomspace(1e-5, 1, 25)
-    (axes,) = drawn.figure(case, V, room.theories(case, V)).axes
+    (axes,) = drawn.theory_figure(case, V, room.theories(case, V)).axes
     names = [text.get_text() for text in axes.get_legend().get_texts()]
     assert "sticking" in names
     assert {text.get_text() for text in axes.texts} == {"$V_y$", "$V_s$"}
@@ -63,7 +50,7 @@ def test_the_figure_draws_what_has_an_answer_and_marks_yield_and_sticking(points
     assert not nowhere & set(names)
 
     V = points.column("velocity")
-    (axes,) = drawn.figure(case_of(), V, room.theories(case_of(), V, points), points).axes
+    (axes,) = drawn.theory_figure(case_of(), V, room.theories(case_of(), V, points), points).axes
     names = [text.get_text() for text in axes.get_legend().get_texts()]
     assert names[0] == "computed"
     assert "luding (fit)" in names

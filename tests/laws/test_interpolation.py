@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
-from restitution.dem.interpolation import RatioCurve
+from restitution.laws.interpolation import RatioCurve
 from restitution.theory import ThorntonNing
 from tolerance import approx
 

@@ -1,7 +1,6 @@
-"""The restitution law of one pair: what was found at each impact velocity, and how far to trust it.
+"""The restitution law of one pair: COR at each computed impact velocity, with its error.
 
-Between the velocities that were computed it is interpolated (`interpolation`); beyond them there
-is no answer.
+Between the computed velocities COR is interpolated (`interpolation`). Nothing is extrapolated.
 """
 
 from __future__ import annotations
@@ -15,14 +14,14 @@ from numpy.typing import ArrayLike, NDArray
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from restitution.case.quantities import read_positive
-from restitution.dem.interpolation import RatioCurve
 from restitution.errors import CaseError, DomainError, one_line
+from restitution.laws.interpolation import RatioCurve
 
 Array = NDArray[np.float64]
 
 LOSS = 1e-3
-"""Of e: a law that loses less is not fitted, nor is one that returns less."""
-_SAME = 1e-9  # relative difference of velocities that are the same
+"""A law is not fitted if 1 − e is below this at every velocity, or e itself is."""
+_SAME = 1e-9  # velocities are equal within this relative difference
 
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
@@ -35,7 +34,7 @@ class _Stored(BaseModel):
 
 
 class Particle(_Stored):
-    """One body of the pair. `radius` in m, None for a flat wall; other units are SI, too."""
+    """One body of the pair, in SI units. `radius` is None for a flat wall."""
 
     name: str
     radius: Positive | None
@@ -45,19 +44,20 @@ class Particle(_Stored):
 
     @property
     def wall(self) -> bool:
-        """Whether it is a flat wall."""
+        """Whether the body is a flat wall."""
         return self.radius is None
 
     def __str__(self) -> str:
-        """Its name and size, as messages and comments show it."""
+        """Name and size, for messages and comments."""
         size = "flat" if self.radius is None else f"R = {self.radius:.6g} m"
         return f"{one_line(self.name)} ({size})"
 
 
 class Point(_Stored):
-    """What was found at one impact velocity.
+    """The result at one impact velocity, in SI units.
 
-    `ratio` is W_u/W_l, negative where the pair sticks; `error` is that of `restitution`.
+    `ratio` is W_u/W_l, which is negative where the pair sticks; `error` is the error of
+    `restitution`; `indentation` and `force` are the maxima of the impact.
     """
 
     velocity: Positive
@@ -80,10 +80,10 @@ class Point(_Stored):
 class CompactFit(_Stored):
     """e² = Σ c_k L^k − s/V², L = ln(V/V₀)/w, between `lowest` and `highest` velocity.
 
-    Zero where that is negative and up to `sticks_below`; 1 up to `elastic_below`. The fit uses the
-    resolved points, and `lowest` and `highest` (m/s) are the first and last of them: the fit has no
-    value outside. `worst` is the largest difference to these points, `between` the largest at a
-    point that was left out of the fit.
+    e = 0 where e² is negative and for V ≤ `sticks_below`; e = 1 for V ≤ `elastic_below`. The fit
+    uses the resolved points; `lowest` and `highest` (m/s) are the first and the last of them, and
+    the fit has no value outside. `worst` is the largest difference in e at these points, `between`
+    the largest one at a point left out of the fit. Velocities are in m/s, `adhesion` s in m²/s².
     """
 
     coefficients: tuple[float, ...]
@@ -99,9 +99,9 @@ class CompactFit(_Stored):
     between: float
 
     def restitution(self, velocity: ArrayLike) -> Array:
-        """Coefficient of restitution at `velocity` (m/s), a number or an array.
+        """Coefficient of restitution at `velocity` (m/s, any shape).
 
-        NaN below `lowest` and above `highest`, also where `elastic_below` or `sticks_below` holds.
+        NaN outside `lowest` to `highest`, even below `elastic_below` or `sticks_below`.
         """
         V = np.asarray(velocity, dtype=float)
         L = np.log(V / self.centre) / self.width
@@ -116,12 +116,12 @@ class CompactFit(_Stored):
 
 
 class FittedLaw(_Stored):
-    """A force law that DEM codes have, with the parameters that come nearest to ours.
+    """A force law of DEM codes, fitted to the computed COR.
 
-    `parameters` are keyed with their units; `restitution` is what it gives at the velocities of
-    the points, None where it has no answer and outside of the resolved velocities, to which it was
-    fitted (`Law.fitted_range`); `rms` and `worst` are its differences to ours where ours is
-    resolved.
+    The keys of `parameters` carry the units. `restitution` is the COR of the force law at the
+    velocities of the points; it is None where the force law has no solution and outside the
+    resolved velocities to which it was fitted (`Law.fitted_range`). `rms` and `worst` are the
+    differences from the computed COR at the resolved points.
     """
 
     name: str
@@ -136,7 +136,7 @@ class FittedLaw(_Stored):
 
 
 class Conventions(_Stored):
-    """What the numbers of a law mean, in words."""
+    """Definitions of the quantities of a law, in words."""
 
     end_of_contact: str
     indentation_zero: str
@@ -147,7 +147,7 @@ class Conventions(_Stored):
 
 @dataclass(frozen=True)
 class Estimate:
-    """The coefficient of restitution at one velocity, its error, and whether it was resolved."""
+    """COR at one velocity, its error, and whether the grid resolves the contact there."""
 
     restitution: float
     error: float
@@ -157,9 +157,9 @@ class Estimate:
 class Law(_Stored):
     """Coefficient of restitution against impact velocity for one pair, in SI units.
 
-    `radius`, `contact_modulus`, `mass` are R*, E*, m*; `yield_velocity` and `sticking_velocity`
-    those of the smooth bodies; `sticks_below` the velocity at which this pair begins to rebound,
-    None where it does at all velocities of the points, or at none.
+    `radius`, `contact_modulus` and `mass` are R*, E* and m*. `yield_velocity` and
+    `sticking_velocity` belong to the smooth bodies. `sticks_below` is the velocity above which this
+    pair rebounds; None if it rebounds at every computed velocity, or at none.
     """
 
     title: str
@@ -197,37 +197,37 @@ class Law(_Stored):
 
     @property
     def lowest(self) -> float:
-        """The lowest velocity that was computed, m/s."""
+        """The lowest computed velocity, m/s."""
         return self.points[0].velocity
 
     @property
     def highest(self) -> float:
-        """The highest velocity that was computed, m/s."""
+        """The highest computed velocity, m/s."""
         return self.points[-1].velocity
 
     @property
     def fitted_range(self) -> tuple[float, float] | None:
-        """The lowest and highest resolved velocity (m/s), between which fits hold."""
+        """The lowest and the highest resolved velocity (m/s); fits hold between them."""
         V = self.column("velocity", resolved=True)
         return (float(V[0]), float(V[-1])) if V.size else None
 
     def fits_hold_at(self, velocity: ArrayLike) -> NDArray[np.bool_]:
-        """Whether `velocity` (m/s), a number or an array, is within `fitted_range`."""
+        """Whether `velocity` (m/s, any shape) lies within `fitted_range`."""
         V = np.asarray(velocity, dtype=float)
         low, high = self.fitted_range or (math.inf, -math.inf)
         return np.asarray((low * (1 - _SAME) <= V) & (high * (1 + _SAME) >= V))
 
     def column(self, name: str, *, resolved: bool = False) -> Array:
-        """One field of all points, as numbers; or of those that are resolved."""
+        """The field `name` of all points, or of the resolved ones; shape (points,)."""
         points = [point for point in self.points if point.resolved or not resolved]
         return np.array([getattr(point, name) for point in points], dtype=float)
 
     def at(self, velocity: float) -> Estimate:
         """The estimate at `velocity` (m/s).
 
-        Its error is the one of the points, interpolated linearly in ln V, and what interpolation
-        of W_u/W_l may be off by between them (`RatioCurve.error`); it is continuous. Raises
-        `DomainError` beyond the velocities that were computed.
+        Its error is the sum of the error of the points, interpolated linearly in ln V, and of the
+        interpolation error of W_u/W_l (`RatioCurve.error`). The error is continuous in V. Raises
+        `DomainError` outside the computed velocities.
         """
         if not self.lowest * (1 - _SAME) <= velocity <= self.highest * (1 + _SAME):
             raise DomainError(
@@ -259,7 +259,7 @@ class Law(_Stored):
 
     @property
     def sticks_everywhere(self) -> bool:
-        """Whether the pair sticks at every velocity that was computed."""
+        """Whether the pair sticks at every computed velocity."""
         return all(point.ratio <= 0 for point in self.points)
 
     @property
@@ -269,7 +269,7 @@ class Law(_Stored):
 
 
 def velocity_of(text: str) -> float:
-    """A velocity of the command line, such as "0.5 m/s", in m/s. Raises `CaseError`."""
+    """Parse a velocity such as "0.5 m/s" to m/s. Raises `CaseError`."""
     try:
         return read_positive(text, "m/s")
     except ValueError as error:

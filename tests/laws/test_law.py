@@ -8,10 +8,10 @@ import shutil
 import numpy as np
 import pytest
 
-from restitution.dem.from_run import bare_law, law_of
-from restitution.dem.law import Law
-from restitution.dem.law_files import read_law, write_law
 from restitution.errors import CaseError, DomainError, OutputError
+from restitution.laws.from_results import bare_law, law_of
+from restitution.laws.law import Law
+from restitution.laws.law_files import read_law, write_law
 from tolerance import approx
 
 HEAD = """

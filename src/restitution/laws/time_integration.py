@@ -1,15 +1,15 @@
-"""A reference collision: two particles run through the stored force law, in time.
+"""A collision in time: the motion of two particles under the stored contact force.
 
     m₁ x₁'' = −F(δ),  m₂ x₂'' = F(δ),  δ = x₁ − x₂ (0 at first touch),  e = (v₂' − v₁')/(v₁ − v₂)
 
-F is the loading curve until the particles stop approaching, and from there the unloading curve of
-that depth. Between the depths the loading force is the slope of a Hermite cubic through the stored
-works (ln W against ln δ where W is like a power of it), whose slopes at the depths are the stored
-forces; so the particles turn where the energies say, and e checks the unloading curve's forces
-against the stored energy W_u, and the energies' formula against an equation of motion. Unloading
-curves are monotone cubics (PCHIP). They were stored from some depths only; between two of them,
-curves are blended in the form F/F_max against (δ − δ_s)/(δ_max − δ_s), with δ_s (separation) and
-F_max those of the depth itself.
+F follows the loading curve until the particles stop approaching, then the unloading curve from that
+depth. The loading force is the derivative of a cubic Hermite spline through the stored works (ln W
+against ln δ where W resembles a power of δ), whose slopes at the stored depths are the stored
+forces. The maximum indentation therefore agrees with the energies, and e checks the unloading
+forces against the stored energy W_u, and the formula for e from energies against an equation of
+motion. Unloading curves are monotone cubics (PCHIP). They are stored for some depths only: between
+two of them the curves are interpolated as F/F_max against (δ − δ_s)/(δ_max − δ_s), with the
+separation δ_s and the maximum force F_max of the depth itself.
 """
 
 from __future__ import annotations
@@ -38,14 +38,17 @@ Array = NDArray[np.float64]
 Force = Callable[[float], float]
 
 _RTOL = 1e-10
-_SLACK = 1e-3  # of the deepest depth: how far beyond it rounding and integration may lead
-_STEEPEST = 6.0  # power of the depth: above it adhesion has nearly cancelled the work
-_SAME = 1e-5  # relative difference of depths whose unloading curves have one shape
+_SLACK = 1e-3  # overshoot of the deepest depth allowed for rounding and integration
+_STEEPEST = 6.0  # d ln W/d ln δ above which adhesion has nearly cancelled the work
+_SAME = 1e-5  # depths are equal within this relative difference
 
 
 @dataclass(frozen=True)
 class ReferenceCollision:
-    """One collision in time: what it came to, and its course (s, m, N, m/s)."""
+    """One collision: its results, and its course in time (arrays of one length), in SI units.
+
+    `blended` says whether the unloading force was interpolated between two stored curves.
+    """
 
     velocity: float
     restitution: float
@@ -63,9 +66,12 @@ class ReferenceCollision:
 
 @dataclass(frozen=True)
 class StoredForce:
-    """The force law of one pair as it was stored: loading, and unloading from some depths.
+    """The stored force law of one pair: loading, and unloading from some depths.
 
-    `deepest` is the depth (m) down to which forces are known, `highest` its impact velocity (m/s).
+    `deepest` is the largest indentation (m) with a stored force, `highest` its impact velocity
+    (m/s). `loading` maps indentation (m) to force (N), `separation` maximum indentation to the
+    indentation at separation (m). `unloading` has the indentations (increasing) and forces of one
+    curve for each depth of `unloading_from` (increasing).
     """
 
     pair: Pair
@@ -81,9 +87,9 @@ class StoredForce:
             raise CaseError("density: is missing; a collision in time needs the masses")
 
     def branch(self, deepest: float) -> tuple[Force, float, bool]:
-        """Force and separation of unloading from `deepest` (m), and whether it was blended.
+        """The unloading force from `deepest` (m), its separation (m), and whether it is blended.
 
-        Raises `DomainError` where no unloading curve was stored on both sides of that depth.
+        Raises `DomainError` if the stored unloading curves do not enclose that depth.
         """
         depths = self.unloading_from
         near = np.flatnonzero(np.abs(depths / deepest - 1) < _SAME)
@@ -110,7 +116,7 @@ class StoredForce:
 
 
 def stored_force(out: Path) -> StoredForce:
-    """The force law in the folder `out` of a run. Raises `OutputError`, `CaseError`."""
+    """Read the force law of the run in the folder `out`. Raises `OutputError`, `CaseError`."""
     if not (out / "results.nc").exists():
         raise OutputError(
             f"{out}: holds no results of a run; name the folder of -o of `restitution run`"
@@ -144,11 +150,11 @@ def _stored_force(run: RunResults) -> StoredForce:
 
 
 def collide_in_time(law: StoredForce, velocity: float) -> ReferenceCollision:
-    """Let the two particles of `law` meet at the relative `velocity` (m/s), head on.
+    """Integrate a head-on collision of the two particles of `law` at relative `velocity` (m/s).
 
-    They start at first touch, in the frame of their centre of mass (that of the wall, if one is).
-    Raises `DomainError` where forces of that depth are not known, `NotConvergedError` when the
-    integration fails.
+    The particles start at first touch, in the frame of their centre of mass (with a wall, in the
+    frame of the wall). Raises `DomainError` if the collision goes deeper than the stored forces,
+    `NotConvergedError` if the integration fails.
     """
     if not 0 < velocity <= law.highest * (1 + 1e-9):
         raise DomainError(
@@ -171,8 +177,8 @@ def collide_in_time(law: StoredForce, velocity: float) -> ReferenceCollision:
     down = _integrate(law.loading, m1, m2, start, scale, velocity, (stop, too_deep))
     if down.t_events[1].size:
         raise NotConvergedError(
-            f"velocity: at {velocity:.6g} m/s the stored forces do not take up the approach; "
-            "this is no curve of loading: run the case again"
+            f"velocity: at {velocity:.6g} m/s the stored loading curve cannot absorb this impact "
+            "energy; run the case again"
         )
     turn = down.y[:, -1]
     deepest = float(turn[0] - turn[1])
@@ -253,11 +259,11 @@ def _integrate(
 
 
 def _loading(depth: Array, force: Array, work: Array) -> Force:
-    """The force on first loading, m → N: the slope of the stored work, which F is at the depths."""
+    """The force of first loading, m → N: the derivative of the interpolated stored work."""
     with np.errstate(divide="ignore", invalid="ignore"):
         powers = force * depth / work
     if (work > 0).all() and (powers > 0.5).all() and (powers < _STEEPEST).all():
-        # Powers of the depth are straight lines in logarithms; below the first depth it is one.
+        # A power of the depth is a straight line in logarithms; extrapolate it to zero depth.
         L, slope = np.log(depth), powers
         log_work = _hermite(L, np.log(work), slope)
         first = float(L[0])
@@ -272,14 +278,14 @@ def _loading(depth: Array, force: Array, work: Array) -> Force:
             return math.exp(value) / x * its_slope
 
         return pushing
-    # Adhesion pulls at first: a force that changes evenly up to the first depth and its work.
+    # Adhesion: a force linear in depth up to the first depth, with the stored work there.
     jump_in = 2 * work[0] / depth[0] - force[0]
     curve = _hermite(np.append(0.0, depth), np.append(0.0, work), np.append(jump_in, force))
     return lambda x: curve(max(x, 0.0))[1]
 
 
 def _hermite(x: Array, y: Array, slope: Array) -> Callable[[float], tuple[float, float]]:
-    """The piecewise cubic with these values and slopes, and its slope; straight beyond the end."""
+    """The cubic Hermite spline and its slope; a straight line beyond the last point."""
     from scipy.interpolate import CubicHermiteSpline
 
     if x.size == 1:
@@ -312,7 +318,7 @@ def _separation(results: xr.Dataset, depth: Array) -> Callable[[float], float]:
 
 
 def _shape(x: Array, F: Array) -> Force:
-    """F/F_max against (δ − δ_s)/(δ_max − δ_s)."""
+    """F/F_max of one unloading curve against (δ − δ_s)/(δ_max − δ_s)."""
     return _pchip((x - x[0]) / (x[-1] - x[0]), F / F[-1])
 
 
@@ -323,7 +329,7 @@ def _pchip(x: Array, y: Array) -> Force:
         return lambda _: float(y[0])
     curve = PchipInterpolator(x, y)
     low, high = float(x[0]), float(x[-1])
-    # An integrator tries points beyond the ends of a step, and no further.
+    # The integrator evaluates trial points slightly beyond the ends.
 
     def at(where: float) -> float:
         value: float = curve(min(max(where, low), high))

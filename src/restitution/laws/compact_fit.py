@@ -1,13 +1,12 @@
-"""A law in a few numbers: where the pair sticks, where adhesion counts, and the rest.
+"""The compact fit of a law: COR against velocity with a few coefficients.
 
     e² = Σ c_k L^k − s/V²,   L = ln(V/V₀)/w in [−1, 1]
 
-The last term is what adhesion takes from the approach, the same at every velocity (s = V_s² of an
-elastic pair: Thornton & Ning 1998); the polynomial is yielding, whatever the surface makes of it.
-Velocities up to which nothing is lost (e = 1) or the pair sticks (e = 0) are kept out of it. The
-fit is linear least squares in e². Its degree is the one that comes nearest to all points, and when
-fitted to all but one, to the one that was left out (as PRESS, Allen 1974, but the worst of them);
-that distance is the fit's error between the points.
+The last term is the loss by adhesion, the same energy at every velocity (s = V_s² for an elastic
+pair: Thornton & Ning 1998). The polynomial describes the loss by yielding. Velocities below which
+nothing is lost (e = 1) or the pair sticks (e = 0) are excluded. The fit is linear least squares in
+e². Its degree minimises the larger of the residuals at the points and the leave-one-out residuals
+(as PRESS, Allen 1974, but with their maximum); this maximum is the error between the points.
 """
 
 from __future__ import annotations
@@ -17,26 +16,26 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.dem.law import CompactFit, Law
+from restitution.laws.law import CompactFit, Law
 
 Array = NDArray[np.float64]
 
 _HIGHEST_DEGREE = 8
-_FEWEST = 4  # points that are worth a fit
-_NO_LOSS = 1e-3  # of W_u/W_l
-_SIMPLER = 1.1  # so much larger may the error between points be for a lower degree
-_GOOD = 1e-3  # error of e between points below which a lower degree is always preferred
-_COUNTS = 0.01  # of e²: where adhesion takes more, it counts
+_FEWEST = 4  # points needed for a fit
+_NO_LOSS = 1e-3  # 1 − W_u/W_l below which a point counts as lossless
+_SIMPLER = 1.1  # a lower degree is preferred if its error is at most this much larger
+_GOOD = 1e-3  # a lower degree is always preferred if its error of e is below this
+_COUNTS = 0.01  # loss of e² by adhesion that defines `adhesive_below`
 
 
 def compact_fit(law: Law) -> CompactFit | None:
-    """The compact form of `law`; None where fewer than four resolved points are left to fit."""
+    """The compact fit of `law`; None if fewer than four resolved points remain."""
     V, ratio = law.column("velocity", resolved=True), law.column("ratio", resolved=True)
     lossless = law.work_of_adhesion == 0
     first = 0
     while lossless and first < V.size and ratio[first] > 1 - _NO_LOSS:
         first += 1
-    # One point beyond the end of a range belongs to what comes after it, and anchors it there.
+    # Keep the last lossless (or sticking) point: it anchors the polynomial at that end.
     first = max(first - 1, 0)
     sticks = law.sticks_below
     used = slice(first, None)
@@ -68,7 +67,7 @@ def compact_fit(law: Law) -> CompactFit | None:
 
 
 def _best(v: Array, e2: Array, centre: float, width: float, adhesive: bool) -> tuple[int, bool]:
-    """Degree, and whether with the term of adhesion, of the smallest error between the points."""
+    """The degree, and whether to use the adhesion term: the smallest error between the points."""
     errors = {
         (degree, adhesion): max(
             _left_out(v, e2, centre, width, degree, adhesion),
@@ -96,7 +95,7 @@ def _solve(v: Array, e2: Array, centre: float, width: float, degree: int, adhesi
 
 
 def _misfit(v: Array, e2: Array, centre: float, width: float, degree: int, adhesion: bool) -> float:
-    """The largest difference of e at the points."""
+    """The largest residual of e at the points."""
     fitted = _basis(v, centre, width, degree, adhesion) @ _solve(
         v, e2, centre, width, degree, adhesion
     )
@@ -106,7 +105,7 @@ def _misfit(v: Array, e2: Array, centre: float, width: float, degree: int, adhes
 def _left_out(
     v: Array, e2: Array, centre: float, width: float, degree: int, adhesion: bool
 ) -> float:
-    """The largest error of e at an inner point that the fit does not know."""
+    """The largest leave-one-out residual of e at an inner point."""
     worst = 0.0
     for k in range(1, v.size - 1):
         keep = np.arange(v.size) != k

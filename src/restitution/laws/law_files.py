@@ -1,14 +1,17 @@
-"""A law as files: `law.json` (all of it), `table.csv` and `laws.csv`."""
+"""Laws as files (`law.json` with all of it, `table.csv`, `laws.csv`), and theories as a table."""
 
 from __future__ import annotations
 
 import math
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import ValidationError
 
-from restitution.dem.law import Law
 from restitution.errors import CaseError, OutputError
+from restitution.laws.law import Law
+from restitution.laws.theories import Theory
 from restitution.results.checksums import check_file
 from restitution.results.interruption import hold_signals
 from restitution.results.writer import make_folder, replace_file, write_checksums, write_table
@@ -17,13 +20,13 @@ LAW_FILE = "law.json"
 
 
 def write_law(law: Law, out: Path) -> list[Path]:
-    """Write the files of `law` into `out`, new or empty, and return them. Raises `OutputError`."""
+    """Write every file of `law` into `out`, which must be new or empty. Raises `OutputError`."""
     make_folder(out)
     text = law.model_dump_json(indent=2) + "\n"
     names = [LAW_FILE, "table.csv"]
     with hold_signals():
         replace_file(out / LAW_FILE, lambda to: to.write_text(text, encoding="utf-8"))
-        write_table(out / "table.csv", table(law))
+        write_table(out / "table.csv", law_rows(law))
         if law.laws:
             write_table(out / "laws.csv", _laws(law))
             names.append("laws.csv")
@@ -32,7 +35,11 @@ def write_law(law: Law, out: Path) -> list[Path]:
 
 
 def read_law(folder: Path) -> Law:
-    """The law in `folder` (of `restitution law`). Raises `OutputError`, `CaseError`."""
+    """Read the law in `folder`, as `restitution law` wrote it, or the file `law.json` itself.
+
+    Raises `OutputError` if there is no law or its checksum differs, `CaseError` if it is not a law
+    of this version.
+    """
     path = folder / LAW_FILE if folder.is_dir() else folder
     try:
         text = path.read_text(encoding="utf-8")
@@ -53,8 +60,22 @@ def read_law(folder: Path) -> Law:
         ) from None
 
 
-def table(law: Law) -> list[dict[str, float | str]]:
-    """The points, with what belongs to the whole law in every row, so that a row stands alone."""
+def write_theories(velocities: NDArray[np.float64], found: list[Theory], out: Path) -> Path:
+    """Write `theory.csv` into `out`, which must be new or empty. Raises `OutputError`.
+
+    `found` has the restitution of each theory at `velocities` (m/s).
+    """
+    make_folder(out)
+    rows = [
+        {"velocity_m_per_s": float(V), **{each.name: float(each.restitution[k]) for each in found}}
+        for k, V in enumerate(velocities)
+    ]
+    write_table(out / "theory.csv", rows)
+    return out / "theory.csv"
+
+
+def law_rows(law: Law) -> list[dict[str, float | str]]:
+    """One row for each point; the quantities of the whole law are repeated in every row."""
     fit = [math.nan] * len(law.points)
     if law.fit is not None:
         fit = [float(e) for e in law.fit.restitution(law.column("velocity"))]

@@ -1,18 +1,18 @@
-"""W_u/W_l between the velocities that were computed, and how far that may be off.
+"""Interpolation of W_u/W_l between the computed velocities, with an error estimate.
 
     W_u/W_l = q(ln V) − s/V²
 
-q is interpolated by a monotone cubic (PCHIP). Adhesion takes about the same energy at every
-velocity, which s/V² is (it is V_s² of an elastic pair: Thornton & Ning 1998); with s from the two
-lowest velocities q is nearly level there, so that the ratio passes through zero where the pair
-begins to rebound. Without adhesion s = 0.
+A monotone cubic (PCHIP) interpolates q. The term s/V² is the loss by adhesion, whose energy is
+about the same at every velocity (s = V_s² for an elastic pair: Thornton & Ning 1998). The two
+lowest velocities give s such that q is nearly constant there, so that the ratio changes sign at the
+velocity above which the pair rebounds. Without adhesion s = 0.
 
-What lies between two points is not known. Half way between them the error is the larger of one and
-a half times what the two neighbours are off when they are interpolated from the others (leaving one
-out), and of the difference to straight lines; of two points alone, all that they differ by. Towards
-the points it falls to zero as 2 (t (1 − t))^½, t being the share of ln V within the interval: as
-the standard deviation of a random walk that is known at both ends. How often it holds on rough
-surfaces is in docs/dem.md.
+The error estimate at the middle of an interval is 1.5 times the larger leave-one-out residual of
+its two end points. It is at least the difference between the cubic and linear interpolation. With
+two points alone it is the difference between their values. Towards the points the estimate falls to
+zero as 2 (t (1 − t))^½, where t is the fraction of the interval in ln V, like the standard
+deviation of a random walk with both ends fixed. docs/dem.md says how often the error lies within
+the estimate on rough surfaces.
 """
 
 from __future__ import annotations
@@ -25,11 +25,14 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-_SAFETY = 1.5
+_SAFETY = 1.5  # times the leave-one-out residual
 
 
 class RatioCurve:
-    """W_u/W_l against impact velocity, through points at increasing velocities (m/s)."""
+    """W_u/W_l against impact velocity, interpolated.
+
+    `velocities` (m/s, increasing) and `ratios` have shape (points,).
+    """
 
     def __init__(self, velocities: Array, ratios: Array, *, adhesive: bool) -> None:
         self.velocities, self.ratios = velocities, ratios
@@ -41,11 +44,11 @@ class RatioCurve:
         self._q = ratios + self.adhesion / velocities**2
 
     def at(self, velocity: float) -> float:
-        """The ratio at `velocity`, within those of the points."""
+        """The ratio at `velocity` (m/s), which must lie within those of the points."""
         return _pchip(self._L, self._q, math.log(velocity)) - self.adhesion / velocity**2
 
     def error(self, velocity: float) -> float:
-        """How far the ratio may be off at `velocity`: continuous, and zero at the points."""
+        """The error estimate of the ratio at `velocity` (m/s): continuous, zero at the points."""
         if self.velocities.size == 1:
             return 0.0
         L = math.log(velocity)
@@ -55,16 +58,16 @@ class RatioCurve:
         return max(middle * 2 * math.sqrt(t * (1 - t)), line)
 
     def interval(self, velocity: float) -> tuple[int, float]:
-        """The number of the point above `velocity`, and the share of ln V below it, 0 to 1."""
+        """The index of the point above `velocity`, and t (0 to 1) within the interval below it."""
         L = math.log(velocity)
         after = min(max(int(np.searchsorted(self._L, L)), 1), self._L.size - 1)
         below, above = self._L[after - 1 : after + 1]
         return after, min(max(float((L - below) / (above - below)), 0.0), 1.0)
 
     def begins(self) -> float | None:
-        """The velocity at which the pair begins to rebound.
+        """The velocity (m/s) above which the pair rebounds.
 
-        None where it does at every velocity that was computed, or at none of them.
+        None if it rebounds at every computed velocity, or at none.
         """
         sticking = np.flatnonzero(self.ratios <= 0)
         if not sticking.size or sticking[-1] == self.ratios.size - 1:
@@ -74,14 +77,14 @@ class RatioCurve:
         below, above = self.velocities[sticking[-1] : sticking[-1] + 2]
         if self.ratios[sticking[-1]] == 0:
             return float(below)
-        # Of ratios next to zero the sign may be lost in rounding.
+        # Rounding may change the sign of a ratio that is nearly zero.
         if self.at(above) <= 0 or self.at(below) >= 0:
             return float(above if self.at(above) <= 0 else below)
         return float(brentq(self.at, below, above))
 
     @cached_property
     def _left_out(self) -> Array:
-        """Of each point, what it is off when interpolated from the others; the ends' neighbours."""
+        """Leave-one-out residual of each point; the end points take that of their neighbours."""
         n = self._L.size
         if n == 2:
             return np.full(2, abs(self._q[1] - self._q[0]) / _SAFETY)
@@ -96,5 +99,5 @@ class RatioCurve:
 def _pchip(x: Array, y: Array, at: float) -> float:
     from scipy.interpolate import PchipInterpolator
 
-    with np.errstate(over="ignore"):  # the reciprocal of a slope of 1e-308, which is then zero
+    with np.errstate(over="ignore"):  # 1/slope overflows for slopes of 1e-308; PCHIP then takes 0
         return float(y[0]) if x.size == 1 else float(PchipInterpolator(x, y)(at))

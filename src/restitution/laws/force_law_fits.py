@@ -1,10 +1,9 @@
-"""The force laws that DEM codes have, with the parameters that come nearest to a law of ours.
+"""Force laws of DEM codes, fitted to a computed law.
 
-Each law is fitted to the coefficient of restitution, by least squares over the points that are
-resolved (which lie as the velocities that were computed do). Springs have a stiffness besides, on
-which e does not depend by itself: it is the one that gives the largest force at each impact (its
-geometric mean over the points), so that contacts are as long and as deep as ours on average. What a
-law gives beside ours, at every point, is kept with it.
+Each force law is fitted to COR by least squares over the resolved points. COR does not determine
+the loading stiffness of spring models: it is chosen such that the maximum forces agree with the
+computed ones (geometric mean over the points), so that contacts last as long and are as deep as the
+computed ones on average. The COR of the fitted law at every point is stored with its parameters.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.dem.law import LOSS, FittedLaw, Law
+from restitution.laws.law import LOSS, FittedLaw, Law
 from restitution.theory import EEPA, JKR, MDR, Luding, ThorntonNing, WaltonBraun
 
 Array = NDArray[np.float64]
@@ -31,12 +30,12 @@ NAMES = (
     "eepa",
     "lammps-mdr",
 )
-"""The laws that are fitted, in this order."""
+"""The force laws, in the order in which they are fitted."""
 Begin = Callable[[str, int, int], None]
-"""Called before a fit begins, with its name, its number and how many there are."""
+"""Called before each fit with its name, its number (from 1) and the number of fits."""
 
-_MOST = 1e6  # ratio of stiffnesses
-# The parameters of each set of springs, as its theory takes them.
+_MOST = 1e6  # largest ratio of unloading to loading stiffness
+# The parameters of each spring model, in the order of the arguments of its theory.
 _WALTON_BRAUN = ("loading_stiffness_N_per_m", "unloading_stiffness_N_per_m", "hardening_per_m")
 _LUDING = (
     "loading_stiffness_N_per_m",
@@ -55,7 +54,7 @@ _AT_FORCE_ZERO = "separation, where the force is back to zero"
 
 
 def fitted_laws(law: Law, begin: Begin | None = None) -> tuple[FittedLaw, ...]:
-    """Every force law that can be fitted to `law`; none where it loses nothing or is unresolved."""
+    """All force laws that can be fitted to `law`; empty if it is lossless or unresolved."""
     if _seen(law, "restitution").min(initial=1.0) > 1 - LOSS:
         return ()
     fits, found = _all(law), []
@@ -71,7 +70,7 @@ def fitted_laws(law: Law, begin: Begin | None = None) -> tuple[FittedLaw, ...]:
 def _all(law: Law) -> Iterator[FittedLaw]:
     yield _constant(law)
     if _seen(law, "restitution").max() < LOSS or _seen(law, "force").max() <= 0:
-        return  # everything sticks, or is held by tension alone: no law of a force fits
+        return  # everything sticks, or only tension acts: no force law fits
     yield from _thornton_ning(law)
     yield _walton_braun(law)
     yield _luding(law)
@@ -90,7 +89,7 @@ def _constant(law: Law) -> FittedLaw:
 
 
 def _thornton_ning(law: Law) -> Iterator[FittedLaw]:
-    """Twice: p_y from the largest forces, and from the restitution."""
+    """Two fits: p_y from the maximum forces, and p_y from COR."""
     smooth = law.radius, law.contact_modulus
     V, force = _seen(law, "velocity"), _seen(law, "force")
 
@@ -133,7 +132,7 @@ def _thornton_ning(law: Law) -> Iterator[FittedLaw]:
 
 
 def _adhesion_of(law: Law, V_s: float) -> Parameters:
-    """The sticking velocity and the work of adhesion of the smooth elastic bodies that have it."""
+    """V_s, and the work of adhesion of smooth elastic bodies with this V_s; empty without V_s."""
     if V_s <= 0:
         return {}
     unit = JKR(law.radius, law.contact_modulus, 1.0).sticking_velocity(law.mass)
@@ -206,9 +205,12 @@ def _eepa(law: Law) -> FittedLaw:
 
 
 def _mdr(law: Law) -> FittedLaw | None:
-    """LAMMPS' mdr, which knows one sphere on a rigid flat, and two equal ones as two of those."""
+    """LAMMPS' mdr; None for two unlike spheres.
+
+    The model holds for a sphere on a rigid flat. Two equal spheres are two such contacts.
+    """
     sphere = law.second if law.first.wall else law.first
-    assert sphere.radius is not None  # of two bodies one is no wall
+    assert sphere.radius is not None  # a pair has at most one wall
     nu = max(sphere.poissons_ratio, 0.0)
     E = law.contact_modulus * (1 - nu**2)
     if law.first.wall or law.second.wall:
@@ -233,14 +235,14 @@ def _mdr(law: Law) -> FittedLaw | None:
 
 
 def _seen(law: Law, name: str) -> Array:
-    """A column of the points that are fitted: those that are resolved."""
+    """The field `name` of the resolved points."""
     return law.column(name, resolved=True)
 
 
 def _stiffness(law: Law, exponent: float) -> float:
-    """k₁ of F = k₁δⁿ whose largest forces are the points' (their geometric mean), N/mⁿ.
+    """k₁ (N/mⁿ) of F = k₁δⁿ from the maximum forces of the points, as a geometric mean.
 
-    F^{1+1/n} = (n + 1) k₁^{1/n} W for a spring that has taken the work W.
+    A spring that has stored the work W has F^{1+1/n} = (n + 1) k₁^{1/n} W.
     """
     force, work, n = _seen(law, "force"), _seen(law, "loading_work"), exponent
     some = (force > 0) & (work > 0)
@@ -255,7 +257,7 @@ def _fit(
     low: list[float],
     high: list[float] | None = None,
 ) -> Array:
-    """The parameters x from `low` on whose restitution(V, x) is nearest to the points'."""
+    """The parameters x within `low` and `high` that fit restitution(V, x) to the points."""
     V, e = _seen(law, "velocity"), _seen(law, "restitution")
 
     def misfit(x: Array) -> Array:
@@ -270,9 +272,9 @@ def _least_squares(
     low: list[float] | None = None,
     high: list[float] | None = None,
 ) -> Array:
-    """Where the squares are least: the best of several starts, for these misfits have kinks.
+    """Minimise the sum of squares of `misfit` from several starts, because it has kinks.
 
-    Of a single parameter restitution is a monotone function, and one start is enough.
+    COR is monotone in a single parameter; one start is then enough.
     """
     from scipy.optimize import least_squares
 
@@ -302,7 +304,7 @@ def _judged(
     fitted_to: str = "the coefficient of restitution",
     note: str = "",
 ) -> FittedLaw:
-    """The law with what it gives beside the points."""
+    """The fitted law, with its COR at the points and its differences from the computed COR."""
     V = law.column("velocity")
     found = np.where(law.fits_hold_at(V), restitution(V), np.nan)
     miss = found - law.column("restitution")

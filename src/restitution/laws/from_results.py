@@ -9,34 +9,34 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from restitution.case.bodies import BodyTable
-from restitution.dem.compact import compact_fit
-from restitution.dem.fitted import Begin, fitted_laws
-from restitution.dem.law import Conventions, Law, Particle, Point
-from restitution.dem.law_files import LAW_FILE
 from restitution.errors import CaseError, OutputError, one_line
+from restitution.laws.compact_fit import compact_fit
+from restitution.laws.force_law_fits import Begin, fitted_laws
+from restitution.laws.law import Conventions, Law, Particle, Point
+from restitution.laws.law_files import LAW_FILE
 from restitution.results.reader import EnsembleResults, RunResults, read_run
 from restitution.runs.error_budget import total
 
 _Row = Mapping[str, float]
-_SAME = 1e-9  # relative difference of values that are the same
+_SAME = 1e-9  # values are equal within this relative difference
 
 
 def law_of(out: Path, begin: Begin | None = None) -> Law:
-    """The law of what was computed in the folder `out`, with its fits.
+    """The law of the results in the folder `out`, with its fits.
 
-    `begin` is called before each fit (`fitted.Begin`). Raises as `bare_law`.
+    `begin` is called before each fit (`force_law_fits.Begin`). Raises as `bare_law`.
     """
     law = bare_law(out)
     return law.model_copy(update={"fit": compact_fit(law), "laws": fitted_laws(law, begin)})
 
 
 def bare_law(out: Path) -> Law:
-    """The law of what was computed in the folder `out`, without fits.
+    """The law of the results in the folder `out`, without fits.
 
-    An ensemble gives the law of its mean curve; the error of each point then includes the
-    confidence interval of the mean, and that of a convergence study the error of its grid. Points
-    whose impact velocity does not exist (adhesion has done more work than the approach) are left
-    out. Raises `OutputError` where the folder holds no run, `CaseError` where it has no velocities.
+    An ensemble gives the law of its mean curve, with errors that include the confidence interval
+    of the mean; a convergence study gives errors that include the error of its grid. Depths without
+    an impact velocity (adhesion did more work than the approach) are left out. Raises `OutputError`
+    if the folder holds no run, `CaseError` if the run has no impact velocities.
     """
     run = _read(out)
     try:
@@ -58,7 +58,7 @@ def _law(out: Path, run: RunResults) -> Law:
         )
     points = _points(run, case.total_error)
     if not points:
-        raise CaseError(f"{out}: has no depth that an impact reaches; compute deeper ones")
+        raise CaseError(f"{out}: no stored depth has an impact velocity; add deeper indentations")
     warnings = list(summary["warnings"])
     if summary["status"] != "complete":
         warnings.insert(0, f"the run is not complete ({summary['status']}: {summary['reason']})")
@@ -131,7 +131,7 @@ def _read(out: Path) -> RunResults:
 
 
 def _error_is(trust: Mapping[str, object]) -> str:
-    """What the error of a point includes, and what it does not."""
+    """Which errors the error of a point includes, and which it does not, in words."""
     includes = trust.get("total_error_includes") or "solver"
     excludes = trust.get("total_error_does_not_include") or "anything else"
     model = trust.get("largest_model_error")
@@ -171,8 +171,8 @@ def _ratio(row: _Row, work: float, *, means: bool) -> float:
 def _error(row: _Row, *, asked: bool) -> float:
     """The total error of a row.
 
-    Where it was `asked` for and a part of it is not known, it is all that COR can be off by; where
-    it was not, it is what is known of it.
+    If the total error was `asked` for but a part of it is unknown, return the largest possible
+    error of COR. If it was not asked for, return the sum of the known parts.
     """
     known = row.get("total_error", math.nan)
     if not math.isnan(known):

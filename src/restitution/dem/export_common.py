@@ -1,9 +1,9 @@
-"""What all exports have in common: the pairs at one velocity, and the comments above them.
+"""Shared by all exports: the pairs at one velocity, the comments above them, and the templates.
 
-DEM codes take one coefficient of restitution a pair and no law, so an export holds for one impact
-velocity; its comments say where e comes from, how far to trust it, and how wrong it is elsewhere.
-Comments are plain ASCII without quotes, braces or the signs that join lines, so that no name or
-title of the user's can leave its comment.
+DEM codes take one coefficient of restitution for each pair, so an export holds at one impact
+velocity. Its comments give the origin of e, its error, and its values at other velocities. Comments
+are plain ASCII without quotes, braces and line continuation characters, so that a name or title
+given by the user cannot end its comment.
 """
 
 from __future__ import annotations
@@ -13,11 +13,14 @@ import textwrap
 import unicodedata
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 
-from restitution.dem.law import Law, Particle
-from restitution.dem.matrix import Matrix
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from restitution.dem.pair_table import PairTable
 from restitution.errors import CaseError, one_line
+from restitution.laws.law import Law, Particle
 
 FRICTION = 0.5
 PLACEHOLDER = f"Friction {FRICTION} is a placeholder: no friction was computed here, give yours."
@@ -36,7 +39,7 @@ _PLAIN = str.maketrans("–—−‐‑’‘“”·×≈→µ", "-----''''.x~>
 
 @dataclass(frozen=True)
 class Pair:
-    """Types `i` ≤ `j`, their bodies, their law, and its coefficient of restitution."""
+    """Types `i` ≤ `j`, their bodies, their law, and e at the velocity of the export."""
 
     i: int
     j: int
@@ -60,23 +63,23 @@ class Pair:
 
     @property
     def twin(self) -> tuple[float, float]:
-        """E (Pa) and ν of the material which, on both sides, has the E* and G* of this pair.
+        """E (Pa) and ν of one material for both bodies that gives the E* and G* of this pair.
 
-        From E* = E/2(1 − ν²) and G* = E/4(2 − ν)(1 + ν): ν lies between those of the two bodies.
+        From E* = E/2(1 − ν²) and G* = E/4(2 − ν)(1 + ν); ν lies between those of the two bodies.
         """
         k = self.shear_modulus / self.law.contact_modulus
         nu = min(max((1 - 4 * k) / (1 - 2 * k), 0.0), 0.5)
         return 2 * (1 - nu**2) * self.law.contact_modulus, nu
 
 
-def pairs_at(matrix: Matrix, velocity: float, code: str, lowest: float) -> list[Pair]:
-    """All pairs of `matrix` with their e at `velocity` (m/s).
+def pairs_at(table: PairTable, velocity: float, code: str, lowest: float) -> list[Pair]:
+    """All pairs of `table` with their e at `velocity` (m/s).
 
-    Raises `CaseError` where e is below `lowest`, the least that `code` reproduces, and
-    `DomainError` beyond the velocities that were computed.
+    Raises `CaseError` if e is below `lowest`, the smallest e that `code` reproduces, and
+    `DomainError` outside the computed velocities.
     """
     found = []
-    for i, j, law in matrix.pairs():
+    for i, j, law in table.pairs():
         e = law.at(velocity).restitution
         if e < lowest:
             raise CaseError(
@@ -84,7 +87,7 @@ def pairs_at(matrix: Matrix, velocity: float, code: str, lowest: float) -> list[
                 f"coefficient of restitution below {lowest:g}; export at a higher velocity, or "
                 "use an adhesive contact model there"
             )
-        found.append(Pair(i, j, matrix.particles[i - 1], matrix.particles[j - 1], law, e))
+        found.append(Pair(i, j, table.particles[i - 1], table.particles[j - 1], law, e))
     return found
 
 
@@ -95,26 +98,26 @@ def contact_time(law: Law, radius: float | None = None) -> float:
 
 
 def density_of(particle: Particle) -> float:
-    """Density of a sphere (kg/m³). Raises `CaseError` if it is not known."""
+    """The density of a sphere (kg/m³). Raises `CaseError` if the law has none."""
     if particle.density is None:
         raise CaseError(f"{particle}: has no density, and DEM needs one; give it in the case")
     return particle.density
 
 
 def identifier(particle: Particle, number: int) -> str:
-    """A name for `particle` that is one in any language: letters, digits and `_`, with `number`."""
+    """A name for `particle` that every code accepts: letters, digits and `_`, with `number`."""
     word = re.sub(r"[^A-Za-z0-9]+", "_", plain(particle.name)).strip("_")[:24].rstrip("_").lower()
     word = word or "type"
     return f"{word if word[0].isalpha() else f'p_{word}'}_{number}"
 
 
 def header(
-    matrix: Matrix, pairs: Sequence[Pair], velocity: float, *, code: str, ends: str
+    table: PairTable, pairs: Sequence[Pair], velocity: float, *, code: str, ends: str
 ) -> list[str]:
-    """Comment lines above the export for `code`, which takes `ends` as the end of a contact."""
+    """Comment lines above the export for `code`; `ends` says where it ends a contact."""
     lines = _origin(velocity, code, ends)
     lines += ["", "Types:"]
-    lines += [f"  {k}: {particle}" for k, particle in enumerate(matrix.particles, 1)]
+    lines += [f"  {k}: {particle}" for k, particle in enumerate(table.particles, 1)]
     for pair in pairs:
         lines += ["", *_about(pair, velocity)]
     return _wrapped(lines)
@@ -123,7 +126,7 @@ def header(
 def summary(
     pairs: Sequence[Pair], velocity: float, *, code: str, ends: str, fragment: str
 ) -> list[str]:
-    """The shorter comments above a collision that shows the e of `fragment`: warnings in full."""
+    """The shorter comments above a collision that uses `fragment`; all warnings are kept."""
     lines = [*_origin(velocity, code, ends), f"Where e comes from is told in {fragment}."]
     for pair in pairs:
         lines += _warnings(pair, velocity)
@@ -131,19 +134,27 @@ def summary(
 
 
 def commented(lines: Iterable[str], sign: str) -> str:
-    """`lines` as comments, each ended by a line break."""
-    return "".join(f"{sign} {line}".rstrip() + "\n" for line in lines)
+    """`lines` as comments, which begin with `sign`."""
+    return "\n".join(f"{sign} {line}".rstrip() for line in lines)
+
+
+def render(name: str, **values: object) -> str:
+    """The text of the file `name`, from its template `templates/NAME.j2` with `values`.
+
+    Templates know, besides, the names and the filters of `_environment`.
+    """
+    return _environment().get_template(f"{name}.j2").render(values)
 
 
 def plain(text: str) -> str:
-    """`text` in one line of ASCII that can leave no comment; signs that have a name get it."""
+    """`text` as one line of ASCII that cannot end a comment; Greek letters become names."""
     text = unicodedata.normalize("NFKD", one_line(text).translate(_PLAIN)).translate(_PLAIN)
     text = "".join(map(_ascii, text)).translate(_SIGNS)
     return text.replace("*/", "* /").replace("/*", "/ *").replace("??/", "?? /")
 
 
 def number(value: float) -> str:
-    """A number as every code reads it."""
+    """`value` in a notation that every code reads."""
     return f"{value:.9g}"
 
 
@@ -153,6 +164,27 @@ def program_version() -> str:
         return version("restitution")
     except PackageNotFoundError:  # run from the sources
         return "(version unknown)"
+
+
+@cache
+def _environment() -> Environment:
+    environment = Environment(
+        loader=PackageLoader("restitution.dem"),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    environment.filters |= {"number": number, "plain": plain}
+    environment.globals |= {
+        "friction": FRICTION,
+        "placeholder": PLACEHOLDER,
+        "time_step": TIME_STEP,
+        "contact_time": contact_time,
+        "density_of": density_of,
+        "identifier": identifier,
+    }
+    return environment
 
 
 def _origin(velocity: float, code: str, ends: str) -> list[str]:

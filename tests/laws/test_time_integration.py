@@ -9,9 +9,9 @@ import pytest
 
 from restitution.case.case_file import parse_case
 from restitution.contact.bodies import Body, Pair
-from restitution.dem.from_run import bare_law
-from restitution.dem.reference import StoredForce, collide_in_time, course, stored_force
 from restitution.errors import CaseError, DomainError, OutputError
+from restitution.laws.from_results import bare_law
+from restitution.laws.time_integration import StoredForce, collide_in_time, course, stored_force
 from restitution.results.writer import ResultsFolder
 from restitution.runs.ensemble import run_realisations
 from restitution.theory import ThorntonNing

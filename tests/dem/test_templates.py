@@ -1,0 +1,88 @@
+"""The templates of the exports: each is used, and the files they give are well-formed."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import restitution.dem
+from restitution.dem.export import CODES, export
+
+TEMPLATES = Path(restitution.dem.__file__).parent / "templates"
+WITHOUT_TEMPLATES = ("csv", "edem")  # tables, written by the csv module
+PARTS = ("mdr.lmp",)  # included by another template
+
+
+@pytest.fixture(scope="module")
+def exports(law, points, mixed, on_wall):
+    """Every file of every code by name, for several tables of laws."""
+    adhesive = law(work_of_adhesion=0.2, sticking_velocity=0.01)
+    several = [found for _, _, found in mixed.pairs()]
+    cases = {"fitted": [points], "adhesive": [adhesive], "mixed": several}
+    found = {
+        (case, code, name): text
+        for case, laws in cases.items()
+        for code in CODES
+        for name, text in export(laws, code, 1.0).items()
+    }
+    of_wall = [each for _, _, each in on_wall.pairs()]
+    return found | {
+        ("wall", "lammps", name): text for name, text in export(of_wall, "lammps", 1.0).items()
+    }
+
+
+def test_every_template_is_of_a_file_and_every_file_of_a_template(exports):
+    files = {name for _, code, name in exports if code not in WITHOUT_TEMPLATES}
+    assert {path.name for path in TEMPLATES.iterdir()} == {
+        f"{name}.j2" for name in (*files, *PARTS)
+    }
+
+
+def test_nothing_is_left_to_fill_in(exports):
+    for key, text in exports.items():
+        assert text.endswith("\n"), key
+        assert text.isascii() or key[1] == "csv", key
+        for sign in ("{{", "}}", "{%", "%}", "{#", "None", "Undefined", "nan"):
+            assert sign not in text or (sign == "nan" and key[1] == "csv"), (key, sign)
+        for line in text.splitlines():
+            assert line == line.rstrip(), (key, line)
+
+
+@pytest.mark.parametrize("code", ["lammps", "liggghts"])
+def test_quotes_are_closed_and_continued_lines_are_indented(exports, code):
+    """A line that ends in & is continued by the next one, which is indented; no other one is."""
+    for key, text in exports.items():
+        if key[1] != code:
+            continue
+        continued = False
+        for line in text.splitlines():
+            if line.startswith("#"):
+                assert not continued, (key, line)
+                continue
+            assert line.startswith("  ") == continued, (key, line)
+            assert line.count('"') % 2 == 0, (key, line)
+            continued = line.endswith("&")
+        assert not continued, key
+
+
+def test_what_yade_imports_and_runs_is_python(exports, texts):
+    scripts = {
+        f"{case}_{name}": text for (case, code, name), text in exports.items() if code == "yade"
+    }
+    assert len(scripts) == 6
+    for name, text in scripts.items():
+        compile(text, name, "exec")
+    ruff = shutil.which("ruff", path=str(Path(sys.executable).parent)) or shutil.which("ruff")
+    if ruff is None:
+        pytest.skip("ruff is not installed")
+    # YADE's scripts import all of its names.
+    rules = ["--select", "E9,F,W", "--ignore", "F403,F405"]
+    done = subprocess.run(
+        [ruff, "check", "--isolated", "--no-cache", *rules, "."],
+        cwd=texts(scripts),
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout
