@@ -1,8 +1,5 @@
 """The compiled loops against the expressions that say what they do."""
 
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -247,25 +244,3 @@ def test_a_neighbour_that_is_none_is_refused(stranger):
     neighbours = np.array([[0], [1], [stranger]])
     with pytest.raises(IndexError, match="none of the nodes"):
         passes.spread(neighbours, np.ones((3, 1)), 1, np.ones((3, 2)))
-
-
-def test_without_a_compiler_expressions_do_it():
-    """The same force, from a process that finds no loops."""
-    program = """
-import sys
-{}
-from restitution import Body, Contact, Grid, Pair, generate_surface, solve
-from restitution.numerics import passes
-grid = Grid((64, 64), (0.25e-6, 0.25e-6))
-body = Body(500e-6, 210e9, 0.25)
-surface = generate_surface(grid, kind="gaussian", rms=2e-8, correlation_length=1e-6, seed=1)
-print(passes.loops is None, solve(Contact(Pair(body, body), surface, 4e9), 60e-9).force)
-"""
-    hidden = "sys.modules['restitution.numerics.loops'] = None"
-    found = [
-        subprocess.run([sys.executable, "-c", program.format(line)], capture_output=True, text=True,
-                       check=True).stdout.split()
-        for line in (hidden, "")
-    ]  # fmt: skip
-    assert [each[0] for each in found] == ["True", "False"]
-    assert float(found[0][1]) == approx(float(found[1][1]), rel=1e-7)

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
-from importlib import import_module
 from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
@@ -18,11 +17,7 @@ from numpy.typing import NDArray
 
 from restitution.numerics import items
 from restitution.numerics.items import Flag, Number, anywhere, largest
-
-try:
-    loops: Any = import_module("restitution.numerics.loops")
-except ImportError:  # there was no compiler, or it was one for another processor
-    loops = None
+from restitution.numerics.kernels import loops
 
 Array = NDArray[Any]  # of double or single precision
 Bound = NDArray[np.float64] | float

@@ -24,6 +24,7 @@ from restitution.contact.resolution import (
 from restitution.contact.state import State
 from restitution.errors import DomainError, NotConvergedError, RestitutionError, one_line
 from restitution.numerics.device import current
+from restitution.numerics.kernels import instruction_set
 from restitution.numerics.quadrature import integrate_curve
 from restitution.studies.case import Case
 from restitution.studies.derived import deepest_indentation, derived_quantities
@@ -282,6 +283,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Progress)
             "unloading_checks": run.unloading_checks,
         },
         "device": current().name,
+        "kernels": instruction_set,
         "convolutions": sum(int(row["convolutions"]) for row in out.rows),
         "seconds_by_depth": run.seconds,
         "versions": versions(),
