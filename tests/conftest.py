@@ -8,6 +8,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from restitution.numerics import passes
@@ -116,6 +117,38 @@ def topographies():
     if not folder.is_dir():
         pytest.skip("the folder shared/topographies is not beside this checkout")
     return folder
+
+
+@pytest.fixture(scope="session")
+def write_scan():
+    """Write heights (m; NaN where undefined) of a `size` (m), in the format of the suffix."""
+    return _write_scan
+
+
+def _write_scan(path, height, size):
+    if path.suffix == ".npz":
+        np.savez(path, height=height, size=np.array(size))
+        return path
+    package = pytest.importorskip(
+        "SurfaceTopography", reason="the extra 'measured' is not installed"
+    )
+    writer = {".x3p": "to_x3p", ".gwy": "to_gwy", ".nc": "to_netcdf", ".txt": "to_matrix"}
+    heights = 1e9 * (np.ma.masked_invalid(height) if np.isnan(height).any() else height)
+    topography = package.Topography(heights, tuple(1e9 * edge for edge in size), unit="nm")
+    getattr(topography, writer[path.suffix])(str(path))
+    return path
+
+
+@pytest.fixture(scope="session")
+def own_scan(tmp_path_factory):
+    """A scan as an AFM takes it, made here: 256 x 256 pixels of 10 x 10 um, Rq 35 nm."""
+    from restitution import Grid, generate_surface
+
+    grid = Grid((256, 256), 10e-6 / 256)
+    surface = generate_surface(
+        grid, kind="self-affine", rms=35e-9, hurst=0.9, rolloff=3e-6, seed=5, periodic=False
+    )
+    return _write_scan(tmp_path_factory.mktemp("scans") / "own.npz", surface.height, grid.size)
 
 
 # A real browser without a window.

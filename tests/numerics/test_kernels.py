@@ -71,7 +71,7 @@ def test_the_widest_vectors_are_the_default():
 
 def test_unknown_kernels_are_refused():
     done = python(SOLVE, RESTITUTION_KERNELS="sse9")
-    assert "RESTITUTION_KERNELS: \"sse9\" is not known; unset it, or use avx512" in done.stderr
+    assert 'RESTITUTION_KERNELS: "sse9" is not known; unset it, or use avx512' in done.stderr
     assert done.returncode == 1
 
 

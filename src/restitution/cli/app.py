@@ -60,7 +60,10 @@ def _options(
     version: Annotated[
         bool,
         typer.Option(
-            "--version", callback=_print_version, is_eager=True, help="Print the version, and which compiled kernels run."
+            "--version",
+            callback=_print_version,
+            is_eager=True,
+            help="Print the version, and which compiled kernels run.",
         ),
     ] = False,
 ) -> None:

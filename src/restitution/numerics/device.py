@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.errors import CaseError
-from restitution.numerics import passes
+from restitution.numerics.kernels import loops
 
 Array = NDArray[Any]
 DeviceName = Literal["cpu", "gpu", "auto"]
@@ -158,8 +158,8 @@ def accelerator(name: str, arrays: Any, fft: Any) -> Device:
 
 
 def _host() -> Device:
-    if passes.loops is not None:
-        return _Compiled(passes.loops)
+    if loops is not None:
+        return _Compiled(loops)
     import scipy.fft
 
     return _Arrays("cpu", np, scipy.fft)

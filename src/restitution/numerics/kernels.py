@@ -2,8 +2,8 @@
 
 They are the module `restitution.numerics.loops`. Where it was not compiled, or does not load, NumPy
 does the same work several times more slowly. The environment variable RESTITUTION_KERNELS, read
-once, chooses: "avx512", "avx2" or "plain" kernels, or "numpy" for none. Without it they are those of
-the widest vectors that the processor has.
+once, chooses: "avx512", "avx2" or "plain" kernels, or "numpy" for none. Without it they are those
+for the widest vectors that the processor has.
 """
 
 from __future__ import annotations

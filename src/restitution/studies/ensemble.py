@@ -192,7 +192,13 @@ class _Ensemble:
             **{
                 key: one[key]
                 for key in (
-                    "model", "materials", "conventions", "derived", "device", "kernels", "versions",
+                    "model",
+                    "materials",
+                    "conventions",
+                    "derived",
+                    "device",
+                    "kernels",
+                    "versions",
                 )
             },
             "trust": {
