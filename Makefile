@@ -7,6 +7,7 @@ BUILD := pyproject.toml setup.py $(wildcard src/restitution/numerics/*.cpp src/r
 
 # What compiled kernels are for, and what a wheel is tried with.
 INSTRUCTION_SETS := avx512 avx2 plain
+FAST_TESTS := tests/theory tests/numerics tests/test_collision.py
 KERNEL_TESTS := tests/numerics/test_passes.py tests/numerics/test_convolution.py
 WITHOUT_COMPILER := CC=/bin/false CXX=/bin/false
 
@@ -25,7 +26,7 @@ demo: $(VENV)/demo.installed  ## run the bundled example
 test: $(VENV)/test.installed  ## run the tests
 	DUCC0_NUM_THREADS=1 $(BIN)/pytest -n auto
 
-# Left out: whole curves, studies, pages, the command line, exports, fuzz and comparisons with theory.
+# CONTRIBUTING.md says what this leaves out.
 test-fast: $(VENV)/test.installed  ## the tests of single parts, under a minute on two cores
 	DUCC0_NUM_THREADS=1 $(BIN)/pytest -n auto $(FAST_TESTS)
 
@@ -57,7 +58,7 @@ wheel: $(BIN)/python  ## a wheel of the package, in dist/
 
 test-wheel: wheel  ## that wheel where nothing can be compiled: do compiled kernels run, and solve?
 	rm -rf dist/steel
-	$(PYTHON) -m venv --clear dist/environment
+	$(BIN)/python -m venv --clear dist/environment
 	$(WITHOUT_COMPILER) dist/environment/bin/python -m pip install --quiet --disable-pip-version-check \
 	    --only-binary :all: dist/*.whl
 	dist/environment/bin/restitution --version
