@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import settings
 
 from restitution.numerics import passes
 
@@ -29,6 +30,10 @@ def pytest_sessionstart():
             "and so does pip install -e ."
         )
 
+
+# On a busy machine any example may take long.
+settings.register_profile("without deadline", deadline=None)
+settings.load_profile("without deadline")
 
 # Surfaces that took long are kept for the session alone, not in the user's cache.
 os.environ["XDG_CACHE_HOME"] = tempfile.mkdtemp(prefix="restitution-tests-")
