@@ -311,6 +311,7 @@ def test_a_wait_shows_a_spinner_after_a_while(monkeypatch):
 def test_the_surface_is_made_once(cli, case_text, tmp_path, monkeypatch, verb):
     from restitution.studies import tables
 
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))  # another test may have kept the surface
     made = []
     make = tables.generate_surface
     monkeypatch.setattr(
