@@ -5,7 +5,18 @@ VENV := .venv
 BIN := $(VENV)/bin
 BUILD := pyproject.toml setup.py $(foreach kind,cpp h,$(wildcard src/restitution/numerics/*.$(kind) src/restitution/numerics/*/*.$(kind)))
 
-.PHONY: demo test fuzz lint bench bench-peers clean
+# What compiled kernels are for, and what a wheel is tried with.
+INSTRUCTION_SETS := avx512 avx2 plain
+FAST_TESTS := tests/theory tests/numerics tests/test_collision.py
+KERNEL_TESTS := tests/numerics/test_compiled.py tests/numerics/convolution/test_operators.py
+WITHOUT_COMPILER := CC=/bin/false CXX=/bin/false
+
+.PHONY: help demo test test-fast test-kernels test-clang wheel test-wheel fuzz lint bench bench-peers clean
+
+.DEFAULT_GOAL := demo
+
+help:  ## this list
+	@grep -hE '^[a-z-]+:.*  ## ' $(MAKEFILE_LIST) | sed -E 's/:.*  ## /\t/' | expand -t 16
 
 demo: $(VENV)/demo.installed  ## run the bundled example
 	rm -rf demo
@@ -14,6 +25,45 @@ demo: $(VENV)/demo.installed  ## run the bundled example
 
 test: $(VENV)/test.installed  ## run the tests
 	DUCC0_NUM_THREADS=1 $(BIN)/pytest -n auto
+
+# CONTRIBUTING.md says what this leaves out.
+test-fast: $(VENV)/test.installed  ## the tests of single parts, under a minute on two cores
+	DUCC0_NUM_THREADS=1 $(BIN)/pytest -n auto $(FAST_TESTS)
+
+# $(1): the Python path of the package to be tested. Only `plain` kernels are for every processor.
+define test_each_instruction_set
+	@set -e; export PYTHONPATH=$(1) DUCC0_NUM_THREADS=1; for set in $(INSTRUCTION_SETS); do \
+	    export RESTITUTION_KERNELS=$$set; \
+	    if why=$$($(BIN)/python -c "import restitution.numerics.kernels" 2>&1) || test $$set = plain; then \
+	        echo "kernels: $$set"; \
+	        $(BIN)/pytest -q -n auto $(KERNEL_TESTS); \
+	    else \
+	        echo "kernels: $$set skipped: $$why" | tail -n 1; \
+	    fi; \
+	done
+endef
+
+test-kernels: $(VENV)/test.installed  ## the compiled kernels for each instruction set against NumPy
+	$(call test_each_instruction_set,)
+
+test-clang: $(VENV)/test.installed  ## the same for kernels that Clang compiles
+	rm -rf build dist/clang
+	CC=clang CXX=clang++ $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --target dist/clang .
+	grep -q "clang version" dist/clang/restitution/numerics/loops*.so
+	$(call test_each_instruction_set,$(CURDIR)/dist/clang)
+
+wheel: $(BIN)/python  ## a wheel of the package, in dist/
+	rm -rf build dist/*.whl
+	$(BIN)/python -m pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir dist .
+
+test-wheel: wheel  ## that wheel where nothing can be compiled: do compiled kernels run, and solve?
+	rm -rf dist/steel
+	$(BIN)/python -m venv --clear dist/environment
+	$(WITHOUT_COMPILER) dist/environment/bin/python -m pip install --quiet --disable-pip-version-check \
+	    --only-binary :all: dist/*.whl
+	dist/environment/bin/restitution --version
+	dist/environment/bin/restitution --version | grep -q "^compiled kernels: [^n]"
+	dist/environment/bin/restitution run examples/steel.toml -o dist/steel
 
 fuzz: $(VENV)/test.installed  ## random and damaged input, 25 times as much as in the tests
 	FUZZ=25 DUCC0_NUM_THREADS=1 $(BIN)/pytest -n auto tests/fuzz
@@ -40,8 +90,8 @@ bench-peers: $(VENV)/test.installed $(PEERS)  ## time this program beside others
 	.venv-peers/$*/bin/python -m pip install --quiet --disable-pip-version-check --no-deps -r $<
 	@touch $@
 
-clean:  ## remove the environments and the demo
-	rm -rf $(VENV) .venv-peers demo
+clean:  ## remove the environments, the demo, and what was built
+	rm -rf $(VENV) .venv-peers demo build dist
 
 $(BIN)/python:
 	@$(PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 11) else "restitution needs Python 3.11 or newer: make PYTHON=python3.11")'

@@ -10,19 +10,20 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import settings
 
 from restitution.laws.force_law_fits import fitted_laws
 from restitution.laws.law import Law, Particle, Point
-from restitution.numerics import compiled
+from restitution.numerics import kernels
 
 SOURCES = Path(__file__).parents[1] / "src" / "restitution" / "numerics"
 
 
 def pytest_sessionstart():
     """Refuse to test compiled loops that are older than their sources."""
-    if compiled.loops is None:
+    if kernels.loops is None:
         return
-    built = Path(compiled.loops.__file__).stat().st_mtime
+    built = Path(kernels.loops.__file__).stat().st_mtime
     sources = [*SOURCES.rglob("*.cpp"), *SOURCES.rglob("*.h")]
     newer = [path.name for path in sources if path.stat().st_mtime > built]
     if newer:
@@ -31,6 +32,10 @@ def pytest_sessionstart():
             "and so does pip install -e ."
         )
 
+
+# On a busy machine any example may take long.
+settings.register_profile("without deadline", deadline=None)
+settings.load_profile("without deadline")
 
 # Surfaces that took long are kept for the session alone, not in the user's cache.
 os.environ["XDG_CACHE_HOME"] = tempfile.mkdtemp(prefix="restitution-tests-")
@@ -186,6 +191,38 @@ def topographies():
     if not folder.is_dir():
         pytest.skip("the folder shared/topographies is not beside this checkout")
     return folder
+
+
+@pytest.fixture(scope="session")
+def write_scan():
+    """Write heights (m; NaN where undefined) of a `size` (m), in the format of the suffix."""
+    return _write_scan
+
+
+def _write_scan(path, height, size):
+    if path.suffix == ".npz":
+        np.savez(path, height=height, size=np.array(size))
+        return path
+    package = pytest.importorskip(
+        "SurfaceTopography", reason="the extra 'measured' is not installed"
+    )
+    writer = {".x3p": "to_x3p", ".gwy": "to_gwy", ".nc": "to_netcdf", ".txt": "to_matrix"}
+    heights = 1e9 * (np.ma.masked_invalid(height) if np.isnan(height).any() else height)
+    topography = package.Topography(heights, tuple(1e9 * edge for edge in size), unit="nm")
+    getattr(topography, writer[path.suffix])(str(path))
+    return path
+
+
+@pytest.fixture(scope="session")
+def own_scan(tmp_path_factory):
+    """A scan as an AFM takes it, made here: 256 x 256 pixels of 10 x 10 um, Rq 35 nm."""
+    from restitution import Grid, generate_surface
+
+    grid = Grid((256, 256), 10e-6 / 256)
+    surface = generate_surface(
+        grid, kind="self-affine", rms=35e-9, hurst=0.9, rolloff=3e-6, seed=5, periodic=False
+    )
+    return _write_scan(tmp_path_factory.mktemp("scans") / "own.npz", surface.height, grid.size)
 
 
 # A real browser without a window.

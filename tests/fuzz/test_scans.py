@@ -108,6 +108,18 @@ def test_matrices(fuzz, tmp_path, within, plainly_refused):
     assert ends["refused"] > 0.2 * count
 
 
+def test_files_of_formats_that_have_a_writer(fuzz, tmp_path, within, plainly_refused, write_scan):
+    (tmp_path / "whole").mkdir()
+    height = 1e-8 * np.random.default_rng(1).standard_normal((60, 60)).cumsum(axis=0)
+    files = [
+        write_scan(tmp_path / "whole" / f"a.{suffix}", height, SIZE)
+        for suffix in ("x3p", "gwy", "nc", "txt")
+    ]
+    ends = try_all(files, round(DAMAGES * fuzz), tmp_path, within, plainly_refused)
+    print(ends)
+    assert ends["refused"] > 0
+
+
 @pytest.mark.skipif(not SAMPLES.is_dir(), reason=f"the sample topographies are not at {SAMPLES}")
 def test_files_of_instruments(fuzz, tmp_path, within, plainly_refused):
     pytest.importorskip("SurfaceTopography", reason="the extra 'measured' is not installed")

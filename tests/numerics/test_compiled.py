@@ -1,15 +1,12 @@
 """The compiled loops against the expressions that say what they do."""
 
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
-from restitution.numerics import compiled
+from restitution.numerics import kernels
 from restitution.numerics.diffusion import diffuse
 from restitution.numerics.multipoles import multipoles
 from restitution.numerics.quadratic import fused_ops
@@ -188,7 +185,7 @@ def test_threads_share_the_rows_and_change_nothing(threads):
         ]  # fmt: skip
 
     found = everything()
-    compiled.loops.use_threads(1)
+    kernels.loops.use_threads(1)
     for one, other in zip(found, everything(), strict=True):
         assert_array_equal(one, other)
 
@@ -270,40 +267,3 @@ def test_a_neighbour_that_is_none_is_refused(stranger):
     neighbours = np.array([[0], [1], [stranger]])
     with pytest.raises(IndexError, match="not the index of a node"):
         diffuse(neighbours, np.ones((3, 1)), 1, np.ones((3, 2)))
-
-
-def test_without_a_compiler_expressions_do_it():
-    """The same force, from a process that finds no loops."""
-    program = """
-import sys
-{}
-from restitution import Body, Contact, Grid, Pair, generate_surface, solve
-from restitution.numerics import compiled
-from restitution.numerics.diffusion import diffuse
-from restitution.numerics.multipoles import multipoles
-from restitution.numerics.quadratic import fused_ops
-from restitution.numerics.quadratic.fused_ops import (
-    as_rows,
-    curvature,
-    dot_products,
-    projected_direction,
-    projected_gradient,
-    take_step,
-    violates_bounds,
-)
-from restitution.numerics.quadratic.grid_transfer import prolong, restrict
-from restitution.numerics.quadratic.local_mean import local_sums, subtract_local_mean
-from restitution.numerics.reductions import max_magnitude
-grid = Grid((64, 64), (0.25e-6, 0.25e-6))
-body = Body(500e-6, 210e9, 0.25)
-surface = generate_surface(grid, kind="gaussian", rms=2e-8, correlation_length=1e-6, seed=1)
-print(compiled.loops is None, solve(Contact(Pair(body, body), surface, 4e9), 60e-9).force)
-"""
-    hidden = "sys.modules['restitution.numerics.loops'] = None"
-    found = [
-        subprocess.run([sys.executable, "-c", program.format(line)], capture_output=True, text=True,
-                       check=True).stdout.split()
-        for line in (hidden, "")
-    ]  # fmt: skip
-    assert [each[0] for each in found] == ["True", "False"]
-    assert float(found[0][1]) == approx(float(found[1][1]), rel=1e-7)

@@ -1,8 +1,11 @@
-"""Every real instrument file does what is expected of it through the command line."""
+"""Every scan, real or made here, does what is expected of it through the command line."""
 
 import csv
+from pathlib import Path
 
 import pytest
+
+from restitution.surfaces import read_surface
 
 CASE = """
 title = "{file}"
@@ -27,27 +30,40 @@ curves = 1
 
 
 @pytest.fixture
-def case(topographies, tmp_path):
+def case(request, tmp_path):
     def write(name, more='detrend = "curvature"', radius="100 um", first="20 nm", last="200 nm"):
-        text = CASE.format(
-            file=topographies / name, more=more, radius=radius, first=first, last=last
-        )
+        own = isinstance(name, Path)
+        file = name if own else request.getfixturevalue("topographies") / name
+        text = CASE.format(file=file, more=more, radius=radius, first=first, last=last)
         (tmp_path / "case.toml").write_text(text)
         return tmp_path / "case.toml"
 
     return write
 
 
-@pytest.mark.parametrize("name", ["mi-1.mi", "nid-1.nid", "di-3.di", "matrix-3.txt"])
-def test_an_afm_scan_gives_a_curve_of_restitution(cli, case, tmp_path, name):
-    status, _, said = cli("run", case(name), "-o", tmp_path / "out")
+def expect_a_curve(cli, case, out):
+    status, _, said = cli("run", case, "-o", out)
     assert status == 0, said
-    with open(tmp_path / "out" / "curve.csv", newline="") as file:
+    with open(out / "curve.csv", newline="") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 5
     for row in rows:
         assert 0.05 < float(row["restitution"]) <= 1
         assert float(row["residual"]) <= 1e-8
+
+
+@pytest.mark.parametrize("name", ["mi-1.mi", "nid-1.nid", "di-3.di", "matrix-3.txt"])
+def test_an_afm_scan_gives_a_curve_of_restitution(cli, case, tmp_path, name):
+    expect_a_curve(cli, case(name), tmp_path / "out")
+
+
+@pytest.mark.parametrize("suffix", [".npz", ".x3p"])
+def test_a_scan_of_our_own_gives_a_curve_of_restitution(
+    cli, case, own_scan, write_scan, tmp_path, suffix
+):
+    scan = read_surface(own_scan)
+    file = write_scan(tmp_path / f"scan{suffix}", scan.height, scan.grid.size)
+    expect_a_curve(cli, case(file), tmp_path / "out")
 
 
 def test_an_optical_scan_has_undefined_pixels(refused, case, tmp_path):

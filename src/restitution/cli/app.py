@@ -46,7 +46,12 @@ def _print_version(wanted: bool) -> None:
     if wanted:
         from importlib.metadata import version
 
+        from restitution.numerics.kernels import instruction_set, missing
+
         typer.echo(f"restitution {version('restitution')}")
+        typer.echo(f"compiled kernels: {instruction_set}")
+        if why := missing():
+            typer.echo(f"Hint: {why}")
         raise typer.Exit
 
 
@@ -55,7 +60,10 @@ def _options(
     version: Annotated[
         bool,
         typer.Option(
-            "--version", callback=_print_version, is_eager=True, help="Print the version."
+            "--version",
+            callback=_print_version,
+            is_eager=True,
+            help="Print the version, and which compiled kernels run.",
         ),
     ] = False,
 ) -> None:

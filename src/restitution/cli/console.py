@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 from threading import Timer
 
 from rich.console import Console
@@ -24,6 +25,16 @@ def refuse(message: str) -> None:
     errors.print(
         f"Error: {one_line(message)}", style="red", highlight=False, markup=False, soft_wrap=True
     )
+
+
+@cache
+def hint_at_kernels() -> None:
+    """Say on standard error, once, where solves are slow for want of compiled kernels."""
+    from restitution.numerics.convolution.device import CPU, current
+    from restitution.numerics.kernels import missing
+
+    if current() is CPU and (why := missing()):
+        errors.print(f"Hint: {why}", markup=False, soft_wrap=True)
 
 
 @contextmanager

@@ -26,13 +26,14 @@ def many_cases(cases: int, out: object, again: str) -> Iterator[Progress]:
         TimeRemainingColumn,
     )
 
-    from restitution.cli.console import errors
+    from restitution.cli.console import errors, hint_at_kernels
     from restitution.cli.signals import Stopped
 
     def say(text: str) -> None:
         errors.print(text, markup=False, soft_wrap=True)
 
     say(f"{cases} cases. Results go to {out}; to resume: {again}")
+    hint_at_kernels()
     columns = (
         TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(),
         TimeRemainingColumn(),

@@ -57,7 +57,7 @@ def carry_out(
     )
 
     from restitution.case.case_file import naming, read_case
-    from restitution.cli.console import answers, errors, warn
+    from restitution.cli.console import answers, errors, hint_at_kernels, warn
     from restitution.cli.signals import Stopped, received
     from restitution.numerics.convolution.device import on_device
     from restitution.reports.figures import write_figures
@@ -71,6 +71,7 @@ def carry_out(
     context.with_resource(locked(out))
     folder = ResultsFolder(out)
     errors.print(f"Results go to {out}", markup=False, soft_wrap=True)
+    hint_at_kernels()
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),

@@ -1,7 +1,13 @@
-// Includes the file LOOPS once for each kind of processor, in a namespace of its own. LANE_BYTES is the
-// size of a vector.
+// The file LOOPS for each kind of processor, in a namespace, with vectors of LANE_BYTES: `plain` for any,
+// and where a compiler takes several kinds in one file (MANY_PROCESSORS) `avx2` and `avx512`.
 
-#if defined(__x86_64__)
+namespace plain {
+#define LANE_BYTES 16
+#include LOOPS
+#undef LANE_BYTES
+}  // namespace plain
+
+#ifdef MANY_PROCESSORS
 
 #if defined(__clang__)
 #pragma clang attribute push(__attribute__((target("avx2,fma"))), apply_to = function)
@@ -9,11 +15,11 @@
 #pragma GCC push_options
 #pragma GCC target("avx2,fma")
 #endif
-namespace narrow {
+namespace avx2 {
 #define LANE_BYTES 32
 #include LOOPS
 #undef LANE_BYTES
-}  // namespace narrow
+}  // namespace avx2
 #if defined(__clang__)
 #pragma clang attribute pop
 #pragma clang attribute push(__attribute__((target("avx512f,avx512dq,avx512bw,avx512vl"))), \
@@ -23,23 +29,15 @@ namespace narrow {
 #pragma GCC push_options
 #pragma GCC target("avx512f,avx512dq,avx512bw,avx512vl,prefer-vector-width=512")
 #endif
-namespace wide {
+namespace avx512 {
 #define LANE_BYTES 64
 #include LOOPS
 #undef LANE_BYTES
-}  // namespace wide
+}  // namespace avx512
 #if defined(__clang__)
 #pragma clang attribute pop
 #else
 #pragma GCC pop_options
 #endif
-
-#else
-
-namespace narrow {
-#define LANE_BYTES 16
-#include LOOPS
-#undef LANE_BYTES
-}  // namespace narrow
 
 #endif

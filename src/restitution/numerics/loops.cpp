@@ -1,5 +1,4 @@
-// The compiled module: loops and convolutions for the widest vectors of this processor. Its submodule
-// `narrow` has those for the next narrower vectors.
+// The compiled module: loops and convolutions for the processor at hand.
 
 #include "thread_team.h"
 #include "rows.h"
@@ -7,7 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <stdexcept>
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -15,21 +16,36 @@
 #define LOOPS "loops.h"
 #include "each_processor.h"
 
+struct Kernels {
+    const char* instruction_set;
+    bool are_supported;
+    void (*define_loops)(py::module_&);
+    void (*define_convolve)(py::module_&);
+};
+
+// With the widest vectors of this processor, or those that the environment names.
 PYBIND11_MODULE(loops, module) {
     module.def("use_threads", [](int most) { most_threads = std::max(most, 1); });
     module.def("threads_for", &threads_for);
-    auto next = module.def_submodule("narrow");
-    narrow::define_loops(next);
-    define_narrow_convolve(next);
-#if defined(__x86_64__)
-    if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma"))
-        throw py::import_error("this processor has no AVX2 or no FMA");
-    if (__builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl")) {
-        wide::define_loops(module);
-        define_wide_convolve(module);
+    const Kernels all[] = {
+#ifdef MANY_PROCESSORS
+        {"avx512",
+         __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+             __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"),
+         avx512::define_loops, define_avx512_convolve},
+        {"avx2", __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"),
+         avx2::define_loops, define_avx2_convolve},
+#endif
+        {"plain", true, plain::define_loops, define_plain_convolve},
+    };
+    const char* set = std::getenv("RESTITUTION_KERNELS");
+    const std::string wanted = set ? set : "";
+    for (const Kernels& kernels : all) {
+        if (!kernels.are_supported || (!wanted.empty() && wanted != kernels.instruction_set)) continue;
+        kernels.define_loops(module);
+        kernels.define_convolve(module);
+        module.attr("instruction_set") = kernels.instruction_set;
         return;
     }
-#endif
-    narrow::define_loops(module);
-    define_narrow_convolve(module);
+    throw py::import_error("this processor, or what was compiled, has no " + wanted);
 }

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.numerics.compiled import use_loop
+from restitution.numerics.kernels import use_loop
 
 Array = NDArray[np.float64]
 

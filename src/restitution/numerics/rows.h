@@ -45,6 +45,14 @@ struct type_caster<Rows<T>> {
 };
 }  // namespace pybind11::detail
 
+// GCC and Clang compile for other processors of this kind than the one that all code is for.
+#if defined(__GNUC__) && defined(__x86_64__)
+#define MANY_PROCESSORS
+#endif
+
 // Defined in convolution/convolve.cpp; add its functions to the module.
-void define_narrow_convolve(py::module_& module);
-void define_wide_convolve(py::module_& module);
+void define_plain_convolve(py::module_& module);
+#ifdef MANY_PROCESSORS
+void define_avx2_convolve(py::module_& module);
+void define_avx512_convolve(py::module_& module);
+#endif

@@ -167,7 +167,15 @@ class _Ensemble:
             "warnings": self.log.warnings + [warning for warning in warnings if warning],
             **{
                 key: one[key]
-                for key in ("model", "materials", "conventions", "derived", "device", "versions")
+                for key in (
+                    "model",
+                    "materials",
+                    "conventions",
+                    "derived",
+                    "device",
+                    "kernels",
+                    "versions",
+                )
             },
             "trust": {
                 f"largest_{name}": max(row[name] for row in whole)

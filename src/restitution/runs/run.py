@@ -26,6 +26,7 @@ from restitution.contact.resolution import (
 from restitution.contact.state import State
 from restitution.errors import DomainError, NotConvergedError, RestitutionError
 from restitution.numerics.convolution.device import current
+from restitution.numerics.kernels import instruction_set
 from restitution.numerics.quadrature import integrate_curve
 from restitution.results.interruption import hold_signals
 from restitution.results.writer import ResultsFolder, results_dataset, versions
@@ -246,6 +247,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> d
             "unloading_checks": run.unloading_checks,
         },
         "device": current().name,
+        "kernels": instruction_set,
         "convolutions": sum(int(row["convolutions"]) for row in out.rows),
         "seconds_by_depth": run.depth_seconds,
         "versions": versions(),

@@ -221,19 +221,18 @@ periods = st.sampled_from(
 )
 
 
-@pytest.mark.parametrize("vectors", ["wide", "narrow"])
 @pytest.mark.parametrize("kinds", ["ddd", "ddf", "dff", "dfd", "fff", "ffd", "fdd", "fdf"])
 @settings(deadline=None, max_examples=40)
 @given(st.tuples(periods, periods), st.data(), st.sampled_from([1e-3, 1.0, 7.0]), seeds)
-def test_compiled_convolution_is_that_of_whole_arrays(kinds, vectors, both, data, scale, seed):
-    """In any period, padded or not, for any even spectrum, all kinds of numbers and vectors."""
+def test_compiled_convolution_is_that_of_whole_arrays(kinds, both, data, scale, seed):
+    """In any period, padded or not, for any even spectrum, all kinds of numbers."""
     shape = tuple(data.draw(st.integers(1, n)) for n in both)
     rng = np.random.default_rng(seed)
     given_kind, kind, result_kind = kinds
     values = rng.normal(size=shape).astype(given_kind)
     spectrum = rng.normal(size=(both[1] // 2 + 1, both[0] // 2 + 1)).astype(kind)
     found, expected = np.empty(shape, result_kind), np.empty(shape)
-    module = loops() if vectors == "wide" else loops().narrow
+    module = loops()
     workspace = np.empty((1, module.workspace_bytes(shape[1], both[0] // 2 + 1)), np.uint8)
     module.convolve(values, 1 / scale, spectrum, *both, workspace, scale, found)
     plain = accelerator("plain", np, scipy.fft)
@@ -243,15 +242,14 @@ def test_compiled_convolution_is_that_of_whole_arrays(kinds, vectors, both, data
     assert_allclose(found, expected, atol=(1e-15 if kinds == "ddd" else 5e-7) * largest)
 
 
-@pytest.mark.parametrize("vectors", ["wide", "narrow"])
 @pytest.mark.parametrize("kind", ["f", "d"])
-def test_waves_too_many_for_the_cache(kind, vectors):
+def test_waves_too_many_for_the_cache(kind):
     """They are stored in another way; the last rows and waves are parts of a vector."""
     shape, periods = (1001, 1703), (2016, 3430)
     rng = np.random.default_rng(6)
     values = rng.normal(size=shape)
     spectrum = rng.random((periods[1] // 2 + 1, periods[0] // 2 + 1)).astype(kind)
-    module = loops() if vectors == "wide" else loops().narrow
+    module = loops()
     workspace = np.empty((1, module.workspace_bytes(shape[1], periods[0] // 2 + 1)), np.uint8)
     found, expected = np.empty(shape), np.empty(shape)
     module.convolve(values, 1.0, spectrum, *periods, workspace, 1.0, found)

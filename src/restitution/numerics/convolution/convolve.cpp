@@ -13,7 +13,6 @@
 #include <cmath>
 #include <complex>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <map>
 #include <memory>
@@ -22,6 +21,8 @@
 #include <type_traits>
 #include <utility>
 #include <vector>
+
+constexpr double PI = 3.14159265358979323846;
 
 // Plan of the transform of a period, for any processor. If at least half of the period is padding, it
 // is transformed in two parts, the even modes and the odd ones.
@@ -62,7 +63,7 @@ struct Plan {
     }
 
     static std::complex<T> root(Index j, Index n) {
-        return std::complex<T>(std::polar(1.0, -2 * M_PI * double(j) / double(n)));
+        return std::complex<T>(std::polar(1.0, -2 * PI * double(j) / double(n)));
     }
 };
 
@@ -72,8 +73,8 @@ struct Roots {
     std::array<T, r> cosine, sine;
     Roots() {
         for (int j = 0; j < r; ++j) {
-            cosine[j] = T(std::cos(2 * M_PI * j / r));
-            sine[j] = T(std::sin(2 * M_PI * j / r));
+            cosine[j] = T(std::cos(2 * PI * j / r));
+            sine[j] = T(std::sin(2 * PI * j / r));
         }
     }
 };
@@ -97,12 +98,10 @@ std::shared_ptr<const Plan<T>> plan_for(Index values, Index period) {
 constexpr Index LINE = 64;
 
 struct Free {
-    void operator()(void* memory) const { std::free(memory); }
+    void operator()(void* memory) const { ::operator delete(memory, std::align_val_t(LINE)); }
 };
 inline std::unique_ptr<void, Free> allocate(Index bytes) {
-    std::unique_ptr<void, Free> memory(std::aligned_alloc(LINE, (bytes + LINE - 1) / LINE * LINE));
-    if (!memory) throw std::bad_alloc();
-    return memory;
+    return std::unique_ptr<void, Free>(::operator new(bytes, std::align_val_t(LINE)));
 }
 
 // Rows begin at cache lines, an odd number of lines apart: rows a power of two apart would evict each
@@ -122,13 +121,67 @@ Rows<T> rows_in(Rows<unsigned char> workspace, Index rows, Index length) {
             bytes_of_row(length * Index(sizeof(T))) / Index(sizeof(T))};
 }
 
+// Vectors of n values: the compiler's, or arrays where it has none. NO_VECTORS tries on GCC what other
+// compilers get.
+#if defined(__GNUC__) && !defined(NO_VECTORS)
+#define COMPILER_VECTORS
+template <class T, int n>
+struct VectorOf {
+    typedef T type __attribute__((vector_size(n * sizeof(T))));
+};
+
+#define CONVERTED(vector, Result) __builtin_convertvector(vector, Result)
+#else
+template <class T, int n>
+struct Vector {
+    using Value = T;
+    T value[n];
+
+    template <class Make>
+    static Vector of(Make make) {
+        Vector found;
+        for (int k = 0; k < n; ++k) found.value[k] = make(k);
+        return found;
+    }
+    T operator[](int k) const { return value[k]; }
+    Vector operator-() const {
+        return of([&](int k) { return -value[k]; });
+    }
+    Vector operator+(const Vector& b) const {
+        return of([&](int k) { return value[k] + b[k]; });
+    }
+    Vector operator-(const Vector& b) const {
+        return of([&](int k) { return value[k] - b[k]; });
+    }
+    Vector operator*(const Vector& b) const {
+        return of([&](int k) { return value[k] * b[k]; });
+    }
+    Vector operator*(T factor) const {
+        return of([&](int k) { return value[k] * factor; });
+    }
+    friend Vector operator*(T factor, const Vector& v) { return v * factor; }
+};
+
+template <class T, int n>
+struct VectorOf {
+    using type = Vector<T, n>;
+};
+
+template <class Result, class From>
+inline Result converted(const From& v) {
+    return Result::of([&](int k) { return typename Result::Value(v[k]); });
+}
+#define CONVERTED(vector, Result) converted<Result>(vector)
+#endif
+
 #ifndef __has_builtin
 #define __has_builtin(name) 0
 #endif
 #define LOOPS "convolution/convolve.h"
 #include "each_processor.h"
 
-void define_narrow_convolve(py::module_& module) { narrow::define_convolve(module); }
-#if defined(__x86_64__)
-void define_wide_convolve(py::module_& module) { wide::define_convolve(module); }
+void define_plain_convolve(py::module_& module) { plain::define_convolve(module); }
+#ifdef MANY_PROCESSORS
+void define_avx2_convolve(py::module_& module) { avx2::define_convolve(module); }
+void define_avx512_convolve(py::module_& module) { avx512::define_convolve(module); }
 #endif

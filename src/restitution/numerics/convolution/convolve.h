@@ -2,11 +2,6 @@
 // code of a transform is that for one column. convolve.cpp describes the method and includes this
 // file once for each kind of processor, with LANE_BYTES the size of its vectors.
 
-template <class T, int n>
-struct VectorOf {
-    typedef T type __attribute__((vector_size(n * sizeof(T))));
-};
-
 template <class T>
 struct Lanes {
     static constexpr int count = LANE_BYTES / sizeof(T);
@@ -111,7 +106,10 @@ void backward(const Plan<T>& plan, Lanes<T>* x, Index length, std::size_t stage 
 // The vector whose k-th value is number `Order::of(k)` of the values of a followed by those of b.
 template <class Order, class Vector, int... k>
 inline Vector shuffle(Vector a, Vector b, std::integer_sequence<int, k...>) {
-#if __has_builtin(__builtin_shufflevector)
+#ifndef COMPILER_VECTORS
+    constexpr int size = sizeof...(k), from[] = {Order::of(k, sizeof...(k))...};
+    return Vector::of([&](int i) { return from[i] < size ? a[from[i]] : b[from[i] - size]; });
+#elif __has_builtin(__builtin_shufflevector)
     return __builtin_shufflevector(a, b, Order::of(k, sizeof...(k))...);
 #else
     using Whole = std::conditional_t<sizeof(a[0]) == 4, std::int32_t, std::int64_t>;
@@ -168,8 +166,8 @@ inline typename Lanes<T>::Vector load(const From* from, double factor, Index som
     using Vector = typename Lanes<T>::Vector;
     typename VectorOf<From, count>::type v{};
     copy_some<From, count>(&v, from, some);
-    if (factor == 1) return __builtin_convertvector(v, Vector);
-    return __builtin_convertvector(__builtin_convertvector(v, Exact) * factor, Vector);
+    if (factor == 1) return CONVERTED(v, Vector);
+    return CONVERTED(CONVERTED(v, Exact) * factor, Vector);
 }
 
 template <class T, class To>
@@ -178,8 +176,7 @@ inline void store(typename Lanes<T>::Vector v, double factor, To* to, Index some
     using Exact = typename VectorOf<double, count>::type;
     using Result = typename VectorOf<To, count>::type;
     const Result result =
-        factor == 1 ? __builtin_convertvector(v, Result)
-                    : __builtin_convertvector(__builtin_convertvector(v, Exact) * factor, Result);
+        factor == 1 ? CONVERTED(v, Result) : CONVERTED(CONVERTED(v, Exact) * factor, Result);
     copy_some<To, count>(to, &result, some);
 }
 

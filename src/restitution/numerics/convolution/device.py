@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.errors import CaseError
-from restitution.numerics import compiled
+from restitution.numerics import kernels
 
 Array = NDArray[Any]
 DeviceName = Literal["cpu", "gpu", "auto"]
@@ -168,8 +168,8 @@ def accelerator(name: str, arrays: Any, fft: Any) -> Device:
 
 
 def _host() -> Device:
-    if compiled.loops is not None:
-        return _Compiled(compiled.loops)
+    if kernels.loops is not None:
+        return _Compiled(kernels.loops)
     import scipy.fft
 
     return _Arrays("cpu", np, scipy.fft)

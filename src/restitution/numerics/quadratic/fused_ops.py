@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.numerics.compiled import loop_takes, use_loop
+from restitution.numerics.kernels import loop_takes, use_loop
 from restitution.numerics.reductions import dot, max_magnitude
 
 Array = NDArray[Any]

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.numerics.compiled import use_loop
+from restitution.numerics.kernels import use_loop
 
 Array = NDArray[Any]  # of double or single precision
 

@@ -1,0 +1,83 @@
+"""The compiled kernels: whether they run in this process, and for which instruction set.
+
+The hot operations are written twice: as an expression of whole arrays, which holds on any device,
+and as a loop in C++ that does the same in one pass over memory. Tests compare the two. The loops
+are the module `restitution.numerics.loops`. Where it was not compiled, or does not load, NumPy
+does the same work several times more slowly. The environment variable RESTITUTION_KERNELS, read
+once, chooses: "avx512", "avx2" or "plain" kernels, or "numpy" for none. Without it they are those
+for the widest vectors that the processor has.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from functools import wraps
+from importlib import import_module
+from typing import Any, ParamSpec, TypeVar
+
+import numpy as np
+
+from restitution.errors import CaseError, one_line, shown
+
+VARIABLE = "RESTITUTION_KERNELS"
+INSTRUCTION_SETS = {"avx512": "AVX-512", "avx2": "AVX2", "plain": "plain"}
+
+_COMPILE = "install with a C++ compiler (GCC or Clang), or from a wheel"
+
+
+Arguments = ParamSpec("Arguments")
+Result = TypeVar("Result")
+
+
+def _load() -> tuple[Any, str]:
+    """The compiled module, or None; and why it is None, with the remedy.
+
+    Raises `CaseError` where RESTITUTION_KERNELS names unknown kernels, or some that do not load.
+    """
+    wanted = os.environ.get(VARIABLE, "")
+    if wanted == "numpy":
+        return None, f"{VARIABLE} is numpy; unset it"
+    if wanted and wanted not in INSTRUCTION_SETS:
+        known = ", ".join((*INSTRUCTION_SETS, "numpy"))
+        raise CaseError(f"{VARIABLE}: {shown(wanted)} is not known; unset it, or use {known}")
+    try:
+        return import_module("restitution.numerics.loops"), ""
+    except ModuleNotFoundError:
+        reason = "they were not compiled when the package was installed"
+    except ImportError as error:
+        reason = one_line(str(error))
+    if wanted:
+        raise CaseError(f"{VARIABLE}: {wanted} kernels cannot be loaded ({reason}); unset it")
+    return None, f"{reason}; {_COMPILE}"
+
+
+loops, _reason = _load()
+instruction_set: str = INSTRUCTION_SETS[loops.instruction_set] if loops else "none"
+
+
+def missing() -> str | None:
+    """Why no compiled kernels run, with the remedy, in one sentence; None where they run."""
+    if loops is not None:
+        return None
+    return f"NumPy does the work of compiled kernels, which takes 3 to 6 times as long: {_reason}"
+
+
+def use_loop(expression: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
+    """Decorate `expression` so that its compiled loop is called where the first array allows it."""
+    if loops is None:
+        return expression
+    loop = getattr(loops, expression.__name__)
+
+    @wraps(expression)
+    def either(*args: Any) -> Any:
+        return loop(*args) if loop_takes(args[0]) else expression(*args)  # type: ignore[call-arg]
+
+    return either  # type: ignore[return-value]
+
+
+def loop_takes(values: Any) -> bool:
+    """Whether `values` is a NumPy matrix whose rows are contiguous, as loops require."""
+    if loops is None or type(values) is not np.ndarray or values.ndim != 2:
+        return False
+    return values.strides[1] == values.itemsize or values.shape[1] < 2

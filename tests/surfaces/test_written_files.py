@@ -1,0 +1,72 @@
+"""Formats that SurfaceTopography writes as well as reads: what was written is what is read."""
+
+import warnings
+
+import numpy as np
+import pytest
+
+from restitution.errors import SurfaceError
+from restitution.surfaces import read_surface
+from tolerance import approx
+
+SIZE = 20e-6, 7e-6
+HEIGHT = 1e-9 * np.random.default_rng(1).standard_normal((40, 28)).cumsum(axis=0)
+FORMATS = ["x3p", "gwy", "nc", "txt"]
+
+
+@pytest.fixture(params=FORMATS)
+def path(request, tmp_path):
+    return tmp_path / f"scan.{request.param}"
+
+
+def test_heights_size_and_axes_are_those_written(write_scan, path):
+    surface = read_surface(write_scan(path, HEIGHT, SIZE))
+    assert surface.grid.nodes == HEIGHT.shape
+    assert surface.grid.size == approx(SIZE, rel=1e-12)
+    np.testing.assert_allclose(surface.height, HEIGHT, rtol=1e-12, atol=1e-20)
+    assert {type(value) for value in surface.provenance.values()} <= {str, float, int}
+
+
+def test_undefined_pixels_are_filled_only_on_request(write_scan, path, refusal):
+    height = HEIGHT.copy()
+    height[3, 4] = height[20, 9] = np.nan
+    write_scan(path, height, SIZE)
+    assert refusal(path).startswith("2 of 1120 pixels (0.18%) are undefined; give undefined = ")
+    filled = read_surface(path, undefined="interpolate").height
+    known = ~np.isnan(height)
+    np.testing.assert_allclose(filled[known], HEIGHT[known], rtol=1e-12, atol=1e-20)
+    assert np.isfinite(filled).all()
+
+
+def test_a_size_repeats_the_file_or_is_refused(write_scan, path, refusal):
+    write_scan(path, HEIGHT, SIZE)
+    assert read_surface(path, size=(20.000001e-6, 7e-6)).grid.size == approx(SIZE, rel=1e-6)
+    assert refusal(path, size=(20e-6, 8e-6)).startswith(
+        "says that the scan is 20 x 7 um, but size says 20 x 8 um"
+    )
+
+
+@pytest.mark.parametrize("channel", [1, -1])
+def test_there_is_one_channel(write_scan, path, refusal, channel):
+    write_scan(path, HEIGHT, SIZE)
+    assert refusal(path, channel=channel).startswith(f"there is no channel {channel}; ")
+
+
+@pytest.mark.parametrize("share", [0.001, 0.05, 0.6, 0.99])
+def test_a_truncated_file_is_refused(write_scan, path, refusal, share):
+    content = write_scan(path, HEIGHT, SIZE).read_bytes()
+    path.write_bytes(content[: int(share * len(content))])
+    refusal(path)
+
+
+def test_readers_leave_the_terminal_alone(write_scan, path, capfd):
+    content = write_scan(path, HEIGHT, SIZE).read_bytes()
+    capfd.readouterr()
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        read_surface(path)
+        path.write_bytes(content[: len(content) // 20])
+        with pytest.raises(SurfaceError):
+            read_surface(path)
+    assert not caught
+    assert capfd.readouterr() == ("", "")
