@@ -93,11 +93,11 @@ held = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
 limits = resource.getrlimit(resource.RLIMIT_AS)
 resource.setrlimit(resource.RLIMIT_AS, (held + (24 << 20), limits[1]))
 try:
-    loops.refine(coarse, fine)
+    loops.prolong(coarse, fine)
 except MemoryError:
     print("refused")
 resource.setrlimit(resource.RLIMIT_AS, limits)
-loops.refine(coarse, fine)  # nothing is left behind
+loops.prolong(coarse, fine)  # nothing is left behind
 print(one.min(), one.max())
 """)
     assert (done.returncode, done.stdout) == (0, "refused\n1.0 1.0\n"), done.stderr
