@@ -7,7 +7,9 @@ import pytest
 
 from restitution.dem.compact import compact_fit
 from restitution.dem.fitted import fitted_laws
-from restitution.dem.write import figure, table
+from restitution.dem.write import table
+from restitution.plots.law import law_figure
+from restitution.plots.static import draw
 from restitution.theory import thornton_ning, yielding
 from tolerance import approx
 
@@ -112,7 +114,7 @@ def test_the_fit_has_no_value_outside_of_the_resolved_points(with_ratios):
     assert np.isnan(fit.restitution([0.999 * V[3], 1.001 * V[12]])).all()
     rows = table(law.model_copy(update={"fit": fit}))
     assert [math.isnan(row["compact_fit"]) for row in rows] == [True] * 3 + [False] * 10 + [True]
-    drawing = figure(law.model_copy(update={"fit": fit, "laws": fitted_laws(law)}))
+    drawing = draw(law_figure(law.model_copy(update={"fit": fit, "laws": fitted_laws(law)})))
     lines = [line for line in drawing.axes[0].lines if line.get_linestyle() in ("-", "--")]
     assert len(lines) > 5
     for line in lines:

@@ -112,7 +112,7 @@ def test_nothing_is_extrapolated(rough, factor):
 def test_a_law_is_read_as_it_was_written(rough, tmp_path):
     law = law_of(rough)
     names = {path.name for path in write_law(law, tmp_path / "law")}
-    assert names == {"law.json", "table.csv", "laws.csv", "law.png"}
+    assert names == {"law.json", "table.csv", "laws.csv"}
     assert read_law(tmp_path / "law") == law
     with open(tmp_path / "law" / "table.csv", newline="") as file:
         rows = list(csv.DictReader(file))

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from restitution.cli.running import FigureFormat, Figures
+
 if TYPE_CHECKING:
     from restitution.dem.theories import Theory
 
@@ -21,7 +23,7 @@ def theory(
         typer.Option(
             "-o",
             "--out",
-            help="Folder for theory.csv and theory.png; new or empty.",
+            help="Folder for theory.csv and a figure, theory.png; new or empty.",
             readable=False,
         ),
     ] = None,
@@ -33,12 +35,15 @@ def theory(
             readable=False,
         ),
     ] = None,
+    figures: Figures = FigureFormat.png,
 ) -> None:
     """Print COR against velocity of every published closed form for the smooth bodies of CASE."""
     from restitution.cli.console import answers
     from restitution.dem import theories as room
     from restitution.dem.law import read_law
-    from restitution.dem.theory_figure import write_theories
+    from restitution.dem.theory_files import theory_lines, write_theories
+    from restitution.plots.static import write_figure
+    from restitution.plots.theories import theory_figure
     from restitution.studies.case import naming, read_case
 
     read, _ = read_case(case)
@@ -49,7 +54,12 @@ def theory(
         velocities = room.velocities_of(read, points)
         found = room.theories(read, velocities, points)
         missing = room.left_out(read, points)
-    written = [] if out is None else write_theories(read, velocities, found, out, points)
+    written = []
+    if out is not None:
+        written.append(write_theories(velocities, found, out))
+        lines = theory_lines(read, velocities, found)
+        figure = theory_figure(read.title, lines, room.marks(read), points)
+        written.append(write_figure(out / "theory", figure, figures.value))
 
     def say(line: str) -> None:
         answers.print(line, markup=False, soft_wrap=True)

@@ -1,20 +1,14 @@
-"""A law as files: `law.json` (all of it), `table.csv`, `laws.csv` and a figure."""
+"""A law as files: `law.json` (all of it), `table.csv` and `laws.csv`."""
 
 from __future__ import annotations
 
 import math
 from pathlib import Path
 
-import numpy as np
-from matplotlib.figure import Figure
-
 from restitution.dem.law import LAW_FILE, Law
 from restitution.errors import OutputError
-from restitution.reports.figures import plain, write_figure
 from restitution.studies.interruption import hold_signals
 from restitution.studies.results import replace_file, write_checksums, write_table, writing
-
-_FINE = 400
 
 
 def write_law(law: Law, out: Path) -> list[Path]:
@@ -34,8 +28,7 @@ def write_law(law: Law, out: Path) -> list[Path]:
             write_table(out / "laws.csv", _laws(law))
             names.append("laws.csv")
         write_checksums(out, names)
-    write_figure(out / "law.png", figure(law))
-    return [out / name for name in (*names, "law.png")]
+    return [out / name for name in names]
 
 
 def table(law: Law) -> list[dict[str, float | str]]:
@@ -68,32 +61,6 @@ def table(law: Law) -> list[dict[str, float | str]]:
         }
         for point, fitted in zip(law.points, fit, strict=True)
     ]
-
-
-def figure(law: Law) -> Figure:
-    """Plot the computed COR with its error, and the fits over the velocities they are fitted to."""
-    drawing = Figure(figsize=(7.6, 4.8), layout="constrained")
-    axes = drawing.add_subplot()
-    V, e = law.column("velocity"), law.column("restitution")
-    axes.errorbar(V, e, yerr=law.column("error"), fmt="o", ms=4, color="C0", zorder=3,
-                  label="computed")  # fmt: skip
-    unresolved = ~law.column("resolved").astype(bool)
-    if unresolved.any():
-        axes.plot(V[unresolved], e[unresolved], "o", ms=4, mfc="white", mec="C0", zorder=4,
-                  ls="none", label="not resolved")  # fmt: skip
-    if law.fit is not None:
-        fine = np.geomspace(law.fit.lowest, law.fit.highest, _FINE)
-        axes.plot(fine, law.fit.restitution(fine), "-", color="C0", lw=1,
-                  label=f"compact fit (within {law.fit.worst:.1g})")  # fmt: skip
-    for k, other in enumerate(law.laws):
-        values = [math.nan if value is None else value for value in other.restitution]
-        axes.plot(V, values, "--", lw=1, color=f"C{k + 1}",
-                  label=f"{other.name} ({other.worst:.2g})")  # fmt: skip
-    axes.set(xscale="log", ylim=(0, 1.05), xlabel="impact velocity (m/s)",
-             ylabel="coefficient of restitution", title=plain(law.title))  # fmt: skip
-    axes.legend(fontsize="small", loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False,
-                title="largest difference in brackets")  # fmt: skip
-    return drawing
 
 
 def _laws(law: Law) -> list[dict[str, float | str]]:

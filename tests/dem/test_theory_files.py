@@ -1,4 +1,4 @@
-"""Theories as files and as a figure."""
+"""Theories as a table and as a figure."""
 
 import csv
 
@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 from restitution.dem import theories as room
-from restitution.dem import theory_figure as drawn
 from restitution.dem.closed_forms import FORMS
+from restitution.dem.theory_files import theory_lines, write_theories
 from restitution.errors import OutputError
+from restitution.plots import theories as plotted
+from restitution.plots.static import draw
 from restitution.studies.case import parse_case
 
 CASE = """
@@ -35,13 +37,22 @@ def case_of(more="", adhesion=""):
     return parse_case(CASE.format(more=more) + adhesion)
 
 
-def test_the_files(points, tmp_path):
+def drawing(case, V, points=None):
+    lines = theory_lines(case, V, room.theories(case, V, points))
+    return draw(plotted.theory_figure(case.title, lines, room.marks(case), points))
+
+
+def names_of(figure):
+    return [text.get_text() for text in figure.legends[0].get_texts()]
+
+
+def test_the_table(points, tmp_path):
     case = case_of()
     V = room.velocities_of(case, points)
     found = room.theories(case, V, points)
-    written = drawn.write_theories(case, V, found, tmp_path / "out", points)
-    assert [path.name for path in written] == ["theory.csv", "theory.png"]
-    with open(written[0], newline="") as file:
+    written = write_theories(V, found, tmp_path / "out")
+    assert written == tmp_path / "out" / "theory.csv"
+    with open(written, newline="") as file:
         rows = list(csv.DictReader(file))
     assert list(rows[0]) == ["velocity_m_per_s", *(each.name for each in found)]
     for each in found:
@@ -49,22 +60,21 @@ def test_the_files(points, tmp_path):
         np.testing.assert_array_equal(column, each.restitution)
     assert rows[0]["johnson"] == ""
     with pytest.raises(OutputError, match="not empty"):
-        drawn.write_theories(case, V, found, tmp_path / "out")
+        write_theories(V, found, tmp_path / "out")
 
 
 def test_the_figure_draws_what_has_an_answer_and_marks_yield_and_sticking(points):
     case = case_of(WALL, 'work_of_adhesion = "0.01 J/m^2"\n')
     V = np.geomspace(1e-5, 1, 25)
-    (axes,) = drawn.figure(case, V, room.theories(case, V)).axes
-    names = [text.get_text() for text in axes.get_legend().get_texts()]
+    figure = drawing(case, V)
+    (axes,), names = figure.axes, names_of(figure)
     assert "sticking" in names
     assert {text.get_text() for text in axes.texts} == {"$V_y$", "$V_s$"}
     nowhere = {each.name for each in room.theories(case, V) if np.isnan(each.restitution).all()}
     assert not nowhere & set(names)
 
     V = points.column("velocity")
-    (axes,) = drawn.figure(case_of(), V, room.theories(case_of(), V, points), points).axes
-    names = [text.get_text() for text in axes.get_legend().get_texts()]
+    names = names_of(drawing(case_of(), V, points))
     assert names[0] == "computed"
     assert "luding (fit)" in names
 
@@ -74,5 +84,5 @@ def test_every_theory_has_a_line_of_its_own(points):
         *FORMS,
         *(each.name for each in room.theories(case_of(), points.column("velocity"), points)),
     }
-    lines = [drawn._LINES[name] for name in names - {"computed"}]
+    lines = [plotted._LINES[name] for name in names - {"computed"}]
     assert len(set(lines)) == len(lines)

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from plotly.graph_objects import Scatter
-
 from restitution.contact.resolution import NODES_PER_PATCH
-from restitution.reports.methods import methods
-from restitution.reports.page import Cell, Drawing, Listing, Page, Table, new_plot, write_page
+from restitution.pages.methods import methods
+from restitution.pages.page import Cell, Drawing, Listing, Page, Table, write_page
+from restitution.plots.study import IMPACT_VELOCITY, INDENTATION, MOST_LINES, Abscissa, study_figure
 from restitution.studies.case import parse_toml
 from restitution.studies.reader import StoredCase, read_study, read_summary, read_text
-
-_MOST_LINES = 60  # in one figure: more cannot be told apart
 
 
 def write_study_page(out: Path) -> Path:
@@ -24,11 +21,9 @@ def write_study_page(out: Path) -> Path:
              for status in ("complete", "failed", "missing")}  # fmt: skip
     parts: list[Table | Drawing | Listing] = []
     if count["complete"]:
-        parts.append(_restitution(cases, swept, "indentation_m", 1e6, "maximum indentation", "µm"))
+        parts.append(_restitution(cases, swept, INDENTATION))
         if any(row["impact_velocity_m_per_s"] for case in cases for row in case.curve.cells):
-            parts.append(
-                _restitution(cases, swept, "impact_velocity_m_per_s", 1.0, "impact velocity", "m/s")
-            )
+            parts.append(_restitution(cases, swept, IMPACT_VELOCITY))
     parts += [_cases(cases, swept), Listing("Study file", text)]
     complete = next((case.name for case in cases if case.status == "complete"), None)
     if complete is not None:
@@ -64,48 +59,26 @@ def _warnings(cases: list[StoredCase], count: dict[str, int]) -> list[str]:
     return found
 
 
-def _restitution(
-    cases: list[StoredCase],
-    swept: list[str],
-    column: str,
-    scale: float,
-    words: str,
-    unit: str,
-) -> Drawing:
-    plot = new_plot(f"{words} ({unit})", "coefficient of restitution")
-    plot.update_xaxes(type="log", exponentformat="power")
-    plot.update_yaxes(range=[0, 1.05])
+def _restitution(cases: list[StoredCase], swept: list[str], abscissa: Abscissa) -> Drawing:
+    axis, column = abscissa.axis, abscissa.column
     drawn = [case for case in cases if case.status == "complete"]
-    table: list[list[Cell]] = []
-    for number, case in enumerate(drawn):
-        rows = [row for row in case.curve.cells if row[column]]
-        x = [scale * float(row[column]) for row in rows]
-        y = [float(row["restitution"]) for row in rows]
-        name = (
-            ", ".join(f"{key.rsplit('.', 1)[-1]} {rows[0][key]}" for key in swept) if rows else ""
-        )
-        table += [[*(row[key] for key in swept), a, b, row["resolved"]]
-                  for row, a, b in zip(rows, x, y, strict=True)]  # fmt: skip
-        if number < _MOST_LINES and rows:
-            open_or_not = ["circle" if row["resolved"] == "true" else "circle-open" for row in rows]
-            plot.add_trace(
-                Scatter(x=x, y=y, mode="lines+markers", name=_escaped(name),
-                        marker={"symbol": open_or_not, "size": 7})
-            )  # fmt: skip
-    few = "" if len(drawn) <= _MOST_LINES else f" The first {_MOST_LINES} of {len(drawn)} cases."
+    table: list[list[Cell]] = [
+        [*(row[key] for key in swept), abscissa.scale * float(row[column]),
+         float(row["restitution"]), row["resolved"]]
+        for case in drawn
+        for row in case.curve.cells
+        if row[column]
+    ]  # fmt: skip
+    figure = study_figure(drawn, abscissa)
+    lines = min(len(drawn), MOST_LINES)
+    few = "" if len(drawn) == lines else f" The first {lines} of {len(drawn)} cases."
     return Drawing(
-        f"Restitution against {words}",
-        plot,
-        f"Coefficient of restitution against {words}, a line for each of "
-        f"{min(len(drawn), _MOST_LINES)} cases",
+        f"Restitution against {axis.label}",
+        figure,
+        f"Coefficient of restitution against {axis.label}, a line for each of {lines} cases",
         f"Open markers: not resolved by the grid. A click in the legend hides a case.{few}",
-        Table("Restitution", [*swept, f"{words} ({unit})", "COR", "resolved"], table),
+        Table("Restitution", [*swept, axis.title, "COR", "resolved"], table),
     )
-
-
-def _escaped(text: str) -> str:
-    """A text of the user's where the figures would read markup in it."""
-    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
 
 
 def _cases(cases: list[StoredCase], swept: list[str]) -> Table:
