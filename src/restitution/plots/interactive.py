@@ -57,7 +57,13 @@ def shown_step(panel: Map) -> int:
 def _draw_chart(plot: Plot, chart: Chart) -> None:
     plot.update_layout(xaxis=_axis(chart.x), yaxis=_axis(chart.y))
     if chart.right is not None:
-        right = {**_axis(chart.right), "overlaying": "y", "side": "right", "showgrid": False}
+        right = {
+            **_axis(chart.right),
+            "overlaying": "y",
+            "side": "right",
+            "showgrid": False,
+            "tickmode": "auto",
+        }  # not at the ticks of the left one
         plot.update_layout(yaxis2=right, margin_r=70)
     ranks = {label: rank for rank, label in enumerate(legend_entries(chart), 1)}
     seen: set[str] = set()

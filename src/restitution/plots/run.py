@@ -192,9 +192,12 @@ def _unloading(results: xr.Dataset) -> list[Line]:
     return found
 
 
-def _span(series: list[Points | Line], name: str) -> tuple[float, float]:
-    """The least and the largest value of an axis, and a margin where they are not zero."""
+def _span(series: list[Points | Line], name: str) -> tuple[float, float | None]:
+    """The ends of an axis: the least and the largest value, and a margin where they are not zero.
+
+    The upper end is None where there is nothing but zeros.
+    """
     values: Array = np.concatenate([getattr(each, name) for each in series])
     low, high = float(values.min()), float(values.max())
     margin = 0.05 * (high - low)
-    return (low - margin if low < 0 else 0.0), high + margin
+    return (low - margin if low < 0 else 0.0), (high + margin or None)

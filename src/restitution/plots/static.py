@@ -14,6 +14,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure as Drawing
+from matplotlib.ticker import NullFormatter
 
 from restitution.plots.figure import (
     Array,
@@ -37,6 +38,7 @@ Format = Literal["png", "svg", "pdf"]
 # Inches: one chart, one map, what a second panel adds, a row of the legend, a legend at the side.
 _CHART, _MAP, _SECOND = (6.4, 4.0), (5.6, 4.6), 4.6
 _ROW, _SIDE = 0.2, 2.4
+_FEW_DECADES = 30.0  # ratio of the ends of a logarithmic axis below which powers of ten are few
 _MOST_BELOW = 8  # entries of a legend below the axes: more stand at the side
 _DATELESS: dict[Format, dict[str, Any]] = {
     "png": {}, "svg": {"Date": None}, "pdf": {"CreationDate": None},
@@ -109,9 +111,21 @@ def _draw_chart(axes: Axes, chart: Chart, handles: dict[str, Any]) -> None:
     axes.set(xscale=chart.x.scale, yscale=chart.y.scale)
     axes.set_xlim(chart.x.low, chart.x.high)
     axes.set_ylim(chart.y.low, chart.y.high)
+    for axis, described in ((axes.xaxis, chart.x), (axes.yaxis, chart.y)):
+        low, high = axis.get_view_interval()
+        if described.scale == "log":
+            few = low > 0 and high < _FEW_DECADES * low
+            axis.set_minor_formatter(_between_powers if few else NullFormatter())
     if chart.right is not None:
         right.set(ylabel=_escaped(chart.right.title), yscale=chart.right.scale)
         right.set_ylim(chart.right.low, chart.right.high)
+
+
+def _between_powers(value: float, _: object) -> str:
+    """The tick labels 2 and 5 between powers of ten: all would lie over one another."""
+    exponent = math.floor(math.log10(value) + 1e-9)
+    leading = round(value / 10**exponent)
+    return rf"${leading}\times10^{{{exponent}}}$" if leading in (2, 5) else ""
 
 
 def _draw_series(axes: Axes, each: Series, handles: dict[str, Any]) -> None:

@@ -38,7 +38,7 @@ def height_distribution(density: HeightDensity, curve: MaterialRatio) -> Figure:
         [
             Chart(
                 Axis("height above the mean", "nm"),
-                Axis("probability density", "1/nm"),
+                Axis("probability density", "1/nm", low=0.0),
                 [
                     Line(x, 1e-9 * density.density, "heights", step=True),
                     Line(x, 1e-9 * density.normal, "normal, same Sq", color=PALETTE[1],
