@@ -32,7 +32,7 @@ def test_limits_of_logarithmic_axes_are_exponents_and_may_be_one():
     plot = plot_of(Line(X, X), x=Axis("x", scale="log", low=0.01, high=100.0))
     assert plot.layout.xaxis.range == (-2, 2)
     plot = plot_of(Line(X, X, right=True), right=Axis("share", "%", low=0.0))
-    assert plot.layout.yaxis2.range == (0, None)
+    assert plot.layout.yaxis2.autorangeoptions.minallowed == 0
     assert plot.data[0].yaxis == "y2"
 
 

@@ -167,8 +167,10 @@ def _axis(axis: Axis) -> dict[str, Any]:
         math.log10(end) if end is not None and axis.scale == "log" else end
         for end in (axis.low, axis.high)
     ]
-    if ends != [None, None]:
+    if None not in ends:
         found["range"] = ends
+    elif ends != [None, None]:  # a range with one end does not outlast a change of size
+        found["autorangeoptions"] = dict(zip(("minallowed", "maxallowed"), ends, strict=True))
     return found
 
 
