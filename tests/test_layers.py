@@ -11,7 +11,7 @@ ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "src" / "restitution"
 ROOMS = (
     "errors", "theory", "numerics", "surfaces", "contact", "collision", "case", "results", "runs",
-    "sweeps", "laws", "dem", "reports", "reproduce", "cli", "__main__",
+    "sweeps", "laws", "dem", "plots", "pages", "reproduce", "cli", "__main__",
 )  # fmt: skip
 SOLVERS = {
     "solve", "step", "solve_at_force", "solve_at_velocity", "solve_batch", "loading_path",

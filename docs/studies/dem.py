@@ -24,7 +24,8 @@ from restitution.dem.export import export, write_export
 from restitution.laws.from_results import bare_law, law_of
 from restitution.laws.law import Law
 from restitution.laws.time_integration import collide_in_time, stored_force
-from restitution.reports.law_figure import write_law_figure
+from restitution.plots.law import law_figure
+from restitution.plots.static import write_figure
 from restitution.results.writer import ResultsFolder
 from restitution.runs.run import run_case
 
@@ -145,8 +146,7 @@ def main() -> None:
         in_time(out, law)
         coverage(text, place)
         if len(sys.argv) > 1:
-            drawn = write_law_figure(law, place)
-            shutil.copy(drawn, Path(sys.argv[1]) / "dem-law.png")
+            write_figure(Path(sys.argv[1]) / "dem-law", law_figure(law))
         equal = text.replace('second = "steel"', "")
         in_codes(law_of(run(equal, place / "equal")), place)
 

@@ -67,7 +67,7 @@ def test_a_folder_without_permission(call, tmp_path, mode):
 def test_a_file_where_a_study_should_go(refused, case_text, tmp_path):
     (tmp_path / "study.toml").write_text(f'{case_text}[sweep]\n"roughness.seed" = [1, 2]\n')
     said = refused("study", tmp_path / "study.toml", "-o", tmp_path / "study.toml")
-    assert said.startswith(f"Error: {tmp_path / 'study.toml'}: cannot be read or written (Not a")
+    assert said.startswith(f"Error: {tmp_path / 'study.toml'}: cannot be written (File exists)")
 
 
 def test_the_backend_of_matplotlib_does_not_matter(call, tmp_path):

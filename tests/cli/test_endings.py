@@ -58,7 +58,7 @@ def test_too_little_memory_is_one_line(refused, case, tmp_path, monkeypatch):
 
 
 def test_an_interruption_after_the_last_depth_says_what_is_kept(cli, case, tmp_path, monkeypatch):
-    from restitution.reports import figures
+    from restitution.plots import run as figures
 
     def stop(_):
         raise KeyboardInterrupt

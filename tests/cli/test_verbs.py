@@ -208,6 +208,35 @@ def test_surface_writes_heights_statistics_and_a_picture(cli, case_text, tmp_pat
     assert (tmp_path / "out" / "surface.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.parametrize("kind", ["svg", "pdf"])
+def test_figures_are_written_in_the_format_asked_for(cli, case_text, tmp_path, kind):
+    case = tmp_path / "case.toml"
+    case.write_text(case_text)
+    read = {"run": case, "surface": case, "theory": case, "law": tmp_path / "run"}
+    written = {}
+    for verb, what in read.items():
+        status, said, _ = cli(verb, what, "-o", tmp_path / verb, "--figures", kind)
+        assert status == 0
+        written[verb] = sorted(path.name for path in (tmp_path / verb).glob(f"*.{kind}"))
+        assert all(name in said for name in written[verb])
+        assert not list((tmp_path / verb).glob("*.png"))
+    assert written == {
+        "run": [
+            f"{name}.{kind}"
+            for name in (
+                "load-displacement",
+                "pressure",
+                "restitution-indentation",
+                "restitution-velocity",
+            )
+        ],
+        "surface": [f"surface.{kind}"],
+        "theory": [f"theory.{kind}"],
+        "law": [f"law.{kind}"],
+    }
+    assert cli("run", case, "-o", tmp_path / "other", "--figures", "gif")[0] != 0
+
+
 def test_version(cli):
     status, said, _ = cli("--version")
     assert status == 0

@@ -20,7 +20,8 @@ from restitution.laws.compact_fit import compact_fit
 from restitution.laws.force_law_fits import fitted_laws
 from restitution.laws.law import Law, Particle, Point
 from restitution.laws.law_files import law_rows
-from restitution.reports.law_figure import law_figure
+from restitution.plots.law import law_figure
+from restitution.plots.static import draw
 
 FUZZ = float(os.environ.get("FUZZ", "1"))
 CONVENTIONS = {
@@ -204,7 +205,7 @@ def test_fitted_laws_are_silent_where_nothing_is_resolved(law):
         assert 0 <= each.rms <= each.worst * (1 + 1e-12) <= 1 + 1e-9
         for point, e in zip(found.points, each.restitution, strict=True):
             assert e is None or (0 <= e <= 1 and low <= point.velocity <= high)
-    for line in law_figure(found).axes[0].lines:
+    for line in draw(law_figure(found)).axes[0].lines:
         if line.get_linestyle() in ("-", "--"):
             drawn = line.get_xdata()[np.isfinite(np.asarray(line.get_ydata(), float))]
             assert all(low * (1 - 1e-9) <= V <= high * (1 + 1e-9) for V in drawn)

@@ -5,7 +5,15 @@ from typing import Annotated
 
 import typer
 
-from restitution.cli.running import CaseFile, Device, OnDevice, OutFolder, carry_out
+from restitution.cli.running import (
+    CaseFile,
+    Device,
+    FigureFormat,
+    Figures,
+    OnDevice,
+    OutFolder,
+    carry_out,
+)
 
 
 def converge(
@@ -16,13 +24,14 @@ def converge(
         int, typer.Option(min=2, max=5, help="How many, each with cells half as large.")
     ] = 3,
     device: OnDevice = Device.cpu,
+    figures: Figures = FigureFormat.png,
 ) -> None:
     """Run CASE on its grid and finer ones; write COR with its discretisation error to OUT."""
     from restitution.cli.console import answers
     from restitution.runs.convergence import run_convergence
 
     summary = carry_out(
-        context, case, out, device, lambda _: grids, partial(run_convergence, grids=grids)
+        context, case, out, device, lambda _: grids, partial(run_convergence, grids=grids), figures
     )
     order = summary["observed_order"]
     answers.print(

@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from restitution.cli.running import FigureFormat, Figures
+
 if TYPE_CHECKING:
     from restitution.laws.law import FittedLaw, Law
 
@@ -22,6 +24,7 @@ def law(
     out: Annotated[
         Path, typer.Option("-o", "--out", help="Folder for the law; new or empty.", readable=False)
     ],
+    figures: Figures = FigureFormat.png,
 ) -> None:
     """Write the restitution law of the results in OUT: table, compact fit, simpler laws."""
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
@@ -37,12 +40,13 @@ def law(
 
         from restitution.laws.from_results import law_of
         from restitution.laws.law_files import write_law
-        from restitution.reports.law_figure import write_law_figure
+        from restitution.plots.law import law_figure
+        from restitution.plots.static import write_figure
 
         found = law_of(results, lambda name, k, n: say(f"fitting {name} ({k} of {n})"))
         written = write_law(found, out)
         say("drawing the figure")
-        written.append(write_law_figure(found, out))
+        written.append(write_figure(out / "law", law_figure(found), figures.value))
     for warning in found.warnings:
         warn(warning)
     answers.print(

@@ -24,6 +24,14 @@ class Device(StrEnum):
     auto = "auto"
 
 
+class FigureFormat(StrEnum):
+    """What figures may be written as."""
+
+    png = "png"
+    svg = "svg"
+    pdf = "pdf"
+
+
 CaseFile = Annotated[
     Path, typer.Argument(help="Case file (TOML).", show_default=False, readable=False)
 ]
@@ -34,6 +42,8 @@ OnDevice = Annotated[
     Device, typer.Option(help="Where to solve; auto uses a GPU if available (needs CuPy).")
 ]
 
+Figures = Annotated[FigureFormat, typer.Option("--figures", help="Format of the figures.")]
+
 
 def carry_out(
     context: typer.Context,
@@ -42,6 +52,7 @@ def carry_out(
     device: Device,
     runs: Callable[[Case], int],
     start: Callable[..., dict[str, Any]],
+    figures: FigureFormat,
 ) -> dict[str, Any]:
     """Read the file `case`, let `start` compute into `out`, and say what came of it.
 
@@ -60,7 +71,6 @@ def carry_out(
     from restitution.cli.console import answers, errors, hint_at_kernels, warn
     from restitution.cli.signals import Stopped, received
     from restitution.numerics.convolution.device import on_device
-    from restitution.reports.figures import write_figures
     from restitution.results.locking import locked
     from restitution.results.schema import LOCK
     from restitution.results.writer import ResultsFolder
@@ -95,28 +105,26 @@ def carry_out(
             f"{summary['seconds']:.1f} s; largest residual {residual:.1e}",
             markup=False,
         )
-        figures = write_figures(out)
+        drawn = {path.name for path in _draw(out, figures)}
     except KeyboardInterrupt as stop:
         errors.print("Interrupted.", style="red")
-        _keep(folder, depths)
+        _keep(folder, depths, figures)
         raise typer.Exit(stop.status if isinstance(stop, Stopped) else 130) from None
     except BaseException:
         if received:
             errors.print("Interrupted.", style="red")
-        _keep(folder, depths)
+        _keep(folder, depths, figures)
         raise
-    drawn = {figure.name for figure in figures}
     names = [p.name for p in sorted(out.iterdir()) if p.name not in drawn and p.name != LOCK]
     answers.print(f"In {out}: {', '.join([*names, *sorted(drawn)])}", markup=False, soft_wrap=True)
     return summary
 
 
-def _keep(folder: ResultsFolder, depths: int) -> None:
+def _keep(folder: ResultsFolder, depths: int, figures: FigureFormat) -> None:
     """Say what a run that ended early leaves, and draw it."""
     from contextlib import suppress
 
     from restitution.cli.console import errors
-    from restitution.reports.figures import write_figures
 
     if not folder.rows:
         return
@@ -126,7 +134,16 @@ def _keep(folder: ResultsFolder, depths: int) -> None:
         markup=False, soft_wrap=True,
     )  # fmt: skip
     with suppress(Exception):  # what ended the run is to be said, not that its figures fail, too
-        write_figures(folder.path)
+        _draw(folder.path, figures)
+
+
+def _draw(out: Path, figures: FigureFormat) -> list[Path]:
+    """Draw every figure that the results in `out` support; return the files written."""
+    from restitution.plots.run import run_figures
+    from restitution.plots.static import write_figures
+    from restitution.results.reader import RunResults
+
+    return write_figures(out, run_figures(RunResults(out).dataset), figures.value)
 
 
 def _print_curve(console: Console, rows: list[dict[str, float]]) -> None:

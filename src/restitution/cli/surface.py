@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from restitution.cli.running import FigureFormat, Figures
+
 
 def surface(
     context: typer.Context,
@@ -15,6 +17,7 @@ def surface(
         Path,
         typer.Option("-o", "--out", help="Folder for the results; new or empty.", readable=False),
     ],
+    figures: Figures = FigureFormat.png,
 ) -> None:
     """Write the surface of CASE to OUT: heights, ISO 25178 statistics, a picture and a page."""
     import xarray as xr
@@ -23,8 +26,9 @@ def surface(
     from restitution.case import needs
     from restitution.case.case_file import naming, read_case
     from restitution.cli.console import answers, waiting
-    from restitution.reports.figures import surface_map, write_figure
-    from restitution.reports.surface_page import write_surface_page
+    from restitution.pages.surface import write_surface_page
+    from restitution.plots.static import write_figure
+    from restitution.plots.surface import surface_map
     from restitution.results.interruption import hold_signals
     from restitution.results.locking import locked
     from restitution.results.writer import ResultsFolder, write_checksums, write_json, write_netcdf
@@ -55,15 +59,12 @@ def surface(
             write_netcdf(out / "surface.nc", dataset)
             write_json(out / "statistics.json", {**statistics, "provenance": provenance})
             write_checksums(out, ["statistics.json", "surface.nc"])
-        write_figure(
-            out / "surface.png",
-            surface_map(height, read.title, str(made.provenance.get("y_axis", "up"))),
-        )
+        picture = write_figure(out / "surface", surface_map(made, read.title), figures.value)
         write_surface_page(out)
 
     table = Table(box=None, show_header=False)
     for key, value in statistics.items():
         table.add_row(key, "-" if value is None else f"{value:.5g}")
     answers.print(table)
-    answers.print(f"In {out}: surface.nc, statistics.json, surface.png, surface.html", markup=False,
-                  soft_wrap=True)  # fmt: skip
+    answers.print(f"In {out}: surface.nc, statistics.json, {picture.name}, surface.html",
+                  markup=False, soft_wrap=True)  # fmt: skip

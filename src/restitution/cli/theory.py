@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from restitution.cli.running import FigureFormat, Figures
+
 if TYPE_CHECKING:
     from restitution.laws.theories import Theory
 
@@ -21,7 +23,7 @@ def theory(
         typer.Option(
             "-o",
             "--out",
-            help="Folder for theory.csv and theory.png; new or empty.",
+            help="Folder for theory.csv and a figure, theory.png; new or empty.",
             readable=False,
         ),
     ] = None,
@@ -33,13 +35,15 @@ def theory(
             readable=False,
         ),
     ] = None,
+    figures: Figures = FigureFormat.png,
 ) -> None:
     """Print COR against velocity of every published closed form for the smooth bodies of CASE."""
     from restitution.case.case_file import naming, read_case
     from restitution.cli.console import answers
     from restitution.laws import theories as room
     from restitution.laws.law_files import read_law, write_theories
-    from restitution.reports.theory_figure import write_theory_figure
+    from restitution.plots.static import write_figure
+    from restitution.plots.theories import theory_figure
 
     read, _ = read_case(case)
     points = None if law is None else read_law(law)
@@ -51,10 +55,10 @@ def theory(
         missing = room.left_out(read, points)
     written = []
     if out is not None:
-        written = [
-            write_theories(velocities, found, out),
-            write_theory_figure(read, velocities, found, out, points),
-        ]
+        written.append(write_theories(velocities, found, out))
+        lines = room.theory_lines(read, velocities, found)
+        figure = theory_figure(read.title, lines, room.marks(read), points)
+        written.append(write_figure(out / "theory", figure, figures.value))
 
     def say(line: str) -> None:
         answers.print(line, markup=False, soft_wrap=True)

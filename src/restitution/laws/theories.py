@@ -22,6 +22,7 @@ STEPS = 25
 COMPUTED = "computed"
 """The name of the computed points among the theories."""
 
+_FINE = 600  # velocities of a line in a figure
 _SAME = 1e-6  # R*, E* and m* are equal within this relative difference
 _FITTED = ("constant", "walton-braun", "luding", "eepa")  # their parameters need a fit
 
@@ -68,6 +69,28 @@ def theories(case: Case, velocities: Array, law: Law | None = None) -> list[Theo
         check_same_pair(case, law)
         found += _of_law(Bodies.of(case), law, V)
     return found
+
+
+def theory_lines(
+    case: Case, velocities: Array, found: list[Theory]
+) -> list[tuple[str, bool, Array, Array]]:
+    """The lines of a figure: name, whether fitted, velocities (m/s) and COR of each of `found`.
+
+    Closed forms are evaluated at many velocities from the first to the last, fits stay at
+    `velocities`. The computed points are left out.
+    """
+    closed: dict[str, Array] = {}
+    V = velocities
+    if velocities.size > 1:
+        V = np.geomspace(velocities[0], velocities[-1], _FINE)
+        closed = {each.name: each.restitution for each in theories(case, V)}
+    return [
+        (each.name, each.name not in FORMS, V, closed[each.name])
+        if each.name in closed
+        else (each.name, each.name not in FORMS, velocities, each.restitution)
+        for each in found
+        if each.name != COMPUTED
+    ]
 
 
 def left_out(case: Case, law: Law | None = None) -> dict[str, str]:

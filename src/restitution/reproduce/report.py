@@ -4,13 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import xarray as xr
-from plotly.graph_objects import Scatter
 
-from restitution.reports.methods import methods
-from restitution.reports.page import Cell, Drawing, Page, Table, new_plot, write_page
+from restitution.pages.methods import methods
+from restitution.pages.page import Cell, Drawing, Page, Table, write_page
+from restitution.plots.figure import (
+    DASHED,
+    GREY,
+    PALETTE,
+    Axis,
+    Chart,
+    Figure,
+    Line,
+    Points,
+    Series,
+)
 from restitution.reproduce.claims import (
     CLAIMS,
     E_STAR,
@@ -134,18 +145,14 @@ def _lines(
     log: bool = False,
 ) -> Drawing:
     """Values of `y` of several curves against indentation, with theoretical laws dashed."""
-    plot = new_plot("indentation (nm)", y)
-    plot.update_xaxes(type="log", exponentformat="power")
-    if log:
-        plot.update_yaxes(type="log", exponentformat="power")
     rows: list[list[Cell]] = []
-    for curve, values in lines:
+    series: list[Series] = []
+    for number, (curve, values) in enumerate(lines):
         label = "smooth" if curve.label == SMOOTH else curve.label
-        symbols = ["circle" if good else "circle-open" for good in curve.resolved]
-        plot.add_trace(
-            Scatter(x=1e9 * curve.depth, y=values, mode="lines+markers", name=label,
-                    marker={"symbol": symbols, "size": 7})
-        )  # fmt: skip
+        color = PALETTE[number % len(PALETTE)]
+        series.append(
+            Points(1e9 * curve.depth, values, label, color=color, joined=True, open=~curve.resolved)
+        )
         rows += [
             [label, 1e9 * float(d), float(v), "yes" if good else "no"]
             for d, v, good in zip(curve.depth, values, curve.resolved, strict=True)
@@ -153,13 +160,16 @@ def _lines(
     for name, law in laws:
         depth = lines[0][0].depth
         fine = np.geomspace(depth[0], depth[-1], 100)
-        plot.add_trace(Scatter(x=1e9 * fine, y=law(fine), mode="lines", name=name,
-                               line={"dash": "dash", "color": "#8c959f"}))  # fmt: skip
+        series.append(Line(1e9 * fine, law(fine), name, color=GREY, dash=DASHED))
+    scale: Literal["linear", "log"] = "log" if log else "linear"
+    chart = Chart(Axis("indentation", "nm", "log"), Axis(y, scale=scale), series)
     return Drawing(
-        title, plot, f"{title}: {y} against indentation for {len(lines)} cases",
+        title,
+        Figure(title, [chart]),
+        f"{title}: {y} against indentation for {len(lines)} cases",
         caption + " Open markers: not resolved by the grid.",
         Table(title, ["case", "indentation (nm)", y, "resolved"], rows),
-    )  # fmt: skip
+    )
 
 
 def _critical(study: xr.Dataset, caption: str) -> Drawing:
@@ -171,13 +181,12 @@ def _critical(study: xr.Dataset, caption: str) -> Drawing:
         if not c.label.startswith(SMOOTH)
     ]
     title = "Figure 11: critical indentation"
-    plot = new_plot("Rq/R", "i_cr,max (µm)")
-    plot.add_trace(
-        Scatter(x=[p[1] for p in points], y=[p[2] for p in points], mode="markers",
-                text=[p[0] for p in points], name="one surface")
-    )  # fmt: skip
+    series = [Points(np.array([x]), np.array([y]), "one surface", name) for name, x, y in points]
+    chart = Chart(Axis("Rq/R"), Axis("i_cr,max", "µm"), series)
     return Drawing(
-        title, plot, f"{title} against roughness over radius for {len(points)} surfaces",
+        title,
+        Figure(title, [chart]),
+        f"{title} against roughness over radius for {len(points)} surfaces",
         caption + " Surfaces that did not come within 5 % of the smooth sphere are not drawn.",
         Table(title, ["Rq, seed", "Rq/R", "i_cr,max (µm)"], [list(p) for p in points]),
-    )  # fmt: skip
+    )

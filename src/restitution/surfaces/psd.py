@@ -23,6 +23,7 @@ Array = NDArray[np.float64]
 
 _TAPERS = 3  # along either axis
 _BANDS_PER_OCTAVE = 4
+_SECTOR = 15  # degrees on either side of an axis
 
 
 class RadialSpectrum(NamedTuple):
@@ -30,6 +31,13 @@ class RadialSpectrum(NamedTuple):
 
     wave_number: Array
     density: Array
+
+
+class DirectedSpectrum(NamedTuple):
+    """A `spectrum` averaged over some `directions`, named in words."""
+
+    directions: str
+    spectrum: RadialSpectrum
 
 
 def power_spectral_density(surface: Surface) -> Array:
@@ -70,6 +78,26 @@ def radial_spectrum(surface: Surface, density: Array | None = None) -> RadialSpe
     sums = (np.bincount(band, np.where(known, v.ravel(), 0), count + 2)[1:-1] for v in (q, C))
     mean_q, mean_C = (values[size > 0] / size[size > 0] for values in sums)
     return RadialSpectrum(mean_q, mean_C)
+
+
+def directed_spectra(surface: Surface) -> list[DirectedSpectrum]:
+    """`radial_spectrum` over all directions, and over those within 15° of x and of y."""
+    C = power_spectral_density(surface)
+    qx, qy = (
+        2 * math.pi * np.fft.fftfreq(n, h)
+        for n, h in zip(surface.grid.nodes, surface.grid.spacing, strict=True)
+    )
+    q = wave_numbers(C.shape, surface.grid.spacing)
+    near = math.cos(math.radians(_SECTOR))
+    sectors = {
+        "all directions": np.ones(C.shape, bool),
+        f"within {_SECTOR}° of x": np.abs(qx)[:, None] >= near * q,
+        f"within {_SECTOR}° of y": np.abs(qy)[None, :] >= near * q,
+    }
+    return [
+        DirectedSpectrum(name, radial_spectrum(surface, np.where(inside, C, np.nan)))
+        for name, inside in sectors.items()
+    ]
 
 
 def wave_numbers(nodes: tuple[int, ...], spacing: tuple[float, float]) -> Array:

@@ -17,6 +17,7 @@ from restitution.surfaces.surface import Surface, is_periodic
 
 Array = NDArray[np.float64]
 
+_BINS = 80  # of the density of heights
 _DECAY = 0.2  # of the autocorrelation, for Sal and Str (4.2)
 _DIRECTIONS = 180  # over a half turn
 _CORE = 0.4  # of the material ratio that the core's secant spans (5.2)
@@ -35,6 +36,14 @@ class MaterialRatio(NamedTuple):
 
     ratio: Array
     height: Array
+
+
+class HeightDensity(NamedTuple):
+    """Heights (m) above the mean, their probability density (1/m) and the normal one of that Sq."""
+
+    height: Array
+    density: Array
+    normal: Array
 
 
 def texture(surface: Surface) -> dict[str, float | None]:
@@ -65,6 +74,18 @@ def texture(surface: Surface) -> dict[str, float | None]:
         "Sdr": _developed_area(surface),
         **_core(material_ratio(surface)),
     }
+
+
+def height_density(surface: Surface) -> HeightDensity:
+    """The histogram of the heights less their mean, beside the normal distribution; 0 if flat."""
+    z = surface.height - surface.height.mean()
+    density, edges = np.histogram(1e9 * z, bins=_BINS, density=True)
+    height = 0.5 * (edges[1:] + edges[:-1])
+    Sq = 1e9 * math.sqrt(np.mean(z**2))
+    normal = np.zeros(_BINS)
+    if Sq > 0:
+        normal = np.exp(-0.5 * (height / Sq) ** 2) / (Sq * math.sqrt(2 * math.pi))
+    return HeightDensity(1e-9 * height, 1e9 * density, 1e9 * normal)
 
 
 def autocorrelation(surface: Surface) -> Autocorrelation:

@@ -8,23 +8,24 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
-from plotly.graph_objects import Heatmap, Scatter
 
 from restitution.numerics.grid import Grid
-from restitution.reports.page import Cell, Drawing, Page, Table, new_plot, write_page
+from restitution.pages.page import Cell, Drawing, Page, Table, write_page
+from restitution.plots.figure import Map
+from restitution.plots.interactive import shown_step
+from restitution.plots.surface import (
+    autocorrelation_figure,
+    height_distribution,
+    spectrum_figure,
+    surface_map,
+)
 from restitution.results.reader import read_json, read_netcdf
 from restitution.surfaces import Surface
-from restitution.surfaces.psd import power_spectral_density, radial_spectrum, wave_numbers
+from restitution.surfaces.psd import directed_spectra
 from restitution.surfaces.surface import is_periodic
-from restitution.surfaces.texture import autocorrelation, material_ratio
+from restitution.surfaces.texture import autocorrelation, height_density, material_ratio
 
-Array = NDArray[np.float64]
-
-_MOST_PIXELS = 320  # of the map, along either axis: more are skipped
-_BINS = 80
 _LAY = 0.5  # texture aspect ratio below which a surface has a lay
-_SECTOR = 15  # degrees on either side of an axis
 
 # Parameter → (name, clause of ISO 25178-2:2012, unit in the table, factor, provenance it answers).
 _PARAMETERS: dict[str, tuple[str, str, str, float, str]] = {
@@ -86,27 +87,16 @@ def write_surface_page(out: Path) -> Path:
 
 
 def _map(surface: Surface) -> Drawing:
-    step = math.ceil(max(surface.grid.nodes) / _MOST_PIXELS)
-    x, y = 1e6 * surface.grid.x[::step], 1e6 * surface.grid.y[::step]
-    z = 1e9 * (surface.height - surface.height.mean())[::step, ::step]
-    plot = new_plot("x (µm)", "y (µm)")
-    plot.add_trace(
-        Heatmap(
-            x=x.astype(np.float32), y=y.astype(np.float32), z=z.T.astype(np.float32),
-            colorscale="Cividis", colorbar={"title": "nm"},
-            hovertemplate="x %{x:.4g} µm, y %{y:.4g} µm<br>%{z:.4g} nm<extra></extra>",
-        )
-    )  # fmt: skip
-    plot.update_yaxes(scaleanchor="x", constrain="domain")
-    plot.update_xaxes(constrain="domain")
-    if surface.provenance.get("y_axis") == "down":
-        plot.update_yaxes(autorange="reversed")
+    figure = surface_map(surface)
+    (drawn,) = (panel for panel in figure.panels if isinstance(panel, Map))
+    step = shown_step(drawn)
+    x, y, z = drawn.x[::step], drawn.y[::step], drawn.values[::step, ::step]
     every = "" if step == 1 else f" One node in {step} along x and y is drawn."
     low, high = z.min(), z.max()
     across = [0, x.size // 4, x.size // 2, 3 * x.size // 4, x.size - 1]
     return Drawing(
         "Height map",
-        plot,
+        figure,
         f"Map of heights from {low:.4g} to {high:.4g} nm about their mean",
         f"Heights above their mean.{every} The table has a few profiles along y; all heights are "
         "in surface.nc.",
@@ -115,7 +105,6 @@ def _map(surface: Surface) -> Drawing:
             ["y (µm)", *(f"x = {x[i]:.4g} µm" for i in across)],
             [[float(y[j]), *(float(z[i, j]) for i in across)] for j in range(0, y.size, 8)],
         ),
-        square=True,
     )
 
 
@@ -147,35 +136,11 @@ def _scaled(value: object, factor: float) -> float | None:
 
 
 def _heights(surface: Surface, statistics: Mapping[str, Any]) -> Drawing:
-    z = 1e9 * (surface.height - surface.height.mean())
-    density, edges = np.histogram(z, bins=_BINS, density=True)
-    middle = 0.5 * (edges[1:] + edges[:-1])
-    Sq = 1e9 * statistics["Sq_m"]
-    normal = np.exp(-0.5 * (middle / Sq) ** 2) / (Sq * math.sqrt(2 * math.pi)) if Sq else 0 * middle
-    curve = material_ratio(surface, 201)
-    plot = new_plot("height above the mean (nm)", "probability density (1/nm)")
-    plot.add_trace(Scatter(x=middle, y=density, mode="lines", line_shape="hvh", name="heights"))
-    plot.add_trace(
-        Scatter(x=middle, y=normal, mode="lines", line_dash="dash", name="normal, same Sq")
-    )
-    plot.add_trace(
-        Scatter(x=1e9 * curve.height, y=100 * curve.ratio, mode="lines", yaxis="y2",
-                name="material ratio (right)")
-    )  # fmt: skip
-    plot.update_layout(
-        yaxis2={
-            "title": "material ratio (%)",
-            "overlaying": "y",
-            "side": "right",
-            "range": [0, 100],
-            "tickvals": [0, 20, 40, 60, 80, 100],
-            "showgrid": False,
-        },
-        margin_r=70,
-    )
+    found = height_density(surface)
+    columns = [1e9 * found.height, 1e-9 * found.density, 1e-9 * found.normal]
     return Drawing(
         "Distribution of heights",
-        plot,
+        height_distribution(found, material_ratio(surface, 201)),
         f"Histogram of heights with a skewness of {_number(statistics['Ssk'])} and a kurtosis of "
         f"{_number(statistics['Sku'])} beside the normal distribution, and the material ratio",
         "Heights beside the normal distribution of the same Sq, and (right axis) the material "
@@ -183,7 +148,7 @@ def _heights(surface: Surface, statistics: Mapping[str, Any]) -> Drawing:
         Table(
             "Heights",
             ["height (nm)", "density (1/nm)", "normal (1/nm)"],
-            np.column_stack([middle, density, normal]).tolist(),
+            np.column_stack(columns).tolist(),
         ),
     )
 
@@ -191,17 +156,13 @@ def _heights(surface: Surface, statistics: Mapping[str, Any]) -> Drawing:
 def _autocorrelation(surface: Surface) -> Drawing:
     R = autocorrelation(surface)
     i, j = (n // 2 for n in surface.grid.nodes)
-    plot = new_plot("lag (µm)", "autocorrelation")
     rows: list[list[Cell]] = []
     for name, lag, values in (("x", R.x[i:], R.values[i:, j]), ("y", R.y[j:], R.values[i, j:])):
-        plot.add_trace(Scatter(x=1e6 * lag, y=values, mode="lines", name=f"along {name}"))
         points = zip(1e6 * lag[:100], values[:100], strict=True)
         rows += [[name, float(t), float(v)] for t, v in points]
-    for level, words in ((0.2, "0.2 (Sal)"), (0.1, "0.1 (Hu and Tonder)")):
-        plot.add_hline(level, line_dash="dot", line_width=1, annotation_text=words)
     return Drawing(
         "Autocorrelation",
-        plot,
+        autocorrelation_figure(R),
         "Autocorrelation of the heights against the lag along x and y",
         "Along both axes, with the levels that define the autocorrelation length Sal and the "
         "correlation length of the generators; "
@@ -211,33 +172,15 @@ def _autocorrelation(surface: Surface) -> Drawing:
 
 
 def _spectrum(surface: Surface) -> Drawing:
-    C = power_spectral_density(surface)
-    qx, qy = (
-        2 * math.pi * np.fft.fftfreq(n, h)
-        for n, h in zip(surface.grid.nodes, surface.grid.spacing, strict=True)
-    )
-    q = wave_numbers(C.shape, surface.grid.spacing)
-    near = math.cos(math.radians(_SECTOR))
-    plot = new_plot("wave number q (1/µm)", "power spectral density C (µm⁴)")
-    plot.update_xaxes(type="log", exponentformat="power")
-    plot.update_yaxes(type="log", exponentformat="power")
-    rows: list[list[Cell]] = []
-    sectors = (
-        ("all directions", np.ones(C.shape, bool), "solid"),
-        (f"within {_SECTOR}° of x", np.abs(qx)[:, None] >= near * q, "dot"),
-        (f"within {_SECTOR}° of y", np.abs(qy)[None, :] >= near * q, "dash"),
-    )
-    for name, inside, dash in sectors:
-        spectrum = radial_spectrum(surface, np.where(inside, C, np.nan))
-        waves, density = 1e-6 * spectrum.wave_number, 1e24 * spectrum.density
-        plot.add_trace(Scatter(x=waves, y=density, mode="lines", line_dash=dash, name=name))
-        rows += [
-            [name, float(k), 2 * math.pi / float(k), float(c)]
-            for k, c in zip(waves, density, strict=True)
-        ]
+    spectra = directed_spectra(surface)
+    rows: list[list[Cell]] = [
+        [each.directions, 1e-6 * float(q), 2e6 * math.pi / float(q), 1e24 * float(C)]
+        for each in spectra
+        for q, C in zip(*each.spectrum, strict=True)
+    ]
     return Drawing(
         "Power spectral density",
-        plot,
+        spectrum_figure(spectra),
         "Power spectral density against wave number, averaged over all directions and near x and y",
         "C(q) = |∫ z exp(−iq·r) d²r|²/A, so that Sq² = (2π)⁻²∫C d²q; averaged over bands of a "
         "quarter of an octave. "

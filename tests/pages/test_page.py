@@ -4,23 +4,23 @@ import re
 
 import numpy as np
 import pytest
-from plotly.graph_objects import Scatter
 
-from restitution.reports.page import Drawing, Page, Table, new_plot, write_page
+from restitution.pages.page import Drawing, Page, Table, write_page
+from restitution.plots.figure import Axis, Chart, Figure, Line
 
 HOSTILE = '</script><script>document.title = "hacked"</script><img src=x onerror=alert(1)> & "'
 
 
 def page(title="A page", cell="cell"):
-    plot = new_plot("x (µm)", "y")
-    plot.add_trace(Scatter(x=np.arange(5.0), y=np.arange(5.0) ** 2, name=cell))
+    line = Line(np.arange(5.0), np.arange(5.0) ** 2, cell)
+    figure = Figure(title, [Chart(Axis("x", "µm"), Axis("y"), [line], title=cell)])
     table = Table("Numbers", ["x", "y"], [[float(k), float(k * k)] for k in range(5)])
     return Page(
         title,
         [f"About {cell}"],
         [f"Beware of {cell}"],
         [
-            Drawing("A figure", plot, f"Squares, {cell}", "How to read it", table),
+            Drawing("A figure", figure, f"Squares, {cell}", "How to read it", table),
             Table("A table", ["name", cell], [[cell, 1.5], ["none", None], ["nan", float("nan")]]),
         ],
     )

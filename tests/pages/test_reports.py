@@ -31,14 +31,14 @@ def test_a_run(reported, opened):
     page = reported("run")
     drawn, console = opened(page)
     assert console == []
-    assert 'data-drawn="4"' in drawn
+    assert 'data-drawn="6"' in drawn
     text = own(page)
     for words in ("Restitution against maximum indentation", "Contact pressure", "Case file",
                   "Love (1929)", "Derived quantities", "largest residual"):  # fmt: skip
         assert words in text
     assert "<script>document" not in text
     plots = re.findall(r'<div class="plot[^>]*>', text)
-    assert len(plots) == 4
+    assert len(plots) == 6
     assert all(re.search(r'role="img" aria-label="[^"]{20,}"', plot) for plot in plots)
 
 
@@ -46,7 +46,7 @@ def test_an_ensemble(reported, case_text, opened):
     page = reported("run", case_text.replace("seed = 1", "seed = 1\nrealisations = 2"))
     drawn, console = opened(page, width=400)
     assert console == []
-    assert 'data-drawn="3"' in drawn
+    assert 'data-drawn="4"' in drawn
     assert "95 % interval of the mean" in own(page)
     assert "means of 2 surfaces" in own(page)
 

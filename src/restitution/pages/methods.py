@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from restitution.reports.page import Table
+from restitution.pages.page import Table
 
 _ALWAYS = (
     ("displacement of the half-space", "rectangles of constant pressure",

@@ -5,7 +5,8 @@ import numpy as np
 from restitution.case.case_file import parse_case
 from restitution.laws import theories as room
 from restitution.laws.closed_forms import FORMS
-from restitution.reports import theory_figure as drawn
+from restitution.plots import theories as plotted
+from restitution.plots.static import draw
 
 CASE = """
 [first]
@@ -31,27 +32,27 @@ def case_of(more="", adhesion=""):
     return parse_case(CASE.format(more=more) + adhesion)
 
 
-def test_the_file(points, tmp_path):
-    case = case_of()
-    V = room.velocities_of(case, points)
-    path = drawn.write_theory_figure(case, V, room.theories(case, V, points), tmp_path, points)
-    assert path == tmp_path / "theory.png"
-    assert path.read_bytes().startswith(b"\x89PNG")
+def drawing(case, V, points=None):
+    lines = room.theory_lines(case, V, room.theories(case, V, points))
+    return draw(plotted.theory_figure(case.title, lines, room.marks(case), points))
+
+
+def names_of(figure):
+    return [text.get_text() for text in figure.legends[0].get_texts()]
 
 
 def test_the_figure_draws_what_has_an_answer_and_marks_yield_and_sticking(points):
     case = case_of(WALL, 'work_of_adhesion = "0.01 J/m^2"\n')
     V = np.geomspace(1e-5, 1, 25)
-    (axes,) = drawn.theory_figure(case, V, room.theories(case, V)).axes
-    names = [text.get_text() for text in axes.get_legend().get_texts()]
+    figure = drawing(case, V)
+    (axes,), names = figure.axes, names_of(figure)
     assert "sticking" in names
     assert {text.get_text() for text in axes.texts} == {"$V_y$", "$V_s$"}
     nowhere = {each.name for each in room.theories(case, V) if np.isnan(each.restitution).all()}
     assert not nowhere & set(names)
 
     V = points.column("velocity")
-    (axes,) = drawn.theory_figure(case_of(), V, room.theories(case_of(), V, points), points).axes
-    names = [text.get_text() for text in axes.get_legend().get_texts()]
+    names = names_of(drawing(case_of(), V, points))
     assert names[0] == "computed"
     assert "luding (fit)" in names
 
@@ -61,5 +62,5 @@ def test_every_theory_has_a_line_of_its_own(points):
         *FORMS,
         *(each.name for each in room.theories(case_of(), points.column("velocity"), points)),
     }
-    lines = [drawn._LINES[name] for name in names - {"computed"}]
+    lines = [plotted._LINES[name] for name in names - {"computed"}]
     assert len(set(lines)) == len(lines)

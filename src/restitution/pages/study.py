@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
 from pathlib import Path
-
-from plotly.graph_objects import Scatter
 
 from restitution.case.case_file import parse_toml
 from restitution.contact.resolution import NODES_PER_PATCH
-from restitution.reports.methods import methods
-from restitution.reports.page import Cell, Drawing, Listing, Page, Table, new_plot, write_page
+from restitution.pages.methods import methods
+from restitution.pages.page import Cell, Drawing, Listing, Page, Table, write_page
+from restitution.plots.study import (
+    IMPACT_VELOCITY,
+    INDENTATION,
+    MOST_LINES,
+    Abscissa,
+    rows_with,
+    study_figure,
+)
 from restitution.results.reader import StoredCase, StudyResults
-
-_MOST_LINES = 60  # in one figure: more cannot be told apart
 
 
 def write_study_page(out: Path) -> Path:
@@ -27,11 +29,9 @@ def write_study_page(out: Path) -> Path:
              for status in ("complete", "failed", "missing")}  # fmt: skip
     parts: list[Table | Drawing | Listing] = []
     if count["complete"]:
-        parts.append(_restitution(cases, swept, "indentation_m", 1e6, "maximum indentation", "µm"))
-        if any(_has(row, "impact_velocity_m_per_s") for case in cases for row in case.curve.rows):
-            parts.append(
-                _restitution(cases, swept, "impact_velocity_m_per_s", 1.0, "impact velocity", "m/s")
-            )
+        parts.append(_restitution(cases, swept, INDENTATION))
+        if any(rows_with(case, IMPACT_VELOCITY) for case in cases):
+            parts.append(_restitution(cases, swept, IMPACT_VELOCITY))
     parts += [_cases(cases, swept), Listing("Study file", text)]
     complete = next((case.name for case in cases if case.status == "complete"), None)
     if complete is not None:
@@ -67,53 +67,25 @@ def _warnings(cases: list[StoredCase], count: dict[str, int]) -> list[str]:
     return found
 
 
-def _restitution(
-    cases: list[StoredCase],
-    swept: list[str],
-    column: str,
-    scale: float,
-    words: str,
-    unit: str,
-) -> Drawing:
-    plot = new_plot(f"{words} ({unit})", "coefficient of restitution")
-    plot.update_xaxes(type="log", exponentformat="power")
-    plot.update_yaxes(range=[0, 1.05])
+def _restitution(cases: list[StoredCase], swept: list[str], abscissa: Abscissa) -> Drawing:
+    axis = abscissa.axis
     drawn = [case for case in cases if case.status == "complete"]
-    table: list[list[Cell]] = []
-    for number, case in enumerate(drawn):
-        rows = [row for row in case.curve.rows if _has(row, column)]
-        x = [scale * row[column] for row in rows]
-        y = [row["restitution"] for row in rows]
-        resolved = ["true" if row["resolved"] else "false" for row in rows]
-        name = ", ".join(f"{key.rsplit('.', 1)[-1]} {value}" for key, value in case.swept.items())
-        table += [
-            [*case.swept.values(), a, b, yes] for a, b, yes in zip(x, y, resolved, strict=True)
-        ]
-        if number < _MOST_LINES and rows:
-            open_or_not = ["circle" if row["resolved"] else "circle-open" for row in rows]
-            plot.add_trace(
-                Scatter(x=x, y=y, mode="lines+markers", name=_escaped(name),
-                        marker={"symbol": open_or_not, "size": 7})
-            )  # fmt: skip
-    few = "" if len(drawn) <= _MOST_LINES else f" The first {_MOST_LINES} of {len(drawn)} cases."
+    table: list[list[Cell]] = [
+        [*case.swept.values(), abscissa.scale * row[abscissa.column], row["restitution"],
+         "true" if row["resolved"] else "false"]
+        for case in drawn
+        for row in rows_with(case, abscissa)
+    ]  # fmt: skip
+    figure = study_figure(drawn, abscissa)
+    lines = min(len(drawn), MOST_LINES)
+    few = "" if len(drawn) == lines else f" The first {lines} of {len(drawn)} cases."
     return Drawing(
-        f"Restitution against {words}",
-        plot,
-        f"Coefficient of restitution against {words}, a line for each of "
-        f"{min(len(drawn), _MOST_LINES)} cases",
+        f"Restitution against {axis.label}",
+        figure,
+        f"Coefficient of restitution against {axis.label}, a line for each of {lines} cases",
         f"Open markers: not resolved by the grid. A click in the legend hides a case.{few}",
-        Table("Restitution", [*swept, f"{words} ({unit})", "COR", "resolved"], table),
+        Table("Restitution", [*swept, axis.title, "COR", "resolved"], table),
     )
-
-
-def _has(row: Mapping[str, float], column: str) -> bool:
-    """Whether the cell of `row` in `column` has a number."""
-    return not math.isnan(row[column])
-
-
-def _escaped(text: str) -> str:
-    """A text of the user's where the figures would read markup in it."""
-    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
 
 
 def _cases(cases: list[StoredCase], swept: list[str]) -> Table:

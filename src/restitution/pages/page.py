@@ -11,12 +11,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
-from plotly.graph_objects import Figure as Plot
 from plotly.offline import get_plotlyjs
 
+from restitution.plots import interactive
+from restitution.plots.figure import Figure, Map, legend_entries
 from restitution.results.writer import replace_file
 
 Cell = str | float | int | None
@@ -45,11 +47,10 @@ class Drawing:
     """A figure: what it shows in words (`alt`), how to read it (`caption`), and its numbers."""
 
     title: str
-    plot: Plot
+    figure: Figure
     alt: str
     caption: str
     table: Table
-    square: bool = False
 
 
 @dataclass(frozen=True)
@@ -68,32 +69,27 @@ def write_page(path: Path, page: Page) -> None:
     replace_file(path, lambda to: to.write_text(text, encoding="utf-8"))
 
 
-def new_plot(x: str, y: str) -> Plot:
-    """An empty figure with titles (plain text) on its axes, in the style of all."""
-    plot = Plot()
-    plot.update_layout(
-        template="none",
-        paper_bgcolor="rgba(0,0,0,0)",
-        plot_bgcolor="rgba(0,0,0,0)",
-        margin={"l": 70, "r": 20, "t": 20, "b": 60},
-        legend={"orientation": "h", "y": -0.22, "yanchor": "top"},
-        font={"family": "system-ui, sans-serif", "size": 13},
-        hovermode="closest",
-        modebar={"bgcolor": "rgba(0,0,0,0)", "color": "#8c959f", "activecolor": "#57606a"},
-    )
-    plot.update_xaxes(title=x, showline=True, ticks="outside")
-    plot.update_yaxes(title=y, showline=True, ticks="outside")
-    return plot
-
-
 @cache
 def _environment() -> Environment:
     environment = Environment(
-        loader=PackageLoader("restitution.reports"), autoescape=True, undefined=StrictUndefined
+        loader=PackageLoader("restitution.pages"), autoescape=True, undefined=StrictUndefined
     )
     environment.filters["cell"] = _cell
-    environment.filters["script"] = lambda plot: _within_script(plot.to_json())
+    environment.filters["plots"] = _plots
     return environment
+
+
+def _plots(figure: Figure) -> list[dict[str, Any]]:
+    """What the template needs of every panel: drawing, title, form, and length of the legend."""
+    return [
+        {
+            "script": _within_script(interactive.draw(panel, figure).to_json()),
+            "title": panel.title,
+            "square": isinstance(panel, Map),
+            "entries": len(legend_entries(panel)),
+        }
+        for panel in figure.panels
+    ]
 
 
 def _cell(value: Cell) -> str:

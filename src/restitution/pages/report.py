@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from restitution.errors import OutputError, RestitutionError, one_line
-from restitution.reports.run_page import write_run_page
-from restitution.reports.study_page import write_study_page
-from restitution.reports.surface_page import write_surface_page
+from restitution.pages.run import write_run_page
+from restitution.pages.study import write_study_page
+from restitution.pages.surface import write_surface_page
 
 # The file that tells what a folder holds, and what makes its page.
 _PAGES = {

@@ -4,7 +4,8 @@ import numpy as np
 
 from restitution.laws.compact_fit import compact_fit
 from restitution.laws.force_law_fits import fitted_laws
-from restitution.reports.law_figure import law_figure, write_law_figure
+from restitution.plots.law import law_figure
+from restitution.plots.static import draw
 
 
 def test_fits_are_drawn_over_the_resolved_velocities_only(law):
@@ -13,7 +14,7 @@ def test_fits_are_drawn_over_the_resolved_velocities_only(law):
     ]
     found = law(points=tuple(points))
     fits = {"fit": compact_fit(found), "laws": fitted_laws(found)}
-    drawing = law_figure(found.model_copy(update=fits))
+    drawing = draw(law_figure(found.model_copy(update=fits)))
     lines = [line for line in drawing.axes[0].lines if line.get_linestyle() in ("-", "--")]
     assert len(lines) > 5
     V = found.column("velocity")
@@ -21,9 +22,3 @@ def test_fits_are_drawn_over_the_resolved_velocities_only(law):
         drawn = line.get_xdata()[np.isfinite(line.get_ydata())]
         assert drawn.min() >= V[3] * (1 - 1e-9)
         assert drawn.max() <= V[11] * (1 + 1e-9)
-
-
-def test_the_file(law, tmp_path):
-    path = write_law_figure(law(), tmp_path)
-    assert path == tmp_path / "law.png"
-    assert path.read_bytes().startswith(b"\x89PNG")

@@ -1,0 +1,102 @@
+"""Closed forms for the smooth bodies of a stored run, beside which its curves are drawn."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from restitution.theory import JKR, AdhesiveThorntonNing, Hertz, ThorntonNing
+
+Array = NDArray[np.float64]
+
+_JKR = "JKR, smooth elastic"
+_THORNTON_NING = "smooth, Thornton–Ning (truncated pressure)"
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """Values `y` of a closed form at `x` (SI units), and whether it knows yielding."""
+
+    label: str
+    x: Array
+    y: Array
+    yields: bool
+
+
+def force_references(results: xr.Dataset) -> list[Reference]:
+    """Force (N) against indentation (m): an elastic law, and one that yields if the bodies do.
+
+    It begins below the smallest indentation that carries a force in loading or unloading.
+    """
+    R, E_star, p_y, w = _parameters(results)
+    deepest = float(results["indentation"].max())
+    indentation = np.geomspace(0.7 * least_indentation(results), deepest, 400)
+    found = [Reference("Hertz, smooth", indentation, Hertz(R, E_star).force(indentation), False)]
+    if w > 0:
+        jkr = JKR(R, E_star, w)
+        reach = np.append(np.linspace(float(jkr.break_indentation), 0, 60), indentation)
+        found = [Reference(_JKR, reach, jkr.force(reach), False)]
+    if np.isfinite(p_y):
+        force = ThorntonNing(R, E_star, p_y).loading_force(indentation)
+        found.append(Reference(_THORNTON_NING, indentation, force, True))
+    return found
+
+
+def restitution_references_by_indentation(results: xr.Dataset) -> list[Reference]:
+    """COR against the largest indentation (m)."""
+    R, E_star, p_y, w = _parameters(results)
+    fine, found = _between(results["indentation"].values), []
+    if np.isfinite(p_y):
+        cor = ThorntonNing(R, E_star, p_y).restitution_at_indentation(fine)
+        found.append(Reference(_THORNTON_NING, fine, cor, True))
+    if w > 0:
+        cor = JKR(R, E_star, w).restitution_at_indentation(fine)
+        found.append(Reference(_JKR, fine, cor, False))
+    return found
+
+
+def restitution_references_by_velocity(results: xr.Dataset) -> list[Reference]:
+    """COR against impact velocity (m/s), where any is known; NaN where a law has no answer."""
+    R, E_star, p_y, w = _parameters(results)
+    velocity, mass = results["impact_velocity"].values, results.attrs["derived_reduced_mass_kg"]
+    fine, m = _between(velocity), float(mass)
+    if w > 0 and np.isfinite(p_y):
+        # Where adhesion and yield do not simply add, this law has no answer.
+        cor = AdhesiveThorntonNing(R, E_star, p_y, w).restitution(fine, m)
+        return [Reference("smooth, Thornton–Ning with adhesion", fine, cor, True)]
+    if w > 0:
+        return [Reference(_JKR, fine, JKR(R, E_star, w).restitution(fine, m), False)]
+    if np.isfinite(p_y):
+        cor = ThorntonNing(R, E_star, p_y).restitution(fine, m)
+        return [Reference(_THORNTON_NING, fine, cor, True)]
+    return []
+
+
+def least_indentation(results: xr.Dataset) -> float:
+    """The smallest indentation (m) that carries a force in loading or unloading."""
+    found = [float(results["indentation"].min())]
+    for k in range(results.sizes.get("unloading", 0)):
+        force = results["unloading_force"][k].values
+        depths = results["unloading_indentation"][k].values[force > 0]
+        found.append(float(min(depths[depths > 0], default=math.inf)))
+    return min(found)
+
+
+def _parameters(results: xr.Dataset) -> tuple[float, float, float, float]:
+    """R* (m), E* (Pa), p_y (Pa; inf when elastic) and w (J/m²) of the stored case."""
+    p_y = results.attrs["derived_yield_pressure_Pa"]
+    return (
+        float(results.attrs["derived_reduced_radius_m"]),
+        float(results.attrs["derived_contact_modulus_Pa"]),
+        math.inf if p_y == "None" else float(p_y),
+        float(results.attrs.get("derived_work_of_adhesion_J_per_m2", 0.0)),
+    )
+
+
+def _between(values: Array) -> Array:
+    values = values[values > 0]
+    return np.geomspace(values.min(), values.max(), 300)

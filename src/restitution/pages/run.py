@@ -1,0 +1,169 @@
+"""The page of one run, ensemble or convergence, from its stored results."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from restitution.contact.resolution import NODES_PER_PATCH
+from restitution.pages.methods import methods
+from restitution.pages.page import Cell, Drawing, Listing, Page, Table, write_page
+from restitution.plots.figure import Figure
+from restitution.plots.run import (
+    has_map,
+    load_displacement,
+    pressure_map,
+    restitution_against_indentation,
+    restitution_against_velocity,
+)
+from restitution.results.reader import EnsembleResults, RunResults, read_run
+
+
+def write_run_page(out: Path) -> Path:
+    """Write `report.html` from the `results.nc` and `summary.json` in `out`."""
+    run = read_run(out)
+    results, summary = run.dataset, run.summary
+    parts: list[Table | Drawing | Listing] = []
+    if results.sizes["indentation_max"]:
+        parts.append(_against_indentation(results))
+        if (results["impact_velocity"] > 0).any():
+            parts.append(_against_velocity(results))
+        parts.append(_force(results))
+        if has_map(results):
+            parts.append(_pressure(results))
+    parts += [
+        _trust(results, summary),
+        *_groups(summary),
+        Listing("Case file", results.attrs["case"]),
+        methods(summary),
+    ]
+    page = Page(
+        title=summary["title"] or "Restitution",
+        intro=[_in_words(run)],
+        warnings=summary["warnings"],
+        parts=parts,
+    )
+    write_page(out / "report.html", page)
+    return out / "report.html"
+
+
+def _in_words(run: RunResults) -> str:
+    summary = run.summary
+    nx, ny = summary["model"]["nodes"]
+    h = summary["model"]["spacing"][0]
+    what = f"{summary['depths_computed']} of {summary['depths_asked']} depths"
+    if isinstance(run, EnsembleResults):
+        what += f", means of {run.surfaces} surfaces"
+    if "grids" in summary:
+        what += f", on grids refined {', '.join(map(str, summary['grids']))} times"
+    ended = "" if summary["status"] == "complete" else f"; {summary['status']}: {summary['reason']}"
+    return f"{what}; {nx} × {ny} nodes of {1e6 * h:.4g} µm{ended}"
+
+
+def _against_indentation(results: xr.Dataset) -> Drawing:
+    figure = restitution_against_indentation(results)
+    return _restitution(results, figure, "indentation", 1e6, "maximum indentation", "µm")
+
+
+def _against_velocity(results: xr.Dataset) -> Drawing:
+    figure = restitution_against_velocity(results)
+    return _restitution(results, figure, "impact_velocity", 1.0, "impact velocity", "m/s")
+
+
+def _restitution(
+    results: xr.Dataset, figure: Figure, variable: str, scale: float, words: str, unit: str
+) -> Drawing:
+    x, cor = scale * results[variable].values, results["restitution"].values
+    resolved = results["resolved"].values.astype(bool)
+    errors = ["restitution_error", "total_error", "model_error"]
+    columns = zip(x, cor, resolved, *(results[name].values for name in errors), strict=True)
+    few = int(np.count_nonzero(~resolved))
+    return Drawing(
+        f"Restitution against {words}",
+        figure,
+        f"Coefficient of restitution from {np.nanmin(cor):.3f} to {np.nanmax(cor):.3f} against "
+        f"{words} from {np.nanmin(x):.3g} to {np.nanmax(x):.3g} {unit}",
+        f"Open markers ({few} of {cor.size}): not resolved, half of the contact is in patches of "
+        f"fewer than {NODES_PER_PATCH} nodes.",
+        Table(
+            "Restitution",
+            [f"{words} ({unit})", "COR", "resolved", *errors],
+            [[float(a), float(b), "yes" if good else "no", *map(float, of_cor)]
+             for a, b, good, *of_cor in columns],
+        ),
+    )  # fmt: skip
+
+
+def _force(results: xr.Dataset) -> Drawing:
+    depth, load = 1e6 * results["indentation"].values, results["force"].values
+    rows: list[list[Cell]] = [
+        ["loading", float(d), float(f)] for d, f in zip(depth, load, strict=True)
+    ]
+    for k in range(results.sizes.get("unloading", 0)):
+        x = 1e6 * results["unloading_indentation"][k].values
+        y = results["unloading_force"][k].values
+        name = f"unloading from {1e6 * float(results['unloading_from'][k]):.3g} µm"
+        rows += [[name, float(d), float(f)] for d, f in zip(x, y, strict=True) if f == f]
+    return Drawing(
+        "Load and displacement",
+        load_displacement(results),
+        f"Normal force against indentation, up to {load.max():.4g} N at {depth.max():.4g} µm",
+        "Loading, and the way back from some of the depths.",
+        Table("Curves", ["curve", "indentation (µm)", "force (N)"], rows),
+    )
+
+
+def _pressure(results: xr.Dataset) -> Drawing:
+    figure = pressure_map(results)
+    pressed = [1e-6 * values[values != 0] for values in (results["pressure"].values,)]
+    quantities, yields = ["pressure (MPa)"], ""
+    if len(figure.panels) > 1:
+        depth = results["plastic_displacement"].values
+        pressed.append(1e6 * depth[depth != 0])
+        quantities.append("plastic displacement (µm)")
+        yields = " The plastic displacement is by how much yielding has lowered the surface."
+    return Drawing(
+        "Contact pressure",
+        figure,
+        f"Map of the contact pressure at the deepest point, up to {pressed[0].max():.4g} MPa",
+        f"At the deepest point; where nothing is drawn there is no contact.{yields}",
+        Table(
+            "Distribution over the contact",
+            ["percentile", *quantities],
+            [[share, *(float(np.percentile(values, share)) for values in pressed)]
+             for share in (10, 50, 90, 100)],
+        ),
+    )  # fmt: skip
+
+
+def _trust(results: xr.Dataset, summary: Mapping[str, Any]) -> Table:
+    trust = {key: value for key, value in summary["trust"].items() if not isinstance(value, list)}
+    rows: list[list[Cell]] = [[key.replace("_", " "), value] for key, value in trust.items()]
+    resolved = results["resolved"].values.astype(bool)
+    rows.append(["depths resolved", f"{np.count_nonzero(resolved)} of {resolved.size}"])
+    if summary.get("observed_order") is not None:
+        rows.append(["observed order of convergence", summary["observed_order"]])
+    rows.append(["convolutions", summary["convolutions"]])
+    return Table("Trust", ["what", "value"], rows)
+
+
+def _groups(summary: Mapping[str, Any]) -> list[Table]:
+    tables = []
+    for key, title in (
+        ("derived", "Derived quantities"), ("surface_statistics", "Surface"),
+        ("surface", "How the surface was made"), ("model", "Model"), ("conventions", "Conventions"),
+    ):  # fmt: skip
+        if group := summary.get(key):
+            rows = [[name, _shown(value)] for name, value in group.items()]
+            tables.append(Table(title, ["what", "value"], rows))
+    return tables
+
+
+def _shown(value: Any) -> Cell:
+    if isinstance(value, bool) or not isinstance(value, (int, float, type(None))):
+        return str(value)
+    return value

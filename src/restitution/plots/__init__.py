@@ -1,0 +1,1 @@
+"""Figures: described once, drawn by matplotlib or Plotly. Nothing is computed here."""

@@ -1,0 +1,189 @@
+"""Panels of figures for pages, drawn by Plotly: they can be zoomed and read out."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from plotly.graph_objects import Figure as Plot
+from plotly.graph_objects import Heatmap, Scatter
+
+from restitution.plots.figure import (
+    Axis,
+    Band,
+    Chart,
+    Dash,
+    Figure,
+    Line,
+    Map,
+    Mark,
+    Points,
+    has_error,
+    has_open,
+    legend_entries,
+)
+
+_MOST_PIXELS = 320  # of a map, along either axis: more are skipped
+_LAYERS = (Band, Line, Points)  # from below
+
+
+def draw(panel: Chart | Map, figure: Figure) -> Plot:
+    """One panel of `figure`, without titles: those of a page are outside of it."""
+    plot = Plot()
+    plot.update_layout(
+        template="none",
+        paper_bgcolor="rgba(0,0,0,0)",
+        plot_bgcolor="rgba(0,0,0,0)",
+        margin={"l": 70, "r": 20, "t": 28, "b": 60},
+        legend={"orientation": "h", "y": -0.28, "yanchor": "top",
+                "title": {"text": _escaped(figure.legend_title), "side": "top"}},
+        font={"family": "system-ui, sans-serif", "size": 13},
+        hovermode="closest",
+        modebar={"bgcolor": "rgba(0,0,0,0)", "color": "#8c959f", "activecolor": "#57606a"},
+    )  # fmt: skip
+    if isinstance(panel, Map):
+        _draw_map(plot, panel)
+    else:
+        _draw_chart(plot, panel)
+    return plot
+
+
+def shown_step(panel: Map) -> int:
+    """One node in so many along x and y is drawn."""
+    return math.ceil(max(panel.x.size, panel.y.size) / _MOST_PIXELS)
+
+
+def _draw_chart(plot: Plot, chart: Chart) -> None:
+    plot.update_layout(xaxis=_axis(chart.x), yaxis=_axis(chart.y))
+    if chart.right is not None:
+        right = {
+            **_axis(chart.right),
+            "overlaying": "y",
+            "side": "right",
+            "showgrid": False,
+            "tickmode": "auto",
+        }  # not at the ticks of the left one
+        plot.update_layout(yaxis2=right, margin_r=70)
+    ranks = {label: rank for rank, label in enumerate(legend_entries(chart), 1)}
+    seen: set[str] = set()
+    for layer in _LAYERS:
+        for each in chart.series:
+            if not isinstance(each, layer):
+                continue
+            for trace in _traces(each, chart):
+                entry = trace.pop("entry")
+                plot.add_trace(
+                    Scatter(
+                        **trace, legendgroup=_escaped(entry), legendrank=ranks.get(entry, 0),
+                        showlegend=bool(entry) and entry not in seen,
+                    )
+                )  # fmt: skip
+                seen.add(entry)
+    for each in chart.series:
+        if isinstance(each, Mark):
+            _draw_mark(plot, each)
+
+
+def _traces(each: Band | Line | Points, chart: Chart) -> list[dict[str, Any]]:
+    """The traces of one series; `entry` is the text of the legend that each belongs to."""
+    if isinstance(each, Band):
+        edge = {"x": each.x, "mode": "lines", "line": {"width": 0}, "hoverinfo": "skip"}
+        return [
+            {**edge, "y": each.low, "entry": ""},
+            {**edge, "y": each.high, "fill": "tonexty", "fillcolor": _faint(each.color),
+             "name": _escaped(each.label), "entry": each.label},
+        ]  # fmt: skip
+    name = _escaped(each.name or each.label)
+    y = chart.right if isinstance(each, Line) and each.right else chart.y
+    trace: dict[str, Any] = {
+        "x": each.x,
+        "y": each.y,
+        "name": _escaped(each.label) or name,
+        "entry": each.label,
+        "hovertemplate": f"%{{x:.4g}} {_escaped(chart.x.unit)}<br>"
+        f"%{{y:.4g}} {_escaped((y or chart.y).unit)}<extra>{name}</extra>",
+    }
+    if isinstance(each, Line):
+        line = {"color": each.color, "width": each.width + 0.3, "dash": _dashes(each)}
+        trace |= {"mode": "lines" if np.size(each.x) > 1 else "markers", "line": line}
+        trace |= {"line_shape": "hvh"} if each.step else {}
+        return [trace | ({"yaxis": "y2"} if each.right else {})]
+    hollow = np.zeros(np.shape(each.x), bool) if each.open is None else each.open
+    trace |= {
+        "mode": "lines+markers" if each.joined else "markers",
+        "line": {"color": each.color, "width": 1.5},
+        "marker": {"symbol": ["circle-open" if h else "circle" for h in hollow], "size": 7,
+                   "color": each.color},
+    }  # fmt: skip
+    traces = [trace]
+    if has_error(each):
+        trace["error_y"] = {"array": each.error, "thickness": 1, "width": 3}
+    if has_open(each) and each.open_label:
+        marker = {"symbol": "circle-open", "size": 7, "color": each.color}
+        traces.append({"x": [None], "y": [None], "mode": "markers", "marker": marker,
+                       "name": _escaped(each.open_label), "entry": each.open_label})  # fmt: skip
+    if has_error(each) and each.error_label:
+        marker = {"symbol": "line-ns-open", "size": 12, "color": each.color}
+        traces.append({"x": [None], "y": [None], "mode": "markers", "marker": marker,
+                       "name": _escaped(each.error_label), "entry": each.error_label})  # fmt: skip
+    return traces
+
+
+def _draw_mark(plot: Plot, mark: Mark) -> None:
+    text = _escaped(mark.text) + (f"<sub>{mark.subscript}</sub>" if mark.subscript else "")
+    line = plot.add_vline if mark.axis == "x" else plot.add_hline
+    where = f"bottom {mark.side}" if mark.axis == "x" else f"top {mark.side}"
+    more = {"annotation_text": text, "annotation_position": where} if text else {}
+    line(mark.value, line_dash="dot", line_width=1, line_color="#8c959f", **more)
+
+
+def _draw_map(plot: Plot, part: Map) -> None:
+    step, unit = shown_step(part), _escaped(part.quantity.unit)
+    label = f"{_escaped(part.quantity.label)} {{}} {unit}"
+    plot.add_trace(
+        Heatmap(
+            x=part.x[::step].astype(np.float32), y=part.y[::step].astype(np.float32),
+            z=part.values[::step, ::step].T.astype(np.float32), colorscale=part.colours,
+            colorbar={"title": unit, "thickness": 18},
+            hovertemplate="x %{x:.4g} µm, y %{y:.4g} µm<br>"
+            f"{label.format('%{z:.4g}')}<extra></extra>",
+        )
+    )  # fmt: skip
+    plot.update_layout(xaxis=_axis(Axis("x", "µm")), yaxis=_axis(Axis("y", "µm")))
+    plot.update_yaxes(scaleanchor="x", constrain="domain")
+    plot.update_xaxes(constrain="domain")
+    if part.downwards:
+        plot.update_yaxes(autorange="reversed")
+
+
+def _axis(axis: Axis) -> dict[str, Any]:
+    found: dict[str, Any] = {
+        "title": _escaped(axis.title), "type": axis.scale, "showline": True, "ticks": "outside",
+    }  # fmt: skip
+    if axis.scale == "log":
+        found["exponentformat"] = "power"
+    ends = [
+        math.log10(end) if end is not None and axis.scale == "log" else end
+        for end in (axis.low, axis.high)
+    ]
+    if None not in ends:
+        found["range"] = ends
+    elif ends != [None, None]:  # a range with one end does not outlast a change of size
+        found["autorangeoptions"] = dict(zip(("minallowed", "maxallowed"), ends, strict=True))
+    return found
+
+
+def _dashes(line: Line) -> str:
+    dash: Dash = line.dash
+    return ",".join(f"{length * (line.width + 0.3):.3g}px" for length in dash) or "solid"
+
+
+def _faint(color: str) -> str:
+    red, green, blue = (int(color[k : k + 2], 16) for k in (1, 3, 5))
+    return f"rgba({red},{green},{blue},0.25)"
+
+
+def _escaped(text: str) -> str:
+    """A text in which Plotly finds no markup."""
+    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")

@@ -1,0 +1,203 @@
+"""Figures of one run, ensemble or convergence study, from its stored results alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+import xarray as xr
+
+from restitution.contact.resolution import NODES_PER_PATCH
+from restitution.laws.references import (
+    Reference,
+    force_references,
+    least_indentation,
+    restitution_references_by_indentation,
+    restitution_references_by_velocity,
+)
+from restitution.plots.figure import (
+    DASH_DOTTED,
+    DASHED,
+    DOTTED,
+    GREY,
+    ORANGE,
+    SOLID,
+    Array,
+    Axis,
+    Band,
+    Chart,
+    Colours,
+    Figure,
+    Line,
+    Map,
+    Mark,
+    Points,
+    Series,
+)
+
+COR = Axis("coefficient of restitution", low=0.0, high=1.05)
+UNRESOLVED = f"open: not resolved (patches below {NODES_PER_PATCH} nodes)"
+
+_MARGIN = 1.2  # of a logarithmic axis beyond the first and the last point
+_RIM = 4  # nodes around a contact in its map
+_SMOOTH = "smooth, same model"
+_DASHES = (DOTTED, DASH_DOTTED, DASHED, SOLID)  # of coarser grids, the coarsest first
+
+
+def run_figures(results: xr.Dataset) -> Iterator[tuple[str, Figure]]:
+    """The name and the content of every figure that `results` supports, one after another."""
+    if results.sizes["indentation_max"] == 0:
+        return
+    yield "load-displacement", load_displacement(results)
+    yield "restitution-indentation", restitution_against_indentation(results)
+    if (results["impact_velocity"] > 0).any():
+        yield "restitution-velocity", restitution_against_velocity(results)
+    if has_map(results):
+        yield "pressure", pressure_map(results)
+
+
+def has_map(results: xr.Dataset) -> bool:
+    """Whether there is a contact to map: a mean of surfaces has none."""
+    return "pressure" in results and bool(results["pressure"].any())
+
+
+def load_displacement(results: xr.Dataset) -> Figure:
+    """Force against indentation, loading and unloading; again on logarithmic axes."""
+    depth, force = 1e6 * results["indentation"].values, results["force"].values
+    beside = _references(force_references(results), 1e6)
+    if "smooth_force" in results and results.attrs["derived_yield_pressure_Pa"] != "None":
+        x, y = 1e6 * results["smooth_indentation"].values, results["smooth_force"].values
+        beside.insert(0, Line(x, y, _SMOOTH, color=GREY))
+    back = _unloading(results)
+    loading = Points(np.append(0, depth), np.append(0, force), "loading", joined=True)
+    across, up = (_span([loading, *back], name) for name in ("x", "y"))
+    linear = Chart(
+        Axis("indentation", "µm", low=across[0], high=across[1]),
+        Axis("normal force", "N", low=up[0], high=up[1]),
+        [loading, *back, *beside, *([Mark("y", 0.0)] if up[0] < 0 else [])],
+    )
+    carrying = force[force > 0]
+    ends = (0.3 * carrying.min(), 2 * carrying.max()) if carrying.size else (None, None)
+    logarithmic = Chart(
+        Axis("indentation", "µm", "log", 0.7e6 * least_indentation(results), 1.3 * depth.max()),
+        Axis("normal force", "N", "log", *ends),
+        [
+            Points(depth, force, "loading", joined=True),
+            *(Line(each.x[each.y > 0], each.y[each.y > 0], each.label, each.name, each.color)
+              for each in back),
+            *beside,
+        ],
+        title="the same, logarithmic",
+    )  # fmt: skip
+    return Figure(results.attrs.get("title", ""), [linear, logarithmic])
+
+
+def restitution_against_indentation(results: xr.Dataset) -> Figure:
+    """Coefficient of restitution against maximum indentation."""
+    return _restitution(
+        results, "indentation", Axis("maximum indentation", "µm", "log"), 1e6,
+        restitution_references_by_indentation,
+    )  # fmt: skip
+
+
+def restitution_against_velocity(results: xr.Dataset) -> Figure:
+    """Coefficient of restitution against impact velocity."""
+    return _restitution(
+        results, "impact_velocity", Axis("impact velocity", "m/s", "log"), 1.0,
+        restitution_references_by_velocity,
+    )  # fmt: skip
+
+
+def pressure_map(results: xr.Dataset) -> Figure:
+    """Contact pressure at the deepest point, and the plastic displacement where there is any.
+
+    Where all that touches yields at one bound, the pressure is the same everywhere.
+    """
+    quantities: dict[str, tuple[Axis, float, Colours]] = {
+        "pressure": (Axis("pressure", "MPa"), 1e-6, "viridis"),
+        "plastic_displacement": (Axis("plastic displacement", "µm"), 1e6, "magma"),
+    }
+    maps = {name: results[name].values for name in quantities if name in results}
+    touched = np.argwhere(np.any([values != 0 for values in maps.values()], axis=0))
+    low, high = np.maximum(touched.min(axis=0) - _RIM, 0), touched.max(axis=0) + _RIM + 1
+    x, y = (slice(*ends) for ends in zip(low, high, strict=True))
+    deepest = 1e6 * float(results["indentation"].max())
+    panels = []
+    for name, values in maps.items():
+        axis, scale, colours = quantities[name]
+        if values.any():
+            panels.append(
+                Map(
+                    1e6 * results["x"].values[x], 1e6 * results["y"].values[y],
+                    np.where(values == 0, np.nan, scale * values)[x, y], axis, colours,
+                    f"{axis.label} at an indentation of {deepest:.3g} µm",
+                    results.attrs.get("surface_y_axis") == "down",
+                )
+            )  # fmt: skip
+    return Figure(results.attrs.get("title", ""), panels)
+
+
+def _restitution(
+    results: xr.Dataset,
+    variable: str,
+    axis: Axis,
+    scale: float,
+    references: Callable[[xr.Dataset], list[Reference]],
+) -> Figure:
+    x, cor = scale * results[variable].values, results["restitution"].values
+    series: list[Series] = []
+    label = "this contact"
+    if "restitution_std" in results:
+        label = f"mean of {results['realisations'].values.max():.0f} surfaces"
+        low, high = (results[f"restitution_{end}"].values for end in ("low", "high"))
+        std = results["restitution_std"].values
+        series.append(Band(x, low, high, "95 % interval of the mean"))
+        series += [Line(x, cor + sign * std, "± standard deviation", dash=DOTTED)
+                   for sign in (1, -1)]  # fmt: skip
+    for coarser, dash in zip(results.get("coarser_restitution", ()), _DASHES, strict=False):
+        series.append(Line(x, coarser.values, f"refine = {int(coarser['refine'])}",
+                           color=ORANGE, dash=dash))  # fmt: skip
+    series.append(
+        Points(
+            x, cor, label, joined=True, error=results["total_error"].values,
+            error_label="total error", open=~results["resolved"].values.astype(bool),
+            open_label=UNRESOLVED,
+        )
+    )  # fmt: skip
+    if f"smooth_{variable}" in results:
+        smooth = scale * results[f"smooth_{variable}"].values
+        series.append(Line(smooth, results["smooth_restitution"].values, _SMOOTH, color=GREY))
+    series += _references(references(results), scale)
+    inside = x[x > 0]
+    ends = (inside.min() / _MARGIN, inside.max() * _MARGIN)
+    axis = Axis(axis.label, axis.unit, axis.scale, *ends)
+    return Figure(results.attrs.get("title", ""), [Chart(axis, COR, series)])
+
+
+def _references(found: list[Reference], scale: float) -> list[Series]:
+    return [
+        Line(scale * each.x, each.y, each.label, color=GREY, dash=DASHED if each.yields else DOTTED)
+        for each in found
+    ]
+
+
+def _unloading(results: xr.Dataset) -> list[Line]:
+    """The unloading curves, each without the NaN at its end."""
+    found = []
+    for k in range(results.sizes.get("unloading", 0)):
+        x, y = (results[f"unloading_{name}"][k].values for name in ("indentation", "force"))
+        known, start = np.isfinite(y), 1e6 * float(results["unloading_from"][k])
+        name = f"unloading from {start:.3g} µm"
+        found.append(Line(1e6 * x[known], y[known], "unloading", name, ORANGE))
+    return found
+
+
+def _span(series: list[Points | Line], name: str) -> tuple[float, float | None]:
+    """The ends of an axis: the least and the largest value, and a margin where they are not zero.
+
+    The upper end is None where there is nothing but zeros.
+    """
+    values: Array = np.concatenate([getattr(each, name) for each in series])
+    low, high = float(values.min()), float(values.max())
+    margin = 0.05 * (high - low)
+    return (low - margin if low < 0 else 0.0), (high + margin or None)

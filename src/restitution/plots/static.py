@@ -1,0 +1,215 @@
+"""Figures as files (PNG, SVG, PDF), drawn by matplotlib."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+import warnings
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any, Literal
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure as Drawing
+from matplotlib.ticker import NullFormatter
+
+from restitution.plots.figure import (
+    Array,
+    Band,
+    Chart,
+    Dash,
+    Figure,
+    Line,
+    Map,
+    Mark,
+    Points,
+    Series,
+    has_error,
+    has_open,
+    legend_entries,
+)
+from restitution.results.writer import replace_file
+
+Format = Literal["png", "svg", "pdf"]
+
+# Inches: one chart, one map, what a second panel adds, a row of the legend, a legend at the side.
+_CHART, _MAP, _SECOND = (6.4, 4.0), (5.6, 4.6), 4.6
+_ROW, _SIDE = 0.2, 2.4
+_FEW_DECADES = 30.0  # ratio of the ends of a logarithmic axis below which powers of ten are few
+_MOST_BELOW = 8  # entries of a legend below the axes: more stand at the side
+_DATELESS: dict[Format, dict[str, Any]] = {
+    "png": {}, "svg": {"Date": None}, "pdf": {"CreationDate": None},
+}  # fmt: skip
+
+
+def write_figures(
+    out: Path, figures: Iterable[tuple[str, Figure]], file_format: Format = "png"
+) -> list[Path]:
+    """Write every named figure into the folder `out`; return the files. Raises `OutputError`."""
+    return [write_figure(out / name, figure, file_format) for name, figure in figures]
+
+
+def write_figure(path: Path, figure: Figure, file_format: Format = "png") -> Path:
+    """Write `figure` as `path` with the suffix of its format, all of it or nothing; return it.
+
+    The same figure makes the same file. Raises `OutputError`.
+    """
+    drawing, to_write = draw(figure), path.with_name(f"{path.name}.{file_format}")
+    with warnings.catch_warnings(), matplotlib.rc_context({"svg.hashsalt": path.name}):
+        # A title may be in a script that the font does not have: boxes are all it can get.
+        warnings.filterwarnings("ignore", message="Glyph .* missing from font")
+        replace_file(
+            to_write,
+            lambda to: drawing.savefig(
+                to, format=file_format, dpi=150, metadata=_DATELESS[file_format]
+            ),
+        )
+    return to_write
+
+
+def draw(figure: Figure) -> Drawing:
+    """The drawing of `figure` in matplotlib, with one legend for all its panels."""
+    labels = list(dict.fromkeys(e for panel in figure.panels for e in legend_entries(panel)))
+    columns, beside = 2 * len(figure.panels), len(labels) > _MOST_BELOW
+    sizes = [_MAP if isinstance(panel, Map) else _CHART for panel in figure.panels]
+    width, height = sizes[0][0] + _SECOND * (len(sizes) - 1), max(size[1] for size in sizes)
+    if beside:
+        width, height = width + _SIDE, max(height, _ROW * len(labels))
+    else:
+        height += _ROW * math.ceil(len(labels) / columns)
+    drawing = Drawing(figsize=(width, height), layout="constrained")
+    FigureCanvasAgg(drawing)
+    handles: dict[str, Any] = {}
+    for axes, panel in zip(
+        drawing.subplots(1, len(figure.panels), squeeze=False)[0], figure.panels, strict=True
+    ):
+        if isinstance(panel, Map):
+            _draw_map(drawing, axes, panel)
+        else:
+            _draw_chart(axes, panel, handles)
+        axes.set_title(_plain(panel.title), fontsize="medium")
+    if figure.title:
+        drawing.suptitle(_plain(figure.title))
+    if labels:
+        drawing.legend(
+            [handles[label] for label in labels], [_escaped(label) for label in labels],
+            frameon=False, fontsize="small", title=figure.legend_title or None, handlelength=3.0,
+            alignment="left", loc="outside right center" if beside else "outside lower center",
+            ncols=1 if beside else columns,
+        )  # fmt: skip
+    return drawing
+
+
+def _draw_chart(axes: Axes, chart: Chart, handles: dict[str, Any]) -> None:
+    right = axes.twinx() if chart.right is not None else axes
+    for each in chart.series:
+        _draw_series(right if isinstance(each, Line) and each.right else axes, each, handles)
+    axes.set(xlabel=_escaped(chart.x.title), ylabel=_escaped(chart.y.title))
+    axes.set(xscale=chart.x.scale, yscale=chart.y.scale)
+    axes.set_xlim(chart.x.low, chart.x.high)
+    axes.set_ylim(chart.y.low, chart.y.high)
+    for axis, described in ((axes.xaxis, chart.x), (axes.yaxis, chart.y)):
+        low, high = axis.get_view_interval()
+        if described.scale == "log":
+            few = low > 0 and high < _FEW_DECADES * low
+            axis.set_minor_formatter(_between_powers if few else NullFormatter())
+    if chart.right is not None:
+        right.set(ylabel=_escaped(chart.right.title), yscale=chart.right.scale)
+        right.set_ylim(chart.right.low, chart.right.high)
+
+
+def _between_powers(value: float, _: object) -> str:
+    """The tick labels 2 and 5 between powers of ten: all would lie over one another."""
+    exponent = math.floor(math.log10(value) + 1e-9)
+    leading = round(value / 10**exponent)
+    return rf"${leading}\times10^{{{exponent}}}$" if leading in (2, 5) else ""
+
+
+def _draw_series(axes: Axes, each: Series, handles: dict[str, Any]) -> None:
+    if isinstance(each, Mark):
+        _draw_mark(axes, each)
+    elif isinstance(each, Band):
+        band = axes.fill_between(each.x, each.low, each.high, color=each.color, alpha=0.25, lw=0)
+        handles.setdefault(each.label, band)
+    elif isinstance(each, Line):
+        (line,) = axes.plot(
+            each.x, each.y, color=each.color, lw=each.width, ls=_dashes(each.dash),
+            marker="o" if np.size(each.x) == 1 else "",
+            drawstyle="steps-mid" if each.step else "default",
+        )  # fmt: skip
+        handles.setdefault(each.label, line)
+    else:
+        _draw_points(axes, each, handles)
+
+
+def _draw_points(axes: Axes, points: Points, handles: dict[str, Any]) -> None:
+    x, y, color = np.asarray(points.x), np.asarray(points.y), points.color
+    if has_error(points):
+        bars = axes.errorbar(
+            x, y, yerr=points.error, fmt="none", ecolor=color, elinewidth=1, capsize=2, zorder=2.5
+        )
+        handles.setdefault(points.error_label, bars)
+    if points.joined:
+        axes.plot(x, y, "-", color=color, lw=1)
+    hollow = np.zeros(x.shape, bool) if points.open is None else points.open
+    style: dict[str, Any] = {"ls": "none", "marker": "o", "ms": 4.5, "color": color, "zorder": 3}
+    (full,) = axes.plot(x[~hollow], y[~hollow], **style)
+    handles.setdefault(points.label, full)
+    if has_open(points):
+        (empty,) = axes.plot(x[hollow], y[hollow], mfc="white", **style)
+        handles.setdefault(points.open_label, empty)
+
+
+def _draw_mark(axes: Axes, mark: Mark) -> None:
+    text = f"${mark.text}_{mark.subscript}$" if mark.subscript else _escaped(mark.text)
+    style: dict[str, Any] = {"color": "0.45", "lw": 0.9, "ls": ":", "zorder": 0}
+    sign = 1 if mark.side == "right" else -1
+    if mark.axis == "x":
+        axes.axvline(mark.value, **style)
+        # Below the upper end, beside its line.
+        where, shift, align = (mark.value, 0.03), (4 * sign, 0), "bottom"
+        transform = axes.get_xaxis_transform()
+        horizontal = "left" if sign > 0 else "right"
+    else:
+        axes.axhline(mark.value, **style)
+        where, shift, align = (1.0 if sign > 0 else 0.0, mark.value), (-4 * sign, 2), "bottom"
+        transform = axes.get_yaxis_transform()
+        horizontal = "right" if sign > 0 else "left"
+    if text:
+        axes.annotate(
+            text, where, xycoords=transform, xytext=shift, textcoords="offset points",
+            ha=horizontal, va=align, color="0.3", fontsize="small", zorder=7,
+            bbox={"fc": "white", "ec": "none", "pad": 0.8, "alpha": 0.8},
+        )  # fmt: skip
+
+
+def _draw_map(drawing: Drawing, axes: Axes, part: Map) -> None:
+    hx, hy = _cell(part.x), _cell(part.y)
+    extent = (part.x[0] - hx / 2, part.x[-1] + hx / 2, part.y[0] - hy / 2, part.y[-1] + hy / 2)
+    image = axes.imshow(part.values.T, origin="lower", extent=extent, cmap=part.colours,
+                        interpolation="nearest")  # fmt: skip
+    axes.set(xlabel="x (µm)", ylabel="y (µm)")
+    if part.downwards:
+        axes.invert_yaxis()
+    drawing.colorbar(image, ax=axes, label=_escaped(part.quantity.title))
+
+
+def _cell(centres: Array) -> float:
+    return float(centres[1] - centres[0]) if centres.size > 1 else 1.0
+
+
+def _dashes(dash: Dash) -> Any:
+    return (0, dash) if dash else "-"
+
+
+def _plain(text: str) -> str:
+    """A text as a title: at most two lines."""
+    return _escaped("\n".join(textwrap.wrap(text, 55, max_lines=2, placeholder=" …")))
+
+
+def _escaped(text: str) -> str:
+    """A text that is not read as mathematics."""
+    return text.replace("$", r"\$")

@@ -1,0 +1,52 @@
+"""The figures of a study: a line for each case."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from restitution.plots.figure import PALETTE, Axis, Chart, Figure, Points
+from restitution.plots.run import COR
+from restitution.results.reader import StoredCase
+
+MOST_LINES = 60  # in one figure: more cannot be told apart
+
+
+class Abscissa(NamedTuple):
+    """What COR is drawn against: a column of the table, and its `scale` to the unit of `axis`."""
+
+    column: str
+    scale: float
+    axis: Axis
+
+
+INDENTATION = Abscissa("indentation_m", 1e6, Axis("maximum indentation", "µm", "log"))
+IMPACT_VELOCITY = Abscissa("impact_velocity_m_per_s", 1.0, Axis("impact velocity", "m/s", "log"))
+
+
+def rows_with(case: StoredCase, abscissa: Abscissa) -> list[dict[str, float]]:
+    """The rows of the curve of `case` that have a value of `abscissa`."""
+    return [row for row in case.curve.rows if not math.isnan(row[abscissa.column])]
+
+
+def study_figure(cases: Sequence[StoredCase], abscissa: Abscissa) -> Figure:
+    """COR of the first complete `cases` (`MOST_LINES` of them) against `abscissa`."""
+    series = []
+    for number, case in enumerate(cases[:MOST_LINES]):
+        rows = rows_with(case, abscissa)
+        if not rows:
+            continue
+        # Of what was swept, the last part of its key tells enough.
+        label = ", ".join(f"{key.rsplit('.', 1)[-1]} {value}" for key, value in case.swept.items())
+        series.append(
+            Points(
+                abscissa.scale * np.array([row[abscissa.column] for row in rows]),
+                np.array([row["restitution"] for row in rows]),
+                label, color=PALETTE[number % len(PALETTE)], joined=True,
+                open=np.array([not row["resolved"] for row in rows]),
+            )
+        )  # fmt: skip
+    return Figure("", [Chart(abscissa.axis, COR, series)])

@@ -1,0 +1,83 @@
+"""Figures of one surface."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from restitution.plots.figure import (
+    DASHED,
+    DOTTED,
+    PALETTE,
+    SOLID,
+    Axis,
+    Chart,
+    Figure,
+    Line,
+    Map,
+    Mark,
+    Series,
+)
+from restitution.surfaces import Surface
+from restitution.surfaces.psd import DirectedSpectrum
+from restitution.surfaces.texture import Autocorrelation, HeightDensity, MaterialRatio
+
+
+def surface_map(surface: Surface, title: str = "") -> Figure:
+    """Heights (nm) above their mean."""
+    height = 1e9 * (surface.height - surface.height.mean())
+    down = surface.provenance.get("y_axis") == "down"
+    x, y = 1e6 * surface.grid.x, 1e6 * surface.grid.y
+    return Figure(title, [Map(x, y, height, Axis("height", "nm"), "cividis", downwards=down)])
+
+
+def height_distribution(density: HeightDensity, curve: MaterialRatio) -> Figure:
+    """Density of heights beside the normal one, and the material ratio on the right axis."""
+    x = 1e9 * density.height
+    return Figure(
+        "",
+        [
+            Chart(
+                Axis("height above the mean", "nm"),
+                Axis("probability density", "1/nm", low=0.0),
+                [
+                    Line(x, 1e-9 * density.density, "heights", step=True),
+                    Line(x, 1e-9 * density.normal, "normal, same Sq", color=PALETTE[1],
+                         dash=DASHED),
+                    Line(1e9 * curve.height, 100 * curve.ratio, "material ratio (right)",
+                         color=PALETTE[2], right=True),
+                ],
+                right=Axis("material ratio", "%", low=0.0, high=100.0),
+            )
+        ],
+    )  # fmt: skip
+
+
+def autocorrelation_figure(R: Autocorrelation) -> Figure:
+    """Autocorrelation along x and y, with the levels that define correlation lengths."""
+    i, j = (n // 2 for n in R.values.shape)
+    series: list[Series] = [
+        Line(1e6 * R.x[i:], R.values[i:, j], "along x", color=PALETTE[0]),
+        Line(1e6 * R.y[j:], R.values[i, j:], "along y", color=PALETTE[1]),
+        Mark("y", 0.2, "0.2 (Sal)"),
+        Mark("y", 0.1, "0.1 (Hu and Tonder)"),
+    ]
+    return Figure("", [Chart(Axis("lag", "µm"), Axis("autocorrelation"), series)])
+
+
+def spectrum_figure(spectra: list[DirectedSpectrum]) -> Figure:
+    """Power spectral density against wave number, averaged over all directions and some."""
+    series: list[Series] = []
+    for each, color, dash in zip(spectra, PALETTE, (SOLID, DOTTED, DASHED), strict=False):
+        q, C = 1e-6 * each.spectrum.wave_number, 1e24 * each.spectrum.density
+        # Zero has no place on a logarithmic axis.
+        series.append(Line(q, np.where(C > 0, C, np.nan), each.directions, color=color, dash=dash))
+    return Figure(
+        "",
+        [
+            Chart(
+                Axis("wave number q", "1/µm", "log"),
+                Axis("power spectral density C", "µm⁴", "log"),
+                series,
+            )
+        ],
+    )

@@ -1,0 +1,153 @@
+"""Figures of a run: what is described, and what both libraries draw of it."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from restitution import Grid
+from restitution.plots import interactive
+from restitution.plots.figure import ORANGE, legend_entries
+from restitution.plots.run import run_figures
+from restitution.plots.static import draw, write_figure
+from restitution.plots.surface import surface_map
+from restitution.surfaces import Surface
+from tolerance import approx
+
+
+@pytest.fixture
+def results(cli, case_text, tmp_path):
+    text = case_text.replace("A small rough contact", "costs $5 & $\\\\alpha_{ <b>")
+    (tmp_path / "case.toml").write_text(text.replace('"20 nm"', '"1 nm"'))
+    assert cli("run", tmp_path / "case.toml", "-o", tmp_path / "out")[0] == 0
+    with xr.open_dataset(tmp_path / "out" / "results.nc") as stored:
+        return stored.load()
+
+
+def figures(results):
+    """Every figure, drawn by matplotlib."""
+    return {name: draw(figure) for name, figure in run_figures(results)}
+
+
+def labels(figure):
+    return [text.get_text() for text in figure.legends[0].get_texts()]
+
+
+def test_figures_show_the_stored_numbers(results):
+    drawn = figures(results)
+    assert list(drawn) == [
+        "load-displacement", "restitution-indentation", "restitution-velocity", "pressure",
+    ]  # fmt: skip
+    loading = drawn["load-displacement"].axes[0].lines[0]
+    assert loading.get_xdata()[1:] == approx(1e6 * results["indentation"].values)
+    assert loading.get_ydata()[1:] == approx(results["force"].values)
+    image = drawn["pressure"].axes[0].images[0].get_array()
+    assert np.nanmax(image) == approx(1e-6 * float(results["pressure"].max()))
+    for figure in drawn.values():
+        assert figure.axes[0].get_xlabel()
+        assert figure.axes[0].get_ylabel()
+
+
+def test_unresolved_depths_have_open_markers(results):
+    axes = figures(results)["restitution-velocity"].axes[0]
+    few = results["median_patch_nodes"].values < 20
+    assert few.any()
+    open_markers = [line for line in axes.lines if line.get_markerfacecolor() == "white"]
+    assert len(open_markers) == 1
+    assert open_markers[0].get_xdata() == approx(results["impact_velocity"].values[few])
+
+
+def test_a_hostile_title_is_drawn_as_text(results):
+    for _, figure in figures(results).items():
+        figure.canvas.draw()
+        assert figure.get_suptitle() == r"costs \$5 & \$\alpha_{ <b>"
+
+
+def test_the_smooth_contact_of_the_same_model_is_drawn_beside_another_model(results):
+    drawn = figures(results)
+    for name in ("restitution-indentation", "restitution-velocity", "load-displacement"):
+        assert "smooth, same model" in labels(drawn[name])
+        assert "smooth, Thornton–Ning (truncated pressure)" in labels(drawn[name])
+    (chart,) = dict(run_figures(results))["restitution-velocity"].panels
+    line = next(line for line in chart.series if line.label == "smooth, same model")
+    assert line.y == approx(results["smooth_restitution"].values)
+    old = results.drop_vars([name for name in results if name.startswith("smooth_")])
+    assert len(figures(old)) == 4
+
+
+def test_unloading_from_shallow_depths_is_seen_on_logarithmic_axes(results):
+    axes = figures(results)["load-displacement"].axes[1]
+    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
+    unloading = [line for line in axes.lines if line.get_color() == ORANGE]
+    assert len(unloading) == results.sizes["unloading"]
+    for line in unloading:
+        assert min(line.get_ydata()) > 0
+        assert axes.get_xlim()[0] < min(line.get_xdata())
+
+
+def test_a_long_title_in_any_script_is_two_lines(results, tmp_path):
+    results.attrs["title"] = "粒子 " * 10 + "word " * 60
+    described = dict(run_figures(results))["restitution-velocity"]
+    write_figure(tmp_path / "figure", described)  # a warning would be an error
+    figure = draw(described)
+    assert figure.get_suptitle().count("\n") == 1
+    assert figure.get_suptitle().endswith(" …")
+
+
+def test_a_map_has_x_to_the_right_and_y_up_or_down_as_the_file_has_it():
+    height = 1e-9 * np.arange(6.0).reshape(3, 2)
+    grid = Grid((3, 2), (1e-6, 2e-6))
+    axes = draw(surface_map(Surface(height, grid, {}))).axes[0]
+    (image,) = axes.images
+    x, y = 1e6 * grid.x, 1e6 * grid.y
+    assert image.get_extent() == approx([x[0] - 0.5, x[-1] + 0.5, y[0] - 1, y[-1] + 1])
+    assert image.origin == "lower"
+    assert image.get_array()[1, 2] == approx(2.5)  # y index 1, x index 2, above the mean
+    assert axes.get_ylim() == approx((y[0] - 1, y[-1] + 1))
+    down = surface_map(Surface(height, grid, {"y_axis": "down"}))
+    assert draw(down).axes[0].get_ylim() == approx((y[-1] + 1, y[0] - 1))
+    plot = interactive.draw(down.panels[0], down)
+    assert plot.layout.yaxis.autorange == "reversed"
+    assert np.asarray(plot.data[0].z)[1, 2] == approx(2.5)
+
+
+def test_beside_the_pressure_is_the_plastic_displacement_where_there_is_any(results):
+    pressure, depth = dict(run_figures(results))["pressure"].panels
+    assert depth.quantity.title == "plastic displacement (µm)"
+    assert np.nanmax(depth.values) == approx(1e6 * float(results["plastic_displacement"].max()))
+    assert depth.values.shape == pressure.values.shape == (depth.x.size, depth.y.size)
+    results["plastic_displacement"][:] = 0
+    (pressure,) = dict(run_figures(results))["pressure"].panels
+    assert pressure.quantity.title == "pressure (MPa)"
+
+
+def test_both_libraries_draw_the_same_points_and_legend_entries(results):
+    for name, figure in run_figures(results):
+        drawing = draw(figure)
+        for panel, axes in zip(figure.panels, drawing.axes, strict=False):
+            plot = interactive.draw(panel, figure)
+            assert axes.get_xlabel() == plot.layout.xaxis.title.text
+            assert axes.get_ylabel() == plot.layout.yaxis.title.text
+            assert axes.get_xscale() == plot.layout.xaxis.type
+            shown = [trace for trace in plot.data if trace.showlegend]
+            shown.sort(key=lambda trace: trace.legendrank)
+            assert [trace.name for trace in shown] == legend_entries(panel)
+            assert set(legend_entries(panel)) <= set(labels(drawing) if drawing.legends else ())
+        if name.startswith("restitution"):
+            points = next(trace for trace in plot.data if trace.error_y.array is not None)
+            assert points.y == approx(results["restitution"].values)
+            open_markers = [symbol == "circle-open" for symbol in points.marker.symbol]
+            assert open_markers == (results["resolved"].values == 0).tolist()
+
+
+def test_the_axes_of_load_and_displacement_fit_the_contact(results):
+    linear, _ = figures(results)["load-displacement"].axes
+    assert linear.get_xlim() == approx((0, 1.05e6 * float(results["indentation"].max())))
+    assert linear.get_ylim() == approx((0, 1.05 * float(results["force"].max())))
+
+
+def test_no_legend_lies_over_data(results):
+    for figure in figures(results).values():
+        figure.canvas.draw()
+        for legend in figure.legends:
+            box = legend.get_window_extent()
+            assert not any(box.overlaps(axes.get_window_extent()) for axes in figure.axes)
