@@ -105,3 +105,22 @@ def test_no_collision_returns_more_than_it_took():
     grid = Grid((41, 41), (0.25 * UM, 0.25 * UM))
     below_yield = Contact(Pair(STEEL, STEEL), smooth(grid), 1e12, "truncated")
     assert collide(solve(below_yield, 20 * NM)).restitution <= 1 + 1e-8
+
+
+def test_the_errors_of_both_works_move_restitution():
+    """To first order de = ½e (dW_u/W_u + dW_l/W_l), of which the two are independent."""
+    collision = Collision(8.0, 2.0, 4.0, loading_work_error=8e-4, unloading_work_error=6e-4)
+    by_loading, by_unloading = 0.25 * 1e-4, 0.25 * 3e-4
+    expected = math.hypot(by_loading, by_unloading)
+    assert collision.restitution_error == approx(expected, rel=1e-3)
+    only = Collision(8.0, 2.0, 4.0, loading_work_error=8e-4)
+    assert only.restitution_error == approx(by_loading, rel=1e-3)
+
+
+def test_the_energy_estimate_may_be_off_by_the_surface_energy():
+    grid = Grid((48, 48), (0.25e-6, 0.25e-6))
+    body = Body(500e-6, 210e9, 0.3)
+    contact = Contact(Pair(body, body), smooth(grid), work_of_adhesion=0.05, approach="hertzian")
+    state = solve(contact, 2e-8)
+    estimate = collide(state, method="energy-estimate")
+    assert estimate.unloading_work_error == approx(0.05 * state.contact_area, rel=1e-12)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from restitution import Body, Contact, Grid, Pair, generate_surface, solve
+from restitution import Body, Contact, Grid, Pair, generate_surface, smooth, solve
 from restitution.contact import loading
 from tolerance import approx
 
@@ -41,3 +41,47 @@ def test_pinning_adds_a_share_of_the_surface_energy(monkeypatch, approach, share
     )
     state = solve(adhesive(1, approach), DEPTH)
     assert state.work_error == approx(share * 1.0 * state.contact_area, rel=1e-9)
+
+
+def test_it_holds_all_that_the_quadrature_says(monkeypatch):
+    quadrature, said = loading.integrate_adaptively, []
+
+    def listened(*args, **options):
+        said.append(quadrature(*args, **options))
+        return said[-1]
+
+    monkeypatch.setattr(loading, "integrate_adaptively", listened)
+    state = solve(adhesive(1), DEPTH)
+    assert len(said) == 1
+    expected = said[0][1] + 0.02 * state.contact_area
+    assert state.work_error == approx(expected, rel=1e-9)
+
+
+def test_a_cut_adds_ten_tolerances(monkeypatch):
+    """Blind contacts were off by up to nine of them, whatever the quadrature says."""
+    quadrature, asked = loading.integrate_adaptively, []
+
+    def without_error(*args, **options):
+        asked.append(args[5])
+        return quadrature(*args, **options)[0], 0.0
+
+    monkeypatch.setattr(loading, "integrate_adaptively", without_error)
+    grid = Grid((40, 40), (0.4e-6, 0.4e-6))
+    contact = Contact(PAIR, smooth(grid), 1e9, plasticity="truncated")
+    state = solve(contact, DEPTH)
+    assert state.work_error == approx(10 * asked[0], rel=1e-9)
+    assert asked[0] > 0
+
+
+def test_increments_add_parts_of_what_the_growth_of_the_bound_adds():
+    """A tenth for nodes that had yielded before, a quarter for those that begin to."""
+    grid = Grid((64, 64), (0.5e-6, 0.5e-6))
+    contact = Contact(PAIR, smooth(grid), yield_strength=1e9)
+    before = solve(contact, 1.5e-7)
+    after = solve(contact, 2e-7, start=before)
+    given = after.plastic_displacement - before.plastic_displacement
+    growth = given * (after.bound - before.bound) * grid.cell_area
+    old = before.plastic_displacement > 0
+    added = 0.1 * abs(growth[old].sum()) + 0.25 * abs(growth[~old].sum())
+    assert growth[old].sum() > 0 < growth[~old].sum()
+    assert after.work_error - before.work_error == approx(added, rel=1e-9)

@@ -1,6 +1,8 @@
 """Between the points of a law, and what is said of the error there."""
 
 import csv
+import itertools
+import math
 from pathlib import Path
 
 import numpy as np
@@ -144,3 +146,13 @@ def test_sticking_ends_where_rounding_hides_the_sign():
 def test_where_sticking_ends(ratios, begins):
     curve = RatioCurve(np.array([1.0, 2.0, 4.0]), np.array(ratios), adhesive=False)
     assert curve.begins() == begins
+
+
+def test_the_error_is_at_least_the_distance_from_a_straight_line():
+    """Between dense points of a smooth curve, where left-out points are hardly missed."""
+    V = np.geomspace(1.0, 2.0, 40)
+    curve = RatioCurve(V, 0.9 - 0.2 * np.log(V) ** 2, adhesive=False)
+    for below, above in itertools.pairwise(V[10:30]):
+        middle = math.sqrt(below * above)
+        line = 0.5 * (curve.at(below) + curve.at(above))
+        assert curve.error(middle) >= abs(curve.at(middle) - line) * (1 - 1e-9) > 0

@@ -154,3 +154,10 @@ def test_the_error_of_two_rules_is_taken_off():
         value, _, asked = adaptive(lambda x, n=power: x**n, 0.0, 1.0, math.inf)
         assert value == approx(1 / (power + 1), rel=1e-14)
         assert len(asked) == 3
+
+
+def test_the_error_is_the_difference_of_one_step_from_two():
+    """∫x⁴ over [0, 1]: Simpson's rule gives 5/24, its two halves 77/384."""
+    value, error, _ = adaptive(lambda x: x**4, 0.0, 1.0, 1.0)
+    assert error == approx(5 / 24 - 77 / 384, rel=1e-12)
+    assert value == approx(0.2, rel=1e-12)

@@ -44,6 +44,8 @@ def test_values_that_go_up_and_down_have_an_error_but_no_order():
     assert error == approx(0.02)
     assert math.isnan(order)
     assert discretisation([0.5, 0.53])[0] == approx(0.09)
+    assert discretisation([0.5, 0.55, 0.6])[0] == approx(1.5 * 0.05)
+    assert discretisation([0.5, 0.7, 0.71])[0] == approx(0.5 * 0.2)
     assert np.isnan(discretisation([0.5])).all()
 
 
