@@ -22,7 +22,7 @@ def surface(
 
     from restitution.case import needs
     from restitution.case.case_file import naming, read_case
-    from restitution.cli.console import answers, waiting
+    from restitution.cli.console import answers, say, waiting
     from restitution.reports.figures import surface_map, write_figure
     from restitution.reports.surface_page import write_surface_page
     from restitution.results.interruption import hold_signals
@@ -65,5 +65,4 @@ def surface(
     for key, value in statistics.items():
         table.add_row(key, "-" if value is None else f"{value:.5g}")
     answers.print(table)
-    answers.print(f"In {out}: surface.nc, statistics.json, surface.png, surface.html", markup=False,
-                  soft_wrap=True)  # fmt: skip
+    say(f"In {out}: surface.nc, statistics.json, surface.png, surface.html")

@@ -36,7 +36,7 @@ def theory(
 ) -> None:
     """Print COR against velocity of every published closed form for the smooth bodies of CASE."""
     from restitution.case.case_file import naming, read_case
-    from restitution.cli.console import answers
+    from restitution.cli.console import answers, say
     from restitution.laws import theories as room
     from restitution.laws.law_files import read_law, write_theories
     from restitution.reports.theory_figure import write_theory_figure
@@ -55,9 +55,6 @@ def theory(
             write_theories(velocities, found, out),
             write_theory_figure(read, velocities, found, out, points),
         ]
-
-    def say(line: str) -> None:
-        answers.print(line, markup=False, soft_wrap=True)
 
     say("COR of the smooth bodies by impact velocity (m/s); - is outside of a theory's range")
     for table in _tables(velocities.tolist(), found, answers.width):
