@@ -1,6 +1,7 @@
 """Every example a reader is shown does what the text beside it says."""
 
 import json
+import pkgutil
 import re
 import shlex
 import shutil
@@ -13,6 +14,7 @@ from typing import get_args
 import numpy as np
 import pytest
 
+from restitution.cli.app import app
 from tolerance import approx
 
 ROOT = Path(__file__).parents[1]
@@ -131,3 +133,45 @@ def test_the_way_to_a_dem_code_is_as_its_page_says(cli, tmp_path, monkeypatch):
             [law["rms"], law["worst"]], abs=0.002
         )
     assert (tmp_path / "input" / "restitution.lmp").is_file()
+
+
+# The CHANGELOG tells of names that are gone.
+DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
+FOLDERS = "src|tests|docs|examples|validation|benchmarks"
+
+
+def code(document):
+    """What stands in a document as code, in blocks and within lines."""
+    text = document.read_text()
+    blocks = re.findall(r"```\w*\n(.*?)```", text, re.DOTALL)
+    within = re.findall(r"`([^`]+)`", re.sub(r"```.*?```", "", text, flags=re.DOTALL))
+    return [piece.replace("\n", " ") for piece in within] + blocks
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
+def test_modules_and_commands_that_a_document_names_exist(document):
+    text = "\n".join(code(document))
+    for name in re.findall(r"\brestitution(?:\.[a-z_]\w*)+", text):
+        if name.split(".")[1] not in {"csv", "liggghts", "lmp", "png"}:  # files of an export
+            pkgutil.resolve_name(name)
+    verbs = {command.callback.__name__ for command in app.registered_commands}
+    for verb in re.findall(r"(?:^|/bin/)restitution ([a-z]+)", text, re.MULTILINE):
+        assert verb in verbs
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
+def test_files_that_a_document_names_exist(document):
+    text = document.read_text()
+    for link in re.findall(r"\]\((?!https?:)([^)#]+)", text):
+        assert (document.parent / link).exists(), link
+    for path in re.findall(rf"(?<![\w/.])(?:{FOLDERS})/[\w/-]+(?:\.\w+)?", text):
+        assert (ROOT / path).exists() or (document.parent / path).exists(), path
+
+
+def test_modules_of_the_rooms_are_those_that_the_design_names():
+    text = (ROOT / "docs" / "design.md").read_text()
+    package = ROOT / "src" / "restitution"
+    for room, row in re.findall(r"^\| `(\w+)/` \| (.*) \|$", text, re.MULTILINE):
+        names = {"errors", *(path.stem for path in (package / room).rglob("*"))}
+        for name in re.findall(r"`([a-z_]+)`", row):
+            assert name in names, f"{room}: {name}"

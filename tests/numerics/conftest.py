@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from restitution.numerics.quadratic.minimise import minimise_quadratic
+from restitution.numerics.quadratic.minimise import BoundedQuadratic, minimise_quadratic
 
 
 @pytest.fixture(params=[1, 2, 3, 40])
@@ -26,7 +26,9 @@ def minimise():
     The program's arrays are of two dimensions: a column serves.
     """
 
-    def found_and_applied(A, b, lower, upper, *, start=None, inverse=None, **options):
+    def found_and_applied(
+        A, b, lower, upper, *, start=None, inverse=None, K_single=None, **options
+    ):
         applied = []
 
         def apply(p, out=None):
@@ -35,10 +37,7 @@ def minimise():
 
         options = {"tolerance": 1e-10, "max_iterations": 500} | options
         found = minimise_quadratic(
-            apply,
-            b[:, None],
-            lower[:, None],
-            upper[:, None],
+            BoundedQuadratic(apply, b[:, None], lower[:, None], upper[:, None], K_single),
             start=np.zeros((b.size, 1)) if start is None else start[:, None],
             precondition=np.positive if inverse is None else partial(np.matmul, inverse),
             **options,

@@ -60,35 +60,31 @@ def both(operation, *args):
 @given(shapes, seeds, st.sampled_from([0.0, 0.4, 1.0, 1.7]))
 def test_a_step_is_that_of_the_expressions(single, kind, shape, seed, step):
     rng = np.random.default_rng(seed)
-    lower, upper = bounds(rng, kind, shape)
-    p, g = point(rng, lower, upper, shape), rng.normal(size=shape)
-    lower, upper = as_rows(lower, p), as_rows(upper, p)
+    box = bounds(rng, kind, shape)
+    p, g = point(rng, *box, shape), rng.normal(size=shape)
+    box = as_rows(*box, p)
     g[rng.random(shape) < 0.2] = 0.0
     d, r, z, Kd, out = (rng.normal(size=shape).astype(single) for _ in range(5))
 
     b = rng.normal(size=shape)
     (most, (_, slope, *_, left)), (its_most, (_, its_slope, *_, its_left)) = both(
-        projected_gradient, p, g + b, b, lower, upper, out
+        projected_gradient, p, g + b, b, box, out
     )
     assert most == its_most == approx(np.abs(left).max(), rel=1e-7)
     assert_array_equal(slope, its_slope)
     assert_array_equal(left, its_left)
 
     (found, (its_d, *_)), (compiled, (compiled_d, *_)) = both(
-        projected_direction, d, 0.3, z, 0.8, p, g, r, lower, upper
+        projected_direction, d, 0.3, z, 0.8, p, g, r, box
     )
     assert_allclose(compiled_d, its_d, atol=2e-7)
     assert compiled[0] == approx(found[0], abs=1e-5)
     assert compiled[1] == found[1]
 
-    ends = [
-        bool(outcome) for outcome, _ in both(violates_bounds, p, compiled_d, step, lower, upper)
-    ]
+    ends = [bool(outcome) for outcome, _ in both(violates_bounds, p, compiled_d, step, box)]
     assert ends[0] == ends[1]
 
-    (most, its), (its_most, compiled) = both(
-        take_step, p, g, compiled_d, Kd, step, lower, upper, out
-    )
+    (most, its), (its_most, compiled) = both(take_step, p, g, compiled_d, Kd, step, box, out)
     for which in (0, 1, -1):
         assert_allclose(compiled[which], its[which], atol=1e-6)
     assert most == np.abs(its[-1]).max()
@@ -108,10 +104,11 @@ def test_a_step_to_a_bound_ends_on_it(compiled, shape, seed):
     lower, upper = bounds(rng, "arrays", shape)
     p, g = point(rng, lower, upper, shape), rng.normal(size=shape)
     d, z, r, Kd = np.zeros(shape), 5 * rng.normal(size=shape), g.copy(), rng.normal(size=shape)
-    free = fused_ops._free(p, g, lower, upper)
+    box = lower, upper
+    free = fused_ops._free(p, g, box)
     wanted = np.where(free, p - z, p)
-    direction(d, 1.0, z, 1.0, p, g, r, lower, upper)
-    step(p, g, d, Kd, 1.0, lower, upper, r)
+    direction(d, 1.0, z, 1.0, p, g, r, box)
+    step(p, g, d, Kd, 1.0, box, r)
     assert_array_equal(p[wanted <= lower], lower[wanted <= lower])
     assert_array_equal(p[wanted >= upper], upper[wanted >= upper])
 
@@ -165,7 +162,7 @@ def test_threads_share_the_rows_and_change_nothing(threads):
     shape = (1701, 1300)  # one array in single precision is worth threads
     p, g = rng.random(shape), rng.normal(size=shape)
     d, r, z, r_old, Kd = rng.normal(size=(5, *shape)).astype(np.float32)
-    lower, upper = (as_rows(bound, p) for bound in (0.0, 0.9))
+    box = as_rows(0.0, 0.9, p)
     sums, nodes = np.empty((2, 8, 8))
     fine, moments = np.empty((2 * shape[0], 2 * shape[1] - 1)), rng.normal(size=(3, 3))
     x, y = (rng.uniform(1, 9, size) for size in ((shape[0], 1), (1, shape[1])))
@@ -173,13 +170,13 @@ def test_threads_share_the_rows_and_change_nothing(threads):
     def everything():
         its_p, its_g, its_d, its_r = p.copy(), g.copy(), d.copy(), r.copy()
         return [
-            projected_gradient(p, its_g, p, lower, upper, its_r), its_r.copy(), its_g.copy(),
+            projected_gradient(p, its_g, p, box, its_r), its_r.copy(), its_g.copy(),
             dot_products(z, r, r_old),
-            projected_direction(its_d, 0.3, z, 0.8, p, g, r, lower, upper), its_d,
+            projected_direction(its_d, 0.3, z, 0.8, p, g, r, box), its_d,
             curvature(its_d, Kd), max_magnitude(g),
             local_sums(r, sums, nodes), sums.copy(), nodes.copy(),
             subtract_local_mean(r, 0.1, sums, nodes, its_r), its_r.copy(),
-            take_step(its_p, its_g, its_d, Kd, 1.0, lower, upper, its_r), its_p, its_g, its_r,
+            take_step(its_p, its_g, its_d, Kd, 1.0, box, its_r), its_p, its_g, its_r,
             prolong(p, fine), fine.copy(), restrict(fine, its_g), its_g.copy(),
             multipoles(x, y, moments, its_g), its_g,
         ]  # fmt: skip
@@ -199,12 +196,12 @@ def test_what_is_not_finite_is_no_small_violation(single, bad, shape, seed):
     rng = np.random.default_rng(seed)
     p, g = rng.random(shape) + 1, rng.normal(size=shape)
     out, d, Kd = np.empty(shape, single), np.zeros(shape, single), np.zeros(shape, single)
-    lower, upper = (as_rows(bound, p) for bound in (0.0, np.inf))
+    box = as_rows(0.0, np.inf, p)
     g[tuple(rng.integers(0, shape))] = bad
     values = g.astype(single)
     for largest in (
-        projected_gradient(p, g.copy(), p, lower, upper, out),
-        take_step(p, g, d, Kd, 1.0, lower, upper, out),
+        projected_gradient(p, g.copy(), p, box, out),
+        take_step(p, g, d, Kd, 1.0, box, out),
         max_magnitude(values),
         curvature(d, values)[1],
     ):

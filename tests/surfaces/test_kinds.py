@@ -144,3 +144,18 @@ def test_what_cannot_be_is_refused(kind, changes, key, said):
         generate(kind=kind, **changes)
     assert str(refusal.value).startswith(f"{key}: ")
     assert said in str(refusal.value)
+
+
+def test_a_keyword_that_no_kind_has_is_a_mistake_in_the_call():
+    with pytest.raises(TypeError, match="unexpected keyword argument 'correlation_lenght'"):
+        generate(correlation_lenght=2e-6)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_keyword_that_is_none_counts_as_left_out(kind):
+    names = {"correlation_length", "hurst", "rolloff", "shortest"}
+    absent = dict.fromkeys(names - set(KINDS[kind]))
+    lay = {"lay": 0.0} if kind != "exponential" else {}
+    np.testing.assert_array_equal(
+        generate(kind=kind, **absent, **lay).height, generate(kind=kind).height
+    )

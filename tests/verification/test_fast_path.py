@@ -10,7 +10,7 @@ from restitution import Body, Contact, Grid, Pair, solve, step
 from restitution.contact import adhesion, loading
 from restitution.contact.influence import half_space, inverse_half_space
 from restitution.numerics.convolution.operators import FreeConvolution
-from restitution.numerics.quadratic.minimise import minimise_quadratic
+from restitution.numerics.quadratic.minimise import BoundedQuadratic, minimise_quadratic
 from restitution.surfaces import generate_surface
 from tolerance import approx
 
@@ -31,9 +31,12 @@ def plain_pressure(contact, depth):
     arguments = contact.grid.nodes, contact.grid.spacing, contact.pair.contact_modulus
     b = depth - contact.gap
     found = minimise_quadratic(
-        half_space(*arguments), b, 0.0, contact.yield_pressure, start=np.zeros_like(b),
-        precondition=inverse_half_space(*arguments), tolerance=1e-9 * depth, max_iterations=1000,
-    )  # fmt: skip
+        BoundedQuadratic(half_space(*arguments), b, 0.0, contact.yield_pressure),
+        start=np.zeros_like(b),
+        precondition=inverse_half_space(*arguments),
+        tolerance=1e-9 * depth,
+        max_iterations=1000,
+    )
     assert found.converged
     return found.point
 

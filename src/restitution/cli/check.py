@@ -16,7 +16,7 @@ def check(
 
     from restitution.case.case_file import naming, read_case
     from restitution.case.derived import deepest_indentation, derived_quantities
-    from restitution.cli.console import answers, waiting, warn
+    from restitution.cli.console import answers, say, waiting, warn
     from restitution.contact.plausibility import implausible, require_small
     from restitution.contact.resolution import foreseen_warnings, refuse_coarse_scan
     from restitution.numerics.memory import available, in_words
@@ -70,7 +70,7 @@ def check(
     table.add_row("memory of a run, at most", needed, f"of {in_words(available())}{auto}")
     answers.print(table)
     if (from_where := read.yielding().source) not in ("given", "elastic"):
-        answers.print(f"The contact yields at: {from_where}.", markup=False, soft_wrap=True)
+        say(f"The contact yields at: {from_where}.")
     deepest = deepest_indentation(read)
     require_small(contact, deepest)
     refuse_coarse_scan(contact, deepest)

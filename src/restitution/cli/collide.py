@@ -26,9 +26,7 @@ def collide(
     ] = None,
 ) -> None:
     """Integrate collisions through the forces in OUT and compare with the energies' COR."""
-    from rich.table import Table
-
-    from restitution.cli.console import answers
+    from restitution.cli.console import answers, say, table_of_numbers
     from restitution.laws.from_results import bare_law
     from restitution.laws.law import velocity_of
     from restitution.laws.time_integration import collide_in_time, course, stored_force
@@ -43,10 +41,10 @@ def collide(
         for point in law.points
         if (abs(unloaded / point.indentation - 1) < 1e-6).any()
     ]
-    table = Table(box=None, header_style="bold")
-    for name in ("V (m/s)", "COR", "error", "by energies", "difference", "time (s)", "force (N)",
-                 "depth (nm)"):  # fmt: skip
-        table.add_column(name, justify="right", no_wrap=True)
+    table = table_of_numbers(
+        "V (m/s)", "COR", "error", "by energies", "difference", "time (s)", "force (N)",
+        "depth (nm)",
+    )  # fmt: skip
     courses, blended = [], False
     for each in asked:
         found, energies = collide_in_time(force, each), law.at(each)
@@ -69,4 +67,4 @@ def collide(
             "(unloading.curves) COR in time comes nearer to that by energies."
         )
     if out is not None:
-        answers.print(f"Written: {out}", markup=False, soft_wrap=True)
+        say(f"Written: {out}")

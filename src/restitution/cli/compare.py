@@ -20,7 +20,7 @@ def compare(
     """Print what differs between the results in A and B, with the errors of the differences."""
     from rich.table import Table
 
-    from restitution.cli.console import answers
+    from restitution.cli.console import answers, say
     from restitution.results.compare import compare as compared
     from restitution.results.writer import require_new_file, write_table
 
@@ -61,7 +61,7 @@ def compare(
     else:
         answers.print("no depth in common")
     for note in found.notes:
-        answers.print(f"Note: {note}", markup=False, soft_wrap=True)
+        say(f"Note: {note}")
 
 
 def _plain(text: str) -> str:

@@ -4,10 +4,14 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
 from threading import Timer
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 
 from restitution.errors import one_line
+
+if TYPE_CHECKING:
+    from rich.table import Table
 
 _PATIENCE = 2.0  # s without a sign of life
 
@@ -15,16 +19,29 @@ answers = Console(highlight=False)
 errors = Console(stderr=True, highlight=False)
 
 
+def say(text: str, console: Console = answers, style: str | None = None) -> None:
+    """Print one line as it is, without markup and not wrapped."""
+    console.print(text, style=style, markup=False, soft_wrap=True)
+
+
+def table_of_numbers(*columns: str) -> "Table":
+    """An empty table with columns of those names."""
+    from rich.table import Table
+
+    table = Table(box=None, header_style="bold")
+    for name in columns:
+        table.add_column(name, justify="right", no_wrap=True)
+    return table
+
+
 def warn(message: str) -> None:
     """Print one warning on standard error."""
-    errors.print(f"Warning: {one_line(message)}", style="yellow", markup=False, soft_wrap=True)
+    say(f"Warning: {one_line(message)}", errors, "yellow")
 
 
 def refuse(message: str) -> None:
     """Print one error on standard error."""
-    errors.print(
-        f"Error: {one_line(message)}", style="red", highlight=False, markup=False, soft_wrap=True
-    )
+    say(f"Error: {one_line(message)}", errors, "red")
 
 
 @cache
@@ -34,7 +51,7 @@ def hint_at_kernels() -> None:
     from restitution.numerics.kernels import missing
 
     if current() is CPU and (why := missing()):
-        errors.print(f"Hint: {why}", markup=False, soft_wrap=True)
+        say(f"Hint: {why}", errors)
 
 
 @contextmanager

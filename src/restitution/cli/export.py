@@ -36,7 +36,7 @@ def export(
     ] = None,
 ) -> None:
     """Write input for a DEM code: the restitution of every pair, with what it holds for."""
-    from restitution.cli.console import answers, warn
+    from restitution.cli.console import say, warn
     from restitution.dem.export import export as exported
     from restitution.dem.export import write_export
     from restitution.laws.law import velocity_of
@@ -54,9 +54,6 @@ def export(
     if at is not None:
         for law in read:
             found = law.at(at)
-            answers.print(
-                f"{law.pair}: COR {found.restitution:.4f} ± {found.error:.2g} at {at:g} m/s",
-                markup=False, soft_wrap=True,
-            )  # fmt: skip
+            say(f"{law.pair}: COR {found.restitution:.4f} ± {found.error:.2g} at {at:g} m/s")
     names = ", ".join(path.name for path in written)
-    answers.print(f"In {out}: {names}", markup=False, soft_wrap=True)
+    say(f"In {out}: {names}")

@@ -29,13 +29,13 @@ def law(
     """Write the restitution law of the results in OUT: table, compact fit, simpler laws."""
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-    from restitution.cli.console import answers, errors, warn
+    from restitution.cli.console import answers, errors, say, warn
 
     columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
     with Progress(*columns, console=errors, transient=True) as bar:
         task = bar.add_task("reading the results")
 
-        def say(words: str) -> None:
+        def show(words: str) -> None:
             bar.update(task, description=words, refresh=True)
 
         from restitution.laws.from_results import law_of
@@ -43,30 +43,27 @@ def law(
         from restitution.plots.law import law_figure
         from restitution.plots.static import write_figure
 
-        found = law_of(results, lambda name, k, n: say(f"fitting {name} ({k} of {n})"))
+        found = law_of(results, lambda name, k, n: show(f"fitting {name} ({k} of {n})"))
         written = write_law(found, out)
-        say("drawing the figure")
+        show("drawing the figure")
         written.append(write_figure(out / "law", law_figure(found), figures.value))
     for warning in found.warnings:
         warn(warning)
-    answers.print(
+    say(
         f"{found.pair}: {len(found.points)} velocities, {found.lowest:.4g} to "
-        f"{found.highest:.4g} m/s", markup=False, soft_wrap=True,
-    )  # fmt: skip
+        f"{found.highest:.4g} m/s"
+    )
     for line in _in_words(found):
-        answers.print(line, markup=False, soft_wrap=True)
+        say(line)
     if found.laws:
         answers.print(_table(found.laws))
     names = ", ".join(path.name for path in written)
-    answers.print(f"In {out}: {names}", markup=False, soft_wrap=True)
-    answers.print(f"Its error is: {found.conventions.restitution_error}.", soft_wrap=True)
+    say(f"In {out}: {names}")
+    say(f"Its error is: {found.conventions.restitution_error}.")
     if found.sticks_everywhere:
         return
     speed = f"{_middle(found):.2g} m/s"
-    answers.print(
-        f'Next: restitution export {out} --to lammps --velocity "{speed}" -o INPUT',
-        markup=False, soft_wrap=True,
-    )  # fmt: skip
+    say(f'Next: restitution export {out} --to lammps --velocity "{speed}" -o INPUT')
 
 
 def _in_words(law: "Law") -> list[str]:

@@ -26,13 +26,10 @@ def many_cases(cases: int, out: object, again: str) -> Iterator[Progress]:
         TimeRemainingColumn,
     )
 
-    from restitution.cli.console import errors, hint_at_kernels
+    from restitution.cli.console import errors, hint_at_kernels, say
     from restitution.cli.signals import Stopped
 
-    def say(text: str) -> None:
-        errors.print(text, markup=False, soft_wrap=True)
-
-    say(f"{cases} cases. Results go to {out}; to resume: {again}")
+    say(f"{cases} cases. Results go to {out}; to resume: {again}", errors)
     hint_at_kernels()
     columns = (
         TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(),
@@ -43,5 +40,5 @@ def many_cases(cases: int, out: object, again: str) -> Iterator[Progress]:
             yield bar
     except KeyboardInterrupt as stop:
         errors.print("Interrupted.", style="red")
-        say(f"What is done is kept; go on with: {again}")
+        say(f"What is done is kept; go on with: {again}", errors)
         raise typer.Exit(stop.status if isinstance(stop, Stopped) else 130) from None

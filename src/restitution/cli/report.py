@@ -15,8 +15,8 @@ def report(
     ],
 ) -> None:
     """Write a self-contained HTML page of the results in OUT."""
-    from restitution.cli.console import answers
+    from restitution.cli.console import say
     from restitution.pages.report import write_report
 
     page = write_report(out)
-    answers.print(f"Written: {page}", markup=False, soft_wrap=True)
+    say(f"Written: {page}")

@@ -23,7 +23,7 @@ def reproduce(
     """Compute Figures 5 to 14 of Ghanbarzadeh et al. (2019) and judge its claims."""
     from rich.table import Table
 
-    from restitution.cli.console import answers
+    from restitution.cli.console import answers, say
     from restitution.cli.many import many_cases
     from restitution.errors import CaseError
     from restitution.reproduce.report import write_reproduction
@@ -61,4 +61,4 @@ def reproduce(
     for finding in findings:
         table.add_row(finding.figure, finding.claim, finding.verdict)
     answers.print(table)
-    answers.print(f"Written: {page}", markup=False, soft_wrap=True)
+    say(f"Written: {page}")

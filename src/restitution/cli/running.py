@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
-    from rich.console import Console
+    from rich.table import Table
 
     from restitution.case.case import Case
     from restitution.results.writer import ResultsFolder
@@ -68,7 +68,7 @@ def carry_out(
     )
 
     from restitution.case.case_file import naming, read_case
-    from restitution.cli.console import answers, errors, hint_at_kernels, warn
+    from restitution.cli.console import answers, errors, hint_at_kernels, say, warn
     from restitution.cli.signals import Stopped, received
     from restitution.numerics.convolution.device import on_device
     from restitution.results.locking import locked
@@ -80,7 +80,7 @@ def carry_out(
     context.with_resource(on_device(device.value))
     context.with_resource(locked(out))
     folder = ResultsFolder(out)
-    errors.print(f"Results go to {out}", markup=False, soft_wrap=True)
+    say(f"Results go to {out}", errors)
     hint_at_kernels()
     columns = (
         TextColumn("{task.description}"),
@@ -97,7 +97,7 @@ def carry_out(
                 progress=lambda words: bar.update(task, advance=1, description=words),
                 warn=warn,
             )  # fmt: skip
-        _print_curve(answers, folder.rows)
+        answers.print(_curve(folder.rows))
         many = f" of {runs(read)} curves" if runs(read) > 1 else ""
         residual = summary["trust"]["largest_residual"]
         answers.print(
@@ -116,7 +116,7 @@ def carry_out(
         _keep(folder, depths, figures)
         raise
     names = [p.name for p in sorted(out.iterdir()) if p.name not in drawn and p.name != LOCK]
-    answers.print(f"In {out}: {', '.join([*names, *sorted(drawn)])}", markup=False, soft_wrap=True)
+    say(f"In {out}: {', '.join([*names, *sorted(drawn)])}")
     return summary
 
 
@@ -124,15 +124,15 @@ def _keep(folder: ResultsFolder, depths: int, figures: FigureFormat) -> None:
     """Say what a run that ended early leaves, and draw it."""
     from contextlib import suppress
 
-    from restitution.cli.console import errors
+    from restitution.cli.console import errors, say
 
     if not folder.rows:
         return
     of = " (means of the surfaces done)" if "realisations" in folder.rows[0] else ""
-    errors.print(
+    say(
         f"{len(folder.rows)} of {depths} depths were computed{of} and are kept in {folder.path}",
-        markup=False, soft_wrap=True,
-    )  # fmt: skip
+        errors,
+    )
     with suppress(Exception):  # what ended the run is to be said, not that its figures fail, too
         _draw(folder.path, figures)
 
@@ -146,12 +146,12 @@ def _draw(out: Path, figures: FigureFormat) -> list[Path]:
     return write_figures(out, run_figures(RunResults(out).dataset), figures.value)
 
 
-def _print_curve(console: Console, rows: list[dict[str, float]]) -> None:
-    from rich.table import Table
+def _curve(rows: list[dict[str, float]]) -> Table:
+    from restitution.cli.console import table_of_numbers
 
-    table = Table(box=None, header_style="bold")
-    for name in ("depth (nm)", "force (N)", "V (m/s)", "COR", "± model", "nodes", "resolved"):
-        table.add_column(name, justify="right", no_wrap=True)
+    table = table_of_numbers(
+        "depth (nm)", "force (N)", "V (m/s)", "COR", "± model", "nodes", "resolved"
+    )
     for row in rows:
         velocity = row["impact_velocity_m_per_s"]
         table.add_row(
@@ -163,7 +163,7 @@ def _print_curve(console: Console, rows: list[dict[str, float]]) -> None:
             f"{row['contact_nodes']:.0f}",
             "yes" if row["resolved"] and row["adhesion_resolved"] else "no",
         )
-    console.print(table)
+    return table
 
 
 def _uncertainty(row: dict[str, float]) -> str:

@@ -36,7 +36,7 @@ def study(
     """Run every case of STUDY and write a table of all of them to OUT."""
 
     from restitution.case.case_file import parse_case
-    from restitution.cli.console import answers, warn
+    from restitution.cli.console import say, warn
     from restitution.cli.many import many_cases
     from restitution.errors import CaseError
     from restitution.sweeps.executors import cluster_workers, local_workers
@@ -72,7 +72,6 @@ def study(
             f"{tally.failed} of {tally.cases} cases failed; their reasons are in the column reason "
             "of table.csv"
         )
-    answers.print(f"{tally.done} of {tally.cases} cases. In {out}: cases, study.nc, study.toml, "
-                  "table.csv", markup=False, soft_wrap=True)  # fmt: skip
+    say(f"{tally.done} of {tally.cases} cases. In {out}: cases, study.nc, study.toml, table.csv")
     if tally.failed == tally.cases:
         raise typer.Exit(1)

@@ -25,7 +25,7 @@ def surface(
 
     from restitution.case import needs
     from restitution.case.case_file import naming, read_case
-    from restitution.cli.console import answers, waiting
+    from restitution.cli.console import answers, say, waiting
     from restitution.pages.surface import write_surface_page
     from restitution.plots.static import write_figure
     from restitution.plots.surface import surface_map
@@ -66,5 +66,4 @@ def surface(
     for key, value in statistics.items():
         table.add_row(key, "-" if value is None else f"{value:.5g}")
     answers.print(table)
-    answers.print(f"In {out}: surface.nc, statistics.json, {picture.name}, surface.html",
-                  markup=False, soft_wrap=True)  # fmt: skip
+    say(f"In {out}: surface.nc, statistics.json, {picture.name}, surface.html")

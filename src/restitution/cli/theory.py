@@ -39,7 +39,7 @@ def theory(
 ) -> None:
     """Print COR against velocity of every published closed form for the smooth bodies of CASE."""
     from restitution.case.case_file import naming, read_case
-    from restitution.cli.console import answers
+    from restitution.cli.console import answers, say
     from restitution.laws import theories as room
     from restitution.laws.law_files import read_law, write_theories
     from restitution.plots.static import write_figure
@@ -59,9 +59,6 @@ def theory(
         lines = room.theory_lines(read, velocities, found)
         figure = theory_figure(read.title, lines, room.marks(read), points)
         written.append(write_figure(out / "theory", figure, figures.value))
-
-    def say(line: str) -> None:
-        answers.print(line, markup=False, soft_wrap=True)
 
     say("COR of the smooth bodies by impact velocity (m/s); - is outside of a theory's range")
     for table in _tables(velocities.tolist(), found, answers.width):

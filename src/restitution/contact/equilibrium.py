@@ -25,7 +25,7 @@ from restitution.errors import DomainError, NotConvergedError
 from restitution.numerics.box import NOWHERE, Box, bounding_box, shape_of, widen
 from restitution.numerics.convolution.device import current
 from restitution.numerics.convolution.operators import FreeConvolution, SpectralFilter
-from restitution.numerics.quadratic.minimise import minimise_quadratic
+from restitution.numerics.quadratic.minimise import BoundedQuadratic, minimise_quadratic
 from restitution.numerics.quadratic.multilevel import Operators, solve_multilevel
 
 Array = NDArray[np.float64]
@@ -78,13 +78,15 @@ def solve_pressure(
     else:
         K, inverse = operators(shape, 0)
         found = minimise_quadratic(
-            K,
-            device.put(b),
-            lower=device.put(np.where(held, -tension, 0.0)),
-            upper=upper,
+            BoundedQuadratic(
+                K,
+                device.put(b),
+                lower=device.put(np.where(held, -tension, 0.0)),
+                upper=upper,
+                K_single=K.single_precision,
+            ),
             start=device.put(np.zeros(shape) if first_guess is None else first_guess.copy()),
             precondition=inverse,
-            K_single=K.single_precision,
             tolerance=residual * scale,
             max_iterations=MAX_ITERATIONS,
         )

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
@@ -12,7 +10,7 @@ from restitution.dem.pair_table import PairTable, pair_table
 from restitution.errors import CaseError, OutputError
 from restitution.laws.law import Law
 from restitution.laws.law_files import law_rows
-from restitution.results.writer import replace_file, writing, written
+from restitution.results.writer import replace_file, table_text, writing
 
 CODES = ("lammps", "liggghts", "yade", "mercurydpm", "edem", "csv")
 TABLE = "restitution.csv"
@@ -87,8 +85,4 @@ def _table(table: PairTable, velocity: float | None) -> str:
             "resolved": estimate.resolved,
         }
         rows.append({**pair, **values, **{key: law_rows(law)[0][key] for key in _WHOLE}})
-    text = io.StringIO()
-    writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
-    writer.writeheader()
-    writer.writerows({key: written(value) for key, value in row.items()} for row in rows)
-    return text.getvalue()
+    return table_text(rows)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import csv
 import importlib.metadata
+import io
 import json
 import math
 import os
@@ -208,15 +209,18 @@ def write_json(path: Path, content: Mapping[str, Any]) -> None:
 
 def write_table(path: Path, rows: Sequence[Mapping[str, float | str]]) -> None:
     """Write `rows`, whose keys are the columns, as CSV, all of it or nothing."""
+    text = table_text(rows)
+    replace_file(path, lambda to: to.write_text(text, encoding="utf-8", newline=""))
 
-    def write(to: Path) -> None:
-        with open(to, "w", newline="") as file:
-            if rows:
-                _write_row(file, list(rows[0]))
-            for row in rows:
-                _write_row(file, [written(value) for value in row.values()])
 
-    replace_file(path, write)
+def table_text(rows: Sequence[Mapping[str, float | str]]) -> str:
+    """`rows`, whose keys are the columns, as CSV; empty without rows."""
+    text = io.StringIO()
+    if rows:
+        table = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
+        table.writeheader()
+        table.writerows({key: written(value) for key, value in row.items()} for row in rows)
+    return text.getvalue()
 
 
 def replace_file(path: Path, write: Callable[[Path], object]) -> None:

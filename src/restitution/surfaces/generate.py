@@ -9,7 +9,7 @@ unless a skewness and a kurtosis are asked for (`heights`).
 from __future__ import annotations
 
 import math
-from typing import Literal, get_args
+from typing import Literal, TypedDict, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,27 +28,44 @@ RoughnessKind = Literal["exponential", "gaussian", "self-affine"]
 _MARGIN = 2.0  # correlation lengths around a surface that is not to be periodic
 
 
+class Waves(TypedDict, total=False):
+    """What describes the waves of each kind: lengths in m, the `lay` in rad."""
+
+    correlation_length: float | tuple[float, float] | None
+    lay: float | None
+    hurst: float | None
+    rolloff: float | None
+    shortest: float | None
+
+
+_WAVES: dict[str, tuple[str, ...]] = {
+    "exponential": ("correlation_length", "lay", "shortest"),
+    "gaussian": ("correlation_length", "lay", "shortest"),
+    "self-affine": ("hurst", "rolloff", "shortest"),
+}
+
+
 def generate_surface(
     grid: Grid,
     *,
     kind: RoughnessKind,
     rms: float,
     seed: int,
-    correlation_length: float | tuple[float, float] | None = None,
-    lay: float = 0.0,
-    hurst: float | None = None,
-    rolloff: float | None = None,
-    shortest: float | None = None,
     skewness: float = 0.0,
     kurtosis: float = 3.0,
     periodic: bool = True,
+    **waves: Unpack[Waves],
 ) -> Surface:
     """Make a random surface with zero mean and exactly the rms height `rms` (Rq, m).
 
-    `exponential` and `gaussian` autocorrelation take `correlation_length` β (m), or two, along the
-    `lay` and across it; `lay` is the angle (rad) of the first from the x axis. `self-affine` takes
-    the `hurst` exponent and, if it is not to be a power law up to the domain, the wavelength
-    `rolloff` (m) above which the spectrum is flat. `shortest` (m) leaves out all shorter waves.
+    The `kind` says which other keywords describe the waves:
+        exponential, gaussian: the autocorrelation. `correlation_length` β (m), or two, along the
+            `lay` and across it; `lay` is the angle (rad) of the first from the x axis, default 0.
+        self-affine: the `hurst` exponent and, if it is not to be a power law up to the domain, the
+            wavelength `rolloff` (m) above which the spectrum is flat.
+        any: `shortest` (m) leaves out all shorter waves.
+    A keyword that is None counts as left out.
+
     Where `skewness` and `kurtosis` (3 is normal) differ from the normal distribution's, noise is
     translated before it is filtered if that suffices; else heights and amplitudes are adjusted in
     turns, and `provenance` holds the misfit of the amplitudes.
@@ -60,9 +77,9 @@ def generate_surface(
 
     Raises `SurfaceError` for an unknown `kind`, keywords that do not belong to it, a negative seed,
     lengths that are not positive or that the grid cannot hold, and moments that no distribution
-    has (kurtosis below skewness² + 1.1).
+    has (kurtosis below skewness² + 1.1); `TypeError` for a keyword that no kind has.
     """
-    spectrum = _spectrum(kind, correlation_length, lay, hurst, rolloff, shortest)
+    spectrum = _spectrum(kind, waves)
     if not (math.isfinite(rms) and rms > 0):
         raise SurfaceError(
             f'rms: {rms:g} m is not a positive length; give the rms height, such as "0.1 um"'
@@ -81,16 +98,7 @@ def generate_surface(
     height *= rms / math.sqrt(np.mean(height**2))
     asked: dict[str, str | float] = {"source": "generated", **made, "kind": kind}
     asked["rms_m"] = float(rms)
-    if isinstance(spectrum, Autocorrelated):
-        first, second = ("x", "y") if lay == 0 else ("along_lay", "across_lay")
-        for name, beta in zip((first, second), spectrum.correlation_length, strict=True):
-            asked[f"correlation_length_{name}_m"] = float(beta)
-        asked["correlation_length_defined_at"] = "autocorrelation of 10 %"
-        asked["lay_rad"] = float(lay)
-    elif isinstance(spectrum, SelfAffine):
-        asked["hurst"] = float(spectrum.hurst)
-        asked["rolloff_m"] = float(rolloff or max(grid.size))
-    asked["shortest_m"] = float(shortest or 2 * max(grid.spacing))
+    asked |= spectrum.parameters(grid)
     asked["skewness"], asked["kurtosis"] = float(skewness), float(kurtosis)
     asked["seed"] = int(seed)
     asked["noise"] = "PCG64 raw stream, inverse normal distribution"
@@ -98,40 +106,35 @@ def generate_surface(
     return Surface(height, grid, asked)
 
 
-def _spectrum(
-    kind: str,
-    correlation_length: float | tuple[float, float] | None,
-    lay: float,
-    hurst: float | None,
-    rolloff: float | None,
-    shortest: float | None,
-) -> Spectrum:
+def _spectrum(kind: str, waves: Waves) -> Spectrum:
     """The spectrum of that kind, refusing what belongs to another."""
-    if kind not in get_args(RoughnessKind):
+    if kind not in _WAVES:
         raise SurfaceError(
             f"kind: {kind!r} is no kind of roughness known here; "
             "choose 'exponential', 'gaussian' or 'self-affine'"
         )
-    foreign: list[tuple[str, object]] = [("hurst", hurst), ("rolloff", rolloff)]
-    if kind == "self-affine":
-        foreign = [("correlation_length", correlation_length), ("lay", lay or None)]
-    for name, value in foreign:
-        if value is not None:
+    for name, value in waves.items():
+        if name not in Waves.__annotations__:
+            raise TypeError(f"generate_surface() got an unexpected keyword argument {name!r}")
+        # The default lay, 0, is as good as none.
+        if name not in _WAVES[kind] and value is not None and (name, value) != ("lay", 0):
             raise SurfaceError(f"{name}: does not belong to kind = {kind!r}; leave it out")
+    shortest = waves.get("shortest")
     if kind == "self-affine":
+        hurst = waves.get("hurst")
         if hurst is None:
             raise SurfaceError("hurst: missing; a self-affine surface needs it, say 0.8")
-        return SelfAffine(hurst, rolloff, shortest)
-    if correlation_length is None:
+        return SelfAffine(hurst, waves.get("rolloff"), shortest)
+    beta = waves.get("correlation_length")
+    if beta is None:
         raise SurfaceError(
             f"correlation_length: missing; kind = {kind!r} needs the length over which "
             'the autocorrelation falls to 10 %, such as "2 um"'
         )
-    if not isinstance(correlation_length, tuple):
-        correlation_length = correlation_length, correlation_length
     autocorrelation: Literal["exponential", "gaussian"]
     autocorrelation = "exponential" if kind == "exponential" else "gaussian"
-    return Autocorrelated(autocorrelation, correlation_length, lay, shortest)
+    both = beta if isinstance(beta, tuple) else (beta, beta)
+    return Autocorrelated(autocorrelation, both, waves.get("lay") or 0.0, shortest)
 
 
 def _heights(

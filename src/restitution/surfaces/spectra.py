@@ -81,6 +81,17 @@ class Autocorrelated:
         H: Array = np.sqrt(np.maximum(rfft2(R).real, 0.0))
         return _cut(H, grid, self.shortest)
 
+    def parameters(self, grid: Grid) -> dict[str, str | float]:
+        """What describes the waves on `grid`, for the provenance of a surface."""
+        axes = ("x", "y") if self.lay == 0 else ("along_lay", "across_lay")
+        lengths = zip(axes, self.correlation_length, strict=True)
+        return {
+            **{f"correlation_length_{axis}_m": float(beta) for axis, beta in lengths},
+            "correlation_length_defined_at": "autocorrelation of 10 %",
+            "lay_rad": float(self.lay),
+            "shortest_m": float(self.shortest or 2 * max(grid.spacing)),
+        }
+
 
 @dataclass(frozen=True)
 class SelfAffine:
@@ -121,6 +132,14 @@ class SelfAffine:
         H: Array = np.maximum(q / q_r, 1.0) ** -(self.hurst + 1.0)
         H[0, 0] = 0.0
         return _cut(H, grid, self.shortest)
+
+    def parameters(self, grid: Grid) -> dict[str, str | float]:
+        """What describes the waves on `grid`, for the provenance of a surface."""
+        return {
+            "hurst": float(self.hurst),
+            "rolloff_m": float(self.rolloff or max(grid.size)),
+            "shortest_m": float(self.shortest or 2 * max(grid.spacing)),
+        }
 
 
 Spectrum = Autocorrelated | SelfAffine

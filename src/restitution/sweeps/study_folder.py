@@ -6,7 +6,6 @@ all. The tables follow from the cases and are written anew, each into a temporar
 
 from __future__ import annotations
 
-import csv
 import json
 import math
 import shutil
@@ -27,6 +26,7 @@ from restitution.results.writer import (
     replace_file,
     write_checksums,
     write_netcdf,
+    write_table,
     writing,
 )
 from restitution.sweeps.coordinates import as_text, coordinate
@@ -116,25 +116,23 @@ class StudyFolder:
         }
         cells = {number: curve.cells for number, curve in curves.items()}
         rows = {number: curve.rows for number, curve in curves.items()}
-        replace_file(self.path / "table.csv", lambda to: self._write_csv(to, known, cells))
+        write_table(self.path / "table.csv", self._rows(known, cells))
         write_netcdf(self.path / "study.nc", self._dataset(known, rows))
         write_checksums(self.path, ["study.nc", "study.toml", "table.csv"])
 
-    def _write_csv(
-        self, to: Path, known: dict[int, str | None], curves: dict[int, list[dict[str, str]]]
-    ) -> None:
+    def _rows(
+        self, known: dict[int, str | None], curves: dict[int, list[dict[str, str]]]
+    ) -> list[dict[str, str]]:
         """Swept values, then the columns of `curve.csv`; cases without a curve have one row."""
         columns = next((list(rows[0]) for rows in curves.values() if rows), list(COLUMNS))
-        with open(to, "w", newline="", encoding="utf-8") as file:
-            table = csv.writer(file, lineterminator="\n")
-            table.writerow([*self.study.swept, *columns, "case", "status", "reason"])
-            for case in self.study.cases:
-                reason = known[case.number]
-                status = _status(reason)
-                values = [as_text(value) for value in case.values.values()]
-                for row in curves.get(case.number, [{}]):
-                    cells = [row.get(column, "") for column in columns]
-                    table.writerow([*values, *cells, case.name, status, reason or ""])
+        rows = []
+        for case in self.study.cases:
+            reason = known[case.number]
+            swept = {key: as_text(value) for key, value in case.values.items()}
+            end = {"case": case.name, "status": _status(reason), "reason": reason or ""}
+            for row in curves.get(case.number, [{}]):
+                rows.append({**swept, **{name: row.get(name, "") for name in columns}, **end})
+        return rows
 
     def _dataset(
         self, known: dict[int, str | None], curves: dict[int, list[dict[str, float]]]

@@ -10,7 +10,11 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.linalg import solve_triangular
 from scipy.optimize import lsq_linear
 
-from restitution.numerics.quadratic.minimise import minimise_quadratic, violation
+from restitution.numerics.quadratic.minimise import (
+    BoundedQuadratic,
+    minimise_quadratic,
+    violation,
+)
 from tolerance import approx
 
 TOLERANCE = 1e-10  # of `minimise`
@@ -189,11 +193,14 @@ def test_the_shape_is_that_of_the_input(minimise, random_matrix):
     rng = np.random.default_rng(5)
     A, b = random_matrix(rng, 12), rng.normal(size=12)
     flat, _ = minimise(A, b, np.zeros(12), np.ones(12))
-    shaped = minimise_quadratic(
+    problem = BoundedQuadratic(
         lambda p, out=None: np.positive((A @ p.ravel()).reshape(3, 4), out=out),
         b.reshape(3, 4),
         np.zeros((3, 4)),
         np.ones((3, 4)),
+    )
+    shaped = minimise_quadratic(
+        problem,
         start=np.zeros((3, 4)),
         precondition=np.positive,
         tolerance=TOLERANCE,

@@ -8,7 +8,7 @@ from restitution.contact.influence import half_space, inverse_half_space
 from restitution.numerics.convolution.operators import FreeConvolution
 from restitution.numerics.quadratic import multilevel
 from restitution.numerics.quadratic.grid_transfer import prolong, restrict
-from restitution.numerics.quadratic.minimise import minimise_quadratic
+from restitution.numerics.quadratic.minimise import BoundedQuadratic, minimise_quadratic
 from restitution.numerics.quadratic.multilevel import (
     _USUAL_STIFFNESS,
     mean_damped_preconditioner,
@@ -26,8 +26,9 @@ def system(shape, level):
 
 def plain(b, upper):
     K, inverse = system(b.shape, 0)
-    return minimise_quadratic(K, b, 0.0, upper, start=np.zeros_like(b), precondition=inverse,
-                              tolerance=TOLERANCE, max_iterations=500)  # fmt: skip
+    return minimise_quadratic(BoundedQuadratic(K, b, 0.0, upper), start=np.zeros_like(b),
+                              precondition=inverse, tolerance=TOLERANCE, max_iterations=500
+                              )  # fmt: skip
 
 
 def nested(b, upper, **options):
@@ -67,9 +68,9 @@ def windows(monkeypatch):
     """The shapes that are solved on, in order."""
     seen = []
 
-    def watched(K, b, *bounds, **options):
-        seen.append(b.shape)
-        return minimise_quadratic(K, b, *bounds, **options)
+    def watched(problem, **options):
+        seen.append(problem.b.shape)
+        return minimise_quadratic(problem, **options)
 
     monkeypatch.setattr(multilevel, "minimise_quadratic", watched)
     return seen
@@ -137,8 +138,9 @@ def test_the_window_and_the_coarse_grids_save_products():
         found, products = nested(b, np.inf)
         assert found.converged
         K, inverse = system(b.shape, 0)
-        minimise_quadratic(K, b, 0.0, np.inf, start=np.zeros_like(b), precondition=inverse,
-                           tolerance=TOLERANCE, max_iterations=500)  # fmt: skip
+        minimise_quadratic(BoundedQuadratic(K, b, 0.0, np.inf), start=np.zeros_like(b),
+                           precondition=inverse, tolerance=TOLERANCE, max_iterations=500
+                           )  # fmt: skip
         ours += products
         theirs += K.count
     assert ours < 0.9 * theirs

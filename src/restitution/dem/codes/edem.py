@@ -7,10 +7,7 @@ e = (K1/K2)^½ at every velocity, so the export gives K2 at its own velocity.
 
 from __future__ import annotations
 
-import csv
-import io
 import math
-from collections.abc import Sequence
 
 from restitution.dem.export_common import (
     FRICTION,
@@ -23,6 +20,7 @@ from restitution.dem.export_common import (
     pairs_at,
 )
 from restitution.dem.pair_table import PairTable
+from restitution.results.writer import table_text
 
 CODE = "EDEM"
 INTERACTIONS, MATERIALS = "restitution_edem.csv", "restitution_edem_materials.csv"
@@ -47,8 +45,8 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
     head = header(table, pairs, velocity, code=CODE, ends=_ENDS) + _NOTES
     comments = commented(head, "#") + "\n"
     return {
-        INTERACTIONS: comments + _csv([_interaction(pair, velocity) for pair in pairs]),
-        MATERIALS: comments + _csv(_materials(table)),
+        INTERACTIONS: comments + table_text([_interaction(pair, velocity) for pair in pairs]),
+        MATERIALS: comments + table_text(_materials(table)),
     }
 
 
@@ -98,11 +96,3 @@ def _materials(table: PairTable) -> list[dict[str, str]]:
         }
         for k, body in enumerate(table.particles, 1)
     ]
-
-
-def _csv(rows: Sequence[dict[str, str]]) -> str:
-    text = io.StringIO()
-    table = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
-    table.writeheader()
-    table.writerows(rows)
-    return text.getvalue()

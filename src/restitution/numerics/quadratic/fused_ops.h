@@ -2,6 +2,8 @@
 // the same names in fused_ops.py, which describe them. Bounds are arrays; all their rows may be the
 // same one. The order of the terms of a sum is not fixed, so that the compiler may use vectors.
 
+using Bounds = std::pair<Rows<const double>, Rows<const double>>;  // lower, upper
+
 // The gradient of a node that can move downhill within its bounds, else zero.
 inline double free_gradient(double p, double g, double low, double high) {
     const bool falls = (p > low) | (g < 0), rises = (p < high) | (g > 0);
@@ -10,7 +12,8 @@ inline double free_gradient(double p, double g, double low, double high) {
 
 template <class T>
 double projected_gradient(Rows<const double> p, Rows<double> g, Rows<const double> b,
-                Rows<const double> lower, Rows<const double> upper, Rows<T> out) {
+                          const Bounds& bounds, Rows<T> out) {
+    const Rows<const double> lower = bounds.first, upper = bounds.second;
     const auto some = [&](Index begin, Index end) {
         double most = 0, doubt = 0;
         for (Index i = begin; i < end; ++i) {
@@ -71,8 +74,9 @@ std::pair<double, double> curvature(Rows<const T> d, Rows<const T> Kd) {
 
 template <class T>
 std::pair<double, bool> projected_direction(Rows<T> d, double beta, Rows<const T> z, double length,
-                               Rows<const double> p, Rows<const double> g, Rows<const T> r,
-                               Rows<const double> lower, Rows<const double> upper) {
+                                            Rows<const double> p, Rows<const double> g,
+                                            Rows<const T> r, const Bounds& bounds) {
+    const Rows<const double> lower = bounds.first, upper = bounds.second;
     const auto some = [&](Index begin, Index end) {
         double slope = 0, cut = 0;
         for (Index i = begin; i < end; ++i) {
@@ -101,8 +105,8 @@ std::pair<double, bool> projected_direction(Rows<T> d, double beta, Rows<const T
 }
 
 template <class T>
-bool violates_bounds(Rows<const double> p, Rows<const T> d, double step, Rows<const double> lower,
-            Rows<const double> upper) {
+bool violates_bounds(Rows<const double> p, Rows<const T> d, double step, const Bounds& bounds) {
+    const Rows<const double> lower = bounds.first, upper = bounds.second;
     expect_one_shape(p, d, lower, upper);
     for (Index i = 0; i < p.count; ++i) {
         const double *pi = p[i], *low = lower[i], *high = upper[i];
@@ -120,7 +124,8 @@ bool violates_bounds(Rows<const double> p, Rows<const T> d, double step, Rows<co
 
 template <bool whole, class T>
 double take_step_by(Rows<double> p, Rows<double> g, Rows<const T> d, Rows<const T> Kd, double step,
-                  Rows<const double> lower, Rows<const double> upper, Rows<T> out) {
+                    const Bounds& bounds, Rows<T> out) {
+    const Rows<const double> lower = bounds.first, upper = bounds.second;
     const auto some = [&](Index begin, Index end) {
         T most = 0, doubt = 0;
         for (Index i = begin; i < end; ++i) {
@@ -154,9 +159,9 @@ double take_step_by(Rows<double> p, Rows<double> g, Rows<const T> d, Rows<const 
 
 template <class T>
 double take_step(Rows<double> p, Rows<double> g, Rows<const T> d, Rows<const T> Kd, double step,
-               Rows<const double> lower, Rows<const double> upper, Rows<T> out) {
-    return step == 1 ? take_step_by<true>(p, g, d, Kd, step, lower, upper, out)
-                      : take_step_by<false>(p, g, d, Kd, step, lower, upper, out);
+                 const Bounds& bounds, Rows<T> out) {
+    return step == 1 ? take_step_by<true>(p, g, d, Kd, step, bounds, out)
+                     : take_step_by<false>(p, g, d, Kd, step, bounds, out);
 }
 
 template <class T>

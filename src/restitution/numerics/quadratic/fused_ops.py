@@ -1,8 +1,9 @@
 """Steps of the minimiser on whole arrays, several operations in one pass over memory.
 
-Arguments are those of `minimise`: the point p, its gradient g, the bounds (numbers, or arrays of
-the shape of p), the projected gradient r, the preconditioned one z, the step d and its product Kd.
-p, g and the bounds are of double precision, the others of double or single precision.
+Arguments are those of `minimise`: the point p, its gradient g, the lower and the upper bound
+(numbers, or arrays of the shape of p), the projected gradient r, the preconditioned one z, the step
+d and its product Kd. p, g and the bounds are of double precision, the others of double or single
+precision.
 """
 
 from __future__ import annotations
@@ -17,26 +18,29 @@ from restitution.numerics.reductions import dot, max_magnitude
 
 Array = NDArray[Any]
 Bound = NDArray[np.float64] | float
+Bounds = tuple[Bound, Bound]  # lower, upper
 
 
-def as_rows(bound: Bound, p: Array) -> Bound:
-    """The bound as loops take it: a number becomes an array like p that stores a single row."""
-    if isinstance(bound, np.ndarray) or not loop_takes(p):
-        return bound
-    return np.broadcast_to(np.full(p.shape[1], bound), p.shape)
+def as_rows(lower: Bound, upper: Bound, p: Array) -> Bounds:
+    """The bounds as loops take them: numbers become arrays like p that store a single row."""
+
+    def rows(bound: Bound) -> Bound:
+        if isinstance(bound, np.ndarray) or not loop_takes(p):
+            return bound
+        return np.broadcast_to(np.full(p.shape[1], bound), p.shape)
+
+    return rows(lower), rows(upper)
 
 
 @use_loop
-def projected_gradient(
-    p: Array, g: Array, b: Array, lower: Bound, upper: Bound, out: Array
-) -> float:
+def projected_gradient(p: Array, g: Array, b: Array, bounds: Bounds, out: Array) -> float:
     """Turn the product K p in `g` into the gradient K p − b, and project it into `out`.
 
     The projected gradient is zero at nodes on a bound whose gradient pushes them onto it. Returns
     its largest magnitude, the violation of the optimality conditions.
     """
     g -= b
-    free = g * _free(p, g, lower, upper)
+    free = g * _free(p, g, bounds)
     out[...] = free
     return max_magnitude(free)
 
@@ -62,8 +66,7 @@ def projected_direction(
     p: Array,
     g: Array,
     r: Array,
-    lower: Bound,
-    upper: Bound,
+    bounds: Bounds,
 ) -> tuple[float, bool]:
     """Turn the step d at p into `beta` d − `length` z on the free nodes, cut off at the bounds.
 
@@ -71,40 +74,40 @@ def projected_direction(
     """
     np.multiply(d, beta, out=d, dtype=np.float64)
     np.subtract(d, np.multiply(z, length, dtype=np.float64), out=d)
-    d *= _free(p, g, lower, upper)
+    d *= _free(p, g, bounds)
     end = p + d
-    cut = _is_outside(end, lower, upper)
-    np.clip(end, lower, upper, out=end)
+    cut = _is_outside(end, bounds)
+    np.clip(end, *bounds, out=end)
     np.subtract(end, p, out=d)
     return dot(r, d), cut
 
 
 @use_loop
-def violates_bounds(p: Array, d: Array, step: float, lower: Bound, upper: Bound) -> bool:
+def violates_bounds(p: Array, d: Array, step: float, bounds: Bounds) -> bool:
     """Whether p + `step` d is outside the bounds at any node."""
-    return _is_outside(p + np.multiply(d, step, dtype=np.float64), lower, upper)
+    return _is_outside(p + np.multiply(d, step, dtype=np.float64), bounds)
 
 
 @use_loop
 def take_step(
-    p: Array, g: Array, d: Array, Kd: Array, step: float, lower: Bound, upper: Bound, out: Array
+    p: Array, g: Array, d: Array, Kd: Array, step: float, bounds: Bounds, out: Array
 ) -> float:
     """Move p to p + `step` d and g to g + `step` Kd; `out` and result as in `projected_gradient`.
 
     A full step (1) that was cut off at a bound ends exactly on it, without rounding.
     """
-    low, high = (
-        (step == 1) & (d == (bound - p).astype(d.dtype, copy=False)) for bound in (lower, upper)
-    )
+    lower, upper = bounds
+    low, high = ((step == 1) & (d == (bound - p).astype(d.dtype, copy=False)) for bound in bounds)
     p += np.multiply(d, step, dtype=np.float64)
     np.clip(p, np.where(high, upper, lower), np.where(low, lower, upper), out=p)
     g += np.multiply(Kd, step, dtype=np.float64)
-    np.multiply(g, _free(p, g, lower, upper), out=out)
+    np.multiply(g, _free(p, g, bounds), out=out)
     return max_magnitude(out)
 
 
-def _free(p: Array, g: Array, lower: Bound, upper: Bound) -> NDArray[np.bool_]:
+def _free(p: Array, g: Array, bounds: Bounds) -> NDArray[np.bool_]:
     """Nodes that can move downhill: between the bounds, or on one and pushed off it."""
+    lower, upper = bounds
     free = p > lower
     free |= g < 0
     if _is_unbounded(upper):
@@ -115,8 +118,9 @@ def _free(p: Array, g: Array, lower: Bound, upper: Bound) -> NDArray[np.bool_]:
     return free
 
 
-def _is_outside(p: Array, lower: Bound, upper: Bound) -> bool:
+def _is_outside(p: Array, bounds: Bounds) -> bool:
     """Whether p is outside its bounds at any node."""
+    lower, upper = bounds
     outside = p < lower
     if not _is_unbounded(upper):
         outside |= p > upper

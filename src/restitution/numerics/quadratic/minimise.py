@@ -54,6 +54,21 @@ class Operator(Protocol):
         """The map of `p`: in a new array, or in `out`."""
 
 
+@dataclass(frozen=True, eq=False)
+class BoundedQuadratic:
+    """The problem: ½ pᵀK p − pᵀb, and lower ≤ p ≤ upper.
+
+    `K` is of double precision, `b` has shape (nx, ny), and a bound is a number or an array of that
+    shape. `K_single` is K in single precision, for the products along the steps; default K itself.
+    """
+
+    K: Operator
+    b: Array
+    lower: Bound
+    upper: Bound
+    K_single: Operator | None = None
+
+
 @dataclass(frozen=True)
 class Minimum:
     """Where the minimiser stopped: the point, its gradient, and how accurate both are.
@@ -69,16 +84,12 @@ class Minimum:
 
 
 def minimise_quadratic(
-    K: Operator,
-    b: Array,
-    lower: Bound,
-    upper: Bound,
+    problem: BoundedQuadratic,
     *,
     start: Array,
     precondition: Operator,
     tolerance: float,
     max_iterations: int,
-    K_single: Operator | None = None,
     K_start: Array | None = None,
     accept_estimated_gradient: bool = False,
 ) -> Minimum:
@@ -94,12 +105,9 @@ def minimise_quadratic(
     an approximate inverse of K, which need be neither symmetric nor a descent direction.
 
     Arguments:
-        K: the operator in double precision.
-        b: linear term, shape (nx, ny). A bound is a number or an array of that shape.
-        start: initial point; overwritten.
+        start: initial point, shape (nx, ny); overwritten.
         precondition: approximate inverse of K.
         tolerance: on the violation, in the units of `b`.
-        K_single: K in single precision, for the products along the steps; default K itself.
         K_start: `K_single` of a `start` within the bounds, if known; overwritten.
         accept_estimated_gradient: accept a gradient that was updated along the steps if violation
             and estimated error are within `tolerance` together. Otherwise the result is accepted
@@ -111,11 +119,11 @@ def minimise_quadratic(
     error. If the solve does not converge, the result says so; nothing is raised.
     """
     # Work arrays that only determine the direction have the precision of the products.
-    work_type: Any = np.float64 if K_single is None else np.float32
-    K_single = K if K_single is None else K_single
+    work_type: Any = np.float64 if problem.K_single is None else np.float32
+    K, b, K_single = problem.K, problem.b, problem.K_single or problem.K
     rounding = _ROUNDING * float(np.finfo(work_type).eps)
-    p = np.clip(start, lower, upper, out=start)
-    lower, upper = as_rows(lower, p), as_rows(upper, p)
+    p = np.clip(start, problem.lower, problem.upper, out=start)
+    bounds = as_rows(problem.lower, problem.upper, p)
     first = K_single if accept_estimated_gradient or K_start is not None else K
     if K_start is None:
         K_start = first(p) if max_magnitude(p) > 0 else np.zeros_like(p)
@@ -123,7 +131,7 @@ def minimise_quadratic(
     d, r_old = (np.zeros_like(p, dtype=work_type) for _ in range(2))
     r, z, Kd = (np.empty_like(p, dtype=work_type) for _ in range(3))
     g = K_start  # projected_gradient subtracts b
-    residual = projected_gradient(p, g, b, lower, upper, r)
+    residual = projected_gradient(p, g, b, bounds, r)
     rz_old, iteration = 0.0, 0
     step_change = 1.0  # the last change of the trial length
     trial_length = _INITIAL_STEP
@@ -134,24 +142,24 @@ def minimise_quadratic(
                 iteration -= 1
                 break
             g, error = K(p, out=g), 0.0
-            residual = projected_gradient(p, g, b, lower, upper, r)
+            residual = projected_gradient(p, g, b, bounds, r)
             continue
         z = precondition(r, out=z)
         rz, overlap = dot_products(z, r, r_old)
         beta = (rz - max(overlap, 0.0)) / rz_old if rz_old > 0 else 0.0
         beta = beta * step_change if beta > 0 else 0.0
         length = math.copysign(trial_length, rz)  # an approximate inverse may point uphill
-        slope, cut = projected_direction(d, beta, z, length, p, g, r, lower, upper)
+        slope, cut = projected_direction(d, beta, z, length, p, g, r, bounds)
         Kd = K_single(d, out=Kd)
         dKd, max_Kd = curvature(d, Kd)
         if not dKd < math.inf or (slope < 0 and dKd <= 0):
             break
         optimum = -slope / dKd if dKd > 0 else 0.0
         step = 1.0 if cut and optimum > _FULL_STEP_FRACTION else max(optimum, 0.0)
-        if step > 1 and violates_bounds(p, d, step, lower, upper):
+        if step > 1 and violates_bounds(p, d, step, bounds):
             step = 1.0
         r, r_old = r_old, r
-        residual = take_step(p, g, d, Kd, step, lower, upper, r)
+        residual = take_step(p, g, d, Kd, step, bounds, r)
         error = float(np.hypot(error, rounding * step * max_Kd))
         rz_old = rz
         step_change = min(max(optimum, _MIN_STEP), _MAX_STEP) ** _STEP_DAMPING
@@ -159,7 +167,7 @@ def minimise_quadratic(
 
     if not accept_estimated_gradient and error > 0:
         g, error = K(p, out=g), 0.0
-        residual = projected_gradient(p, g, b, lower, upper, r)
+        residual = projected_gradient(p, g, b, bounds, r)
     residual += error
     return Minimum(p, g, residual, iteration, converged=residual <= tolerance)
 
@@ -169,5 +177,5 @@ def violation(p: Array, product: Array, b: Array, lower: Bound, upper: Bound) ->
 
     `product` holds K p and is overwritten by the gradient.
     """
-    lower, upper = as_rows(lower, p), as_rows(upper, p)
-    return projected_gradient(p, product, b, lower, upper, np.empty_like(p, dtype=np.float32))
+    bounds = as_rows(lower, upper, p)
+    return projected_gradient(p, product, b, bounds, np.empty_like(p, dtype=np.float32))

@@ -22,6 +22,7 @@ from restitution.numerics.quadratic.fused_ops import Bound
 from restitution.numerics.quadratic.grid_transfer import prolong, restrict
 from restitution.numerics.quadratic.local_mean import local_sums, subtract_local_mean
 from restitution.numerics.quadratic.minimise import (
+    BoundedQuadratic,
     Minimum,
     Operator,
     minimise_quadratic,
@@ -89,15 +90,11 @@ def solve_multilevel(
             K, inverse = operators(shape_of(window), 0)
         bound = upper[window] if _is_array(upper) else upper
         found = minimise_quadratic(
-            K,
-            b[window],
-            0.0,
-            bound,
+            BoundedQuadratic(K, b[window], 0.0, bound, K.single_precision),
             start=p[window],
             precondition=mean_damped_preconditioner(inverse, p[window], b[window], bound),
             tolerance=tolerance,
             max_iterations=max_iterations,
-            K_single=K.single_precision,
             K_start=None if Kp is None else Kp[window],
             accept_estimated_gradient=window != whole_grid,  # the full-grid check below decides
         )
@@ -183,15 +180,11 @@ def _first_guess(operators: Operators, b: Array, upper: Bound, level: int) -> Ar
     K, inverse = operators(size, level)
     start = _first_guess(operators, coarse, bound, level + 1)
     found = minimise_quadratic(
-        K,
-        coarse,
-        0.0,
-        bound,
+        BoundedQuadratic(K, coarse, 0.0, bound, K.single_precision),
         start=start,
         precondition=mean_damped_preconditioner(inverse, start, coarse, bound),
         tolerance=_COARSE_ACCURACY * max(float(b.max()), 0.0),
         max_iterations=_COARSE_ITERATIONS,
-        K_single=K.single_precision,
         accept_estimated_gradient=True,
     )
     guess = np.empty_like(b, order="C")

@@ -1,0 +1,69 @@
+"""The size of the source: short files, short functions, few parameters."""
+
+import ast
+from pathlib import Path
+from statistics import median
+
+import pytest
+
+PACKAGE = Path(__file__).parents[1] / "src" / "restitution"
+SOURCES = {path: path.read_text(encoding="utf-8") for path in sorted(PACKAGE.rglob("*.py"))}
+
+
+def functions(source):
+    """The functions in `source`, methods and inner ones included."""
+    kinds = ast.FunctionDef, ast.AsyncFunctionDef
+    return [node for node in ast.walk(ast.parse(source)) if isinstance(node, kinds)]
+
+
+def length(function):
+    """Lines of a function, from `def` to its end."""
+    return function.end_lineno - function.lineno + 1
+
+
+def parameters(function):
+    """How many parameters a function has, `self` and `cls` not counted."""
+    given = function.args
+    named = [each.arg for each in (*given.posonlyargs, *given.args, *given.kwonlyargs)]
+    own = named[:1] in (["self"], ["cls"])
+    return len(named) - own + (given.vararg is not None) + (given.kwarg is not None)
+
+
+def test_no_file_is_longer_than_400_lines():
+    lines = {str(path): len(source.splitlines()) for path, source in SOURCES.items()}
+    assert {path: count for path, count in lines.items() if count > 400} == {}
+
+
+def test_half_of_the_functions_have_no_more_than_10_lines():
+    assert median(length(each) for source in SOURCES.values() for each in functions(source)) <= 10
+
+
+def test_no_function_has_more_than_8_parameters():
+    found = {
+        f"{path.relative_to(PACKAGE)}: {each.name}": parameters(each)
+        for path, source in SOURCES.items()
+        for each in functions(source)
+    }
+    assert {name: count for name, count in found.items() if count > 8} == {}
+
+
+@pytest.mark.parametrize(
+    ("source", "count"),
+    [
+        ("def f(): pass", 0),
+        ("def f(a, /, b, *, c=1): pass", 3),
+        ("def f(a, *b, **c): pass", 3),
+        ("class C:\n    def f(self, a): pass", 1),
+        ("async def f(a, b): pass", 2),
+    ],
+)
+def test_parameters_are_counted(source, count):
+    (function,) = functions(source)
+    assert parameters(function) == count
+
+
+def test_lines_are_counted():
+    assert [length(each) for each in functions("def f():\n    def g(): pass\n\n    g()\n")] == [
+        4,
+        1,
+    ]
