@@ -19,6 +19,7 @@ from restitution.contact.bodies import Pair
 from restitution.contact.detachment import Detachment
 from restitution.errors import CaseError
 from restitution.numerics.grid import Grid
+from restitution.numerics.read_only import freeze
 from restitution.surfaces import Surface, rms_slope
 from restitution.theory import JKR, yield_coefficient
 
@@ -41,8 +42,13 @@ class Contact:
     * `equilibrium`, for a yield pressure: pressure and surface in equilibrium under that bound;
     * `truncated`: the elastic pressure cut at the yield pressure (Thornton and Ning 1998).
 
-    None is the first for a yield strength, else the second. Raises `CaseError` for values that are
-    none or do not go together, and for a pair or a surface that is none.
+    None is the first for a yield strength, else the second.
+
+    Contacts are equal (and hash alike) when their values are equal and their surface is the same
+    object. `gap` and `elongation` are computed once, and read-only.
+
+    Raises `CaseError` for values that are none or do not go together, and for a pair or a surface
+    that is none.
     """
 
     pair: Pair
@@ -195,7 +201,7 @@ class Contact:
         gap: NDArray[np.float64] = np.add.outer(x, y)
         gap -= self.surface.height  # in place: other arrays of this size would take as long
         gap -= gap.min()
-        return gap
+        return freeze(gap)
 
     @cached_property
     def elongation(self) -> NDArray[np.float64]:
@@ -215,7 +221,7 @@ class Contact:
         larger = mean + spread
         ratio = np.divide(np.abs(mean - spread), larger, out=np.ones_like(larger), where=larger > 0)
         elongation[inner, inner] = (1 - ratio) ** 2
-        return elongation
+        return freeze(elongation)
 
 
 def _kind(value: object) -> str:
@@ -225,4 +231,4 @@ def _kind(value: object) -> str:
 
 def smooth(grid: Grid) -> Surface:
     """The surface without roughness on `grid`."""
-    return Surface(np.zeros(grid.nodes), grid, {"source": "smooth", "kind": "smooth"})
+    return Surface(freeze(np.zeros(grid.nodes)), grid, {"source": "smooth", "kind": "smooth"})

@@ -27,6 +27,7 @@ from restitution.numerics.convolution.device import current
 from restitution.numerics.convolution.operators import FreeConvolution, SpectralFilter
 from restitution.numerics.quadratic.minimise import minimise_quadratic
 from restitution.numerics.quadratic.multilevel import Operators, solve_multilevel
+from restitution.numerics.read_only import freeze
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -155,7 +156,8 @@ def build_state(
         if not isinstance(limit, np.ndarray):
             work -= limit * float(np.sum(gradient, where=yielding)) * contact.grid.cell_area
     displacement = np.add(gradient, b, out=gradient)
-    return State(contact, indentation, box, pressure, displacement, plastic, limit,
+    return State(contact, indentation, box, freeze(pressure), freeze(displacement),
+                 freeze(plastic), limit,
                  work, adhesive_work, work_error, residual, convolutions)  # fmt: skip
 
 
@@ -180,7 +182,7 @@ def separated_state(contact: Contact, indentation: float, history: State | None 
     nothing = np.zeros((0, 0))
     plastic, work, adhesive_work, work_error = _past(contact, history)
     bound = contact.first_yield_pressure if history is None else history.bound
-    return State(contact, indentation, NOWHERE, nothing, nothing, plastic, bound,
+    return State(contact, indentation, NOWHERE, nothing, nothing, freeze(plastic), bound,
                  work, adhesive_work, work_error, residual=0.0, convolutions=0)  # fmt: skip
 
 

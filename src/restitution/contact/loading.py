@@ -28,6 +28,7 @@ from restitution.contact.state import State
 from restitution.errors import CaseError
 from restitution.numerics.box import Box, bounding_box, shape_of
 from restitution.numerics.quadrature import integrate_adaptively
+from restitution.numerics.read_only import freeze
 
 Array = NDArray[np.float64]
 
@@ -89,7 +90,7 @@ def step(state: State, indentation: float, *, residual: float = RESIDUAL) -> Sta
         limit, convolutions = state.bound, 0
         if contact.grows and indentation > state.indentation:
             grown, convolutions = yield_bound(contact, indentation, residual)
-            limit = np.maximum(limit, grown)
+            limit = freeze(np.maximum(limit, grown))
         new = _press(contact, indentation, limit, residual, history=state)
         if contact.grows:
             work, _ = _plastic_work(state, new)
@@ -165,8 +166,8 @@ def _cut(elastic: State) -> State:
     displacement = K(pressure)
     plastic = np.zeros(contact.grid.nodes)
     plastic[box] = np.maximum(indentation - contact.gap[box] - displacement, 0.0)
-    return replace(elastic, box_pressure=pressure, plastic_displacement=plastic,
-                   bound=contact.yield_pressure, box_displacement=displacement,
+    return replace(elastic, box_pressure=freeze(pressure), plastic_displacement=freeze(plastic),
+                   bound=contact.yield_pressure, box_displacement=freeze(displacement),
                    convolutions=elastic.convolutions + 1)  # fmt: skip
 
 
