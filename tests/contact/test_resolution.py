@@ -9,10 +9,10 @@ from restitution.contact.contact import Contact, smooth
 from restitution.contact.resolution import (
     NODES_PER_PATCH,
     NODES_PER_RADIUS,
-    foreseen_radius,
-    foreseen_warnings,
     median_patch,
-    refuse_coarse_scan,
+    predicted_radius,
+    predicted_warnings,
+    require_fine_scan,
     resolves,
     unresolved_warning,
 )
@@ -27,24 +27,24 @@ YIELD = (math.pi * P_Y / (2 * 112e9)) ** 2 * R  # 28 nm
 
 
 def test_the_foreseen_radius_is_hertz_then_grows_to_the_overlap(pair):
-    assert foreseen_radius(pair, 1e-8) == approx(math.sqrt(R * 1e-8), rel=1e-14)
-    assert foreseen_radius(pair, 1e-2) == approx(math.sqrt(R * 1e-2), rel=1e-14)
-    assert foreseen_radius(pair, YIELD, P_Y) == approx(math.sqrt(R * YIELD), rel=1e-12)
-    assert foreseen_radius(pair, 1e-8, 1e-3) == approx(math.sqrt(2 * R * 1e-8), rel=1e-3)
+    assert predicted_radius(pair, 1e-8) == approx(math.sqrt(R * 1e-8), rel=1e-14)
+    assert predicted_radius(pair, 1e-2) == approx(math.sqrt(R * 1e-2), rel=1e-14)
+    assert predicted_radius(pair, YIELD, P_Y) == approx(math.sqrt(R * YIELD), rel=1e-12)
+    assert predicted_radius(pair, 1e-8, 1e-3) == approx(math.sqrt(2 * R * 1e-8), rel=1e-3)
 
 
 @pytest.mark.parametrize(("x", "area"), [(1.5, 1.011), (2, 1.037), (6, 1.272), (16, 1.507)])
 def test_the_foreseen_radius_is_close_to_the_solved_one(pair, x, area):
     """Contact area over πR*δ of smooth spheres at δ = x δ_y, REFERENCE section 3."""
-    radius = foreseen_radius(pair, x * YIELD, P_Y)
+    radius = predicted_radius(pair, x * YIELD, P_Y)
     assert radius == approx(math.sqrt(area * R * x * YIELD), rel=0.06)
 
 
 @given(st.floats(1e-12, 1e-5), st.floats(1.0, 10), st.floats(1e6, 1e12))
 def test_the_foreseen_radius_grows_with_depth_and_lies_between_its_limits(pair, d, factor, p_y):
-    radius = foreseen_radius(pair, d, p_y)
+    radius = predicted_radius(pair, d, p_y)
     assert math.sqrt(R * d) * (1 - 1e-12) <= radius <= math.sqrt(2 * R * d)
-    assert foreseen_radius(pair, factor * d, p_y) >= radius * (1 - 1e-12)
+    assert predicted_radius(pair, factor * d, p_y) >= radius * (1 - 1e-12)
 
 
 @pytest.fixture
@@ -59,24 +59,24 @@ def contact(pair):
 
 
 def test_a_contact_that_fits_and_is_resolved_needs_no_warning(contact):
-    assert foreseen_warnings(contact(), (5e-6) ** 2 / R) == []
+    assert predicted_warnings(contact(), (5e-6) ** 2 / R) == []
 
 
 def test_a_contact_larger_than_the_grid_is_foreseen(contact):
     just, beyond = (7.99e-6) ** 2 / R, (8.01e-6) ** 2 / R
-    assert foreseen_warnings(contact(), just) == []
-    (line,) = foreseen_warnings(contact(), beyond)
+    assert predicted_warnings(contact(), just) == []
+    (line,) = predicted_warnings(contact(), beyond)
     assert "8.01 um from the centre" in line
     assert "ends at 8 um" in line
     assert f"{1e9 * beyond:.4g} nm" in line
     assert "use more nodes" in line
     # yielding widens the contact: elastic it would have fitted
-    assert len(foreseen_warnings(contact(yield_pressure=1e6), just)) == 1
+    assert len(predicted_warnings(contact(yield_pressure=1e6), just)) == 1
 
 
 def test_a_contact_on_few_nodes_is_foreseen(contact):
-    assert foreseen_warnings(contact(), (2.01e-6) ** 2 / R) == []
-    (line,) = foreseen_warnings(contact(), (1e-6) ** 2 / R)
+    assert predicted_warnings(contact(), (2.01e-6) ** 2 / R) == []
+    (line,) = predicted_warnings(contact(), (1e-6) ** 2 / R)
     assert "spacing 0.25 um puts 4 nodes" in line
     assert f"({NODES_PER_RADIUS} are needed)" in line
 
@@ -85,15 +85,15 @@ def test_a_sphere_too_small_for_a_half_space_is_foreseen(contact, pair):
     from restitution.contact.bodies import Body, Pair
 
     tiny = Body(20e-6, 210e9, 0.25)
-    lines = foreseen_warnings(contact(Pair(tiny, tiny)), (3e-6) ** 2 / 10e-6)
+    lines = predicted_warnings(contact(Pair(tiny, tiny)), (3e-6) ** 2 / 10e-6)
     assert len(lines) == 1
     assert "0.3 of R*" in lines[0]
 
 
 def test_a_grid_finer_than_the_scan_is_told(contact):
     deep = (5e-6) ** 2 / R
-    assert foreseen_warnings(contact(pixel_x_m=0.2e-6), deep) == []
-    lines = foreseen_warnings(contact(pixel_x_m=0.5e-6), deep)
+    assert predicted_warnings(contact(pixel_x_m=0.2e-6), deep) == []
+    lines = predicted_warnings(contact(pixel_x_m=0.5e-6), deep)
     assert any("finer than the scan's pixel 0.5 um" in line for line in lines)
 
 
@@ -101,10 +101,10 @@ def test_a_scan_coarser_than_the_contact_is_refused(contact):
     shallow = (1e-6) ** 2 / R
     scan = contact(source="measured", file="scan.txt", pixel_x_m=1.5e-6)
     with pytest.raises(SurfaceError, match=r"scan\.txt: one pixel \(1\.5 um\).*\(1 um at 4 nm\)"):
-        refuse_coarse_scan(scan, shallow)
-    refuse_coarse_scan(scan, 9 * shallow)
-    refuse_coarse_scan(contact(source="generated", pixel_x_m=1.5e-6), shallow)
-    refuse_coarse_scan(contact(), shallow)
+        require_fine_scan(scan, shallow)
+    require_fine_scan(scan, 9 * shallow)
+    require_fine_scan(contact(source="generated", pixel_x_m=1.5e-6), shallow)
+    require_fine_scan(contact(), shallow)
 
 
 @pytest.mark.parametrize(
@@ -136,4 +136,4 @@ def test_depths_and_patches_come_in_pairs():
 
 def test_a_smooth_surface_has_no_pixel(pair):
     grid = Grid((64, 64), (0.25e-6, 0.25e-6))
-    assert foreseen_warnings(Contact(pair, smooth(grid)), (5e-6) ** 2 / R) == []
+    assert predicted_warnings(Contact(pair, smooth(grid)), (5e-6) ** 2 / R) == []

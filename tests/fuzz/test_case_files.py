@@ -12,8 +12,8 @@ import tomli_w
 
 from restitution.case.case_file import parse_case
 from restitution.case.derived import deepest_indentation, derived_quantities
-from restitution.contact.plausibility import implausible, require_small
-from restitution.contact.resolution import foreseen_warnings, refuse_coarse_scan
+from restitution.contact.plausibility import input_warnings, require_small
+from restitution.contact.resolution import predicted_warnings, require_fine_scan
 from restitution.errors import RestitutionError
 
 CASES = 400
@@ -195,8 +195,8 @@ def use(text, folder):
     deepest = deepest_indentation(case)
     derived_quantities(case, contact)
     require_small(contact, deepest)
-    refuse_coarse_scan(contact, deepest)
-    for line in [*foreseen_warnings(contact, deepest), *implausible(contact, deepest)]:
+    require_fine_scan(contact, deepest)
+    for line in [*predicted_warnings(contact, deepest), *input_warnings(contact, deepest)]:
         assert line
     return "valid"
 

@@ -17,8 +17,8 @@ def check(
     from restitution.case.case_file import naming, read_case
     from restitution.case.derived import deepest_indentation, derived_quantities
     from restitution.cli.console import answers, waiting, warn
-    from restitution.contact.plausibility import implausible, require_small
-    from restitution.contact.resolution import foreseen_warnings, refuse_coarse_scan
+    from restitution.contact.plausibility import input_warnings, require_small
+    from restitution.contact.resolution import predicted_warnings, require_fine_scan
     from restitution.numerics.memory import available, in_words
     from restitution.surfaces import describe
 
@@ -44,7 +44,7 @@ def check(
         "tabor_parameter": ("Tabor parameter (JKR holds well above 1)", 1, ""),
         "sticking_velocity_m_per_s": ("sticking velocity V_s, smooth elastic", 1, "m/s"),
         "deepest_indentation_m": ("deepest indentation", 1e9, "nm"),
-        "foreseen_contact_radius_m": ("contact radius there, smooth", 1e6, "um"),
+        "predicted_contact_radius_m": ("contact radius there, smooth", 1e6, "um"),
         "domain_half_width_m": ("half width of the grid", 1e6, "um"),
         "nodes_over_contact_radius": ("nodes over the contact radius", 1, ""),
     }
@@ -73,9 +73,9 @@ def check(
         answers.print(f"The contact yields at: {from_where}.", markup=False, soft_wrap=True)
     deepest = deepest_indentation(read)
     require_small(contact, deepest)
-    refuse_coarse_scan(contact, deepest)
+    require_fine_scan(contact, deepest)
     with waiting("checking the surface"):
-        warnings = foreseen_warnings(contact, deepest) + implausible(contact, deepest)
+        warnings = predicted_warnings(contact, deepest) + input_warnings(contact, deepest)
     for warning in warnings:
         warn(warning)
     answers.print("The case is valid." if not warnings else "The case is valid, with warnings.")

@@ -20,7 +20,7 @@ def warn(message: str) -> None:
     errors.print(f"Warning: {one_line(message)}", style="yellow", markup=False, soft_wrap=True)
 
 
-def refuse(message: str) -> None:
+def print_error(message: str) -> None:
     """Print one error on standard error."""
     errors.print(
         f"Error: {one_line(message)}", style="red", highlight=False, markup=False, soft_wrap=True

@@ -24,7 +24,7 @@ from restitution.surfaces import Surface, rms_slope
 from restitution.theory import JKR, yield_coefficient
 
 Plasticity = Literal["expanding-cavity", "equilibrium", "truncated"]
-Approach = Literal["equilibrium", "hertzian", "seed"]
+Approach = Literal["equilibrium", "hertzian", "pull-increments"]
 FULL_CONSTRAINT = 2.8  # pressure over yield strength of fully plastic contact (Tabor 1951)
 _OFF_NODE = 0.31, 0.17  # of a cell: no symmetry of the grid maps this point onto itself
 
@@ -40,7 +40,7 @@ class Contact:
     * `expanding-cavity`, for a yield strength: the largest pressure grows with deformation, see
       `cavity`; `tangent_modulus` (Pa) is the slope of the tensile stress over strain after yield;
     * `equilibrium`, for a yield pressure: pressure and surface in equilibrium under that bound;
-    * `truncated`: the elastic pressure cut at the yield pressure (Thornton and Ning 1998).
+    * `truncated`: the elastic pressure truncated at the yield pressure (Thornton and Ning 1998).
 
     None is the first for a yield strength, else the second.
 
@@ -138,8 +138,8 @@ class Contact:
         return self.tangent_modulus / (1 - self.tangent_modulus / E)
 
     @property
-    def cut(self) -> bool:
-        """Whether the elastic pressure is cut at p_y (`truncated`)."""
+    def truncates(self) -> bool:
+        """Whether the elastic pressure is truncated at p_y (`truncated`)."""
         return self.plasticity == "truncated" and math.isfinite(self.yield_pressure)
 
     @property
@@ -156,7 +156,7 @@ class Contact:
         return float(JKR(pair.radius, pair.contact_modulus, self.work_of_adhesion).adhesive_length)
 
     @property
-    def opening(self) -> float:
+    def crack_opening(self) -> float:
         """How far the surfaces part over the first cell outside an edge that lets go, m.
 
         1.86 sqrt(w h/E*) on a straight edge of the grid; see `detachment`.
@@ -164,8 +164,8 @@ class Contact:
         h = math.sqrt(self.grid.cell_area)
         return 1.86 * math.sqrt(self.work_of_adhesion * h / self.pair.contact_modulus)
 
-    def length_at(self, indentation: float) -> float:
-        """The length that violations are measured against at `indentation`, m."""
+    def residual_length(self, indentation: float) -> float:
+        """The length that residuals at `indentation` (m) are divided by, m."""
         return max(abs(indentation), self.adhesive_length)
 
     @property

@@ -112,7 +112,7 @@ def _overlap(contact: Contact, indentation: float, box: Box, history: State | No
 
 def _scale_of(contact: Contact, indentation: float, b: Array) -> float:
     """The length by which residuals are divided: the overlap, or the length of adhesion, m."""
-    return contact.length_at(indentation) if contact.adhesive else float(b.max())
+    return contact.residual_length(indentation) if contact.adhesive else float(b.max())
 
 
 def _operators_of(contact: Contact) -> Operators:
@@ -194,7 +194,7 @@ def _past(contact: Contact, history: State | None) -> tuple[Array, float, float,
             history.adhesive_work, history.work_error)  # fmt: skip
 
 
-def refuse_edge(state: State) -> None:
+def require_inside_grid(state: State) -> None:
     """Raise `DomainError` when a node on the rim of the grid is in contact."""
     p, grid = state.box_pressure, state.contact.grid
     (top, left), (bottom, right) = ((part.start for part in state.box),

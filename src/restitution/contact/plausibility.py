@@ -8,7 +8,7 @@ import numpy as np
 
 from restitution.contact.contact import Contact
 from restitution.contact.edge import edge_advice, first_touch
-from restitution.contact.resolution import foreseen_radius
+from restitution.contact.resolution import predicted_radius
 from restitution.errors import CaseError
 from restitution.surfaces import level, rms_slope
 from restitution.theory import Hertz, Kendall
@@ -31,7 +31,7 @@ def require_small(contact: Contact, indentation: float) -> None:
             f"highest peak is {1e6 * peak:.4g} um above the mean; check the units of the radius "
             "and of the roughness"
         )
-    foreseen = foreseen_radius(pair, indentation, contact.hardness)
+    foreseen = predicted_radius(pair, indentation, contact.hardness)
     if foreseen > pair.radius:
         raise CaseError(
             f"the contact is foreseen to reach {1e6 * foreseen:.4g} um from the centre at an "
@@ -40,7 +40,7 @@ def require_small(contact: Contact, indentation: float) -> None:
         )
 
 
-def implausible(contact: Contact, indentation: float) -> list[str]:
+def input_warnings(contact: Contact, indentation: float) -> list[str]:
     """What the input of `contact` says against loading it to `indentation` (m)."""
     checks = (
         _tilt(contact), _edge(contact, indentation), _steepness(contact),
@@ -67,10 +67,10 @@ def _tilt(contact: Contact) -> str | None:
 
 def _edge(contact: Contact, indentation: float) -> str | None:
     """Contact at the rim of the grid, with a margin for what smooth bodies do not tell."""
-    radius = foreseen_radius(contact.pair, indentation, contact.hardness)
+    radius = predicted_radius(contact.pair, indentation, contact.hardness)
     gap, grid = contact.gap, contact.grid
     half_width = 0.5 * min(grid.size)
-    if radius >= half_width:  # `foreseen_warnings` says so
+    if radius >= half_width:  # `predicted_warnings` says so
         return None
     rim = float(min(gap[0].min(), gap[-1].min(), gap[:, 0].min(), gap[:, -1].min()))
     position = zip(first_touch(contact), grid.size, strict=True)
@@ -95,7 +95,7 @@ def _closed_gap(contact: Contact, indentation: float, distance: float) -> float:
     pair, p_y, w = contact.pair, contact.hardness, contact.work_of_adhesion
     E_star, deeper = pair.contact_modulus, indentation
     for _ in range(10):  # a fixed point: `radius` grows with its square root at most
-        radius = foreseen_radius(pair, deeper, p_y)
+        radius = predicted_radius(pair, deeper, p_y)
         if not contact.adhesive:
             break
         deeper = indentation + float(Kendall(E_star, w).pull_off_displacement(radius))

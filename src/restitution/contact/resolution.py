@@ -29,7 +29,7 @@ ADHESIVE_NODES = 4
 _HALF_SPACE = 0.2  # contact radius over R*, beyond which a sphere is not a half-space
 
 
-def foreseen_radius(pair: Pair, indentation: float, yield_pressure: float = math.inf) -> float:
+def predicted_radius(pair: Pair, indentation: float, yield_pressure: float = math.inf) -> float:
     """Contact radius of the smooth bodies, m: Hertz sqrt(R*δ), or sqrt(2R*δ) once fully plastic."""
     R = pair.radius
     yielded = math.inf
@@ -88,13 +88,13 @@ def adhesion_warning(depths: Sequence[float], nodes: Sequence[float]) -> str | N
     )
 
 
-def refuse_coarse_scan(contact: Contact, indentation: float) -> None:
+def require_fine_scan(contact: Contact, indentation: float) -> None:
     """Raise `SurfaceError` when one pixel of a scan is larger than the contact at `indentation`."""
     provenance = contact.surface.provenance
     if "file" not in provenance:
         return
     pixel = max(_coarsest_pixel(contact), *contact.grid.spacing)
-    radius = foreseen_radius(contact.pair, indentation, contact.hardness)
+    radius = predicted_radius(contact.pair, indentation, contact.hardness)
     if radius < pixel:
         raise SurfaceError(
             f"{provenance['file']}: one pixel ({_um(pixel)}) is larger than the contact radius at "
@@ -103,10 +103,10 @@ def refuse_coarse_scan(contact: Contact, indentation: float) -> None:
         )
 
 
-def foreseen_warnings(contact: Contact, indentation: float) -> list[str]:
+def predicted_warnings(contact: Contact, indentation: float) -> list[str]:
     """What the numbers before a solve say against loading `contact` to `indentation` (m)."""
     grid, pair = contact.grid, contact.pair
-    radius = foreseen_radius(pair, indentation, contact.hardness)
+    radius = predicted_radius(pair, indentation, contact.hardness)
     pixel = _coarsest_pixel(contact)
     half_width, coarsest = 0.5 * min(grid.size), max(pixel, *grid.spacing)
     found = []

@@ -47,8 +47,8 @@ class State:
     work_error: float
     residual: float
     convolutions: int
-    pulled_force: float | None = None
-    virgin: bool = True
+    force_before_release: float | None = None
+    is_first_loading: bool = True
 
     def __post_init__(self) -> None:
         for name in ("box_pressure", "box_displacement", "plastic_displacement", "bound"):

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from restitution.case.case import Case
 from restitution.contact.contact import Contact
-from restitution.contact.impact import solve_at_velocity
-from restitution.contact.load import solve_at_force
 from restitution.contact.loading import solve
+from restitution.contact.prescribed_force import solve_at_force
+from restitution.contact.prescribed_velocity import solve_at_velocity
 from restitution.contact.state import State
 
 

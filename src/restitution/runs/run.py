@@ -15,12 +15,12 @@ from restitution.case.omissions import omissions
 from restitution.collision import Collision, collide
 from restitution.contact.contact import FULL_CONSTRAINT, Contact
 from restitution.contact.path import unloading_path
-from restitution.contact.plausibility import implausible, require_small
+from restitution.contact.plausibility import input_warnings, require_small
 from restitution.contact.resolution import (
     adhesion_warning,
     adhesive_nodes,
-    foreseen_warnings,
-    refuse_coarse_scan,
+    predicted_warnings,
+    require_fine_scan,
     unresolved_warning,
 )
 from restitution.contact.state import State
@@ -97,9 +97,9 @@ def run_case(
         contact = case.contact(folder)
         foreseen = deepest_indentation(case)
         require_small(contact, foreseen)
-        refuse_coarse_scan(contact, foreseen)
-        warnings = omissions(case) + foreseen_warnings(contact, foreseen)
-        for warning in warnings + implausible(contact, foreseen):
+        require_fine_scan(contact, foreseen)
+        warnings = omissions(case) + predicted_warnings(contact, foreseen)
+        for warning in warnings + input_warnings(contact, foreseen):
             run.warn(warning)
         with out.tables():
             failure = _load_and_unload(contact, case, out, run, go_on=errors)
