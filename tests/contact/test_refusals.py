@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from restitution.contact import equilibrium
+from restitution.contact.checks.edge import require_inside_grid
 from restitution.contact.contact import Contact, smooth
-from restitution.contact.equilibrium import require_inside_grid
 from restitution.contact.loading import solve, step
 from restitution.errors import CaseError, DomainError, NotConvergedError
 from restitution.numerics.grid import Grid

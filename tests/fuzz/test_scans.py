@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from restitution import Body, Contact, Pair
-from restitution.contact.plausibility import input_warnings
 from restitution.errors import SurfaceError
+from restitution.runs.messages import input_warnings
 from restitution.surfaces import read_surface
 
 SAMPLES = Path(__file__).parents[3] / "shared" / "topographies"

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from restitution.case.case import Case
+from restitution.contact.checks.resolution import expected_pull_off_error, predicted_radius
 from restitution.contact.contact import Contact
-from restitution.contact.resolution import expected_pull_off_error, predicted_radius
 from restitution.theory import JKR, FirstYield, Hertz, ThorntonNing
 
 

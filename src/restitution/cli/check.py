@@ -17,9 +17,8 @@ def check(
     from restitution.case.case_file import naming, read_case
     from restitution.case.derived import deepest_indentation, derived_quantities
     from restitution.cli.console import answers, waiting, warn
-    from restitution.contact.plausibility import input_warnings, require_small
-    from restitution.contact.resolution import predicted_warnings, require_fine_scan
     from restitution.numerics.memory import available, in_words
+    from restitution.runs.messages import input_warnings, require_possible
     from restitution.surfaces import describe
 
     read, _ = read_case(case)
@@ -72,10 +71,9 @@ def check(
     if (from_where := read.yielding().source) not in ("given", "elastic"):
         answers.print(f"The contact yields at: {from_where}.", markup=False, soft_wrap=True)
     deepest = deepest_indentation(read)
-    require_small(contact, deepest)
-    require_fine_scan(contact, deepest)
+    require_possible(contact, deepest)
     with waiting("checking the surface"):
-        warnings = predicted_warnings(contact, deepest) + input_warnings(contact, deepest)
+        warnings = input_warnings(contact, deepest)
     for warning in warnings:
         warn(warning)
     answers.print("The case is valid." if not warnings else "The case is valid, with warnings.")

@@ -18,10 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.contact.contact import Contact
-from restitution.contact.edge import edge_advice
 from restitution.contact.influence import half_space, inverse_half_space
 from restitution.contact.state import State
-from restitution.errors import DomainError, NotConvergedError
+from restitution.errors import NotConvergedError
 from restitution.numerics.box import NOWHERE, Box, bounding_box, shape_of, widen
 from restitution.numerics.convolution.device import current
 from restitution.numerics.convolution.operators import FreeConvolution, SpectralFilter
@@ -192,22 +191,3 @@ def _past(contact: Contact, history: State | None) -> tuple[Array, float, float,
         return np.zeros(contact.grid.nodes), 0.0, 0.0, 0.0
     return (history.plastic_displacement, history.plastic_work,
             history.adhesive_work, history.work_error)  # fmt: skip
-
-
-def require_inside_grid(state: State) -> None:
-    """Raise `DomainError` when a node on the rim of the grid is in contact."""
-    p, grid = state.box_pressure, state.contact.grid
-    (top, left), (bottom, right) = ((part.start for part in state.box),
-                                    (part.stop for part in state.box))  # fmt: skip
-    nx, ny = grid.nodes
-    reached = (
-        (top == 0 and p[:1].any()) or (bottom == nx and p[-1:].any())
-        or (left == 0 and p[:, :1].any()) or (right == ny and p[:, -1:].any())
-    )  # fmt: skip
-    if not reached:
-        return
-    wide, long = (1e6 * edge for edge in grid.size)
-    raise DomainError(
-        f"the contact reaches the edge of the {wide:.4g} um x {long:.4g} um grid at an indentation "
-        f"of {1e9 * state.indentation:.4g} nm; {edge_advice(state.contact, state.indentation)}"
-    )

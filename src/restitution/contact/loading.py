@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 
 from restitution.contact.adhesion import grow_contact, unload_adhesive
 from restitution.contact.cavity import yield_bound
+from restitution.contact.checks.edge import require_inside_grid
 from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import (
     RESIDUAL,
     candidate_box,
-    require_inside_grid,
     separated_state,
     solve_pressure,
 )

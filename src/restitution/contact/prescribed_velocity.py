@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+from restitution.contact.checks.edge import require_inside_grid
 from restitution.contact.contact import Contact
-from restitution.contact.equilibrium import RESIDUAL, require_inside_grid
+from restitution.contact.equilibrium import RESIDUAL
 from restitution.contact.loading import solve_without_work, with_work, work_is_integrated
 from restitution.contact.state import State
 from restitution.errors import CaseError, NotConvergedError

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.contact.adhesion import unload_adhesive
-from restitution.contact.equilibrium import require_inside_grid
+from restitution.contact.checks.edge import require_inside_grid
 from restitution.contact.state import State
 from restitution.errors import NotConvergedError
 from restitution.numerics.quadrature import integrate_curve

@@ -14,7 +14,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from restitution.contact.resolution import NODES_PER_PATCH
+from restitution.contact.checks.resolution import NODES_PER_PATCH
 from restitution.results.reader import RunResults
 from restitution.results.writer import replace_file
 from restitution.theory import JKR, AdhesiveThorntonNing, Hertz, ImpactLaw, ThorntonNing

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 from plotly.graph_objects import Heatmap, Scatter
 
-from restitution.contact.resolution import NODES_PER_PATCH
+from restitution.contact.checks.resolution import NODES_PER_PATCH
 from restitution.reports.methods import methods
 from restitution.reports.page import Cell, Drawing, Listing, Page, Table, new_plot, write_page
 from restitution.results.reader import EnsembleResults, RunResults, read_run

@@ -9,7 +9,7 @@ from pathlib import Path
 from plotly.graph_objects import Scatter
 
 from restitution.case.case_file import parse_toml
-from restitution.contact.resolution import NODES_PER_PATCH
+from restitution.contact.checks.resolution import NODES_PER_PATCH
 from restitution.reports.methods import methods
 from restitution.reports.page import Cell, Drawing, Listing, Page, Table, new_plot, write_page
 from restitution.results.reader import StoredCase, StudyResults

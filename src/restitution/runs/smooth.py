@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from restitution.collision import Collision, collide
+from restitution.contact.checks.resolution import predicted_radius
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.loading import solve
-from restitution.contact.resolution import predicted_radius
 from restitution.numerics.grid import Grid
 from restitution.theory import FirstYield, Hertz
 
