@@ -9,7 +9,12 @@ from numpy.typing import NDArray
 
 from restitution.contact.contact import Contact
 from restitution.contact.detachment import Mask, criterion, tension_limit
-from restitution.contact.equilibrium import candidate_box, separated_state, solve_pressure
+from restitution.contact.equilibrium import (
+    HeldNodes,
+    candidate_box,
+    separated_state,
+    solve_pressure,
+)
 from restitution.contact.state import State
 from restitution.numerics.box import Box, bounding_box, reframe, union, widen
 
@@ -58,9 +63,7 @@ def release_nodes(
             around,
             limit=limit,
             history=history,
-            held=held,
-            tension=tension,
-            first_guess=first_guess,
+            held=HeldNodes(held, tension, first_guess),
             residual=residual,
         )
         convolutions += state.convolutions
