@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from shared import IMAGES, PAIR, write_table
 
 from restitution import Contact, Grid, collide, generate_surface, loading_path, smooth
-from restitution.contact.resolution import ADHESIVE_NODES, adhesive_nodes
+from restitution.contact.checks.resolution import ADHESIVE_NODES, adhesive_nodes
 
 ENERGIES = (0.01, 0.03, 0.09)
 SMOOTH_DEPTHS = np.geomspace(1e-9, 220e-9, 11)

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from shared import IMAGES, PAIR, write_table
 
 from restitution import Contact, Grid, collide, generate_surface, refine, solve
-from restitution.contact.resolution import NODES_PER_PATCH, median_patch
+from restitution.contact.checks.resolution import NODES_PER_PATCH, median_patch
 from restitution.runs.convergence import discretisation
 
 GRID = Grid((256, 256), (0.25e-6, 0.25e-6))

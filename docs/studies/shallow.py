@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from shared import IMAGES, PAIR, write_table
 
 from restitution import Contact, Grid, collide, generate_surface, refine, solve
-from restitution.contact.resolution import median_patch, resolves
+from restitution.contact.checks.resolution import median_patch, resolves
 
 GRID = Grid((256, 256), (0.25e-6, 0.25e-6))
 ROUGHNESS = (0.1e-6, 0.2e-6, 0.5e-6, 1e-6)

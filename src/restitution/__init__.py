@@ -6,10 +6,10 @@ if TYPE_CHECKING:
     from restitution.collision import Collision, collide
     from restitution.contact.bodies import Body, Pair
     from restitution.contact.contact import Contact, smooth
-    from restitution.contact.impact import solve_at_velocity
-    from restitution.contact.load import solve_at_force
     from restitution.contact.loading import solve, step
     from restitution.contact.path import loading_path, unloading_path
+    from restitution.contact.prescribed_force import solve_at_force
+    from restitution.contact.prescribed_velocity import solve_at_velocity
     from restitution.contact.state import State
     from restitution.errors import RestitutionError
     from restitution.numerics.convolution.cache import operator_cache
@@ -66,8 +66,8 @@ _HOMES = {
     "collision": ("Collision", "collide"),
     "contact.bodies": ("Body", "Pair"),
     "contact.contact": ("Contact", "smooth"),
-    "contact.impact": ("solve_at_velocity",),
-    "contact.load": ("solve_at_force",),
+    "contact.prescribed_velocity": ("solve_at_velocity",),
+    "contact.prescribed_force": ("solve_at_force",),
     "contact.loading": ("solve", "step"),
     "contact.path": ("loading_path", "unloading_path"),
     "contact.state": ("State",),

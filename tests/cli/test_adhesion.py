@@ -158,7 +158,11 @@ def test_check_prints_what_adhesion_asks_of_the_grid(cli, tmp_path):
         ('"0.09 J/m^2"', '"-0.09 J/m^2"', ("interface.work_of_adhesion", "negative")),
         ('"0.09 J/m^2"', '"0.09 N"', ("interface.work_of_adhesion", "0.09 J/m^2")),
         ('"0.09 J/m^2"', "0.09", ("interface.work_of_adhesion", "no unit")),
-        ('"hertzian"', '"hertz"', ("interface.approach", "hertzian", "equilibrium", "seed")),
+        (
+            '"hertzian"',
+            '"hertz"',
+            ("interface.approach", "hertzian", "equilibrium", "pull-increments"),
+        ),
         ('"hertzian"', '"hertzian"\ndetachment = "vcct"', ("interface.detachment", "pohrt")),
         ("curves = 1", 'method = "guess"', ("unloading.method", "energy-estimate")),
     ],
@@ -172,7 +176,8 @@ def test_refusals_are_one_line_that_names_the_key(refusal, old, new, words):
 def test_a_seed_that_lets_go_of_everything_is_a_row_that_sticks(cli, run, tmp_path):
     """The surface is so soft that the pull of 0.1 nm takes all of it apart."""
     rows, summary, _ = run(
-        ('"1.5 GPa"', '"1 MPa"'), ('"0.09 J/m^2"', '"0.001 J/m^2"'), ('"hertzian"', '"seed"'),
+        ('"1.5 GPa"', '"1 MPa"'), ('"0.09 J/m^2"', '"0.001 J/m^2"'),
+        ('"hertzian"', '"pull-increments"'),
         ('"0.07 um"', '"0.5 um"'), ('["1.5 nm", "10 nm"]', '["0.05 nm", "0.1 nm"]'),
     )  # fmt: skip
     assert [row["force_N"] for row in rows] == ["0.0", "0.0"]

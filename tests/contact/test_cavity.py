@@ -9,10 +9,10 @@ import pytest
 from restitution import Body, Contact, Grid, Pair, Surface, generate_surface, smooth
 from restitution.collision import collide
 from restitution.contact.cavity import GROWTH, LARGEST, bound_of, yield_bound
-from restitution.contact.impact import solve_at_velocity
-from restitution.contact.load import solve_at_force
 from restitution.contact.loading import solve, step
 from restitution.contact.path import loading_path, unloading_path
+from restitution.contact.prescribed_force import solve_at_force
+from restitution.contact.prescribed_velocity import solve_at_velocity
 from restitution.errors import CaseError
 from restitution.theory import Hertz
 from tolerance import approx

@@ -9,7 +9,7 @@ from scipy.ndimage import label
 
 from restitution import Body, Contact, Grid, Pair, Surface, solve
 from restitution.contact import detachment
-from restitution.contact.adhesion import peel
+from restitution.contact.adhesion import release_nodes
 from restitution.contact.detachment import (
     CrackClosure,
     TensionLimit,
@@ -74,7 +74,7 @@ def drawn(contact, disc, distance):
     patient = Contact(contact.pair, contact.surface, work_of_adhesion=1e6)  # nothing lets go
     n, m = contact.grid.nodes
     whole = slice(0, n), slice(0, m)
-    state, _ = peel(patient, -distance, whole, disc, limit=math.inf, residual=1e-9)
+    state, _ = release_nodes(patient, -distance, whole, disc, limit=math.inf, residual=1e-9)
     box = state.box
     return state, (state.box_pressure, state.box_displacement, contact.gap[box], disc[box])
 

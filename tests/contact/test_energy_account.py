@@ -9,7 +9,7 @@ indentation moves energy from E_el to −Q and does no work, so over the way bac
 import math
 
 import numpy as np
-from hypothesis import HealthCheck, Phase, given, reject, settings
+from hypothesis import HealthCheck, Phase, given, reject, seed, settings
 from hypothesis import strategies as st
 
 from restitution import Body, Contact, Grid, Pair, collide, generate_surface, smooth, solve
@@ -37,7 +37,7 @@ cases = st.fixed_dictionaries(
         "seed": st.integers(0, 99),
         "yield_pressure": st.sampled_from([math.inf, 0.75e9, 2e9]),
         "work_of_adhesion": st.sampled_from([0.01, 0.03, 0.09]),
-        "approach": st.sampled_from(["equilibrium", "hertzian", "seed"]),
+        "approach": st.sampled_from(["equilibrium", "hertzian", "pull-increments"]),
         "detachment": st.sampled_from(["crack-closure", "pohrt-popov"]),
         "depth": st.floats(0.3, 0.8),
     }
@@ -60,6 +60,7 @@ def load(nodes, spacing, rms, seed, depth, **options):
 
 
 @few
+@seed(1)  # without it another text of this test is another draw
 @given(cases)
 def test_the_account_closes(case):
     state = load(**case)
@@ -76,7 +77,7 @@ def test_the_account_closes(case):
 
     # The work of the steps, each pulled with the contact held and then let go, by forces alone.
     force = np.array([s.force for s in path])
-    pulled = np.array([s.pulled_force for s in path[1:]])
+    pulled = np.array([s.force_before_release for s in path[1:]])
     sawtooth = -float(np.sum(0.5 * (force[:-1] + pulled) * np.diff(depths)))
     scale = state.stored_energy + state.plastic_work
     assert state.loading_work - end.loading_work == approx(sawtooth, abs=2e-3 * scale)

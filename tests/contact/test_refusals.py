@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from restitution.contact import equilibrium
+from restitution.contact.checks.edge import require_inside_grid
 from restitution.contact.contact import Contact, smooth
-from restitution.contact.equilibrium import refuse_edge
 from restitution.contact.loading import solve, step
 from restitution.errors import CaseError, DomainError, NotConvergedError
 from restitution.numerics.grid import Grid
@@ -53,9 +53,9 @@ def test_any_edge_is_the_rim(pair, corner):
         solve(Contact(pair, Surface(z, grid)), 1 * NM)
     # depth alone is no reason: only pressure on the rim is
     state = solve(Contact(pair, smooth(grid)), 1 * NM)
-    refuse_edge(state)
+    require_inside_grid(state)
     with pytest.raises(DomainError):
-        refuse_edge(replace(state, box=(slice(0, 8), slice(0, 7)), box_pressure=z))
+        require_inside_grid(replace(state, box=(slice(0, 8), slice(0, 7)), box_pressure=z))
 
 
 @pytest.mark.parametrize("nodes", [(1, 1), (1, 30), (30, 1), (2, 30)])

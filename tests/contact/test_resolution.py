@@ -5,18 +5,20 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from restitution.contact.contact import Contact, smooth
-from restitution.contact.resolution import (
+from restitution.contact.bodies import Body, Pair
+from restitution.contact.checks.finding import Finding
+from restitution.contact.checks.resolution import (
+    ADHESIVE_NODES,
     NODES_PER_PATCH,
-    NODES_PER_RADIUS,
-    foreseen_radius,
-    foreseen_warnings,
+    coarse_scan,
     median_patch,
-    refuse_coarse_scan,
+    predicted_radius,
+    resolution_findings,
     resolves,
-    unresolved_warning,
+    unresolved_adhesion,
+    unresolved_patches,
 )
-from restitution.errors import SurfaceError
+from restitution.contact.contact import Contact, smooth
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface
 from tolerance import approx
@@ -26,25 +28,25 @@ P_Y = 750e6
 YIELD = (math.pi * P_Y / (2 * 112e9)) ** 2 * R  # 28 nm
 
 
-def test_the_foreseen_radius_is_hertz_then_grows_to_the_overlap(pair):
-    assert foreseen_radius(pair, 1e-8) == approx(math.sqrt(R * 1e-8), rel=1e-14)
-    assert foreseen_radius(pair, 1e-2) == approx(math.sqrt(R * 1e-2), rel=1e-14)
-    assert foreseen_radius(pair, YIELD, P_Y) == approx(math.sqrt(R * YIELD), rel=1e-12)
-    assert foreseen_radius(pair, 1e-8, 1e-3) == approx(math.sqrt(2 * R * 1e-8), rel=1e-3)
+def test_the_predicted_radius_is_hertz_then_grows_to_the_overlap(pair):
+    assert predicted_radius(pair, 1e-8) == approx(math.sqrt(R * 1e-8), rel=1e-14)
+    assert predicted_radius(pair, 1e-2) == approx(math.sqrt(R * 1e-2), rel=1e-14)
+    assert predicted_radius(pair, YIELD, P_Y) == approx(math.sqrt(R * YIELD), rel=1e-12)
+    assert predicted_radius(pair, 1e-8, 1e-3) == approx(math.sqrt(2 * R * 1e-8), rel=1e-3)
 
 
 @pytest.mark.parametrize(("x", "area"), [(1.5, 1.011), (2, 1.037), (6, 1.272), (16, 1.507)])
-def test_the_foreseen_radius_is_close_to_the_solved_one(pair, x, area):
+def test_the_predicted_radius_is_close_to_the_solved_one(pair, x, area):
     """Contact area over πR*δ of smooth spheres at δ = x δ_y, REFERENCE section 3."""
-    radius = foreseen_radius(pair, x * YIELD, P_Y)
+    radius = predicted_radius(pair, x * YIELD, P_Y)
     assert radius == approx(math.sqrt(area * R * x * YIELD), rel=0.06)
 
 
 @given(st.floats(1e-12, 1e-5), st.floats(1.0, 10), st.floats(1e6, 1e12))
-def test_the_foreseen_radius_grows_with_depth_and_lies_between_its_limits(pair, d, factor, p_y):
-    radius = foreseen_radius(pair, d, p_y)
+def test_the_predicted_radius_grows_with_depth_and_lies_between_its_limits(pair, d, factor, p_y):
+    radius = predicted_radius(pair, d, p_y)
     assert math.sqrt(R * d) * (1 - 1e-12) <= radius <= math.sqrt(2 * R * d)
-    assert foreseen_radius(pair, factor * d, p_y) >= radius * (1 - 1e-12)
+    assert predicted_radius(pair, factor * d, p_y) >= radius * (1 - 1e-12)
 
 
 @pytest.fixture
@@ -58,53 +60,60 @@ def contact(pair):
     return make
 
 
-def test_a_contact_that_fits_and_is_resolved_needs_no_warning(contact):
-    assert foreseen_warnings(contact(), (5e-6) ** 2 / R) == []
+def test_a_contact_that_fits_and_is_resolved_has_no_finding(contact):
+    assert resolution_findings(contact(), (5e-6) ** 2 / R) == []
 
 
-def test_a_contact_larger_than_the_grid_is_foreseen(contact):
+def test_a_contact_larger_than_the_grid_is_predicted(contact):
     just, beyond = (7.99e-6) ** 2 / R, (8.01e-6) ** 2 / R
-    assert foreseen_warnings(contact(), just) == []
-    (line,) = foreseen_warnings(contact(), beyond)
-    assert "8.01 um from the centre" in line
-    assert "ends at 8 um" in line
-    assert f"{1e9 * beyond:.4g} nm" in line
-    assert "use more nodes" in line
+    assert resolution_findings(contact(), just) == []
+    (found,) = resolution_findings(contact(), beyond)
+    assert found.code == "contact-beyond-grid"
+    assert found["radius"] == approx(8.01e-6, rel=1e-12)
+    assert (found["half_width"], found["indentation"]) == (approx(8e-6, rel=1e-12), beyond)
+    assert not found["whole_scan"]
+    (found,) = resolution_findings(
+        contact(source="measured", size_x_m=16e-6, size_y_m=20e-6), beyond
+    )
+    assert found["whole_scan"]
     # yielding widens the contact: elastic it would have fitted
-    assert len(foreseen_warnings(contact(yield_pressure=1e6), just)) == 1
+    assert len(resolution_findings(contact(yield_pressure=1e6), just)) == 1
 
 
-def test_a_contact_on_few_nodes_is_foreseen(contact):
-    assert foreseen_warnings(contact(), (2.01e-6) ** 2 / R) == []
-    (line,) = foreseen_warnings(contact(), (1e-6) ** 2 / R)
-    assert "spacing 0.25 um puts 4 nodes" in line
-    assert f"({NODES_PER_RADIUS} are needed)" in line
+def test_a_contact_on_few_nodes_is_found(contact):
+    assert resolution_findings(contact(), (2.01e-6) ** 2 / R) == []
+    (found,) = resolution_findings(contact(), (1e-6) ** 2 / R)
+    assert found.code == "few-nodes"
+    assert found["radius"] / found["spacing"] == approx(4, rel=1e-12)
 
 
-def test_a_sphere_too_small_for_a_half_space_is_foreseen(contact, pair):
-    from restitution.contact.bodies import Body, Pair
-
+def test_a_sphere_too_small_for_a_half_space_is_found(contact):
     tiny = Body(20e-6, 210e9, 0.25)
-    lines = foreseen_warnings(contact(Pair(tiny, tiny)), (3e-6) ** 2 / 10e-6)
-    assert len(lines) == 1
-    assert "0.3 of R*" in lines[0]
+    (found,) = resolution_findings(contact(Pair(tiny, tiny)), (3e-6) ** 2 / 10e-6)
+    assert found.code == "no-half-space"
+    assert found["radius"] / found["reduced_radius"] == approx(0.3, rel=1e-12)
 
 
-def test_a_grid_finer_than_the_scan_is_told(contact):
+def test_a_grid_finer_than_the_scan_is_found(contact):
     deep = (5e-6) ** 2 / R
-    assert foreseen_warnings(contact(pixel_x_m=0.2e-6), deep) == []
-    lines = foreseen_warnings(contact(pixel_x_m=0.5e-6), deep)
-    assert any("finer than the scan's pixel 0.5 um" in line for line in lines)
+    assert resolution_findings(contact(pixel_x_m=0.2e-6), deep) == []
+    found = resolution_findings(contact(pixel_x_m=0.5e-6), deep)
+    assert found == [Finding("finer-than-scan", {"spacing": 0.2e-6, "pixel": 0.5e-6})]
 
 
-def test_a_scan_coarser_than_the_contact_is_refused(contact):
+def test_a_scan_coarser_than_the_contact_is_found(contact):
     shallow = (1e-6) ** 2 / R
     scan = contact(source="measured", file="scan.txt", pixel_x_m=1.5e-6)
-    with pytest.raises(SurfaceError, match=r"scan\.txt: one pixel \(1\.5 um\).*\(1 um at 4 nm\)"):
-        refuse_coarse_scan(scan, shallow)
-    refuse_coarse_scan(scan, 9 * shallow)
-    refuse_coarse_scan(contact(source="generated", pixel_x_m=1.5e-6), shallow)
-    refuse_coarse_scan(contact(), shallow)
+    found = coarse_scan(scan, shallow)
+    assert (found.code, found["file"], found["pixel"]) == (
+        "pixel-above-contact",
+        "scan.txt",
+        1.5e-6,
+    )
+    assert found["radius"] == approx(1e-6, rel=1e-12)
+    assert coarse_scan(scan, 9 * shallow) is None
+    assert coarse_scan(contact(source="generated", pixel_x_m=1.5e-6), shallow) is None
+    assert coarse_scan(contact(), shallow) is None
 
 
 @pytest.mark.parametrize(
@@ -116,24 +125,28 @@ def test_the_median_patch_holds_the_median_node(patches, median):
     assert resolves(median) == (median >= NODES_PER_PATCH)
 
 
-def test_what_is_resolved_is_not_mentioned():
-    assert unresolved_warning([1e-9, 2e-9], [NODES_PER_PATCH, 500]) is None
-    assert unresolved_warning([], []) is None
+def test_what_is_resolved_is_not_found():
+    assert unresolved_patches([1e-9, 2e-9], [NODES_PER_PATCH, 500]) == []
+    assert unresolved_patches([], []) == []
+    assert unresolved_adhesion([1e-9, 2e-9], [ADHESIVE_NODES, math.inf]) == []
 
 
 def test_unresolved_depths_are_counted_up_to_the_deepest():
-    line = unresolved_warning([1e-9, 5e-9, 20e-9, 40e-9], [1, NODES_PER_PATCH - 1, 3, 90])
-    assert line.startswith("3 of 4 depths (up to 20 nm)")
-    assert f"fewer than {NODES_PER_PATCH} nodes" in line
+    (found,) = unresolved_patches([1e-9, 5e-9, 20e-9, 40e-9], [1, NODES_PER_PATCH - 1, 3, 90])
+    assert found == Finding("patches-unresolved", {"few": 3, "depths": 4, "deepest": 20e-9})
     # rough contacts may lose resolution again: the deepest counts, not the last
-    assert "up to 7 nm" in unresolved_warning([7e-9, 3e-9], [1, 1])
+    (found,) = unresolved_patches([7e-9, 3e-9], [1, 1])
+    assert found["deepest"] == 7e-9
+    (found,) = unresolved_adhesion([1e-9, 2e-9, 3e-9], [2.0, 1.5, 9.0])
+    assert found == Finding("adhesion-unresolved", {"few": 2, "depths": 3, "nodes": 1.5})
 
 
-def test_depths_and_patches_come_in_pairs():
+@pytest.mark.parametrize("check", [unresolved_patches, unresolved_adhesion])
+def test_depths_and_nodes_come_in_pairs(check):
     with pytest.raises(ValueError, match="zip"):
-        unresolved_warning([1e-9], [1, 2])
+        check([1e-9], [1, 2])
 
 
 def test_a_smooth_surface_has_no_pixel(pair):
     grid = Grid((64, 64), (0.25e-6, 0.25e-6))
-    assert foreseen_warnings(Contact(pair, smooth(grid)), (5e-6) ** 2 / R) == []
+    assert resolution_findings(Contact(pair, smooth(grid)), (5e-6) ** 2 / R) == []

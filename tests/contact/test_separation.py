@@ -80,9 +80,13 @@ def test_no_step_jumps_over_the_tension():
 
 
 def test_a_seed_that_lets_go_of_everything_is_parted_and_returns_nothing():
-    """So soft a surface gives way by more than the seed's pull: no node is left in contact."""
+    """So soft a surface gives way by more than the pull of 0.1 nm: no node is left in contact."""
     contact = Contact(
-        Pair(STEEL, STEEL), smooth(Grid(32, 0.5e-6)), 1e6, work_of_adhesion=1e-3, approach="seed"
+        Pair(STEEL, STEEL),
+        smooth(Grid(32, 0.5e-6)),
+        1e6,
+        work_of_adhesion=1e-3,
+        approach="pull-increments",
     )
     state = solve(contact, 1e-10)
     assert (state.contact_nodes, state.force, state.contact_area) == (0, 0.0, 0.0)

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from restitution import Body, Contact, Pair
-from restitution.contact.plausibility import implausible
 from restitution.errors import SurfaceError
+from restitution.runs.messages import input_warnings
 from restitution.surfaces import read_surface
 
 SAMPLES = Path(__file__).parents[3] / "shared" / "topographies"
@@ -67,7 +67,7 @@ def honest(surface, whole, how):
         return True
     # No reader can know how many lines a text had that does not say so: from 1 % on it is warned.
     hx, hy = surface.grid.spacing
-    lines = implausible(Contact(STEEL, surface), 1e-9)
+    lines = input_warnings(Contact(STEEL, surface), 1e-9)
     warned = abs(hx / hy - 1) < 0.01 or any("not square" in line for line in lines)
     return warned and how in ("lines", "cut", "drop")
 

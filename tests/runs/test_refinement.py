@@ -6,7 +6,7 @@ import pytest
 
 from restitution import solve
 from restitution.case.case_file import parse_case
-from restitution.contact.resolution import median_patch, resolves
+from restitution.contact.checks.resolution import median_patch, resolves
 from restitution.results.writer import ResultsFolder
 from restitution.runs import refinement
 from restitution.runs.ensemble import run_realisations

@@ -58,7 +58,7 @@ def test_adhesive(seed, monkeypatch):
 
     def pulled():
         deepest = solve(contact, DEPTH)
-        return deepest, step(replace(deepest, virgin=False), 0.8 * DEPTH)
+        return deepest, step(replace(deepest, is_first_loading=False), 0.8 * DEPTH)
 
     fast = pulled()
     nx, ny = contact.grid.nodes

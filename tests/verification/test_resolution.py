@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from restitution import Body, Contact, Grid, Pair, collide, generate_surface, refine, solve
-from restitution.contact.resolution import median_patch, resolves
+from restitution.contact.checks.resolution import median_patch, resolves
 
 STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25)
 GRID = Grid((128, 128), (0.25e-6, 0.25e-6))

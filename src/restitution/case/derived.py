@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from restitution.case.case import Case
+from restitution.contact.checks.resolution import expected_pull_off_error, predicted_radius
 from restitution.contact.contact import Contact
-from restitution.contact.resolution import expected_pull_off_error, foreseen_radius
 from restitution.theory import JKR, FirstYield, Hertz, ThorntonNing
 
 
@@ -29,10 +29,10 @@ def deepest_indentation(case: Case) -> float:
 
 
 def derived_quantities(case: Case, contact: Contact) -> dict[str, float | None]:
-    """R*, E*, m*, yield quantities and the foreseen contact, keyed with SI units; None: not so."""
+    """R*, E*, m*, yield quantities and the predicted contact, keyed with SI units; None: not so."""
     pair, p_y = contact.pair, contact.hardness
     deepest = deepest_indentation(case)
-    radius = foreseen_radius(pair, deepest, p_y)
+    radius = predicted_radius(pair, deepest, p_y)
     elastic = math.isinf(p_y)
     mass = pair.mass
     first = None
@@ -51,7 +51,7 @@ def derived_quantities(case: Case, contact: Contact) -> dict[str, float | None]:
         ),
         **_adhesion(case, contact),
         "deepest_indentation_m": deepest,
-        "foreseen_contact_radius_m": radius,
+        "predicted_contact_radius_m": radius,
         "nodes_over_contact_radius": radius / max(contact.grid.spacing),
         "domain_half_width_m": 0.5 * min(contact.grid.size),
     }

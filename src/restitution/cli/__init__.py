@@ -26,7 +26,7 @@ def main() -> None:
 
 def _run() -> int:
     from restitution.cli.app import app
-    from restitution.cli.console import refuse
+    from restitution.cli.console import print_error
     from restitution.cli.environment import prepare
     from restitution.cli.signals import Stopped, received, stoppable
     from restitution.errors import RestitutionError
@@ -41,19 +41,19 @@ def _run() -> int:
                     raise Stopped(received[-1]) from None
                 raise
     except RestitutionError as error:
-        refuse(str(error))
+        print_error(str(error))
     except MemoryError:
-        refuse("the memory is too small for this case; use fewer grid.nodes")
+        print_error("the memory is too small for this case; use fewer grid.nodes")
     except OSError as error:
         if error.filename is not None and error.errno in _NO_ROOM | _NO_ACCESS:
-            refuse(
+            print_error(
                 f"{error.filename}: cannot be read or written ({error.strerror}); change its "
                 "permissions, make room, or name another"
             )
             return 1
         if error.errno not in _NO_ROOM:
             raise
-        refuse(f"standard output: cannot be written ({error.strerror}); send it elsewhere")
+        print_error(f"standard output: cannot be written ({error.strerror}); send it elsewhere")
         # What is left in its buffer would fail again when Python ends.
         sys.stdout = None
     except Stopped as stop:

@@ -17,9 +17,8 @@ def check(
     from restitution.case.case_file import naming, read_case
     from restitution.case.derived import deepest_indentation, derived_quantities
     from restitution.cli.console import answers, say, waiting, warn
-    from restitution.contact.plausibility import implausible, require_small
-    from restitution.contact.resolution import foreseen_warnings, refuse_coarse_scan
     from restitution.numerics.memory import available, in_words
+    from restitution.runs.messages import input_warnings, require_possible
     from restitution.surfaces import describe
 
     read, _ = read_case(case)
@@ -44,7 +43,7 @@ def check(
         "tabor_parameter": ("Tabor parameter (JKR holds well above 1)", 1, ""),
         "sticking_velocity_m_per_s": ("sticking velocity V_s, smooth elastic", 1, "m/s"),
         "deepest_indentation_m": ("deepest indentation", 1e9, "nm"),
-        "foreseen_contact_radius_m": ("contact radius there, smooth", 1e6, "um"),
+        "predicted_contact_radius_m": ("contact radius there, smooth", 1e6, "um"),
         "domain_half_width_m": ("half width of the grid", 1e6, "um"),
         "nodes_over_contact_radius": ("nodes over the contact radius", 1, ""),
     }
@@ -72,10 +71,9 @@ def check(
     if (from_where := read.yielding().source) not in ("given", "elastic"):
         say(f"The contact yields at: {from_where}.")
     deepest = deepest_indentation(read)
-    require_small(contact, deepest)
-    refuse_coarse_scan(contact, deepest)
+    require_possible(contact, deepest)
     with waiting("checking the surface"):
-        warnings = foreseen_warnings(contact, deepest) + implausible(contact, deepest)
+        warnings = input_warnings(contact, deepest)
     for warning in warnings:
         warn(warning)
     answers.print("The case is valid." if not warnings else "The case is valid, with warnings.")

@@ -39,7 +39,7 @@ def warn(message: str) -> None:
     say(f"Warning: {one_line(message)}", errors, "yellow")
 
 
-def refuse(message: str) -> None:
+def print_error(message: str) -> None:
     """Print one error on standard error."""
     say(f"Error: {one_line(message)}", errors, "red")
 

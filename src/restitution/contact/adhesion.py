@@ -1,4 +1,4 @@
-"""Contact sets of adhesive contacts: nodes let go (peel) or come in (attach) at one indentation."""
+"""Contact sets of adhesive contacts: which nodes are released or come in at one indentation."""
 
 from __future__ import annotations
 
@@ -9,14 +9,19 @@ from numpy.typing import NDArray
 
 from restitution.contact.contact import Contact
 from restitution.contact.detachment import Mask, criterion, tension_limit
-from restitution.contact.equilibrium import candidate_box, separated_state, solve_pressure
+from restitution.contact.equilibrium import (
+    HeldNodes,
+    candidate_box,
+    separated_state,
+    solve_pressure,
+)
 from restitution.contact.state import State
 from restitution.numerics.box import Box, bounding_box, reframe, union, widen
 
 Array = NDArray[np.float64]
 
 
-def peel(
+def release_nodes(
     contact: Contact,
     indentation: float,
     box: Box,
@@ -49,7 +54,7 @@ def peel(
     )
     # No node keeps more than the tension limit, so twice that is as good as no bound, and easier.
     tension = 2 * tension_limit(pair.contact_modulus, contact.work_of_adhesion, grid.spacing)
-    pulled: State | None = None
+    before_release: State | None = None
     convolutions = 0
     while True:
         state = solve_pressure(
@@ -58,25 +63,23 @@ def peel(
             around,
             limit=limit,
             history=history,
-            held=held,
-            tension=tension,
-            first_guess=first_guess,
+            held=HeldNodes(held, tension, first_guess),
             residual=residual,
         )
         convolutions += state.convolutions
         state = replace(state, convolutions=convolutions)
-        pulled = state if pulled is None else pulled
+        before_release = before_release or state
         pressure = state.box_pressure
         # Nodes that were pushed into contact are held from now on.
         held |= pressure > 0
         released = rule.releases(pressure, state.box_displacement, gap, held)
         if not released.any():
-            return pulled, state
+            return before_release, state
         held &= ~released
         first_guess = np.where(released, 0.0, pressure)
 
 
-def attach(
+def grow_contact(
     contact: Contact,
     indentation: float,
     box: Box,
@@ -90,7 +93,7 @@ def attach(
     from scipy.ndimage import binary_dilation
 
     ring = np.ones((3, 3), dtype=bool)
-    _, state = peel(
+    _, state = release_nodes(
         contact, indentation, box, held, limit=limit, first_guess=first_guess, residual=residual
     )
     convolutions = state.convolutions
@@ -98,7 +101,7 @@ def attach(
     touching = state.box_pressure != 0 if state.contact_nodes else reframe(held, box, state.box)
     while True:
         wider_box = widen(state.box, 1, contact.grid.nodes)
-        _, wider = peel(
+        _, wider = release_nodes(
             contact,
             indentation,
             wider_box,
@@ -113,15 +116,16 @@ def attach(
         state, touching = wider, wider.box_pressure != 0
 
 
-def pull(state: State, indentation: float, *, first_guess: Array | None = None,
-         residual: float) -> State:  # fmt: skip
+def unload_adhesive(
+    state: State, indentation: float, *, first_guess: Array | None = None, residual: float
+) -> State:
     """Move an adhesive contact to a smaller `indentation` and let nodes go there.
 
     `first_guess` is an array on the box of `state`. The new state remembers the force just before
     the first release: with the contact held the force is linear in the indentation, so the work up
     to there is exact by the trapezium.
     """
-    pulled, settled = peel(
+    before_release, settled = release_nodes(
         state.contact,
         indentation,
         state.box,
@@ -131,7 +135,10 @@ def pull(state: State, indentation: float, *, first_guess: Array | None = None,
         first_guess=state.box_pressure if first_guess is None else first_guess,
         residual=residual,
     )
-    lost = pulled.stored_energy - settled.stored_energy
+    lost = before_release.stored_energy - settled.stored_energy
     return replace(
-        settled, adhesive_work=state.adhesive_work - lost, pulled_force=pulled.force, virgin=False
+        settled,
+        adhesive_work=state.adhesive_work - lost,
+        force_before_release=before_release.force,
+        is_first_loading=False,
     )

@@ -46,6 +46,7 @@ from numpy.typing import NDArray
 from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import candidate_box, solve_pressure
 from restitution.numerics.box import Box
+from restitution.numerics.read_only import freeze
 
 Array = NDArray[np.float64]
 
@@ -60,22 +61,22 @@ _TABOR = 0.2  # representative strain over a/R
 def yield_bound(contact: Contact, indentation: float, residual: float) -> tuple[Array, int]:
     """The largest pressure (Pa) of each node at `indentation` (m), and the convolutions it took.
 
-    The array has the shape of the grid. `residual` is that of the solve under this bound; that of
-    the elastic solve may be larger, for the bound follows the logarithm of its pressure. The
-    elastic contact may reach the edge of the grid. Raises `NotConvergedError`.
+    The array has the shape of the grid and is read-only. `residual` is that of the solve under this
+    bound; that of the elastic solve may be larger, for the bound follows the logarithm of its
+    pressure. The elastic contact may reach the edge of the grid. Raises `NotConvergedError`.
     """
     bound = np.full(contact.grid.nodes, contact.first_yield_pressure)
     deeper = _DEEPER * indentation
     box = candidate_box(contact, deeper)
     if box is None:
-        return bound, 0
+        return freeze(bound), 0
     elastic = solve_pressure(contact, deeper, box, limit=math.inf, residual=_LOOSER * residual)
     measure = elastic.box_pressure / math.sqrt(_DEEPER)
     merged = np.divide(_smooth_pressure(contact, box, elastic.force), measure,
                        out=np.ones_like(measure), where=measure > 0)  # fmt: skip
     ridge = contact.elongation[box] * np.maximum(1 - merged, 0)
     bound[box] = bound_of(contact, measure, ridge)
-    return bound, elastic.convolutions
+    return freeze(bound), elastic.convolutions
 
 
 def bound_of(contact: Contact, measure: Array, ridge: Array | float = 0.0) -> Array:

@@ -19,11 +19,12 @@ from restitution.contact.bodies import Pair
 from restitution.contact.detachment import Detachment
 from restitution.errors import CaseError
 from restitution.numerics.grid import Grid
+from restitution.numerics.read_only import freeze
 from restitution.surfaces import Surface, rms_slope
 from restitution.theory import JKR, yield_coefficient
 
 Plasticity = Literal["expanding-cavity", "equilibrium", "truncated"]
-Approach = Literal["equilibrium", "hertzian", "seed"]
+Approach = Literal["equilibrium", "hertzian", "pull-increments"]
 FULL_CONSTRAINT = 2.8  # pressure over yield strength of fully plastic contact (Tabor 1951)
 _OFF_NODE = 0.31, 0.17  # of a cell: no symmetry of the grid maps this point onto itself
 
@@ -39,10 +40,15 @@ class Contact:
     * `expanding-cavity`, for a yield strength: the largest pressure grows with deformation, see
       `cavity`; `tangent_modulus` (Pa) is the slope of the tensile stress over strain after yield;
     * `equilibrium`, for a yield pressure: pressure and surface in equilibrium under that bound;
-    * `truncated`: the elastic pressure cut at the yield pressure (Thornton and Ning 1998).
+    * `truncated`: the elastic pressure truncated at the yield pressure (Thornton and Ning 1998).
 
-    None is the first for a yield strength, else the second. Raises `CaseError` for values that are
-    none or do not go together, and for a pair or a surface that is none.
+    None is the first for a yield strength, else the second.
+
+    Contacts are equal (and hash alike) when their values are equal and their surface is the same
+    object. `gap` and `elongation` are computed once, and read-only.
+
+    Raises `CaseError` for values that are none or do not go together, and for a pair or a surface
+    that is none.
     """
 
     pair: Pair
@@ -132,8 +138,8 @@ class Contact:
         return self.tangent_modulus / (1 - self.tangent_modulus / E)
 
     @property
-    def cut(self) -> bool:
-        """Whether the elastic pressure is cut at p_y (`truncated`)."""
+    def truncates(self) -> bool:
+        """Whether the elastic pressure is truncated at p_y (`truncated`)."""
         return self.plasticity == "truncated" and math.isfinite(self.yield_pressure)
 
     @property
@@ -150,7 +156,7 @@ class Contact:
         return float(JKR(pair.radius, pair.contact_modulus, self.work_of_adhesion).adhesive_length)
 
     @property
-    def opening(self) -> float:
+    def crack_opening(self) -> float:
         """How far the surfaces part over the first cell outside an edge that lets go, m.
 
         1.86 sqrt(w h/E*) on a straight edge of the grid; see `detachment`.
@@ -158,8 +164,8 @@ class Contact:
         h = math.sqrt(self.grid.cell_area)
         return 1.86 * math.sqrt(self.work_of_adhesion * h / self.pair.contact_modulus)
 
-    def length_at(self, indentation: float) -> float:
-        """The length that violations are measured against at `indentation`, m."""
+    def residual_length(self, indentation: float) -> float:
+        """The length that residuals at `indentation` (m) are divided by, m."""
         return max(abs(indentation), self.adhesive_length)
 
     @property
@@ -195,7 +201,7 @@ class Contact:
         gap: NDArray[np.float64] = np.add.outer(x, y)
         gap -= self.surface.height  # in place: other arrays of this size would take as long
         gap -= gap.min()
-        return gap
+        return freeze(gap)
 
     @cached_property
     def elongation(self) -> NDArray[np.float64]:
@@ -215,7 +221,7 @@ class Contact:
         larger = mean + spread
         ratio = np.divide(np.abs(mean - spread), larger, out=np.ones_like(larger), where=larger > 0)
         elongation[inner, inner] = (1 - ratio) ** 2
-        return elongation
+        return freeze(elongation)
 
 
 def _kind(value: object) -> str:
@@ -225,4 +231,4 @@ def _kind(value: object) -> str:
 
 def smooth(grid: Grid) -> Surface:
     """The surface without roughness on `grid`."""
-    return Surface(np.zeros(grid.nodes), grid, {"source": "smooth", "kind": "smooth"})
+    return Surface(freeze(np.zeros(grid.nodes)), grid, {"source": "smooth", "kind": "smooth"})

@@ -14,25 +14,55 @@ held in contact; the box holds them, too, and two cells around.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
 from restitution.contact.contact import Contact
-from restitution.contact.edge import edge_advice
 from restitution.contact.influence import half_space, inverse_half_space
 from restitution.contact.state import State
-from restitution.errors import DomainError, NotConvergedError
+from restitution.errors import NotConvergedError
 from restitution.numerics.box import NOWHERE, Box, bounding_box, shape_of, widen
 from restitution.numerics.convolution.device import current
 from restitution.numerics.convolution.operators import FreeConvolution, SpectralFilter
 from restitution.numerics.quadratic.minimise import BoundedQuadratic, minimise_quadratic
 from restitution.numerics.quadratic.multilevel import Operators, solve_multilevel
+from restitution.numerics.read_only import freeze
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 RESIDUAL = 1e-8  # default tolerance: violation of the contact conditions over the overlap
 MAX_ITERATIONS = 1000
+
+
+@dataclass(frozen=True)
+class HeldNodes:
+    """The nodes of a box that are held in contact and may carry tension.
+
+    `mask` shows them and `first_guess` (Pa; None is zero) starts the solve; both are arrays on the
+    box. `tension` is the largest, Pa.
+    """
+
+    mask: Mask
+    tension: float
+    first_guess: Array | None = None
+
+
+@dataclass(frozen=True)
+class Solution:
+    """What a solve has found on a box: arrays of its shape.
+
+    The `overlap` δ − h before it and the deformed gap `gap` (m), the `pressure` (Pa), and what the
+    solve left and took: `residual`, `convolutions`.
+    """
+
+    overlap: Array
+    pressure: Array
+    gap: Array
+    residual: float
+    convolutions: int
 
 
 def solve_pressure(
@@ -42,19 +72,16 @@ def solve_pressure(
     *,
     limit: Array | float,
     history: State | None = None,
-    held: Mask | None = None,
-    tension: float = 0.0,
-    first_guess: Array | None = None,
+    held: HeldNodes | None = None,
     residual: float = RESIDUAL,
 ) -> State:
     """Solve with upper bound `limit` on the surface deformed by `history`.
 
-    The lower bound is 0, or −`tension` at the nodes that are `held`. Arguments:
+    The lower bound is 0, or minus their tension at the nodes that are `held`. Arguments:
         indentation: δ, m.
         box: block of the grid to solve on; contains the `candidate_box` and all held nodes.
         limit: Pa, a number or an array of the shape of the grid.
-        held, first_guess: arrays on `box`; the guess (Pa) is used only with held nodes.
-        tension: Pa.
+        held: nodes held in contact; None without adhesion, and then there is no first guess.
         residual: tolerance of the violation of the contact conditions, as a fraction of the overlap
             δ − min h, or with adhesion of the indentation or the length scale of adhesion.
 
@@ -77,15 +104,16 @@ def solve_pressure(
         )
     else:
         K, inverse = operators(shape, 0)
+        guess = held.first_guess
         found = minimise_quadratic(
             BoundedQuadratic(
                 K,
                 device.put(b),
-                lower=device.put(np.where(held, -tension, 0.0)),
+                lower=device.put(np.where(held.mask, -held.tension, 0.0)),
                 upper=upper,
                 K_single=K.single_precision,
             ),
-            start=device.put(np.zeros(shape) if first_guess is None else first_guess.copy()),
+            start=device.put(np.zeros(shape) if guess is None else guess.copy()),
             precondition=inverse,
             tolerance=residual * scale,
             max_iterations=MAX_ITERATIONS,
@@ -98,9 +126,10 @@ def solve_pressure(
             f"{reached:.1e} (asked: {residual:.0e}) after {found.iterations} iterations; ask for a "
             "larger residual, or smooth or refine the surface"
         )
-    return build_state(contact, indentation, box, b, device.get(found.point),
-                   device.get(found.gradient), limit=limit, history=history, residual=reached,
-                   convolutions=convolutions)  # fmt: skip
+    solution = Solution(
+        b, device.get(found.point), device.get(found.gradient), reached, convolutions
+    )
+    return build_state(contact, indentation, box, solution, limit=limit, history=history)
 
 
 def _overlap(contact: Contact, indentation: float, box: Box, history: State | None = None) -> Array:
@@ -113,7 +142,7 @@ def _overlap(contact: Contact, indentation: float, box: Box, history: State | No
 
 def _scale_of(contact: Contact, indentation: float, b: Array) -> float:
     """The length by which residuals are divided: the overlap, or the length of adhesion, m."""
-    return contact.length_at(indentation) if contact.adhesive else float(b.max())
+    return contact.residual_length(indentation) if contact.adhesive else float(b.max())
 
 
 def _operators_of(contact: Contact) -> Operators:
@@ -131,34 +160,33 @@ def build_state(
     contact: Contact,
     indentation: float,
     box: Box,
-    b: Array,
-    pressure: Array,
-    gradient: Array,
+    solution: Solution,
     *,
     limit: Array | float,
     history: State | None,
-    residual: float,
-    convolutions: int,
 ) -> State:
-    """The state with overlap `b`, `pressure` and deformed gap `gradient` on `box`.
+    """The state of a `solution` on `box`.
 
     Where the pressure is at the limit and the deformed gap is negative, the gap becomes plastic
-    displacement. `gradient` is overwritten by the displacement. With a limit for each node the
-    plastic work stays that of `history`; `loading` integrates it.
+    displacement. The displacement overwrites `solution.gap`. With a limit for each node the plastic
+    work stays that of `history`; `loading` integrates it.
     """
+    pressure, gap = solution.pressure, solution.gap
     plastic, work, adhesive_work, work_error = _past(contact, history)
     upper = limit[box] if isinstance(limit, np.ndarray) else limit
-    yielding = (pressure >= upper) & (gradient < 0)
+    yielding = (pressure >= upper) & (gap < 0)
     if yielding.any():
         if history is not None:
             plastic = plastic.copy()
         lowered = plastic[box]
-        np.subtract(lowered, gradient, out=lowered, where=yielding)
+        np.subtract(lowered, gap, out=lowered, where=yielding)
         if not isinstance(limit, np.ndarray):
-            work -= limit * float(np.sum(gradient, where=yielding)) * contact.grid.cell_area
-    displacement = np.add(gradient, b, out=gradient)
-    return State(contact, indentation, box, pressure, displacement, plastic, limit,
-                 work, adhesive_work, work_error, residual, convolutions)  # fmt: skip
+            work -= limit * float(np.sum(gap, where=yielding)) * contact.grid.cell_area
+    displacement = np.add(gap, solution.overlap, out=gap)
+    return State(contact, indentation, box, freeze(pressure), freeze(displacement),
+                 freeze(plastic), limit,
+                 work, adhesive_work, work_error, solution.residual,
+                 solution.convolutions)  # fmt: skip
 
 
 def candidate_box(contact: Contact, indentation: float, history: State | None = None) -> Box | None:
@@ -182,7 +210,7 @@ def separated_state(contact: Contact, indentation: float, history: State | None 
     nothing = np.zeros((0, 0))
     plastic, work, adhesive_work, work_error = _past(contact, history)
     bound = contact.first_yield_pressure if history is None else history.bound
-    return State(contact, indentation, NOWHERE, nothing, nothing, plastic, bound,
+    return State(contact, indentation, NOWHERE, nothing, nothing, freeze(plastic), bound,
                  work, adhesive_work, work_error, residual=0.0, convolutions=0)  # fmt: skip
 
 
@@ -192,22 +220,3 @@ def _past(contact: Contact, history: State | None) -> tuple[Array, float, float,
         return np.zeros(contact.grid.nodes), 0.0, 0.0, 0.0
     return (history.plastic_displacement, history.plastic_work,
             history.adhesive_work, history.work_error)  # fmt: skip
-
-
-def refuse_edge(state: State) -> None:
-    """Raise `DomainError` when a node on the rim of the grid is in contact."""
-    p, grid = state.box_pressure, state.contact.grid
-    (top, left), (bottom, right) = ((part.start for part in state.box),
-                                    (part.stop for part in state.box))  # fmt: skip
-    nx, ny = grid.nodes
-    reached = (
-        (top == 0 and p[:1].any()) or (bottom == nx and p[-1:].any())
-        or (left == 0 and p[:, :1].any()) or (right == ny and p[:, -1:].any())
-    )  # fmt: skip
-    if not reached:
-        return
-    wide, long = (1e6 * edge for edge in grid.size)
-    raise DomainError(
-        f"the contact reaches the edge of the {wide:.4g} um x {long:.4g} um grid at an indentation "
-        f"of {1e9 * state.indentation:.4g} nm; {edge_advice(state.contact, state.indentation)}"
-    )

@@ -13,13 +13,13 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.contact.adhesion import attach, pull
+from restitution.contact.adhesion import grow_contact, unload_adhesive
 from restitution.contact.cavity import yield_bound
+from restitution.contact.checks.edge import require_inside_grid
 from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import (
     RESIDUAL,
     candidate_box,
-    refuse_edge,
     separated_state,
     solve_pressure,
 )
@@ -28,21 +28,22 @@ from restitution.contact.state import State
 from restitution.errors import CaseError
 from restitution.numerics.box import Box, bounding_box, shape_of
 from restitution.numerics.quadrature import integrate_adaptively
+from restitution.numerics.read_only import freeze
 
 Array = NDArray[np.float64]
 
-SEED_PULL = 1e-10  # m: the pull after each loading increment (Ghanbarzadeh et al. 2019, §2.2)
-_CUT_TOLERANCE = 3e-5  # of force times indentation, where the work needs quadrature
-_CUT_MARGIN = 10.0  # tolerances that are added to the error of that quadrature
-_CUT_PANELS = 4  # the excess over the cut is zero up to first yield, wherever that is
+PULL_INCREMENT = 1e-10  # m: the pull after each loading increment (Ghanbarzadeh et al. 2019, §2.2)
+_TRUNCATION_TOLERANCE = 3e-5  # of force times indentation, where the work needs quadrature
+_TRUNCATION_MARGIN = 10.0  # tolerances that are added to the error of that quadrature
+_TRUNCATION_PANELS = 4  # the force cut off is zero up to first yield, wherever that is
 # The force of an adhesive contact jumps as asperities come in: more is asked of it in vain. 1.5e-3
 # of the work is at most 0.00075 in restitution.
 _ADHESIVE_TOLERANCE = 1.5e-3
 _ADHESIVE_HALVINGS = 5
 # Nodes come in one after the other, and which of them do depends on the steps: against 240 steps
-# from first touch, the work of blind contacts was off by up to this share of w times the area
-# (93 % of 29 contacts with `equilibrium`, all of 11 with `seed`), whatever the quadrature says.
-_PINNING = {"equilibrium": 0.02, "seed": 0.006, "hertzian": 0.0}
+# from first touch, the work of blind contacts was off by up to this share of w times the area (93 %
+# of 29 contacts with `equilibrium`, all of 11 with `pull-increments`), whatever the quadrature.
+_PINNING = {"equilibrium": 0.02, "pull-increments": 0.006, "hertzian": 0.0}
 # Depths between which the plastic work is summed grow by this ratio at most; from this part of the
 # indentation on. Errors are parts of what the growth of the bound adds to the work of a step, for
 # nodes that had yielded before it and for those that begin to (against 11 times as many depths).
@@ -66,8 +67,9 @@ def solve(
         raise CaseError(f"indentation: {indentation} m is not a positive depth")
     if start is not None and start.contact.grid != contact.grid:
         raise CaseError("start: a state on another grid cannot start this contact")
-    state = with_work(load(contact, indentation, start=start, residual=residual), start)
-    refuse_edge(state)
+    state = solve_without_work(contact, indentation, start=start, residual=residual)
+    state = with_work(state, start)
+    require_inside_grid(state)
     return state
 
 
@@ -84,22 +86,24 @@ def step(state: State, indentation: float, *, residual: float = RESIDUAL) -> Sta
     if contact.plasticity == "truncated" and indentation > state.indentation:
         raise CaseError("a truncated contact can only be unloaded; use solve for a deeper one")
     if contact.adhesive:
-        new = pull(state, indentation, residual=residual)
+        new = unload_adhesive(state, indentation, residual=residual)
     else:
         limit, convolutions = state.bound, 0
         if contact.grows and indentation > state.indentation:
             grown, convolutions = yield_bound(contact, indentation, residual)
-            limit = np.maximum(limit, grown)
-        new = _press(contact, indentation, limit, residual, history=state)
+            limit = freeze(np.maximum(limit, grown))
+        new = solve_nonadhesive(contact, indentation, limit, residual, history=state)
         if contact.grows:
             work, _ = _plastic_work(state, new)
             new = replace(new, plastic_work=state.plastic_work + work,
                           convolutions=new.convolutions + convolutions)  # fmt: skip
-    refuse_edge(new)
-    return replace(new, virgin=False)
+    require_inside_grid(new)
+    return replace(new, is_first_loading=False)
 
 
-def load(contact: Contact, indentation: float, *, start: State | None, residual: float) -> State:
+def solve_without_work(
+    contact: Contact, indentation: float, *, start: State | None, residual: float
+) -> State:
     """`solve` without its work, and letting contact at the edge of the grid pass."""
     limit, convolutions = _limit_at(contact, indentation, residual)
     if contact.adhesive and contact.approach == "equilibrium":
@@ -111,32 +115,32 @@ def load(contact: Contact, indentation: float, *, start: State | None, residual:
             held = held[box]
         else:
             box, held = shallower.box, shallower.box_pressure != 0
-        state = attach(contact, indentation, box, held, limit=limit,
+        state = grow_contact(contact, indentation, box, held, limit=limit,
                        first_guess=None if start is None else start.pressure_on(box),
                        residual=residual)  # fmt: skip
-    elif contact.adhesive and contact.approach == "seed":
+    elif contact.adhesive and contact.approach == "pull-increments":
         # The pull may let go of everything: the state is then parted, with zero force.
-        pressed = _press(contact, indentation + SEED_PULL, limit, residual)
-        state = pull(pressed, indentation, residual=residual)
-        state = replace(state, adhesive_work=0.0, virgin=True)
+        pressed = solve_nonadhesive(contact, indentation + PULL_INCREMENT, limit, residual)
+        state = unload_adhesive(pressed, indentation, residual=residual)
+        state = replace(state, adhesive_work=0.0, is_first_loading=True)
     else:
-        state = _press(contact, indentation, limit, residual)
-    if contact.cut:
-        state = _cut(state)
+        state = solve_nonadhesive(contact, indentation, limit, residual)
+    if contact.truncates:
+        state = truncate_pressure(state)
     return replace(state, convolutions=state.convolutions + convolutions)
 
 
 def _limit_at(contact: Contact, indentation: float, residual: float) -> tuple[Array | float, int]:
     """The pressure bound of the solve, Pa, and the convolutions that finding it took.
 
-    It is infinite where the pressure is cut afterwards.
+    It is infinite where the pressure is truncated afterwards.
     """
     if contact.grows:
         return yield_bound(contact, max(indentation, 0.0), residual)
-    return (math.inf if contact.cut else contact.yield_pressure), 0
+    return (math.inf if contact.truncates else contact.yield_pressure), 0
 
 
-def _press(
+def solve_nonadhesive(
     contact: Contact,
     indentation: float,
     limit: Array | float,
@@ -152,8 +156,8 @@ def _press(
     )
 
 
-def _cut(elastic: State) -> State:
-    """Cut the elastic pressure at p_y; the rest of the contact does not take up what is cut.
+def truncate_pressure(elastic: State) -> State:
+    """Truncate the elastic pressure at p_y; the rest of the contact does not take up what is cut.
 
     Force and area are then those of Thornton and Ning (1998). The plastic displacement is what the
     cut pressure leaves of the interference (next to the contact too), so that unloading starts from
@@ -165,22 +169,24 @@ def _cut(elastic: State) -> State:
     displacement = K(pressure)
     plastic = np.zeros(contact.grid.nodes)
     plastic[box] = np.maximum(indentation - contact.gap[box] - displacement, 0.0)
-    return replace(elastic, box_pressure=pressure, plastic_displacement=plastic,
-                   bound=contact.yield_pressure, box_displacement=displacement,
+    return replace(elastic, box_pressure=freeze(pressure), plastic_displacement=freeze(plastic),
+                   bound=contact.yield_pressure, box_displacement=freeze(displacement),
                    convolutions=elastic.convolutions + 1)  # fmt: skip
 
 
 def work_is_integrated(contact: Contact) -> bool:
     """Whether the loading work of `contact` is an integral, with an error."""
-    return contact.cut or contact.grows or (contact.adhesive and contact.approach != "hertzian")
+    if contact.truncates or contact.grows:
+        return True
+    return contact.adhesive and contact.approach != "hertzian"
 
 
 def with_work(state: State, start: State | None) -> State:
-    """A state of `load` with its work; where that is ∫F dδ, from `start` or from first touch."""
+    """A state of `solve_without_work` with its work: from `start` or first touch if it is ∫F dδ."""
     contact, indentation = state.contact, state.indentation
     if not work_is_integrated(contact):
         return state
-    if start is None or not start.virgin or start.indentation >= indentation:
+    if start is None or not start.is_first_loading or start.indentation >= indentation:
         start = None
     gain = contact.work_of_adhesion * state.contact_area
     if contact.grows:
@@ -196,7 +202,7 @@ def with_work(state: State, start: State | None) -> State:
     if contact.adhesive and contact.approach != "hertzian":
         work, error, convolutions = _work_by_force(state, start)
     else:
-        work, error, convolutions = _work_by_cut(state, start)
+        work, error, convolutions = _work_by_truncation(state, start)
     convolutions += state.convolutions
     if contact.plasticity == "truncated":
         # The cut pressure's plastic work is what is left of the work; it has no formula of its own.
@@ -210,7 +216,7 @@ def _gain_hardly_matters(state: State) -> bool:
     contact = state.contact
     if not contact.adhesive or contact.approach != "equilibrium":
         return False
-    if contact.cut or contact.grows:
+    if contact.truncates or contact.grows:
         return False
     gain = contact.work_of_adhesion * state.contact_area
     return gain <= 2 * _ADHESIVE_TOLERANCE * (state.stored_energy + state.plastic_work)
@@ -223,7 +229,7 @@ def _work_by_force(state: State, start: State | None) -> tuple[float, float, int
 
     def force_at(depth: float) -> float:
         nonlocal guess, convolutions
-        guess = load(contact, depth, start=guess, residual=_WORK_RESIDUAL)
+        guess = solve_without_work(contact, depth, start=guess, residual=_WORK_RESIDUAL)
         convolutions += guess.convolutions
         return guess.force
 
@@ -257,7 +263,7 @@ def _work_by_increments(state: State, start: State | None) -> tuple[float, float
     for depth in (*map(float, depths), indentation):
         now = state
         if depth != indentation:
-            now = load(contact, depth, start=None, residual=_WORK_RESIDUAL)
+            now = solve_without_work(contact, depth, start=None, residual=_WORK_RESIDUAL)
             convolutions += now.convolutions
         increment, its_error = _plastic_work(before, now)
         work, error, before = work + increment, error + its_error, now
@@ -300,7 +306,7 @@ def _pinning_error(state: State) -> float:
     return _PINNING[contact.approach] * contact.work_of_adhesion * state.contact_area
 
 
-def _work_by_cut(state: State, start: State | None) -> tuple[float, float, int]:
+def _work_by_truncation(state: State, start: State | None) -> tuple[float, float, int]:
     """The same for a cut pressure without adhesion on approach.
 
     What the cut takes away integrates to the elastic energy less the work: exact below yield, and
@@ -312,18 +318,19 @@ def _work_by_cut(state: State, start: State | None) -> tuple[float, float, int]:
 
     def elastic(depth: float, residual: float) -> State:
         nonlocal convolutions
-        state = _press(contact, depth, math.inf, residual)
+        state = solve_nonadhesive(contact, depth, math.inf, residual)
         convolutions += state.convolutions
         return state
 
-    def cut(whole: State) -> float:
+    def truncated_force(whole: State) -> float:
         return float(np.minimum(whole.box_pressure, p_y).sum()) * area
 
-    end = _press(contact, indentation, math.inf, RESIDUAL)
-    by_excess = end.force < 2 * cut(end)
+    end = solve_nonadhesive(contact, indentation, math.inf, RESIDUAL)
+    by_excess = end.force < 2 * truncated_force(end)
 
     def integrand(whole: State) -> float:
-        return whole.force - cut(whole) if by_excess else cut(whole)
+        truncated = truncated_force(whole)
+        return whole.force - truncated if by_excess else truncated
 
     first, value, energy, work, error = 0.0, 0.0, 0.0, 0.0, 0.0
     if start is not None:
@@ -332,14 +339,14 @@ def _work_by_cut(state: State, start: State | None) -> tuple[float, float, int]:
         work, error = start.loading_work, start.work_error
     increment, its_error = 0.0, 0.0
     if integrand(end) > 0:
-        tolerance = _CUT_TOLERANCE * cut(end) * indentation
+        tolerance = _TRUNCATION_TOLERANCE * truncated_force(end) * indentation
         increment, its_error = integrate_adaptively(
             lambda depth: integrand(elastic(depth, _WORK_RESIDUAL)), first, indentation, value,
-            integrand(end), tolerance, panels=_CUT_PANELS,
+            integrand(end), tolerance, panels=_TRUNCATION_PANELS,
         )  # fmt: skip
         # Nodes yield one after the other, so the force has many small kinks, between which the
         # two rules may agree by chance: blind contacts were off by up to nine tolerances.
-        its_error += _CUT_MARGIN * tolerance
+        its_error += _TRUNCATION_MARGIN * tolerance
     if by_excess:
         increment = end.stored_energy - energy - increment
     return work + increment, error + its_error, convolutions + end.convolutions

@@ -8,9 +8,9 @@ import numpy as np
 
 from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import RESIDUAL
-from restitution.contact.impact import solve_at_velocity
-from restitution.contact.load import solve_at_force
 from restitution.contact.loading import solve, step
+from restitution.contact.prescribed_force import solve_at_force
+from restitution.contact.prescribed_velocity import solve_at_velocity
 from restitution.contact.separation import RESTITUTION_ERROR, separate
 from restitution.contact.state import State
 from restitution.errors import CaseError

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.contact.adhesion import pull
-from restitution.contact.equilibrium import refuse_edge
+from restitution.contact.adhesion import unload_adhesive
+from restitution.contact.checks.edge import require_inside_grid
 from restitution.contact.state import State
 from restitution.errors import NotConvergedError
 from restitution.numerics.quadrature import integrate_curve
@@ -76,7 +76,7 @@ def _way_back(state: State, tolerance: float, finer: int) -> Iterator[State]:
     contact = state.contact
     yield state
     if state.contact_nodes == 0:
-        return  # `approach = "seed"` has let go of everything already
+        return  # `approach = "pull-increments"` has let go of everything already
     recovery, allowed = _plan(state, tolerance)
     step = recovery / (finer * _STEPS_OF_RECOVERY)
     previous: State | None = None
@@ -93,8 +93,9 @@ def _way_back(state: State, tolerance: float, finer: int) -> Iterator[State]:
             if slope > 0:
                 longest = min(longest, max(1.3 * state.force / slope, shortened))
         step = min(step, longest)
-        accuracy = _ACCURACY * contact.opening / contact.length_at(state.indentation - step)
-        new = pull(state, state.indentation - step,
+        length = contact.residual_length(state.indentation - step)
+        accuracy = _ACCURACY * contact.crack_opening / length
+        new = unload_adhesive(state, state.indentation - step,
                    first_guess=_predict(previous, state, step), residual=accuracy)  # fmt: skip
         late = _late_force(new)
         if new.contact_nodes == 0:
@@ -107,7 +108,7 @@ def _way_back(state: State, tolerance: float, finer: int) -> Iterator[State]:
         if late > 3 * allowed and step > reach / _FINEST:
             step /= 2
             continue
-        refuse_edge(new)
+        require_inside_grid(new)
         previous, state = state, new
         yield state
         step *= min(2.0, max(0.5, 0.8 * allowed / late if late > 0 else 2.0))
@@ -146,8 +147,8 @@ def separation_of(path: list[State]) -> Separation:
 
 def _late_force(state: State) -> float:
     """Half of what the force jumped when nodes let go at the end of a step, N."""
-    assert state.pulled_force is not None  # set by every pull
-    return 0.5 * (state.force - state.pulled_force)
+    assert state.force_before_release is not None  # set by every `unload_adhesive`
+    return 0.5 * (state.force - state.force_before_release)
 
 
 def _plan(state: State, tolerance: float) -> tuple[float, float]:

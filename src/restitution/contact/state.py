@@ -1,7 +1,7 @@
 """One state of a contact: what a solve returns and the next step starts from.
 
-Nothing here changes after it is made. Fields hold what was solved for; force, area, energies and
-maps are properties of it.
+Nothing here changes after it is made: arrays are read-only. Fields hold what was solved for; force,
+area, energies and maps are properties of it.
 """
 
 from __future__ import annotations
@@ -13,11 +13,12 @@ from numpy.typing import NDArray
 
 from restitution.contact.contact import Contact
 from restitution.numerics.box import Box, reframe
+from restitution.numerics.read_only import read_only
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class State:
     """A contact in equilibrium at one indentation.
 
@@ -29,6 +30,9 @@ class State:
     `plastic_work` (J) is what yielding has dissipated so far and `adhesive_work` what adhesion has
     done, known within `work_error`. `residual` is the largest violation of the contact conditions
     over the indentation, `convolutions` what the solve cost.
+
+    The arrays are read-only, and copies of those given unless nobody can write to those. States are
+    equal (and hash) by identity: compare their fields to compare values.
     """
 
     contact: Contact
@@ -43,8 +47,14 @@ class State:
     work_error: float
     residual: float
     convolutions: int
-    pulled_force: float | None = None
-    virgin: bool = True
+    force_before_release: float | None = None
+    is_first_loading: bool = True
+
+    def __post_init__(self) -> None:
+        for name in ("box_pressure", "box_displacement", "plastic_displacement", "bound"):
+            values = getattr(self, name)
+            if isinstance(values, np.ndarray):
+                object.__setattr__(self, name, read_only(values))
 
     @property
     def pressure(self) -> Array:

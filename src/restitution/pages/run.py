@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from restitution.contact.resolution import NODES_PER_PATCH
+from restitution.contact.checks.resolution import NODES_PER_PATCH
 from restitution.pages.methods import methods
 from restitution.pages.page import Cell, Drawing, Listing, Page, Table, write_page
 from restitution.plots.figure import Figure

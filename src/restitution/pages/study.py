@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from restitution.case.case_file import parse_toml
-from restitution.contact.resolution import NODES_PER_PATCH
+from restitution.contact.checks.resolution import NODES_PER_PATCH
 from restitution.pages.methods import methods
 from restitution.pages.page import Cell, Drawing, Listing, Page, Table, write_page
 from restitution.plots.study import (

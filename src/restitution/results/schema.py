@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from restitution.contact.resolution import ADHESIVE_NODES, NODES_PER_PATCH
+from restitution.contact.checks.resolution import ADHESIVE_NODES, NODES_PER_PATCH
 
 
 @dataclass(frozen=True)

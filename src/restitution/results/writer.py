@@ -23,13 +23,13 @@ import numpy as np
 import xarray as xr
 
 from restitution.collision import Collision
-from restitution.contact.model_error import model_error
-from restitution.contact.resolution import (
+from restitution.contact.checks.resolution import (
     ADHESIVE_NODES,
     adhesive_nodes,
     median_patch,
     resolves,
 )
+from restitution.contact.model_error import model_error
 from restitution.contact.state import State
 from restitution.errors import OutputError, one_line
 from restitution.results.checksums import CHECKSUMS, checksums

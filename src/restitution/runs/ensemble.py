@@ -10,13 +10,14 @@ from typing import Any
 import numpy as np
 
 from restitution.case.case import Case
-from restitution.contact.resolution import unresolved_warning
+from restitution.contact.checks.resolution import unresolved_patches
 from restitution.errors import RestitutionError
 from restitution.results.reader import RunResults
 from restitution.results.schema import COLUMNS
 from restitution.results.writer import ResultsFolder, curve_variables, write_table
 from restitution.runs.error_budget import MISSING_BAND, add_errors, total, total_error_summary
 from restitution.runs.log import RunLog, Say, ignore
+from restitution.runs.messages import message
 from restitution.runs.refinement import settled
 from restitution.runs.run import run_case
 
@@ -142,13 +143,11 @@ class _Ensemble:
 
     def _summary(self, one: dict[str, Any]) -> dict[str, Any]:
         whole = [row for of in self.curves.values() for row in of]
-        warnings = [
-            unresolved_warning(
-                [row["indentation_m"] for row in whole],
-                [row["median_patch_nodes"] for row in whole],
-            ),
-            self._unlike(),
-        ]
+        unresolved = unresolved_patches(
+            [row["indentation_m"] for row in whole],
+            [row["median_patch_nodes"] for row in whole],
+        )
+        warnings = [*map(message, unresolved), self._unlike()]
         lacking = sum(error > MISSING_BAND for error in self.band_errors)
         if lacking:
             warnings.append(

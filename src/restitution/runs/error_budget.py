@@ -29,7 +29,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.case.case import Case
-from restitution.contact.resolution import resolves
+from restitution.contact.checks.resolution import resolves
 from restitution.runs.companions import SURFACES, Companions
 from restitution.runs.log import Say, ignore
 from restitution.surfaces import Surface, rms_slope

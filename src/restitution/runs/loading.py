@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from restitution.case.case import Case
 from restitution.contact.contact import Contact
-from restitution.contact.impact import solve_at_velocity
-from restitution.contact.load import solve_at_force
 from restitution.contact.loading import solve
+from restitution.contact.prescribed_force import solve_at_force
+from restitution.contact.prescribed_velocity import solve_at_velocity
 from restitution.contact.state import State
+from restitution.runs.messages import naming_keys
 
 
 def load_to(case: Case, contact: Contact, depth: float, start: State | None = None) -> State:
@@ -16,8 +17,9 @@ def load_to(case: Case, contact: Contact, depth: float, start: State | None = No
     `start` is the state at a shallower depth. Raises as `solve`, `solve_at_force` and
     `solve_at_velocity`.
     """
-    if case.load is not None:
-        return solve_at_force(contact, depth, start=start)
-    if case.impact is not None:
-        return solve_at_velocity(contact, depth, start=start)
-    return solve(contact, depth, start=start)
+    with naming_keys():
+        if case.load is not None:
+            return solve_at_force(contact, depth, start=start)
+        if case.impact is not None:
+            return solve_at_velocity(contact, depth, start=start)
+        return solve(contact, depth, start=start)

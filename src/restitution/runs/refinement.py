@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from restitution.case.case import Case
-from restitution.contact.resolution import NODES_PER_PATCH, median_patch, resolves
+from restitution.contact.checks.resolution import NODES_PER_PATCH, median_patch, resolves
 from restitution.runs.loading import load_to
 from restitution.runs.log import Say, ignore
 

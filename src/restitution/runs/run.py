@@ -13,16 +13,13 @@ from restitution.case.case import Case
 from restitution.case.derived import deepest_indentation, derived_quantities
 from restitution.case.omissions import omissions
 from restitution.collision import Collision, collide
+from restitution.contact.checks.resolution import (
+    adhesive_nodes,
+    unresolved_adhesion,
+    unresolved_patches,
+)
 from restitution.contact.contact import FULL_CONSTRAINT, Contact
 from restitution.contact.path import unloading_path
-from restitution.contact.plausibility import implausible, require_small
-from restitution.contact.resolution import (
-    adhesion_warning,
-    adhesive_nodes,
-    foreseen_warnings,
-    refuse_coarse_scan,
-    unresolved_warning,
-)
 from restitution.contact.state import State
 from restitution.errors import DomainError, NotConvergedError, RestitutionError
 from restitution.numerics.convolution.device import current
@@ -33,6 +30,7 @@ from restitution.results.writer import ResultsFolder, results_dataset, versions
 from restitution.runs.error_budget import add_errors, band_warning, total_error_summary
 from restitution.runs.loading import load_to
 from restitution.runs.log import RunLog, Say, ignore
+from restitution.runs.messages import input_warnings, message, naming_keys, require_possible
 from restitution.runs.refinement import settled
 from restitution.runs.smooth import smooth_curve
 from restitution.surfaces import describe
@@ -95,11 +93,9 @@ def run_case(
         nonlocal case
         case = settled(case, folder, run.warn)
         contact = case.contact(folder)
-        foreseen = deepest_indentation(case)
-        require_small(contact, foreseen)
-        refuse_coarse_scan(contact, foreseen)
-        warnings = omissions(case) + foreseen_warnings(contact, foreseen)
-        for warning in warnings + implausible(contact, foreseen):
+        deepest = deepest_indentation(case)
+        require_possible(contact, deepest)
+        for warning in omissions(case) + input_warnings(contact, deepest):
             run.warn(warning)
         with out.tables():
             failure = _load_and_unload(contact, case, out, run, go_on=errors)
@@ -156,11 +152,9 @@ def _load_and_unload(
         followed = contact.adhesive and case.unloading.method == "path"
         back: list[State] = []
         if followed or number in unloaded:
-            back = list(
-                unloading_path(
-                    state, steps=case.unloading.steps, tolerance=case.unloading.restitution_error
-                )
-            )
+            steps, tolerance = case.unloading.steps, case.unloading.restitution_error
+            with naming_keys():
+                back = list(unloading_path(state, steps=steps, tolerance=tolerance))
         collision = collide(state, back if followed else None, method=case.unloading.method)
         with hold_signals():  # an interruption leaves no row without what belongs to it
             run.asked.append(depth)
@@ -210,8 +204,8 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> d
     patches = [row["median_patch_nodes"] for row in out.rows]
     depths = [row["indentation_m"] for row in out.rows]
     nodes = run.adhesive_nodes[: len(depths)]  # interrupted, there may be one more
-    found = [unresolved_warning(depths, patches), adhesion_warning(depths, nodes)]
-    found.append(band_warning(contact.surface, run.band_errors))
+    unresolved = unresolved_patches(depths, patches) + unresolved_adhesion(depths, nodes)
+    found = [*map(message, unresolved), band_warning(contact.surface, run.band_errors)]
     found += [_imprecise(out, case), _velocities_missed(out, case, run.asked)]
     if not contact.adhesive:
         found.append(_unbalanced(run.unloading_checks))

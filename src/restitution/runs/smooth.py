@@ -9,15 +9,15 @@ from typing import Any
 import numpy as np
 
 from restitution.collision import Collision, collide
+from restitution.contact.checks.resolution import predicted_radius
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.loading import solve
-from restitution.contact.resolution import foreseen_radius
 from restitution.numerics.grid import Grid
 from restitution.theory import FirstYield, Hertz
 
 # The error of restitution is below 0.3 % from eight nodes over the contact radius.
 _NODES = 80
-_WIDTH = 2.5  # of each grid, in foreseen contact radii
+_WIDTH = 2.5  # of each grid, in predicted contact radii
 _DEPTHS = 20
 
 
@@ -48,7 +48,7 @@ def smooth_curve(contact: Contact, rows: list[dict[str, float]]) -> dict[str, An
             work = float(hertz.stored_energy(depth))
             force[k], collision = hertz.force(depth), Collision(work, work, pair.mass)
         else:
-            spacing = _WIDTH * foreseen_radius(pair, depth, p_y) / _NODES
+            spacing = _WIDTH * predicted_radius(pair, depth, p_y) / _NODES
             grid = Grid((_NODES, _NODES), (spacing, spacing))
             state = solve(replace(contact, surface=smooth(grid)), float(depth))
             force[k], collision = state.force, collide(state)

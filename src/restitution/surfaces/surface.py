@@ -10,12 +10,15 @@ from numpy.typing import NDArray
 
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
+from restitution.numerics.read_only import read_only
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Surface:
     """Heights (m, up is towards the other body) of shape `grid.nodes`, and where they come from.
 
+    `height` is read-only: a copy of the array given, unless nobody can write to that one. Surfaces
+    are equal (and hash) by identity: compare `height` and `grid` to compare values.
     `provenance` holds plain values (text and numbers) that are stored with every result.
     Raises `SurfaceError` when the shape does not fit the grid or a height is undefined.
     """
@@ -35,6 +38,8 @@ class Surface:
                 f"{undefined} of {self.height.size} heights are undefined (NaN or infinite); "
                 "fill or crop them first"
             )
+        object.__setattr__(self, "height", read_only(self.height))
+        object.__setattr__(self, "provenance", dict(self.provenance))
 
 
 def is_periodic(surface: Surface) -> bool:

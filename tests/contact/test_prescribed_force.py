@@ -4,10 +4,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from restitution.contact import load
+from restitution.contact import prescribed_force
 from restitution.contact.contact import Contact, smooth
-from restitution.contact.load import solve_at_force
 from restitution.contact.loading import solve, step
+from restitution.contact.prescribed_force import solve_at_force
 from restitution.errors import CaseError, DomainError, NotConvergedError
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface
@@ -114,6 +114,6 @@ def test_an_elastic_contact_that_reaches_the_edge_is_refused(rough_contact):
 
 
 def test_a_force_that_is_missed_is_reported(rough_contact, monkeypatch):
-    monkeypatch.setattr(load, "FORCE_TOLERANCE", -1.0)
+    monkeypatch.setattr(prescribed_force, "FORCE_TOLERANCE", -1.0)
     with pytest.raises(NotConvergedError, match=r"load: 0\.005 N was met only within"):
         solve_at_force(rough_contact(), 5e-3)

@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 
 from restitution.contact.contact import Contact
-from restitution.contact.loading import load, solve
+from restitution.contact.loading import solve, solve_without_work
 from restitution.contact.state import State
 from restitution.errors import CaseError, DomainError, NotConvergedError
 from restitution.theory import Hertz
@@ -40,7 +40,7 @@ def solve_at_force(contact: Contact, force: float, *, start: State | None = None
         nonlocal state, convolutions
         if indentation == 0:
             return -1.0
-        state = load(contact, indentation, start=state, residual=_SOLVE_RESIDUAL)
+        state = solve_without_work(contact, indentation, start=state, residual=_SOLVE_RESIDUAL)
         convolutions += state.convolutions
         return state.force / force - 1
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+from restitution.contact.checks.edge import require_inside_grid
 from restitution.contact.contact import Contact
-from restitution.contact.equilibrium import RESIDUAL, refuse_edge
-from restitution.contact.loading import load, with_work, work_is_integrated
+from restitution.contact.equilibrium import RESIDUAL
+from restitution.contact.loading import solve_without_work, with_work, work_is_integrated
 from restitution.contact.state import State
 from restitution.errors import CaseError, NotConvergedError
 from restitution.theory import Hertz
@@ -48,7 +49,7 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
             key=lambda state: state.indentation,
             default=start,
         )
-        state = load(contact, indentation, start=guess, residual=RESIDUAL)
+        state = solve_without_work(contact, indentation, start=guess, residual=RESIDUAL)
         found[indentation] = state = with_work(state, guess)
         return math.copysign((abs(state.loading_work) / work) ** 0.4, state.loading_work) - 1
 
@@ -64,7 +65,7 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
     if deepest not in found:
         excess(deepest)
     state = found[deepest]
-    refuse_edge(state)
+    require_inside_grid(state)
     miss = abs(math.sqrt(max(state.loading_work, 0.0) / work) - 1)
     if miss > max(tolerance, state.work_error / work):
         raise NotConvergedError(

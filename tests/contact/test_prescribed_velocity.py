@@ -5,9 +5,9 @@ import pytest
 
 from restitution.contact.bodies import Body, Pair
 from restitution.contact.contact import Contact, smooth
-from restitution.contact.impact import solve_at_velocity
 from restitution.contact.loading import solve
 from restitution.contact.path import loading_path
+from restitution.contact.prescribed_velocity import solve_at_velocity
 from restitution.errors import CaseError, DomainError
 from restitution.numerics.grid import Grid
 from restitution.theory import ThorntonNing

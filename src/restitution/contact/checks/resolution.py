@@ -1,6 +1,6 @@
-"""How far a contact can be trusted: is it inside the grid, and do its nodes resolve it?
+"""Whether the grid holds a contact and its nodes resolve it.
 
-Nothing here is solved; the foreseen contact is that of smooth spheres.
+Nothing here is solved; the predicted contact is that of smooth spheres.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.contact.bodies import Pair
+from restitution.contact.checks.finding import Finding
 from restitution.contact.contact import Contact
 from restitution.contact.state import State
-from restitution.errors import SurfaceError
 from restitution.numerics.box import widen
 from restitution.theory import JKR, FirstYield, Hertz
 
@@ -29,7 +29,7 @@ ADHESIVE_NODES = 4
 _HALF_SPACE = 0.2  # contact radius over R*, beyond which a sphere is not a half-space
 
 
-def foreseen_radius(pair: Pair, indentation: float, yield_pressure: float = math.inf) -> float:
+def predicted_radius(pair: Pair, indentation: float, yield_pressure: float = math.inf) -> float:
     """Contact radius of the smooth bodies, m: Hertz sqrt(R*δ), or sqrt(2R*δ) once fully plastic."""
     R = pair.radius
     yielded = math.inf
@@ -76,63 +76,48 @@ def expected_pull_off_error(contact: Contact) -> float:
     return {"pohrt-popov": 1.5, "crack-closure": 0.25}[contact.detachment] / nodes
 
 
-def adhesion_warning(depths: Sequence[float], nodes: Sequence[float]) -> str | None:
-    """One line on the depths (m) whose adhesion the grid does not resolve, or None."""
-    few = [depth for depth, n in zip(depths, nodes, strict=True) if n < ADHESIVE_NODES]
-    if not few:
-        return None
-    return (
-        f"adhesion is not resolved at {len(few)} of {len(depths)} depths (adhesion_resolved is "
-        f"false): the pull-off radius of its asperities is below {ADHESIVE_NODES} nodes, at worst "
-        f"{min(nodes):.2g}; use a finer grid"
-    )
+def coarse_scan(contact: Contact, indentation: float) -> Finding | None:
+    """`pixel-above-contact`: one pixel of a scan is larger than the contact at `indentation`.
 
-
-def refuse_coarse_scan(contact: Contact, indentation: float) -> None:
-    """Raise `SurfaceError` when one pixel of a scan is larger than the contact at `indentation`."""
+    Values: `file`, `pixel`, `radius` (m), `indentation`.
+    """
     provenance = contact.surface.provenance
     if "file" not in provenance:
-        return
+        return None
     pixel = max(_coarsest_pixel(contact), *contact.grid.spacing)
-    radius = foreseen_radius(contact.pair, indentation, contact.hardness)
-    if radius < pixel:
-        raise SurfaceError(
-            f"{provenance['file']}: one pixel ({_um(pixel)}) is larger than the contact radius at "
-            f"the deepest indentation ({_um(radius)} at {_nm(indentation)}), so the scan says "
-            "nothing about this contact; use a finer scan, a larger particle or a deeper contact"
-        )
+    radius = predicted_radius(contact.pair, indentation, contact.hardness)
+    if radius >= pixel:
+        return None
+    return Finding("pixel-above-contact", {
+        "file": provenance["file"], "pixel": pixel, "radius": radius, "indentation": indentation,
+    })  # fmt: skip
 
 
-def foreseen_warnings(contact: Contact, indentation: float) -> list[str]:
-    """What the numbers before a solve say against loading `contact` to `indentation` (m)."""
+def resolution_findings(contact: Contact, indentation: float) -> list[Finding]:
+    """What the contact of the smooth bodies at `indentation` (m) says of the grid.
+
+    * `contact-beyond-grid`: `radius`, `indentation`, `half_width` (m), `whole_scan`;
+    * `few-nodes`: `spacing`, `radius` (m);
+    * `no-half-space`: `radius`, `reduced_radius` (m), `limit` of their ratio;
+    * `finer-than-scan`: `spacing`, `pixel` (m).
+    """
     grid, pair = contact.grid, contact.pair
-    radius = foreseen_radius(pair, indentation, contact.hardness)
+    radius = predicted_radius(pair, indentation, contact.hardness)
     pixel = _coarsest_pixel(contact)
     half_width, coarsest = 0.5 * min(grid.size), max(pixel, *grid.spacing)
     found = []
-    larger = "a larger scan, roughness.extend" if grid_of_a_scan(contact) else "more nodes"
     if radius >= half_width:
-        found.append(
-            f"the contact is foreseen to reach {_um(radius)} from the centre at an indentation of "
-            f"{_nm(indentation)}, but the grid ends at {_um(half_width)}: use {larger} or "
-            "stop earlier"
-        )
+        found.append(Finding("contact-beyond-grid", {
+            "radius": radius, "indentation": indentation, "half_width": half_width,
+            "whole_scan": grid_of_a_scan(contact),
+        }))  # fmt: skip
     if radius < NODES_PER_RADIUS * coarsest:
-        found.append(
-            f"the spacing {_um(coarsest)} puts {radius / coarsest:.2g} nodes on the smooth contact "
-            f"radius {_um(radius)} at the deepest point ({NODES_PER_RADIUS} are needed): "
-            "use a finer grid or scan"
-        )
+        found.append(Finding("few-nodes", {"spacing": coarsest, "radius": radius}))
     if radius > _HALF_SPACE * pair.radius:
-        found.append(
-            f"the contact radius {_um(radius)} is {radius / pair.radius:.4g} of R*: the half-space "
-            f"holds up to about {_HALF_SPACE} (a tenth of the radius of two equal spheres)"
-        )
+        values = {"radius": radius, "reduced_radius": pair.radius, "limit": _HALF_SPACE}
+        found.append(Finding("no-half-space", values))
     if min(grid.spacing) < 0.999 * pixel:
-        found.append(
-            f"the grid spacing {_um(min(grid.spacing))} is finer than the scan's pixel "
-            f"{_um(pixel)}: roughness below the pixel is missing, not smooth"
-        )
+        found.append(Finding("finer-than-scan", {"spacing": min(grid.spacing), "pixel": pixel}))
     return found
 
 
@@ -149,16 +134,28 @@ def resolves(median_patch_nodes: float) -> bool:
     return median_patch_nodes >= NODES_PER_PATCH
 
 
-def unresolved_warning(depths: Sequence[float], median_patches: Sequence[float]) -> str | None:
-    """One line on the depths (m) whose contact patches have too few nodes, or None."""
+def unresolved_patches(depths: Sequence[float], median_patches: Sequence[float]) -> list[Finding]:
+    """`patches-unresolved`: contact patches have too few nodes at some of the depths (m).
+
+    Values: `few`, the number of those depths; `depths`, of all; `deepest` of the few, m.
+    """
     few = [depth for depth, n in zip(depths, median_patches, strict=True) if not resolves(n)]
     if not few:
-        return None
-    return (
-        f"{len(few)} of {len(depths)} depths (up to {_nm(max(few))}) are not resolved (resolved is "
-        f"false): half of their contact is in patches of fewer than {NODES_PER_PATCH} nodes, and "
-        "their numbers belong to the grid, not to the surface; refine the grid (grid.refine)"
-    )
+        return []
+    values = {"few": len(few), "depths": len(depths), "deepest": max(few)}
+    return [Finding("patches-unresolved", values)]
+
+
+def unresolved_adhesion(depths: Sequence[float], nodes: Sequence[float]) -> list[Finding]:
+    """`adhesion-unresolved`: the pull-off radius has too few `nodes` at some of the depths (m).
+
+    Values: `few`, the number of those depths; `depths`, of all; `nodes`, the fewest.
+    """
+    few = sum(n < ADHESIVE_NODES for _, n in zip(depths, nodes, strict=True))
+    if not few:
+        return []
+    values = {"few": few, "depths": len(depths), "nodes": min(nodes)}
+    return [Finding("adhesion-unresolved", values)]
 
 
 def grid_of_a_scan(contact: Contact) -> bool:
@@ -174,11 +171,3 @@ def _coarsest_pixel(contact: Contact) -> float:
     """The coarsest pixel that resampled heights have passed through, m; 0 when they have not."""
     provenance = contact.surface.provenance
     return max(float(provenance.get(key, 0.0)) for key in ("pixel_x_m", "pixel_y_m"))
-
-
-def _um(length: float) -> str:
-    return f"{1e6 * length:.3g} um"
-
-
-def _nm(length: float) -> str:
-    return f"{1e9 * length:.4g} nm"

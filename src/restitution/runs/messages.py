@@ -1,0 +1,185 @@
+"""What the findings of `contact.checks` are in words, with the keys of the case file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from restitution.contact.checks.edge import EdgeReachedError, edges_in_words
+from restitution.contact.checks.finding import Code, Finding
+from restitution.contact.checks.inputs import doubtful, impossible
+from restitution.contact.checks.resolution import (
+    ADHESIVE_NODES,
+    NODES_PER_PATCH,
+    NODES_PER_RADIUS,
+)
+from restitution.contact.contact import Contact
+from restitution.errors import CaseError, DomainError, RestitutionError, SurfaceError
+
+_ERRORS: dict[Code, type[RestitutionError]] = {
+    "roughness-above-radius": CaseError,
+    "contact-beyond-radius": CaseError,
+    "pixel-above-contact": SurfaceError,
+}
+
+
+def require_possible(contact: Contact, indentation: float) -> None:
+    """Raise `CaseError` or `SurfaceError` where loading to `indentation` (m) has no meaning."""
+    found = impossible(contact, indentation)
+    if found is not None:
+        raise _ERRORS[found.code](message(found))
+
+
+def input_warnings(contact: Contact, indentation: float) -> list[str]:
+    """One line for each thing that speaks against loading `contact` to `indentation` (m)."""
+    return [message(found) for found in doubtful(contact, indentation)]
+
+
+@contextmanager
+def naming_keys() -> Iterator[None]:
+    """Raise contact at the edge of the grid as a `DomainError` that names keys of the case file."""
+    try:
+        yield
+    except EdgeReachedError as error:
+        raise DomainError(message(error.finding)) from error
+
+
+def message(found: Finding) -> str:
+    """`found` as one sentence, with its remedy."""
+    match found.code:
+        case "roughness-above-radius":
+            return (
+                f"radius: the particle of {1e6 * found['radius']:.4g} um is smaller than its "
+                f"roughness, whose highest peak is {1e6 * found['peak']:.4g} um above the mean; "
+                "check the units of the radius and of the roughness"
+            )
+        case "contact-beyond-radius":
+            return (
+                f"the contact is foreseen to reach {1e6 * found['radius']:.4g} um from the centre "
+                f"at an indentation of {_nm(found['indentation'])}, beyond R* = "
+                f"{1e6 * found['reduced_radius']:.4g} um: stop earlier, or check the units of the "
+                "depths and of the radius"
+            )
+        case "pixel-above-contact":
+            return (
+                f"{found['file']}: one pixel ({_um(found['pixel'])}) is larger than the contact "
+                f"radius at the deepest indentation ({_um(found['radius'])} at "
+                f"{_nm(found['indentation'])}), so the scan says nothing about this contact; use a "
+                "finer scan, a larger particle or a deeper contact"
+            )
+        case "edge-reached":
+            wide, long = (1e6 * edge for edge in found["size"])
+            return (
+                f"the contact reaches the edge of the {wide:.4g} um x {long:.4g} um grid at an "
+                f"indentation of {_nm(found['indentation'])}; {_edge_advice(found)}"
+            )
+        case "edge-predicted":
+            return (
+                f"the contact is foreseen to reach the edge of the grid: the gap there is "
+                f"{_nm(found['gap'])} at first touch, and the deepest indentation is "
+                f"{_nm(found['indentation'])}; {_edge_advice(found)}"
+            )
+        case "contact-beyond-grid":
+            larger = "a larger scan, roughness.extend" if found["whole_scan"] else "more nodes"
+            return (
+                f"the contact is foreseen to reach {_um(found['radius'])} from the centre at an "
+                f"indentation of {_nm(found['indentation'])}, but the grid ends at "
+                f"{_um(found['half_width'])}: use {larger} or stop earlier"
+            )
+        case "few-nodes":
+            spacing, radius = found["spacing"], found["radius"]
+            return (
+                f"the spacing {_um(spacing)} puts {radius / spacing:.2g} nodes on the smooth "
+                f"contact radius {_um(radius)} at the deepest point ({NODES_PER_RADIUS} are "
+                "needed): use a finer grid or scan"
+            )
+        case "no-half-space":
+            radius, R = found["radius"], found["reduced_radius"]
+            return (
+                f"the contact radius {_um(radius)} is {radius / R:.4g} of R*: the half-space holds "
+                f"up to about {found['limit']} (a tenth of the radius of two equal spheres)"
+            )
+        case "finer-than-scan":
+            return (
+                f"the grid spacing {_um(found['spacing'])} is finer than the scan's pixel "
+                f"{_um(found['pixel'])}: roughness below the pixel is missing, not smooth"
+            )
+        case "tilted-scan":
+            return (
+                f"{found['file']}: the scan is tilted (a plane explains {found['explained']:.0%} "
+                'of the variance of its heights): set roughness.detrend = "tilt" or "curvature"'
+            )
+        case "steep-surface":
+            return (
+                f"the rms slope of the surface is {found['slope']:.2g}: half-space theory holds "
+                f"for small slopes, below about {found['limit']}; check the units of the heights, "
+                "or level or filter the surface"
+            )
+        case "unusual-yield-pressure":
+            return (
+                f"the yield pressure is {found['ratio']:.2g} of the contact modulus E*, where "
+                f"materials have {found['low']:g} to {found['high']:g}: check the units of "
+                "yield_pressure and youngs_modulus"
+            )
+        case "oblong-pixels":
+            return (
+                f"{found['file']}: the pixels are {1e6 * found['x']:.4g} x {1e6 * found['y']:.4g} "
+                "um, not square: if scan lines are missing in the file, it is stretched; check the "
+                "size"
+            )
+        case "coarser-than-scan":
+            spacing = found["spacing"]
+            return (
+                f"the grid spacing {_um(spacing)} is coarser than the scan's pixel "
+                f"{_um(found['pixel'])} along {found['axis']}: waves shorter than "
+                f"{_um(2 * spacing)} are taken out of it; make cells smaller (grid.refine), down "
+                "to the pixel, to keep them"
+            )
+        case "surface-notice":
+            return str(found["notice"])
+        case "patches-unresolved":
+            return (
+                f"{found['few']} of {found['depths']} depths (up to {_nm(found['deepest'])}) are "
+                "not resolved (resolved is false): half of their contact is in patches of fewer "
+                f"than {NODES_PER_PATCH} nodes, and their numbers belong to the grid, not to the "
+                "surface; refine the grid (grid.refine)"
+            )
+        case "adhesion-unresolved":
+            return (
+                f"adhesion is not resolved at {found['few']} of {found['depths']} depths "
+                "(adhesion_resolved is false): the pull-off radius of its asperities is below "
+                f"{ADHESIVE_NODES} nodes, at worst {found['nodes']:.2g}; use a finer grid"
+            )
+
+
+def _edge_advice(found: Finding) -> str:
+    """What to change so that the contact stays inside the grid, as the end of a sentence."""
+    x, y = found["first_touch"]
+    where = (
+        f"the bodies touch first at x = {1e6 * x:.3g} um, y = {1e6 * y:.3g} um, off the centre; "
+        if found["off_centre"]
+        else ""
+    )
+    size, scan = edges_in_words(found), found["scan"]
+    if scan is None:
+        return (
+            f"{where}use a grid of about {size} (more grid.nodes or a larger grid.spacing) or stop "
+            "at a smaller indentation"
+        )
+    detrend = {
+        "tilt": 'roughness.detrend = "curvature", ',
+        "curvature": "",
+    }.get(found["levelling"], 'roughness.detrend = "tilt" or "curvature", ')
+    if all(edge <= of for edge, of in zip(found["needed"], scan, strict=True)):
+        larger = f"a grid of about {size} (the scan has {1e6 * scan[0]:.3g} x {1e6 * scan[1]:.3g})"
+    else:
+        larger = "a larger scan, roughness.extend"
+    return f"{where}use {detrend}{larger}, a smaller radius, or stop at a smaller indentation"
+
+
+def _um(length: float) -> str:
+    return f"{1e6 * length:.3g} um"
+
+
+def _nm(length: float) -> str:
+    return f"{1e9 * length:.4g} nm"
