@@ -27,8 +27,12 @@ from unit import convolution, machine, seconds, today
 HERE = Path(__file__).parent
 ROOT = HERE.parent
 OURS = "restitution"
-PROGRAMS = {OURS: "restitution", "slippy": "SlipPy", "contactmechanics": "ContactMechanics",
-            "tamaas": "Tamaas"}  # fmt: skip
+PROGRAMS = {
+    OURS: "restitution",
+    "slippy": "SlipPy",
+    "contactmechanics": "ContactMechanics",
+    "tamaas": "Tamaas",
+}
 RESIDUAL = 1e-8  # asked of every program, over δ
 LADDER = [10.0**-k for k in range(4, 21)]  # tolerances tried, loosest first
 LEAST_SECONDS = 0.2  # quick solves are repeated this long at each visit, and their median taken
@@ -92,8 +96,12 @@ class Worker:
         """Seconds of each solve of `problem.npz`, and the pressure. Raises `UnsolvedError`."""
         if not self.running:
             self._start()
-        request = {"problem": "problem.npz", "pressure": f"{self.name}.npy",
-                   "tolerance": tolerance, "least_seconds": least_seconds}  # fmt: skip
+        request = {
+            "problem": "problem.npz",
+            "pressure": f"{self.name}.npy",
+            "tolerance": tolerance,
+            "least_seconds": least_seconds,
+        }
         self._process.stdin.write(json.dumps(request).encode() + b"\n")
         self._process.stdin.flush()
         reply = self._reply(self.limit + least_seconds)
@@ -117,9 +125,12 @@ class Worker:
         began = time.perf_counter()
         with open(self._folder / f"{self.name}.log", "ab") as log:
             self._process = subprocess.Popen(
-                [self._python, HERE / "peers" / f"solve_{self.name}.py"], cwd=self._folder,
-                stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=log,
-            )  # fmt: skip
+                [self._python, HERE / "peers" / f"solve_{self.name}.py"],
+                cwd=self._folder,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=log,
+            )
         self.version = self._reply(600)["version"]
         self.start_seconds = time.perf_counter() - began
 
@@ -170,15 +181,22 @@ def compare(
     """One row per program: how long it takes for this problem; and U at each turn."""
     rows = {}
     for worker in workers:
-        row = {"problem": problem.name, "grid": grid, "program": worker.name,
-               "nodes": "{}x{}".format(*problem.gap.shape)}  # fmt: skip
+        row = {
+            "problem": problem.name,
+            "grid": grid,
+            "program": worker.name,
+            "nodes": "{}x{}".format(*problem.gap.shape),
+        }
         rows[worker.name] = row
         try:
             row["tolerance"] = find_tolerance(worker, problem)
             worker.stop()
             first, pressure = worker.solve(row["tolerance"])
-            row |= {"residual": residual(problem, pressure), "start_s": worker.start_seconds,
-                    "first_s": first[0]}  # fmt: skip
+            row |= {
+                "residual": residual(problem, pressure),
+                "start_s": worker.start_seconds,
+                "first_s": first[0],
+            }
         except UnsolvedError as unsolved:
             row["failure"] = str(unsolved)
         row["version"] = worker.version
@@ -195,10 +213,13 @@ def compare(
     for name, times in turns.items():
         ratios = [t / ours for t, ours in zip(times, turns[OURS], strict=True)]
         rows[name] |= {
-            "seconds": statistics.median(times), "least_s": min(times), "largest_s": max(times),
-            "ratio": statistics.median(ratios), "least_ratio": min(ratios),
+            "seconds": statistics.median(times),
+            "least_s": min(times),
+            "largest_s": max(times),
+            "ratio": statistics.median(ratios),
+            "least_ratio": min(ratios),
             "largest_ratio": max(ratios),
-        }  # fmt: skip
+        }
     for worker in workers:
         worker.stop()
     return list(rows.values()), units
@@ -206,8 +227,10 @@ def compare(
 
 def table(rows: list[dict], unit: float) -> str:
     """The rows as Markdown."""
-    lines = ["| problem | grid | program | time, s | ratio | U | own tolerance | first, s |",
-             "|---|---|---|---|---|---|---|---|"]  # fmt: skip
+    lines = [
+        "| problem | grid | program | time, s | ratio | U | own tolerance | first, s |",
+        "|---|---|---|---|---|---|---|---|",
+    ]
     for row in rows:
         where = f"{row['problem']} | {row['grid']}, {row['nodes']} | {PROGRAMS[row['program']]}"
         if "failure" in row:
@@ -246,8 +269,14 @@ def draw(rows: list[dict], path: Path) -> None:
                 continue
             ends = [[row["ratio"] - row["least_ratio"]], [row["largest_ratio"] - row["ratio"]]]
             axes.bar(x, row["ratio"], 0.9 * width, color=f"C{k}", yerr=ends, capsize=2)
-            axes.annotate(short(row["ratio"]), (x, row["largest_ratio"]), (0, 3), ha="center",
-                          textcoords="offset points", size=8)  # fmt: skip
+            axes.annotate(
+                short(row["ratio"]),
+                (x, row["largest_ratio"]),
+                (0, 3),
+                ha="center",
+                textcoords="offset points",
+                size=8,
+            )
         axes.bar(0, np.nan, color=f"C{k}", label=PROGRAMS[peer])
     axes.axhline(1, color="black", linewidth=0.8)
     axes.margins(y=0.15)
@@ -270,8 +299,15 @@ def main() -> None:
     where = machine()
     rows, units = [], []
     with tempfile.TemporaryDirectory() as folder, contextlib.ExitStack() as stack:
-        workers = [Worker(name, options.environments.resolve() / name / "bin" / "python",
-                          Path(folder), options.limit) for name in PROGRAMS]  # fmt: skip
+        workers = [
+            Worker(
+                name,
+                options.environments.resolve() / name / "bin" / "python",
+                Path(folder),
+                options.limit,
+            )
+            for name in PROGRAMS
+        ]
         for worker in workers:
             stack.callback(worker.stop)
         for whole in all_problems(options.nodes):
@@ -290,10 +326,18 @@ def main() -> None:
         writer.writerows(rows)
     versions = ", ".join(f"{PROGRAMS[w.name]} {w.version}" for w in workers)
     report = REPORT.format(
-        date=today(), machine=where, versions=versions, table=table(rows, unit),
-        nodes=options.nodes, residual=power(RESIDUAL), limit=options.limit, rounds=options.rounds,
-        unit=1e3 * unit, least=1e3 * min(units), largest=1e3 * max(units),
-    )  # fmt: skip
+        date=today(),
+        machine=where,
+        versions=versions,
+        table=table(rows, unit),
+        nodes=options.nodes,
+        residual=power(RESIDUAL),
+        limit=options.limit,
+        rounds=options.rounds,
+        unit=1e3 * unit,
+        least=1e3 * min(units),
+        largest=1e3 * max(units),
+    )
     (options.out / "peers.md").write_text(report)
     draw(rows, options.out / "peers.png")
     print(report)

@@ -114,8 +114,11 @@ def study() -> Tally:
     with tempfile.TemporaryDirectory() as folder:
         path, out = Path(folder, "fig10.toml"), Path(folder, "out")
         path.write_text(tomli_w.dumps(case))
-        subprocess.run([sys.executable, "-m", "restitution", "study", path, "-o", out],
-                       check=True, capture_output=True)  # fmt: skip
+        subprocess.run(
+            [sys.executable, "-m", "restitution", "study", path, "-o", out],
+            check=True,
+            capture_output=True,
+        )
         with (out / "table.csv").open() as table:
             rows = list(csv.DictReader(table))
     if len(rows) != len(ROUGHNESS) * len(DEPTHS):
@@ -138,13 +141,17 @@ def main() -> None:
     rough = adhesive(0.1e-6)
     figure = [adhesive(rms) for rms in ROUGHNESS]
     work = {
-        "24 depths of `examples/steel.toml`, 2 nm to 5 µm, rough, no adhesion":
-            (lambda: curve([example], case.depths()), options.repeats),
-        "one restitution at 600 nm, Rq = 0.1 µm, w = 0.09 J/m²":
-            (lambda: one(rough, 600e-9), options.repeats),
+        "24 depths of `examples/steel.toml`, 2 nm to 5 µm, rough, no adhesion": (
+            lambda: curve([example], case.depths()),
+            options.repeats,
+        ),
+        "one restitution at 600 nm, Rq = 0.1 µm, w = 0.09 J/m²": (
+            lambda: one(rough, 600e-9),
+            options.repeats,
+        ),
         "120 restitutions of Fig. 10, one after the other": (lambda: curve(figure, DEPTHS), 1),
         f"the same as a study, {os.cpu_count()} processes": (study, 1),
-    }  # fmt: skip
+    }
     units: list[float] = []
     found: dict[str, tuple[list[float], Tally]] = {}
     convolution(NODES)
@@ -164,9 +171,13 @@ def main() -> None:
         error = f"{tally.error:.1g}" if tally.error and math.isfinite(tally.error) else "0"
         rows.append(f"| {name} | {t:.3g}{spread} | {t / U:.3g} | {tally.convolutions} | {error} |")
     report = REPORT.format(
-        date=today(), machine=where, nodes=NODES, unit_ms=1e3 * U, repeats=options.repeats,
+        date=today(),
+        machine=where,
+        nodes=NODES,
+        unit_ms=1e3 * U,
+        repeats=options.repeats,
         rows="\n".join(rows),
-    )  # fmt: skip
+    )
     options.out.write_text(report)
     print(report)
 

@@ -49,8 +49,10 @@ def large(device: str, n: int) -> None:
     with on_device(device):
         t, state = seconds(lambda: solve(contact, depth), 3)
     limit = least_seconds(n, state.convolutions)
-    print(f"{n} x {n} rough, elastic, a = 20 um: {t:.3f} s on {device}, {state.convolutions} "
-          f"products, residual {state.residual:.1e}; bandwidth alone {limit:.3f} s")  # fmt: skip
+    print(
+        f"{n} x {n} rough, elastic, a = 20 um: {t:.3f} s on {device}, {state.convolutions} "
+        f"products, residual {state.residual:.1e}; bandwidth alone {limit:.3f} s"
+    )
     if device != "cpu":
         here = solve(contact, depth)
         off = np.abs(state.box_pressure - here.box_pressure).max() / here.box_pressure.max()

@@ -49,9 +49,16 @@ class Problem:
 
     def save(self, path: Path) -> None:
         """Write the problem for a worker to read."""
-        np.savez(path, gap=self.gap, spacing=self.spacing, contact_modulus=self.contact_modulus,
-                 limit=self.limit, indentation=self.indentation, radius=self.radius,
-                 force=self.force)  # fmt: skip
+        np.savez(
+            path,
+            gap=self.gap,
+            spacing=self.spacing,
+            contact_modulus=self.contact_modulus,
+            limit=self.limit,
+            indentation=self.indentation,
+            radius=self.radius,
+            force=self.force,
+        )
 
 
 def all_problems(n: int) -> list[Problem]:
@@ -69,9 +76,15 @@ def all_problems(n: int) -> list[Problem]:
 
 def _problem(name: str, contact: Contact, indentation: float) -> Problem:
     return Problem(
-        name, contact.gap, SPACING, PAIR.contact_modulus, contact.yield_pressure, indentation,
-        PAIR.radius, solve(contact, indentation, residual=1e-11).force,
-    )  # fmt: skip
+        name,
+        contact.gap,
+        SPACING,
+        PAIR.contact_modulus,
+        contact.yield_pressure,
+        indentation,
+        PAIR.radius,
+        solve(contact, indentation, residual=1e-11).force,
+    )
 
 
 def _widened(inside: np.ndarray) -> slice:

@@ -99,13 +99,22 @@ def measure(n: int, limit: str, depth: str) -> dict:
         state = solve(Contact(PAIR, surface, yield_pressure=LIMITS[limit]), delta)
         times.append(time.perf_counter() - began)
         box = "x".join(str(part.stop - part.start) for part in state.box)
-        found = {"box": box, "convolutions": state.convolutions, "residual": state.residual,
-                 "force": state.force}  # fmt: skip
+        found = {
+            "box": box,
+            "convolutions": state.convolutions,
+            "residual": state.residual,
+            "force": state.force,
+        }
         del state  # or the next solve finds less room
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
-    return {"seconds": statistics.median(times[1:]), "least_s": min(times[1:]),
-            "first_s": times[0], "solves": len(times) - 1, "peak_bytes": peak,
-            "arrays_per_node": peak / (8 * n * n)} | found  # fmt: skip
+    return {
+        "seconds": statistics.median(times[1:]),
+        "least_s": min(times[1:]),
+        "first_s": times[0],
+        "solves": len(times) - 1,
+        "peak_bytes": peak,
+        "arrays_per_node": peak / (8 * n * n),
+    } | found
 
 
 def in_its_own_process(*arguments: object) -> dict:
@@ -122,8 +131,11 @@ def exponent(rows: list[dict], time: str = "seconds") -> float:
 
 def table(rows: list[dict]) -> str:
     """The rows as Markdown."""
-    lines = ["| case | grid | box | time, s | U | least, s | first, s | convolutions | memory, GiB "
-             "| arrays per node |", "|---|---|---|---|---|---|---|---|---|---|"]  # fmt: skip
+    lines = [
+        "| case | grid | box | time, s | U | least, s | first, s | convolutions | memory, GiB "
+        "| arrays per node |",
+        "|---|---|---|---|---|---|---|---|---|---|",
+    ]
     for row in rows:
         lines.append(
             f"| {row['limit']}, {row['depth']} | {row['n']}² | {row['box']} | {row['seconds']:.3g} "
@@ -144,8 +156,13 @@ def draw(cases: dict[str, list[dict]], path: Path) -> None:
     left, right = figure.subplots(1, 2)
     for case, rows in cases.items():
         nodes = [row["nodes"] for row in rows]
-        left.loglog(nodes, [row["seconds"] for row in rows], "o-", markersize=4,
-                    label=f"{case} (power {exponent(rows):.2f})")  # fmt: skip
+        left.loglog(
+            nodes,
+            [row["seconds"] for row in rows],
+            "o-",
+            markersize=4,
+            label=f"{case} (power {exponent(rows):.2f})",
+        )
         right.loglog(nodes, [row["peak_bytes"] / 2**30 for row in rows], "o-", markersize=4)
     left.loglog(nodes, [row["unit_s"] for row in rows], "k--", linewidth=1, label="U")
     left.set_ylabel("time, s")
@@ -191,12 +208,17 @@ def main() -> None:
     for row in rows:
         cases.setdefault(f"{row['limit']}, {row['depth']}", []).append(row)
     report = REPORT.format(
-        date=today(), machine=where, coarsest=COARSEST, filling=1e6 * indentation("filling"),
-        fewest=FEWEST, most=MOST, table=table(rows),
+        date=today(),
+        machine=where,
+        coarsest=COARSEST,
+        filling=1e6 * indentation("filling"),
+        fewest=FEWEST,
+        most=MOST,
+        table=table(rows),
         exponents=", ".join(f"{exponent(its):.2f} ({case})" for case, its in cases.items()),
         least=", ".join(f"{exponent(its, 'least_s'):.2f}" for its in cases.values()),
         first=", ".join(f"{exponent(its, 'first_s'):.2f}" for its in cases.values()),
-    )  # fmt: skip
+    )
     (options.out / "scaling.md").write_text(report)
     draw(cases, options.out / "scaling.png")
     print(report)

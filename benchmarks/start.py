@@ -38,8 +38,9 @@ itself, {bare:.3f} s without any import, is in them.
 
 def start(arguments: list[str]) -> float:
     """Seconds of a process."""
-    return seconds(lambda: subprocess.run([sys.executable, *arguments], check=True,
-                                          stdout=subprocess.DEVNULL))  # fmt: skip
+    return seconds(
+        lambda: subprocess.run([sys.executable, *arguments], check=True, stdout=subprocess.DEVNULL)
+    )
 
 
 def main() -> None:
@@ -58,8 +59,9 @@ def main() -> None:
         f"{statistics.median(its) / base:.2f} |"
         for name, its in times.items()
     )
-    report = REPORT.format(date=today(), machine=where, turns=TURNS, bare=bare, base=BASE,
-                           rows=rows)  # fmt: skip
+    report = REPORT.format(
+        date=today(), machine=where, turns=TURNS, bare=bare, base=BASE, rows=rows
+    )
     OUT.write_text(report)
     print(report)
 

@@ -47,10 +47,19 @@ def seconds(folder: Path, *where: str) -> float:
     """Of the whole command."""
     began = time.perf_counter()
     subprocess.run(
-        [sys.executable, "-m", "restitution", "study", folder / "study.toml", "-o",
-         folder / f"out-{time.time_ns()}", *where],
-        check=True, capture_output=True,
-    )  # fmt: skip
+        [
+            sys.executable,
+            "-m",
+            "restitution",
+            "study",
+            folder / "study.toml",
+            "-o",
+            folder / f"out-{time.time_ns()}",
+            *where,
+        ],
+        check=True,
+        capture_output=True,
+    )
     return time.perf_counter() - began
 
 
@@ -60,10 +69,17 @@ def cluster(workers: int) -> Iterator[str]:
 
     def start(*arguments: str) -> subprocess.Popen[str]:
         return subprocess.Popen(
-            [sys.executable, "-m", f"distributed.cli.{arguments[0]}", *arguments[1:],
-             "--no-dashboard"],
-            stderr=subprocess.PIPE, text=True, env={**os.environ, "DUCC0_NUM_THREADS": "1"},
-        )  # fmt: skip
+            [
+                sys.executable,
+                "-m",
+                f"distributed.cli.{arguments[0]}",
+                *arguments[1:],
+                "--no-dashboard",
+            ],
+            stderr=subprocess.PIPE,
+            text=True,
+            env={**os.environ, "DUCC0_NUM_THREADS": "1"},
+        )
 
     def said(process: subprocess.Popen[str], words: str) -> str:
         for line in process.stderr or ():

@@ -40,8 +40,11 @@ def machine() -> str:
     model = platform.processor() or platform.machine()
     cpuinfo = Path("/proc/cpuinfo")
     if cpuinfo.exists():
-        models = [line.partition(":")[2] for line in cpuinfo.read_text().splitlines()
-                  if line.startswith("model name")]  # fmt: skip
+        models = [
+            line.partition(":")[2]
+            for line in cpuinfo.read_text().splitlines()
+            if line.startswith("model name")
+        ]
         model = models[0].strip() if models else model
     return f"{model}, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f} at the start"
 

@@ -48,8 +48,11 @@ def survives(copy: Path, bar: dict[str, str]) -> bool:
     try:
         ended = subprocess.run(
             [*command, *(f"tests/{test}" for test in TESTS[file].split())],
-            cwd=copy, env=environment, capture_output=True, check=False,
-        )  # fmt: skip
+            cwd=copy,
+            env=environment,
+            capture_output=True,
+            check=False,
+        )
     finally:
         path.write_text(text, encoding="utf-8")
     return ended.returncode == 0

@@ -66,9 +66,12 @@ def main() -> None:
 
         def run(*arguments: str) -> None:
             subprocess.run(
-                [options.cosmic_ray, *arguments], cwd=copy, env=environment, check=True,
+                [options.cosmic_ray, *arguments],
+                cwd=copy,
+                env=environment,
+                check=True,
                 stdout=sys.stderr,
-            )  # fmt: skip
+            )
 
         run("init", "mutate.toml", "session.sqlite")
         keep(copy / "session.sqlite", options.mutants, options.seed)

@@ -241,11 +241,21 @@ def _opened(page, *, width=1000):
         pytest.skip("no Chromium is installed (Debian: apt install chromium)")
     done = subprocess.run(
         [
-            program, "--headless", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr",
-            "--virtual-time-budget=20000", f"--window-size={width},900", "--dump-dom",
-            f"--user-data-dir={page.parent / 'browser'}", page.as_uri(),
+            program,
+            "--headless",
+            "--no-sandbox",
+            "--disable-gpu",
+            "--enable-logging=stderr",
+            "--virtual-time-budget=20000",
+            f"--window-size={width},900",
+            "--dump-dom",
+            f"--user-data-dir={page.parent / 'browser'}",
+            page.as_uri(),
         ],
-        capture_output=True, text=True, timeout=180, check=True,
-    )  # fmt: skip
+        capture_output=True,
+        text=True,
+        timeout=180,
+        check=True,
+    )
     console = re.findall(r"CONSOLE[^\"]*\"(.*)\", source", done.stderr)
     return done.stdout, console

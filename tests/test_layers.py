@@ -10,13 +10,36 @@ import pytest
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "src" / "restitution"
 ROOMS = (
-    "errors", "theory", "numerics", "surfaces", "contact", "collision", "case", "results", "runs",
-    "sweeps", "laws", "dem", "plots", "pages", "reproduce", "cli", "__main__",
-)  # fmt: skip
+    "errors",
+    "theory",
+    "numerics",
+    "surfaces",
+    "contact",
+    "collision",
+    "case",
+    "results",
+    "runs",
+    "sweeps",
+    "laws",
+    "dem",
+    "plots",
+    "pages",
+    "reproduce",
+    "cli",
+    "__main__",
+)
 SOLVERS = {
-    "solve", "step", "solve_at_force", "solve_at_velocity", "solve_batch", "loading_path",
-    "unloading_path", "separate", "collide", "solve_pressure",
-}  # fmt: skip
+    "solve",
+    "step",
+    "solve_at_force",
+    "solve_at_velocity",
+    "solve_batch",
+    "loading_path",
+    "unloading_path",
+    "separate",
+    "collide",
+    "solve_pressure",
+}
 
 
 def name_of(path):
@@ -81,8 +104,12 @@ def test_no_modules_import_each_other_in_a_circle():
 
 
 def test_the_case_calls_no_solver():
-    names = {name for module, source in MODULES.items() if room(module) == "case"
-             for _, name in imported(module, source)}  # fmt: skip
+    names = {
+        name
+        for module, source in MODULES.items()
+        if room(module) == "case"
+        for _, name in imported(module, source)
+    }
     assert names.isdisjoint(SOLVERS)
 
 

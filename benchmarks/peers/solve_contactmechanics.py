@@ -18,8 +18,14 @@ def prepare(problem):
     """Heights, domain, E*, hardness and indentation in micrometres and MPa."""
     h = float(problem.spacing) * 1e6
     size = tuple(n * h for n in problem.gap.shape)
-    return (-problem.gap * 1e6, size, float(problem.contact_modulus) / 1e6,
-            float(problem.limit) / 1e6, float(problem.indentation) * 1e6, h * h)  # fmt: skip
+    return (
+        -problem.gap * 1e6,
+        size,
+        float(problem.contact_modulus) / 1e6,
+        float(problem.limit) / 1e6,
+        float(problem.indentation) * 1e6,
+        h * h,
+    )
 
 
 def solve(inputs, tolerance):
@@ -30,17 +36,22 @@ def solve(inputs, tolerance):
     if np.isinf(hardness):
         system = topography.make_contact_system(young=E_star, substrate="free")
         result = system.dual_minimize_proxy(
-            offset=indentation, init_force=np.zeros(heights.shape), gtol=length,
+            offset=indentation,
+            init_force=np.zeros(heights.shape),
+            gtol=length,
             maxiter=MAX_ITERATIONS,
-        )  # fmt: skip
+        )
         forces = result.x.reshape(heights.shape)
     else:
         topography = PlasticTopography(topography, hardness)
         system = topography.make_plastic_contact_system(young=E_star, substrate="free")
         result = system.minimize_proxy(
-            offset=indentation, pentol=length, forcetol=tolerance * hardness * cell,
-            thermotol=tolerance, maxiter=MAX_ITERATIONS,
-        )  # fmt: skip
+            offset=indentation,
+            pentol=length,
+            forcetol=tolerance * hardness * cell,
+            thermotol=tolerance,
+            maxiter=MAX_ITERATIONS,
+        )
         forces = result.jac
     if not result.success:
         raise RuntimeError(result.message)

@@ -23,8 +23,13 @@ names = (f"steel {i}" for i in itertools.count())
 
 def prepare(problem):
     """Heights, spacing, E*, limit and indentation in micrometres and MPa."""
-    return (-problem.gap * 1e6, float(problem.spacing) * 1e6, float(problem.contact_modulus) / 1e6,
-            float(problem.limit) / 1e6, float(problem.indentation) * 1e6)  # fmt: skip
+    return (
+        -problem.gap * 1e6,
+        float(problem.spacing) * 1e6,
+        float(problem.contact_modulus) / 1e6,
+        float(problem.limit) / 1e6,
+        float(problem.indentation) * 1e6,
+    )
 
 
 def solve(inputs, tolerance):

@@ -67,20 +67,32 @@ def draw(rows, name, title):
     keys = sorted({(r["yield_pressure_Pa"], r["work_of_adhesion_J_per_m2"]) for r in rows})
     for p_y, w in keys:
         some = [
-            r for r in rows
-            if (r["yield_pressure_Pa"], r["work_of_adhesion_J_per_m2"]) == (p_y, w)
-        ]  # fmt: skip
+            r for r in rows if (r["yield_pressure_Pa"], r["work_of_adhesion_J_per_m2"]) == (p_y, w)
+        ]
         colour = {0.01: "C0", 0.03: "C2", 0.09: "C1"}[w]
         x = [1e9 * r["indentation_m"] for r in some]
         y = [r["restitution"] for r in some]
-        axes.plot(x, y, "-" if p_y < 1e9 else "--", color=colour,
-                  label=f"w = {w:g} J/m², p_y = {p_y / 1e6:.0f} MPa")  # fmt: skip
+        axes.plot(
+            x,
+            y,
+            "-" if p_y < 1e9 else "--",
+            color=colour,
+            label=f"w = {w:g} J/m², p_y = {p_y / 1e6:.0f} MPa",
+        )
         for filled in (True, False):
-            points = [(a, b) for a, b, r in zip(x, y, some, strict=True)
-                      if r["adhesion_resolved"] == filled]  # fmt: skip
+            points = [
+                (a, b)
+                for a, b, r in zip(x, y, some, strict=True)
+                if r["adhesion_resolved"] == filled
+            ]
             if points:
-                axes.plot(*zip(*points, strict=True), "o", ms=4.5, color=colour,
-                          mfc=colour if filled else "white")  # fmt: skip
+                axes.plot(
+                    *zip(*points, strict=True),
+                    "o",
+                    ms=4.5,
+                    color=colour,
+                    mfc=colour if filled else "white",
+                )
     axes.set_xscale("log")
     axes.set_ylim(-0.03, 1.03)
     axes.legend(frameon=False, fontsize="small")
@@ -93,8 +105,11 @@ def main():
     rows = [*smooth_rows(), *rough_rows()]
     write_table("adhesion_figures.csv", rows)
     draw([r for r in rows if r["surface"] == "smooth"], "adhesion-smooth.png", "Smooth spheres")
-    draw([r for r in rows if r["surface"] == "rough"], "adhesion-rough.png",
-         "Rough, Rq 0.1 µm; open: adhesion not resolved")  # fmt: skip
+    draw(
+        [r for r in rows if r["surface"] == "rough"],
+        "adhesion-rough.png",
+        "Rough, Rq 0.1 µm; open: adhesion not resolved",
+    )
 
 
 if __name__ == "__main__":

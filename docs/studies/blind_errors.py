@@ -39,10 +39,23 @@ LIBRARY = ("steel", "glass", "aluminium", "alumina")
 KINDS = ("gaussian", "exponential", "self-affine", "scan", "twin", "smooth")
 SHARES = (0.25, 0.2, 0.15, 0.15, 0.15, 0.1)
 COLUMNS = (
-    "case", "kind", "adhesive", "library", "indentation_m", "loading_work_J", "resolved",
-    "restitution", "restitution_error", "discretisation_error", "surface_scatter",
-    "material_error", "total_error", "reference", "reference_error", "held",
-)  # fmt: skip
+    "case",
+    "kind",
+    "adhesive",
+    "library",
+    "indentation_m",
+    "loading_work_J",
+    "resolved",
+    "restitution",
+    "restitution_error",
+    "discretisation_error",
+    "surface_scatter",
+    "material_error",
+    "total_error",
+    "reference",
+    "reference_error",
+    "held",
+)
 
 
 def draw(seed: int, scans: Path) -> tuple[str, str]:

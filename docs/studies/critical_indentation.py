@@ -42,15 +42,19 @@ def fit(length, x, y):
     known = ~np.isnan(y)
     line, power = linregress(x[known], y[known]), linregress(np.log(x[known]), np.log(y[known]))
     student = t.ppf(0.975, known.sum() - 2)
-    print(f"correlation length {1e6 * length:g} um: {known.sum()} of {known.size} reached; "
-          f"i_cr,max = a + b Rq/R with b = {1e6 * line.slope:.0f} ± "
-          f"{1e6 * student * line.stderr:.0f} um, a = {1e6 * line.intercept:.2f} ± "
-          f"{1e6 * student * line.intercept_stderr:.2f} um (95 %), r² = {line.rvalue**2:.3f}; "
-          f"power law {power.slope:.2f} ± {student * power.stderr:.2f}")  # fmt: skip
+    print(
+        f"correlation length {1e6 * length:g} um: {known.sum()} of {known.size} reached; "
+        f"i_cr,max = a + b Rq/R with b = {1e6 * line.slope:.0f} ± "
+        f"{1e6 * student * line.stderr:.0f} um, a = {1e6 * line.intercept:.2f} ± "
+        f"{1e6 * student * line.intercept_stderr:.2f} um (95 %), r² = {line.rvalue**2:.3f}; "
+        f"power law {power.slope:.2f} ± {student * power.stderr:.2f}"
+    )
     for ratio in np.unique(x):
         found = 1e6 * y[known & (x == ratio)]
-        print(f"| {1e6 * length:g} | {1e6 * STEEL.radius * ratio:g} | {found.size} of 5 | "
-              f"{found.mean():.2f} ± {found.std(ddof=1):.2f} |")  # fmt: skip
+        print(
+            f"| {1e6 * length:g} | {1e6 * STEEL.radius * ratio:g} | {found.size} of 5 | "
+            f"{found.mean():.2f} ± {found.std(ddof=1):.2f} |"
+        )
     return line
 
 
@@ -65,23 +69,37 @@ def main():
                     GRID, kind="gaussian", rms=rms, correlation_length=length, seed=seed
                 )
                 off = restitutions(Contact(PAIR, surface, 750e6)) / reference - 1
-                table.append({"correlation_length_m": length, "rms_m": rms, "seed": seed,
-                              "critical_m": critical(off)})  # fmt: skip
+                table.append(
+                    {
+                        "correlation_length_m": length,
+                        "rms_m": rms,
+                        "seed": seed,
+                        "critical_m": critical(off),
+                    }
+                )
     write_table("critical_indentation.csv", table)
     figure = Figure(figsize=(6.4, 4.4), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.add_subplot(
-        xlabel="Rq/R (10⁻³)", ylabel="i_cr,max (µm)",
+        xlabel="Rq/R (10⁻³)",
+        ylabel="i_cr,max (µm)",
         title="Depth from which on a rough sphere bounces as a smooth one",
-    )  # fmt: skip
+    )
     for number, length in enumerate(LENGTHS):
         these = [row for row in table if row["correlation_length_m"] == length]
         x = np.array([row["rms_m"] for row in these]) / STEEL.radius
         y = np.array([row["critical_m"] for row in these])
         line = fit(length, x, y)
         ends = np.array([0, x.max()])
-        axes.plot(1e3 * x, 1e6 * y, "o", ms=4, alpha=0.7, color=f"C{number}",
-                  label=f"β = {1e6 * length:g} µm")  # fmt: skip
+        axes.plot(
+            1e3 * x,
+            1e6 * y,
+            "o",
+            ms=4,
+            alpha=0.7,
+            color=f"C{number}",
+            label=f"β = {1e6 * length:g} µm",
+        )
         axes.plot(1e3 * ends, 1e6 * (line.intercept + line.slope * ends), "-", color=f"C{number}")
     axes.grid(alpha=0.3)
     axes.legend()

@@ -45,18 +45,25 @@ def rows():
                     state = solve(contact, depth - later)
                     patches = state.patch_sizes()
                     yield {
-                        "surface": number, "seed": seed, "refine": k, "depth_m": depth,
+                        "surface": number,
+                        "seed": seed,
+                        "refine": k,
+                        "depth_m": depth,
                         "restitution": collide(state).restitution,
-                        "contact_nodes": state.contact_nodes, "patches": patches.size,
+                        "contact_nodes": state.contact_nodes,
+                        "patches": patches.size,
                         "largest_patch_nodes": int(patches[0]),
                         "median_patch_nodes": median_patch(patches),
-                    }  # fmt: skip
+                    }
 
 
 def errors(table):
     """Relative error against the finest grid, beside the nodes of the patches."""
-    finest = {(row["surface"], row["seed"], row["depth_m"]): row["restitution"]
-              for row in table if row["refine"] == FACTORS[-1]}  # fmt: skip
+    finest = {
+        (row["surface"], row["seed"], row["depth_m"]): row["restitution"]
+        for row in table
+        if row["refine"] == FACTORS[-1]
+    }
     for row in table:
         if row["refine"] != FACTORS[-1]:
             exact = finest[row["surface"], row["seed"], row["depth_m"]]
@@ -99,8 +106,10 @@ def main():
             those = np.abs(off[(low <= nodes) & (nodes < high)])
             if those.size:
                 rms, most = np.sqrt(np.mean(those**2)), np.quantile(those, 0.9)
-                print(f"| {name}, {low} to {high} | {those.size} | {rms:.1%} | {most:.1%} "
-                      f"| {those.max():.1%} |")  # fmt: skip
+                print(
+                    f"| {name}, {low} to {high} | {those.size} | {rms:.1%} | {most:.1%} "
+                    f"| {those.max():.1%} |"
+                )
     stated, usual, true = np.array(list(estimates(table))).T
     print(f"discretisation error held in {np.mean(true <= stated):.1%} of {true.size}")
     monotone = np.isfinite(usual)
@@ -109,10 +118,11 @@ def main():
     figure = Figure(figsize=(6.4, 4.4), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.add_subplot(
-        xscale="log", xlabel="nodes in the patch of the median node",
+        xscale="log",
+        xlabel="nodes in the patch of the median node",
         ylabel="COR over that of the finest grid − 1 (%)",
         title="One surface on four grids: restitution against resolution",
-    )  # fmt: skip
+    )
     axes.plot(median, 100 * off, "o", markersize=3, alpha=0.6)
     axes.axhspan(-2, 2, color="0.9", zorder=0)
     axes.axvline(NODES_PER_PATCH, color="0.3", linewidth=1, linestyle="--")

@@ -34,11 +34,15 @@ def rows():
                     state = solve(contact, depth)
                     patches = state.patch_sizes()
                     yield {
-                        "rms_m": rms, "seed": seed, "refine": k, "depth_m": depth,
+                        "rms_m": rms,
+                        "seed": seed,
+                        "refine": k,
+                        "depth_m": depth,
                         "restitution": collide(state).restitution,
-                        "contact_nodes": state.contact_nodes, "patches": patches.size,
+                        "contact_nodes": state.contact_nodes,
+                        "patches": patches.size,
                         "resolved": resolves(median_patch(patches)),
-                    }  # fmt: skip
+                    }
 
 
 def draw(table):
@@ -56,8 +60,12 @@ def draw(table):
                 axes.plot(1e9 * x, y, "-", lw=0.8, color=f"C{number}", label=label)
                 for mask, face in ((good, f"C{number}"), (~good, "white")):
                     axes.plot(1e9 * x[mask], y[mask], "o", ms=3.5, mfc=face, color=f"C{number}")
-        axes.set(xscale="log", xlabel="maximum indentation (nm)", ylim=(0, 1),
-                 title=f"spacing {250 / k:g} nm (open: not resolved)")  # fmt: skip
+        axes.set(
+            xscale="log",
+            xlabel="maximum indentation (nm)",
+            ylim=(0, 1),
+            title=f"spacing {250 / k:g} nm (open: not resolved)",
+        )
         for depth in (8, 50):
             axes.axvline(depth, color="0.6", lw=0.8, ls="--")
         axes.grid(alpha=0.3)
@@ -77,10 +85,14 @@ def main():
         for k in FACTORS:
             these = [r for r in table if r["depth_m"] == depth and r["refine"] == k]
             single = sum(r["contact_nodes"] == 1 for r in these)
-            means = [np.mean([r["restitution"] for r in these if r["rms_m"] == rms])
-                     for rms in ROUGHNESS]  # fmt: skip
-            print(f"| {1e9 * depth:.3g} | {250 / k:g} nm | {single} of {len(these)} | "
-                  + ", ".join(f"{m:.2f}" for m in means) + " |")  # fmt: skip
+            means = [
+                np.mean([r["restitution"] for r in these if r["rms_m"] == rms]) for rms in ROUGHNESS
+            ]
+            print(
+                f"| {1e9 * depth:.3g} | {250 / k:g} nm | {single} of {len(these)} | "
+                + ", ".join(f"{m:.2f}" for m in means)
+                + " |"
+            )
 
 
 if __name__ == "__main__":

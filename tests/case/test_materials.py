@@ -22,8 +22,20 @@ def properties(found):
 
 def test_the_materials_asked_for_are_there():
     assert 10 <= len(ALL) <= 18
-    assert {"steel", "stainless-steel", "aluminium", "glass", "silica", "alumina", "zirconia",
-            "polystyrene", "pmma", "lactose", "mcc", "sucrose"} <= set(materials())  # fmt: skip
+    assert {
+        "steel",
+        "stainless-steel",
+        "aluminium",
+        "glass",
+        "silica",
+        "alumina",
+        "zirconia",
+        "polystyrene",
+        "pmma",
+        "lactose",
+        "mcc",
+        "sucrose",
+    } <= set(materials())
 
 
 @each_material

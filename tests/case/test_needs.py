@@ -37,8 +37,10 @@ def test_a_run_takes_what_was_estimated(case_text, tmp_path, nodes, yields):
     (tmp_path / "case.toml").write_text(text)
     done = subprocess.run(
         [sys.executable, "-c", PEAK, tmp_path / "case.toml", tmp_path / "out"],
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     peak = 1024 * int(done.stdout.split("peak ")[-1])
     estimate = parse_case(text).run_bytes(Grid((nodes, nodes), (1e-6, 1e-6)))
     assert 0.9 * peak < estimate < 1.5 * peak, done.stderr

@@ -37,9 +37,28 @@ def test_units(text, unit, expected):
 
 @pytest.mark.parametrize(
     "value",
-    ["", "um", "5", 5, 5.0, True, None, [1], "5 um 6", "2 * 3 um", "5 um + 1 um", "9**99 um",
-     "5 um**999999", "inf um", "nan m", "5 __import__", "5 um; 1", "5 s", "5 degC"],
-)  # fmt: skip
+    [
+        "",
+        "um",
+        "5",
+        5,
+        5.0,
+        True,
+        None,
+        [1],
+        "5 um 6",
+        "2 * 3 um",
+        "5 um + 1 um",
+        "9**99 um",
+        "5 um**999999",
+        "inf um",
+        "nan m",
+        "5 __import__",
+        "5 um; 1",
+        "5 s",
+        "5 degC",
+    ],
+)
 def test_what_is_no_length(value):
     with pytest.raises(ValueError, match="write for example"):
         read_quantity(value, "m")

@@ -29,9 +29,12 @@ curves = 1
 restitution_error = 0.05
 """
 NEW = [
-    "pull_off_force_N", "separation_indentation_m", "restitution_error", "sticks",
+    "pull_off_force_N",
+    "separation_indentation_m",
+    "restitution_error",
+    "sticks",
     "adhesion_resolved",
-]  # fmt: skip
+]
 
 
 @pytest.fixture
@@ -114,9 +117,10 @@ def test_without_adhesion_nothing_sticks_and_nothing_pulls(run):
 
 def test_a_coarse_grid_runs_and_says_so(run):
     rows, summary, warned = run(
-        ("nodes = 56", "nodes = 24"), ('"0.07 um"', '"0.7 um"'),
+        ("nodes = 56", "nodes = 24"),
+        ('"0.07 um"', '"0.7 um"'),
         ('["1.5 nm", "10 nm"]', '["15 nm", "40 nm"]'),
-    )  # fmt: skip
+    )
     assert summary["derived"]["nodes_over_pull_off_radius"] < 1
     assert [row["adhesion_resolved"] for row in rows] == ["false", "false"]
     said = "adhesion is not resolved at 2 of 2 depths"
@@ -176,10 +180,12 @@ def test_refusals_are_one_line_that_names_the_key(refusal, old, new, words):
 def test_a_seed_that_lets_go_of_everything_is_a_row_that_sticks(cli, run, tmp_path):
     """The surface is so soft that the pull of 0.1 nm takes all of it apart."""
     rows, summary, _ = run(
-        ('"1.5 GPa"', '"1 MPa"'), ('"0.09 J/m^2"', '"0.001 J/m^2"'),
+        ('"1.5 GPa"', '"1 MPa"'),
+        ('"0.09 J/m^2"', '"0.001 J/m^2"'),
         ('"hertzian"', '"pull-increments"'),
-        ('"0.07 um"', '"0.5 um"'), ('["1.5 nm", "10 nm"]', '["0.05 nm", "0.1 nm"]'),
-    )  # fmt: skip
+        ('"0.07 um"', '"0.5 um"'),
+        ('["1.5 nm", "10 nm"]', '["0.05 nm", "0.1 nm"]'),
+    )
     assert [row["force_N"] for row in rows] == ["0.0", "0.0"]
     assert [row["sticks"] for row in rows] == ["true", "true"]
     assert summary["status"] == "complete"

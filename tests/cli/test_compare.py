@@ -87,10 +87,14 @@ def test_errors_of_grids_and_means_count(cli, results, tmp_path):
 
 def test_two_studies_are_matched_by_what_is_swept(cli, results, tmp_path):
     sweep = "\n[sweep]\n'roughness.seed' = [{}]\n[unloading]"
-    a = results("a", ("\n[unloading]", sweep.format("1, 2")), verb="study",
-                more=("--workers", "1"))  # fmt: skip
-    b = results("b", ("\n[unloading]", sweep.format("2, 3")), ("750 MPa", "500 MPa"), verb="study",
-                more=("--workers", "1"))  # fmt: skip
+    a = results("a", ("\n[unloading]", sweep.format("1, 2")), verb="study", more=("--workers", "1"))
+    b = results(
+        "b",
+        ("\n[unloading]", sweep.format("2, 3")),
+        ("750 MPa", "500 MPa"),
+        verb="study",
+        more=("--workers", "1"),
+    )
     status, said, _ = cli("compare", a, b, "-o", tmp_path / "rows.csv")
     assert status == 0
     rows = rows_of(tmp_path / "rows.csv")
@@ -101,11 +105,19 @@ def test_two_studies_are_matched_by_what_is_swept(cli, results, tmp_path):
 def test_what_cannot_be_compared(refused, results, tmp_path):
     a = results("a")
     assert "holds no results" in refused("compare", a, tmp_path)
-    study = results("s", ("\n[unloading]", "\n[sweep]\n'roughness.seed' = [1]\n[unloading]"),
-                    verb="study", more=("--workers", "1"))  # fmt: skip
+    study = results(
+        "s",
+        ("\n[unloading]", "\n[sweep]\n'roughness.seed' = [1]\n[unloading]"),
+        verb="study",
+        more=("--workers", "1"),
+    )
     assert "one is a run and one a study" in refused("compare", a, study)
-    other = results("t", ("\n[unloading]", "\n[sweep]\n'roughness.seed' = [9]\n[unloading]"),
-                    verb="study", more=("--workers", "1"))  # fmt: skip
+    other = results(
+        "t",
+        ("\n[unloading]", "\n[sweep]\n'roughness.seed' = [9]\n[unloading]"),
+        verb="study",
+        more=("--workers", "1"),
+    )
     assert "no case with the same swept values" in refused("compare", study, other)
     (tmp_path / "there.csv").write_text("mine")
     assert "nothing is overwritten" in refused("compare", a, a, "-o", tmp_path / "there.csv")

@@ -33,9 +33,14 @@ def call(case_text, tmp_path):
     def call(*arguments, cwd=tmp_path, **environment):
         return subprocess.run(
             [sys.executable, "-m", "restitution", *arguments],
-            capture_output=True, text=True, errors="replace", cwd=cwd, timeout=60,
-            env={**os.environ, **environment}, preexec_fn=obey_permissions,
-        )  # fmt: skip
+            capture_output=True,
+            text=True,
+            errors="replace",
+            cwd=cwd,
+            timeout=60,
+            env={**os.environ, **environment},
+            preexec_fn=obey_permissions,
+        )
 
     return call
 
@@ -103,9 +108,14 @@ def test_numbers_of_threads_that_openmp_takes(monkeypatch, name, text, threads):
 
 
 @pytest.mark.skipif(os.name != "posix", reason="names of files are bytes there")
-@pytest.mark.parametrize("arguments", [("surface", b"b\xff.toml", "-o", "out"),
-                                       ("surface", "case.toml", "-o", b"b\xff"),
-                                       ("report", b"b\xff")])  # fmt: skip
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("surface", b"b\xff.toml", "-o", "out"),
+        ("surface", "case.toml", "-o", b"b\xff"),
+        ("report", b"b\xff"),
+    ],
+)
 def test_a_path_that_is_not_utf8(call, arguments):
     said = refusal(call(*arguments))
     assert '"b\\udcff' in said

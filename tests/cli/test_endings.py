@@ -147,8 +147,12 @@ def test_interruption_keeps_what_was_computed(case_text, tmp_path, sent, status)
     out = tmp_path / "out"
     command = [sys.executable, "-m", "restitution", "run", tmp_path / "case.toml", "-o", out]
     # Tests started in the background pass on that the signal is to be ignored.
-    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True,
-                               preexec_fn=lambda: signal.signal(sent, signal.SIG_DFL))  # fmt: skip
+    process = subprocess.Popen(
+        command,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=lambda: signal.signal(sent, signal.SIG_DFL),
+    )
     deadline = time.monotonic() + 120
     while time.monotonic() < deadline:
         curve = out / "curve.csv"

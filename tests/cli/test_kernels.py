@@ -12,9 +12,12 @@ from restitution.numerics.kernels import instruction_set
 
 def call(*arguments, **environment):
     return subprocess.run(
-        [sys.executable, "-m", "restitution", *map(str, arguments)], capture_output=True, text=True,
-        timeout=300, env=os.environ | environment,
-    )  # fmt: skip
+        [sys.executable, "-m", "restitution", *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        timeout=300,
+        env=os.environ | environment,
+    )
 
 
 @pytest.fixture
@@ -47,9 +50,12 @@ def test_the_version_says_why_there_are_none():
         "; from restitution.cli import main; main()"
     )
     done = subprocess.run(
-        [sys.executable, "-c", hidden], capture_output=True, text=True, timeout=300,
+        [sys.executable, "-c", hidden],
+        capture_output=True,
+        text=True,
+        timeout=300,
         env=os.environ | {"RESTITUTION_KERNELS": ""},
-    )  # fmt: skip
+    )
     _, kernels, hint = done.stdout.splitlines()
     assert kernels == "compiled kernels: none"
     assert "not compiled when the package was installed; install with a C++ compiler" in hint

@@ -19,14 +19,25 @@ def test_an_ensemble_from_start_to_figures(cli, case_text, tmp_path):
     assert " ± 0." in said
     names = {path.name for path in (tmp_path / "out").iterdir()}
     assert names == {
-        "results.nc", "curve.csv", "summary.json", "realisations.csv", "load-displacement.png",
-        "restitution-indentation.png", "restitution-velocity.png",
-        "realisation-1", "realisation-2", "realisation-3", "SHA256SUMS",
-    }  # fmt: skip
+        "results.nc",
+        "curve.csv",
+        "summary.json",
+        "realisations.csv",
+        "load-displacement.png",
+        "restitution-indentation.png",
+        "restitution-velocity.png",
+        "realisation-1",
+        "realisation-2",
+        "realisation-3",
+        "SHA256SUMS",
+    }
     rows = rows_of(tmp_path / "out" / "curve.csv")
     assert list(rows[0])[-4:] == [
-        "realisations", "restitution_std", "restitution_low", "restitution_high"
-    ]  # fmt: skip
+        "realisations",
+        "restitution_std",
+        "restitution_low",
+        "restitution_high",
+    ]
     for row in rows:
         low, mean, high = (float(row[f"restitution{end}"]) for end in ("_low", "", "_high"))
         assert low < mean < high
@@ -49,10 +60,18 @@ def test_convergence_from_start_to_figures(cli, case_text, tmp_path):
     assert " ± 0." in said
     names = {path.name for path in (tmp_path / "out").iterdir()}
     assert names == {
-        "results.nc", "curve.csv", "convergence.csv", "summary.json", "load-displacement.png",
-        "restitution-indentation.png", "restitution-velocity.png", "pressure.png", "refine-1",
-        "refine-2", "SHA256SUMS",
-    }  # fmt: skip
+        "results.nc",
+        "curve.csv",
+        "convergence.csv",
+        "summary.json",
+        "load-displacement.png",
+        "restitution-indentation.png",
+        "restitution-velocity.png",
+        "pressure.png",
+        "refine-1",
+        "refine-2",
+        "SHA256SUMS",
+    }
     summary = json.loads((tmp_path / "out" / "summary.json").read_text())
     assert summary["trust"]["largest_discretisation_error"] > 0
 

@@ -52,8 +52,9 @@ COLUMNS = {
 def command(*arguments):
     subprocess.run(
         [sys.executable, "-m", "restitution", *map(str, arguments)],
-        check=True, capture_output=True,
-    )  # fmt: skip
+        check=True,
+        capture_output=True,
+    )
 
 
 def table(file):

@@ -37,9 +37,12 @@ GRID = '[grid]\nnodes = {nodes}\nspacing = "0.1 um"'
 def scan(tmp_path):
     """The heights, and a file of them."""
     surface = generate_surface(
-        Grid((128, 128), (0.1e-6, 0.1e-6)), kind="gaussian", rms=20e-9, correlation_length=1e-6,
+        Grid((128, 128), (0.1e-6, 0.1e-6)),
+        kind="gaussian",
+        rms=20e-9,
+        correlation_length=1e-6,
         seed=5,
-    )  # fmt: skip
+    )
     height = surface.height[:96, :96]
     np.save(tmp_path / "scan.npy", height)
     return height

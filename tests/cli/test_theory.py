@@ -64,9 +64,11 @@ def test_writes_a_table_and_a_figure(cli, case, tmp_path):
 
 def test_one_velocity_is_a_table_and_a_figure_too(cli, case, tmp_path):
     path = case(
-        ('[indentation]\nfrom = "20 nm"\nto = "300 nm"\nsteps = 4',
-         '[impact]\nvelocity = ["0.5 m/s"]'),
-    )  # fmt: skip
+        (
+            '[indentation]\nfrom = "20 nm"\nto = "300 nm"\nsteps = 4',
+            '[impact]\nvelocity = ["0.5 m/s"]',
+        ),
+    )
     status, _, _ = cli("theory", path, "-o", tmp_path / "out")
     assert status == 0
     assert len((tmp_path / "out" / "theory.csv").read_text().splitlines()) == 2

@@ -47,9 +47,16 @@ def test_run_writes_every_file(done):
     out, said = done
     names = {path.name for path in out.iterdir()}
     assert names == {
-        "results.nc", "curve.csv", "unloading.csv", "summary.json", "load-displacement.png",
-        "restitution-indentation.png", "restitution-velocity.png", "pressure.png", "SHA256SUMS",
-    }  # fmt: skip
+        "results.nc",
+        "curve.csv",
+        "unloading.csv",
+        "summary.json",
+        "load-displacement.png",
+        "restitution-indentation.png",
+        "restitution-velocity.png",
+        "pressure.png",
+        "SHA256SUMS",
+    }
     for name in names:
         assert name in said
 

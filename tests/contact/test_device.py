@@ -123,8 +123,11 @@ def test_the_operators_are_those_of_this_machine(shape):
             there = make(shape, cells, 1e11)(STAND_IN.put(p))
         assert isinstance(there, Elsewhere)
         single = 3e-6 * np.abs(here).max()
-        assert_allclose(STAND_IN.get(there), here, atol=1e-13 * np.abs(here).max()
-                        if make is half_space else single)  # fmt: skip
+        assert_allclose(
+            STAND_IN.get(there),
+            here,
+            atol=1e-13 * np.abs(here).max() if make is half_space else single,
+        )
 
 
 @pytest.mark.parametrize("limit", [np.inf, 2e9])

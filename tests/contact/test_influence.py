@@ -223,8 +223,10 @@ def test_large_operators_are_not_kept(small_cache):
 @pytest.mark.parametrize("aspect", [1.0, 0.4])
 def test_coefficients_of_a_smaller_or_larger_block_are_the_same(aspect):
     operator_cache.clear()
-    blocks = [influence_coefficients(*lags(*n), (1.0, aspect), 1.0)
-              for n in ((30, 60), (50, 20), (40, 40))]  # fmt: skip
+    blocks = [
+        influence_coefficients(*lags(*n), (1.0, aspect), 1.0)
+        for n in ((30, 60), (50, 20), (40, 40))
+    ]
     operator_cache.clear()
     whole = influence_coefficients(*lags(60, 60), (1.0, aspect), 1.0)
     for k in blocks:

@@ -64,8 +64,9 @@ def test_truncated_work_is_the_work_of_its_force(rough_contact):
 )
 def test_the_error_of_a_cut_work_holds_where_two_rules_agree_by_chance(pair, seed, hardness, depth):
     grid = Grid((48, 48), (0.25 * UM, 0.25 * UM))
-    rough = generate_surface(grid, kind="gaussian", rms=10 * NM, correlation_length=1 * UM,
-                             seed=seed)  # fmt: skip
+    rough = generate_surface(
+        grid, kind="gaussian", rms=10 * NM, correlation_length=1 * UM, seed=seed
+    )
     p_y = hardness * pair.contact_modulus
     contact = Contact(pair, rough, yield_pressure=p_y, plasticity="truncated")
     deepest = depth * (4 * UM) ** 2 / pair.radius

@@ -20,16 +20,73 @@ MOST_NODES = 80**2
 
 LENGTHS = ["0.3 nm", "20 nm", "0.25 um", "1 µm", "500 um", "2 mm", "1e-6 m", "10 angstrom"]
 WRONG = [
-    "", " ", "5", "um", "-1 um", "0 um", "nan um", "1e999 um", "1e-400 m", "5 kg", "1 um^2",
-    "1 m um", "5 " + "(" * 50 + "m", "∞ um", "٣ um", "1 \u202eum", "a\nb", "\x00", "\x1b[31m",
+    "",
+    " ",
+    "5",
+    "um",
+    "-1 um",
+    "0 um",
+    "nan um",
+    "1e999 um",
+    "1e-400 m",
+    "5 kg",
+    "1 um^2",
+    "1 m um",
+    "5 " + "(" * 50 + "m",
+    "∞ um",
+    "٣ um",
+    "1 \u202eum",
+    "a\nb",
+    "\x00",
+    "\x1b[31m",
     "x" * 5000,
-    " " * 10**4 + "m", "9" * 400 + " um", "1 m/m*m", "1 delta_degC", "1 degF", "2.8 Y", "flat",
-    "hardness", "steel", "../..", "/dev/zero", "scan.npy", "no.npy", "/", "\ud7ff", "auto",
-    0, 1, -1, 2, 3, 10**6, 2**31, 2**63, -(2**63), 10**40, 0.5, -0.0, 1e308, 1e-308,
-    float("nan"), float("inf"), -float("inf"), True, False, [], [[]], [1, 2, 3], ["1 um"],
-    ["1 um", "2 um"], ["2 um", "1 um", 3], {}, {"x": 1}, {"a": {"b": {"c": [1]}}}, [{}],
+    " " * 10**4 + "m",
+    "9" * 400 + " um",
+    "1 m/m*m",
+    "1 delta_degC",
+    "1 degF",
+    "2.8 Y",
+    "flat",
+    "hardness",
+    "steel",
+    "../..",
+    "/dev/zero",
+    "scan.npy",
+    "no.npy",
+    "/",
+    "\ud7ff",
+    "auto",
+    0,
+    1,
+    -1,
+    2,
+    3,
+    10**6,
+    2**31,
+    2**63,
+    -(2**63),
+    10**40,
+    0.5,
+    -0.0,
+    1e308,
+    1e-308,
+    float("nan"),
+    float("inf"),
+    -float("inf"),
+    True,
+    False,
+    [],
+    [[]],
+    [1, 2, 3],
+    ["1 um"],
+    ["1 um", "2 um"],
+    ["2 um", "1 um", 3],
+    {},
+    {"x": 1},
+    {"a": {"b": {"c": [1]}}},
+    [{}],
     [{"kind": 1}],
-]  # fmt: skip
+]
 
 
 def body(rng):
@@ -50,10 +107,12 @@ def roughness(rng):
     if kind == "measured":
         table = {"kind": kind, "file": rng.choice(["scan.npy", "scan.txt"]), "size": "12 um"}
         for key, values in (
-            ("detrend", ["none", "tilt", "curvature"]), ("outliers", [6.0, 8]),
-            ("crop", [{"x": ["-2 um", "3 um"]}]), ("undefined", ["interpolate"]),
+            ("detrend", ["none", "tilt", "curvature"]),
+            ("outliers", [6.0, 8]),
+            ("crop", [{"x": ["-2 um", "3 um"]}]),
+            ("undefined", ["interpolate"]),
             ("channel", [0]),
-        ):  # fmt: skip
+        ):
             if rng.random() < 0.2:
                 table[key] = rng.choice(values)
         extend = rng.choice([None, "twin", "mirror"])
@@ -70,10 +129,13 @@ def roughness(rng):
     else:
         table["correlation_length"] = rng.choice(["1 um", "1.5 um", ["1.8 um", "1 um"]])
     for key, values in (
-        *own, ("shortest", ["1 um", "0.8 um"]),
-        ("skewness", [0.1, -1, 1.5]), ("kurtosis", [3.5, 6]), ("periodic", [False]),
+        *own,
+        ("shortest", ["1 um", "0.8 um"]),
+        ("skewness", [0.1, -1, 1.5]),
+        ("kurtosis", [3.5, 6]),
+        ("periodic", [False]),
         ("realisations", [1, 3]),
-    ):  # fmt: skip
+    ):
         if rng.random() < 0.15:
             table[key] = rng.choice(values)
     return table
@@ -98,13 +160,15 @@ def valid(rng):
             "spacing": rng.choice(["0.25 um", "0.3 um", ["0.2 um", "0.4 um"]]),
             "refine": rng.choice([1, 1, 1, 2, "auto"]),
         }
-    case |= rng.choice([
-        {"indentation": {"from": "20 nm", "to": "300 nm", "steps": 4}},
-        {"indentation": {"values": ["10 nm", "1 um"]}},
-        {"load": {"values": ["1 mN", "0.1 N"]}},
-        {"impact": {"velocity": ["0.1 m/s", "2 m/s"]}},
-        {"impact": {"from": "0.1 m/s", "to": "2 m/s", "steps": 3, "scale": "linear"}},
-    ])  # fmt: skip
+    case |= rng.choice(
+        [
+            {"indentation": {"from": "20 nm", "to": "300 nm", "steps": 4}},
+            {"indentation": {"values": ["10 nm", "1 um"]}},
+            {"load": {"values": ["1 mN", "0.1 N"]}},
+            {"impact": {"velocity": ["0.1 m/s", "2 m/s"]}},
+            {"impact": {"from": "0.1 m/s", "to": "2 m/s", "steps": 3, "scale": "linear"}},
+        ]
+    )
     if rng.random() < 0.3:
         case["unloading"] = {"curves": 1, "steps": 8}
     return case

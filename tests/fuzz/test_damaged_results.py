@@ -78,10 +78,12 @@ def verbs(kind, damaged, whole, out):
         velocity = ("--velocity", "0.05 m/s", "-o")
         return [
             ("export", damaged, "--to", "csv", "-o", out / "csv"),
-            *(("export", damaged, "--to", code, *velocity, out / code)
-              for code in ("lammps", "liggghts", "yade", "mercurydpm", "edem")),
+            *(
+                ("export", damaged, "--to", code, *velocity, out / code)
+                for code in ("lammps", "liggghts", "yade", "mercurydpm", "edem")
+            ),
             ("theory", whole / "case.toml", "--law", damaged, "-o", out / "theory"),
-        ]  # fmt: skip
+        ]
     if kind == "study":
         resume = ("study", whole / "study.toml", "-o", damaged, "--resume")
         return [("report", damaged), *compared, resume]

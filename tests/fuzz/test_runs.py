@@ -62,14 +62,20 @@ def made(number):
             rough["realisations"] = 2
         case["roughness"] = rough
     depths = sorted(deep * between(rng, 0.01, 1) for _ in range(rng.choice([1, 3])))
-    case |= rng.choice([
-        {"indentation": {"values": [f"{d} m" for d in depths]}},
-        {"load": {"values": [f"{E_star * math.sqrt(R_star * d) * d} N" for d in depths]}},
-        {"impact": {"velocity": [
-            f"{math.sqrt(E_star * math.sqrt(R_star * d) * d * d / (2500 * R**3))} m/s"
-            for d in depths
-        ]}},
-    ])  # fmt: skip
+    case |= rng.choice(
+        [
+            {"indentation": {"values": [f"{d} m" for d in depths]}},
+            {"load": {"values": [f"{E_star * math.sqrt(R_star * d) * d} N" for d in depths]}},
+            {
+                "impact": {
+                    "velocity": [
+                        f"{math.sqrt(E_star * math.sqrt(R_star * d) * d * d / (2500 * R**3))} m/s"
+                        for d in depths
+                    ]
+                }
+            },
+        ]
+    )
     return case
 
 

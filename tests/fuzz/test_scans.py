@@ -123,8 +123,10 @@ def test_files_of_formats_that_have_a_writer(fuzz, tmp_path, within, plainly_ref
 @pytest.mark.skipif(not SAMPLES.is_dir(), reason=f"the sample topographies are not at {SAMPLES}")
 def test_files_of_instruments(fuzz, tmp_path, within, plainly_refused):
     pytest.importorskip("SurfaceTopography", reason="the extra 'measured' is not installed")
-    files = [SAMPLES / name for name in ("di-3.di", "mi-1.mi", "nid-1.nid", "tmd-1.tmd",
-                                         "sur-2.sur", "matrix-3.txt")]  # fmt: skip
+    files = [
+        SAMPLES / name
+        for name in ("di-3.di", "mi-1.mi", "nid-1.nid", "tmd-1.tmd", "sur-2.sur", "matrix-3.txt")
+    ]
     ends = try_all(files, round(DAMAGES * fuzz), tmp_path, within, plainly_refused)
     print(ends)
     assert ends["refused"] > 0

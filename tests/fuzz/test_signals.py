@@ -76,8 +76,12 @@ def cases(tiny_case, tmp_path_factory):
     (at / "case.toml").write_text(text)
     (at / "ensemble.toml").write_text(text.replace("seed = 1", "seed = 1\nrealisations = 2"))
     (at / "study.toml").write_text(f'{text}[sweep]\n"roughness.seed" = [1, 2]\n')
-    done = subprocess.run([sys.executable, "-m", "restitution", "run", "case.toml", "-o", "run"],
-                          cwd=at, capture_output=True, check=False)  # fmt: skip
+    done = subprocess.run(
+        [sys.executable, "-m", "restitution", "run", "case.toml", "-o", "run"],
+        cwd=at,
+        capture_output=True,
+        check=False,
+    )
     assert done.returncode == 0
     return at
 
@@ -107,9 +111,13 @@ def test_a_signal_at_a_random_moment_of_saving(number, cases, tmp_path):
         arguments = (*arguments, "--grids", "2")
     out = tmp_path / "out"
     done = subprocess.run(
-        [sys.executable, "-c", call, *arguments, "-o", out], cwd=cases, timeout=60,
-        capture_output=True, text=True, start_new_session=True,
-    )  # fmt: skip
+        [sys.executable, "-c", call, *arguments, "-o", out],
+        cwd=cases,
+        timeout=60,
+        capture_output=True,
+        text=True,
+        start_new_session=True,
+    )
     assert "Traceback" not in done.stderr
     assert done.returncode in (0, STATUS[sent]), done.stderr
     assert not list(out.rglob(".*")), "half of a file, or a lock"

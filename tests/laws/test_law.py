@@ -178,9 +178,14 @@ def test_the_fitted_yield_pressure_is_that_which_went_in(truncated):
 def test_every_fitted_law_is_judged_by_its_own_numbers(truncated):
     law = law_of(truncated)
     assert [each.name for each in law.laws] == [
-        "constant", "thornton-ning-force", "thornton-ning", "walton-braun", "luding", "eepa",
+        "constant",
+        "thornton-ning-force",
+        "thornton-ning",
+        "walton-braun",
+        "luding",
+        "eepa",
         "lammps-mdr",
-    ]  # fmt: skip
+    ]
     e = law.column("restitution")
     for each in law.laws:
         miss = np.array(each.restitution, dtype=float) - e

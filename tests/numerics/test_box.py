@@ -10,8 +10,9 @@ from restitution.numerics.box import NOWHERE, bounding_box, reframe, shape_of, u
 @st.composite
 def boxes(draw, n=12):
     """Boxes with at least one node inside a grid of n x n."""
-    edges = [sorted(draw(st.lists(st.integers(0, n), min_size=2, max_size=2, unique=True)))
-             for _ in "xy"]  # fmt: skip
+    edges = [
+        sorted(draw(st.lists(st.integers(0, n), min_size=2, max_size=2, unique=True))) for _ in "xy"
+    ]
     return tuple(slice(*edge) for edge in edges)
 
 

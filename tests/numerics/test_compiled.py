@@ -170,16 +170,30 @@ def test_threads_share_the_rows_and_change_nothing(threads):
     def everything():
         its_p, its_g, its_d, its_r = p.copy(), g.copy(), d.copy(), r.copy()
         return [
-            projected_gradient(p, its_g, p, box, its_r), its_r.copy(), its_g.copy(),
+            projected_gradient(p, its_g, p, box, its_r),
+            its_r.copy(),
+            its_g.copy(),
             dot_products(z, r, r_old),
-            projected_direction(its_d, 0.3, z, 0.8, p, g, r, box), its_d,
-            curvature(its_d, Kd), max_magnitude(g),
-            local_sums(r, sums, nodes), sums.copy(), nodes.copy(),
-            subtract_local_mean(r, 0.1, sums, nodes, its_r), its_r.copy(),
-            take_step(its_p, its_g, its_d, Kd, 1.0, box, its_r), its_p, its_g, its_r,
-            prolong(p, fine), fine.copy(), restrict(fine, its_g), its_g.copy(),
-            multipoles(x, y, moments, its_g), its_g,
-        ]  # fmt: skip
+            projected_direction(its_d, 0.3, z, 0.8, p, g, r, box),
+            its_d,
+            curvature(its_d, Kd),
+            max_magnitude(g),
+            local_sums(r, sums, nodes),
+            sums.copy(),
+            nodes.copy(),
+            subtract_local_mean(r, 0.1, sums, nodes, its_r),
+            its_r.copy(),
+            take_step(its_p, its_g, its_d, Kd, 1.0, box, its_r),
+            its_p,
+            its_g,
+            its_r,
+            prolong(p, fine),
+            fine.copy(),
+            restrict(fine, its_g),
+            its_g.copy(),
+            multipoles(x, y, moments, its_g),
+            its_g,
+        ]
 
     found = everything()
     kernels.loops.use_threads(1)

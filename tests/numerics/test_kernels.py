@@ -24,9 +24,12 @@ print(kernels.instruction_set, solve(Contact(Pair(body, body), surface, 4e9), 60
 def python(program, **environment):
     """A process that was handed this program."""
     return subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, timeout=300,
+        [sys.executable, "-c", program],
+        capture_output=True,
+        text=True,
+        timeout=300,
         env=os.environ | environment,
-    )  # fmt: skip
+    )
 
 
 def solved(program=SOLVE, **environment):

@@ -33,8 +33,14 @@ def test_a_run(reported, opened):
     assert console == []
     assert 'data-drawn="6"' in drawn
     text = own(page)
-    for words in ("Restitution against maximum indentation", "Contact pressure", "Case file",
-                  "Love (1929)", "Derived quantities", "largest residual"):  # fmt: skip
+    for words in (
+        "Restitution against maximum indentation",
+        "Contact pressure",
+        "Case file",
+        "Love (1929)",
+        "Derived quantities",
+        "largest residual",
+    ):
         assert words in text
     assert "<script>document" not in text
     plots = re.findall(r'<div class="plot[^>]*>', text)

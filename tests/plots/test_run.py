@@ -35,8 +35,11 @@ def labels(figure):
 def test_figures_show_the_stored_numbers(results):
     drawn = figures(results)
     assert list(drawn) == [
-        "load-displacement", "restitution-indentation", "restitution-velocity", "pressure",
-    ]  # fmt: skip
+        "load-displacement",
+        "restitution-indentation",
+        "restitution-velocity",
+        "pressure",
+    ]
     loading = drawn["load-displacement"].axes[0].lines[0]
     assert loading.get_xdata()[1:] == approx(1e6 * results["indentation"].values)
     assert loading.get_ydata()[1:] == approx(results["force"].values)

@@ -34,8 +34,9 @@ CHART = Chart(
 FIGURE = Figure("A figure", [CHART])
 
 
-@pytest.mark.parametrize(("kind", "start"), [("png", b"\x89PNG"), ("svg", b"<?xml"),
-                                             ("pdf", b"%PDF")])  # fmt: skip
+@pytest.mark.parametrize(
+    ("kind", "start"), [("png", b"\x89PNG"), ("svg", b"<?xml"), ("pdf", b"%PDF")]
+)
 def test_a_figure_is_written_as_png_svg_or_pdf_and_always_the_same(tmp_path, kind, start):
     first = write_figure(tmp_path / "a.b", FIGURE, kind)
     assert first.name == f"a.b.{kind}"

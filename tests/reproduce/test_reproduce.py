@@ -15,22 +15,49 @@ from tolerance import approx
 TINY = {
     "hertz": {"grid.nodes": 64, "indentation.to": "200 nm", "indentation.steps": 2},
     "thornton-ning": {"grid.nodes": 96, "indentation.to": "200 nm", "indentation.steps": 2},
-    "jkr": {"grid.nodes": 96, "grid.spacing": "0.12 um", "indentation.from": "20 nm",
-            "indentation.to": "30 nm", "indentation.steps": 2},
-    "smooth-yield": {"grid.nodes": 128, "indentation.steps": 4, "indentation.to": "110 nm",
-                     "indentation.from": "4 nm", "grid.spacing": "0.14 um"},
-    "smooth-energy": {"indentation.steps": 4, "indentation.to": "110 nm",
-                      "indentation.from": "4 nm", "sweep.grid.nodes": [128, 128, 128],
-                      "sweep.grid.spacing": ["0.14 um", "0.14 um", "0.14 um"]},
-    "roughness": {"grid.nodes": 128, "indentation.to": "400 nm", "indentation.steps": 5,
-                  "indentation.from": "4 nm", "sweep.roughness.rms": ["1 pm", "0.1 um", "0.2 um"]},
-    "critical": {"grid.nodes": 192, "indentation.to": "1.2 um", "indentation.steps": 6,
-                 "sweep.roughness.rms": ["1 pm", "0.02 um", "0.04 um", "0.06 um"],
-                 "sweep.roughness.seed": [1]},
+    "jkr": {
+        "grid.nodes": 96,
+        "grid.spacing": "0.12 um",
+        "indentation.from": "20 nm",
+        "indentation.to": "30 nm",
+        "indentation.steps": 2,
+    },
+    "smooth-yield": {
+        "grid.nodes": 128,
+        "indentation.steps": 4,
+        "indentation.to": "110 nm",
+        "indentation.from": "4 nm",
+        "grid.spacing": "0.14 um",
+    },
+    "smooth-energy": {
+        "indentation.steps": 4,
+        "indentation.to": "110 nm",
+        "indentation.from": "4 nm",
+        "sweep.grid.nodes": [128, 128, 128],
+        "sweep.grid.spacing": ["0.14 um", "0.14 um", "0.14 um"],
+    },
+    "roughness": {
+        "grid.nodes": 128,
+        "indentation.to": "400 nm",
+        "indentation.steps": 5,
+        "indentation.from": "4 nm",
+        "sweep.roughness.rms": ["1 pm", "0.1 um", "0.2 um"],
+    },
+    "critical": {
+        "grid.nodes": 192,
+        "indentation.to": "1.2 um",
+        "indentation.steps": 6,
+        "sweep.roughness.rms": ["1 pm", "0.02 um", "0.04 um", "0.06 um"],
+        "sweep.roughness.seed": [1],
+    },
     "rough-yield": {"grid.nodes": 128, "indentation.to": "300 nm", "indentation.steps": 4},
-    "rough-energy": {"grid.nodes": 128, "indentation.to": "300 nm", "indentation.steps": 4,
-                     "indentation.from": "4 nm"},
-}  # fmt: skip
+    "rough-energy": {
+        "grid.nodes": 128,
+        "indentation.to": "300 nm",
+        "indentation.steps": 4,
+        "indentation.from": "4 nm",
+    },
+}
 
 for name in ("smooth-yield", "smooth-energy", "roughness", "rough-yield", "rough-energy"):
     TINY[name]["unloading.method"] = "energy-estimate"
@@ -134,10 +161,13 @@ def test_a_line_is_fitted_from_three_roughnesses_on(stored):
         cor[k, 0, depth < 20e-6 * rms / 1.0] = 0.2
     depths = np.broadcast_to(depth, cor.shape)
     made = xr.Dataset(
-        {name: ((*keys, "depth"), depths if name == "indentation" else cor)
-         for name in study.data_vars if name != "status"},
+        {
+            name: ((*keys, "depth"), depths if name == "indentation" else cor)
+            for name in study.data_vars
+            if name != "status"
+        },
         {keys[0]: ["1 pm", "0.1 um", "0.2 um", "0.5 um"], keys[1]: ["1"]},
-    )  # fmt: skip
+    )
     made["status"] = (tuple(keys), np.full((4, 1), "complete"))
     (finding,) = [f for f in (c({**stored, "critical": made}) for c in CLAIMS) if f.figure == "11"]
     assert finding.verdict == "agrees"

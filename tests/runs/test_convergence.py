@@ -78,8 +78,9 @@ def test_depths_count_from_one_first_touch(converged):
         by_depth.setdefault(row["indentation_m"], set()).add(row["refine"])
     assert [float(depth) for depth in by_depth] == approx(np.geomspace(20e-9, 300e-9, 4))
     assert all(grids == {"1", "2", "4"} for grids in list(by_depth.values())[1:])
-    pressed = [float(table_of(out, f"refine-{k}", "curve.csv")[-1]["indentation_m"])
-               for k in (1, 2, 4)]  # fmt: skip
+    pressed = [
+        float(table_of(out, f"refine-{k}", "curve.csv")[-1]["indentation_m"]) for k in (1, 2, 4)
+    ]
     assert pressed[0] < pressed[1] < pressed[2] == approx(300e-9)
 
 
@@ -131,8 +132,10 @@ def test_a_scan_is_refined_on_its_own_pixels(case_text, tmp_path):
     a, b = case_text.index("[roughness]"), case_text.index("[indentation]")
     measured = '[roughness]\nkind = "measured"\nfile = "scan.npy"\nsize = "32 um"\n'
     out, _ = converge(case_text[:a] + measured + case_text[b:], tmp_path, 2)
-    spacings = [json.loads((out.path / f"refine-{k}" / "summary.json").read_text())["model"]
-                ["spacing"][0] for k in (1, 2)]  # fmt: skip
+    spacings = [
+        json.loads((out.path / f"refine-{k}" / "summary.json").read_text())["model"]["spacing"][0]
+        for k in (1, 2)
+    ]
     assert spacings == approx([0.5e-6, 0.25e-6])
 
 

@@ -240,9 +240,15 @@ class FakeTopography:
 def fake_channel(name, **changes):
     """A channel as SurfaceTopography describes it: a height map in nm of 2 x 1 um."""
     channel = SimpleNamespace(
-        name=name, index=0, dim=2, nb_grid_pts=(5, 4), physical_sizes=(2000.0, 1000.0),
-        unit="nm", data_unit="nm", is_height_channel=True,
-    )  # fmt: skip
+        name=name,
+        index=0,
+        dim=2,
+        nb_grid_pts=(5, 4),
+        physical_sizes=(2000.0, 1000.0),
+        unit="nm",
+        data_unit="nm",
+        is_height_channel=True,
+    )
     channel.topography = lambda physical_sizes: FakeTopography(
         channel.unit, channel.physical_sizes or physical_sizes
     )

@@ -19,8 +19,12 @@ def moments(apply):
     assert np.all(np.diff(x) >= 0)  # the order of heights is kept
     mean = WEIGHT @ x
     variance = WEIGHT @ (x - mean) ** 2
-    return (mean, variance, WEIGHT @ (x - mean) ** 3 / variance**1.5,
-            WEIGHT @ (x - mean) ** 4 / variance**2)  # fmt: skip
+    return (
+        mean,
+        variance,
+        WEIGHT @ (x - mean) ** 3 / variance**1.5,
+        WEIGHT @ (x - mean) ** 4 / variance**2,
+    )
 
 
 @pytest.mark.parametrize(

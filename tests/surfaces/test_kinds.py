@@ -79,10 +79,14 @@ def test_the_lay_is_where_it_is_said_to_be(angle):
 @pytest.mark.parametrize(
     ("pair", "periodic"),
     [
-        ((0.3, 3.3), True), ((1.0, 4.0), True), ((0.0, 2.0), True), ((-2.0, 10.0), True),
-        ((0.3, 3.3), False), ((-1.0, 5.0), False),
+        ((0.3, 3.3), True),
+        ((1.0, 4.0), True),
+        ((0.0, 2.0), True),
+        ((-2.0, 10.0), True),
+        ((0.3, 3.3), False),
+        ((-1.0, 5.0), False),
     ],
-)  # fmt: skip
+)
 def test_skewness_and_kurtosis_are_met(kind, periodic, pair):
     surface = generate(kind=kind, periodic=periodic, skewness=pair[0], kurtosis=pair[1])
     found, normal = describe(surface), describe(generate(kind=kind, periodic=periodic))
@@ -138,7 +142,7 @@ def test_edges_match_only_where_the_surface_is_periodic(kind):
         ("gaussian", {"kurtosis": math.nan}, "kurtosis", "no heights have"),
         ("exponential", {"correlation_length": (4e-5, 2e-6)}, "correlation_length", "along"),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be_is_refused(kind, changes, key, said):
     with pytest.raises(SurfaceError) as refusal:
         generate(kind=kind, **changes)

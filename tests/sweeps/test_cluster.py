@@ -20,8 +20,11 @@ def dask(*arguments):
     environment = {**os.environ, "DUCC0_NUM_THREADS": "1"}
     return subprocess.Popen(
         [sys.executable, "-m", "distributed.cli." + arguments[0], *arguments[1:]],
-        stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True, env=environment,
-    )  # fmt: skip
+        stderr=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        text=True,
+        env=environment,
+    )
 
 
 @pytest.fixture
@@ -49,11 +52,11 @@ def cluster():
 
 def test_a_cluster_gives_what_one_process_gives(cli, case_text, cluster, tmp_path):
     (tmp_path / "study.toml").write_text(case_text + SWEEP)
-    status, _, said = cli("study", tmp_path / "study.toml", "-o", tmp_path / "far",
-                          "--scheduler", cluster)  # fmt: skip
+    status, _, said = cli(
+        "study", tmp_path / "study.toml", "-o", tmp_path / "far", "--scheduler", cluster
+    )
     assert status == 0, said
-    status, _, said = cli("study", tmp_path / "study.toml", "-o", tmp_path / "near",
-                          "--workers", 1)  # fmt: skip
+    status, _, said = cli("study", tmp_path / "study.toml", "-o", tmp_path / "near", "--workers", 1)
     assert status == 0, said
     assert (tmp_path / "far" / "table.csv").read_text() == (
         tmp_path / "near" / "table.csv"
@@ -66,7 +69,8 @@ def test_no_cluster_there(refused, case_text, tmp_path, monkeypatch):
     monkeypatch.setattr(executors, "PATIENCE", "1s")
     (tmp_path / "study.toml").write_text(case_text + SWEEP)
     began = time.monotonic()
-    message = refused("study", tmp_path / "study.toml", "-o", tmp_path / "out", "--scheduler",
-                      "tcp://127.0.0.1:9")  # fmt: skip
+    message = refused(
+        "study", tmp_path / "study.toml", "-o", tmp_path / "out", "--scheduler", "tcp://127.0.0.1:9"
+    )
     assert "tcp://127.0.0.1:9 does not answer" in message
     assert time.monotonic() - began < 60

@@ -218,11 +218,23 @@ def test_a_full_disk_stops_the_study_and_loses_nothing(whole, text, tmp_path, mo
 
 def begin(folder, *more):
     return subprocess.Popen(
-        [sys.executable, "-m", "restitution", "study", folder / "study.toml", "-o",
-         folder / "out", "--workers", "2", *more],
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        [
+            sys.executable,
+            "-m",
+            "restitution",
+            "study",
+            folder / "study.toml",
+            "-o",
+            folder / "out",
+            "--workers",
+            "2",
+            *more,
+        ],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
         env={**os.environ, "DUCC0_NUM_THREADS": "1"},
-    )  # fmt: skip
+    )
 
 
 def test_kill_9_at_any_moment_loses_the_cases_in_flight_at_most(text, tmp_path):

@@ -19,8 +19,10 @@ def test_a_grid_has_every_combination_the_last_quantity_fastest(case_text):
     study = parse_study(case_text + SWEEP)
     assert study.shape == (3, 2)
     assert [tuple(case.values.values()) for case in study.cases[:3]] == [
-        ("0.05 um", "150 MPa"), ("0.05 um", "750 MPa"), ("0.1 um", "150 MPa"),
-    ]  # fmt: skip
+        ("0.05 um", "150 MPa"),
+        ("0.05 um", "750 MPa"),
+        ("0.1 um", "150 MPa"),
+    ]
     case = parse_case(study.cases[4].text)
     assert (case.roughness[0].rms, case.interface.yield_pressure) == (0.2e-6, 150e6)
     assert [case.number for case in study.cases] == [1, 2, 3, 4, 5, 6]
@@ -82,11 +84,13 @@ def test_one_of_several_tables_is_named_by_its_number(case_text):
         ("[sweep]\n'roughness.sed' = [1]", "roughness.sed = 1: roughness.sed: unknown key"),
         ("[sweep]\n'roughness.rms' = ['1 kg']", 'with roughness.rms = "1 kg": roughness.rms'),
         ("[sweep]\n'title.x' = [1]", '"title" is a value, not a table'),
-        ("[sweep]\nmode = 'paired'\n'roughness.seed' = [1, 2]\n'roughness.rms' = ['1 um']",
-         "needs lists of one length; there are roughness.seed 2, roughness.rms 1"),
+        (
+            "[sweep]\nmode = 'paired'\n'roughness.seed' = [1, 2]\n'roughness.rms' = ['1 um']",
+            "needs lists of one length; there are roughness.seed 2, roughness.rms 1",
+        ),
         ("[sweep", "not valid TOML"),
     ],
-)  # fmt: skip
+)
 def test_what_is_wrong_is_said(case_text, sweep, words):
     with pytest.raises(CaseError, match=words):
         parse_study(case_text + sweep)

@@ -165,9 +165,10 @@ QUANTITIES = [
 ]
 LAWS = list(dict.fromkeys(law for law, *_ in QUANTITIES))
 IMPACT_LAWS: list[type[ImpactLaw]] = [
-    law for law, name, names, _ in QUANTITIES
+    law
+    for law, name, names, _ in QUANTITIES
     if name == "restitution" and names == ("velocity", "mass")
-]  # fmt: skip
+]
 HELD_AT_ZERO = (JKR, "force"), (JKR, "contact_radius"), (JKR, "unloading_work")  # to the break
 # parameters of the law that a quantity does not depend on
 LEFT_OUT = {

@@ -69,10 +69,12 @@ DEPTHS = (1e-9, 4e-9, 12e-9, 28e-9, 56e-9)  # δ_y is 28 nm for 0.75 GPa, 111 nm
 def refined(p_y, w, depth):
     """On 0.12 um, a_c/h = 4.7 for w = 0.09; for w = 0.01 the depth decides over less."""
     return collide(
-        solve(square(depth, 0.12e-6, yield_pressure=p_y, work_of_adhesion=w,
-                     approach="hertzian"), depth),
+        solve(
+            square(depth, 0.12e-6, yield_pressure=p_y, work_of_adhesion=w, approach="hertzian"),
+            depth,
+        ),
         tolerance=0.01,
-    )  # fmt: skip
+    )
 
 
 @pytest.mark.parametrize("p_y", [0.75e9, 1.5e9])
@@ -97,9 +99,9 @@ def test_restitution_rises_peaks_and_falls(p_y):
 @pytest.mark.parametrize(("spacing", "resolved"), [(0.25e-6, False), (0.12e-6, True)])
 def test_the_paper_does_not_resolve_its_adhesion(spacing, resolved):
     state = solve(
-        square(12e-9, spacing, yield_pressure=0.75e9, work_of_adhesion=0.09,
-               approach="hertzian"), 12e-9
-    )  # fmt: skip
+        square(12e-9, spacing, yield_pressure=0.75e9, work_of_adhesion=0.09, approach="hertzian"),
+        12e-9,
+    )
     assert (adhesive_nodes(state) >= ADHESIVE_NODES) is resolved
     a_c = float(JKR(R, E_STAR, 0.09).pull_off_radius)
     assert adhesive_nodes(state) == approx(a_c / spacing, rel=1e-6)
@@ -142,9 +144,17 @@ def test_no_adhesion_is_the_contact_without(approach, detachment, plasticity):
     )
     plain = solve(Contact(PAIR, surface, 1e9, plasticity), 60e-9)
     named = solve(
-        Contact(PAIR, surface, 1e9, plasticity, work_of_adhesion=0.0, approach=approach,
-                detachment=detachment), 60e-9
-    )  # fmt: skip
+        Contact(
+            PAIR,
+            surface,
+            1e9,
+            plasticity,
+            work_of_adhesion=0.0,
+            approach=approach,
+            detachment=detachment,
+        ),
+        60e-9,
+    )
     assert np.array_equal(named.pressure, plain.pressure)
     assert named.force == plain.force
     assert named.loading_work == plain.loading_work
@@ -158,8 +168,9 @@ def test_vanishing_adhesion_is_none():
     """The adhesive code at a w that cannot matter."""
     plain = collide(solve(square(20e-9, 0.25e-6, yield_pressure=0.75e9), 20e-9))
     for approach in ("equilibrium", "hertzian"):
-        contact = square(20e-9, 0.25e-6, yield_pressure=0.75e9, work_of_adhesion=1e-7,
-                         approach=approach)  # fmt: skip
+        contact = square(
+            20e-9, 0.25e-6, yield_pressure=0.75e9, work_of_adhesion=1e-7, approach=approach
+        )
         collision = collide(solve(contact, 20e-9))
         assert collision.restitution == approx(plain.restitution, abs=3e-3)
 
@@ -171,14 +182,21 @@ def test_what_yielded_pulls_harder():
             list(
                 separate(
                     solve(
-                        square(40e-9, 0.14e-6, yield_pressure=p_y, work_of_adhesion=0.09,
-                               approach="hertzian"), 40e-9
-                    ), tolerance=0.01,
+                        square(
+                            40e-9,
+                            0.14e-6,
+                            yield_pressure=p_y,
+                            work_of_adhesion=0.09,
+                            approach="hertzian",
+                        ),
+                        40e-9,
+                    ),
+                    tolerance=0.01,
                 )
             )
         ).pull_off_force
         for p_y in (math.inf, 0.5e9)
-    )  # fmt: skip
+    )
     F_c = float(JKR(R, E_STAR, 0.09).pull_off_force)
     assert elastic == approx(F_c, rel=0.05)
     assert yielded > 1.15 * elastic

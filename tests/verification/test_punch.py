@@ -29,11 +29,14 @@ def punch(nodes, offset=(0, 0), ratio=1, depth=1e-3):
 @pytest.mark.parametrize(
     ("nodes", "offset", "ratio"),
     [
-        (15.1, (0, 0), 1), (20.4, (0, 0), 1),
-        (15.1, (0.3, 0.4), 1), (20.4, (0.3, 0.4), 1),
-        (15.1, (0, 0), 2), (20.4, (0.3, 0.4), 2),
+        (15.1, (0, 0), 1),
+        (20.4, (0, 0), 1),
+        (15.1, (0.3, 0.4), 1),
+        (20.4, (0.3, 0.4), 1),
+        (15.1, (0, 0), 2),
+        (20.4, (0.3, 0.4), 2),
     ],
-)  # fmt: skip
+)
 def test_kendall(detachment, nodes, offset, ratio):
     pair, surface, radius = punch(nodes, offset, ratio)
     contact = Contact(pair, surface, work_of_adhesion=W, approach="hertzian", detachment=detachment)

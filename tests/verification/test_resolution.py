@@ -30,8 +30,9 @@ def curves():
                     cases.append((np.nan, False))
                     continue
                 state = solve(contact, depth - later)
-                cases.append((collide(state).restitution,
-                              resolves(median_patch(state.patch_sizes()))))  # fmt: skip
+                cases.append(
+                    (collide(state).restitution, resolves(median_patch(state.patch_sizes())))
+                )
             found.append(cases)
     return found
 
@@ -47,8 +48,12 @@ def test_resolved_contacts_have_converged(curves):
 
 
 def test_contacts_that_are_not_resolved_have_not(curves):
-    off = [abs(e / cases[-1][0] - 1) for cases in curves for e, good in cases[:-1]
-           if not good and not np.isnan(e)]  # fmt: skip
+    off = [
+        abs(e / cases[-1][0] - 1)
+        for cases in curves
+        for e, good in cases[:-1]
+        if not good and not np.isnan(e)
+    ]
     assert len(off) >= 5
     assert max(off) > 0.1
     assert np.sqrt(np.mean(np.square(off))) > 0.05

@@ -183,10 +183,15 @@ def _keys_of(path: list[str], loc: tuple[Any, ...]) -> list[str]:
     if path[:2] == ["roughness", "crop"]:
         return list(CropTable.model_fields)
     tables: dict[str, type[Table]] = {
-        "first": BodyTable, "second": BodyTable, "interface": InterfaceTable, "grid": GridTable,
-        "indentation": Series[Length], "load": Series[Force], "impact": ImpactTable,
+        "first": BodyTable,
+        "second": BodyTable,
+        "interface": InterfaceTable,
+        "grid": GridTable,
+        "indentation": Series[Length],
+        "load": Series[Force],
+        "impact": ImpactTable,
         "unloading": UnloadingTable,
         "roughness": MeasuredRoughness if "measured" in loc else GeneratedRoughness,
-    }  # fmt: skip
+    }
     model = tables[path[0]] if path else Case
     return [field.alias or name for name, field in model.model_fields.items()]

@@ -8,9 +8,14 @@ _NO_ROOM = {errno.ENOSPC, errno.EFBIG, errno.EIO, getattr(errno, "EDQUOT", errno
 
 # Its reasons why a file or folder cannot be used.
 _NO_ACCESS = {
-    errno.EACCES, errno.EPERM, errno.EROFS, errno.ENOTDIR, errno.EISDIR, errno.ELOOP,
+    errno.EACCES,
+    errno.EPERM,
+    errno.EROFS,
+    errno.ENOTDIR,
+    errno.EISDIR,
+    errno.ELOOP,
     errno.ENAMETOOLONG,
-}  # fmt: skip
+}
 
 
 def main() -> None:

@@ -42,9 +42,15 @@ def collide(
         if (abs(unloaded / point.indentation - 1) < 1e-6).any()
     ]
     table = table_of_numbers(
-        "V (m/s)", "COR", "error", "by energies", "difference", "time (s)", "force (N)",
+        "V (m/s)",
+        "COR",
+        "error",
+        "by energies",
+        "difference",
+        "time (s)",
+        "force (N)",
         "depth (nm)",
-    )  # fmt: skip
+    )
     courses, blended = [], False
     for each in asked:
         found, energies = collide_in_time(force, each), law.at(each)
@@ -52,11 +58,15 @@ def collide(
         error = max(abs(found.restitution - energies.restitution), energies.error)
         courses += course(found)
         table.add_row(
-            f"{each:.4g}", f"{found.restitution:.5f}", f"± {error:.5f}",
+            f"{each:.4g}",
+            f"{found.restitution:.5f}",
+            f"± {error:.5f}",
             f"{energies.restitution:.5f}",
-            f"{found.restitution - energies.restitution:+.5f}", f"{found.duration:.4g}",
-            f"{found.largest_force:.4g}", f"{1e9 * found.largest_indentation:.4g}",
-        )  # fmt: skip
+            f"{found.restitution - energies.restitution:+.5f}",
+            f"{found.duration:.4g}",
+            f"{found.largest_force:.4g}",
+            f"{1e9 * found.largest_indentation:.4g}",
+        )
         blended |= found.blended
     if out is not None:
         write_table(out, courses)

@@ -32,9 +32,12 @@ def many_cases(cases: int, out: object, again: str) -> Iterator[Progress]:
     say(f"{cases} cases. Results go to {out}; to resume: {again}", errors)
     hint_at_kernels()
     columns = (
-        TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(),
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
         TimeRemainingColumn(),
-    )  # fmt: skip
+    )
     try:
         with Progress(*columns, console=errors, transient=True) as bar:
             yield bar

@@ -93,10 +93,13 @@ def carry_out(
         with naming(case), Progress(*columns, console=errors, transient=True) as bar:
             task = bar.add_task("reading the surface", total=depths * runs(read) + steps(read))
             summary = start(
-                read, text, case.parent, folder,
+                read,
+                text,
+                case.parent,
+                folder,
                 progress=lambda words: bar.update(task, advance=1, description=words),
                 warn=warn,
-            )  # fmt: skip
+            )
         answers.print(_curve(folder.rows))
         many = f" of {runs(read)} curves" if runs(read) > 1 else ""
         residual = summary["trust"]["largest_residual"]

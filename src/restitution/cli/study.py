@@ -61,8 +61,7 @@ def study(
                 f"case {number}: {done} of {depths}"
                 for number, done in list(tally.in_flight.items())[:3]
             )
-            bar.update(task, completed=round(tally.done + within, 2),
-                       description=words or "cases")  # fmt: skip
+            bar.update(task, completed=round(tally.done + within, 2), description=words or "cases")
 
         tally = run_study(
             read, file.parent.resolve(), folder, there, show, retry_failed=retry_failed

@@ -72,8 +72,12 @@ def yield_bound(contact: Contact, indentation: float, residual: float) -> tuple[
         return freeze(bound), 0
     elastic = solve_pressure(contact, deeper, box, limit=math.inf, residual=_LOOSER * residual)
     measure = elastic.box_pressure / math.sqrt(_DEEPER)
-    merged = np.divide(_smooth_pressure(contact, box, elastic.force), measure,
-                       out=np.ones_like(measure), where=measure > 0)  # fmt: skip
+    merged = np.divide(
+        _smooth_pressure(contact, box, elastic.force),
+        measure,
+        out=np.ones_like(measure),
+        where=measure > 0,
+    )
     ridge = contact.elongation[box] * np.maximum(1 - merged, 0)
     bound[box] = bound_of(contact, measure, ridge)
     return freeze(bound), elastic.convolutions
@@ -87,8 +91,10 @@ def bound_of(contact: Contact, measure: Array, ridge: Array | float = 0.0) -> Ar
     Y = contact.yield_strength
     c_0 = contact.first_yield_pressure / Y * (1 + _RIDGE_ONSET * ridge)
     beyond = np.maximum(measure / (c_0 * Y), 1.0)
-    factor = np.minimum(c_0 + GROWTH * (1 + _RIDGE_GROWTH * ridge) * np.log(beyond),
-                        LARGEST * (1 + _RIDGE_LARGEST * ridge))  # fmt: skip
+    factor = np.minimum(
+        c_0 + GROWTH * (1 + _RIDGE_GROWTH * ridge) * np.log(beyond),
+        LARGEST * (1 + _RIDGE_LARGEST * ridge),
+    )
     strain = _TABOR * math.pi / 2 * (beyond - 1) * c_0 * Y / contact.pair.contact_modulus
     bound: Array = factor * (Y + contact.hardening_modulus * strain)
     return bound

@@ -183,10 +183,20 @@ def build_state(
         if not isinstance(limit, np.ndarray):
             work -= limit * float(np.sum(gap, where=yielding)) * contact.grid.cell_area
     displacement = np.add(gap, solution.overlap, out=gap)
-    return State(contact, indentation, box, freeze(pressure), freeze(displacement),
-                 freeze(plastic), limit,
-                 work, adhesive_work, work_error, solution.residual,
-                 solution.convolutions)  # fmt: skip
+    return State(
+        contact,
+        indentation,
+        box,
+        freeze(pressure),
+        freeze(displacement),
+        freeze(plastic),
+        limit,
+        work,
+        adhesive_work,
+        work_error,
+        solution.residual,
+        solution.convolutions,
+    )
 
 
 def candidate_box(contact: Contact, indentation: float, history: State | None = None) -> Box | None:
@@ -210,13 +220,29 @@ def separated_state(contact: Contact, indentation: float, history: State | None 
     nothing = np.zeros((0, 0))
     plastic, work, adhesive_work, work_error = _past(contact, history)
     bound = contact.first_yield_pressure if history is None else history.bound
-    return State(contact, indentation, NOWHERE, nothing, nothing, freeze(plastic), bound,
-                 work, adhesive_work, work_error, residual=0.0, convolutions=0)  # fmt: skip
+    return State(
+        contact,
+        indentation,
+        NOWHERE,
+        nothing,
+        nothing,
+        freeze(plastic),
+        bound,
+        work,
+        adhesive_work,
+        work_error,
+        residual=0.0,
+        convolutions=0,
+    )
 
 
 def _past(contact: Contact, history: State | None) -> tuple[Array, float, float, float]:
     """Plastic displacement, plastic and adhesive work, and the error of the works."""
     if history is None:
         return np.zeros(contact.grid.nodes), 0.0, 0.0, 0.0
-    return (history.plastic_displacement, history.plastic_work,
-            history.adhesive_work, history.work_error)  # fmt: skip
+    return (
+        history.plastic_displacement,
+        history.plastic_work,
+        history.adhesive_work,
+        history.work_error,
+    )

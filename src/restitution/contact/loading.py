@@ -95,8 +95,11 @@ def step(state: State, indentation: float, *, residual: float = RESIDUAL) -> Sta
         new = solve_nonadhesive(contact, indentation, limit, residual, history=state)
         if contact.grows:
             work, _ = _plastic_work(state, new)
-            new = replace(new, plastic_work=state.plastic_work + work,
-                          convolutions=new.convolutions + convolutions)  # fmt: skip
+            new = replace(
+                new,
+                plastic_work=state.plastic_work + work,
+                convolutions=new.convolutions + convolutions,
+            )
     require_inside_grid(new)
     return replace(new, is_first_loading=False)
 
@@ -115,9 +118,15 @@ def solve_without_work(
             held = held[box]
         else:
             box, held = shallower.box, shallower.box_pressure != 0
-        state = grow_contact(contact, indentation, box, held, limit=limit,
-                       first_guess=None if start is None else start.pressure_on(box),
-                       residual=residual)  # fmt: skip
+        state = grow_contact(
+            contact,
+            indentation,
+            box,
+            held,
+            limit=limit,
+            first_guess=None if start is None else start.pressure_on(box),
+            residual=residual,
+        )
     elif contact.adhesive and contact.approach == "pull-increments":
         # The pull may let go of everything: the state is then parted, with zero force.
         pressed = solve_nonadhesive(contact, indentation + PULL_INCREMENT, limit, residual)
@@ -169,9 +178,14 @@ def truncate_pressure(elastic: State) -> State:
     displacement = K(pressure)
     plastic = np.zeros(contact.grid.nodes)
     plastic[box] = np.maximum(indentation - contact.gap[box] - displacement, 0.0)
-    return replace(elastic, box_pressure=freeze(pressure), plastic_displacement=freeze(plastic),
-                   bound=contact.yield_pressure, box_displacement=freeze(displacement),
-                   convolutions=elastic.convolutions + 1)  # fmt: skip
+    return replace(
+        elastic,
+        box_pressure=freeze(pressure),
+        plastic_displacement=freeze(plastic),
+        bound=contact.yield_pressure,
+        box_displacement=freeze(displacement),
+        convolutions=elastic.convolutions + 1,
+    )
 
 
 def work_is_integrated(contact: Contact) -> bool:
@@ -206,8 +220,13 @@ def with_work(state: State, start: State | None) -> State:
     convolutions += state.convolutions
     if contact.plasticity == "truncated":
         # The cut pressure's plastic work is what is left of the work; it has no formula of its own.
-        return replace(state, plastic_work=work - state.stored_energy, adhesive_work=0.0,
-                       work_error=error, convolutions=convolutions)  # fmt: skip
+        return replace(
+            state,
+            plastic_work=work - state.stored_energy,
+            adhesive_work=0.0,
+            work_error=error,
+            convolutions=convolutions,
+        )
     return replace(state, adhesive_work=known - work, work_error=error, convolutions=convolutions)
 
 
@@ -241,9 +260,14 @@ def _work_by_force(state: State, start: State | None) -> tuple[float, float, int
         first_force = force_at(0.0)  # jump-in
     scale = abs(work) + 0.5 * (abs(first_force) + abs(state.force)) * (indentation - first)
     increment, its_error = integrate_adaptively(
-        force_at, first, indentation, first_force, state.force,
-        _ADHESIVE_TOLERANCE * scale, depth=_ADHESIVE_HALVINGS,
-    )  # fmt: skip
+        force_at,
+        first,
+        indentation,
+        first_force,
+        state.force,
+        _ADHESIVE_TOLERANCE * scale,
+        depth=_ADHESIVE_HALVINGS,
+    )
     return work + increment, error + its_error + _pinning_error(state), convolutions
 
 
@@ -341,9 +365,14 @@ def _work_by_truncation(state: State, start: State | None) -> tuple[float, float
     if integrand(end) > 0:
         tolerance = _TRUNCATION_TOLERANCE * truncated_force(end) * indentation
         increment, its_error = integrate_adaptively(
-            lambda depth: integrand(elastic(depth, _WORK_RESIDUAL)), first, indentation, value,
-            integrand(end), tolerance, panels=_TRUNCATION_PANELS,
-        )  # fmt: skip
+            lambda depth: integrand(elastic(depth, _WORK_RESIDUAL)),
+            first,
+            indentation,
+            value,
+            integrand(end),
+            tolerance,
+            panels=_TRUNCATION_PANELS,
+        )
         # Nodes yield one after the other, so the force has many small kinks, between which the
         # two rules may agree by chance: blind contacts were off by up to nine tolerances.
         its_error += _TRUNCATION_MARGIN * tolerance

@@ -95,8 +95,12 @@ def _way_back(state: State, tolerance: float, finer: int) -> Iterator[State]:
         step = min(step, longest)
         length = contact.residual_length(state.indentation - step)
         accuracy = _ACCURACY * contact.crack_opening / length
-        new = unload_adhesive(state, state.indentation - step,
-                   first_guess=_predict(previous, state, step), residual=accuracy)  # fmt: skip
+        new = unload_adhesive(
+            state,
+            state.indentation - step,
+            first_guess=_predict(previous, state, step),
+            residual=accuracy,
+        )
         late = _late_force(new)
         if new.contact_nodes == 0:
             # The last stretch: approach the break until the step is a small part of it.

@@ -258,9 +258,10 @@ def _mdr(b: Bodies, V: Array) -> Form | str:
     sphere = MDR(n * b.R, E, nu, b.strength)
     limit = n * math.sqrt(2 * float(sphere.loading_work(n * b.R)) / (n * b.m))
     flat = (
-        "two equal spheres, a flat between them" if b.equal
+        "two equal spheres, a flat between them"
+        if b.equal
         else "a sphere on a rigid flat, the wall's compliance put into E"
-    )  # fmt: skip
+    )
     return Form(
         sphere.restitution(V / n, n * b.m),
         f"{flat}; up to {speed(limit)}, where the indentation is the radius",

@@ -82,10 +82,13 @@ def _all(law: Law) -> Iterator[FittedLaw]:
 def _constant(law: Law) -> FittedLaw:
     mean = float(_seen(law, "restitution").mean())
     return _judged(
-        law, "constant", lambda V: np.full_like(V, mean), {"restitution": mean},
+        law,
+        "constant",
+        lambda V: np.full_like(V, mean),
+        {"restitution": mean},
         source="one coefficient of restitution, as most models take it",
         ends="as the code takes it",
-    )  # fmt: skip
+    )
 
 
 def _thornton_ning(law: Law) -> Iterator[FittedLaw]:
@@ -108,10 +111,14 @@ def _thornton_ning(law: Law) -> Iterator[FittedLaw]:
 
     p_y = math.exp(_least_squares(forces, [begin])[0])
     yield _judged(
-        law, "thornton-ning-force", lambda v: restitution(v, p_y, V_s),
+        law,
+        "thornton-ning-force",
+        lambda v: restitution(v, p_y, V_s),
         {"yield_pressure_Pa": p_y, **_adhesion_of(law, V_s)},
-        source=source, ends=_AT_FORCE_ZERO, fitted_to="the largest force at each velocity",
-    )  # fmt: skip
+        source=source,
+        ends=_AT_FORCE_ZERO,
+        fitted_to="the largest force at each velocity",
+    )
 
     scale = law.lowest
     e = _seen(law, "restitution")
@@ -125,10 +132,13 @@ def _thornton_ning(law: Law) -> Iterator[FittedLaw]:
     )
     found = scale * float(x[1]) if adhesive else 0.0
     yield _judged(
-        law, "thornton-ning", lambda v: restitution(v, math.exp(x[0]), found),
+        law,
+        "thornton-ning",
+        lambda v: restitution(v, math.exp(x[0]), found),
         {"yield_pressure_Pa": math.exp(x[0]), **_adhesion_of(law, found)},
-        source=source, ends=_AT_FORCE_ZERO,
-    )  # fmt: skip
+        source=source,
+        ends=_AT_FORCE_ZERO,
+    )
 
 
 def _adhesion_of(law: Law, V_s: float) -> Parameters:
@@ -154,11 +164,13 @@ def _walton_braun(law: Law) -> FittedLaw:
 
     x = _fit(law, restitution, [0.1, 1.0], [0.0, 0.0])
     return _judged(
-        law, "walton-braun", lambda V: restitution(V, x),
+        law,
+        "walton-braun",
+        lambda V: restitution(V, x),
         dict(zip(_WALTON_BRAUN, springs(x), strict=True)),
         source="O. R. Walton, R. L. Braun, J. Rheology 30 (1986) 949-980; k2 = k_u + S F_max",
         ends=_AT_FORCE_ZERO,
-    )  # fmt: skip
+    )
 
 
 def _luding(law: Law) -> FittedLaw:
@@ -176,10 +188,13 @@ def _luding(law: Law) -> FittedLaw:
     stiff = -2 * math.log(max(float(_seen(law, "restitution").mean()), 0.05))
     x = _fit(law, restitution, [stiff, -2.0, *adhesive], [1e-9, -15.0, *(0.0 for _ in adhesive)])
     return _judged(
-        law, "luding", lambda V: restitution(V, x), dict(zip(_LUDING, springs(x), strict=True)),
+        law,
+        "luding",
+        lambda V: restitution(V, x),
+        dict(zip(_LUDING, springs(x), strict=True)),
         source="S. Luding, Granular Matter 10 (2008) 235-246; plasticity depth of 2 R*",
         ends="indentation zero" if adhesive else _AT_FORCE_ZERO,
-    )  # fmt: skip
+    )
 
 
 def _eepa(law: Law) -> FittedLaw:
@@ -197,11 +212,14 @@ def _eepa(law: Law) -> FittedLaw:
     adhesive = [0.01, 0.01] if law.work_of_adhesion > 0 else []
     x = _fit(law, restitution, [1.0, *adhesive], [0.0, *(0.0 for _ in adhesive)])
     return _judged(
-        law, "eepa", lambda V: restitution(V, x), dict(zip(_EEPA, springs(x), strict=True)),
+        law,
+        "eepa",
+        lambda V: restitution(V, x),
+        dict(zip(_EEPA, springs(x), strict=True)),
         source="S. C. Thakur et al., Granular Matter 16 (2014) 383-400; exponent 3/2 given",
         ends="indentation zero" if adhesive else _AT_FORCE_ZERO,
         note="" if adhesive else "without adhesion its restitution is the same at every velocity",
-    )  # fmt: skip
+    )
 
 
 def _mdr(law: Law) -> FittedLaw | None:
@@ -226,12 +244,14 @@ def _mdr(law: Law) -> FittedLaw | None:
     start = math.log((law.yield_pressure or 0.03 * law.contact_modulus) / 2.8)
     x = _fit(law, restitution, [start], [start - 7], [start + 7])
     return _judged(
-        law, "lammps-mdr", lambda V: restitution(V, x),
+        law,
+        "lammps-mdr",
+        lambda V: restitution(V, x),
         {"yield_strength_Pa": math.exp(x[0]), "youngs_modulus_Pa": E, "poissons_ratio": nu},
         source="W. Zunker, K. Kamrin, J. Mech. Phys. Solids 183 (2024) 105492, as LAMMPS has it",
         ends=_AT_FORCE_ZERO,
         note="without its adhesion" if law.work_of_adhesion > 0 else "",
-    )  # fmt: skip
+    )
 
 
 def _seen(law: Law, name: str) -> Array:

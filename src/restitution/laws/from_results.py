@@ -72,8 +72,11 @@ def _law(out: Path, run: RunResults) -> Law:
             "adhesion has done more work than the approach, or no force was found"
         )
     pair = case.pair()
-    for name, value in (("reduced_radius_m", pair.radius), ("reduced_mass_kg", pair.mass),
-                        ("contact_modulus_Pa", pair.contact_modulus)):  # fmt: skip
+    for name, value in (
+        ("reduced_radius_m", pair.radius),
+        ("reduced_mass_kg", pair.mass),
+        ("contact_modulus_Pa", pair.contact_modulus),
+    ):
         if value is None or not math.isclose(derived[name], value, rel_tol=_SAME):
             raise OutputError(
                 f"{out}: {name} of summary.json is not that of the case in results.nc; a file is "

@@ -176,8 +176,13 @@ def _of_law(bodies: Bodies, law: Law, V: Array) -> Iterator[Theory]:
     for name in _FITTED:
         for each in law.laws:
             if each.name == name:
-                yield Theory(name, each.source, f"{span}, {_judged(each)}", each.parameters,
-                             fitted(_restitution_of(each)))  # fmt: skip
+                yield Theory(
+                    name,
+                    each.source,
+                    f"{span}, {_judged(each)}",
+                    each.parameters,
+                    fitted(_restitution_of(each)),
+                )
     if not _cannot_fit(law):
         beta = _dissipation(law)
         e = Brilliantov(beta).restitution(own)

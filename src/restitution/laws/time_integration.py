@@ -215,8 +215,13 @@ def collide_in_time(law: StoredForce, velocity: float) -> ReferenceCollision:
 
 def course(collision: ReferenceCollision) -> list[dict[str, float | str]]:
     """The course of a collision as rows of a table."""
-    columns = zip(collision.time, collision.indentation, collision.force,
-                  collision.closing_velocity, strict=True)  # fmt: skip
+    columns = zip(
+        collision.time,
+        collision.indentation,
+        collision.force,
+        collision.closing_velocity,
+        strict=True,
+    )
     return [
         {
             "impact_velocity_m_per_s": collision.velocity,
@@ -248,8 +253,16 @@ def _integrate(
         event.terminal = True  # type: ignore[attr-defined]
     long = 1e3 * scale / velocity
     absolute = [_RTOL * scale] * 2 + [_RTOL * velocity] * 2
-    found = solve_ivp(rates, (0.0, long), start, method="DOP853", events=events, rtol=_RTOL,
-                      atol=absolute, max_step=scale / velocity)  # fmt: skip
+    found = solve_ivp(
+        rates,
+        (0.0, long),
+        start,
+        method="DOP853",
+        events=events,
+        rtol=_RTOL,
+        atol=absolute,
+        max_step=scale / velocity,
+    )
     if found.status != 1:
         raise NotConvergedError(
             f"velocity: the collision at {velocity:.6g} m/s did not end ({found.message}); "

@@ -8,47 +8,67 @@ from typing import Any
 from restitution.pages.page import Table
 
 _ALWAYS = (
-    ("displacement of the half-space", "rectangles of constant pressure",
-     "Love (1929), Phil. Trans. R. Soc. A 228, 377–420; Johnson (1985), Contact Mechanics, "
-     "eq. 3.25"),
-    ("free boundary", "zero-padded FFT convolution",
-     "Liu, Wang and Liu (2000), Wear 243, 101–111"),
-    ("equilibrium", "preconditioned conjugate gradients with bounds on the pressure",
-     "after Polonsky and Keer (1999), Wear 231, 206–219"),
+    (
+        "displacement of the half-space",
+        "rectangles of constant pressure",
+        "Love (1929), Phil. Trans. R. Soc. A 228, 377–420; Johnson (1985), Contact Mechanics, "
+        "eq. 3.25",
+    ),
+    ("free boundary", "zero-padded FFT convolution", "Liu, Wang and Liu (2000), Wear 243, 101–111"),
+    (
+        "equilibrium",
+        "preconditioned conjugate gradients with bounds on the pressure",
+        "after Polonsky and Keer (1999), Wear 231, 206–219",
+    ),
     ("restitution", "sqrt(unloading work / loading work)", "Johnson (1985), §11.5"),
-)  # fmt: skip
+)
 _EQUILIBRIUM = (
-    "yield", "pressure bounded by p_y, pressure and surface in equilibrium",
+    "yield",
+    "pressure bounded by p_y, pressure and surface in equilibrium",
     "Polonsky and Keer (1999)",
-)  # fmt: skip
+)
 _TRUNCATED = (
     "yield",
     "elastic pressure cut at p_y",
     "Thornton and Ning (1998), Powder Technol. 99, 154–162",
 )
 _CAVITY = (
-    "yield", "pressure bounded by 1.6 to 3.5 yield strengths, growing with the elastic pressure",
+    "yield",
+    "pressure bounded by 1.6 to 3.5 yield strengths, growing with the elastic pressure",
     "Johnson (1970), J. Mech. Phys. Solids 18, 115–126; Jackson and Green (2005), J. Tribol. 127, "
     "343–354",
-)  # fmt: skip
+)
 _YIELD = {"equilibrium": _EQUILIBRIUM, "truncated": _TRUNCATED, "expanding-cavity": _CAVITY}
 _ADHESION = (
-    "adhesion", "JKR limit, energy balance at the edge of contact",
+    "adhesion",
+    "JKR limit, energy balance at the edge of contact",
     "Johnson, Kendall and Roberts (1971), Proc. R. Soc. A 324, 301–313",
-)  # fmt: skip
+)
 _DETACHMENT = {
-    "crack-closure": ("detachment", "crack closure over one cell",
-                      "Rybicki and Kanninen (1977), Eng. Fract. Mech. 9, 931–938"),
-    "pohrt-popov": ("detachment", "largest tension of a node",
-                    "Pohrt and Popov (2015), Facta Univ. Mech. Eng. 13, 3–10"),
-}  # fmt: skip
+    "crack-closure": (
+        "detachment",
+        "crack closure over one cell",
+        "Rybicki and Kanninen (1977), Eng. Fract. Mech. 9, 931–938",
+    ),
+    "pohrt-popov": (
+        "detachment",
+        "largest tension of a node",
+        "Pohrt and Popov (2015), Facta Univ. Mech. Eng. 13, 3–10",
+    ),
+}
 _ROUGHNESS = {
-    "generated": ("roughness", "filtered white noise",
-                  "Hu and Tonder (1992), Int. J. Mach. Tools Manufact. 32, 83–90"),
-    "twin": ("roughness", "surrogate with the scan's heights and spectrum",
-             "Schreiber and Schmitz (1996), Phys. Rev. Lett. 77, 635–638; Riedel and Sidorenko "
-             "(1995), IEEE Trans. Signal Process. 43, 188–195"),
-}  # fmt: skip
+    "generated": (
+        "roughness",
+        "filtered white noise",
+        "Hu and Tonder (1992), Int. J. Mach. Tools Manufact. 32, 83–90",
+    ),
+    "twin": (
+        "roughness",
+        "surrogate with the scan's heights and spectrum",
+        "Schreiber and Schmitz (1996), Phys. Rev. Lett. 77, 635–638; Riedel and Sidorenko "
+        "(1995), IEEE Trans. Signal Process. 43, 188–195",
+    ),
+}
 _REFERENCES = (
     ("smooth reference", "elastic–plastic sphere, truncated pressure", "Thornton and Ning (1998)"),
     ("smooth reference", "elastic sphere", "Hertz (1882); Johnson (1985), §4.2"),

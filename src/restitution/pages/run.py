@@ -92,10 +92,12 @@ def _restitution(
         Table(
             "Restitution",
             [f"{words} ({unit})", "COR", "resolved", *errors],
-            [[float(a), float(b), "yes" if good else "no", *map(float, of_cor)]
-             for a, b, good, *of_cor in columns],
+            [
+                [float(a), float(b), "yes" if good else "no", *map(float, of_cor)]
+                for a, b, good, *of_cor in columns
+            ],
         ),
-    )  # fmt: skip
+    )
 
 
 def _force(results: xr.Dataset) -> Drawing:
@@ -134,10 +136,12 @@ def _pressure(results: xr.Dataset) -> Drawing:
         Table(
             "Distribution over the contact",
             ["percentile", *quantities],
-            [[share, *(float(np.percentile(values, share)) for values in pressed)]
-             for share in (10, 50, 90, 100)],
+            [
+                [share, *(float(np.percentile(values, share)) for values in pressed)]
+                for share in (10, 50, 90, 100)
+            ],
         ),
-    )  # fmt: skip
+    )
 
 
 def _trust(results: xr.Dataset, summary: Mapping[str, Any]) -> Table:
@@ -154,9 +158,12 @@ def _trust(results: xr.Dataset, summary: Mapping[str, Any]) -> Table:
 def _groups(summary: Mapping[str, Any]) -> list[Table]:
     tables = []
     for key, title in (
-        ("derived", "Derived quantities"), ("surface_statistics", "Surface"),
-        ("surface", "How the surface was made"), ("model", "Model"), ("conventions", "Conventions"),
-    ):  # fmt: skip
+        ("derived", "Derived quantities"),
+        ("surface_statistics", "Surface"),
+        ("surface", "How the surface was made"),
+        ("model", "Model"),
+        ("conventions", "Conventions"),
+    ):
         if group := summary.get(key):
             rows = [[name, _shown(value)] for name, value in group.items()]
             tables.append(Table(title, ["what", "value"], rows))

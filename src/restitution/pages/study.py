@@ -25,8 +25,10 @@ def write_study_page(out: Path) -> Path:
     cases, text = study.cases, study.text
     title = str(parse_toml(text).get("title", ""))
     swept = list(cases[0].swept)
-    count = {status: sum(case.status == status for case in cases)
-             for status in ("complete", "failed", "missing")}  # fmt: skip
+    count = {
+        status: sum(case.status == status for case in cases)
+        for status in ("complete", "failed", "missing")
+    }
     parts: list[Table | Drawing | Listing] = []
     if count["complete"]:
         parts.append(_restitution(cases, swept, INDENTATION))
@@ -71,11 +73,15 @@ def _restitution(cases: list[StoredCase], swept: list[str], abscissa: Abscissa) 
     axis = abscissa.axis
     drawn = [case for case in cases if case.status == "complete"]
     table: list[list[Cell]] = [
-        [*case.swept.values(), abscissa.scale * row[abscissa.column], row["restitution"],
-         "true" if row["resolved"] else "false"]
+        [
+            *case.swept.values(),
+            abscissa.scale * row[abscissa.column],
+            row["restitution"],
+            "true" if row["resolved"] else "false",
+        ]
         for case in drawn
         for row in rows_with(case, abscissa)
-    ]  # fmt: skip
+    ]
     figure = study_figure(drawn, abscissa)
     lines = min(len(drawn), MOST_LINES)
     few = "" if len(drawn) == lines else f" The first {lines} of {len(drawn)} cases."
@@ -94,8 +100,15 @@ def _cases(cases: list[StoredCase], swept: list[str]) -> Table:
         cor = [row["restitution"] for row in case.curve.rows]
         resolved = int(sum(row["resolved"] for row in case.curve.rows))
         rows.append(
-            [case.name, *case.swept.values(), case.status, min(cor, default=None),
-             max(cor, default=None), f"{resolved} of {len(cor)}", case.reason]
-        )  # fmt: skip
+            [
+                case.name,
+                *case.swept.values(),
+                case.status,
+                min(cor, default=None),
+                max(cor, default=None),
+                f"{resolved} of {len(cor)}",
+                case.reason,
+            ]
+        )
     columns = ["case", *swept, "status", "least COR", "largest COR", "depths resolved", "reason"]
     return Table("Cases", columns, rows)

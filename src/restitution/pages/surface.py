@@ -48,12 +48,20 @@ _PARAMETERS: dict[str, tuple[str, str, str, float, str]] = {
     "Smr2": ("dale material ratio Smr2", "5.5", "%", 100, ""),
     "rms_curvature_per_m": ("rms curvature", "–", "1/µm", 1e-6, ""),
     "correlation_length_x_m": (
-        "lag of 10 % autocorrelation along x", "–", "µm", 1e6, "correlation_length_x_m"
+        "lag of 10 % autocorrelation along x",
+        "–",
+        "µm",
+        1e6,
+        "correlation_length_x_m",
     ),
     "correlation_length_y_m": (
-        "lag of 10 % autocorrelation along y", "–", "µm", 1e6, "correlation_length_y_m"
+        "lag of 10 % autocorrelation along y",
+        "–",
+        "µm",
+        1e6,
+        "correlation_length_y_m",
     ),
-}  # fmt: skip
+}
 
 
 def write_surface_page(out: Path) -> Path:
@@ -117,18 +125,26 @@ def _parameters(statistics: Mapping[str, Any], provenance: Mapping[str, Any]) ->
             value = value if (statistics.get("Str") or 1.0) < _LAY else None
             wanted = None if value is None or wanted is None else math.degrees(float(wanted))
         rows.append(
-            [name, _scaled(value, factor), unit, clause, _scaled(wanted, factor),
-             _scaled(provenance.get(f"scan_{key}"), factor)]
-        )  # fmt: skip
+            [
+                name,
+                _scaled(value, factor),
+                unit,
+                clause,
+                _scaled(wanted, factor),
+                _scaled(provenance.get(f"scan_{key}"), factor),
+            ]
+        )
     of_scan = any(row[-1] is not None for row in rows)
     columns = ["parameter", "value", "unit", "ISO 25178-2", "asked for", "of the scan"]
     return Table(
         "Parameters",
         columns if of_scan else columns[:-1],
         rows if of_scan else [row[:-1] for row in rows],
-        ["On the surface as it is used: after what is listed under “How it was made”, without any "
-         "further filter."],
-    )  # fmt: skip
+        [
+            "On the surface as it is used: after what is listed under “How it was made”, without "
+            "any further filter."
+        ],
+    )
 
 
 def _scaled(value: object, factor: float) -> float | None:
@@ -184,10 +200,13 @@ def _spectrum(surface: Surface) -> Drawing:
         "Power spectral density against wave number, averaged over all directions and near x and y",
         "C(q) = |∫ z exp(−iq·r) d²r|²/A, so that Sq² = (2π)⁻²∫C d²q; averaged over bands of a "
         "quarter of an octave. "
-        + ("Exact for this periodic surface." if is_periodic(surface)
-           else "An estimate with nine sine tapers: the surface is not periodic."),
+        + (
+            "Exact for this periodic surface."
+            if is_periodic(surface)
+            else "An estimate with nine sine tapers: the surface is not periodic."
+        ),
         Table("Spectrum", ["directions", "q (1/µm)", "wave length (µm)", "C (µm⁴)"], rows),
-    )  # fmt: skip
+    )
 
 
 def _made(provenance: Mapping[str, Any]) -> Table:
@@ -201,17 +220,29 @@ def _methods(surface: Surface) -> Table:
         "Methods",
         ["what", "how", "source"],
         [
-            ["height, hybrid parameters", "over all nodes, slopes from node to node",
-             "ISO 25178-2:2012, 4.1, 4.3"],
+            [
+                "height, hybrid parameters",
+                "over all nodes, slopes from node to node",
+                "ISO 25178-2:2012, 4.1, 4.3",
+            ],
             ["Sal, Str", "first lag of 0.2 in 180 directions", "ISO 25178-2:2012, 4.2"],
-            ["Sk, Spk, Svk, Smr1, Smr2", "flattest secant over 40 % of the material ratio curve",
-             "ISO 25178-2:2012, 5.2–5.5; ISO 13565-2"],
-            ["correlation length", "autocorrelation of 10 %",
-             "Hu and Tonder (1992), Int. J. Mach. Tools Manufact. 32, 83–90"],
-            ["power spectral density", "convention and radial average" + spectrum,
-             "Jacobs, Junge and Pastewka (2017), Surf. Topogr. 5, 013001"],
+            [
+                "Sk, Spk, Svk, Smr1, Smr2",
+                "flattest secant over 40 % of the material ratio curve",
+                "ISO 25178-2:2012, 5.2–5.5; ISO 13565-2",
+            ],
+            [
+                "correlation length",
+                "autocorrelation of 10 %",
+                "Hu and Tonder (1992), Int. J. Mach. Tools Manufact. 32, 83–90",
+            ],
+            [
+                "power spectral density",
+                "convention and radial average" + spectrum,
+                "Jacobs, Junge and Pastewka (2017), Surf. Topogr. 5, 013001",
+            ],
         ],
-    )  # fmt: skip
+    )
 
 
 def _number(value: float | None) -> str:

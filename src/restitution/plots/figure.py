@@ -23,9 +23,17 @@ DOTTED: Dash = (1, 2)
 DASH_DOTTED: Dash = (6, 2, 1, 2)
 
 PALETTE = (
-    "#1f77b4", "#ff7f0e", "#2ca02c", "#d62728", "#9467bd", "#8c564b", "#e377c2", "#7f7f7f",
-    "#bcbd22", "#17becf",
-)  # fmt: skip
+    "#1f77b4",
+    "#ff7f0e",
+    "#2ca02c",
+    "#d62728",
+    "#9467bd",
+    "#8c564b",
+    "#e377c2",
+    "#7f7f7f",
+    "#bcbd22",
+    "#17becf",
+)
 BLUE, ORANGE = PALETTE[:2]
 GREY = "#7d858e"  # of references: can be read on light and dark paper
 

@@ -36,12 +36,16 @@ def draw(panel: Chart | Map, figure: Figure) -> Plot:
         paper_bgcolor="rgba(0,0,0,0)",
         plot_bgcolor="rgba(0,0,0,0)",
         margin={"l": 70, "r": 20, "t": 28, "b": 60},
-        legend={"orientation": "h", "y": -0.28, "yanchor": "top",
-                "title": {"text": _escaped(figure.legend_title), "side": "top"}},
+        legend={
+            "orientation": "h",
+            "y": -0.28,
+            "yanchor": "top",
+            "title": {"text": _escaped(figure.legend_title), "side": "top"},
+        },
         font={"family": "system-ui, sans-serif", "size": 13},
         hovermode="closest",
         modebar={"bgcolor": "rgba(0,0,0,0)", "color": "#8c959f", "activecolor": "#57606a"},
-    )  # fmt: skip
+    )
     if isinstance(panel, Map):
         _draw_map(plot, panel)
     else:
@@ -75,10 +79,12 @@ def _draw_chart(plot: Plot, chart: Chart) -> None:
                 entry = trace.pop("entry")
                 plot.add_trace(
                     Scatter(
-                        **trace, legendgroup=_escaped(entry), legendrank=ranks.get(entry, 0),
+                        **trace,
+                        legendgroup=_escaped(entry),
+                        legendrank=ranks.get(entry, 0),
                         showlegend=bool(entry) and entry not in seen,
                     )
-                )  # fmt: skip
+                )
                 seen.add(entry)
     for each in chart.series:
         if isinstance(each, Mark):
@@ -91,9 +97,15 @@ def _traces(each: Band | Line | Points, chart: Chart) -> list[dict[str, Any]]:
         edge = {"x": each.x, "mode": "lines", "line": {"width": 0}, "hoverinfo": "skip"}
         return [
             {**edge, "y": each.low, "entry": ""},
-            {**edge, "y": each.high, "fill": "tonexty", "fillcolor": _faint(each.color),
-             "name": _escaped(each.label), "entry": each.label},
-        ]  # fmt: skip
+            {
+                **edge,
+                "y": each.high,
+                "fill": "tonexty",
+                "fillcolor": _faint(each.color),
+                "name": _escaped(each.label),
+                "entry": each.label,
+            },
+        ]
     name = _escaped(each.name or each.label)
     y = chart.right if isinstance(each, Line) and each.right else chart.y
     trace: dict[str, Any] = {
@@ -113,20 +125,39 @@ def _traces(each: Band | Line | Points, chart: Chart) -> list[dict[str, Any]]:
     trace |= {
         "mode": "lines+markers" if each.joined else "markers",
         "line": {"color": each.color, "width": 1.5},
-        "marker": {"symbol": ["circle-open" if h else "circle" for h in hollow], "size": 7,
-                   "color": each.color},
-    }  # fmt: skip
+        "marker": {
+            "symbol": ["circle-open" if h else "circle" for h in hollow],
+            "size": 7,
+            "color": each.color,
+        },
+    }
     traces = [trace]
     if has_error(each):
         trace["error_y"] = {"array": each.error, "thickness": 1, "width": 3}
     if has_open(each) and each.open_label:
         marker = {"symbol": "circle-open", "size": 7, "color": each.color}
-        traces.append({"x": [None], "y": [None], "mode": "markers", "marker": marker,
-                       "name": _escaped(each.open_label), "entry": each.open_label})  # fmt: skip
+        traces.append(
+            {
+                "x": [None],
+                "y": [None],
+                "mode": "markers",
+                "marker": marker,
+                "name": _escaped(each.open_label),
+                "entry": each.open_label,
+            }
+        )
     if has_error(each) and each.error_label:
         marker = {"symbol": "line-ns-open", "size": 12, "color": each.color}
-        traces.append({"x": [None], "y": [None], "mode": "markers", "marker": marker,
-                       "name": _escaped(each.error_label), "entry": each.error_label})  # fmt: skip
+        traces.append(
+            {
+                "x": [None],
+                "y": [None],
+                "mode": "markers",
+                "marker": marker,
+                "name": _escaped(each.error_label),
+                "entry": each.error_label,
+            }
+        )
     return traces
 
 
@@ -143,13 +174,15 @@ def _draw_map(plot: Plot, part: Map) -> None:
     label = f"{_escaped(part.quantity.label)} {{}} {unit}"
     plot.add_trace(
         Heatmap(
-            x=part.x[::step].astype(np.float32), y=part.y[::step].astype(np.float32),
-            z=part.values[::step, ::step].T.astype(np.float32), colorscale=part.colours,
+            x=part.x[::step].astype(np.float32),
+            y=part.y[::step].astype(np.float32),
+            z=part.values[::step, ::step].T.astype(np.float32),
+            colorscale=part.colours,
             colorbar={"title": unit, "thickness": 18},
             hovertemplate="x %{x:.4g} µm, y %{y:.4g} µm<br>"
             f"{label.format('%{z:.4g}')}<extra></extra>",
         )
-    )  # fmt: skip
+    )
     plot.update_layout(xaxis=_axis(Axis("x", "µm")), yaxis=_axis(Axis("y", "µm")))
     plot.update_yaxes(scaleanchor="x", constrain="domain")
     plot.update_xaxes(constrain="domain")
@@ -159,8 +192,11 @@ def _draw_map(plot: Plot, part: Map) -> None:
 
 def _axis(axis: Axis) -> dict[str, Any]:
     found: dict[str, Any] = {
-        "title": _escaped(axis.title), "type": axis.scale, "showline": True, "ticks": "outside",
-    }  # fmt: skip
+        "title": _escaped(axis.title),
+        "type": axis.scale,
+        "showline": True,
+        "ticks": "outside",
+    }
     if axis.scale == "log":
         found["exponentformat"] = "power"
     ends = [

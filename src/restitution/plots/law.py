@@ -42,7 +42,11 @@ def law_figure(law: Law) -> Figure:
 def computed_points(law: Law, label: str, open_label: str) -> Points:
     """The points of `law` with their error, open where they are not resolved."""
     return Points(
-        law.column("velocity"), law.column("restitution"), label, error=law.column("error"),
-        error_label="total error", open=~law.column("resolved").astype(bool),
+        law.column("velocity"),
+        law.column("restitution"),
+        label,
+        error=law.column("error"),
+        error_label="total error",
+        open=~law.column("resolved").astype(bool),
         open_label=open_label,
-    )  # fmt: skip
+    )

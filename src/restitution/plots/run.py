@@ -83,29 +83,37 @@ def load_displacement(results: xr.Dataset) -> Figure:
         Axis("normal force", "N", "log", *ends),
         [
             Points(depth, force, "loading", joined=True),
-            *(Line(each.x[each.y > 0], each.y[each.y > 0], each.label, each.name, each.color)
-              for each in back),
+            *(
+                Line(each.x[each.y > 0], each.y[each.y > 0], each.label, each.name, each.color)
+                for each in back
+            ),
             *beside,
         ],
         title="the same, logarithmic",
-    )  # fmt: skip
+    )
     return Figure(results.attrs.get("title", ""), [linear, logarithmic])
 
 
 def restitution_against_indentation(results: xr.Dataset) -> Figure:
     """Coefficient of restitution against maximum indentation."""
     return _restitution(
-        results, "indentation", Axis("maximum indentation", "µm", "log"), 1e6,
+        results,
+        "indentation",
+        Axis("maximum indentation", "µm", "log"),
+        1e6,
         restitution_references_by_indentation,
-    )  # fmt: skip
+    )
 
 
 def restitution_against_velocity(results: xr.Dataset) -> Figure:
     """Coefficient of restitution against impact velocity."""
     return _restitution(
-        results, "impact_velocity", Axis("impact velocity", "m/s", "log"), 1.0,
+        results,
+        "impact_velocity",
+        Axis("impact velocity", "m/s", "log"),
+        1.0,
         restitution_references_by_velocity,
-    )  # fmt: skip
+    )
 
 
 def pressure_map(results: xr.Dataset) -> Figure:
@@ -128,12 +136,15 @@ def pressure_map(results: xr.Dataset) -> Figure:
         if values.any():
             panels.append(
                 Map(
-                    1e6 * results["x"].values[x], 1e6 * results["y"].values[y],
-                    np.where(values == 0, np.nan, scale * values)[x, y], axis, colours,
+                    1e6 * results["x"].values[x],
+                    1e6 * results["y"].values[y],
+                    np.where(values == 0, np.nan, scale * values)[x, y],
+                    axis,
+                    colours,
                     f"{axis.label} at an indentation of {deepest:.3g} µm",
                     results.attrs.get("surface_y_axis") == "down",
                 )
-            )  # fmt: skip
+            )
     return Figure(results.attrs.get("title", ""), panels)
 
 
@@ -152,18 +163,25 @@ def _restitution(
         low, high = (results[f"restitution_{end}"].values for end in ("low", "high"))
         std = results["restitution_std"].values
         series.append(Band(x, low, high, "95 % interval of the mean"))
-        series += [Line(x, cor + sign * std, "± standard deviation", dash=DOTTED)
-                   for sign in (1, -1)]  # fmt: skip
+        series += [
+            Line(x, cor + sign * std, "± standard deviation", dash=DOTTED) for sign in (1, -1)
+        ]
     for coarser, dash in zip(results.get("coarser_restitution", ()), _DASHES, strict=False):
-        series.append(Line(x, coarser.values, f"refine = {int(coarser['refine'])}",
-                           color=ORANGE, dash=dash))  # fmt: skip
+        series.append(
+            Line(x, coarser.values, f"refine = {int(coarser['refine'])}", color=ORANGE, dash=dash)
+        )
     series.append(
         Points(
-            x, cor, label, joined=True, error=results["total_error"].values,
-            error_label="total error", open=~results["resolved"].values.astype(bool),
+            x,
+            cor,
+            label,
+            joined=True,
+            error=results["total_error"].values,
+            error_label="total error",
+            open=~results["resolved"].values.astype(bool),
             open_label=UNRESOLVED,
         )
-    )  # fmt: skip
+    )
     if f"smooth_{variable}" in results:
         smooth = scale * results[f"smooth_{variable}"].values
         series.append(Line(smooth, results["smooth_restitution"].values, _SMOOTH, color=GREY))

@@ -41,8 +41,10 @@ _ROW, _SIDE = 0.2, 2.4
 _FEW_DECADES = 30.0  # ratio of the ends of a logarithmic axis below which powers of ten are few
 _MOST_BELOW = 8  # entries of a legend below the axes: more stand at the side
 _DATELESS: dict[Format, dict[str, Any]] = {
-    "png": {}, "svg": {"Date": None}, "pdf": {"CreationDate": None},
-}  # fmt: skip
+    "png": {},
+    "svg": {"Date": None},
+    "pdf": {"CreationDate": None},
+}
 
 
 def write_figures(
@@ -95,11 +97,16 @@ def draw(figure: Figure) -> Drawing:
         drawing.suptitle(_plain(figure.title))
     if labels:
         drawing.legend(
-            [handles[label] for label in labels], [_escaped(label) for label in labels],
-            frameon=False, fontsize="small", title=figure.legend_title or None, handlelength=3.0,
-            alignment="left", loc="outside right center" if beside else "outside lower center",
+            [handles[label] for label in labels],
+            [_escaped(label) for label in labels],
+            frameon=False,
+            fontsize="small",
+            title=figure.legend_title or None,
+            handlelength=3.0,
+            alignment="left",
+            loc="outside right center" if beside else "outside lower center",
             ncols=1 if beside else columns,
-        )  # fmt: skip
+        )
     return drawing
 
 
@@ -136,10 +143,14 @@ def _draw_series(axes: Axes, each: Series, handles: dict[str, Any]) -> None:
         handles.setdefault(each.label, band)
     elif isinstance(each, Line):
         (line,) = axes.plot(
-            each.x, each.y, color=each.color, lw=each.width, ls=_dashes(each.dash),
+            each.x,
+            each.y,
+            color=each.color,
+            lw=each.width,
+            ls=_dashes(each.dash),
             marker="o" if np.size(each.x) == 1 else "",
             drawstyle="steps-mid" if each.step else "default",
-        )  # fmt: skip
+        )
         handles.setdefault(each.label, line)
     else:
         _draw_points(axes, each, handles)
@@ -180,17 +191,26 @@ def _draw_mark(axes: Axes, mark: Mark) -> None:
         horizontal = "right" if sign > 0 else "left"
     if text:
         axes.annotate(
-            text, where, xycoords=transform, xytext=shift, textcoords="offset points",
-            ha=horizontal, va=align, color="0.3", fontsize="small", zorder=7,
+            text,
+            where,
+            xycoords=transform,
+            xytext=shift,
+            textcoords="offset points",
+            ha=horizontal,
+            va=align,
+            color="0.3",
+            fontsize="small",
+            zorder=7,
             bbox={"fc": "white", "ec": "none", "pad": 0.8, "alpha": 0.8},
-        )  # fmt: skip
+        )
 
 
 def _draw_map(drawing: Drawing, axes: Axes, part: Map) -> None:
     hx, hy = _cell(part.x), _cell(part.y)
     extent = (part.x[0] - hx / 2, part.x[-1] + hx / 2, part.y[0] - hy / 2, part.y[-1] + hy / 2)
-    image = axes.imshow(part.values.T, origin="lower", extent=extent, cmap=part.colours,
-                        interpolation="nearest")  # fmt: skip
+    image = axes.imshow(
+        part.values.T, origin="lower", extent=extent, cmap=part.colours, interpolation="nearest"
+    )
     axes.set(xlabel="x (µm)", ylabel="y (µm)")
     if part.downwards:
         axes.invert_yaxis()

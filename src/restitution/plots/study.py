@@ -45,8 +45,10 @@ def study_figure(cases: Sequence[StoredCase], abscissa: Abscissa) -> Figure:
             Points(
                 abscissa.scale * np.array([row[abscissa.column] for row in rows]),
                 np.array([row["restitution"] for row in rows]),
-                label, color=PALETTE[number % len(PALETTE)], joined=True,
+                label,
+                color=PALETTE[number % len(PALETTE)],
+                joined=True,
                 open=np.array([not row["resolved"] for row in rows]),
             )
-        )  # fmt: skip
+        )
     return Figure("", [Chart(abscissa.axis, COR, series)])

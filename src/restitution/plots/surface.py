@@ -41,15 +41,21 @@ def height_distribution(density: HeightDensity, curve: MaterialRatio) -> Figure:
                 Axis("probability density", "1/nm", low=0.0),
                 [
                     Line(x, 1e-9 * density.density, "heights", step=True),
-                    Line(x, 1e-9 * density.normal, "normal, same Sq", color=PALETTE[1],
-                         dash=DASHED),
-                    Line(1e9 * curve.height, 100 * curve.ratio, "material ratio (right)",
-                         color=PALETTE[2], right=True),
+                    Line(
+                        x, 1e-9 * density.normal, "normal, same Sq", color=PALETTE[1], dash=DASHED
+                    ),
+                    Line(
+                        1e9 * curve.height,
+                        100 * curve.ratio,
+                        "material ratio (right)",
+                        color=PALETTE[2],
+                        right=True,
+                    ),
                 ],
                 right=Axis("material ratio", "%", low=0.0, high=100.0),
             )
         ],
-    )  # fmt: skip
+    )
 
 
 def autocorrelation_figure(R: Autocorrelation) -> Figure:

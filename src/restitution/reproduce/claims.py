@@ -26,9 +26,7 @@ Verdict = Literal["agrees", "agrees in part", "does not agree", "not decided"]
 # Two steel spheres of the paper, R being taken as the radius of a particle.
 R, E_STAR, P_Y, RADIUS = 250e-6, 112e9, 750e6, 500e-6
 SMOOTH = "1 pm"  # the roughness that stands for none
-_VARIABLES = (
-    "indentation", "restitution", "force", "pull_off_force", "resolved"
-)  # fmt: skip
+_VARIABLES = ("indentation", "restitution", "force", "pull_off_force", "resolved")
 _NEAR = 0.05  # of the smooth sphere's COR: within it a rough sphere is a smooth one
 
 
@@ -91,10 +89,13 @@ def _figure_5(studies: Studies) -> Finding:
     (curve,) = curves(studies["hertz"])
     off = float(np.abs(curve.force / Hertz(R, E_STAR).force(curve.depth) - 1).max())
     return Finding(
-        "5", "The elastic solution agrees with Hertz's.",
-        f"Force within {off:.2%} of Hertz's at all depths.", off,
-        "agrees" if off < 0.01 else "does not agree", _resolved(curve),
-    )  # fmt: skip
+        "5",
+        "The elastic solution agrees with Hertz's.",
+        f"Force within {off:.2%} of Hertz's at all depths.",
+        off,
+        "agrees" if off < 0.01 else "does not agree",
+        _resolved(curve),
+    )
 
 
 def _figure_6(studies: Studies) -> Finding:
@@ -107,13 +108,15 @@ def _figure_6(studies: Studies) -> Finding:
         law = smooth.loading_force(curve.depth[deep])
         off[curve.label] = float(np.max(np.abs(curve.force[deep] / law - 1)))
     return Finding(
-        "6", "Loading and unloading with a yield cut-off agree with Thornton and Ning (1998).",
+        "6",
+        "Loading and unloading with a yield cut-off agree with Thornton and Ning (1998).",
         f"With the pressure cut at p_y as in their theory, force is within {off['truncated']:.1%}. "
         "With pressure and surface in equilibrium, which the other figures use, it is up to "
         f"{off['equilibrium']:.0%} larger: a difference of models, not of solutions.",
-        off["truncated"], "agrees" if off["truncated"] < 0.02 else "does not agree",
+        off["truncated"],
+        "agrees" if off["truncated"] < 0.02 else "does not agree",
         _resolved(*found),
-    )  # fmt: skip
+    )
 
 
 def _figure_7(studies: Studies) -> Finding:
@@ -126,12 +129,15 @@ def _figure_7(studies: Studies) -> Finding:
     if verdict != "agrees" and max(loading, deepest) < 0.05:
         verdict = "agrees in part"
     return Finding(
-        "7", "Adhesive elastic contact agrees with the JKR theory.",
+        "7",
+        "Adhesive elastic contact agrees with the JKR theory.",
         f"Loading within {loading:.1%} in force; pull-off within {deepest:.1%} of 3/2 π w R* from "
         f"the deepest point, {off.max():.1%} at worst: where many small steps follow the way back "
         "from a shallow depth, they meet the largest of the lattice's jumps.",
-        worst, verdict, _resolved(curve),
-    )  # fmt: skip
+        worst,
+        verdict,
+        _resolved(curve),
+    )
 
 
 def _figure_8(studies: Studies) -> Finding:
@@ -143,10 +149,13 @@ def _figure_8(studies: Studies) -> Finding:
         for top, curve in zip(tops, found, strict=True)
     )
     return Finding(
-        "8", "For both yield stresses COR first increases with indentation and then reduces.",
+        "8",
+        "For both yield stresses COR first increases with indentation and then reduces.",
         f"The largest COR ({where}) lies between the ends in {sum(inside)} of {len(inside)} cases.",
-        sum(inside) / len(inside), _share(inside), _resolved(*found),
-    )  # fmt: skip
+        sum(inside) / len(inside),
+        _share(inside),
+        _resolved(*found),
+    )
 
 
 def _figure_9(studies: Studies) -> Finding:
@@ -157,10 +166,14 @@ def _figure_9(studies: Studies) -> Finding:
     shallow, left = float(spread.max()), float(spread[deep].max())
     good = left < 0.05 < shallow
     return Finding(
-        "9", "For smooth spheres interface energy affects COR at small indentations only.",
+        "9",
+        "For smooth spheres interface energy affects COR at small indentations only.",
         f"Between the energies COR differs by up to {shallow:.2f} below 100 nm and by up to "
-        f"{left:.3f} beyond.", left, "agrees" if good else "does not agree", _resolved(*found),
-    )  # fmt: skip
+        f"{left:.3f} beyond.",
+        left,
+        "agrees" if good else "does not agree",
+        _resolved(*found),
+    )
 
 
 def _stages(studies: Studies) -> Finding:
@@ -173,12 +186,15 @@ def _stages(studies: Studies) -> Finding:
         complete.append(low > 0 and rises and high < curve.cor.size - 1)
     names = ", ".join(c.label for c, whole in zip(rough, complete, strict=True) if whole) or "none"
     return Finding(
-        "10", "COR of rough spheres has three stages: it falls as asperities yield, rises as the "
+        "10",
+        "COR of rough spheres has three stages: it falls as asperities yield, rises as the "
         "bulk takes over, and falls as the bulk yields.",
         f"All three stages within the depths computed for Rq = {names} ({sum(complete)} of "
         f"{len(complete)}). The rougher the surface, the deeper the last begins.",
-        sum(complete) / len(complete), _share(complete), _resolved(*rough),
-    )  # fmt: skip
+        sum(complete) / len(complete),
+        _share(complete),
+        _resolved(*rough),
+    )
 
 
 def _shallow_merging(studies: Studies) -> Finding:
@@ -188,11 +204,13 @@ def _shallow_merging(studies: Studies) -> Finding:
     off = max(float(np.abs(c.cor[shallow] / smooth.cor[shallow] - 1).max()) for c in rough)
     flags = np.concatenate([c.resolved[shallow] for c in rough])
     return Finding(
-        "10", "Below 8 nm COR merges with the smooth sphere's, for every roughness.",
-        f"Up to 8 nm COR is up to {off:.0%} off the smooth sphere's."
-        + _single_nodes(flags), off, "agrees" if off < _NEAR else "does not agree",
+        "10",
+        "Below 8 nm COR merges with the smooth sphere's, for every roughness.",
+        f"Up to 8 nm COR is up to {off:.0%} off the smooth sphere's." + _single_nodes(flags),
+        off,
+        "agrees" if off < _NEAR else "does not agree",
         f"{np.count_nonzero(flags)} of {flags.size}",
-    )  # fmt: skip
+    )
 
 
 def _shallow_trend(studies: Studies) -> Finding:
@@ -202,11 +220,14 @@ def _shallow_trend(studies: Studies) -> Finding:
     off = float((np.ptp(cor, axis=0) / cor.mean(axis=0)).max())
     flags = np.concatenate([c.resolved[shallow] for c in rough])
     return Finding(
-        "10", "Below 50 nm COR follows the same trend for every roughness.",
+        "10",
+        "Below 50 nm COR follows the same trend for every roughness.",
         f"Between 8 and 50 nm it differs between roughnesses by up to {off:.0%} of its mean."
-        + _single_nodes(flags), off, "agrees" if off < 0.1 else "does not agree",
+        + _single_nodes(flags),
+        off,
+        "agrees" if off < 0.1 else "does not agree",
         f"{np.count_nonzero(flags)} of {flags.size}",
-    )  # fmt: skip
+    )
 
 
 def _single_nodes(flags: NDArray[np.bool_]) -> str:
@@ -260,27 +281,35 @@ def _figure_11(studies: Studies) -> Finding:
     line = linregress(reached[:, 0], reached[:, 1])
     r2 = float(line.rvalue**2)
     return Finding(
-        "11", claim,
+        "11",
+        claim,
         f"i_cr,max = {1e3 * line.slope:.2g} mm · Rq/R {1e6 * line.intercept:+.2g} µm with "
         f"r² = {r2:.2f}, standard error of the slope {1e3 * line.stderr:.2g} mm; reached by "
         f"{count}.",
-        r2, "agrees" if r2 > 0.9 else "agrees in part" if r2 > 0.7 else "does not agree",
+        r2,
+        "agrees" if r2 > 0.9 else "agrees in part" if r2 > 0.7 else "does not agree",
         _resolved(*cases),
-    )  # fmt: skip
+    )
 
 
 def _figure_12(studies: Studies) -> Finding:
     rough, smooth = _rough_and_smooth(studies)
     carries = smooth.cor > 0
-    most = [float(((smooth.cor - c.cor) / np.where(carries, smooth.cor, 1))[carries].max())
-            for c in rough]  # fmt: skip
+    most = [
+        float(((smooth.cor - c.cor) / np.where(carries, smooth.cor, 1))[carries].max())
+        for c in rough
+    ]
     grows = bool(np.all(np.diff(most) > -0.02))
     return Finding(
-        "12", "Rougher surfaces deviate more from the smooth one, and lose more energy.",
+        "12",
+        "Rougher surfaces deviate more from the smooth one, and lose more energy.",
         "Largest (COR_smooth − COR_rough)/COR_smooth: "
-        + ", ".join(f"{m:.0%} at {c.label}" for m, c in zip(most, rough, strict=True)) + ".",
-        max(most), "agrees" if grows else "agrees in part", _resolved(*rough),
-    )  # fmt: skip
+        + ", ".join(f"{m:.0%} at {c.label}" for m, c in zip(most, rough, strict=True))
+        + ".",
+        max(most),
+        "agrees" if grows else "agrees in part",
+        _resolved(*rough),
+    )
 
 
 def _figure_13(studies: Studies) -> Finding:
@@ -289,12 +318,15 @@ def _figure_13(studies: Studies) -> Finding:
     ratio = soft.cor / hard.cor
     beyond = float(ratio[deep].mean())
     return Finding(
-        "13", "Yield stress dramatically affects COR of rough spheres.",
+        "13",
+        "Yield stress dramatically affects COR of rough spheres.",
         f"At 150 MPa COR is {beyond:.0%} of that at 750 MPa beyond 50 nm (mean), and "
         f"{float(np.nanmin(ratio[~deep])):.0%} to {float(np.nanmax(ratio[~deep])):.0%} below: the "
-        "curves differ there, too.", beyond,
-        "agrees" if beyond < 0.8 else "does not agree", _resolved(soft, hard),
-    )  # fmt: skip
+        "curves differ there, too.",
+        beyond,
+        "agrees" if beyond < 0.8 else "does not agree",
+        _resolved(soft, hard),
+    )
 
 
 def _figure_14(studies: Studies) -> Finding:
@@ -310,13 +342,15 @@ def _figure_14(studies: Studies) -> Finding:
 
     of_rough, of_smooth = spread(rough), spread(smooth)
     return Finding(
-        "14", "Interface energy has less effect on COR of rough spheres than of smooth ones.",
+        "14",
+        "Interface energy has less effect on COR of rough spheres than of smooth ones.",
         f"From 0.01 to 0.09 J/m² COR changes by {of_rough.mean():.3f} on the average over the same "
         f"depths (up to {of_rough.max():.2f}), for smooth spheres by {of_smooth.mean():.3f} (up to "
         f"{of_smooth.max():.2f}).",
         float(of_rough.mean() / of_smooth.mean()),
-        "agrees" if of_rough.mean() < of_smooth.mean() else "does not agree", _resolved(*rough),
-    )  # fmt: skip
+        "agrees" if of_rough.mean() < of_smooth.mean() else "does not agree",
+        _resolved(*rough),
+    )
 
 
 def _rough_and_smooth(studies: Studies) -> tuple[list[Curve], Curve]:
@@ -332,6 +366,16 @@ def _share(flags: list[bool]) -> Verdict:
 
 
 CLAIMS: tuple[Callable[[Studies], Finding], ...] = (
-    _figure_5, _figure_6, _figure_7, _figure_8, _figure_9, _stages, _shallow_merging,
-    _shallow_trend, _figure_11, _figure_12, _figure_13, _figure_14,
-)  # fmt: skip
+    _figure_5,
+    _figure_6,
+    _figure_7,
+    _figure_8,
+    _figure_9,
+    _stages,
+    _shallow_merging,
+    _shallow_trend,
+    _figure_11,
+    _figure_12,
+    _figure_13,
+    _figure_14,
+)

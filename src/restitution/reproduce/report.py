@@ -48,12 +48,15 @@ _OPEN = (
     ("autocorrelation of the surfaces", "Gaussian", "not said"),
     ("correlation length", "2 µm (10 %)", "not said"),
     ("yield stress", "largest contact pressure p_y", "called yield stress and yield pressure"),
-    ("yielding", "pressure and surface in equilibrium but for Figure 6",
-     "a yield cut-off of the pressure"),
+    (
+        "yielding",
+        "pressure and surface in equilibrium but for Figure 6",
+        "a yield cut-off of the pressure",
+    ),
     ("detachment", "crack closure", "criterion of Pohrt and Popov (2015)"),
     ("seeds", "1; Figure 11: see its study", "not said"),
     ("smooth sphere of Figures 10 to 12", f"Rq = {SMOOTH} on the same grid", "smooth"),
-)  # fmt: skip
+)
 
 
 def write_reproduction(out: Path, size: Size) -> tuple[Path, list[Finding]]:
@@ -108,31 +111,70 @@ def _drawings(studies: dict[str, xr.Dataset], findings: list[Finding]) -> list[D
     smooth = next(c for c in curves(studies["roughness"]) if c.label == SMOOTH)
     rough = [c for c in curves(studies["roughness"]) if c.label != SMOOTH]
     return [
-        _lines("Figure 5: force on smooth elastic spheres", "force (N)", words("5"),
-               [(c, c.force) for c in curves(studies["hertz"])],
-               [("Hertz", Hertz(R, E_STAR).force)], log=True),
-        _lines("Figure 6: force on smooth elastic–plastic spheres", "force (N)", words("6"),
-               [(c, c.force) for c in curves(studies["thornton-ning"])],
-               [("Thornton and Ning", ThorntonNing(R, E_STAR, P_Y).loading_force)],
-               log=True),
-        _lines("Figure 7: force on smooth elastic adhesive spheres", "force (N)", words("7"),
-               [(c, c.force) for c in curves(studies["jkr"])],
-               [("JKR", JKR(R, E_STAR, 0.09).force)]),
-        _lines("Figure 8: smooth adhesive spheres, yield pressure", "COR", words("8"),
-               [(c, c.cor) for c in curves(studies["smooth-yield"])]),
-        _lines("Figure 9: smooth adhesive spheres, interface energy", "COR", words("9"),
-               [(c, c.cor) for c in curves(studies["smooth-energy"])]),
-        _lines("Figure 10: rough adhesive spheres", "COR", words("10"),
-               [(c, c.cor) for c in (smooth, *rough)]),
+        _lines(
+            "Figure 5: force on smooth elastic spheres",
+            "force (N)",
+            words("5"),
+            [(c, c.force) for c in curves(studies["hertz"])],
+            [("Hertz", Hertz(R, E_STAR).force)],
+            log=True,
+        ),
+        _lines(
+            "Figure 6: force on smooth elastic–plastic spheres",
+            "force (N)",
+            words("6"),
+            [(c, c.force) for c in curves(studies["thornton-ning"])],
+            [("Thornton and Ning", ThorntonNing(R, E_STAR, P_Y).loading_force)],
+            log=True,
+        ),
+        _lines(
+            "Figure 7: force on smooth elastic adhesive spheres",
+            "force (N)",
+            words("7"),
+            [(c, c.force) for c in curves(studies["jkr"])],
+            [("JKR", JKR(R, E_STAR, 0.09).force)],
+        ),
+        _lines(
+            "Figure 8: smooth adhesive spheres, yield pressure",
+            "COR",
+            words("8"),
+            [(c, c.cor) for c in curves(studies["smooth-yield"])],
+        ),
+        _lines(
+            "Figure 9: smooth adhesive spheres, interface energy",
+            "COR",
+            words("9"),
+            [(c, c.cor) for c in curves(studies["smooth-energy"])],
+        ),
+        _lines(
+            "Figure 10: rough adhesive spheres",
+            "COR",
+            words("10"),
+            [(c, c.cor) for c in (smooth, *rough)],
+        ),
         _critical(studies["critical"], words("11")),
-        _lines("Figure 12: difference of COR from the smooth sphere", "difference (%)", words("12"),
-               [(c, 100 * (smooth.cor - c.cor) / np.where(smooth.cor > 0, smooth.cor, np.nan))
-                for c in rough]),
-        _lines("Figure 13: rough adhesive sphere, yield pressure", "COR", words("13"),
-               [(c, c.cor) for c in curves(studies["rough-yield"])]),
-        _lines("Figure 14: rough adhesive sphere, interface energy", "COR", words("14"),
-               [(c, c.cor) for c in curves(studies["rough-energy"])]),
-    ]  # fmt: skip
+        _lines(
+            "Figure 12: difference of COR from the smooth sphere",
+            "difference (%)",
+            words("12"),
+            [
+                (c, 100 * (smooth.cor - c.cor) / np.where(smooth.cor > 0, smooth.cor, np.nan))
+                for c in rough
+            ],
+        ),
+        _lines(
+            "Figure 13: rough adhesive sphere, yield pressure",
+            "COR",
+            words("13"),
+            [(c, c.cor) for c in curves(studies["rough-yield"])],
+        ),
+        _lines(
+            "Figure 14: rough adhesive sphere, interface energy",
+            "COR",
+            words("14"),
+            [(c, c.cor) for c in curves(studies["rough-energy"])],
+        ),
+    ]
 
 
 def _lines(

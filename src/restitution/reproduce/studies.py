@@ -13,9 +13,16 @@ from restitution.sweeps.sweep import Study, parse_study
 Size = Literal["quick", "paper", "refined"]
 
 NAMES = (
-    "hertz", "thornton-ning", "jkr", "smooth-yield", "smooth-energy", "roughness", "critical",
-    "rough-yield", "rough-energy",
-)  # fmt: skip
+    "hertz",
+    "thornton-ning",
+    "jkr",
+    "smooth-yield",
+    "smooth-energy",
+    "roughness",
+    "critical",
+    "rough-yield",
+    "rough-energy",
+)
 
 # What differs from the paper's size: paths into the study file.
 _QUICK: dict[str, dict[str, Any]] = {
@@ -23,15 +30,22 @@ _QUICK: dict[str, dict[str, Any]] = {
     "thornton-ning": {"grid.nodes": 256, "indentation.to": "1 um", "indentation.steps": 6},
     "jkr": {"indentation.steps": 3, "indentation.to": "20 nm", "grid.nodes": 160},
     "smooth-yield": {"indentation.steps": 6, "indentation.to": "120 nm", "grid.nodes": 200},
-    "smooth-energy": {"indentation.steps": 6, "indentation.to": "120 nm",
-                      "sweep.grid.nodes": [400, 280, 200]},
+    "smooth-energy": {
+        "indentation.steps": 6,
+        "indentation.to": "120 nm",
+        "sweep.grid.nodes": [400, 280, 200],
+    },
     "roughness": {"grid.nodes": 256, "indentation.to": "1 um", "indentation.steps": 10},
-    "critical": {"grid.nodes": 512, "indentation.to": "5 um", "indentation.steps": 12,
-                 "sweep.roughness.rms": ["1 pm", "0.1 um", "0.2 um"],
-                 "sweep.roughness.seed": [1, 2]},
+    "critical": {
+        "grid.nodes": 512,
+        "indentation.to": "5 um",
+        "indentation.steps": 12,
+        "sweep.roughness.rms": ["1 pm", "0.1 um", "0.2 um"],
+        "sweep.roughness.seed": [1, 2],
+    },
     "rough-yield": {"grid.nodes": 256, "indentation.to": "1 um", "indentation.steps": 8},
     "rough-energy": {"grid.nodes": 256, "indentation.to": "1 um", "indentation.steps": 8},
-}  # fmt: skip
+}
 # The paper's spacing resolves no rough contact below some tens of nanometres.
 _REFINED: dict[str, dict[str, Any]] = {
     name: {"grid.refine": 2} for name in ("roughness", "rough-yield", "rough-energy")

@@ -253,8 +253,10 @@ def results_dataset(folder: ResultsFolder, deepest: State) -> xr.Dataset:
         indentation, force = np.moveaxis(points, -1, 0)
         along = ("unloading", "unloading_step")
         data["unloading_from"] = (
-            "unloading", np.array(depths), {"units": "m", "long_name": "maximum indentation"}
-        )  # fmt: skip
+            "unloading",
+            np.array(depths),
+            {"units": "m", "long_name": "maximum indentation"},
+        )
         data["unloading_indentation"] = (along, indentation, {"units": "m"})
         data["unloading_force"] = (along, force, {"units": "N"})
     grid = deepest.contact.grid
@@ -263,9 +265,11 @@ def results_dataset(folder: ResultsFolder, deepest: State) -> xr.Dataset:
         "height": (deepest.contact.surface.height, "m", "composite roughness"),
         "pressure": (deepest.pressure, "Pa", "contact pressure at the deepest point"),
         "plastic_displacement": (
-            deepest.plastic_displacement, "m", "lowering of the surface by yielding"
+            deepest.plastic_displacement,
+            "m",
+            "lowering of the surface by yielding",
         ),
-    }  # fmt: skip
+    }
     for name, (values, unit, meaning) in maps.items():
         data[name] = (("x", "y"), values, {"units": unit, "long_name": meaning})
     return xr.Dataset(data, coordinates)

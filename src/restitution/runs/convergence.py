@@ -75,10 +75,14 @@ def run_convergence(
                 continue
             try:
                 run_case(
-                    refined.refined(factor), text, folder, part,
+                    refined.refined(factor),
+                    text,
+                    folder,
+                    part,
                     log.progress_of(f"refine = {factor}"),
-                    ignore if runs else log.warnings_of(part), errors=False,
-                )  # fmt: skip
+                    ignore if runs else log.warnings_of(part),
+                    errors=False,
+                )
             finally:
                 if part.rows:
                     runs[factor] = later, part.rows
@@ -194,13 +198,18 @@ def _keep(
     dataset = one.dataset.assign(curve_variables(out.rows))
     coarser = sorted(runs)[:-1]
     values = [
-        [rows[factor]["restitution"] if factor in rows else math.nan for rows in depths
-         if max(runs) in rows] for factor in coarser
-    ]  # fmt: skip
+        [
+            rows[factor]["restitution"] if factor in rows else math.nan
+            for rows in depths
+            if max(runs) in rows
+        ]
+        for factor in coarser
+    ]
     dataset["coarser_restitution"] = (
-        ("refine", "indentation_max"), np.reshape(values, (len(coarser), len(finest))),
+        ("refine", "indentation_max"),
+        np.reshape(values, (len(coarser), len(finest))),
         {"units": "1", "long_name": "coefficient of restitution on coarser grids"},
-    )  # fmt: skip
+    )
     dataset["refine"] = coarser
     dataset.attrs |= {"title": case.title, "status": log.status}
     dataset.attrs["warnings"] = "\n".join(summary["warnings"])

@@ -25,8 +25,11 @@ CONFIDENCE = 0.95
 _Row = dict[str, float]
 # Columns of an ensemble's curve that are not means over its surfaces.
 _WORST: dict[str, Callable[[list[float]], float]] = {
-    "residual": max, "model_error": max, "median_patch_nodes": min, "convolutions": sum
-}  # fmt: skip
+    "residual": max,
+    "model_error": max,
+    "median_patch_nodes": min,
+    "convolutions": sum,
+}
 _ALL = {"sticks", "adhesion_resolved", "resolved"}
 
 
@@ -83,10 +86,14 @@ class _Ensemble:
         try:
             # What is foreseen of the first is foreseen of most.
             run_case(
-                case.model_copy(update={"title": title}), self.text, self.folder, part,
+                case.model_copy(update={"title": title}),
+                self.text,
+                self.folder,
+                part,
                 progress=self.log.progress_of(name),
-                warn=ignore if number else self.log.warnings_of(part), errors=False,
-            )  # fmt: skip
+                warn=ignore if number else self.log.warnings_of(part),
+                errors=False,
+            )
         except RestitutionError as error:
             self.failures.append(error)
             reason = str(error)

@@ -57,8 +57,10 @@ def filtered(noise: Array, H: Array, skewness: float, kurtosis: float) -> Array 
         if abs(skew - skewness) < _CLOSE and abs(kurt - kurtosis) < _CLOSE * kurtosis:
             return z
         # One realisation is off its expectation: ask for as much more or less.
-        asked = (asked[0] + (skewness - skew) / skewing if skewing else 0.0,
-                 asked[1] + (kurtosis - kurt) / peaking)  # fmt: skip
+        asked = (
+            asked[0] + (skewness - skew) / skewing if skewing else 0.0,
+            asked[1] + (kurtosis - kurt) / peaking,
+        )
     return None
 
 

@@ -80,8 +80,12 @@ def _moments(form: Callable[..., Array], shape: Array) -> tuple[float, float, fl
     mean = float(weight @ x)
     x = x - mean
     variance = float(weight @ x**2)
-    return (mean, math.sqrt(variance), float(weight @ x**3) / variance**1.5,
-            float(weight @ x**4) / variance**2)  # fmt: skip
+    return (
+        mean,
+        math.sqrt(variance),
+        float(weight @ x**3) / variance**1.5,
+        float(weight @ x**4) / variance**2,
+    )
 
 
 def _fitted(form: Callable[..., Array], skewness: float, kurtosis: float) -> _Fit:

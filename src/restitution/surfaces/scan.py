@@ -11,9 +11,18 @@ from numpy.typing import NDArray
 
 # How many of each unit make a metre: division by 1e6 gives 10 um as 1e-05, to the last bit.
 _PER_METRE = {
-    "km": 1e-3, "m": 1.0, "cm": 1e2, "mm": 1e3, "um": 1e6, "μm": 1e6,
-    "nm": 1e9, "Å": 1e10, "A": 1e10, "pm": 1e12, "fm": 1e15,
-}  # fmt: skip
+    "km": 1e-3,
+    "m": 1.0,
+    "cm": 1e2,
+    "mm": 1e3,
+    "um": 1e6,
+    "μm": 1e6,
+    "nm": 1e9,
+    "Å": 1e10,
+    "A": 1e10,
+    "pm": 1e12,
+    "fm": 1e15,
+}
 
 
 # Of a scan: more would take gigabytes before anything is known of it.

@@ -157,14 +157,15 @@ class StudyFolder:
                 for k, numbers in enumerate(curves.get(case.number, [])):
                     values[row, k] = numbers.get(name, math.nan)
             data[column.variable] = (
-                (*dims, "depth"), values.reshape(*study.shape, depths),
+                (*dims, "depth"),
+                values.reshape(*study.shape, depths),
                 {"units": column.unit, "long_name": column.meaning},
-            )  # fmt: skip
+            )
         reasons = [known[case.number] for case in study.cases]
         data["status"] = (
             dims,
             np.reshape([_status(reason) for reason in reasons], study.shape),
-        )  # fmt: skip
+        )
         attributes = {"title": study.title, "study": study.text}
         return xr.Dataset(data, coordinates, attributes)
 

@@ -118,9 +118,11 @@ def _check_values(swept: Mapping[str, Any], mode: str) -> None:
 
 def _combinations(swept: Mapping[str, list[Any]], mode: str) -> Iterator[dict[str, Any]]:
     """Values of each case; in a grid the last quantity varies fastest."""
-    rows = zip(*swept.values(), strict=True) if mode == "paired" else itertools.product(
-        *swept.values()
-    )  # fmt: skip
+    rows = (
+        zip(*swept.values(), strict=True)
+        if mode == "paired"
+        else itertools.product(*swept.values())
+    )
     for row in rows:
         yield dict(zip(swept, row, strict=True))
 

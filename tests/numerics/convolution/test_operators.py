@@ -273,12 +273,13 @@ def test_what_does_not_go_together_is_refused():
     workspace = np.empty((1, loops().workspace_bytes(5, 12)), np.uint8)
     convolve(p, 1.0, spectrum, 12, 10, workspace, 1.0, out)
     for change, message in (
-        ({"px": 14}, "shapes do not match"), ({"out": np.empty((5, 5))}, "shapes do not match"),
+        ({"px": 14}, "shapes do not match"),
+        ({"out": np.empty((5, 5))}, "shapes do not match"),
         ({"workspace": workspace[:, :-1]}, "shapes do not match"),
         ({"spectrum": np.ones((6, 6))}, "shapes do not match"),
         ({"px": 4, "spectrum": np.ones((6, 3))}, "more values"),
         ({"px": 22, "spectrum": np.ones((6, 12))}, "factors"),
-    ):  # fmt: skip
+    ):
         its = {"px": 12, "out": out, "workspace": workspace, "spectrum": spectrum} | change
         with pytest.raises(ValueError, match=message):
             convolve(p, 1.0, its["spectrum"], its["px"], 10, its["workspace"], 1.0, its["out"])

@@ -78,8 +78,10 @@ def test_the_energy_falls_at_every_iteration(minimise, random_matrix, random_bou
     A, b = random_matrix(rng, n, condition=1e3), 3 * rng.normal(size=n)
     lower, upper = random_bounds(rng, n)
     start = 5 * rng.normal(size=n)
-    points = [minimise(A, b, lower, upper, start=start.copy(), max_iterations=k)[0].point
-              for k in range(20)]  # fmt: skip
+    points = [
+        minimise(A, b, lower, upper, start=start.copy(), max_iterations=k)[0].point
+        for k in range(20)
+    ]
     energies = np.array([0.5 * p @ A @ p - b @ p for p in points])
     assert (np.diff(energies) <= 1e-12 * np.abs(energies).max()).all()
 
@@ -249,8 +251,12 @@ def test_a_looser_tolerance_is_met_in_fewer_iterations(minimise, random_matrix):
 def test_violation_looks_only_where_a_node_may_move():
     lower, upper = np.zeros((1, 4)), np.ones((1, 4))
     p = np.array([[0.0, 1.0, 0.5, 0.5]])
-    gradients = {(7.0, -7.0, 0.0, 0.0): 0, (-2.0, -7.0, 0.0, 0.0): 2,
-                 (7.0, 3.0, 0.0, 0.0): 3, (7.0, -7.0, 0.0, -4.0): 4}  # fmt: skip
+    gradients = {
+        (7.0, -7.0, 0.0, 0.0): 0,
+        (-2.0, -7.0, 0.0, 0.0): 2,
+        (7.0, 3.0, 0.0, 0.0): 3,
+        (7.0, -7.0, 0.0, -4.0): 4,
+    }
     b = np.array([[3.0, 1.0, -2.0, 0.0]])
     for g, expected in gradients.items():
         product = b + g

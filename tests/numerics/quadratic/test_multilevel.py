@@ -26,14 +26,19 @@ def system(shape, level):
 
 def plain(b, upper):
     K, inverse = system(b.shape, 0)
-    return minimise_quadratic(BoundedQuadratic(K, b, 0.0, upper), start=np.zeros_like(b),
-                              precondition=inverse, tolerance=TOLERANCE, max_iterations=500
-                              )  # fmt: skip
+    return minimise_quadratic(
+        BoundedQuadratic(K, b, 0.0, upper),
+        start=np.zeros_like(b),
+        precondition=inverse,
+        tolerance=TOLERANCE,
+        max_iterations=500,
+    )
 
 
 def nested(b, upper, **options):
-    return solve_multilevel(system, b, upper, tolerance=TOLERANCE,
-                           **{"max_iterations": 500} | options)  # fmt: skip
+    return solve_multilevel(
+        system, b, upper, tolerance=TOLERANCE, **{"max_iterations": 500} | options
+    )
 
 
 def bowl(shape, depth=1.0, rough=0.0, seed=0):
@@ -138,9 +143,13 @@ def test_the_window_and_the_coarse_grids_save_products():
         found, products = nested(b, np.inf)
         assert found.converged
         K, inverse = system(b.shape, 0)
-        minimise_quadratic(BoundedQuadratic(K, b, 0.0, np.inf), start=np.zeros_like(b),
-                           precondition=inverse, tolerance=TOLERANCE, max_iterations=500
-                           )  # fmt: skip
+        minimise_quadratic(
+            BoundedQuadratic(K, b, 0.0, np.inf),
+            start=np.zeros_like(b),
+            precondition=inverse,
+            tolerance=TOLERANCE,
+            max_iterations=500,
+        )
         ours += products
         theirs += K.count
     assert ours < 0.9 * theirs

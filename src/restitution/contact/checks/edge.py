@@ -35,13 +35,17 @@ class EdgeReachedError(DomainError):
 def require_inside_grid(state: State) -> None:
     """Raise `EdgeReachedError` when a node on the rim of the grid is in contact."""
     p, grid = state.box_pressure, state.contact.grid
-    (top, left), (bottom, right) = ((part.start for part in state.box),
-                                    (part.stop for part in state.box))  # fmt: skip
+    (top, left), (bottom, right) = (
+        (part.start for part in state.box),
+        (part.stop for part in state.box),
+    )
     nx, ny = grid.nodes
     reached = (
-        (top == 0 and p[:1].any()) or (bottom == nx and p[-1:].any())
-        or (left == 0 and p[:, :1].any()) or (right == ny and p[:, -1:].any())
-    )  # fmt: skip
+        (top == 0 and p[:1].any())
+        or (bottom == nx and p[-1:].any())
+        or (left == 0 and p[:, :1].any())
+        or (right == ny and p[:, -1:].any())
+    )
     if reached:
         raise EdgeReachedError(
             Finding("edge-reached", edge_values(state.contact, state.indentation))

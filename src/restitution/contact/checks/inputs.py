@@ -57,9 +57,14 @@ def doubtful(contact: Contact, indentation: float) -> list[Finding]:
     * `surface-notice`: `notice`, what the surface says of itself where it is not what was measured.
     """
     checks = (
-        _tilt(contact), _edge(contact, indentation), _steepness(contact),
-        _yield_pressure(contact), _oblong(contact), _coarse_grid(contact), _made_up(contact),
-    )  # fmt: skip
+        _tilt(contact),
+        _edge(contact, indentation),
+        _steepness(contact),
+        _yield_pressure(contact),
+        _oblong(contact),
+        _coarse_grid(contact),
+        _made_up(contact),
+    )
     return resolution_findings(contact, indentation) + [found for found in checks if found]
 
 

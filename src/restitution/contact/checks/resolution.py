@@ -88,9 +88,15 @@ def coarse_scan(contact: Contact, indentation: float) -> Finding | None:
     radius = predicted_radius(contact.pair, indentation, contact.hardness)
     if radius >= pixel:
         return None
-    return Finding("pixel-above-contact", {
-        "file": provenance["file"], "pixel": pixel, "radius": radius, "indentation": indentation,
-    })  # fmt: skip
+    return Finding(
+        "pixel-above-contact",
+        {
+            "file": provenance["file"],
+            "pixel": pixel,
+            "radius": radius,
+            "indentation": indentation,
+        },
+    )
 
 
 def resolution_findings(contact: Contact, indentation: float) -> list[Finding]:
@@ -107,10 +113,17 @@ def resolution_findings(contact: Contact, indentation: float) -> list[Finding]:
     half_width, coarsest = 0.5 * min(grid.size), max(pixel, *grid.spacing)
     found = []
     if radius >= half_width:
-        found.append(Finding("contact-beyond-grid", {
-            "radius": radius, "indentation": indentation, "half_width": half_width,
-            "whole_scan": grid_of_a_scan(contact),
-        }))  # fmt: skip
+        found.append(
+            Finding(
+                "contact-beyond-grid",
+                {
+                    "radius": radius,
+                    "indentation": indentation,
+                    "half_width": half_width,
+                    "whole_scan": grid_of_a_scan(contact),
+                },
+            )
+        )
     if radius < NODES_PER_RADIUS * coarsest:
         found.append(Finding("few-nodes", {"spacing": coarsest, "radius": radius}))
     if radius > _HALF_SPACE * pair.radius:
