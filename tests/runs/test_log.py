@@ -1,5 +1,7 @@
 """How a run ends is noted, and what it has computed is kept, whatever ends it."""
 
+from contextlib import nullcontext
+
 import pytest
 
 from restitution.errors import DomainError
@@ -28,11 +30,9 @@ def test_it_says_how_a_run_ended_and_keeps_what_there_is(error, status, reason, 
     def keep():
         return {"status": log.status, "warnings": [*log.warnings, "found"]}
 
-    if error:
-        with pytest.raises(type(error)):
-            log.record(out, compute, keep)
-    else:
-        assert log.record(out, compute, keep)["status"] == status
+    with pytest.raises(type(error)) if error else nullcontext(), log.record(out, keep):
+        compute()
+    assert log.summary["status"] == status
     assert (log.status, log.reason) == (status, reason)
     assert told == ["foreseen", "found"]
     assert out.path.exists()
@@ -40,8 +40,8 @@ def test_it_says_how_a_run_ended_and_keeps_what_there_is(error, status, reason, 
 
 def test_a_folder_without_results_is_taken_back(tmp_path):
     out = ResultsFolder(tmp_path / "out")
-    with pytest.raises(DomainError):
-        RunLog().record(out, lambda: (_ for _ in ()).throw(DomainError("the edge")), lambda: None)
+    with pytest.raises(DomainError), RunLog().record(out, lambda: None):
+        raise DomainError("the edge")
     assert not out.path.exists()
 
 

@@ -63,8 +63,10 @@ def run_convergence(
     log, runs = RunLog(progress, warn), _Runs()
     unsettled: list[str] = []
 
-    def compute() -> None:
-        nonlocal case
+    def keep() -> dict[str, Any] | None:
+        return _keep(case, folder, out, runs, log, unsettled) if runs else None
+
+    with log.record(out, keep):
         case = settled(case, folder, log.warn)
         unsettled[:] = log.warnings
         for factor, later in _levels(case, folder, grids).items():
@@ -88,13 +90,8 @@ def run_convergence(
                     runs[factor] = later, part.rows
         if case.total_error and runs:
             _add_errors(case, folder, runs, progress)
-
-    def keep() -> dict[str, Any] | None:
-        return _keep(case, folder, out, runs, log, unsettled) if runs else None
-
-    summary = log.record(out, compute, keep)
-    assert summary is not None  # the finest grid does not miss the contact
-    return summary
+    assert log.summary is not None  # the finest grid does not miss the contact
+    return log.summary
 
 
 def _add_errors(

@@ -51,10 +51,11 @@ def run_realisations(
     if case.realisations == 1:
         return run_case(case, text, folder, out, progress, warn)
     ensemble = _Ensemble(case, text, folder, out, RunLog(progress, warn))
-    summary = ensemble.log.record(out, ensemble.compute, ensemble.keep)
-    if summary is None:
+    with ensemble.log.record(out, ensemble.keep):
+        ensemble.compute()
+    if ensemble.log.summary is None:
         raise ensemble.failures[0]
-    return summary
+    return ensemble.log.summary
 
 
 class _Ensemble:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -32,6 +33,7 @@ class RunLog:
     status: str = "failed"
     reason: str = "stopped by an unforeseen error"
     began: float = field(default_factory=time.perf_counter)
+    summary: dict[str, Any] | None = None
 
     @property
     def seconds(self) -> float:
@@ -59,20 +61,17 @@ class RunLog:
 
         return say
 
+    @contextmanager
     def record(
-        self,
-        out: ResultsFolder,
-        compute: Callable[[], None],
-        keep: Callable[[], dict[str, Any] | None],
-    ) -> dict[str, Any] | None:
-        """Call `compute`, note how it ends, let `keep` write what there is, and tell its warnings.
+        self, out: ResultsFolder, keep: Callable[[], dict[str, Any] | None]
+    ) -> Iterator[None]:
+        """Note how the body of a `with` ends, let `keep` write what there is, tell its warnings.
 
-        `keep` returns the summary, or None where nothing was computed: then the folder is taken
-        back. Whatever stops `compute` is raised again.
+        `keep` returns the summary, which is `summary` from then on, or None where nothing was
+        computed: then the folder is taken back. Whatever stops the body is raised again.
         """
-        summary = None
         try:
-            compute()
+            yield
             self.status, self.reason = "complete", ""
         except KeyboardInterrupt:
             self.status, self.reason = "interrupted", "stopped by the user"
@@ -85,10 +84,9 @@ class RunLog:
             raise
         finally:
             with hold_signals():  # what was computed is not lost to an interruption just now
-                summary = keep()
-                if summary is None:
+                self.summary = keep()
+                if self.summary is None:
                     out.discard()
-            for warning in summary["warnings"] if summary else ():
+            for warning in self.summary["warnings"] if self.summary else ():
                 if warning not in self.warnings:
                     self.tell(warning)
-        return summary

@@ -89,8 +89,10 @@ def run_case(
     """
     run = _Run(progress, warn)
 
-    def compute() -> None:
-        nonlocal case
+    def keep() -> dict[str, Any] | None:
+        return None if run.deepest is None else _keep(case, text, out, run, run.deepest)
+
+    with run.record(out, keep):
         case = settled(case, folder, run.warn)
         contact = case.contact(folder)
         deepest = deepest_indentation(case)
@@ -103,13 +105,8 @@ def run_case(
             _add_errors(case, folder, contact, out, run)
         if failure is not None:
             raise failure
-
-    def keep() -> dict[str, Any] | None:
-        return None if run.deepest is None else _keep(case, text, out, run, run.deepest)
-
-    summary = run.record(out, compute, keep)
-    assert summary is not None  # where no depth is computed, `compute` raises
-    return summary
+    assert run.summary is not None  # where no depth is computed, an error is raised
+    return run.summary
 
 
 def _keep(case: Case, text: str, out: ResultsFolder, run: _Run, deepest: State) -> dict[str, Any]:
