@@ -11,7 +11,7 @@ FAST_TESTS := tests/theory tests/numerics tests/test_collision.py
 KERNEL_TESTS := tests/numerics/test_compiled.py tests/numerics/convolution/test_operators.py
 WITHOUT_COMPILER := CC=/bin/false CXX=/bin/false
 
-.PHONY: help demo test test-fast test-kernels test-clang wheel test-wheel fuzz lint bench bench-peers clean
+.PHONY: help demo test test-fast test-kernels test-clang wheel test-wheel fuzz mutation lint bench bench-peers clean
 
 .DEFAULT_GOAL := demo
 
@@ -67,6 +67,9 @@ test-wheel: wheel  ## that wheel where nothing can be compiled: do compiled kern
 
 fuzz: $(VENV)/test.installed  ## random and damaged input, 25 times as much as in the tests
 	FUZZ=25 DUCC0_NUM_THREADS=1 $(BIN)/pytest -n auto tests/fuzz
+
+mutation: $(VENV)/test.installed  ## halve or drop every error bar: does a test fail?
+	$(BIN)/python mutation/error_bars.py
 
 lint: $(VENV)/test.installed  ## style, format and types
 	$(BIN)/ruff check

@@ -248,3 +248,26 @@ def test_a_disk_that_is_full_for_the_results(
     assert "cannot be written" in summary["reason"]
     assert not (out / "results.nc").exists()
     assert not list(out.glob(".*"))
+
+
+@pytest.mark.parametrize(("error", "status"), [("KeyboardInterrupt", 2), ("Stopped(15)", 15)])
+def test_a_signal_that_a_destructor_swallows_comes_again(error, status):
+    program = f"""
+import time
+from restitution.cli.signals import Stopped, stoppable
+
+class Swallows:
+    def __del__(self):
+        raise {error}
+
+with stoppable():
+    try:
+        thing = Swallows()
+        del thing
+        time.sleep(5)
+        print("lost")
+    except KeyboardInterrupt as error:
+        print(error.args[0] if isinstance(error, Stopped) else 2)
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert (done.stdout, done.stderr) == (f"{status}\n", "")

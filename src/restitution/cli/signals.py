@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import _thread
 import signal
+import sys
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
+
+_AGAIN = 0.05  # s: by then the callback that swallowed a signal has returned
 
 
 class Stopped(KeyboardInterrupt):
@@ -23,12 +28,29 @@ received: list[int] = []
 
 @contextmanager
 def stoppable() -> Iterator[None]:
-    """Raise `Stopped` on SIGTERM and SIGHUP, unless the process was started to ignore them."""
+    """Raise `Stopped` on SIGTERM and SIGHUP, unless the process was started to ignore them.
+
+    Python drops an exception that is raised in a destructor or in the callback of a weak reference.
+    Where that is a signal, or Ctrl-C, it is raised again a moment later.
+    """
 
     def stop(number: int, _: FrameType | None) -> None:
         received.append(number)
         raise Stopped(number)
 
+    drop = sys.unraisablehook
+
+    def drop_or_repeat(dropped: sys.UnraisableHookArgs) -> None:
+        error = dropped.exc_value
+        if not isinstance(error, KeyboardInterrupt):
+            drop(dropped)
+            return
+        number = error.args[0] if isinstance(error, Stopped) else signal.SIGINT
+        timer = threading.Timer(_AGAIN, _signal_main_thread, (number,))
+        timer.daemon = True
+        timer.start()
+
+    sys.unraisablehook = drop_or_repeat
     before = {}
     # Windows has no SIGHUP.
     for name in ("SIGTERM", "SIGHUP"):
@@ -38,5 +60,13 @@ def stoppable() -> Iterator[None]:
     try:
         yield
     finally:
+        sys.unraisablehook = drop
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+def _signal_main_thread(number: int) -> None:
+    if hasattr(signal, "pthread_kill"):  # it also ends a sleep, or a call that waits
+        signal.pthread_kill(threading.main_thread().ident or 0, number)
+    else:
+        _thread.interrupt_main(signal.Signals(number))
