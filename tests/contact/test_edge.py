@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from restitution import Body, Contact, Grid, Pair, Surface, generate_surface, smooth, solve
-from restitution.contact.checks.edge import EdgeReachedError, needed_edges
+from restitution.contact.checks.edge import EdgeReachedError, edge_values, needed_edges
 from tolerance import approx
 
 STEEL = Pair(*2 * [Body(500e-6, 210e9, 0.25)])
@@ -75,3 +75,13 @@ def test_the_level_of_the_heights_does_not_matter():
     raised = Surface(surface.height + 1e-6, GRID)
     edges = [needed_edges(Contact(STEEL, each), 1e-6) for each in (surface, raised)]
     assert edges[0] == approx(edges[1], rel=1e-12)
+
+
+@pytest.mark.parametrize(("node", "off"), [((32, 32), False), ((32, 40), False), ((32, 56), True)])
+def test_a_first_touch_off_the_centre_is_said(node, off):
+    """24 of 64 cells from the middle are; 8 are not."""
+    grid = Grid((64, 64), (1e-6, 1e-6))
+    height = np.zeros(grid.nodes)
+    height[node] = 1e-5
+    contact = Contact(STEEL, Surface(height, grid))
+    assert edge_values(contact, 1e-7)["off_centre"] is off

@@ -47,6 +47,8 @@ def test_it_holds_all_that_the_quadrature_says(monkeypatch):
     quadrature, said = loading.integrate_adaptively, []
 
     def listened(*args, **options):
+        scale = 0.5 * (args[3] + args[4]) * (args[2] - args[1])
+        assert 0 < args[5] <= 1.5e-3 * 2 * scale
         said.append(quadrature(*args, **options))
         return said[-1]
 

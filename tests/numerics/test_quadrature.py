@@ -161,3 +161,19 @@ def test_the_error_is_the_difference_of_one_step_from_two():
     value, error, _ = adaptive(lambda x: x**4, 0.0, 1.0, 1.0)
     assert error == approx(5 / 24 - 77 / 384, rel=1e-12)
     assert value == approx(0.2, rel=1e-12)
+
+
+def test_panels_begin_side_by_side():
+    """Three panels of [1, 4] ask at 2 and 3, and at the middle of each."""
+    asked = []
+
+    def line(x):
+        asked.append(x)
+        return 2 * x
+
+    value, error = integrate_adaptively(line, 1.0, 4.0, 2.0, 8.0, 1e-9, panels=3)
+    assert value == approx(15.0, rel=1e-12)
+    assert error < 1e-12
+    assert {1.5, 2.0, 2.5, 3.0, 3.5} <= set(asked)
+    assert min(asked) > 1.0
+    assert max(asked) < 4.0

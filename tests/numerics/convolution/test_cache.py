@@ -5,7 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from restitution.numerics.convolution.cache import OperatorCache
+from restitution.numerics.convolution.cache import OperatorCache, operator_cache
 
 
 def block(size):
@@ -75,3 +75,7 @@ def test_threads_leave_it_within_its_limits(cache):
     with ThreadPoolExecutor(8) as threads:
         list(threads.map(work, range(8)))
     assert len(cache) <= 3
+
+
+def test_the_size_of_the_cache_of_the_package():
+    assert operator_cache.max_bytes == 384 * 2**20
