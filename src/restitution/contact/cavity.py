@@ -47,6 +47,7 @@ from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import candidate_box, solve_pressure
 from restitution.numerics.box import Box
 from restitution.numerics.read_only import freeze
+from restitution.theory import Hertz
 
 Array = NDArray[np.float64]
 
@@ -102,10 +103,6 @@ def bound_of(contact: Contact, measure: Array, ridge: Array | float = 0.0) -> Ar
 
 def _smooth_pressure(contact: Contact, box: Box, force: float) -> Array:
     """Pressure (Pa) of smooth elastic bodies under `force` (N) on a box of the grid (Hertz)."""
-    E_star, R = contact.pair.contact_modulus, contact.pair.radius
-    radius = (0.75 * force * R / E_star) ** (1 / 3)
-    largest = 2 * E_star * radius / (math.pi * R)
+    smooth = Hertz(contact.pair.radius, contact.pair.contact_modulus)
     x, y = contact.grid.x[box[0]] - contact.apex[0], contact.grid.y[box[1]] - contact.apex[1]
-    inside = np.maximum(1 - np.add.outer((x / radius) ** 2, (y / radius) ** 2), 0.0)
-    pressure: Array = largest * np.sqrt(inside)
-    return pressure
+    return smooth.pressure(np.hypot.outer(x, y), smooth.indentation(force))
