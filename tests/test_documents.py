@@ -154,8 +154,8 @@ def test_modules_and_commands_that_a_document_names_exist(document):
     for name in re.findall(r"\brestitution(?:\.[a-z_]\w*)+", text):
         if name.split(".")[1] not in {"csv", "liggghts", "lmp", "png"}:  # files of an export
             pkgutil.resolve_name(name)
-    verbs = {command.callback.__name__ for command in app.registered_commands}
-    for verb in re.findall(r"(?:^|/bin/)restitution ([a-z]+)", text, re.MULTILINE):
+    verbs = {command.callback.__name__.replace("_", "-") for command in app.registered_commands}
+    for verb in re.findall(r"(?:^|/bin/)restitution ([a-z][a-z-]*)", text, re.MULTILINE):
         assert verb in verbs
 
 

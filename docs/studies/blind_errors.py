@@ -43,7 +43,7 @@ COLUMNS = (
     "kind",
     "adhesive",
     "library",
-    "indentation_m",
+    "max_indentation_m",
     "loading_work_J",
     "resolved",
     "restitution",
@@ -174,7 +174,7 @@ def _reference(case, rows, seed):
 
     rng = np.random.default_rng([seed, 1])
     work = np.array([row["loading_work_J"] for row in rows])
-    depths = [row["indentation_m"] for row in rows]
+    depths = [row["max_indentation_m"] for row in rows]
     adhesive = case.interface.adhesion > 0
     between = np.geomspace(0.8 * depths[0], depths[-1], 4 if adhesive else 8)
     surfaces = (ADHESIVE_SURFACES if adhesive else SURFACES) if case.roughness else 1

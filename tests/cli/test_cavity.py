@@ -42,9 +42,14 @@ def test_run_law_report_and_export(cli, case, tmp_path):
         assert float(row["total_error"]) >= float(row["restitution_error"]) > 0
     summary = json.loads((tmp_path / "run" / "summary.json").read_text())
     assert summary["model"]["plasticity"] == "expanding-cavity"
-    assert summary["trust"]["largest_model_error"] == max(float(r["model_error"]) for r in rows)
+    assert summary["diagnostics"]["largest_model_error"] == max(
+        float(r["model_error"]) for r in rows
+    )
     assert "2.8 times the yield strength" in summary["conventions"]["yield_pressure"]
-    for verb in (("law", tmp_path / "run", "-o", tmp_path / "law"), ("report", tmp_path / "run")):
+    for verb in (
+        ("fit-law", tmp_path / "run", "-o", tmp_path / "law"),
+        ("report", tmp_path / "run"),
+    ):
         status, out, said = cli(*verb)
         assert status == 0, said
     law = json.loads((tmp_path / "law" / "law.json").read_text())
@@ -53,7 +58,7 @@ def test_run_law_report_and_export(cli, case, tmp_path):
     page = (tmp_path / "run" / "report.html").read_text()
     assert "model_error" in page
     assert "Johnson (1970)" in page
-    status, _, said = cli("theory", case, "--law", tmp_path / "law")
+    status, _, said = cli("compare-theory", case, "--law", tmp_path / "law")
     assert status == 0, said
 
 

@@ -149,7 +149,7 @@ def test_a_restitution_in_time_has_its_error(cli, case_text, tmp_path, monkeypat
         "collide_in_time",
         lambda *arguments: dataclasses.replace(real(*arguments), restitution=1.00012),
     )
-    status, said, _ = cli("collide", tmp_path / "out")
+    status, said, _ = cli("simulate", tmp_path / "out")
     assert status == 0
     rows = [line.split() for line in said.splitlines() if "1.00012" in line]
     assert len(rows) == 2

@@ -6,7 +6,10 @@ import pytest
 
 from restitution.cli.app import app
 
-VERBS = {command.callback.__name__: command.callback for command in app.registered_commands}
+VERBS = {
+    command.callback.__name__.replace("_", "-"): command.callback
+    for command in app.registered_commands
+}
 
 
 def flowing(text):

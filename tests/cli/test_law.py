@@ -1,4 +1,4 @@
-"""`restitution law`: what it shows while it works."""
+"""`restitution fit-law`: what it shows while it works."""
 
 import io
 
@@ -11,7 +11,7 @@ def test_it_says_which_law_it_is_fitting(cli, case_text, tmp_path, monkeypatch):
     assert cli("run", case, "-o", run)[0] == 0
     terminal = Console(file=io.StringIO(), force_terminal=True, width=100)
     monkeypatch.setattr("restitution.cli.console.errors", terminal)
-    assert cli("law", run, "-o", tmp_path / "law")[0] == 0
+    assert cli("fit-law", run, "-o", tmp_path / "law")[0] == 0
     shown = terminal.file.getvalue()
     steps = [
         "reading the results",

@@ -73,7 +73,7 @@ def test_convergence_from_start_to_figures(cli, case_text, tmp_path):
         "SHA256SUMS",
     }
     summary = json.loads((tmp_path / "out" / "summary.json").read_text())
-    assert summary["trust"]["largest_discretisation_error"] > 0
+    assert summary["diagnostics"]["largest_discretisation_error"] > 0
 
 
 @pytest.mark.parametrize("verb", ["run", "converge"])

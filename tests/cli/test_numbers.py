@@ -73,7 +73,7 @@ def compute(folder):
         for column in COLUMNS[name]:
             for row in (1, 4) if name == "growing" else (2, 4):
                 found[f"{name} {column} {row}"] = float(rows[row][column])
-    command("law", folder / "constant", "-o", folder / "law")
+    command("fit-law", folder / "constant", "-o", folder / "law")
     for column in ("velocity_m_per_s", "restitution", "compact_fit"):
         found[f"law {column}"] = float(table(folder / "law" / "table.csv")[-1][column])
     command("export", folder / "law", "--to", "csv", "-o", folder / "export")

@@ -1,4 +1,4 @@
-"""`restitution theory`: what it prints, what it writes, and what it refuses."""
+"""`restitution compare-theory`: what it prints, what it writes, and what it refuses."""
 
 import csv
 
@@ -25,7 +25,7 @@ ELASTIC = ('"750 MPa"', '"elastic"')
 
 
 def test_prints_the_table_and_where_each_theory_holds(cli, case):
-    status, said, warned = cli("theory", case())
+    status, said, warned = cli("compare-theory", case())
     assert status == 0
     assert not warned
     lines = said.splitlines()
@@ -42,7 +42,7 @@ def test_prints_the_table_and_where_each_theory_holds(cli, case):
 
 def test_the_table_is_split_where_the_terminal_is_narrow(cli, case, monkeypatch):
     monkeypatch.setattr("restitution.cli.console.answers.width", 40)
-    status, said, _ = cli("theory", case())
+    status, said, _ = cli("compare-theory", case())
     assert status == 0
     heads = [line for line in said.splitlines() if line.split()[:1] == ["m/s"]]
     assert len(heads) > 1
@@ -51,7 +51,7 @@ def test_the_table_is_split_where_the_terminal_is_narrow(cli, case, monkeypatch)
 
 def test_writes_a_table_and_a_figure(cli, case, tmp_path):
     out = tmp_path / "out"
-    status, said, _ = cli("theory", case(), "-o", out)
+    status, said, _ = cli("compare-theory", case(), "-o", out)
     assert status == 0
     assert f"In {out}: theory.csv, theory.png" in said
     assert {path.name for path in out.iterdir()} == {"theory.csv", "theory.png"}
@@ -69,25 +69,25 @@ def test_one_velocity_is_a_table_and_a_figure_too(cli, case, tmp_path):
             '[impact]\nvelocity = ["0.5 m/s"]',
         ),
     )
-    status, _, _ = cli("theory", path, "-o", tmp_path / "out")
+    status, _, _ = cli("compare-theory", path, "-o", tmp_path / "out")
     assert status == 0
     assert len((tmp_path / "out" / "theory.csv").read_text().splitlines()) == 2
 
 
 def test_says_that_an_elastic_case_has_hertz_only(cli, case, tmp_path):
-    status, said, _ = cli("theory", case(ELASTIC), "-o", tmp_path / "out")
+    status, said, _ = cli("compare-theory", case(ELASTIC), "-o", tmp_path / "out")
     assert status == 0
     assert "only Hertz" in said
     header = (tmp_path / "out" / "theory.csv").read_text().splitlines()[0]
     assert header == "velocity_m_per_s,hertz"
-    assert "only Hertz" not in cli("theory", case())[1]
+    assert "only Hertz" not in cli("compare-theory", case())[1]
 
 
 def test_puts_a_law_beside_them(cli, case, tmp_path):
     path, run, law = case(), tmp_path / "run", tmp_path / "law"
     assert cli("run", path, "-o", run)[0] == 0
-    assert cli("law", run, "-o", law)[0] == 0
-    status, said, _ = cli("theory", path, "--law", law, "-o", tmp_path / "out")
+    assert cli("fit-law", run, "-o", law)[0] == 0
+    status, said, _ = cli("compare-theory", path, "--law", law, "-o", tmp_path / "out")
     assert status == 0
     with open(tmp_path / "out" / "theory.csv", newline="") as file:
         rows = list(csv.DictReader(file))
@@ -102,31 +102,31 @@ def test_puts_a_law_beside_them(cli, case, tmp_path):
 def test_refuses_a_law_of_another_pair(cli, refused, case, tmp_path):
     run, law = tmp_path / "run", tmp_path / "law"
     assert cli("run", case(), "-o", run)[0] == 0
-    assert cli("law", run, "-o", law)[0] == 0
+    assert cli("fit-law", run, "-o", law)[0] == 0
     other = case(('"500 um"', '"400 um"'))
-    message = refused("theory", other, "--law", law)
+    message = refused("compare-theory", other, "--law", law)
     assert "is of another pair: its R* is" in message
     assert "E*" not in message
     assert "m* is" in message
 
 
 def test_refuses_a_folder_that_holds_no_law(refused, case, tmp_path):
-    assert "holds no law" in refused("theory", case(), "--law", tmp_path)
+    assert "holds no law" in refused("compare-theory", case(), "--law", tmp_path)
 
 
 def test_refuses_a_case_without_density(refused, case):
-    message = refused("theory", case(('density = "7850 kg/m^3"', "")))
+    message = refused("compare-theory", case(('density = "7850 kg/m^3"', "")))
     assert "case.toml: first.density: is missing" in message
 
 
 def test_refuses_two_walls(refused, case):
-    assert "first.radius" in refused("theory", case(('"500 um"', '"flat"')))
+    assert "first.radius" in refused("compare-theory", case(('"500 um"', '"flat"')))
 
 
 def test_refuses_a_folder_that_is_not_empty(refused, case, tmp_path):
     out = tmp_path / "out"
     out.mkdir()
     (out / "mine.txt").write_text("kept")
-    message = refused("theory", case(), "-o", out)
+    message = refused("compare-theory", case(), "-o", out)
     assert "not empty, and nothing in it is overwritten" in message
     assert [path.name for path in out.iterdir()] == ["mine.txt"]

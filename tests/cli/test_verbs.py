@@ -13,7 +13,7 @@ from restitution.numerics.kernels import instruction_set
 from tolerance import approx
 
 COLUMNS = """
-indentation_m force_N contact_area_m2 stored_energy_J plastic_work_J loading_work_J
+max_indentation_m force_N contact_area_m2 stored_energy_J plastic_work_J loading_work_J
 unloading_work_J restitution impact_velocity_m_per_s contact_nodes contact_patches
 largest_patch_nodes residual convolutions pull_off_force_N separation_indentation_m
 restitution_error sticks adhesion_resolved median_patch_nodes resolved
@@ -64,7 +64,7 @@ def test_run_writes_every_file(done):
 def test_run_writes_the_curve(done):
     names, rows = rows_of(done[0] / "curve.csv")
     assert names == COLUMNS
-    depths = [row["indentation_m"] for row in rows]
+    depths = [row["max_indentation_m"] for row in rows]
     assert depths == approx(np.geomspace(20e-9, 300e-9, 4), rel=1e-12)
     assert all(0 < row["restitution"] < 1 for row in rows)
     mass = 4 / 3 * np.pi * 500e-6**3 * 7850 / 2
@@ -74,14 +74,14 @@ def test_run_writes_the_curve(done):
 
 def test_run_writes_unloading_curves_down_to_separation(done):
     names, rows = rows_of(done[0] / "unloading.csv")
-    assert names == ["indentation_max_m", "indentation_m", "force_N"]
-    deepest = sorted({row["indentation_max_m"] for row in rows})
+    assert names == ["max_indentation_m", "indentation_m", "force_N"]
+    deepest = sorted({row["max_indentation_m"] for row in rows})
     assert len(deepest) == 2
     assert deepest[-1] == approx(300e-9)
     _, curve = rows_of(done[0] / "curve.csv")
     for depth in deepest:
-        force = [row["force_N"] for row in rows if row["indentation_max_m"] == depth]
-        loaded = [row["force_N"] for row in curve if row["indentation_m"] == depth]
+        force = [row["force_N"] for row in rows if row["max_indentation_m"] == depth]
+        loaded = [row["force_N"] for row in curve if row["max_indentation_m"] == depth]
         assert len(force) == 7
         assert force[0] == loaded[0]
         assert force[-1] == 0
@@ -109,10 +109,10 @@ def test_summary_says_what_made_the_numbers_and_how_far_to_trust_them(done):
     assert summary["status"] == "complete"
     assert summary["depths_computed"] == 4
     assert summary["model"]["plasticity"] == "equilibrium"
-    assert summary["trust"]["largest_residual"] <= 1e-8
+    assert summary["diagnostics"]["largest_residual"] <= 1e-8
     assert summary["surface_statistics"]["Sq_m"] == approx(0.05e-6, rel=1e-9)
     assert summary["derived"]["contact_modulus_Pa"] == approx(112e9)
-    for check in summary["trust"]["unloading_checks"]:
+    for check in summary["diagnostics"]["unloading_checks"]:
         assert abs(check["relative_to_stored_energy"]) < 5e-3
     assert "separation" in summary["conventions"]["end_of_contact"]
 
@@ -219,7 +219,7 @@ def test_surface_writes_heights_statistics_and_a_picture(cli, case_text, tmp_pat
 def test_figures_are_written_in_the_format_asked_for(cli, case_text, tmp_path, kind):
     case = tmp_path / "case.toml"
     case.write_text(case_text)
-    read = {"run": case, "surface": case, "theory": case, "law": tmp_path / "run"}
+    read = {"run": case, "surface": case, "compare-theory": case, "fit-law": tmp_path / "run"}
     written = {}
     for verb, what in read.items():
         status, said, _ = cli(verb, what, "-o", tmp_path / verb, "--figures", kind)
@@ -238,8 +238,8 @@ def test_figures_are_written_in_the_format_asked_for(cli, case_text, tmp_path, k
             )
         ],
         "surface": [f"surface.{kind}"],
-        "theory": [f"theory.{kind}"],
-        "law": [f"law.{kind}"],
+        "compare-theory": [f"theory.{kind}"],
+        "fit-law": [f"law.{kind}"],
     }
     assert cli("run", case, "-o", tmp_path / "other", "--figures", "gif")[0] != 0
 

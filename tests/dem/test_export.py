@@ -39,7 +39,7 @@ def folder(cli, tmp_path):
     """The folder of a law that was computed and made as a user would."""
     (tmp_path / "case.toml").write_text(CASE)
     assert cli("run", tmp_path / "case.toml", "-o", tmp_path / "out")[0] == 0
-    status, said, _ = cli("law", tmp_path / "out", "-o", tmp_path / "law")
+    status, said, _ = cli("fit-law", tmp_path / "out", "-o", tmp_path / "law")
     assert status == 0
     assert "7 velocities, 0.05 to 2 m/s" in said
     assert "restitution export" in said
@@ -83,7 +83,7 @@ def test_the_table_of_all_pairs(stored, law, cli, tmp_path):
     with open(tmp_path / "one" / "restitution.csv", newline="") as file:
         rows = list(csv.DictReader(file))
     assert [float(row["restitution"]) for row in rows] == approx([law().at(1.0).restitution] * 3)
-    assert all(row["end_of_contact"] and row["yield_pressure_is"] for row in rows)
+    assert all(row["end_of_contact"] and row["yield_pressure_convention"] for row in rows)
     assert all(float(row["restitution_error"]) > 0 for row in rows)
 
 

@@ -82,13 +82,13 @@ def verbs(kind, damaged, whole, out):
                 ("export", damaged, "--to", code, *velocity, out / code)
                 for code in ("lammps", "liggghts", "yade", "mercurydpm", "edem")
             ),
-            ("theory", whole / "case.toml", "--law", damaged, "-o", out / "theory"),
+            ("compare-theory", whole / "case.toml", "--law", damaged, "-o", out / "theory"),
         ]
     if kind == "study":
         resume = ("study", whole / "study.toml", "-o", damaged, "--resume")
         return [("report", damaged), *compared, resume]
-    law = ("law", damaged, "-o", out / "law")
-    return [("report", damaged), *compared, ("collide", damaged), law]
+    law = ("fit-law", damaged, "-o", out / "law")
+    return [("report", damaged), *compared, ("simulate", damaged), law]
 
 
 def spoil(kind, damaged, number):
@@ -123,7 +123,7 @@ def test_damaged_results(number, whole, tmp_path, cli, monkeypatch):
         assert "Traceback" not in said + err, words
         refusals = [line for line in err.splitlines() if line.startswith("Error: ")]
         assert len(refusals) == status, f"{words}: {err}"
-        if verb[0] == "collide":
+        if verb[0] == "simulate":
             assert_collisions(said)
         if verb[0] == "study" and status == 0:
             assert_same(damaged / "table.csv", whole / kind / "table.csv", checked)

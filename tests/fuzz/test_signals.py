@@ -105,7 +105,7 @@ def test_a_signal_at_a_random_moment_of_saving(number, cases, tmp_path):
         "ensemble": ("run", "ensemble.toml"),
         "study": ("study", "study.toml", "--workers", "1"),
         "workers": ("study", "study.toml", "--workers", "1"),
-        "law": ("law", "run"),
+        "law": ("fit-law", "run"),
     }.get(kind, (kind, "case.toml"))
     if kind == "converge":
         arguments = (*arguments, "--grids", "2")

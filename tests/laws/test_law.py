@@ -118,7 +118,7 @@ def test_a_law_is_read_as_it_was_written(rough, tmp_path):
         rows = list(csv.DictReader(file))
     assert [float(row["restitution"]) for row in rows] == law.column("restitution").tolist()
     assert {row["end_of_contact"] for row in rows} == {law.conventions.end_of_contact}
-    assert {row["yield_pressure_is"] for row in rows} == {law.conventions.yield_pressure}
+    assert {row["yield_pressure_convention"] for row in rows} == {law.conventions.yield_pressure}
     assert all(float(row["yield_velocity_smooth_m_per_s"]) > 0 for row in rows)
     with open(tmp_path / "law" / "laws.csv", newline="") as file:
         columns = next(csv.reader(file))

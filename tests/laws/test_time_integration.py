@@ -157,7 +157,7 @@ def test_between_stored_curves_it_is_near_and_beyond_them_refused(run):
 
 def test_the_verb(run, cli, refused, tmp_path):
     out = run(**ROUGH, adhesion="", steps=4)
-    status, said, _ = cli("collide", out, "-o", tmp_path / "courses.csv")
+    status, said, _ = cli("simulate", out, "-o", tmp_path / "courses.csv")
     assert status == 0
     assert len(said.splitlines()) == 1 + 4 + 1
     with open(tmp_path / "courses.csv", newline="") as file:
@@ -167,10 +167,10 @@ def test_the_verb(run, cli, refused, tmp_path):
     last = [row for row in rows if row["impact_velocity_m_per_s"] == max(velocities, key=float)]
     assert float(last[0]["closing_velocity_m_per_s"]) == approx(float(max(velocities, key=float)))
     assert float(last[-1]["closing_velocity_m_per_s"]) < 0
-    assert "exists" in refused("collide", out, "-o", tmp_path / "courses.csv")
-    assert "has no unit" in refused("collide", out, "--velocity", "1")
-    assert "nothing" in refused("collide", out, "--velocity", "1e-6 m/s")
-    assert "holds no results" in refused("collide", tmp_path)
+    assert "exists" in refused("simulate", out, "-o", tmp_path / "courses.csv")
+    assert "has no unit" in refused("simulate", out, "--velocity", "1")
+    assert "nothing" in refused("simulate", out, "--velocity", "1e-6 m/s")
+    assert "holds no results" in refused("simulate", tmp_path)
 
 
 def test_a_pair_that_sticks_is_held(run):

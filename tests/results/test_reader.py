@@ -87,10 +87,10 @@ def changed_cell(column, text):
         (lambda lines: [lines[0].replace("force_N", "farce_N"), *lines[1:]], "column force_N is"),
         (lambda lines: [lines[0], lines[1][: lines[1].rindex(",")], *lines[2:]], "line 2 has not"),
         (lambda lines: [*lines, "0,0"], "line 6 has not"),
-        (lambda lines: ["a" * 10], "column indentation_m is missing"),
+        (lambda lines: ["a" * 10], "column max_indentation_m is missing"),
         (lambda lines: [f"{lines[0]},sticks", *(f"{r},true" for r in lines[1:])], "one name"),
         (lambda lines: lines[:-1], "a file is damaged"),
-        (lambda lines: [], "column indentation_m is missing"),
+        (lambda lines: [], "column max_indentation_m is missing"),
     ],
 )
 def test_a_table_that_no_run_writes_is_refused(copy, change, said):

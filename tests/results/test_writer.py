@@ -44,7 +44,7 @@ def test_unloading_that_returns_another_work_is_warned_of(off, warned):
     """More than 1 % of the stored energy, either way."""
     from restitution.runs.run import _unbalanced
 
-    check = {"relative_to_stored_energy": off, "indentation_m": 1e-7}
+    check = {"relative_to_stored_energy": off, "max_indentation_m": 1e-7}
     line = _unbalanced([check])
     assert (line is not None) is warned
     if warned:

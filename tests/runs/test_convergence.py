@@ -75,11 +75,11 @@ def test_depths_count_from_one_first_touch(converged):
     out, _ = converged
     by_depth = {}
     for row in table_of(out, "convergence.csv"):
-        by_depth.setdefault(row["indentation_m"], set()).add(row["refine"])
+        by_depth.setdefault(row["max_indentation_m"], set()).add(row["refine"])
     assert [float(depth) for depth in by_depth] == approx(np.geomspace(20e-9, 300e-9, 4))
     assert all(grids == {"1", "2", "4"} for grids in list(by_depth.values())[1:])
     pressed = [
-        float(table_of(out, f"refine-{k}", "curve.csv")[-1]["indentation_m"]) for k in (1, 2, 4)
+        float(table_of(out, f"refine-{k}", "curve.csv")[-1]["max_indentation_m"]) for k in (1, 2, 4)
     ]
     assert pressed[0] < pressed[1] < pressed[2] == approx(300e-9)
 

@@ -45,15 +45,17 @@ def test_every_row_of_a_run_has_a_total_of_its_parts(case_text, tmp_path):
         assert each["surface_scatter"] > 0
         limit = max(each["restitution"], 1 - each["restitution"])
         assert each["total_error"] == approx(min(math.hypot(*known), limit), rel=1e-12)
-    assert summary["trust"]["largest_total_error"] == max(each["total_error"] for each in rows)
-    assert "scatter of one surface among 8" in summary["trust"]["total_error_includes"]
-    assert "of plasticity: model_error" in summary["trust"]["total_error_does_not_include"]
+    assert summary["diagnostics"]["largest_total_error"] == max(
+        each["total_error"] for each in rows
+    )
+    assert "scatter of one surface among 8" in summary["diagnostics"]["total_error_includes"]
+    assert "of plasticity: model_error" in summary["diagnostics"]["total_error_does_not_include"]
 
 
 def test_it_can_be_left_out(case_text, tmp_path):
     rows, summary = run("total_error = false\n" + case_text, tmp_path / "out")
     assert all(math.isnan(each["total_error"]) for each in rows)
-    assert summary["trust"]["largest_total_error"] is None
+    assert summary["diagnostics"]["largest_total_error"] is None
 
 
 def test_library_values_bring_their_spread(case_text, tmp_path):
@@ -124,7 +126,7 @@ def test_a_depth_that_fails_leaves_the_others_a_total_error(case_text, tmp_path,
     with pytest.raises(NotConvergedError, match="the second depth"):
         run_realisations(parse_case(case_text), case_text, tmp_path, out)
     depths = parse_case(case_text).depths()
-    assert [each["indentation_m"] for each in out.rows] == [depths[0], *depths[2:]]
+    assert [each["max_indentation_m"] for each in out.rows] == [depths[0], *depths[2:]]
     assert all(each["total_error"] > 0 for each in out.rows)
     summary = json.loads((out.path / "summary.json").read_text())
     assert (summary["status"], summary["reason"]) == ("failed", "the second depth")
@@ -170,7 +172,7 @@ def test_converge_states_no_zero_error(case_text, tmp_path):
     text = case_text.replace('"20 nm"', '"0.5 nm"').replace('"300 nm"', '"40 nm"')
     out = ResultsFolder(tmp_path / "out")
     summary = run_convergence(parse_case(text), text, tmp_path, out, 2)
-    assert summary["trust"]["largest_total_error"] > 0
+    assert summary["diagnostics"]["largest_total_error"] > 0
     for each in out.rows:
         if not math.isnan(each["total_error"]):
             assert each["total_error"] > (1e-4 if each["resolved"] else 0.02)

@@ -13,7 +13,7 @@ GRID = Grid((8, 8), (1e-6, 1e-6))
 
 
 def rows(*depths, work=1e-12):
-    return [{"indentation_m": depth, "loading_work_J": work} for depth in depths]
+    return [{"max_indentation_m": depth, "loading_work_J": work} for depth in depths]
 
 
 def values(*arguments, **options):

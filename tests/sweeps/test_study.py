@@ -69,7 +69,7 @@ def table(out):
 def test_the_table_holds_every_case(whole):
     with open(whole / "table.csv", newline="") as file:
         rows = list(csv.DictReader(file))
-    assert list(rows[0])[:3] == ["roughness.seed", "interface.yield_pressure", "indentation_m"]
+    assert list(rows[0])[:3] == ["roughness.seed", "interface.yield_pressure", "max_indentation_m"]
     assert list(rows[0])[-3:] == ["case", "status", "reason"]
     assert len(rows) == 6 * 2
     assert [row["roughness.seed"] for row in rows] == ["1"] * 4 + ["2"] * 4 + ["3"] * 4
@@ -147,7 +147,7 @@ def with_a_restitution_of(value):
     [
         lambda case: (case / "results.nc").write_bytes(b"CDF and no more"),
         lambda case: (case / "results.nc").unlink(),
-        lambda case: (case / "curve.csv").write_text("indentation_m\n"),
+        lambda case: (case / "curve.csv").write_text("max_indentation_m\n"),
         lambda case: (case / "summary.json").write_text("{"),
         lambda case: (case / "case.toml").write_text("title = 'another'"),
         lambda case: rewrite(case / "curve.csv", lambda text: text.replace("e-", "x-", 1)),

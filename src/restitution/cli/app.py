@@ -8,17 +8,17 @@ import typer
 
 from restitution.cli import (
     check,
-    collide,
     compare,
+    compare_theory,
     converge,
     export,
-    law,
+    fit_law,
     report,
     reproduce,
     run,
+    simulate,
     study,
     surface,
-    theory,
 )
 
 app = typer.Typer(
@@ -34,10 +34,10 @@ app.command()(study.study)
 app.command()(report.report)
 app.command()(compare.compare)
 app.command()(reproduce.reproduce)
-app.command()(law.law)
+app.command()(fit_law.fit_law)
 app.command()(export.export)
-app.command()(theory.theory)
-app.command()(collide.collide)
+app.command()(compare_theory.compare_theory)
+app.command()(simulate.simulate)
 app.command()(check.check)
 app.command()(surface.surface)
 

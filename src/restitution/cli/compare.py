@@ -46,7 +46,7 @@ def compare(
         marks = ("" if row["significant"] else "within error") if row["resolved"] else "unresolved"
         table.add_row(
             *(_plain(row[key]) for key in swept),
-            f"{1e9 * row['indentation_m']:.4g}",
+            f"{1e9 * row['max_indentation_m']:.4g}",
             f"{row['restitution_a']:.4f}",
             f"{row['restitution_b']:.4f}",
             f"{row['difference']:+.4f}",

@@ -23,7 +23,7 @@ def export(
         list[Path],
         typer.Argument(
             metavar="LAW...",
-            help="Folders of `restitution law`, one for every pair of particles.",
+            help="Folders of `restitution fit-law`, one for every pair of particles.",
             show_default=False,
             readable=False,
         ),

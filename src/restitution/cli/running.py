@@ -102,7 +102,7 @@ def carry_out(
             )
         answers.print(_curve(folder.rows))
         many = f" of {runs(read)} curves" if runs(read) > 1 else ""
-        residual = summary["trust"]["largest_residual"]
+        residual = summary["diagnostics"]["largest_residual"]
         answers.print(
             f"{depths} depths{many}, {summary['convolutions']} convolutions, "
             f"{summary['seconds']:.1f} s; largest residual {residual:.1e}",
@@ -158,7 +158,7 @@ def _curve(rows: list[dict[str, float]]) -> Table:
     for row in rows:
         velocity = row["impact_velocity_m_per_s"]
         table.add_row(
-            f"{1e9 * row['indentation_m']:.4g}",
+            f"{1e9 * row['max_indentation_m']:.4g}",
             f"{row['force_N']:.4g}",
             "-" if velocity != velocity else f"{velocity:.4g}",
             f"{row['restitution']:.4f}{_uncertainty(row)}",

@@ -23,9 +23,9 @@ _WHOLE = (
     "reduced_mass_kg",
     "contact_modulus_Pa",
     "yield_pressure_Pa",
-    "yield_pressure_is",
+    "yield_pressure_convention",
     "end_of_contact",
-    "restitution_error_is",
+    "restitution_error_includes",
 )
 
 

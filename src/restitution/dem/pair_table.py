@@ -60,7 +60,7 @@ class PairTable:
             raise CaseError(
                 f"{code} needs a law for every {what}, and there is none for "
                 f"{missing[0]}{more}; the law of one pair is not that of another: compute it "
-                "(`restitution run`, `restitution law`) and give it, too"
+                "(`restitution run`, `restitution fit-law`) and give it, too"
             )
 
 

@@ -94,7 +94,7 @@ def _law(out: Path, run: RunResults) -> Law:
         model={key: str(value) for key, value in model.items()},
         conventions=Conventions(
             **summary["conventions"],
-            restitution_error=_error_is(summary["trust"]),
+            restitution_error=_error_includes(summary["diagnostics"]),
         ),
         yield_velocity=derived["yield_velocity_m_per_s"],
         sticking_velocity=derived.get("sticking_velocity_m_per_s"),
@@ -133,11 +133,11 @@ def _read(out: Path) -> RunResults:
     return run
 
 
-def _error_is(trust: Mapping[str, object]) -> str:
+def _error_includes(diagnostics: Mapping[str, object]) -> str:
     """Which errors the error of a point includes, and which it does not, in words."""
-    includes = trust.get("total_error_includes") or "solver"
-    excludes = trust.get("total_error_does_not_include") or "anything else"
-    model = trust.get("largest_model_error")
+    includes = diagnostics.get("total_error_includes") or "solver"
+    excludes = diagnostics.get("total_error_does_not_include") or "anything else"
+    model = diagnostics.get("largest_model_error")
     error = f"; model_error is up to {model:.2g}" if isinstance(model, float) else ""
     return f"{includes}; not: {excludes}{error}"
 
@@ -156,7 +156,7 @@ def _points(run: RunResults, asked: bool) -> list[Point]:
                 error=_error(row, asked=asked),
                 ratio=_ratio(row, work, means=isinstance(run, EnsembleResults)),
                 loading_work=work,
-                indentation=row["indentation_m"],
+                indentation=row["max_indentation_m"],
                 force=row["force_N"],
                 pull_off_force=None if math.isnan(pull_off) else pull_off,
                 resolved=bool(row["resolved"] and row["adhesion_resolved"]),

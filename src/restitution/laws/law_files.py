@@ -35,7 +35,7 @@ def write_law(law: Law, out: Path) -> list[Path]:
 
 
 def read_law(folder: Path) -> Law:
-    """Read the law in `folder`, as `restitution law` wrote it, or the file `law.json` itself.
+    """Read the law in `folder`, as `restitution fit-law` wrote it, or the file `law.json` itself.
 
     Raises `OutputError` if there is no law or its checksum differs, `CaseError` if it is not a law
     of this version.
@@ -45,7 +45,7 @@ def read_law(folder: Path) -> Law:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError):
         raise OutputError(
-            f"{folder}: holds no law ({LAW_FILE}); name the folder of -o of `restitution law`"
+            f"{folder}: holds no law ({LAW_FILE}); name the folder of -o of `restitution fit-law`"
         ) from None
     check_file(path)
     try:
@@ -56,7 +56,7 @@ def read_law(folder: Path) -> Law:
         why = first["msg"].removeprefix("Value error, ")
         raise CaseError(
             f"{path}: is not a law of this version ({where}: {why}); make it again with "
-            "`restitution law`"
+            "`restitution fit-law`"
         ) from None
 
 
@@ -84,12 +84,12 @@ def law_rows(law: Law) -> list[dict[str, float | str]]:
             "velocity_m_per_s": point.velocity,
             "restitution": point.restitution,
             "restitution_error": point.error,
-            "restitution_error_is": law.conventions.restitution_error,
+            "restitution_error_includes": law.conventions.restitution_error,
             "resolved": point.resolved,
             "compact_fit": fitted,
             "compact_fit_error": abs(fitted - point.restitution),
             "loading_work_J": point.loading_work,
-            "indentation_m": point.indentation,
+            "max_indentation_m": point.indentation,
             "largest_force_N": point.force,
             "pull_off_force_N": _or_nan(point.pull_off_force),
             "yield_velocity_smooth_m_per_s": _or_nan(law.yield_velocity),
@@ -99,7 +99,7 @@ def law_rows(law: Law) -> list[dict[str, float | str]]:
             "reduced_mass_kg": law.mass,
             "contact_modulus_Pa": law.contact_modulus,
             "yield_pressure_Pa": _or_nan(law.yield_pressure),
-            "yield_pressure_is": law.conventions.yield_pressure,
+            "yield_pressure_convention": law.conventions.yield_pressure,
             "end_of_contact": law.conventions.end_of_contact,
         }
         for point, fitted in zip(law.points, fit, strict=True)

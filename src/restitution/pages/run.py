@@ -36,7 +36,7 @@ def write_run_page(out: Path) -> Path:
         if has_map(results):
             parts.append(_pressure(results))
     parts += [
-        _trust(results, summary),
+        _diagnostics(results, summary),
         *_groups(summary),
         Listing("Case file", results.attrs["case"]),
         methods(summary),
@@ -144,9 +144,11 @@ def _pressure(results: xr.Dataset) -> Drawing:
     )
 
 
-def _trust(results: xr.Dataset, summary: Mapping[str, Any]) -> Table:
-    trust = {key: value for key, value in summary["trust"].items() if not isinstance(value, list)}
-    rows: list[list[Cell]] = [[key.replace("_", " "), value] for key, value in trust.items()]
+def _diagnostics(results: xr.Dataset, summary: Mapping[str, Any]) -> Table:
+    diagnostics = {
+        key: value for key, value in summary["diagnostics"].items() if not isinstance(value, list)
+    }
+    rows: list[list[Cell]] = [[key.replace("_", " "), value] for key, value in diagnostics.items()]
     resolved = results["resolved"].values.astype(bool)
     rows.append(["depths resolved", f"{np.count_nonzero(resolved)} of {resolved.size}"])
     if summary.get("observed_order") is not None:

@@ -23,7 +23,7 @@ class Abscissa(NamedTuple):
     axis: Axis
 
 
-INDENTATION = Abscissa("indentation_m", 1e6, Axis("maximum indentation", "µm", "log"))
+INDENTATION = Abscissa("max_indentation_m", 1e6, Axis("maximum indentation", "µm", "log"))
 IMPACT_VELOCITY = Abscissa("impact_velocity_m_per_s", 1.0, Axis("impact velocity", "m/s", "log"))
 
 

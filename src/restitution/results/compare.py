@@ -22,7 +22,7 @@ _SAME = 1e-9  # relative difference of depths that are the same
 class Comparison:
     """Rows with the values of both and their difference, inputs that differ, and notes.
 
-    A row has what the cases have of the swept values, `indentation_m`, and for COR
+    A row has what the cases have of the swept values, `max_indentation_m`, and for COR
     `restitution_a`, `restitution_b`, `difference` (b − a), its `error` (see `_error`),
     `significant` (the difference is larger), `resolved` (by both grids), and `force_ratio` (b over
     a).
@@ -76,10 +76,10 @@ def _curves(
     a: Sequence[_Row], b: Sequence[_Row], swept: Mapping[str, str]
 ) -> tuple[list[dict[str, Any]], list[str]]:
     """Rows at the depths of `a` that `b` spans; between its depths `b` is interpolated."""
-    depth_b = np.array([row["indentation_m"] for row in b])
+    depth_b = np.array([row["max_indentation_m"] for row in b])
     rows, between, beyond = [], 0, 0
     for row in a:
-        depth = row["indentation_m"]
+        depth = row["max_indentation_m"]
         same = np.flatnonzero(np.abs(depth_b - depth) <= _SAME * depth)
         if same.size:
             k = int(same[0])
@@ -102,7 +102,7 @@ def _curves(
         rows.append(
             {
                 **swept,
-                "indentation_m": depth,
+                "max_indentation_m": depth,
                 "restitution_a": cor_a,
                 "restitution_b": cor_b,
                 "difference": cor_b - cor_a,

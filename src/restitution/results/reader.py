@@ -47,7 +47,7 @@ class _Model(BaseModel):
     spacing: Annotated[list[FiniteFloat], Field(min_length=2, max_length=2)]
 
 
-class _Trust(BaseModel):
+class _Diagnostics(BaseModel):
     model_config = ConfigDict(extra="allow", strict=True)
     largest_residual: FiniteFloat
 
@@ -65,7 +65,7 @@ class _Summary(BaseModel):
     model: _Model
     conventions: dict[str, str]
     derived: dict[str, FiniteFloat | None]
-    trust: _Trust
+    diagnostics: _Diagnostics
     convolutions: NonNegativeInt
     versions: dict[str, str]
 
@@ -216,7 +216,7 @@ class StudyResults:
         path = self.folder / "table.csv"
         found: dict[str, StoredCase] = {}
         for line, cells in enumerate(_cells(path, "case", "status", "reason"), 2):
-            swept = dict(list(cells.items())[: list(cells).index("indentation_m")])
+            swept = dict(list(cells.items())[: list(cells).index("max_indentation_m")])
             status = cells["status"]
             if status not in STATUS:
                 raise damaged(path, f"line {line}: status is {status!r}")

@@ -26,7 +26,7 @@ class Column:
 
 
 COLUMNS = {
-    "indentation_m": Column("indentation", "m", "maximum indentation"),
+    "max_indentation_m": Column("indentation", "m", "maximum indentation"),
     "force_N": Column("force", "N", "normal force at maximum indentation"),
     "contact_area_m2": Column("contact_area", "m2", "real contact area", low=0.0),
     "stored_energy_J": Column(
@@ -124,6 +124,6 @@ SPREAD_COLUMNS = {
     ),
 }
 ALL_COLUMNS = COLUMNS | SPREAD_COLUMNS
-UNLOADING_COLUMNS = ("indentation_max_m", "indentation_m", "force_N")
+UNLOADING_COLUMNS = ("max_indentation_m", "indentation_m", "force_N")
 STATUS = ("complete", "failed", "missing")  # of a case in the table of a study
 LOCK = ".restitution-lock"  # of the process that writes in a folder

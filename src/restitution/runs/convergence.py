@@ -177,8 +177,8 @@ def _keep(
     }
     errors = [row["discretisation_error"] for row in finest]
     known = [error for error in errors if not math.isnan(error)]
-    summary["trust"] = {
-        **one.summary["trust"],
+    summary["diagnostics"] = {
+        **one.summary["diagnostics"],
         "largest_discretisation_error": max(known, default=None),
         **total_error_summary(case, finest),
     }
@@ -244,10 +244,10 @@ def _by_depth(case: Case, runs: _Runs) -> list[dict[int, _Row]]:
         for number, row in enumerate(rows, missed):
             values = [other["restitution"] for other in found[number].values()]
             error, order = discretisation([*values, row["restitution"]])
-            indentation = asked[number] if case.indentation else row["indentation_m"]
+            indentation = asked[number] if case.indentation else row["max_indentation_m"]
             found[number][factor] = {
                 **row,
-                "indentation_m": indentation,
+                "max_indentation_m": indentation,
                 "refine": factor,
                 "last_change": abs(values[-1] - row["restitution"]) if values else math.nan,
                 "discretisation_error": error,

@@ -152,7 +152,7 @@ class _Ensemble:
     def _summary(self, one: dict[str, Any]) -> dict[str, Any]:
         whole = [row for of in self.curves.values() for row in of]
         unresolved = unresolved_patches(
-            [row["indentation_m"] for row in whole],
+            [row["max_indentation_m"] for row in whole],
             [row["median_patch_nodes"] for row in whole],
         )
         warnings = [*map(message, unresolved), self._unlike()]
@@ -184,7 +184,7 @@ class _Ensemble:
                     "versions",
                 )
             },
-            "trust": {
+            "diagnostics": {
                 f"largest_{name}": max(row[name] for row in whole)
                 for name in ("residual", "restitution_error")
             }

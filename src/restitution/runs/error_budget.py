@@ -139,7 +139,7 @@ def add_errors(
         return []
     work = np.array([row["loading_work_J"] for row in reached])
     restitution = np.array([row["restitution"] for row in reached])
-    companions = Companions(case, folder, sorted(row["indentation_m"] for row in reached))
+    companions = Companions(case, folder, sorted(row["max_indentation_m"] for row in reached))
     progress("error: cells twice as large")
     own = companions.own().at(work)
     errors, band = grid_error(restitution - own, work, reached, Band.of(surface).octaves)

@@ -188,7 +188,7 @@ def _check(state: State, back: list[State], collision: Collision) -> dict[str, f
     work = -integrate_curve([s.indentation for s in back], [s.force for s in back])
     estimate = collide(state, method="energy-estimate")
     return {
-        "indentation_m": state.indentation,
+        "max_indentation_m": state.indentation,
         "unloading_work_J": work,
         "adhesive_loss_J": collision.adhesive_loss,
         "relative_to_stored_energy": (work + collision.adhesive_loss) / state.stored_energy - 1,
@@ -199,7 +199,7 @@ def _check(state: State, back: list[State], collision: Collision) -> dict[str, f
 
 def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> dict[str, Any]:
     patches = [row["median_patch_nodes"] for row in out.rows]
-    depths = [row["indentation_m"] for row in out.rows]
+    depths = [row["max_indentation_m"] for row in out.rows]
     nodes = run.adhesive_nodes[: len(depths)]  # interrupted, there may be one more
     unresolved = unresolved_patches(depths, patches) + unresolved_adhesion(depths, nodes)
     found = [*map(message, unresolved), band_warning(contact.surface, run.band_errors)]
@@ -230,7 +230,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> d
         "derived": derived_quantities(case, contact),
         "surface": dict(contact.surface.provenance),
         "surface_statistics": describe(contact.surface),
-        "trust": {
+        "diagnostics": {
             "largest_residual": max(row["residual"] for row in out.rows),
             "largest_loading_work_error": max(run.loading_work_errors),
             "largest_restitution_error": max(row["restitution_error"] for row in out.rows),
@@ -268,9 +268,10 @@ def _imprecise(out: ResultsFolder, case: Case) -> str | None:
     why = "contact comes and goes in jumps there; use a finer grid"
     if case.unloading.method == "energy-estimate":
         why = 'unloading is an estimate; set unloading.method = "path"'
+    depth = 1e9 * worst["max_indentation_m"]
     return (
-        f"restitution_error is above {asked:g} at {len(missed)} of {len(out.rows)} depths, at "
-        f"worst {worst['restitution_error']:.2g} at {1e9 * worst['indentation_m']:.4g} nm: {why}"
+        f"restitution_error is above {asked:g} at {len(missed)} of {len(out.rows)} depths, "
+        f"at worst {worst['restitution_error']:.2g} at {depth:.4g} nm: {why}"
     )
 
 
@@ -310,7 +311,7 @@ def _unbalanced(checks: list[dict[str, float]]) -> str | None:
     return (
         f"{len(off)} of {len(checks)} unloading curves return another work than was stored, at "
         f"worst {worst['relative_to_stored_energy']:+.1%} from "
-        f"{1e9 * worst['indentation_m']:.4g} nm: raise unloading.steps, or refine the grid"
+        f"{1e9 * worst['max_indentation_m']:.4g} nm: raise unloading.steps, or refine the grid"
     )
 
 

@@ -32,12 +32,12 @@ def smooth_curve(contact: Contact, rows: list[dict[str, float]]) -> dict[str, An
     R, E_star = pair.radius, pair.contact_modulus
     if contact.plasticity == "truncated" or contact.adhesive or not rows:
         return {}
-    last = max(row["indentation_m"] for row in rows)
+    last = max(row["max_indentation_m"] for row in rows)
     # Smooth bodies need less depth for the same work.
     least = min(row["loading_work_J"] for row in rows)
     hertz = Hertz(R, E_star)
     same_work = float(hertz.indentation_from_energy(least))
-    first = min(same_work, *(row["indentation_m"] for row in rows))
+    first = min(same_work, *(row["max_indentation_m"] for row in rows))
     first_yield = contact.first_yield_pressure
     elastic = math.isinf(first_yield)
     onset = math.inf if elastic else float(FirstYield(R, E_star, first_yield).indentation)

@@ -1,4 +1,4 @@
-"""`restitution theory`: what published closed forms say of the smooth bodies of a case."""
+"""`restitution compare-theory`: what published closed forms say of the smooth bodies of a case."""
 
 import math
 import textwrap
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from restitution.laws.theories import Theory
 
 
-def theory(
+def compare_theory(
     case: Annotated[
         Path, typer.Argument(help="Case file (TOML).", show_default=False, readable=False)
     ],
@@ -31,7 +31,7 @@ def theory(
         Path | None,
         typer.Option(
             "--law",
-            help="Folder of `restitution law` for the same pair: its points.",
+            help="Folder of `restitution fit-law` for the same pair: its points.",
             readable=False,
         ),
     ] = None,
@@ -77,7 +77,7 @@ def theory(
     if written:
         say(f"In {out}: {', '.join(path.name for path in written)}")
     if law is None:
-        say("Next: --law LAW, a folder of `restitution law`, puts computed points beside these")
+        say("Next: --law LAW, a folder of `restitution fit-law`, puts computed points beside these")
 
 
 def _tables(velocities: list[float], found: "list[Theory]", width: int) -> Iterator[object]:

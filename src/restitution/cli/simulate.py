@@ -1,4 +1,4 @@
-"""`restitution collide`: two particles run through the stored force law, in time."""
+"""`restitution simulate`: two particles run through the stored force law, in time."""
 
 from pathlib import Path
 from typing import Annotated
@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 
-def collide(
+def simulate(
     results: Annotated[
         Path,
         typer.Argument(

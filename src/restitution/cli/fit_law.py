@@ -1,4 +1,4 @@
-"""`restitution law`: restitution against impact velocity, in the form that DEM codes take."""
+"""`restitution fit-law`: restitution against impact velocity, in the form that DEM codes take."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from restitution.laws.law import FittedLaw, Law
 
 
-def law(
+def fit_law(
     results: Annotated[
         Path,
         typer.Argument(
