@@ -148,7 +148,11 @@ def test_a_scan_may_be_refined_on_its_own_pixels(surface, scan):
         ('extend = "mirror"', "[grid]\nrefine = 2", "grid: nodes and spacing are missing"),
         ("", '[grid]\nspacing = "1 um"', 'the key "nodes" is missing'),
         ("", GRID.format(nodes=200), "a larger scan, or roughness.extend"),
-        ("", "[grid]\nrefine = 3", "grid.refine: 3 should be 1, 2, 4, 8, 16 or 'auto'"),
+        (
+            "",
+            "[grid]\nrefine = 3",
+            "grid.refine: 3 should be 1, 2, 4, 8, 16, 32 or 64, a list of these",
+        ),
         ("outliers = -1", "", "roughness.outliers: -1 should be greater than 0"),
         ("outliers = 0.1", "", "that many belong to the surface"),
         ('crop = { x = ["1 um"] }', "", "roughness.crop.x: ['1 um'] should be a list of two"),

@@ -1,4 +1,4 @@
-"""`grid.refine = "auto"`: the first grid that resolves the shallowest contact."""
+"""`grid.refine = "auto"`: the grid that each depth needs."""
 
 import json
 
@@ -6,11 +6,15 @@ import pytest
 
 from restitution import solve
 from restitution.case.case_file import parse_case
-from restitution.contact.checks.resolution import median_patch, resolves
+from restitution.contact.checks.resolution import NODES_PER_PATCH, median_patch
+from restitution.errors import CaseError
+from restitution.results.reader import RunResults
 from restitution.results.writer import ResultsFolder
 from restitution.runs import refinement
 from restitution.runs.ensemble import run_realisations
-from restitution.runs.refinement import settled
+from restitution.runs.refinement import later_touches, settled
+from restitution.runs.run import run_case
+from tolerance import approx
 
 
 @pytest.fixture
@@ -18,19 +22,64 @@ def auto(case_text):
     return case_text.replace("[indentation]", 'refine = "auto"\n[indentation]')
 
 
-def patch(case, factor, tmp_path):
+def patch(case, factor, tmp_path, depth):
     contact = case.refined(factor).contact(tmp_path)
-    return median_patch(solve(contact, case.depths()[0]).patch_sizes())
+    return median_patch(solve(contact, depth).patch_sizes())
 
 
-def test_the_first_grid_that_resolves_is_taken(auto, tmp_path):
+def test_each_depth_gets_the_coarsest_grid_that_resolves_it(auto, tmp_path):
     case = parse_case(auto)
     said = []
     found = settled(case, tmp_path, said.append)
     assert said == []
-    assert found.grid.refine > 1
-    assert resolves(patch(case, found.grid.refine, tmp_path))
-    assert not resolves(patch(case, found.grid.refine // 2, tmp_path))
+    factors = found.factors()
+    assert factors == sorted(factors, reverse=True)
+    assert factors[0] > factors[-1]
+    for depth, factor in zip(case.depths(), factors, strict=True):
+        assert patch(case, factor, tmp_path, depth) >= 1.5 * NODES_PER_PATCH
+        if factor > 1:
+            assert patch(case, factor // 2, tmp_path, depth) < 1.5 * NODES_PER_PATCH
+
+
+def test_the_rows_of_a_run_are_those_of_their_grids(auto, tmp_path):
+    case = parse_case(auto)
+    out = ResultsFolder(tmp_path / "out")
+    summary = run_case(case, auto, tmp_path, out)
+    factors = [row["refine"] for row in out.rows]
+    assert list(summary["model"]["refine"]) == factors
+    assert all(row["resolved"] for row in out.rows)
+    assert all(row["total_error"] > 0 for row in out.rows)
+    # Depths count from the first touch of the finest grid.
+    depths = [row["max_indentation_m"] for row in out.rows]
+    assert depths == approx(case.depths(), rel=1e-12)
+    touch = later_touches(case, tmp_path, set(factors))
+    assert touch[max(factors)] == 0
+    assert touch[min(factors)] > 0
+    for row in (out.rows[0], out.rows[-1]):
+        contact = case.refined(int(row["refine"])).contact(tmp_path)
+        state = solve(contact, row["max_indentation_m"] - touch[row["refine"]])
+        assert row["force_N"] == approx(state.force, rel=1e-6)
+        assert row["loading_work_J"] == approx(state.loading_work, rel=1e-3)
+    results = RunResults(out.path)
+    results.check()
+    assert out.unloading[-1][0] == depths[-1]
+    assert (results.dataset["refinement"].values == factors).all()
+
+
+def test_an_ensemble_has_the_same_grids_on_every_surface(auto, tmp_path):
+    text = auto.replace("seed = ", "realisations = 2\nseed = ")
+    out = ResultsFolder(tmp_path / "out")
+    run_realisations(parse_case(text), text, tmp_path, out)
+    assert len({row["refine"] for row in out.rows}) > 1
+    assert all(row["total_error"] > 0 for row in out.rows)
+
+
+def test_a_list_has_a_factor_for_each_depth(auto, tmp_path):
+    found = parse_case(auto.replace('"auto"', "[4, 2, 1, 1]"))
+    assert found.factors() == [4, 2, 1, 1]
+    assert settled(found, tmp_path, pytest.fail) == found
+    with pytest.raises(CaseError, match=r"grid\.refine: 2 values for 4 depths"):
+        parse_case(auto.replace('"auto"', "[4, 2]"))
 
 
 def test_a_number_is_left_as_it_is(case_text, tmp_path):

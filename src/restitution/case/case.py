@@ -62,9 +62,19 @@ class Case(Table):
             )
         if self._own_grid() is None:
             self._check_scan_brings_grid()
+        if self.grid is not None and isinstance(self.grid.refine, tuple):
+            self._check_factors(self.grid.refine)
         if len({part.realisations for part in self.roughness} - {1}) > 1:
             raise ValueError("roughness.realisations: differs between the tables; give one number")
         return self
+
+    def _check_factors(self, factors: tuple[int, ...]) -> None:
+        depths = len(self.depths())
+        if len(factors) != depths:
+            raise ValueError(
+                f"grid.refine: {len(factors)} values for {depths} depths; give one for each depth, "
+                'or "auto"'
+            )
 
     def _check_masses(self) -> None:
         for name, body in (("first", self.first), ("second", self.second)):
@@ -117,6 +127,12 @@ class Case(Table):
         """This case on cells `factor` times as small as [grid] says, whatever its `refine`."""
         grid = (self.grid or GridTable()).model_copy(update={"refine": factor})
         return self.model_copy(update={"grid": grid})
+
+    def factors(self) -> list[int]:
+        """`refine` of every depth, from the shallowest to the deepest."""
+        if self.grid is not None and isinstance(self.grid.refine, tuple):
+            return list(self.grid.refine)
+        return [1 if self.grid is None else self.grid.factor] * len(self.depths())
 
     def pair(self) -> Pair:
         """The two bodies; `CaseError` when both are flat."""

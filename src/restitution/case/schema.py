@@ -5,7 +5,15 @@ from __future__ import annotations
 from typing import Annotated, Any, ClassVar, Generic, Literal, Self, TypeVar, cast
 
 import numpy as np
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    PlainValidator,
+    model_validator,
+)
 
 from restitution.case.quantities import Length, Velocity
 from restitution.collision import UnloadingMethod
@@ -13,6 +21,7 @@ from restitution.contact.separation import RESTITUTION_ERROR
 from restitution.errors import shown
 from restitution.numerics.grid import Grid
 
+FACTORS = (1, 2, 4, 8, 16, 32, 64)  # that a cell may be divided into
 MOST_NODES = 2**27  # of a grid: more do not fit into the memory of common machines
 MOST_STEPS = 10_000  # of a curve
 
@@ -45,12 +54,25 @@ def _few_enough(nodes: tuple[int, int]) -> tuple[int, int]:
     return nodes
 
 
+def _factors(value: Any) -> int | tuple[int, ...] | str:
+    """A factor of refinement, one for each depth, or "auto"."""
+    values = value if isinstance(value, list | tuple) else [value]
+    known = values and all(type(one) is int and one in FACTORS for one in values)
+    if value == "auto" or known:
+        return tuple(value) if isinstance(value, list) else value
+    numbers = ", ".join(map(str, FACTORS[:-1]))
+    raise ValueError(
+        f"{shown(value)} should be {numbers} or {FACTORS[-1]}, a list of these (one for each "
+        'depth), or "auto"'
+    )
+
+
 class GridTable(Table):
     """`[grid]`; `nodes` and `spacing` may be omitted for a scan, which brings its own."""
 
     nodes: Annotated[tuple[Nodes, Nodes], PairOf, AfterValidator(_few_enough)] | None = None
     spacing: Annotated[tuple[Length, Length], PairOf] | None = None
-    refine: Literal[1, 2, 4, 8, 16, "auto"] = 1
+    refine: Annotated[int | tuple[int, ...] | Literal["auto"], PlainValidator(_factors)] = 1
 
     @model_validator(mode="after")
     def _whole(self) -> Self:
@@ -63,7 +85,12 @@ class GridTable(Table):
 
     @property
     def factor(self) -> int:
-        """Cells along x and y that one is divided into; 1 where that is still to be found."""
+        """Cells along x and y that one cell is divided into, at the deepest depth.
+
+        1 for "auto", where the number is still to be found.
+        """
+        if isinstance(self.refine, tuple):
+            return self.refine[-1]
         return 1 if self.refine == "auto" else self.refine
 
     def grid(self) -> Grid | None:

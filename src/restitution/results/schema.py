@@ -99,6 +99,9 @@ COLUMNS = {
     "model_error": Column(
         "model_error", "1", "restitution's error by the model of plasticity", low=0.0
     ),
+    "refine": Column(
+        "refinement", "1", "cells along x and y that one cell of [grid] is divided into", low=1.0
+    ),
 }
 # What the curve of an ensemble has besides: its other columns are means.
 SPREAD_COLUMNS = {

@@ -39,13 +39,18 @@ from restitution.results.schema import ALL_COLUMNS, COLUMNS, LOCK, UNLOADING_COL
 _BLOCK = 1 << 16  # bytes
 
 
-def curve_row(state: State, collision: Collision) -> dict[str, float]:
-    """The row of `curve.csv` for one state of loading; NaN where there is no answer."""
+def curve_row(
+    state: State, collision: Collision, refine: int = 1, touch: float = 0.0
+) -> dict[str, float]:
+    """The row of `curve.csv` for one state of loading; NaN where there is no answer.
+
+    `refine` is that of the grid; `touch` (m) is the indentation at which this grid first touches.
+    """
     patches = state.patch_sizes()
     median = median_patch(patches)
     velocity = collision.impact_velocity
     values = (
-        state.indentation,
+        state.indentation + touch,
         state.force,
         state.contact_area,
         state.stored_energy,
@@ -60,7 +65,7 @@ def curve_row(state: State, collision: Collision) -> dict[str, float]:
         state.residual,
         state.convolutions + collision.convolutions,
         collision.pull_off_force,
-        collision.separation_indentation,
+        collision.separation_indentation + touch,
         collision.restitution_error,
         collision.sticks,
         adhesive_nodes(state) >= ADHESIVE_NODES,
@@ -68,6 +73,7 @@ def curve_row(state: State, collision: Collision) -> dict[str, float]:
         resolves(median),
         *(math.nan,) * 4,  # one curve cannot tell: see `error_budget`
         model_error(state, collision.restitution),
+        refine,
     )
     return dict(zip(COLUMNS, values, strict=True))
 
@@ -102,9 +108,9 @@ class ResultsFolder:
             _write_row(unloading, list(UNLOADING_COLUMNS))
             yield
 
-    def add(self, state: State, collision: Collision) -> None:
-        """Write the row of a state of loading."""
-        row = curve_row(state, collision)
+    def add(self, state: State, collision: Collision, refine: int = 1, touch: float = 0.0) -> None:
+        """Write the row of a state of loading (`curve_row`)."""
+        row = curve_row(state, collision, refine, touch)
         with hold_signals():
             _write_row(self._curve, [written(value) for value in row.values()])
             self.rows.append(row)
@@ -118,10 +124,13 @@ class ResultsFolder:
         self.rows = rows
         write_table(self.path / "curve.csv", rows)
 
-    def add_unloading(self, path: list[State]) -> None:
-        """Write one unloading curve, from its deepest state to separation."""
-        deepest = path[0].indentation
-        points = [(state.indentation, state.force) for state in path]
+    def add_unloading(self, path: list[State], touch: float = 0.0) -> None:
+        """Write one unloading curve, from its deepest state to separation.
+
+        `touch` (m) is the indentation at which the grid of `path` first touches.
+        """
+        deepest = path[0].indentation + touch
+        points = [(state.indentation + touch, state.force) for state in path]
         with hold_signals():
             for point in points:
                 _write_row(self._unloading, [repr(v) for v in (deepest, *point)])

@@ -35,7 +35,7 @@ from restitution.runs.error_budget import (
     widened_error,
 )
 from restitution.runs.log import RunLog, Say, ignore
-from restitution.runs.refinement import settled
+from restitution.runs.refinement import later_touches, settled
 from restitution.runs.run import run_case
 
 _Row = dict[str, float]
@@ -53,7 +53,7 @@ def run_convergence(
 ) -> dict[str, Any]:
     """Run `case` on its grid and on ones with cells 2, 4 … times smaller; return the summary.
 
-    With `grid.refine = "auto"` the first grid is the one that is settled on (`refinement`).
+    With `grid.refine = "auto"` the first grid is the one that the shallowest depth needs.
     Each grid has its run in a folder `refine-<n>` of `out`; the curve of `out` is that of the
     finest with its `discretisation_error`, and `convergence.csv` has a row for every depth and
     grid. Depths count from the first touch on the finest grid: between the nodes of a coarser one
@@ -68,6 +68,7 @@ def run_convergence(
 
     with log.record(out, keep):
         case = settled(case, folder, log.warn)
+        case = case.refined(max(case.factors()))
         unsettled[:] = log.warnings
         for factor, later in _levels(case, folder, grids).items():
             part, refined = out.part(f"refine-{factor}"), _pressed_less(case, later)
@@ -125,12 +126,7 @@ def _levels(case: Case, folder: Path, grids: int) -> dict[int, float]:
             f"grids: the last of them, {nx * factors[-1]} x {ny * factors[-1]} nodes, would be "
             f"larger than a grid may be ({MOST_NODES} nodes); give fewer, or a coarser first grid"
         )
-    R, touch = case.pair().radius, {}
-    for factor in factors:
-        surface = case.refined(factor).surface(folder)
-        x, y = surface.grid.x[:, None], surface.grid.y[None, :]
-        touch[factor] = float(((x * x + y * y) / (2 * R) - surface.height).min())
-    return {factor: touch[factor] - touch[factors[-1]] for factor in factors}
+    return later_touches(case, folder, factors)
 
 
 def _pressed_less(case: Case, later: float) -> Case:
@@ -159,9 +155,9 @@ def _keep(
     write_table(
         out.path / "convergence.csv",
         [
-            {"refine": factor, **{key: row[key] for key in (*COLUMNS, "observed_order")}}
+            {key: row[key] for key in ("refine", *COLUMNS, "observed_order")}
             for rows in depths
-            for factor, row in rows.items()
+            for row in rows.values()
         ],
     )
     one = RunResults(out.path / f"refine-{max(runs)}")

@@ -29,6 +29,7 @@ _WORST: dict[str, Callable[[list[float]], float]] = {
     "model_error": max,
     "median_patch_nodes": min,
     "convolutions": sum,
+    "refine": max,
 }
 _ALL = {"sticks", "adhesion_resolved", "resolved"}
 

@@ -129,14 +129,32 @@ def add_errors(
 ) -> list[float]:
     """Put the errors of grid, surface and materials, and their total, into the rows of a run.
 
-    `surface` is the one that was solved on; without `scattered` the scatter between surfaces is
-    left out. A row without a positive loading work, which no impact reaches, gets no error; nor
+    `surface` is that of the deepest depth; without `scattered` the scatter between surfaces is left
+    out. A row without a positive loading work, which no impact reaches, gets no error; nor
     does one of which a part is not known. Returns the part of the error by waves that the grid
     leaves out.
     """
-    reached = [row for row in rows if row["loading_work_J"] > 0]
-    if not reached:
-        return []
+    band: list[float] = []
+    for factor in dict.fromkeys(int(row["refine"]) for row in rows):
+        level = [row for row in rows if row["refine"] == factor and row["loading_work_J"] > 0]
+        own = case.grid is None or case.grid.factor == factor
+        its, of = (case, surface) if own else (case.refined(factor), None)
+        if level:
+            of = its.surface(folder) if of is None else of
+            band += _add_errors(its, folder, of, level, progress, scattered=scattered)
+    return band
+
+
+def _add_errors(
+    case: Case,
+    folder: Path,
+    surface: Surface,
+    reached: Sequence[Row],
+    progress: Say,
+    *,
+    scattered: bool,
+) -> list[float]:
+    """`add_errors` of the rows of one grid, all with a positive loading work."""
     work = np.array([row["loading_work_J"] for row in reached])
     restitution = np.array([row["restitution"] for row in reached])
     companions = Companions(case, folder, sorted(row["max_indentation_m"] for row in reached))

@@ -1,50 +1,93 @@
-"""How fine a grid has to be: the first on which the shallowest contact of a case is resolved."""
+"""The grid that each depth needs: `grid.refine = "auto"`."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
 from restitution.case.case import Case
-from restitution.contact.checks.resolution import NODES_PER_PATCH, median_patch, resolves
+from restitution.case.schema import FACTORS
+from restitution.contact.checks.resolution import NODES_PER_PATCH, median_patch
+from restitution.contact.contact import Contact
+from restitution.errors import DomainError, NotConvergedError
 from restitution.runs.loading import load_to
 from restitution.runs.log import Say, ignore
 
-FACTORS = (1, 2, 4, 8, 16)
 # Nodes of the finest grid that is tried unasked: a few minutes and about 2 GiB.
 MOST_NODES = 2**24
+# Other surfaces of an ensemble have smaller patches than the first, which is the one probed.
+_MARGIN = 1.5
 
 
 def settled(case: Case, folder: Path, warn: Say = ignore) -> Case:
-    """`case` with a number for `grid.refine = "auto"`; `warn` is told why that may not be enough.
+    """`case` with a number for each depth in place of `grid.refine = "auto"`.
 
-    The surface (the first of an ensemble) is refined until half of its contact at the shallowest
-    depth lies in patches of `NODES_PER_PATCH` nodes: deeper contacts have larger patches. Only the
-    shallowest depth is solved. Where no grid is fine enough, the finest of up to `MOST_NODES` nodes
-    is taken. Raises as `solve`.
+    Each depth gets the coarsest grid on which half of its contact lies in patches of 1.5 times
+    `NODES_PER_PATCH` nodes, on the first surface of an ensemble. Deeper contacts have larger
+    patches, so bisection finds the shallowest depth that a grid resolves. Depths that no grid of up
+    to `MOST_NODES` nodes resolves get the finest one, and `warn` is told. Raises as `solve`.
     """
     if case.grid is None or case.grid.refine != "auto":
         return case
-    shallowest, patch = case.depths()[0], 0
-    finest, why, nodes = case.refined(1), "", (1, 1)
+    depths = case.depths()
+    factors: list[int] = []  # of the deepest depths, in order
+    finest, why, nodes = 1, "", (1, 1)
     for factor in FACTORS:
-        finer = case.refined(factor)
         if factor > 1 and factor**2 * nodes[0] * nodes[1] > MOST_NODES:
             why = f"the next grid would have {factor * nodes[0]} x {factor * nodes[1]} nodes"
             break
+        finer = case.refined(factor)
         contact = finer.realisation(0).contact(folder)
-        finest = finer
         if factor == 1:
             nodes = contact.grid.nodes
-        state = load_to(finer, contact, shallowest)
-        patch = median_patch(state.patch_sizes())
-        if resolves(patch):
-            return finer
-        why = f"{factor} is the largest refine"
-    unit, scale = ("nm", 1e9) if case.indentation else ("N", 1) if case.load else ("m/s", 1)
-    depth = f"{scale * shallowest:.4g} {unit}"
-    warn(
-        f'grid.refine = "auto" ends at {finest.grid.factor if finest.grid else 1} ({why}) with the '
-        f"contact at {depth} not resolved: half of it is in patches of {patch} nodes, fewer than "
-        f"{NODES_PER_PATCH}; begin deeper, or leave out short waves (roughness.shortest)"
-    )
-    return finest
+        left = depths[: len(depths) - len(factors)]
+        first = _first_resolved(finer, contact, left)
+        factors = [factor] * (len(left) - first) + factors
+        finest, why = factor, f"{factor} is the largest refine"
+        if first == 0:
+            break
+    if unresolved := len(depths) - len(factors):
+        unit, scale = ("nm", 1e9) if case.indentation else ("N", 1) if case.load else ("m/s", 1)
+        below = f" up to {scale * depths[unresolved - 1]:.4g} {unit}" if unresolved > 1 else ""
+        warn(
+            f'grid.refine = "auto" ends at {finest} ({why}) with the contact at '
+            f"{scale * depths[0]:.4g} {unit}{below} not resolved: half of it is in patches of "
+            f"fewer than {_MARGIN * NODES_PER_PATCH:.0f} nodes; begin deeper, or leave out short "
+            "waves (roughness.shortest)"
+        )
+    found = [finest] * unresolved + factors
+    refine = found[0] if len(set(found)) == 1 else tuple(found)
+    return case.model_copy(update={"grid": case.grid.model_copy(update={"refine": refine})})
+
+
+def later_touches(case: Case, folder: Path, factors: Iterable[int]) -> dict[int, float]:
+    """How much later (m) each grid touches first than the finest of `factors`.
+
+    The highest point of a surface lies between the nodes of a coarse grid.
+    """
+    R, touch = case.pair().radius, {}
+    for factor in factors:
+        surface = case.refined(factor).surface(folder)
+        x, y = surface.grid.x[:, None], surface.grid.y[None, :]
+        touch[factor] = float(((x * x + y * y) / (2 * R) - surface.height).min())
+    return {factor: touch[factor] - touch[max(touch)] for factor in touch}
+
+
+def _first_resolved(case: Case, contact: Contact, depths: list[float]) -> int:
+    """The index of the shallowest of `depths` that the grid resolves; their number for none."""
+    low, high = 0, len(depths)
+    while low < high:
+        middle = (low + high) // 2
+        try:
+            patch = median_patch(load_to(case, contact, depths[middle]).patch_sizes())
+        except DomainError:  # beyond the edge, which the run will report
+            high = middle
+            continue
+        except NotConvergedError:  # the work jumps: too few nodes
+            low = middle + 1
+            continue
+        if patch >= _MARGIN * NODES_PER_PATCH:
+            high = middle
+        else:
+            low = middle + 1
+    return low

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -31,9 +32,9 @@ from restitution.runs.error_budget import add_errors, band_warning, total_error_
 from restitution.runs.loading import load_to
 from restitution.runs.log import RunLog, Say, ignore
 from restitution.runs.messages import input_warnings, message, naming_keys, require_possible
-from restitution.runs.refinement import settled
+from restitution.runs.refinement import later_touches, settled
 from restitution.runs.smooth import smooth_curve
-from restitution.surfaces import describe
+from restitution.surfaces import Surface, describe
 
 CONVENTIONS = {
     "end_of_contact": "separation, where the force is back to zero",
@@ -81,7 +82,8 @@ def run_case(
     on; without, as one of several runs whose rows are compared by their number, it ends the curve.
     So does contact at the edge of the grid. Either makes the run a failed one in the end.
 
-    It is of one surface (see `ensemble`); `grid.refine = "auto"` is settled first (`refinement`).
+    It is of one surface (see `ensemble`). `grid.refine = "auto"` is settled first (`refinement`);
+    depths then count from the first touch of the finest of the grids.
     `progress` is called with a few words after every depth, `warn` with every warning: what is
     foreseen before the first solve, what the results show at the end, whichever end it is.
     Whatever stops the run is raised again once everything computed until then, and the reason, are
@@ -100,9 +102,9 @@ def run_case(
         for warning in omissions(case) + input_warnings(contact, deepest):
             run.warn(warning)
         with out.tables():
-            failure = _load_and_unload(contact, case, out, run, go_on=errors)
+            failure = _load_and_unload(_levels(case, folder, contact), case, out, run, go_on=errors)
         if errors and case.total_error and out.rows:
-            _add_errors(case, folder, contact, out, run)
+            _add_errors(case, folder, contact.surface, out, run)
         if failure is not None:
             raise failure
     assert run.summary is not None  # where no depth is computed, an error is raised
@@ -121,8 +123,38 @@ def _keep(case: Case, text: str, out: ResultsFolder, run: _Run, deepest: State) 
     return summary
 
 
+@dataclass(frozen=True)
+class _Level:
+    """The contact on one grid, the depths (m, N or m/s) that it is for, and where it touches.
+
+    `touch` (m) is the indentation at which this grid touches first; it counts from the first touch
+    of the finest grid.
+    """
+
+    contact: Contact
+    refine: int
+    depths: list[float]
+    touch: float
+
+    def load_to(self, case: Case, depth: float, start: State | None) -> State:
+        own = depth - self.touch if case.indentation else depth
+        return load_to(case, self.contact, own, start)
+
+
+def _levels(case: Case, folder: Path, deepest: Contact) -> Iterator[_Level]:
+    """The grids of a run, from that of the shallowest depth to the one of the contact `deepest`."""
+    factors, depths = case.factors(), case.depths()
+    # Loads and velocities are the same on every grid, but their indentations are not.
+    touches = later_touches(case, folder, set(factors)) if len(set(factors)) > 1 else {}
+    for factor in sorted(set(factors), reverse=True):
+        own = [depth for depth, its in zip(depths, factors, strict=True) if its == factor]
+        last = factor == factors[-1]
+        contact = deepest if last else case.refined(factor).contact(folder)
+        yield _Level(contact, factor, own, touches.get(factor, 0.0))
+
+
 def _load_and_unload(
-    contact: Contact,
+    levels: Iterable[_Level],
     case: Case,
     out: ResultsFolder,
     run: _Run,
@@ -136,9 +168,13 @@ def _load_and_unload(
     began = time.perf_counter()
     before: State | None = None
     failure: RestitutionError | None = None
-    for number, depth in enumerate(depths):
+    places = ((level, depth) for level in levels for depth in level.depths)
+    for number, (level, depth) in enumerate(places):
+        contact = level.contact
+        if before is not None and before.contact.grid != contact.grid:
+            before = None
         try:
-            state = load_to(case, contact, depth, before)
+            state = level.load_to(case, depth, before)
         except (NotConvergedError, DomainError) as error:
             failure = failure or error
             if not go_on or isinstance(error, DomainError):  # deeper ones reach the edge, too
@@ -157,10 +193,10 @@ def _load_and_unload(
             run.asked.append(depth)
             run.adhesive_nodes.append(adhesive_nodes(state))
             run.loading_work_errors.append(state.work_error / max(abs(state.loading_work), 1e-300))
-            out.add(state, collision)
+            out.add(state, collision, level.refine, level.touch)
             run.deepest = state
         if number in unloaded and state.contact_nodes:
-            out.add_unloading(back)
+            out.add_unloading(back, level.touch)
             run.unloading_checks.append(_check(state, back, collision))
         run.depth_seconds.append(round(time.perf_counter() - began, 4))
         began = time.perf_counter()
@@ -171,13 +207,13 @@ def _load_and_unload(
 def _add_errors(
     case: Case,
     folder: Path,
-    contact: Contact,
+    surface: Surface,
     out: ResultsFolder,
     run: _Run,
 ) -> None:
     """Put the total error into the rows, and warn of what the grid leaves out of the surface."""
     try:
-        run.band_errors = add_errors(case, folder, contact.surface, out.rows, run.progress)
+        run.band_errors = add_errors(case, folder, surface, out.rows, run.progress)
     except RestitutionError as error:
         run.warnings.append(f"total_error is not known: {error}")
     out.put_curve(out.rows)
@@ -219,7 +255,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> d
             **_adhesion_of(contact, case),
             "half_space": "free, Love cells, zero-padded FFT",
             **asdict(contact.grid),
-            "refine": case.grid.factor if case.grid else 1,
+            "refine": case.grid.refine if case.grid else 1,
             "yield_pressure": case.yielding().source,
         },
         "materials": _materials(case),
