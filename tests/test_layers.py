@@ -21,6 +21,7 @@ ROOMS = (
     "runs",
     "sweeps",
     "laws",
+    "mixtures",
     "dem",
     "plots",
     "pages",

@@ -113,10 +113,19 @@ def parse_case(text: str) -> Case:
     try:
         return Case.model_validate(content)
     except ValidationError as error:
-        # A key that is not known explains one that is missing, not the other way round.
-        problems = error.errors(include_url=False)
-        problems.sort(key=lambda problem: problem["type"] != "extra_forbidden")
-        raise CaseError(_in_words(problems[0]) + _others(problems)) from None
+        raise CaseError(in_words(error)) from None
+
+
+def in_words(error: ValidationError, root: type[Table] = Case, before: str = "") -> str:
+    """One line for the problems of a file: the first, and the keys of others.
+
+    `root` is the table that was checked, and `before` the dotted path of its key in the file.
+    """
+    # A key that is not known explains one that is missing, not the other way round.
+    problems = error.errors(include_url=False)
+    problems.sort(key=lambda problem: problem["type"] != "extra_forbidden")
+    where = f"{before}." if before else ""
+    return where + _in_words(problems[0], root) + _others(problems)
 
 
 def _others(problems: list[Any]) -> str:
@@ -155,15 +164,17 @@ def _key_of(problem: Any) -> str:
     return ".".join(shown(key)[1:-1] for key in _keys(problem))
 
 
-def _in_words(problem: Any) -> str:
+def _in_words(problem: Any, root: type[Table]) -> str:
     """One line for one of pydantic's problems: the key, what is wrong, the remedy."""
     keys, key = _keys(problem), _key_of(problem)
     prefix = f"{key}: " if key else ""
     kind, context = problem["type"], problem.get("ctx", {})
     if kind == "extra_forbidden":
-        known = _keys_of(keys[:-1], problem["loc"])
+        known = _keys_of(keys[:-1], problem["loc"], root)
         near = difflib.get_close_matches(keys[-1], known, n=1)
-        hint = f'did you mean "{near[0]}"?' if near else f"known keys: {', '.join(known)}"
+        hint = f"known keys: {', '.join(known)}" if known else "remove it"
+        if near:
+            hint = f'did you mean "{near[0]}"?'
         return f"{key}: unknown key; {hint}"
     if kind == "missing":
         what = f"the table [{key}]" if len(keys) == 1 else f'the key "{key}"'
@@ -178,7 +189,7 @@ def _in_words(problem: Any) -> str:
     return f"{prefix}{shown(problem['input'])} should be {should_be}"
 
 
-def _keys_of(path: list[str], loc: tuple[Any, ...]) -> list[str]:
+def _keys_of(path: list[str], loc: tuple[Any, ...], root: type[Table]) -> list[str]:
     """The keys that the table at `path` knows, as written in the file."""
     if path[:2] == ["roughness", "crop"]:
         return list(CropTable.model_fields)
@@ -193,5 +204,7 @@ def _keys_of(path: list[str], loc: tuple[Any, ...]) -> list[str]:
         "unloading": UnloadingTable,
         "roughness": MeasuredRoughness if "measured" in loc else GeneratedRoughness,
     }
-    model = tables[path[0]] if path else Case
+    if path and path[0] not in tables:
+        return []
+    model = tables[path[0]] if path else root
     return [field.alias or name for name, field in model.model_fields.items()]

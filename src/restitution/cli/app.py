@@ -13,6 +13,7 @@ from restitution.cli import (
     converge,
     export,
     fit_law,
+    mixture,
     report,
     reproduce,
     run,
@@ -31,6 +32,7 @@ app = typer.Typer(
 app.command()(run.run)
 app.command()(converge.converge)
 app.command()(study.study)
+app.command()(mixture.mixture)
 app.command()(report.report)
 app.command()(compare.compare)
 app.command()(reproduce.reproduce)

@@ -23,7 +23,8 @@ def export(
         list[Path],
         typer.Argument(
             metavar="LAW...",
-            help="Folders of `restitution fit-law`, one for every pair of particles.",
+            help="Folders of `restitution fit-law`, one for every pair of particles, or of "
+            "`restitution mixture`.",
             show_default=False,
             readable=False,
         ),
@@ -40,9 +41,9 @@ def export(
     from restitution.dem.export import export as exported
     from restitution.dem.export import write_export
     from restitution.laws.law import velocity_of
-    from restitution.laws.law_files import read_law
+    from restitution.laws.law_files import read_laws
 
-    read = [read_law(law) for law in laws]
+    read = read_laws(laws)
     at = None if velocity is None else velocity_of(velocity)
     texts = exported(read, to.value, at)
     for law in read:

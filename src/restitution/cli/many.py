@@ -11,8 +11,10 @@ if TYPE_CHECKING:
 
 
 @contextmanager
-def many_cases(cases: int, out: object, again: str) -> Iterator[Progress]:
+def many_cases(cases: int | None, out: object, again: str) -> Iterator[Progress]:
     """Say where the results of so many `cases` go and that `again` resumes them; show progress.
+
+    `cases` is None where their number is not known before the first are done.
 
     Interruption ends the program as a shell expects it, with the same advice.
     """
@@ -29,7 +31,8 @@ def many_cases(cases: int, out: object, again: str) -> Iterator[Progress]:
     from restitution.cli.console import errors, hint_at_kernels, say
     from restitution.cli.signals import Stopped
 
-    say(f"{cases} cases. Results go to {out}; to resume: {again}", errors)
+    number = "" if cases is None else f"{cases} cases. "
+    say(f"{number}Results go to {out}; to resume: {again}", errors)
     hint_at_kernels()
     columns = (
         TextColumn("{task.description}"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -58,6 +59,18 @@ def read_law(folder: Path) -> Law:
             f"{path}: is not a law of this version ({where}: {why}); make it again with "
             "`restitution fit-law`"
         ) from None
+
+
+def read_laws(folders: Sequence[Path]) -> list[Law]:
+    """The laws in `folders`: one in each folder of `fit-law`, all pairs in that of a mixture.
+
+    Raises as `read_law`.
+    """
+    found: list[Law] = []
+    for folder in folders:
+        inside = sorted((folder / "laws").glob("*/")) if folder.is_dir() else []
+        found += map(read_law, inside or [folder])
+    return found
 
 
 def write_theories(velocities: NDArray[np.float64], found: list[Theory], out: Path) -> Path:

@@ -66,6 +66,10 @@ class StudyFolder:
         """Keep other processes out. Raises `OutputError` while one is at work here."""
         return locked(self.path)
 
+    def folder_of(self, case: SweptCase) -> Path:
+        """The folder that holds the results of `case`."""
+        return self._cases / case.name
+
     def clear(self) -> None:
         """Remove what a process that was killed has left half written."""
         for left in self._cases.glob(".*"):

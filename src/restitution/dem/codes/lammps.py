@@ -10,12 +10,22 @@ and raise e. `damping tsuji` has an error of √2 in released versions.
 from __future__ import annotations
 
 from restitution.dem.codes.lammps_mdr import mdr_offers
-from restitution.dem.export_common import STEPS, commented, header, pairs_at, render, summary
+from restitution.dem.export_common import (
+    STEPS,
+    commented,
+    contact_time,
+    header,
+    pairs_at,
+    render,
+    summary,
+)
 from restitution.dem.pair_table import PairTable
 
 CODE = "LAMMPS"
 LOWEST = 0.001  # reproduced within 0.5 % with `STEPS` steps a contact
-FRAGMENT, COLLISION = "restitution.lmp", "collision.in"
+FRAGMENT, COLLISION, PACKING = "restitution.lmp", "collision.in", "packing.in"
+_GRAINS = 500  # of the packing
+_FILLED = 0.12  # of the volume in which they are placed
 _ENDS = (
     "the overlap is back to zero. The damping pulls shortly before; do not add limit_damping, "
     "which cuts that off and raises e (0.808 for 0.8)."
@@ -23,9 +33,10 @@ _ENDS = (
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """The fragment to include and a test collision that prints its e: file names and texts.
+    """The fragment to include, a test collision that prints its e, and a packing where possible.
 
-    Raises `CaseError`, `DomainError`.
+    The packing drops spheres of all types on the first wall that has a law with each of them.
+    Returns file names and texts. Raises `CaseError`, `DomainError`.
     """
     walls_only = all(j > len(table.spheres) for _, j in table.laws)
     if not walls_only:
@@ -33,7 +44,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
     pairs = pairs_at(table, velocity, CODE, LOWEST)
     head = header(table, pairs, velocity, code=CODE, ends=_ENDS)
     short = summary(pairs, velocity, code=CODE, ends=_ENDS, fragment=FRAGMENT)
-    return {
+    files = {
         FRAGMENT: render(
             FRAGMENT,
             comments=commented(head, "#"),
@@ -51,3 +62,30 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
             steps=STEPS,
         ),
     }
+    floor = _floor(table)
+    if floor is not None and not walls_only:
+        size, count = table.largest_radius, len(table.spheres)
+        counts = [_GRAINS // count + (k < _GRAINS % count) for k in range(count)]
+        edge = 16 * size
+        files[PACKING] = render(
+            PACKING,
+            comments=commented(short, "#"),
+            table=table,
+            counts=counts,
+            floor=floor,
+            velocity=velocity,
+            size=size,
+            edge=edge,
+            height=_GRAINS * 4.2 * size**3 / (_FILLED * edge**2),
+            contact=min(contact_time(law) for _, _, law in table.pairs()) * velocity**-0.2,
+        )
+    return files
+
+
+def _floor(table: PairTable) -> int | None:
+    """The number of the first wall that has a law with every sphere."""
+    count = len(table.spheres)
+    for wall in range(count + 1, len(table.particles) + 1):
+        if all((k, wall) in table.laws for k in range(1, count + 1)):
+            return wall
+    return None

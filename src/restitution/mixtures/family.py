@@ -1,0 +1,215 @@
+"""Pairs of two components: which particles meet, and the case that is run for one reduced radius.
+
+Smooth spheres without adhesion obey a scaling law: with lengths in units of R*, the contact depends
+on W/R*³ alone, where W is the loading work. Neither the masses nor the two radii enter otherwise.
+All pairs of two components therefore have laws e(W/R*³, R*) of one family. They depend on R* only
+by the roughness and the adhesion, whose lengths do not scale with it. W/R*³ = ½ κ V² with
+κ = m*/R*³.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import tomli_w
+
+from restitution.case.bodies import BodyTable
+from restitution.case.case import Case
+from restitution.case.case_file import parse_case
+from restitution.case.derived import deepest_indentation
+from restitution.contact.bodies import Body, Pair
+from restitution.contact.checks.resolution import predicted_radius
+from restitution.errors import CaseError, RestitutionError
+from restitution.laws.law import Particle
+from restitution.mixtures.mixture_file import Component, Mixture
+
+_WIDTH = 2.8  # of the grid over the radius that the deepest contact may have
+_PEAKS = 4.0  # rms heights of the highest peaks
+_NODES = 256  # along the width of the grid, at least
+_MOST_NODES = 1024
+_PER_WAVE = 5  # nodes in a correlation length, or in the shortest wave
+
+
+@dataclass(frozen=True)
+class Meeting:
+    """Two particles that can meet, with their reduced radius R* (m) and mass m* (kg)."""
+
+    first: Particle
+    second: Particle
+    radius: float
+    mass: float
+
+    @property
+    def kappa(self) -> float:
+        """κ = m*/R*³ (kg/m³)."""
+        return self.mass / self.radius**3
+
+
+@dataclass(frozen=True)
+class Family:
+    """All pairs of the components `first` and `second` of a mixture."""
+
+    mixture: Mixture
+    first: Component
+    second: Component
+
+    @property
+    def name(self) -> str:
+        """Both names, as in the key of a pair."""
+        return f"{self.first.name}+{self.second.name}"
+
+    @cached_property
+    def meetings(self) -> tuple[Meeting, ...]:
+        """Every pair of sizes that can meet, each once."""
+        return tuple(_meeting(one, two) for one, two in self._sizes())
+
+    def _sizes(self) -> Iterable[tuple[Particle, Particle]]:
+        ours = [_particle(self.first, radius) for radius in self.first.radii]
+        if self.second is self.first:
+            return itertools.combinations_with_replacement(ours, 2)
+        theirs = [_particle(self.second, radius) for radius in self.second.radii or (None,)]
+        return itertools.product(ours, theirs)
+
+    @cached_property
+    def radii(self) -> tuple[float, ...]:
+        """The reduced radii (m) that occur, increasing; equal ones to a relative 1e-9 once."""
+        found: list[float] = []
+        for radius in sorted(meeting.radius for meeting in self.meetings):
+            if not found or radius > found[-1] * (1 + 1e-9):
+                found.append(radius)
+        return tuple(found)
+
+    def case(self, radius: float) -> str:
+        """The text of the case for the reduced radius (m).
+
+        It holds the velocities that give W/R*³ of every pair of the family.
+        """
+        return tomli_w.dumps(self._content(radius, self._grid))
+
+    @cached_property
+    def _grid(self) -> dict[str, Any]:
+        """The table `[grid]`, the same for all reduced radii: they all have the same surface."""
+        if self.mixture.grid is not None:
+            return {"refine": "auto", **self.mixture.grid}
+        probe = {"nodes": 64, "spacing": "1 um"}
+        contents = [self._content(radius, probe) for radius in (self.radii[0], self.radii[-1])]
+        cases = [self._parsed(content) for content in contents]
+        width = _WIDTH * max(_half_width(case) for case in cases)
+        spacing = min(width / _NODES, *(_spacing(part) for part in cases[0].roughness), math.inf)
+        nodes = 2 * math.ceil(0.5 * width / spacing)
+        if nodes > _MOST_NODES:
+            raise CaseError(
+                f"grid: the waves of {self.name} need cells of {1e6 * spacing:.3g} um, and the "
+                f"contact a grid of {1e6 * width:.3g} um: {nodes} nodes along an edge; give the "
+                "table [grid], fewer velocities, or sizes that are nearer to each other"
+            )
+        return {"nodes": nodes, "spacing": f"{spacing!r} m", "refine": "auto"}
+
+    def _parsed(self, content: dict[str, Any]) -> Case:
+        try:
+            return parse_case(tomli_w.dumps(content))
+        except RestitutionError as error:
+            raise CaseError(f"in the pair {self.name}: {error}") from None
+
+    def _content(self, radius: float, grid: dict[str, Any]) -> dict[str, Any]:
+        flat = self.second.wall
+        own = f"{radius if flat else 2 * radius!r} m"
+        bodies = {
+            "first": {**self.first.body, "radius": own},
+            "second": {**self.second.body, "radius": "flat" if flat else own},
+        }
+        rough = [*self.first.roughness, *map(_another, self.second.roughness)]
+        return {
+            "title": f"{self.name}, R* = {1e6 * radius:.6g} um",
+            **bodies,
+            "interface": self.mixture.interface(self.first, self.second),
+            **({"roughness": rough} if rough else {}),
+            "grid": grid,
+            "impact": {"velocity": [f"{V!r} m/s" for V in self._velocities(radius)]},
+            "unloading": {"curves": 1},
+        }
+
+    def _velocities(self, radius: float) -> list[float]:
+        """Those of the mixture, and others beyond its ends that other pairs of R* need."""
+        asked = self.mixture.velocities
+        own = Particle(**_values(self.first), radius=radius if self.second.wall else 2 * radius)
+        other = Particle(**_values(self.second), radius=None if self.second.wall else 2 * radius)
+        kappa = _meeting(own, other).kappa
+        scales = [math.sqrt(meeting.kappa / kappa) for meeting in self.meetings]
+        low, high = asked[0] * min(scales), asked[-1] * max(scales)
+        count = len(asked) - 1
+        step = (asked[-1] / asked[0]) ** (1 / count) if count else 1.5
+        below = _steps(asked[0], low, 1 / step)
+        return [*below[::-1], *asked, *_steps(asked[-1], high, step)]
+
+
+def families(mixture: Mixture) -> list[Family]:
+    """The families of a mixture, checked: a pair that makes no valid case raises `CaseError`."""
+    found = [Family(mixture, first, second) for first, second in mixture.families()]
+    for family in found:
+        for radius in (family.radii[0], family.radii[-1]):
+            family._parsed(family._content(radius, family._grid))
+    return found
+
+
+def _steps(start: float, end: float, step: float) -> list[float]:
+    """Velocities beyond `start` in equal steps of ln V, the last of them `end`; none if near."""
+    distance = math.log(end / start) / math.log(step)
+    if distance < 1e-6:
+        return []
+    count = max(1, round(distance))
+    return [start * (end / start) ** (k / count) for k in range(1, count + 1)]
+
+
+def _another(table: dict[str, Any]) -> dict[str, Any]:
+    """Another surface of the same kind, for the second body: the same one would double each wave.
+
+    `table` is one of `[[roughness]]`.
+    """
+    if table.get("kind") != "measured" or table.get("extend") == "twin":
+        return {**table, "seed": table.get("seed", 0) + 1}
+    return {**table, "place": table.get("place", 0) + 1}
+
+
+def _values(component: Component) -> dict[str, Any]:
+    body = BodyTable.model_validate({**component.body, "radius": "flat"})
+    return {
+        "name": component.name,
+        "youngs_modulus": body.youngs_modulus,
+        "poissons_ratio": body.poissons_ratio,
+        "density": body.density,
+    }
+
+
+def _particle(component: Component, radius: float | None) -> Particle:
+    return Particle(**_values(component), radius=radius)
+
+
+def _meeting(first: Particle, second: Particle) -> Meeting:
+    bodies = [
+        Body(body.radius or math.inf, body.youngs_modulus, body.poissons_ratio, body.density)
+        for body in (first, second)
+    ]
+    pair = Pair(*bodies)
+    assert pair.mass is not None  # a material without density is refused
+    return Meeting(first, second, pair.radius, pair.mass)
+
+
+def _half_width(case: Case) -> float:
+    """The radius (m) that the deepest contact may have."""
+    pair, depth = case.pair(), deepest_indentation(case)
+    rms = math.hypot(*(getattr(part, "rms", 0.0) for part in case.roughness))
+    rough = math.sqrt(2 * pair.radius * (0.5 * depth + _PEAKS * rms))
+    return max(predicted_radius(pair, depth, case.yielding().hardness), rough)
+
+
+def _spacing(part: Any) -> float:
+    """The largest spacing (m) that carries the waves of a generated roughness."""
+    waves = [getattr(part, name, None) for name in ("correlation_length", "shortest")]
+    lengths = [min(wave) if isinstance(wave, tuple) else wave for wave in waves]
+    return min((length / _PER_WAVE for length in lengths if length), default=math.inf)

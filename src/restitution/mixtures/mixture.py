@@ -1,0 +1,134 @@
+"""All laws of a mixture, from as few runs as the error of their interpolation allows.
+
+Every family starts with its smallest, a middle and its largest reduced radius. A radius is added in
+the middle of each interval in which the error of a pair is above the limit, until none is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from restitution.errors import OutputError
+from restitution.laws.from_results import bare_law
+from restitution.laws.law import Law
+from restitution.mixtures.family import Family, Meeting, families
+from restitution.mixtures.mixture_file import Mixture
+from restitution.mixtures.scaling import Computed
+from restitution.sweeps.executors import Workers
+from restitution.sweeps.scheduler import Tally, run_study
+from restitution.sweeps.study_folder import StudyFolder
+from restitution.sweeps.sweep import Study, SweptCase
+
+Progress = Callable[[Tally], None]
+
+
+@dataclass(frozen=True)
+class PairLaw:
+    """The law of one pair of particles, and its interpolation error (0 where it was computed)."""
+
+    meeting: Meeting
+    law: Law
+    computed: bool
+    interpolation_error: float
+
+
+def empty_study(mixture: Mixture) -> Study:
+    """The study of a mixture before its first round: no case is known yet."""
+    return Study(mixture.title, mixture.text, {"pair": [], "reduced_radius": []}, "paired", ())
+
+
+def run_mixture(
+    mixture: Mixture,
+    folder: Path,
+    out: StudyFolder,
+    workers: Workers,
+    progress: Progress,
+) -> list[PairLaw]:
+    """Compute the law of every pair of `mixture`.
+
+    Scans are relative to `folder`. Runs are the cases of a study in `out`, so that an interrupted
+    mixture can be resumed. Raises `OutputError` for a run that fails, because its pairs would have
+    no law.
+    """
+    rounds = _Rounds(mixture, folder, out, workers, progress)
+    found = families(mixture)
+    wanted = [(family, radius) for family in found for radius in _first_radii(family)]
+    while wanted:
+        rounds.compute(wanted)
+        wanted = [(family, r) for family in found for r in _more_radii(rounds.computed(family))]
+    return [pair for family in found for pair in _laws(rounds.computed(family))]
+
+
+class _Rounds:
+    """The runs of a mixture, computed round by round."""
+
+    def __init__(
+        self,
+        mixture: Mixture,
+        folder: Path,
+        out: StudyFolder,
+        workers: Workers,
+        progress: Progress,
+    ) -> None:
+        self._mixture, self._folder, self._out = mixture, folder, out
+        self._workers, self._progress = workers, progress
+        self._cases: dict[tuple[str, float], SweptCase] = {}
+
+    def compute(self, wanted: list[tuple[Family, float]]) -> None:
+        """Run the cases of families at reduced radii (m)."""
+        for family, radius in wanted:
+            values = {"pair": family.name, "reduced_radius": f"{radius!r} m"}
+            case = SweptCase(len(self._cases) + 1, values, family.case(radius))
+            self._cases[family.name, radius] = case
+        cases = tuple(self._cases.values())
+        swept = {name: [case.values[name] for case in cases] for name in cases[0].values}
+        study = Study(self._mixture.title, self._mixture.text, swept, "paired", cases)
+        self._out.study = study
+        run_study(study, self._folder, self._out, self._workers, self._progress)
+        for case in cases:
+            if reason := self._out.reason(case):
+                raise OutputError(
+                    f"{self._out.folder_of(case)}: the run of {case.values['pair']} at R* = "
+                    f"{case.values['reduced_radius']} failed: {reason}"
+                )
+
+    def computed(self, family: Family) -> Computed:
+        """The laws that are known of `family`."""
+        radii = sorted(radius for name, radius in self._cases if name == family.name)
+        folders = [self._out.folder_of(self._cases[family.name, radius]) for radius in radii]
+        return Computed(family, tuple(map(bare_law, folders)))
+
+
+def _first_radii(family: Family) -> list[float]:
+    radii = family.radii
+    middle = radii[_nearest(radii, float(np.sqrt(radii[0] * radii[-1])))]
+    return sorted({radii[0], middle, radii[-1]})
+
+
+def _more_radii(computed: Computed) -> Iterator[float]:
+    """Radii (m) to be computed next: one for each interval with a pair above the limit."""
+    family = computed.family
+    poor = {meeting.radius for meeting in family.meetings if not computed.is_good(meeting)}
+    for low, high in zip(computed.radii[:-1], computed.radii[1:], strict=True):
+        if any(low < radius < high for radius in poor):
+            inside = [radius for radius in family.radii if low < radius < high]
+            inside = [radius for radius in inside if not computed.has(radius)]
+            yield inside[_nearest(inside, float(np.sqrt(low * high)))]
+
+
+def _nearest(radii: list[float] | tuple[float, ...], radius: float) -> int:
+    return int(np.abs(np.log(np.array(radii) / radius)).argmin())
+
+
+def _laws(computed: Computed) -> Iterator[PairLaw]:
+    for meeting in computed.family.meetings:
+        yield PairLaw(
+            meeting,
+            computed.law(meeting),
+            computed.has(meeting.radius),
+            max(computed.interpolation_errors(meeting)),
+        )

@@ -1,0 +1,221 @@
+"""The mixture file: materials with their sizes, walls, and what differs between pairs."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import Field, ValidationError, model_validator
+
+from restitution.case.bodies import BodyTable, InterfaceTable
+from restitution.case.case_file import in_words, parse_toml, read_text
+from restitution.case.quantities import Length
+from restitution.case.schema import GridTable, ImpactTable, PairOf, Table
+from restitution.errors import CaseError
+
+MOST_SIZES = 50  # of one material
+
+
+class Sizes(Table):
+    """`radius` of a material as a table: bins with edges, or a distribution divided into bins.
+
+    A bin counts as one size, its radius the geometric mean of its edges (of `edges`) or its median
+    (of a distribution, whose bins hold equal numbers of particles).
+    """
+
+    edges: Annotated[list[Length] | None, Field(min_length=2, max_length=MOST_SIZES + 1)] = None
+    bins: list[Annotated[tuple[Length, Length], PairOf]] | None = None
+    median: Length | None = None
+    geometric_std: Annotated[float | None, Field(gt=1)] = None
+    count: Annotated[int, Field(gt=0, le=MOST_SIZES)] = 4
+
+    @model_validator(mode="after")
+    def _one_way(self) -> Sizes:
+        lognormal = (self.median, self.geometric_std)
+        given = [self.edges is not None, self.bins is not None, lognormal != (None, None)]
+        if sum(given) != 1 or (given[2] and None in lognormal):
+            raise ValueError("give one of edges, bins, or median with geometric_std (log-normal)")
+        if self.edges is not None and not (np.diff(self.edges) > 0).all():
+            raise ValueError("edges: must increase")
+        for low, high in self.bins or []:
+            if not low < high:
+                raise ValueError("bins: the lower edge of each must be below the upper one")
+        ordered = sorted(self.bins or [])
+        for (_, high), (low, _) in itertools.pairwise(ordered):
+            if low < high * (1 - 1e-9):
+                raise ValueError(
+                    f"bins: overlap between {low:.6g} m and {high:.6g} m; let each begin where the "
+                    "one before ends"
+                )
+        return self
+
+    def radii(self) -> list[float]:
+        """The radius of each bin (m), increasing."""
+        if self.median is not None and self.geometric_std is not None:
+            from scipy.special import ndtri
+
+            middles = ndtri((np.arange(self.count) + 0.5) / self.count)
+            return [self.median * self.geometric_std ** float(z) for z in middles]
+        bins = self.bins or list(itertools.pairwise(self.edges or []))
+        return [math.sqrt(low * high) for low, high in sorted(bins)]
+
+
+@dataclass(frozen=True)
+class Component:
+    """A material with its sizes, or a wall.
+
+    `body` is a table `[first]` of a case without a radius, `roughness` its tables; a wall has no
+    `radii` (m).
+    """
+
+    name: str
+    body: dict[str, Any]
+    roughness: list[dict[str, Any]]
+    radii: tuple[float, ...]
+
+    @property
+    def wall(self) -> bool:
+        """Whether the component is a wall."""
+        return not self.radii
+
+
+class _File(Table):
+    """The mixture file but for its materials and walls."""
+
+    title: str = ""
+    interpolation_error: Annotated[float, Field(gt=0, lt=1)] = 0.01
+    interface: InterfaceTable = InterfaceTable()
+    pairs: dict[str, InterfaceTable] = Field(default_factory=dict)
+    grid: GridTable | None = None
+    impact: ImpactTable
+
+
+@dataclass(frozen=True)
+class Mixture:
+    """A mixture file, checked. `interfaces` and `grid` are tables as they stand in the file."""
+
+    title: str
+    text: str
+    components: tuple[Component, ...]
+    interfaces: dict[tuple[str, str], dict[str, Any]]
+    grid: dict[str, Any] | None
+    velocities: tuple[float, ...]
+    interpolation_error: float
+
+    def families(self) -> Iterator[tuple[Component, Component]]:
+        """Pairs of components that can meet; a wall is the second of its pair."""
+        for first, second in itertools.combinations_with_replacement(self.components, 2):
+            if not first.wall:
+                yield first, second
+
+    def interface(self, first: Component, second: Component) -> dict[str, Any]:
+        """The table `[interface]` of the pair."""
+        for names in ((first.name, second.name), (second.name, first.name)):
+            if names in self.interfaces:
+                return self.interfaces[names]
+        return self.interfaces["", ""]
+
+
+def read_mixture(path: Path) -> Mixture:
+    """Read and check a mixture file. Raises `CaseError` that names the file and the key."""
+    text = read_text(path)
+    try:
+        return parse_mixture(text)
+    except CaseError as error:
+        raise CaseError(f"{path}: {error}") from None
+
+
+def parse_mixture(text: str) -> Mixture:
+    """Check the text of a mixture file. Raises `CaseError` that names the key."""
+    content = parse_toml(text)
+    materials, walls = content.pop("materials", None), content.pop("walls", {})
+    if not isinstance(materials, dict) or not materials:
+        raise CaseError("materials: is missing; write a table [materials.NAME] for each material")
+    if not isinstance(walls, dict):
+        raise CaseError("walls: should be tables [walls.NAME]")
+    try:
+        file = _File.model_validate(content)
+    except ValidationError as error:
+        raise CaseError(in_words(error, _File)) from None
+    components = [_component(f"materials.{name}", name, table) for name, table in materials.items()]
+    for name, table in walls.items():
+        if name in materials:
+            raise CaseError(f"walls.{name}: is the name of a material, too; name it differently")
+        components.append(_component(f"walls.{name}", name, table))
+    names = [component.name for component in components]
+    interface = content.get("interface", {})
+    interfaces = {("", ""): interface}
+    for key, table in content.get("pairs", {}).items():
+        pair = _names_of(key, names)
+        if pair in interfaces or pair[::-1] in interfaces:
+            raise CaseError(f"pairs.{key}: is given twice")
+        interfaces[pair] = {**interface, **table}
+    return Mixture(
+        file.title,
+        text,
+        tuple(components),
+        interfaces,
+        content.get("grid"),
+        tuple(file.impact.series()),
+        file.interpolation_error,
+    )
+
+
+def _names_of(key: str, names: list[str]) -> tuple[str, str]:
+    """The two components that the key of a pair names."""
+    for first, second in itertools.product(names, repeat=2):
+        if key == f"{first}+{second}":
+            return first, second
+    raise CaseError(
+        f'pairs."{key}": is not a pair of this mixture; write [pairs."FIRST+SECOND"] with two of '
+        f"{', '.join(names)}"
+    )
+
+
+def _component(key: str, name: str, table: Any) -> Component:
+    if not isinstance(table, dict):
+        raise CaseError(f"{key}: should be a table")
+    body = dict(table)
+    rough = body.pop("roughness", [])
+    rough = rough if isinstance(rough, list) else [rough]
+    sizes = body.pop("radius", None)
+    radii: tuple[float, ...] = ()
+    if key.startswith("walls."):
+        if sizes not in (None, "flat"):
+            raise CaseError(f"{key}.radius: a wall is flat; leave radius out")
+    elif sizes is None:
+        raise CaseError(f"{key}.radius: is missing; give one or more radii, or bins")
+    else:
+        radii = _radii(f"{key}.radius", sizes)
+    try:
+        checked = BodyTable.model_validate({**body, "radius": "flat"})
+    except ValidationError as error:
+        raise CaseError(in_words(error, BodyTable, key)) from None
+    if radii and checked.density is None:
+        raise CaseError(f"{key}.density: is missing; an impact velocity needs the mass")
+    return Component(name, body, rough, radii)
+
+
+class _Radii(Table):
+    """Radii as a list, to be checked as lengths."""
+
+    radius: Annotated[list[Length], Field(min_length=1, max_length=MOST_SIZES)]
+
+
+def _radii(key: str, sizes: Any) -> tuple[float, ...]:
+    try:
+        if isinstance(sizes, dict):
+            return tuple(Sizes.model_validate(sizes).radii())
+        listed = sizes if isinstance(sizes, list) else [sizes]
+        radii = sorted(_Radii.model_validate({"radius": listed}).radius)
+    except ValidationError as error:
+        where = key if isinstance(sizes, dict) else key.removesuffix(".radius")
+        raise CaseError(in_words(error, Sizes, where)) from None
+    if len(set(radii)) < len(radii):
+        raise CaseError(f"{key}: a radius is given twice")
+    return tuple(radii)

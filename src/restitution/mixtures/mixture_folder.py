@@ -1,0 +1,98 @@
+"""The folder of a mixture: its runs, the law of every pair, and one table of them."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Sequence
+from pathlib import Path
+
+from restitution.errors import OutputError
+from restitution.laws.law_files import write_law
+from restitution.mixtures.mixture import PairLaw, empty_study
+from restitution.mixtures.mixture_file import Mixture
+from restitution.results.reader import read_text
+from restitution.results.writer import make_folder, replace_file, write_json, write_table, writing
+from restitution.sweeps.study_folder import StudyFolder
+
+MIXTURE_FILE, RUNS, LAWS, PAIRS = "mixture.toml", "runs", "laws", "pairs.csv"
+
+
+def open_mixture_folder(out: Path, mixture: Mixture, *, resume: bool) -> StudyFolder:
+    """The folder of the runs of `mixture` in `out`.
+
+    Raises `OutputError` if `out` holds something else, if there is nothing to resume, and if it
+    cannot be written.
+    """
+    held = out / MIXTURE_FILE
+    if resume:
+        if not held.is_file():
+            raise OutputError(f"{out}: holds no mixture; leave out --resume to begin one")
+        if read_text(held) != mixture.text:
+            raise OutputError(
+                f"{out}: holds another mixture (its {MIXTURE_FILE} differs); name another folder "
+                "with -o, or the file that it was begun with"
+            )
+    else:
+        make_folder(out, "go on with --resume" if held.is_file() else "move it away")
+        replace_file(held, lambda to: to.write_text(mixture.text, encoding="utf-8"))
+    begun = (out / RUNS / "study.toml").is_file()
+    return StudyFolder(out / RUNS, empty_study(mixture), resume=begun)
+
+
+def write_mixture(
+    out: Path, mixture: Mixture, pairs: Sequence[PairLaw], runs: int, seconds: float
+) -> list[str]:
+    """Write the laws of all `pairs`, their table and the summary; return the names in `out`.
+
+    `runs` is the number of curves that were computed, in `seconds`. Raises `OutputError`.
+    """
+    with writing(out):
+        shutil.rmtree(out / LAWS, ignore_errors=True)
+        (out / LAWS).mkdir()
+    rows: list[dict[str, float | str]] = []
+    for number, pair in enumerate(pairs, 1):
+        name = f"pair-{number:03d}"
+        write_law(pair.law, out / LAWS / name)
+        for point in pair.law.points:
+            rows.append(
+                {
+                    "law": name,
+                    "first": pair.law.first.name,
+                    "first_radius_m": pair.law.first.radius or float("inf"),
+                    "second": pair.law.second.name,
+                    "second_radius_m": pair.law.second.radius or float("inf"),
+                    "reduced_radius_m": pair.law.radius,
+                    "reduced_mass_kg": pair.law.mass,
+                    "computed": pair.computed,
+                    "velocity_m_per_s": point.velocity,
+                    "restitution": point.restitution,
+                    "restitution_error": point.error,
+                    "resolved": point.resolved,
+                }
+            )
+    write_table(out / PAIRS, rows)
+    write_json(
+        out / "summary.json",
+        {
+            "title": mixture.title,
+            "pairs": len(pairs),
+            "curves_computed": runs,
+            "pairs_interpolated": sum(not pair.computed for pair in pairs),
+            "largest_interpolation_error": max(pair.interpolation_error for pair in pairs),
+            "largest_restitution_error": max(
+                point.error for pair in pairs for point in pair.law.points
+            ),
+            "warnings": _warnings(pairs),
+            "seconds": round(seconds, 1),
+        },
+    )
+    return [LAWS, MIXTURE_FILE, PAIRS, RUNS, "summary.json"]
+
+
+def _warnings(pairs: Sequence[PairLaw]) -> list[str]:
+    """Each warning once, with the number of pairs that have it."""
+    found: dict[str, int] = {}
+    for pair in pairs:
+        for warning in pair.law.warnings:
+            found[warning] = found.get(warning, 0) + 1
+    return [f"{count} of {len(pairs)} pairs: {warning}" for warning, count in found.items()]

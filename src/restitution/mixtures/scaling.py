@@ -1,0 +1,184 @@
+"""Laws of all pairs of a family, from the laws at a few reduced radii.
+
+At equal W/R*³ the ratio W_u/W_l is interpolated in ln R* by a monotone cubic. Its error estimate is
+that of `RatioCurve`: 1.5 times the larger leave-one-out residual of the two neighbouring radii. The
+residual is the largest over neighbouring velocities, because a residual may be zero by chance.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.laws.compact_fit import compact_fit
+from restitution.laws.interpolation import RatioCurve
+from restitution.laws.law import Law, Point
+from restitution.mixtures.family import Family, Meeting
+
+Array = NDArray[np.float64]
+
+_SHARE = 0.5  # of the error of the computed laws that interpolation may add
+_SAME = 1e-9  # radii are equal within this relative difference
+
+
+@dataclass(frozen=True)
+class Computed:
+    """The laws of a family at the reduced radii `radii` (m, increasing) that were computed."""
+
+    family: Family
+    laws: tuple[Law, ...]
+
+    @cached_property
+    def radii(self) -> Array:
+        """R* of the laws (m), shape (radii,)."""
+        return np.array([law.radius for law in self.laws])
+
+    def has(self, radius: float) -> bool:
+        """Whether the law at `radius` (m) was computed."""
+        return bool((np.abs(self.radii / radius - 1) < _SAME).any())
+
+    def is_good(self, meeting: Meeting) -> bool:
+        """Whether the law of the pair needs no further radius.
+
+        That is where the error by interpolation in R* is at no velocity above the limit of the
+        mixture, or above half of the error that the computed laws have.
+        """
+        law, errors = self.law(meeting), self.interpolation_errors(meeting)
+        limit = self.family.mixture.interpolation_error
+        return all(
+            error <= max(limit, _SHARE * (point.error - error))
+            for point, error in zip(law.points, errors, strict=True)
+        )
+
+    def interpolation_errors(self, meeting: Meeting) -> list[float]:
+        """The error of COR by interpolation in R*, at each velocity of the mixture."""
+        curves = self._curves(meeting)
+        if self.has(meeting.radius):
+            return [0.0] * len(curves)
+        return [_error_of(curve, meeting.radius, near) for curve, near in _with_near(curves)]
+
+    def law(self, meeting: Meeting) -> Law:
+        """The law of one pair at the velocities of the mixture.
+
+        The error of a point is the sum of the error of the computed laws and that of the
+        interpolation.
+        """
+        velocities = self.family.mixture.velocities
+        nearest = self.laws[int(np.abs(np.log(self.radii / meeting.radius)).argmin())]
+        curves, errors = self._curves(meeting), self.interpolation_errors(meeting)
+        points = [
+            self._point(meeting, V, curve, error)
+            for V, curve, error in zip(velocities, curves, errors, strict=True)
+        ]
+        kappa = nearest.mass / nearest.radius**3
+        how = "computed" if self.has(meeting.radius) else "interpolated in R* at equal W/R*^3"
+        law = nearest.model_copy(
+            update={
+                "title": self.family.mixture.title or self.family.name,
+                "first": meeting.first,
+                "second": meeting.second,
+                "radius": meeting.radius,
+                "mass": meeting.mass,
+                "model": {**nearest.model, "pair": how},
+                "yield_velocity": _scaled(nearest.yield_velocity, math.sqrt(kappa / meeting.kappa)),
+                "sticking_velocity": _scaled(
+                    nearest.sticking_velocity,
+                    (meeting.radius / nearest.radius) ** (2 / 3)
+                    * math.sqrt(nearest.mass / meeting.mass),
+                ),
+                "points": tuple(points),
+                "fit": None,
+                "laws": (),
+            }
+        )
+        law = law.model_copy(update={"sticks_below": law.curve().begins()})
+        return law.model_copy(update={"fit": compact_fit(law)})
+
+    def _curves(self, meeting: Meeting) -> list[RatioCurve]:
+        """The ratio against R* at each velocity of the mixture, from all computed laws."""
+        found = []
+        for V in self.family.mixture.velocities:
+            ratios = np.array(
+                [law.curve().at(_of(law, V, meeting)) for law in self.laws], dtype=float
+            )
+            found.append(RatioCurve(self.radii, ratios, adhesive=False))
+        return found
+
+    def _point(self, meeting: Meeting, V: float, curve: RatioCurve, between: float) -> Point:
+        ratio = _value(curve, meeting.radius)
+        after, t = curve.interval(meeting.radius) if len(self.laws) > 1 else (1, 0.0)
+        laws = self.laws[after - 1 : after + 1]
+        shares = (1 - t, t)[: len(laws)]
+        estimates = [law.at(_of(law, V, meeting)) for law in laws]
+        used = [k for k, share in enumerate(shares) if share > _SAME]
+
+        def mean(name: str, power: int) -> float:
+            """The scaled quantity `name` of the two laws, times R*^power."""
+            R = meeting.radius
+            return R**power * sum(
+                shares[k]
+                * _column_at(laws[k], name, _of(laws[k], V, meeting))
+                / laws[k].radius ** power
+                for k in used
+            )
+
+        pull_off = [point.pull_off_force for law in laws for point in law.points]
+        return Point(
+            velocity=V,
+            restitution=_root(ratio),
+            error=sum(shares[k] * estimates[k].error for k in used) + between,
+            ratio=ratio,
+            loading_work=0.5 * meeting.mass * V * V,
+            indentation=mean("indentation", 1),
+            force=mean("force", 2),
+            pull_off_force=None if None in pull_off else mean("pull_off_force", 1),
+            resolved=all(estimates[k].resolved for k in used),
+        )
+
+
+def _of(law: Law, V: float, meeting: Meeting) -> float:
+    """The velocity (m/s) of `law` at which W/R*³ is that of the pair at V."""
+    velocity = V * math.sqrt(meeting.kappa / (law.mass / law.radius**3))
+    return min(max(velocity, law.lowest), law.highest) if _near(velocity, law) else velocity
+
+
+def _near(velocity: float, law: Law) -> bool:
+    """Whether `velocity` is outside the law by rounding or by the tolerance of velocities only."""
+    return law.lowest * (1 - 1e-3) <= velocity <= law.highest * (1 + 1e-3)
+
+
+def _value(curve: RatioCurve, radius: float) -> float:
+    if curve.velocities.size == 1:
+        return float(curve.at(curve.velocities[0]))
+    return curve.at(min(max(radius, curve.velocities[0]), curve.velocities[-1]))
+
+
+def _with_near(curves: list[RatioCurve]) -> list[tuple[RatioCurve, list[RatioCurve]]]:
+    """Each curve with those of the velocities below and above it."""
+    return [(curve, curves[max(k - 1, 0) : k + 2]) for k, curve in enumerate(curves)]
+
+
+def _error_of(curve: RatioCurve, radius: float, near: list[RatioCurve]) -> float:
+    """The error of COR by interpolation at `radius` (m)."""
+    ratio = _value(curve, radius)
+    off = max(other.error(radius) for other in near)
+    e = _root(ratio)
+    return max(abs(_root(ratio + off) - e), abs(e - _root(ratio - off)))
+
+
+def _column_at(law: Law, name: str, velocity: float) -> float:
+    """The field `name` of the points, linear in ln V."""
+    values = law.column(name)
+    return float(np.interp(math.log(velocity), np.log(law.column("velocity")), values))
+
+
+def _root(ratio: float) -> float:
+    return math.sqrt(min(max(ratio, 0.0), 1.0))
+
+
+def _scaled(value: float | None, factor: float) -> float | None:
+    return None if value is None else value * factor

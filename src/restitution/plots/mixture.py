@@ -1,0 +1,37 @@
+"""The figure of a mixture: COR of every pair against impact velocity."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from restitution.laws.law import Law
+from restitution.plots.figure import GREY, PALETTE, Axis, Chart, Figure, Line, Series
+from restitution.plots.run import COR
+
+
+def mixture_figure(title: str, laws: Sequence[Law]) -> Figure:
+    """Plot the COR of all pairs, with a chart for every two materials.
+
+    Lines are labelled by R*, of more than five pairs about five of them.
+    """
+    families: dict[tuple[str, str], list[Law]] = {}
+    for law in laws:
+        families.setdefault((law.first.name, law.second.name), []).append(law)
+    charts = []
+    for (first, second), members in families.items():
+        ordered = sorted(members, key=lambda law: law.radius)
+        shown = ordered[:: max(1, -(-len(ordered) // 5))]
+        series: list[Series] = []
+        for law in ordered:
+            number = shown.index(law) if law in shown else None
+            series.append(
+                Line(
+                    law.column("velocity"),
+                    law.column("restitution"),
+                    "" if number is None else f"R* = {1e6 * law.radius:.3g} µm",
+                    color=GREY if number is None else PALETTE[number],
+                )
+            )
+        heading = f"{first} on {second}"
+        charts.append(Chart(Axis("impact velocity", "m/s", "log"), COR, series, heading))
+    return Figure(title, charts)

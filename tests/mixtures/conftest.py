@@ -1,0 +1,38 @@
+import pytest
+
+MIXTURE = """
+title = "Beads and a wall"
+[materials.glass]
+material = "glass"
+radius = ["50 um", "80 um", "150 um"]
+roughness = { kind = "gaussian", rms = "0.05 um", correlation_length = "4 um", seed = 1 }
+[materials.pmma]
+material = "pmma"
+radius = "100 um"
+[walls.drum]
+material = "steel"
+[interface]
+work_of_adhesion = "0 J/m^2"
+[grid]
+nodes = 64
+spacing = "0.6 um"
+refine = 1
+[impact]
+from = "0.1 m/s"
+to = "1 m/s"
+steps = 3
+"""
+
+
+@pytest.fixture
+def mixture_text():
+    """Change the mixture: each change is (old text, new text)."""
+
+    def changed(*changes):
+        text = MIXTURE
+        for old, new in changes:
+            assert old in text
+            text = text.replace(old, new)
+        return text
+
+    return changed

@@ -1,0 +1,112 @@
+"""The laws of a mixture: scaling, interpolation in R*, the folder and the export."""
+
+import csv
+import json
+
+import numpy as np
+import pytest
+
+from restitution.case.case_file import parse_case
+from restitution.laws.from_results import bare_law
+from restitution.laws.law_files import read_laws
+from restitution.mixtures.family import families
+from restitution.mixtures.mixture_file import parse_mixture
+from restitution.mixtures.scaling import Computed
+from restitution.results.writer import ResultsFolder
+from restitution.runs.run import run_case
+from tolerance import approx
+
+
+def law_at(family, radius, folder):
+    """The law of `family` at a reduced radius (m), computed directly."""
+    text = "total_error = false\n" + family.case(radius)
+    run_case(parse_case(text), text, folder, ResultsFolder(folder / f"{family.name} {radius}"))
+    return bare_law(folder / f"{family.name} {radius}")
+
+
+@pytest.fixture
+def smooth(mixture_text):
+    rough = (
+        'roughness = { kind = "gaussian", rms = "0.05 um", correlation_length = "4 um", seed = 1 }'
+    )
+    grid = '[grid]\nnodes = 64\nspacing = "0.6 um"\nrefine = 1\n'
+    return parse_mixture(mixture_text((rough, ""), (grid, "")))
+
+
+def test_smooth_spheres_obey_the_scaling_law(smooth, tmp_path):
+    family = families(smooth)[0]
+    small, large = (law_at(family, radius, tmp_path) for radius in (25e-6, 75e-6))
+    assert small.column("velocity") == approx(large.column("velocity"), rel=1e-3)
+    # The grid is that of the largest contact, so that smaller ones have other cells over them.
+    assert small.column("ratio") == approx(large.column("ratio"), rel=0.01)
+    scaled = small.column("force") / small.radius**2
+    assert scaled == approx(large.column("force") / large.radius**2, rel=0.01)
+
+
+def test_unlike_spheres_take_their_velocities_from_equal_work(smooth, tmp_path):
+    family = families(smooth)[0]
+    meeting = next(
+        each
+        for each in family.meetings
+        if (each.first.radius, each.second.radius) == approx((50e-6, 150e-6), rel=1e-9)
+    )
+    computed = Computed(family, (law_at(family, meeting.radius, tmp_path),))
+    law = computed.law(meeting)
+    (node,) = computed.laws
+    for point in law.points:
+        assert point.loading_work == approx(0.5 * meeting.mass * point.velocity**2, rel=1e-12)
+        same_work = np.sqrt(2 * point.loading_work / node.mass)
+        assert point.ratio == approx(node.curve().at(same_work), rel=1e-9)
+
+
+def test_the_interpolation_error_vanishes_at_computed_radii_only(mixture_text, tmp_path):
+    family = families(parse_mixture(mixture_text()))[0]
+    laws = tuple(law_at(family, radius, tmp_path) for radius in (25e-6, 40e-6, 75e-6))
+    computed = Computed(family, laws)
+    errors = {meeting.radius: computed.interpolation_errors(meeting) for meeting in family.meetings}
+    assert errors[family.radii[0]] == [0.0, 0.0, 0.0]
+    between = next(radius for radius in family.radii if not computed.has(radius))
+    assert min(errors[between]) > 0
+    meeting = next(each for each in family.meetings if each.radius == between)
+    law, direct = computed.law(meeting), law_at(family, between, tmp_path)
+    for point in law.points:
+        same_work = np.sqrt(2 * point.loading_work / direct.mass)
+        assert abs(point.restitution - direct.at(same_work).restitution) < point.error
+        assert point.force == approx(
+            np.interp(np.log(same_work), np.log(direct.column("velocity")), direct.column("force")),
+            rel=0.1,
+        )
+
+
+def test_the_verb(cli, refused, mixture_text, tmp_path):
+    file, out = tmp_path / "mixture.toml", tmp_path / "out"
+    file.write_text(mixture_text())
+    status, said, _ = cli("mixture", file, "-o", out, "--workers", "1")
+    assert status == 0
+    assert "14 pairs from" in said
+    laws = read_laws([out])
+    assert len(laws) == 14
+    summary = json.loads((out / "summary.json").read_text())
+    assert summary["pairs"] == 14
+    assert summary["curves_computed"] + summary["pairs_interpolated"] >= 12
+    with open(out / "pairs.csv", newline="") as table:
+        rows = list(csv.DictReader(table))
+    assert len(rows) == 14 * 3
+    assert {float(row["velocity_m_per_s"]) for row in rows} == {0.1, 10**-0.5, 1.0}
+    first = laws[0]
+    assert float(rows[0]["restitution"]) == approx(first.points[0].restitution, rel=1e-12)
+    # Nothing is computed again.
+    status, _, _ = cli("mixture", file, "-o", out, "--workers", "1", "--resume")
+    assert status == 0
+    assert [law.points for law in read_laws([out])] == [law.points for law in laws]
+    assert "is not empty" in refused("mixture", file, "-o", out)
+    file.write_text(mixture_text(("80 um", "81 um")))
+    assert "holds another mixture" in refused("mixture", file, "-o", out, "--resume")
+    export = ("export", out, "--to", "lammps", "-o", tmp_path / "input")
+    assert "is outside what was computed" in refused(*export, "--velocity", "2 m/s")
+    assert cli(*export, "--velocity", "0.3 m/s")[0] == 0
+    assert {path.name for path in (tmp_path / "input").iterdir()} == {
+        "restitution.lmp",
+        "collision.in",
+        "packing.in",
+    }

@@ -1,0 +1,81 @@
+"""The mixture file: what it takes, and one line for what it refuses."""
+
+import pytest
+
+from restitution.errors import CaseError
+from restitution.mixtures.family import families
+from restitution.mixtures.mixture_file import parse_mixture
+from tolerance import approx
+
+RADII = '["50 um", "80 um", "150 um"]'
+
+
+def test_every_pair_is_there_once(mixture_text):
+    found = families(parse_mixture(mixture_text()))
+    counts = {family.name: len(family.meetings) for family in found}
+    assert counts == {
+        "glass+glass": 6,
+        "glass+pmma": 3,
+        "glass+drum": 3,
+        "pmma+pmma": 1,
+        "pmma+drum": 1,
+    }
+    assert all(not family.first.wall for family in found)
+
+
+@pytest.mark.parametrize(
+    ("radius", "radii"),
+    [
+        ('"70 um"', [70e-6]),
+        ('{ edges = ["20 um", "80 um", "180 um"] }', [40e-6, 120e-6]),
+        ('{ bins = [["20 um", "80 um"], ["100 um", "400 um"]] }', [40e-6, 200e-6]),
+        ('{ median = "100 um", geometric_std = 1.5, count = 1 }', [100e-6]),
+        # Quartiles of a normal distribution lie 0.6745 standard deviations from its mean.
+        (
+            '{ median = "100 um", geometric_std = 1.5, count = 2 }',
+            [100e-6 / 1.5**0.6744898, 100e-6 * 1.5**0.6744898],
+        ),
+    ],
+)
+def test_sizes(mixture_text, radius, radii):
+    mixture = parse_mixture(mixture_text((RADII, radius)))
+    assert mixture.components[0].radii == approx(radii, rel=1e-7)
+
+
+def test_a_pair_may_have_an_interface_of_its_own(mixture_text):
+    own = '[pairs."drum+glass"]\nwork_of_adhesion = "0.05 J/m^2"\n[grid]'
+    mixture = parse_mixture(mixture_text(("[grid]", own)))
+    found = {family.name: family.case(family.radii[0]) for family in families(mixture)}
+    assert 'work_of_adhesion = "0.05 J/m^2"' in found["glass+drum"]
+    assert 'work_of_adhesion = "0 J/m^2"' in found["glass+glass"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("[grid]", '[pairs."glass+copper"]\n[grid]', 'pairs."glass+copper": is not a pair of'),
+        (RADII, '{ bins = [["20 um", "80 um"], ["70 um", "90 um"]] }', "bins: overlap between"),
+        (RADII, '{ edges = ["20 um", "10 um"] }', "edges: must increase"),
+        (RADII, '{ median = "20 um" }', "give one of edges, bins, or median with geometric_std"),
+        (RADII, '["50 um mm"]', "materials.glass.radius"),
+        (RADII, '["50 um", "50 um"]', "materials.glass.radius: a radius is given twice"),
+        (RADII, '["50"]', "has no unit"),
+        (f"radius = {RADII}\n", "", "materials.glass.radius: is missing"),
+        (
+            'material = "pmma"',
+            'youngs_modulus = "3 GPa"\npoissons_ratio = 0.4',
+            "materials.pmma.density: is missing",
+        ),
+        ('material = "pmma"', 'material = "unobtainium"', "materials.pmma"),
+        ('material = "steel"', 'material = "steel"\nradius = "1 mm"', "a wall is flat"),
+        ("[walls.drum]", "[walls.glass]", "walls.glass: is the name of a material, too"),
+        ("[impact]", "[impacts]", "impacts: unknown key"),
+        ('from = "0.1 m/s"', 'from = "2 m/s"', "from must be smaller than to"),
+        ('rms = "0.05 um"', 'rms = "0.05"', "glass+glass"),
+    ],
+)
+def test_what_is_refused(mixture_text, old, new, words):
+    with pytest.raises(CaseError) as refused:
+        families(parse_mixture(mixture_text((old, new))))
+    assert words in str(refused.value)
+    assert "\n" not in str(refused.value)
