@@ -1,4 +1,4 @@
-"""Contact under a prescribed force: the indentation that carries it."""
+"""Contact under a prescribed force."""
 
 from __future__ import annotations
 
@@ -12,15 +12,27 @@ from restitution.errors import CaseError, DomainError, NotConvergedError
 from restitution.theory import Hertz
 
 FORCE_TOLERANCE = 1e-8
-_SOLVE_RESIDUAL = 1e-10  # so that the noise of a solve stays well below the force tolerance
+_SOLVE_RESIDUAL = 1e-10  # keeps the error of a solve well below the force tolerance
 
 
 def solve_at_force(contact: Contact, force: float, *, start: State | None = None) -> State:
-    """Load the undeformed bodies to `force` (N), met within 1e-8 of itself, and return the state.
+    """Load the undeformed bodies to `force`, within a relative error of 1e-8.
 
-    The force grows with indentation, so a bracketing root finder cannot fail; each of its solves
-    starts from the one before. Raises `CaseError` for a force that is not positive, `DomainError`
-    when the grid cannot carry it, and as `solve`.
+    The force increases with the indentation, so a bracketing root finder always converges. With
+    adhesion each of its solves starts from the previous one.
+
+    Args:
+        contact: Contact to load.
+        force: Normal force (N), positive.
+        start: State of the same contact at a lower force, as for `solve`.
+
+    Returns:
+        State under `force`.
+
+    Raises:
+        CaseError: The force is not positive.
+        DomainError: The grid cannot carry the force, or the contact reaches its edge.
+        NotConvergedError: The force jumps at this indentation, or a solve did not converge.
     """
     from scipy.optimize import brentq
 
