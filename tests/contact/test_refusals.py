@@ -79,7 +79,7 @@ def test_a_solve_that_does_not_converge_says_how_far_it_came(rough_contact, monk
         solve(rough_contact(), DEPTH)
     message = str(failure.value)
     assert "indentation of 40 nm" in message
-    assert "asked: 1e-08) after 2 iterations" in message
+    assert "tolerance: 1e-08) after 2 iterations" in message
     assert "stopped at a residual of " in message
     monkeypatch.undo()
     solve(rough_contact(), DEPTH)

@@ -56,7 +56,7 @@ def test_an_error_above_the_asked_one_is_mended_by_finer_steps(monkeypatch):
         return 0.5 * e * found.error / found.unloading_work
 
     assert error_of_steps() <= asked
-    monkeypatch.setattr(separation, "_FINER", (1,))
+    monkeypatch.setattr(separation, "_REFINEMENTS", (1,))
     assert error_of_steps() > asked
 
 
