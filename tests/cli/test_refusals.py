@@ -228,8 +228,8 @@ def measured(case_text, line):
 @pytest.mark.parametrize(
     ("name", "content", "remedy"),
     [
-        ("nan.npy", np.where(np.eye(90) > 0, np.nan, 0.0), 'give undefined = "interpolate"'),
-        ("inf.npy", np.where(np.eye(90) > 0, np.inf, 0.0), 'give undefined = "interpolate"'),
+        ("nan.npy", np.where(np.eye(90) > 0, np.nan, 0.0), 'roughness.undefined = "interpolate"'),
+        ("inf.npy", np.where(np.eye(90) > 0, np.inf, 0.0), 'roughness.undefined = "interpolate"'),
         ("line.npy", np.zeros(90), "line.npy"),
         ("cube.npy", np.zeros((9, 9, 9)), "cube.npy"),
         ("complex.npy", np.zeros((90, 90), complex), "complex.npy"),

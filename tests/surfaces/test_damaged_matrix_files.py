@@ -39,15 +39,15 @@ def test_a_damaged_scan_line_is_not_left_out(write, refusal, tmp_path, number, d
     if number == 0 and damage == "@@@" and not header:
         assert "line 1 holds '@@@'" in refusal(path, size=SIZE)  # the heading of another format?
         return
-    assert "is no scan line like the others" in refusal(path, size=(1e-5, 1.5e-5))
+    assert "is not a scan line of 6 values like the others" in refusal(path, size=(1e-5, 1.5e-5))
 
 
 @pytest.mark.parametrize(
     ("header", "words"),
     [
-        ("# ny: 10\n", "its header says 10 lines, and it holds 9 lines of 6 values"),
-        ("# nx = 7\n", "its header says 7 values, and it holds 9 lines of 6 values"),
-        ("# Pixels: 6 x 12\n", "its header says 12 lines"),
+        ("# ny: 10\n", "its header states 10 lines, but it has 9 lines of 6 values"),
+        ("# nx = 7\n", "its header states 7 values, but it has 9 lines of 6 values"),
+        ("# Pixels: 6 x 12\n", "its header states 12 lines"),
     ],
 )
 def test_lines_that_are_missing_by_the_header(write, refusal, tmp_path, header, words):

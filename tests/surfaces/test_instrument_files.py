@@ -109,13 +109,14 @@ def test_another_height_channel_can_be_chosen():
         (
             "sur-2.sur",
             {},
-            "117 of 272492 pixels (0.04%) are undefined; give undefined = "
+            "117 of 272492 pixels (0.04%) are undefined; give undefined="
             '"interpolate" to fill them from their neighbours, or crop the file',
         ),
         (
             "nid-1.nid",
             {"size": (20e-6, 21e-6)},
-            "says that the scan is 20 x 20 um, but size says 20 x 21 um; leave size out, or "
+            "the scan is 20 x 20 um according to the file, but 20 x 21 um according to size; "
+            "leave size out, or "
             "correct it",
         ),
         (
@@ -296,7 +297,7 @@ def test_unit_and_size_become_metres(fake_file, capfd):
 
 def test_size_is_needed_where_the_file_has_none(fake_file, refusal):
     path, _ = fake_file(fake_channel("z", physical_sizes=None))
-    assert 'size = ["10 um", "10 um"]' in refusal(path)
+    assert "size=(10e-6, 10e-6)" in refusal(path)
     assert read_surface(path, size=(1e-5, 2e-5)).grid.spacing == approx((2e-6, 5e-6))
 
 

@@ -196,7 +196,7 @@ def build_state(
 
 
 def candidate_box(contact: Contact, indentation: float, history: State | None = None) -> Box | None:
-    """The bounding box of the nodes with a gap below `indentation`; None if there are no such nodes.
+    """The bounding box of the nodes with a gap below `indentation`, or None without such nodes.
 
     It contains every contact without adhesion.
     """

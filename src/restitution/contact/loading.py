@@ -25,9 +25,10 @@ from restitution.contact.equilibrium import (
     solve_pressure,
 )
 from restitution.contact.influence import half_space
+from restitution.contact.plastic_work import plastic_work
 from restitution.contact.state import State
 from restitution.errors import CaseError
-from restitution.numerics.box import Box, bounding_box, shape_of
+from restitution.numerics.box import bounding_box, shape_of
 from restitution.numerics.quadrature import integrate_adaptively
 from restitution.numerics.read_only import freeze
 
@@ -37,20 +38,17 @@ PULL_INCREMENT = 1e-10  # m: the pull after each loading increment (Ghanbarzadeh
 _TRUNCATION_TOLERANCE = 3e-5  # of the quadrature, relative to force times indentation
 _TRUNCATION_MARGIN = 10.0  # tolerances added to the error of this quadrature
 _TRUNCATION_PANELS = 4  # the integrand is zero up to first yield, which must not hide the rest
-# The force of an adhesive contact jumps as asperities attach, so a smaller tolerance is not reached.
-# 1.5e-3 of the work is at most 0.00075 in restitution.
+# The force of an adhesive contact jumps as asperities attach, which limits the accuracy. 1.5e-3 of
+# the work is at most 0.00075 in restitution.
 _ADHESIVE_TOLERANCE = 1.5e-3
 _ADHESIVE_HALVINGS = 5
-# Nodes attach one after the other, and which ones do depends on the steps. Relative to w times the
-# area, the work differed from that of 240 steps from first touch by up to these values, whatever the
-# quadrature: in 93 % of 29 validation contacts with `equilibrium`, in all 11 with `pull-increments`.
+# Nodes attach one after the other, and the set of them depends on the steps. Relative to w times
+# the area, the work differed from that of 240 steps from first touch by up to these values: in 93 %
+# of 29 validation contacts with `equilibrium`, and in all 11 with `pull-increments`.
 _PINNING = {"equilibrium": 0.02, "pull-increments": 0.006, "hertzian": 0.0}
 # The plastic work is summed over depths that start at _SHALLOW times the indentation and grow by at
-# most the factor _RATIO. Its errors are fractions of the contribution of the growth of the bound:
-# _RULE_ERROR for nodes that had yielded before the step, _NEW_ERROR for nodes that begin to yield
-# (compared with 11 times as many depths).
+# most the factor _RATIO, for which the errors of `plastic_work` hold.
 _RATIO, _SHALLOW = 1.42, 0.2
-_RULE_ERROR, _NEW, _NEW_ERROR = 0.1, 0.8, 0.25
 _WORK_RESIDUAL = 1e-6  # of the intermediate solves; their force errors are well below it
 
 
@@ -122,7 +120,7 @@ def step(state: State, indentation: float, *, residual: float = RESIDUAL) -> Sta
             limit = freeze(np.maximum(limit, grown))
         new = solve_nonadhesive(contact, indentation, limit, residual, history=state)
         if contact.grows:
-            work, _ = _plastic_work(state, new)
+            work, _ = plastic_work(state, new)
             new = replace(
                 new,
                 plastic_work=state.plastic_work + work,
@@ -320,39 +318,9 @@ def _work_by_increments(state: State, start: State | None) -> tuple[float, float
         if depth != indentation:
             now = solve_without_work(contact, depth, start=None, residual=_WORK_RESIDUAL)
             convolutions += now.convolutions
-        increment, its_error = _plastic_work(before, now)
+        increment, its_error = plastic_work(before, now)
         work, error, before = work + increment, error + its_error, now
     return work, error, convolutions
-
-
-def _plastic_work(before: State | None, after: State) -> tuple[float, float]:
-    """Plastic work (J) between two states at most a factor `_RATIO` in depth apart, and its error.
-
-    Each node yields by Δu while its bound grows from b₁ to b₂. If u is linear in the indentation δ
-    and b linear in ln δ, its work is Δu [b₁ + (b₂ − b₁) (δ₂/(δ₂ − δ₁) − 1/ln(δ₂/δ₁))]. A node that
-    begins to yield in this step does so under bounds nearer to b₂: its factor of b₂ − b₁ is `_NEW`.
-    The error is the fraction `_RULE_ERROR` or `_NEW_ERROR` of the term with b₂ − b₁.
-    """
-    contact, box = after.contact, after.box
-    given, begun = after.plastic_displacement[box], np.asarray(contact.first_yield_pressure)
-    old, ratio = np.zeros(1, dtype=bool), math.inf
-    if before is not None:
-        begun = _on(before.bound, box)
-        old = before.plastic_displacement[box] > 0
-        given = given - before.plastic_displacement[box]
-        if before.indentation > 0:
-            ratio = after.indentation / before.indentation
-    share = ratio / (ratio - 1) - 1 / math.log(ratio) if 1 < ratio < math.inf else 0.5
-    area = contact.grid.cell_area
-    whole = float(np.sum(given * begun)) * area
-    growth = given * (_on(after.bound, box) - begun)
-    on, new = (float(np.sum(growth, where=nodes)) * area for nodes in (old, ~old))
-    return whole + share * on + _NEW * new, _RULE_ERROR * abs(on) + _NEW_ERROR * abs(new)
-
-
-def _on(bound: Array | float, box: Box) -> Array:
-    """`bound`, a number or an array of the shape of the grid, on a box."""
-    return np.asarray(bound) if np.ndim(bound) == 0 else np.asarray(bound)[box]
 
 
 def _pinning_error(state: State) -> float:

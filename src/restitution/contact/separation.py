@@ -30,9 +30,9 @@ _FINEST = 400  # the shortest step is the pull-off displacement over this number
 _REFINEMENTS = (1, 2, 4)  # numbers of steps, relative to the first, until the tolerance is met
 _MOST_STEPS = 3000
 # Integration through the states after each release removes the work of late release to first order.
-# The error left, found with ten times finer steps, was below a tenth of this work with crack closure
-# and below a third with the tension limit, whose contacts release nodes in larger jumps. The values
-# are half as large again.
+# With ten times finer steps, the remaining error was below a tenth of this work for crack closure
+# and below a third for the tension limit, whose contacts release nodes in larger jumps. The values
+# are 1.5 times as large.
 _LATENESS = {"crack-closure": 0.15, "pohrt-popov": 0.5}
 
 

@@ -86,7 +86,7 @@ def _write(file: Path, key: str, surface: Surface) -> None:
 
 
 def _free_space(folder: Path, size: int) -> None:
-    """Delete the oldest surfaces until `size` bytes fit, and temporary files of killed processes."""
+    """Delete abandoned temporary files, and the oldest surfaces until `size` bytes fit."""
     files = [(entry.stat(), entry) for entry in folder.iterdir() if entry.is_file()]
     files.sort(key=lambda item: item[0].st_mtime)
     total = size + sum(stat.st_size for stat, _ in files)

@@ -40,7 +40,7 @@ def possible(skewness: float, kurtosis: float) -> bool:
 
 
 def translation(skewness: float, kurtosis: float) -> Callable[[Array], Array] | None:
-    """An increasing map of a standard normal variable to one of mean 0, variance 1 and these moments.
+    """An increasing map of a standard normal variable to mean 0, variance 1 and these moments.
 
     None if no parameters are found that give the moments to 0.2 %.
     """

@@ -76,7 +76,7 @@ def texture(surface: Surface) -> dict[str, float | None]:
 
 
 def height_density(surface: Surface) -> HeightDensity:
-    """The density of the heights less their mean, and a normal one, which is 0 for flat surfaces."""
+    """The density of the heights less their mean, and the normal density (0 for flat surfaces)."""
     z = surface.height - surface.height.mean()
     density, edges = np.histogram(1e9 * z, bins=_BINS, density=True)
     height = 0.5 * (edges[1:] + edges[:-1])

@@ -30,7 +30,7 @@ _HALF_SPACE = 0.2  # contact radius over R* beyond which the half-space approxim
 
 
 def predicted_radius(pair: Pair, indentation: float, yield_pressure: float = math.inf) -> float:
-    """Contact radius (m) of the smooth bodies: Hertz's sqrt(R*δ), or sqrt(2R*δ) if fully plastic."""
+    """Contact radius (m) of smooth bodies: Hertz's sqrt(R*δ), or sqrt(2R*δ) if fully plastic."""
     R = pair.radius
     yielded = math.inf
     if math.isfinite(yield_pressure):
