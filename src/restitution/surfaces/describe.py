@@ -41,7 +41,7 @@ def describe(surface: Surface) -> dict[str, float | None]:
         surface: Surface to describe; subtract its tilt and form first (`level`).
 
     Returns:
-        Parameters by name (SI units). `Ssk`, `Sku` and the correlation lengths of a flat surface
+        Parameters by name (SI). `Ssk`, `Sku` and the correlation lengths of a flat surface
         are None, as is a correlation length that exceeds the domain.
     """
     height = surface.height

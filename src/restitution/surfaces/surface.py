@@ -23,7 +23,7 @@ class Surface:
     Attributes:
         height: Heights (m), positive towards the other body, shape `grid.nodes`; read-only.
         grid: Grid of the heights.
-        provenance: Text and numbers about the origin of the heights, stored with every result.
+        provenance: Text and numbers (SI) on the origin of the heights, stored with every result.
 
     Raises:
         SurfaceError: The shape does not fit the grid, or a height is undefined.
