@@ -61,7 +61,7 @@ def test_the_same_seed_is_the_same_twin_and_another_is_another():
 
 
 def waves(surface):
-    """Amplitudes of the waves, whose phases count from the origin of the grid."""
+    """Complex amplitudes of the waves, with phases relative to the origin of the grid."""
     modes = np.fft.fft2(surface.height, norm="forward")
     shift = [np.exp(2j * np.pi * (n // 2) * np.fft.fftfreq(n)) for n in surface.grid.nodes]
     return modes * np.multiply.outer(*shift)
@@ -154,7 +154,7 @@ def test_mirrored_tiles_on_coarser_and_finer_cells():
         placed = place_on_grid(large, grid)
         tiled = extend(scan(), grid, "mirror")
         assert tiled.grid == grid
-        off = (tiled.height - placed.height)[2:-2, 2:-2]  # at the rim the tiles go on
+        off = (tiled.height - placed.height)[2:-2, 2:-2]  # the rim also depends on the next tiles
         assert off.std() < tolerance * large.height.std()
 
 

@@ -1,4 +1,4 @@
-"""Height maps in NumPy and text files, which need no package beyond the required ones."""
+"""Height maps in NumPy and text files, which need no optional package."""
 
 import os
 import pickle
@@ -14,13 +14,13 @@ from restitution.surfaces import Surface, read_surface
 from tolerance import approx
 
 SIZE = (10e-6, 4e-6)
-# A ramp that tells both coordinates, of 5 pixels along x and 4 along y: nothing is symmetric.
+# Heights that differ between all pixels, 5 along x and 4 along y, without symmetry.
 RAMP = 1e-9 * (10.0 * np.arange(5)[:, None] + np.arange(4)[None, :])
 
 
 @pytest.fixture(autouse=True)
 def _without_surface_topography(monkeypatch):
-    """These formats must work, and fail, the same way where the extra is not installed."""
+    """These formats must give the same results and errors without the optional extra."""
     monkeypatch.setitem(sys.modules, "SurfaceTopography", None)
 
 
@@ -183,7 +183,7 @@ def test_any_damage_gives_a_surface_or_one_error(tmp_path, suffix, data):
     ],
 )
 def test_text_lines_are_scan_lines(write, tmp_path, name, separator):
-    """A line of text is y, its columns are x: the transpose of the array."""
+    """Lines of text are y and columns are x, so the array is the transpose of the text."""
     lines = [separator.join(f"{z:.12e}" for z in line) for line in RAMP.T]
     path = write(tmp_path / name, "# made for a test\n" + "\n".join(lines) + "\n")
     surface = read_surface(path, size=SIZE)

@@ -31,7 +31,7 @@ def test_identical_grid_leaves_the_heights():
 @pytest.mark.parametrize("scan", [(40, 31), (41, 30)])
 @pytest.mark.parametrize("nodes", [(20, 11), (21, 12), (40, 1), (1, 30)])
 def test_equal_spacing_crops_about_the_origin(scan, nodes):
-    # Heights that tell their own coordinates, in pixels: no interpolation may touch them.
+    # Heights encode their coordinates in pixels, so that interpolation would show.
     spacing = (0.1e-6, 0.2e-6)
     i, j = np.indices(scan)
     surface = Surface(1000.0 * (i - scan[0] // 2) + (j - scan[1] // 2), Grid(scan, spacing))
@@ -84,7 +84,7 @@ def test_a_coarser_grid_gets_the_waves_it_can_carry_and_says_so():
     grid = Grid((40, 32), (0.3e-6, 0.3e-6))
 
     def sines(on, *numbers):
-        # Waves that fit between the first and the last pixel: k half periods.
+        # Waves with k half periods between the first and the last pixel.
         length = scan.x[-1] - scan.x[0]
         wave = sum(np.sin(np.pi * k * (on.x - scan.x[0]) / length) for k in numbers)
         return wave[:, None] + np.zeros((1, on.nodes[1]))

@@ -1,4 +1,4 @@
-"""Formats that SurfaceTopography writes as well as reads: what was written is what is read."""
+"""Formats that SurfaceTopography can write: reading returns the heights written."""
 
 import warnings
 

@@ -37,13 +37,13 @@ def solve_at_force(contact: Contact, force: float, *, start: State | None = None
     from scipy.optimize import brentq
 
     if not 0 < force < math.inf:
-        raise CaseError(f"load: {force} N is not a positive force")
+        raise CaseError(f"force: {force} N is not positive")
     nx, ny = contact.grid.nodes
     capacity = contact.hardness * contact.grid.cell_area * nx * ny
     if force >= capacity:
         raise DomainError(
-            f"load: {force:.4g} N is more than the whole grid carries at the yield pressure "
-            f"({capacity:.4g} N); use a larger grid or a smaller load"
+            f"force: {force:.4g} N is more than the whole grid carries at the yield pressure "
+            f"({capacity:.4g} N); use a larger grid or a smaller force"
         )
     state = start
     convolutions = 0
@@ -64,8 +64,8 @@ def solve_at_force(contact: Contact, force: float, *, start: State | None = None
     state = solve(contact, indentation, start=start, residual=_SOLVE_RESIDUAL)
     if abs(state.force / force - 1) > FORCE_TOLERANCE:
         raise NotConvergedError(
-            f"load: {force:.6g} N was met only within {abs(state.force / force - 1):.1e} at an "
-            f"indentation of {1e9 * indentation:.6g} nm; the force jumps there (too few nodes in "
-            "contact): refine the grid or change the load"
+            f"force: {force:.6g} N was met only within {abs(state.force / force - 1):.1e} at an "
+            f"indentation of {1e9 * indentation:.6g} nm, where the force jumps (too few nodes in "
+            "contact); refine the grid or change the force"
         )
     return replace(state, convolutions=state.convolutions + convolutions)

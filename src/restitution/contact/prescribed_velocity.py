@@ -46,7 +46,7 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
     if mass is None:
         raise CaseError("density: is missing; give both bodies one, as a velocity needs the masses")
     if not 0 < velocity < math.inf:
-        raise CaseError(f"velocity: {velocity} m/s is not a positive velocity")
+        raise CaseError(f"velocity: {velocity} m/s is not positive")
     work = 0.5 * mass * velocity**2
     tolerance = _INTEGRATED_TOLERANCE if work_is_integrated(contact) else VELOCITY_TOLERANCE
     found: dict[float, State] = {}
@@ -82,7 +82,7 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
     if miss > max(tolerance, state.work_error / work):
         raise NotConvergedError(
             f"velocity: {velocity:.6g} m/s was met only within {miss:.1e} at an indentation of "
-            f"{1e9 * deepest:.6g} nm; the work jumps there (too few nodes in contact): refine the "
+            f"{1e9 * deepest:.6g} nm, where the work jumps (too few nodes in contact); refine the "
             "grid or change the velocity"
         )
     return replace(state, convolutions=sum(each.convolutions for each in found.values()))
