@@ -163,7 +163,7 @@ def build_state(
 ) -> State:
     """The state of a `solution` on `box`.
 
-    Where the pressure is at the limit and the deformed gap is negative, minus the gap is added to
+    Where the pressure is at the limit and the deformed gap is negative, the gap is subtracted from
     the plastic displacement. The elastic displacement overwrites `solution.gap`. If `limit` is an
     array, the plastic work stays that of `history`, and `loading` integrates it.
     """

@@ -1,7 +1,7 @@
 """Error of COR due to the plasticity model, from finite elements (docs/validation.md).
 
 The largest relative differences of COR found there are tabulated over the COR due to plasticity
-alone, e_p = sqrt(E_el/(E_el + W_p)). It decreases monotonically from first yield to full
+alone, e_p = sqrt(E_el/(E_el + W_p)). e_p decreases monotonically from first yield to full
 plasticity, for smooth bodies and for asperities. The differences of `expanding-cavity` also depend
 on the steepness of the asperities ψ = E* S/Y, where S is the rms slope. Beyond the range of the
 references the last value is used and may be too small.
@@ -29,7 +29,7 @@ _CONSTANT = {
 # Largest relative difference over ψ, and its reduction factor over COR near COR = 1.
 _STEEPNESS, _GROWING = (0.0, 4.0, 6.0, 26.0), (0.03, 0.035, 0.045, 0.05)
 _NEAR_ONE = (0.94, 0.98, 1.0), (1.0, 0.5, 0.2)
-_ONSET = 1.6 / 2.8  # pressure at first yield over the yield pressure, which is fully plastic
+_ONSET = 1.6 / 2.8  # pressure at first yield over that of full plasticity, the yield pressure
 
 
 def model_error(state: State, restitution: float) -> float:
@@ -53,7 +53,7 @@ def model_error(state: State, restitution: float) -> float:
 
 
 def largest_difference(state: State, restitution: float) -> float:
-    """Largest relative difference of COR for a COR of `restitution` due to plasticity alone."""
+    """Largest relative error of COR where plasticity alone gives a COR of `restitution`."""
     contact = state.contact
     if not contact.grows:
         return float(np.interp(restitution, *_CONSTANT[str(contact.plasticity)]))

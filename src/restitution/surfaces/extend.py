@@ -25,7 +25,7 @@ def extend(
     - `twin`: another surface with random phases, and with the spectrum, the distribution of heights
       and the rms slope of the scan. It has no waves longer than the scan.
     - `mirror`: the scan in the middle, surrounded by tiles that are its mirror images. The surface
-      is periodic, and slopes jump where tiles meet.
+      repeats every two tiles, and slopes jump where tiles meet.
 
     Waves that the cells of the grid cannot carry are left out.
 

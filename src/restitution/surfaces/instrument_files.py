@@ -155,7 +155,7 @@ def _list(some: list[Any], channels: list[Any]) -> str:
 
 
 def _why_unreadable(error: Exception, suffix: str) -> str:
-    """The reason in SurfaceTopography's report on all its readers that fits the file suffix."""
+    """The part of SurfaceTopography's error message on the reader named after `suffix`."""
     named_after_suffix = rf"tried {re.escape(suffix.removeprefix('.'))}reader:\s*(.+)"
     reason = re.search(named_after_suffix, str(error), re.IGNORECASE)
     if reason is None:

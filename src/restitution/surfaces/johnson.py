@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-# No distribution has a kurtosis below skewness² + 1, and near this limit it is nearly two-valued.
+# No kurtosis is below skewness² + 1, and distributions near this limit are nearly two-valued.
 LEAST_KURTOSIS = 1.1
 _ABSCISSAE, _WEIGHTS = np.polynomial.hermite_e.hermegauss(201)
 _EXACT, _CLOSE = 1e-6, 2e-3  # misfits; on the lognormal line both forms are only close

@@ -115,7 +115,7 @@ def read_surface(
 
 
 def _check_readable(file: Path) -> None:
-    """Raise `SurfaceError` unless the file is a regular file, readable, not empty or too large."""
+    """Raise `SurfaceError` for a missing, unreadable, irregular, empty or too large file."""
     try:
         kind = file.stat()
         if stat.S_ISDIR(kind.st_mode):

@@ -48,6 +48,6 @@ def in_metres(value: float, unit: object) -> float | None:
     """`value` in `unit`, converted to metres; None if `unit` is not a unit of length."""
     if not isinstance(unit, str):
         return None
-    # NFKC maps both code points that look like µ to one letter, and both that look like Å.
+    # NFKC unifies the two code points that look like µ, and the two that look like Å.
     per_metre = _PER_METRE.get(unicodedata.normalize("NFKC", unit))
     return None if per_metre is None else value / per_metre

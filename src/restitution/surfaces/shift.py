@@ -1,4 +1,4 @@
-"""Move a scan, so that the particle touches another place of it."""
+"""Move a scan so that the particle touches it at another place."""
 
 from __future__ import annotations
 

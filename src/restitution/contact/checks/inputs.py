@@ -44,7 +44,7 @@ def impossible(contact: Contact, indentation: float) -> Finding | None:
 
 
 def doubtful(contact: Contact, indentation: float) -> list[Finding]:
-    """Doubts about loading `contact` to `indentation` (m), besides `impossible`.
+    """Reasons to doubt a result of loading `contact` to `indentation` (m), besides `impossible`.
 
     The findings of `resolution_findings`, and
 
@@ -106,7 +106,7 @@ def _closed_gap(contact: Contact, indentation: float, distance: float) -> float:
     """
     pair, p_y, w = contact.pair, contact.hardness, contact.work_of_adhesion
     E_star, deeper = pair.contact_modulus, indentation
-    for _ in range(10):  # a fixed point; the iteration contracts, as `deeper` grows with √radius
+    for _ in range(10):  # fixed-point iteration; it contracts because `deeper` grows with √radius
         radius = predicted_radius(pair, deeper, p_y)
         if not contact.adhesive:
             break
