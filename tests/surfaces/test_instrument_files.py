@@ -340,4 +340,4 @@ def test_failure_while_reading_is_one_error(fake_file, refusal):
 def test_versions_that_misread_files_are_refused(fake_file, refusal):
     path, _ = fake_file(fake_channel("z"), version="1.25.0")
     message = refusal(path)
-    assert "takes SurfaceTopography 1.27 or later, and 1.25.0 is installed" in message
+    assert "needs SurfaceTopography 1.27 or later, but 1.25.0 is installed" in message

@@ -261,7 +261,7 @@ def test_values_that_are_no_lengths(write, refusal, tmp_path):
 def test_headers_that_set_scales_unknown_here_are_not_guessed_at(write, refusal, tmp_path, line):
     path = write(tmp_path / "a.txt", f"{line}\n{MATRIX}")
     message = refusal(path, size=SIZE)
-    assert "may set a unit or a scale" in message
+    assert "may set an unknown unit or scale" in message
     assert 'pip install "SurfaceTopography>=1.27"' in message
 
 

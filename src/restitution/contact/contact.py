@@ -201,7 +201,7 @@ class Contact:
         """Coordinates x and y of the lowest point of the smooth bodies (m).
 
         The point is the origin, a node, except for an adhesive contact without roughness
-        (`smooth`), where it lies between nodes. Centred on a node, whole rings of nodes would
+        (`smooth`), where it lies between nodes. If it were a node, whole rings of nodes would
         attach and release at once, which doubles the error of restitution.
         """
         if not self.adhesive or self.surface.provenance.get("source") != "smooth":
