@@ -103,7 +103,7 @@ def test_more_than_the_grid_carries_is_refused_at_once(rough_contact, plasticity
         with pytest.raises(DomainError) as refusal:
             solve_at_force(contact, force)
         assert f"force: {force:.4g} N" in str(refusal.value)
-        assert "(0.108 N); use a larger grid or a smaller load" in str(refusal.value)
+        assert "(0.108 N); use a larger grid or a smaller force" in str(refusal.value)
     with pytest.raises(DomainError, match="reaches the edge"):
         solve_at_force(contact, 0.999 * capacity)
 
