@@ -20,6 +20,7 @@ HERE = Path(__file__).resolve().parents[1]
 TESTS = {
     "contact/loading.py": "contact/test_work_error.py contact/test_loading.py "
     "contact/test_cavity.py contact/test_separation.py verification/test_adhesive_restitution.py",
+    "contact/plastic_work.py": "contact/test_work_error.py contact/test_cavity.py",
     "contact/separation.py": "contact/test_separation.py contact/test_energy_account.py "
     "test_collision.py verification/test_adhesive_restitution.py",
     "contact/model_error.py": "contact/test_model_error.py",

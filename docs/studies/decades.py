@@ -41,7 +41,7 @@ CONTACTS = (
     ("aluminium", "500 um", "gaussian", "0.2 um", "10 um", 11, 512, "0.5 um"),
     ("steel", "300 um", "gaussian", "0.1 um", "5 um", 12, 512, "0.25 um"),
     ("glass", "1 mm", "gaussian", "0.5 um", "20 um", 13, 512, "0.6 um"),
-    ("copper", "200 um", "gaussian", "0.1 um", "8 um", 14, 400, "0.4 um"),
+    ("lactose", "200 um", "gaussian", "0.1 um", "8 um", 14, 400, "0.4 um"),
 )
 NAMES = ("material", "radius", "kind", "rms", "length", "seed", "nodes", "spacing")
 VELOCITIES = np.geomspace(0.001, 10.0, 17)

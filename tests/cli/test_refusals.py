@@ -216,7 +216,7 @@ def test_contact_off_the_domain_keeps_the_depths_before_it(cli, case_text, tmp_p
 def test_more_load_than_the_grid_carries(refused_case, case_text):
     span = case_text[case_text.index("[indentation]") : case_text.index("[unloading]")]
     message = refused_case((span, '[load]\nvalues = ["5 N"]\n'), verb="run")
-    assert "more than the whole grid carries at the yield pressure" in message
+    assert "load: 5 N is more than the whole grid carries at the yield pressure" in message
 
 
 def measured(case_text, line):
@@ -228,8 +228,8 @@ def measured(case_text, line):
 @pytest.mark.parametrize(
     ("name", "content", "remedy"),
     [
-        ("nan.npy", np.where(np.eye(90) > 0, np.nan, 0.0), 'give undefined = "interpolate"'),
-        ("inf.npy", np.where(np.eye(90) > 0, np.inf, 0.0), 'give undefined = "interpolate"'),
+        ("nan.npy", np.where(np.eye(90) > 0, np.nan, 0.0), 'roughness.undefined = "interpolate"'),
+        ("inf.npy", np.where(np.eye(90) > 0, np.inf, 0.0), 'roughness.undefined = "interpolate"'),
         ("line.npy", np.zeros(90), "line.npy"),
         ("cube.npy", np.zeros((9, 9, 9)), "cube.npy"),
         ("complex.npy", np.zeros((90, 90), complex), "complex.npy"),

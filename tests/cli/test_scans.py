@@ -154,16 +154,43 @@ def test_a_scan_may_be_refined_on_its_own_pixels(surface, scan):
             "grid.refine: 3 should be 1, 2, 4, 8, 16, 32 or 64, a list of these",
         ),
         ("outliers = -1", "", "roughness.outliers: -1 should be greater than 0"),
-        ("outliers = 0.1", "", "that many belong to the surface"),
+        ("outliers = 0.1", "", "roughness.outliers: "),
         ('crop = { x = ["1 um"] }', "", "roughness.crop.x: ['1 um'] should be a list of two"),
         ('crop = { x = ["2 um", "1 um"] }', "", "the first of the two positions must be below"),
-        ('crop = { x = ["20 um", "30 um"] }', "", "no pixel of the scan has its x between 20 and"),
+        (
+            'crop = { x = ["20 um", "30 um"] }',
+            "",
+            "roughness.crop.x: no pixel of the scan lies between 20 and 30 um; choose a range",
+        ),
+        (
+            'extend = "twin"\nseed = 1',
+            '[grid]\nnodes = 20\nspacing = "5 um"',
+            "cells of 5 um cannot carry a wave of a scan of 9.6 x 9.6 um; use a smaller "
+            "grid.spacing",
+        ),
+        (
+            'extend = "twin"\nseed = 1\ncrop = { y = ["0 um", "1 um"] }',
+            GRID.format(nodes=200),
+            'at least 16 x 16, or set roughness.extend = "mirror"',
+        ),
         ('crop = { z = ["1 um", "2 um"] }', "", "roughness.crop.z: unknown key; known keys: x, y"),
         ("crop = { x = [1, 2] }", "", "1 has no unit"),
     ],
 )
 def test_what_cannot_be_asked_of_a_scan(refused, case, more, grid, words):
     assert words in refused("check", case(more, grid))
+
+
+def test_a_flat_scan_has_no_twin(refused, case, tmp_path):
+    np.save(tmp_path / "scan.npy", np.zeros((96, 96)))
+    message = refused("check", case('extend = "twin"\nseed = 1', GRID.format(nodes=200)))
+    assert 'leave roughness.extend out, or set roughness.extend = "mirror"' in message
+
+
+def test_a_scan_without_size_asks_for_the_key(refused, case, tmp_path):
+    tables = SCAN.format(more="", grid="").replace('size = "9.6 um"\n', "")
+    message = refused("check", case(tables=tables))
+    assert 'such as roughness.size = ["10 um", "10 um"]' in message
 
 
 def test_several_surfaces_need_a_grid_and_one_number_of_realisations(refused, case):

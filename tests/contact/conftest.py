@@ -1,4 +1,4 @@
-"""What the tests of one contact share: small contacts, and a dense solver that is not ours."""
+"""Fixtures of the tests of a contact: small contacts, and an independent dense solver."""
 
 import numpy as np
 import pytest
@@ -21,7 +21,7 @@ def pair():
 
 @pytest.fixture(scope="session")
 def rough_contact(pair):
-    """Make a contact on a bumpy sphere: a few waves of random phase, `rms` high."""
+    """Make a contact on a rough sphere: a few waves with random phases and rms height `rms`."""
 
     def make(
         nodes=(24, 20),
@@ -47,7 +47,7 @@ def rough_contact(pair):
 
 
 class Dense:
-    """The half-space as a full matrix on the whole grid, and its bounded solution by BVLS."""
+    """The half-space as a full matrix on the whole grid, with its bounded solution by BVLS."""
 
     @staticmethod
     def influence(grid, contact_modulus):
@@ -67,11 +67,11 @@ class Dense:
 
     @staticmethod
     def pressure(contact, indentation, limit=None, *, plastic=0.0):
-        """Pressure on the whole grid, nothing cropped: ½|Lᵀp − L⁻¹b|² is least, 0 ≤ p ≤ p_y."""
+        """Pressure on the whole grid: the minimum of ½|Lᵀp − L⁻¹b|² with 0 ≤ p ≤ p_y."""
         limit = contact.yield_pressure if limit is None else limit
         K = Dense.influence(contact.grid, contact.pair.contact_modulus)
         b = (indentation - contact.gap - plastic).ravel()
-        unit = indentation / K[0, 0]  # so that the numbers are about one
+        unit = indentation / K[0, 0]  # scales the unknowns to order one
         L = cholesky(K / K[0, 0], lower=True)
         c = solve_triangular(L, b / indentation, lower=True)
         found = lsq_linear(L.T, c, (0.0, limit / unit), method="bvls", tol=1e-15)

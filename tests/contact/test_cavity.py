@@ -18,14 +18,14 @@ from restitution.theory import Hertz
 from tolerance import approx
 
 Y = 1e9
-BODY = Body(1e-3, 420e9, 0.3, 7850.0)  # two of them: E* of one of 210 GPa on a rigid flat
+BODY = Body(1e-3, 420e9, 0.3, 7850.0)  # two such bodies have the E* of 210 GPa on a rigid flat
 PAIR = Pair(BODY, BODY)
 ONSET = 1.295 * math.exp(0.736 * 0.3)
 FIRST = (math.pi * ONSET * Y / (2 * PAIR.contact_modulus)) ** 2 * PAIR.radius  # 60 nm
 
 
 def ball(omega=8.0, nodes=96, **more):
-    """A smooth contact on a grid that holds it up to ω."""
+    """A smooth contact on a grid that is large enough up to ω."""
     h = 2.3 * math.sqrt(2 * PAIR.radius * omega * FIRST) / nodes
     grid = Grid((nodes, nodes), (h, h))
     return Contact(PAIR, smooth(grid), **{"yield_strength": Y, **more})
@@ -48,7 +48,7 @@ def test_a_yield_strength_asks_for_the_bound_that_grows():
 
 
 def test_first_yield_is_at_omega_one():
-    """1.6 Y: elastic at 0.98 of the depth, and yielding at 1.02."""
+    """The contact is elastic at 0.98 of the depth of first yield (1.6 Y) and yields at 1.02."""
     contact = ball(omega=1.5, nodes=128)
     below, above = loading_path(contact, [0.98 * FIRST, 1.04 * FIRST])
     assert not below.plastic_displacement.any()
@@ -65,7 +65,7 @@ def test_the_bound_is_the_logarithm_between_its_ends():
 
 
 def test_a_ridge_yields_in_plane_strain():
-    """At 1.79 Y instead of 1.61 Y (Johnson 1985, §4.2), and then twice as steep in ln m."""
+    """First yield is at 1.79 Y, not 1.61 Y (Johnson 1985, §4.2); the slope in ln m doubles."""
     contact = ball()
     onset = contact.first_yield_pressure
     measure = 1.11 * onset * np.array([0.5, 1.0, math.e**0.5, 1e9])
@@ -91,7 +91,7 @@ def test_rings_are_elongated_and_round_asperities_are_not():
 
 
 def test_the_bound_of_a_ridge_falls_back_once_asperities_have_merged():
-    """Steep rings keep more than the bound of a round asperity; flat ones lose it at depth."""
+    """At depth only steep rings have a larger bound than round asperities."""
 
     def over_round(contact, depth):
         bound, _ = yield_bound(contact, depth, 1e-8)
@@ -105,7 +105,7 @@ def test_the_bound_of_a_ridge_falls_back_once_asperities_have_merged():
 
 
 def test_hardening_adds_the_flow_stress_at_tabors_strain():
-    """Y + H 0.2 a/R, from a tangent modulus E_t with 1/E_t = 1/E + 1/H."""
+    """The flow stress is Y + H 0.2 a/R, where 1/E_t = 1/E + 1/H for the tangent modulus E_t."""
     contact = ball(tangent_modulus=4.2e9)
     H = 1 / (1 / 4.2e9 - 1 / 420e9)
     onset = contact.first_yield_pressure
@@ -119,7 +119,7 @@ def test_hardening_adds_the_flow_stress_at_tabors_strain():
 
 
 # ω: COR, force (N) and contact area (m²) of finite elements for S_y/E* = 0.001
-# (validation/finite_elements/data/smooth_0.001.json), which are those of every S_y in its units.
+# (validation/finite_elements/data/smooth_0.001.json); normalised, they hold for every S_y.
 FINITE_ELEMENTS = {
     2: (0.9658152, 0.003482807, 1.056402e-11),
     8: (0.8089779, 0.02371111, 5.037909e-11),
@@ -145,7 +145,7 @@ def test_smooth_spheres_are_those_of_finite_elements(omega):
 
 
 def test_the_constant_bound_is_farther_off():
-    """By 10.7 % at ω = 4 (PLASTICITY): what the growing bound is for."""
+    """The error of COR is 10.7 % at ω = 4 (PLASTICITY), the reason for the growing bound."""
     constant = ball(4, yield_strength=math.inf, yield_pressure=2.8 * Y)
     off = [
         collide(solve(contact, 4 * FIRST)).restitution / 0.8930512 - 1
@@ -169,7 +169,7 @@ def test_lengths_and_pressures_scale():
 
 @pytest.mark.parametrize("seed", range(4))
 def test_nothing_flows_back_on_loading(seed):
-    """Rough surfaces whose patches merge: the plastic displacement of no node falls."""
+    """On rough surfaces with merging patches the plastic displacement decreases at no node."""
     before = 0.0
     for state in loading_path(rough(seed), np.geomspace(2e-9, 6e-7, 20)):
         fallen = (before - state.plastic_displacement).max()
@@ -200,7 +200,7 @@ def test_the_error_of_the_work_holds_against_ten_times_as_many_depths(seed):
 
 
 def test_the_work_is_that_of_the_force():
-    """∫F dδ by a rule of its own, and the energies."""
+    """∫F dδ by an independent rule equals the sum of the energies."""
     contact = rough()
     depths = np.geomspace(1e-9, 4e-7, 60)
     states = list(loading_path(contact, depths))
@@ -217,7 +217,7 @@ def test_restitution_falls_smoothly_through_first_yield():
     cor = np.array([collide(state).restitution for state in loading_path(contact, depths)])
     falls = -np.diff(cor)
     assert (falls > -1e-9).all()
-    # No step: each fall is close to those beside it.
+    # There is no step: each decrement is close to its neighbours.
     assert np.abs(np.diff(falls)).max() < 0.25 * falls.max()
 
 
@@ -249,7 +249,7 @@ def test_a_force_and_a_velocity_are_met():
 
 
 def test_adhesion_on_top():
-    """Sticking pulls the bodies in: more force is needed to part them, and COR falls."""
+    """Adhesion adds a pull-off force and lowers COR."""
     more = {"yield_strength": 3e8, "work_of_adhesion": 0.5}
     dry, sticky = ball(4, 48, yield_strength=3e8), ball(4, 48, **more)
     depth = 4 * FIRST
@@ -271,7 +271,7 @@ def test_an_elastic_sphere_below_first_yield_is_hertz():
 
 
 def test_the_bound_is_known_beyond_the_edge_of_the_grid():
-    """At twice the indentation the elastic contact does not fit the grid; the contact does."""
+    """Only the elastic contact, at twice the indentation, exceeds the grid."""
     contact = ball(8, 64)
     narrow = Contact(PAIR, smooth(Grid((40, 40), contact.grid.spacing)), yield_strength=Y)
     bound, convolutions = yield_bound(narrow, 5 * FIRST, 1e-8)

@@ -52,7 +52,7 @@ def test_heights_close_the_gap_and_the_highest_asperity_touches_first(pair):
     st.integers(0, 1000),
 )
 def test_the_least_gap_is_zero_whatever_the_surface(pair, nodes, rms, shift, seed):
-    """And lifting the whole surface changes nothing."""
+    """Adding a constant to all heights does not change the gap either."""
     grid = Grid(nodes, (1e-6, 3e-7))
     z = rms * np.random.default_rng(seed).normal(size=nodes)
     gap = Contact(pair, Surface(z, grid)).gap
@@ -66,7 +66,7 @@ def test_the_surface_is_left_alone(pair):
     z = np.random.default_rng(0).normal(size=(5, 5))
     kept = z.copy()
     contact = Contact(pair, Surface(z, grid))
-    assert contact.gap is contact.gap  # worked out once
+    assert contact.gap is contact.gap  # computed once
     assert_array_equal(z, kept)
     assert contact.grid is grid
 

@@ -1,4 +1,4 @@
-"""The two criteria by themselves: the tension limit, the energy release rate, who lets go."""
+"""The detachment criteria: tension limit, energy release rate, and the nodes released."""
 
 import math
 
@@ -45,7 +45,7 @@ def test_the_tension_limit_of_rectangular_cells(hx, hy):
     The lags x = x₁ − x₂ have the density hx − |x|: I = 4 ∬ (hx − x)(hy − y)/r over the cell.
     """
 
-    def over_r(angle_fraction, r_fraction):  # polar, which takes the singularity away
+    def over_r(angle_fraction, r_fraction):  # polar coordinates remove the singularity
         angle = angle_fraction * math.pi / 2
         reach = min(hx / max(math.cos(angle), 1e-300), hy / max(math.sin(angle), 1e-300))
         r = r_fraction * reach
@@ -58,7 +58,7 @@ def test_the_tension_limit_of_rectangular_cells(hx, hy):
 
 
 def punch(nodes, depth=1e-3, w=0.1, detachment="crack-closure"):
-    """A disc of 10 um standing out by `depth` from a wall, and its radius."""
+    """A punch of radius 10 um that protrudes from a wall by `depth`, and its radius."""
     h = 10e-6 / nodes
     n = 2 * int(nodes + 4) + 1
     grid = Grid((n, n), (h, h))
@@ -70,8 +70,8 @@ def punch(nodes, depth=1e-3, w=0.1, detachment="crack-closure"):
 
 
 def drawn(contact, disc, distance):
-    """Pressure, displacement, gap of the disc drawn out by `distance`, all of it held."""
-    patient = Contact(contact.pair, contact.surface, work_of_adhesion=1e6)  # nothing lets go
+    """Pressure, displacement and gap of the punch retracted by `distance` with all nodes held."""
+    patient = Contact(contact.pair, contact.surface, work_of_adhesion=1e6)  # no node is released
     n, m = contact.grid.nodes
     whole = slice(0, n), slice(0, m)
     state, _ = release_nodes(patient, -distance, whole, disc, limit=math.inf, residual=1e-9)
@@ -81,7 +81,7 @@ def drawn(contact, disc, distance):
 
 @pytest.mark.parametrize("nodes", [20.4, 30.3])
 def test_the_edge_of_a_punch_is_a_crack(nodes):
-    """G = K²/2E* = F²/(8πE*a³): w at Kendall's force."""
+    """G = K²/2E* = F²/(8πE*a³), which equals w at Kendall's force."""
     contact, disc, radius = punch(nodes)
     E, w = contact.pair.contact_modulus, 0.1
     state, fields = drawn(contact, disc, float(Kendall(E, w).pull_off_displacement(radius)))
@@ -93,9 +93,9 @@ def test_the_edge_of_a_punch_is_a_crack(nodes):
 
 
 def test_a_straight_edge_releases_k_squared_over_two_e():
-    """A strip of half width c held and drawn: flat, and so with p = −P/(π sqrt(c² − x²)) across.
+    """A flat strip of half width c under tension has p = −P/(π sqrt(c² − x²)) across its width.
 
-    Halfway along a strip much longer than wide, K = P/sqrt(πc) with P the pull per length there.
+    In the middle of a long strip K = P/sqrt(πc), where P is the tensile force per length there.
     """
     half, long, h = 24, 400, 1e-7
     n = (2 * half + 9, long)
@@ -186,7 +186,7 @@ def test_the_tension_limit_releases_exactly_what_is_beyond_it():
     random = np.random.default_rng(5)
     touching = random.random((30, 31)) < 0.6
     p = np.where(touching, random.normal(0, 2.0, touching.shape), 0.0)
-    p[0, 0], touching[0, 0] = -1.5, True  # on the limit: it stays
+    p[0, 0], touching[0, 0] = -1.5, True  # exactly at the limit: not released
     rule = TensionLimit(1.5)
     released = rule.releases(p, p, p, touching)
     assert np.array_equal(released, touching & (p < -1.5))
@@ -203,7 +203,7 @@ def test_criteria_by_name(name, kind):
 
 
 def test_crack_closure_releases_nodes_apart_from_each_other():
-    """Beyond w everywhere along the edge: the tensest go, none beside another."""
+    """If G > w along the whole edge, nodes of largest tension go, but no two neighbours."""
     contact, disc, radius = punch(20.4)
     E, w = contact.pair.contact_modulus, 0.1
     far = 1.3 * float(Kendall(E, w).pull_off_displacement(radius))
@@ -221,7 +221,7 @@ def test_crack_closure_releases_nodes_apart_from_each_other():
 
 
 def test_rounding_does_not_choose_between_nodes():
-    """Of nodes that are equal by symmetry the same one goes, whatever the last digits are."""
+    """Among nodes that are equal by symmetry, the same one is released whatever the rounding."""
     contact, disc, radius = punch(20.4)
     E, w = contact.pair.contact_modulus, 0.1
     far = 1.3 * float(Kendall(E, w).pull_off_displacement(radius))

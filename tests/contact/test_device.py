@@ -1,8 +1,8 @@
-"""Devices: the path of arrays that are not NumPy's, taken by a stand-in for a GPU.
+"""Devices: arrays other than NumPy's, tested with a stand-in for a GPU.
 
-Like CuPy's, the stand-in's arrays follow NumPy's protocols and refuse to become NumPy arrays by
-themselves, so that code which would copy them back unasked, or hand them to a function that does
-not know them, fails here as it would there.
+Like arrays of CuPy, those of the stand-in follow NumPy's protocols and refuse implicit conversion
+to NumPy arrays. Code that converts them implicitly, or passes them to a function that does not
+support them, fails here as it would on a GPU.
 """
 
 import subprocess
@@ -49,7 +49,7 @@ def _call(function, args, options):
 
 
 class Elsewhere(np.lib.mixins.NDArrayOperatorsMixin):
-    """An array that only NumPy's protocols reach."""
+    """An array that supports NumPy's protocols only."""
 
     def __init__(self, inside):
         self.inside = np.asarray(inside)
@@ -88,7 +88,7 @@ class Elsewhere(np.lib.mixins.NDArrayOperatorsMixin):
 
 
 class _Arrays:
-    """What of CuPy makes arrays."""
+    """The functions of CuPy that create arrays."""
 
     @staticmethod
     def asarray(values):
@@ -104,7 +104,7 @@ class _Arrays:
 
 
 class _Transforms:
-    """scipy.fft, as cupyx.scipy.fft is it."""
+    """A replacement of cupyx.scipy.fft by scipy.fft."""
 
     def __getattr__(self, name):
         return lambda *args, **options: _call(getattr(scipy.fft, name), args, options)
@@ -132,7 +132,7 @@ def test_the_operators_are_those_of_this_machine(shape):
 
 @pytest.mark.parametrize("limit", [np.inf, 2e9])
 def test_a_solve_is_the_same_on_any_device(rough_contact, limit):
-    """The grid is wide enough for coarser grids and a window."""
+    """The grid is large enough for coarser grids and a window."""
     contact = rough_contact((170, 180), (0.08e-6, 0.08e-6), yield_pressure=limit)
     here = solve(contact, DEPTH, residual=1e-10)
     with on_device(STAND_IN):
@@ -204,7 +204,7 @@ def test_a_gpu_that_does_not_answer_is_said_so(monkeypatch):
 
 
 def test_what_measures_a_gpu_runs():
-    """Here on this machine, and small: where there is a GPU it must not fail."""
+    """The GPU benchmark runs on the CPU with a small case, so that it does not fail on a GPU."""
     script = Path(__file__).parents[2] / "benchmarks" / "gpu.py"
     options = ["--device", "cpu", "--nodes", "256"]
     found = subprocess.run([sys.executable, script, *options], capture_output=True, text=True)
@@ -213,7 +213,7 @@ def test_what_measures_a_gpu_runs():
 
 
 def test_cupy_answers_as_this_machine(rough_contact):
-    """On a machine with a GPU: the same numbers in double precision."""
+    """A GPU gives the numbers of the CPU in double precision."""
     pytest.importorskip("cupy", reason="CuPy is not installed", exc_type=ImportError)
     contact = rough_contact((170, 180), (0.08e-6, 0.08e-6), yield_pressure=2e9)
     here = solve(contact, DEPTH)

@@ -1,4 +1,4 @@
-"""What a refusal holds when the contact reaches the edge of the grid."""
+"""Values and advice of the error raised if the contact reaches the edge of the grid."""
 
 import pickle
 import re
@@ -70,7 +70,7 @@ def test_the_refusal_can_go_to_another_process():
 
 
 def test_the_level_of_the_heights_does_not_matter():
-    """Depths count from first touch, wherever the mean of the heights is."""
+    """Depths are measured from first touch, whatever the mean height."""
     surface = generate_surface(GRID, kind="gaussian", rms=2e-7, correlation_length=5e-6, seed=2)
     raised = Surface(surface.height + 1e-6, GRID)
     edges = [needed_edges(Contact(STEEL, each), 1e-6) for each in (surface, raised)]
@@ -79,7 +79,7 @@ def test_the_level_of_the_heights_does_not_matter():
 
 @pytest.mark.parametrize(("node", "off"), [((32, 32), False), ((32, 40), False), ((32, 56), True)])
 def test_a_first_touch_off_the_centre_is_said(node, off):
-    """24 of 64 cells from the middle are; 8 are not."""
+    """24 of 64 cells from the middle is off-centre; 8 cells is not."""
     grid = Grid((64, 64), (1e-6, 1e-6))
     height = np.zeros(grid.nodes)
     height[node] = 1e-5

@@ -1,9 +1,9 @@
-"""The energy account of an adhesive cycle, whatever the case.
+"""The energy balance of an adhesive cycle, for random cases.
 
-At every state the work done is W = E_el + W_p − Q, Q what adhesion has put in. Letting go at one
-indentation moves energy from E_el to −Q and does no work, so over the way back
+At every state the work done is W = E_el + W_p − Q, where Q is the work of adhesion. Release of
+nodes at one indentation moves energy from E_el to −Q and does no work, so over the unloading
 
-    E_el(deepest) = W_u + (adhesive loss) + (what yields on the way back).
+    E_el(deepest) = W_u + (adhesive loss) + (plastic work during unloading).
 """
 
 import math
@@ -19,7 +19,7 @@ from tolerance import approx
 
 STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25, density=7850.0)
 PAIR = Pair(STEEL, STEEL)
-# A failing case is told as it was drawn: making it smaller would solve for minutes.
+# Failing cases are reported as drawn, because shrinking them would take minutes of solves.
 few = settings(
     max_examples=6,
     deadline=None,
@@ -45,7 +45,7 @@ cases = st.fixed_dictionaries(
 
 
 def load(nodes, spacing, rms, seed, depth, **options):
-    """The state of a case; `depth` is in parts of what the grid holds of smooth spheres."""
+    """The state of a case; `depth` is relative to the largest for smooth spheres on the grid."""
     grid = Grid(nodes, (spacing, spacing))
     surface = smooth(grid)
     if rms:
@@ -56,7 +56,7 @@ def load(nodes, spacing, rms, seed, depth, **options):
     try:
         return solve(Contact(PAIR, surface, **options), depth * held)
     except DomainError:
-        reject()  # asperities, or adhesion on approach, reach further
+        reject()  # asperities, or adhesion on approach, make the contact larger
 
 
 @few
@@ -87,7 +87,7 @@ def test_the_account_closes(case):
     assert collision.adhesive_loss >= -error
     assert collision.restitution <= 1 + collision.restitution_error
 
-    # A path of forces by another rule is within the error said.
+    # The work of the same forces by another rule agrees within the stated error.
     force = np.array([s.force for s in path])
     assert -float(np.trapezoid(force, depths)) == approx(W_u, abs=error * (1 + 1e-9))
 
@@ -95,7 +95,7 @@ def test_the_account_closes(case):
 @few
 @given(cases)
 def test_the_work_of_unloading_is_that_of_its_forces(case):
-    """Each step is pulled with the contact held, and then let go: by forces alone."""
+    """The work of the steps (retract with a fixed contact, then release nodes) is from forces."""
     state = load(**case)
     path = list(separate(state, tolerance=0.001))
     depths = np.array([s.indentation for s in path])

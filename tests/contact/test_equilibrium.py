@@ -1,4 +1,4 @@
-"""One solve, against a dense solver, closed forms and the conditions of contact themselves."""
+"""One solve, compared with a dense solver, closed forms and the contact conditions."""
 
 import math
 from dataclasses import replace
@@ -35,7 +35,7 @@ def with_surface(contact, height, spacing=None):
 @LIMITS
 @pytest.mark.parametrize("seed", [0, 1])
 def test_it_is_the_dense_solution_on_the_whole_grid(rough_contact, dense, p_y, seed):
-    """Cropping to {h₀ < δ} loses nothing, on a grid neither square nor of square cells."""
+    """Cropping to {h₀ < δ} is exact, on a grid that is not square and has oblong cells."""
     contact = rough_contact((16, 13), (0.8 * UM, 0.9 * UM), seed=seed, yield_pressure=p_y)
     state = solve(contact, 30 * NM, residual=1e-11)
     p = dense.pressure(contact, 30 * NM)
@@ -66,7 +66,7 @@ def test_it_is_the_dense_solution_on_the_whole_grid(rough_contact, dense, p_y, s
 def test_the_conditions_of_contact_hold_on_the_whole_grid(
     rough_contact, dense, seed, aspect, log_rms, log_scale, yield_factor
 ):
-    """Slender cells, nanometres to kilometres, hardly rough to very rough."""
+    """The cases include slender cells, sizes from nm to km, and small to large roughness."""
     h = 10.0**log_scale
     sphere = Body(250 * h, 1e9, 0.499)
     contact = rough_contact(
@@ -134,12 +134,12 @@ def test_one_node_that_yields_is_a_spring_and_a_slider(pair):
     assert state.stored_energy == approx(0.5 * p_y * 3 * NM * area, rel=1e-12)
     assert state.plastic_work == approx(p_y * 7 * NM * area, rel=1e-12)
     assert state.separation_indentation == approx(7 * NM, rel=1e-12)
-    # on the way back a spring from 7 nm
+    # unloading is that of a spring from 7 nm
     assert step(state, 8 * NM).force == approx(p_y * area / 3, rel=1e-7)
 
 
 def test_two_nodes_share(pair):
-    """Spikes of 0 and −c: p₁ = [K₀δ − K₁(δ − c)]/(K₀² − K₁²) and so on."""
+    """Two spikes of heights 0 and −c: p₁ = [K₀δ − K₁(δ − c)]/(K₀² − K₁²), p₂ by symmetry."""
     grid = Grid((9, 9), (UM, UM))
     contact = Contact(pair, smooth(grid))
     z = contact.gap.copy() - 1 * UM  # flat, deep
@@ -155,7 +155,7 @@ def test_two_nodes_share(pair):
     state = solve(contact, 10 * NM, residual=1e-12)
     assert_allclose(state.pressure[4, [3, 6]], p, rtol=1e-9)
     assert state.contact_nodes == 2
-    # with K₁/K₀ of the depth the first presses the second out of contact
+    # at a height difference of K₁/K₀ of the depth, the first spike takes the second out of contact
     alone = solve(contact, 2 * NM / (1 - 0.99 * K1 / K0))
     assert alone.contact_nodes == 1
 
@@ -165,7 +165,7 @@ def test_two_nodes_share(pair):
 
 @pytest.mark.parametrize("p_y", [math.inf, P_Y])
 def test_turning_the_surface_turns_the_solution(rough_contact, p_y):
-    """On odd grids a flip leaves the sphere where it is."""
+    """On grids with odd numbers of nodes a flip does not move the sphere."""
     contact = rough_contact((23, 19), (0.5 * UM, 0.6 * UM), yield_pressure=p_y)
     z = contact.surface.height
     p = solve(contact, DEPTH, residual=1e-11).pressure
@@ -201,12 +201,12 @@ def test_the_force_grows_with_depth_and_so_does_all_else(rough_contact, seed, nm
     a, b = (
         solve_without_work(contact, d * NM, start=None, residual=1e-10) for d in (nm, factor * nm)
     )
-    assert b.force >= a.force * (1 - 1e-8)  # a single node at p_y carries no more
+    assert b.force >= a.force * (1 - 1e-8)  # equal for a single node at p_y
     assert b.stored_energy >= a.stored_energy * (1 - 1e-8)
     assert b.plastic_work >= a.plastic_work * (1 - 1e-8)
     assert b.contact_nodes >= a.contact_nodes
     assert (b.plastic_displacement >= a.plastic_displacement - 1e-9 * nm * NM).all()
-    # ∫F dδ of a growing force lies between its lower and upper sum
+    # ∫F dδ of an increasing force lies between its lower and upper sums
     work = b.loading_work - a.loading_work
     width = (factor - 1) * nm * NM
     slack = 1e-7 * b.loading_work
@@ -218,7 +218,7 @@ def test_the_force_grows_with_depth_and_so_does_all_else(rough_contact, seed, nm
 def test_roughness_shifts_the_smooth_curve_by_no_more_than_its_height(
     rough_contact, seed, height, p_y
 ):
-    """Bumps below a smooth sphere that they touch at the apex: the gap is never smaller."""
+    """The roughness is nowhere above the smooth sphere and touches it at the apex."""
     rough = rough_contact((32, 30), seed=seed, yield_pressure=p_y)
     z = rough.surface.height - rough.surface.height.max()
     z *= height * NM / -z.min()
@@ -230,7 +230,7 @@ def test_roughness_shifts_the_smooth_curve_by_no_more_than_its_height(
 
 
 def test_a_soft_surface_carries_its_bearing_area(rough_contact):
-    """p_y → 0: nothing resists, and where the bodies overlap all of it yields."""
+    """For p_y → 0 the surface yields by the whole overlap, without elastic displacement."""
     p_y = 1e-6 * E_STAR
     contact = rough_contact(yield_pressure=p_y)
     state = solve(contact, DEPTH)
@@ -250,7 +250,7 @@ def test_a_hard_surface_is_elastic(rough_contact):
 
 
 def test_plateaus_and_ties_are_nothing_special(pair, dense):
-    """Terraces, equal spikes and a flat that conforms: many nodes touch in one instant."""
+    """On terraces, equal spikes and a conforming flat many nodes touch at the same indentation."""
     grid = Grid((11, 10), (0.8 * UM, 0.8 * UM))
     bare = Contact(pair, smooth(grid)).gap
     x, y = grid.x[:, None] / UM, grid.y[None, :] / UM
@@ -347,12 +347,12 @@ def test_the_bodies_part_at_the_lowest_point_of_the_worn_gap(rough_contact, plas
         assert apart.force == apart.stored_energy == apart.contact_nodes == 0
         assert apart.plastic_work == deepest.plastic_work
         assert apart.separation_indentation == deepest.separation_indentation
-    if plasticity == "equilibrium":  # and touch again where they parted
+    if plasticity == "equilibrium":  # nodes that separated touch again
         assert step(apart, parting + 0.1 * (DEPTH - parting)).force > 0
 
 
 def test_unloading_of_a_soft_flat_is_resolved(pair):
-    """A flat that yields by nearly all of δ: what springs back is below 1e-5 of it."""
+    """A flat yields by nearly all of δ: the elastic recovery is below 1e-5 of it."""
     grid = Grid((36, 27), (1 * UM, 4 * UM))
     bare = Contact(pair, smooth(grid)).gap
     inside = np.hypot(grid.x[:, None], grid.y[None, :]) < 12 * UM

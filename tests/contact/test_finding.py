@@ -1,4 +1,4 @@
-"""A finding is data that does not change."""
+"""Findings are immutable data."""
 
 import pickle
 

@@ -1,4 +1,4 @@
-"""Surfaces, contacts and states do not change after they are made."""
+"""Surfaces, contacts and states are immutable."""
 
 from dataclasses import replace
 
@@ -27,7 +27,7 @@ def arrays_of(state):
 def test_a_surface_is_not_changed_through_the_array_it_was_given():
     height = np.zeros(GRID.nodes)
     surface = Surface(height, GRID)
-    height[3, 4] = 1e-6  # still the caller's own
+    height[3, 4] = 1e-6  # the caller can still write to it
     assert not surface.height.any()
     with pytest.raises(ValueError, match="read-only"):
         surface.height[3, 4] = 1e-6

@@ -1,4 +1,4 @@
-"""Displacement under one cell, against the integral of the point load over it."""
+"""Displacement due to one cell, compared with the integral of the point load over it."""
 
 import numpy as np
 import pytest
@@ -31,7 +31,7 @@ def lags(nx, ny):
 
 
 def gauss(x, y, hx, hy, points=20):
-    """∬dA/(πE*r) by Gauss–Legendre: no cancellation, exact to rounding off the cell."""
+    """∬dA/(πE*r) by Gauss–Legendre, without cancellation; exact to rounding outside the cell."""
     t, w = np.polynomial.legendre.leggauss(points)
     dx = np.asarray(x)[..., None, None] - 0.5 * hx * t[:, None]
     dy = np.asarray(y)[..., None, None] - 0.5 * hy * t[None, :]
@@ -53,7 +53,7 @@ def test_love_is_the_integral_of_the_point_load_outside_the_cell(x, y, hx, hy):
     ("x", "y", "hx", "hy"), [(0.0, 0.0, 1.0, 1.0), (0.2, -0.1, 1.0, 0.7), (0.0, 0.3, 10.0, 1.0)]
 )
 def test_love_is_the_integral_of_the_point_load_inside_the_cell(x, y, hx, hy):
-    """Four rectangles that meet in the point: ∬dA/r = ∫R(φ)dφ, R the distance to the far sides."""
+    """For four rectangles around the point ∬dA/r = ∫R(φ)dφ, R the distance to their far sides."""
     total = 0.0
     for width in (hx / 2 - x, hx / 2 + x):
         for height in (hy / 2 - y, hy / 2 + y):
@@ -85,7 +85,7 @@ def test_love_is_even_symmetric_and_without_a_scale(cell, x, y, scale):
 
 
 def test_the_pieces_of_a_cell_add_up_to_it():
-    """Nine by five cells under one pressure are one large cell."""
+    """Nine by five cells under equal pressure have the displacement of one large cell."""
     hx, hy = 0.7, 1.9
     i, j = np.arange(-4, 5)[:, None], np.arange(-2, 3)[None, :]
     for x, y in ((0.0, 0.0), (3.0, 4.0), (30.0, 1.0)):
@@ -102,7 +102,7 @@ def test_series_and_love_agree_where_both_hold(cell, angle):
     assert_allclose(love_displacement(x, y, *cell, E_STAR), exact, rtol=2e-11)
     error = np.abs(far_displacement(x, y, *cell, E_STAR) / exact - 1)
     assert (error < 2e-9 * (16 * np.hypot(*cell) / r) ** 6 + 2e-15).all()
-    assert (error[2:] < 2e-12).all()  # what the module promises
+    assert (error[2:] < 2e-12).all()  # stated in the module
 
 
 @pytest.mark.parametrize(
@@ -132,7 +132,7 @@ def test_the_coefficients_fall_with_distance_towards_the_point_load(spacing):
     assert_allclose(influence_coefficients(i, j, (hy, hx), E_STAR), k.T, rtol=1e-11)
     r = np.hypot(299 * hx, 299 * hy)
     assert k[-1, -1] == approx(hx * hy / (np.pi * E_STAR * r), rel=1e-5)
-    # the step over the switch is no larger than its neighbours let expect
+    # at the switch from one formula to the other there is no jump
     slope = np.diff(np.log(k[20:120, 0]))
     assert np.abs(np.diff(slope, 2)).max() < 1e-3
 
@@ -169,7 +169,7 @@ def test_the_preconditioner_is_nearly_the_inverse(dense, spacing):
 
 
 def test_the_preconditioner_is_exact_on_a_periodic_wave():
-    """Johnson (1985): p = p̂ cos(qx) presses a half-space in by 2p̂/(E*q) cos(qx)."""
+    """The displacement under p = p̂ cos(qx) is 2p̂/(E*q) cos(qx) (Johnson 1985)."""
     shape, spacing = (16, 12), (0.5, 2.0)
     x = np.arange(16)[:, None] * 0.5
     q = 2 * np.pi * 3 / (16 * 0.5)
@@ -185,7 +185,7 @@ def test_one_node_has_an_approximate_inverse_too():
 
 @pytest.fixture
 def small_cache():
-    """Give the cache a size in bytes; afterwards it has the former one."""
+    """Set the size of the cache (bytes) for one test."""
     before = operator_cache.max_bytes
 
     def limit(size):
@@ -200,7 +200,7 @@ def small_cache():
 def test_an_operator_is_kept_until_the_cache_is_cleared(small_cache):
     arguments = ((30, 20), (1.0, 1.0), E_STAR)
     half_space(*arguments)
-    assert len(operator_cache) == 2  # and its coefficients
+    assert len(operator_cache) == 2  # the operator and its coefficients
     size = operator_cache.nbytes
     half_space(*arguments)
     assert operator_cache.nbytes == size
@@ -209,13 +209,13 @@ def test_an_operator_is_kept_until_the_cache_is_cleared(small_cache):
 
 
 def test_large_operators_are_not_kept(small_cache):
-    """Their spectra would fill the memory as a contact grows."""
+    """The spectra of large operators would fill the memory as a contact grows."""
     small = half_space((10, 10), (1.0, 1.0), E_STAR)
     operator_cache.clear()
     small_cache(15 * small.nbytes)
     for shape in ((10, 10), (14, 10)):
         half_space(shape, (1.0, 1.0), E_STAR)
-    assert len(operator_cache) == 2  # the small one, and the coefficients
+    assert len(operator_cache) == 2  # the small operator and the coefficients
     half_space((10, 10), (1.0, 1.0), E_STAR)
     assert len(operator_cache) == 2
 

@@ -1,4 +1,4 @@
-"""Loading with a cut pressure (`truncated`), whose work is an integral."""
+"""Loading with a truncated pressure (`truncated`), whose work is an integral."""
 
 import math
 from dataclasses import replace
@@ -38,7 +38,7 @@ def test_truncated_is_the_elastic_pressure_cut(rough_contact, dense):
 
 
 def test_truncated_work_is_the_work_of_its_force(rough_contact):
-    """A fine Riemann sum, and the same work from a state on the way."""
+    """The work agrees with a fine Riemann sum, also if integrated from an intermediate state."""
     contact = rough_contact(yield_pressure=P_Y, plasticity="truncated")
     uncut = replace(contact, yield_pressure=math.inf)
     state = solve(contact, DEPTH)
@@ -49,7 +49,7 @@ def test_truncated_work_is_the_work_of_its_force(rough_contact):
         elastic = solve(uncut, depth, start=elastic, residual=1e-6)
         work += np.minimum(elastic.pressure, P_Y).sum() * contact.grid.cell_area * width
     assert state.loading_work == approx(work, rel=1e-4)
-    # Nodes yield one after the other: blind contacts were off by up to 1e-3 (see the next test).
+    # Nodes yield one after the other: errors reached 1e-3 in validation contacts (see next test).
     assert abs(state.loading_work - work) < state.work_error < 1e-3 * state.loading_work
     halfway = solve(contact, DEPTH, start=solve(contact, 0.5 * DEPTH))
     assert halfway.loading_work == approx(state.loading_work, rel=3e-5)
@@ -123,7 +123,7 @@ def test_truncated_work_from_an_unloaded_state_is_not_taken_for_granted(rough_co
 
 
 def test_the_shortcut_of_adhesive_loading_states_half_of_what_it_takes():
-    """Where adhesion can hardly matter its work is w times the area, within a half of that."""
+    """If adhesion is negligible, its work is stated as w times the area, with half as its error."""
     body = Body(500e-6, 210e9, 0.25)
     grid = Grid((64, 64), (0.5e-6, 0.5e-6))
     contact = Contact(Pair(body, body), smooth(grid), work_of_adhesion=1e-4)

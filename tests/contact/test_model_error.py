@@ -1,4 +1,4 @@
-"""The error of COR by the model of plasticity."""
+"""Error of COR due to the plasticity model."""
 
 import csv
 from pathlib import Path
@@ -27,7 +27,7 @@ def test_it_is_zero_where_nothing_yields():
 
 
 def test_a_constant_bound_may_miss_a_loss_before_it_yields():
-    """Between 1.6 Y and 2.8 Y the constant bound is elastic, and finite elements are not."""
+    """Between 1.6 Y and 2.8 Y the constant bound is elastic, but finite elements yield."""
     state = solve(contact(yield_pressure=2.8e9), 1.3e-7)
     assert collide(state).restitution == 1.0
     assert model_error(state, 1.0) == approx(0.07, rel=1e-6)
@@ -35,7 +35,7 @@ def test_a_constant_bound_may_miss_a_loss_before_it_yields():
 
 @pytest.mark.parametrize("yields", [{"yield_strength": 1e9}, {"yield_pressure": 2.8e9}])
 def test_adhesion_leaves_the_energy_that_plasticity_may_miss(yields):
-    """The same energy is more of a COR that adhesion has made small; never beyond 0 or 1."""
+    """The error in energy is a larger error of a COR reduced by adhesion; COR stays in [0, 1]."""
     state = solve(contact(**yields), 5e-7)
     e = collide(state).restitution
     dry, adhesive = model_error(state, e), model_error(state, 0.5 * e)
@@ -46,9 +46,9 @@ def test_adhesion_leaves_the_energy_that_plasticity_may_miss(yields):
 
 @pytest.mark.skipif(not TABLE.is_file(), reason="validation/ is not beside the package")
 def test_it_covers_the_references():
-    """Every COR of the validation is within it (0.002 for what is rounded and interpolated).
+    """Every COR of the validation is within the error (plus 0.002 for rounding and interpolation).
 
-    The constant bounds are those of a material that does not harden.
+    The constant bounds are compared with materials without hardening.
     """
     with open(TABLE, newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))

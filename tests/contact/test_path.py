@@ -25,7 +25,7 @@ def curve(states):
 
 
 def test_each_state_of_a_path_is_the_solve_at_its_depth(contact):
-    """To the last digit: no state depends on what was solved before it."""
+    """The states are equal to the last digit: none depends on the solves before it."""
     depths = [10e-9, 30e-9, 20e-9, 40e-9]  # in any order
     path = list(loading_path(contact, depths))
     assert [s.indentation for s in path] == depths
@@ -54,7 +54,7 @@ def test_a_path_of_forces_meets_them(contact):
 
 
 def test_a_path_is_streamed(contact):
-    """Nothing beyond what is asked for is solved: the last depth would be refused."""
+    """Depths are solved on demand: the last one, which would raise an error, is not solved."""
     path = loading_path(contact, [10e-9, 20e-9, 1e-3])
     assert len(list(islice(path, 2))) == 2
     with pytest.raises(DomainError):
@@ -83,7 +83,7 @@ def test_unloading_returns_the_stored_energy(rough_contact, p_y, plasticity):
     assert depths[-1] == approx(deepest.separation_indentation, rel=1e-14)
     for state in path[1:]:
         assert state.plastic_work == approx(deepest.plastic_work, rel=1e-6)
-        # the springs carry what has not yet come back
+        # the springs carry the displacement that has not recovered yet
         assert state.stored_energy < deepest.stored_energy
 
 

@@ -36,7 +36,7 @@ def test_the_force_is_met_and_the_depth_found(rough_contact, rms, p_y, plasticit
 @settings(deadline=None, max_examples=25)
 @given(st.integers(0, 1000), st.floats(-4, 0), st.sampled_from(MODELS[:3]))
 def test_any_force_is_met(rough_contact, seed, decades, model):
-    """Down to a single node that yields, where a range of depths carries one force."""
+    """The forces go down to one yielding node, where a range of depths has the same force."""
     contact = rough_contact((36, 30), seed=seed, yield_pressure=model[0])
     force = 5e-3 * 10**decades
     state = solve_at_force(contact, force)
@@ -45,7 +45,7 @@ def test_any_force_is_met(rough_contact, seed, decades, model):
 
 
 def test_smooth_spheres_sink_as_hertz_says(pair):
-    """64 nodes over 10.2 um, 25 over the contact radius: 0.2 %."""
+    """With 64 nodes over 10.2 um, 25 per contact radius, the error is 0.2 %."""
     contact = Contact(pair, smooth(Grid((64, 64), (0.16 * UM, 0.16 * UM))))
     depth = (4 * UM) ** 2 / R
     force = 4 / 3 * E_STAR * np.sqrt(R) * depth**1.5
@@ -91,7 +91,7 @@ def test_a_force_on_the_plateau_of_one_yielded_node_has_a_depth(pair):
 
 @pytest.mark.parametrize("force", [0.0, -1.0, np.nan, np.inf])
 def test_a_force_that_is_none_is_refused(rough_contact, force):
-    with pytest.raises(CaseError, match=r"^load: .*not a positive force"):
+    with pytest.raises(CaseError, match=r"^force: .*is not positive"):
         solve_at_force(rough_contact(), force)
 
 
@@ -102,8 +102,8 @@ def test_more_than_the_grid_carries_is_refused_at_once(rough_contact, plasticity
     for force in (1.0001 * capacity, 2 * capacity):
         with pytest.raises(DomainError) as refusal:
             solve_at_force(contact, force)
-        assert f"load: {force:.4g} N" in str(refusal.value)
-        assert "(0.108 N); use a larger grid or a smaller load" in str(refusal.value)
+        assert f"force: {force:.4g} N" in str(refusal.value)
+        assert "(0.108 N); use a larger grid or a smaller force" in str(refusal.value)
     with pytest.raises(DomainError, match="reaches the edge"):
         solve_at_force(contact, 0.999 * capacity)
 
@@ -115,5 +115,5 @@ def test_an_elastic_contact_that_reaches_the_edge_is_refused(rough_contact):
 
 def test_a_force_that_is_missed_is_reported(rough_contact, monkeypatch):
     monkeypatch.setattr(prescribed_force, "FORCE_TOLERANCE", -1.0)
-    with pytest.raises(NotConvergedError, match=r"load: 0\.005 N was met only within"):
+    with pytest.raises(NotConvergedError, match=r"^force: 0\.005 N was met only within"):
         solve_at_force(rough_contact(), 5e-3)

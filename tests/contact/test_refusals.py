@@ -1,4 +1,4 @@
-"""What a solve refuses: depths that are none, contact at the rim, not converging."""
+"""Errors of a solve: invalid depths, contact at the edge of the grid, no convergence."""
 
 import math
 import re
@@ -26,7 +26,7 @@ def test_a_depth_that_is_none_is_refused(rough_contact, depth):
 
 
 def advised_edges(message):
-    """The edge lengths in um that a refusal asks for."""
+    """The edge lengths (um) that an error message recommends."""
     (found,) = re.findall(r"grid of about ([\d.]+) um(?: x ([\d.]+) um)?", message)
     return [float(edge) for edge in found if edge]
 
@@ -51,7 +51,7 @@ def test_any_edge_is_the_rim(pair, corner):
     z[corner] = 1 * UM
     with pytest.raises(DomainError):
         solve(Contact(pair, Surface(z, grid)), 1 * NM)
-    # depth alone is no reason: only pressure on the rim is
+    # only pressure at the edge of the grid is an error, whatever the depth
     state = solve(Contact(pair, smooth(grid)), 1 * NM)
     require_inside_grid(state)
     with pytest.raises(DomainError):
@@ -79,7 +79,7 @@ def test_a_solve_that_does_not_converge_says_how_far_it_came(rough_contact, monk
         solve(rough_contact(), DEPTH)
     message = str(failure.value)
     assert "indentation of 40 nm" in message
-    assert "asked: 1e-08) after 2 iterations" in message
+    assert "tolerance: 1e-08) after 2 iterations" in message
     assert "stopped at a residual of " in message
     monkeypatch.undo()
     solve(rough_contact(), DEPTH)

@@ -37,7 +37,7 @@ def test_the_predicted_radius_is_hertz_then_grows_to_the_overlap(pair):
 
 @pytest.mark.parametrize(("x", "area"), [(1.5, 1.011), (2, 1.037), (6, 1.272), (16, 1.507)])
 def test_the_predicted_radius_is_close_to_the_solved_one(pair, x, area):
-    """Contact area over πR*δ of smooth spheres at δ = x δ_y, REFERENCE section 3."""
+    """Contact areas of smooth spheres over πR*δ, at δ = x δ_y, are from REFERENCE, section 3."""
     radius = predicted_radius(pair, x * YIELD, P_Y)
     assert radius == approx(math.sqrt(area * R * x * YIELD), rel=0.06)
 
@@ -76,7 +76,7 @@ def test_a_contact_larger_than_the_grid_is_predicted(contact):
         contact(source="measured", size_x_m=16e-6, size_y_m=20e-6), beyond
     )
     assert found["whole_scan"]
-    # yielding widens the contact: elastic it would have fitted
+    # yielding widens the contact; an elastic contact would fit
     assert len(resolution_findings(contact(yield_pressure=1e6), just)) == 1
 
 
@@ -134,7 +134,7 @@ def test_what_is_resolved_is_not_found():
 def test_unresolved_depths_are_counted_up_to_the_deepest():
     (found,) = unresolved_patches([1e-9, 5e-9, 20e-9, 40e-9], [1, NODES_PER_PATCH - 1, 3, 90])
     assert found == Finding("patches-unresolved", {"few": 3, "depths": 4, "deepest": 20e-9})
-    # rough contacts may lose resolution again: the deepest counts, not the last
+    # rough contacts can lose resolution with depth: the deepest unresolved depth is reported
     (found,) = unresolved_patches([7e-9, 3e-9], [1, 1])
     assert found["deepest"] == 7e-9
     (found,) = unresolved_adhesion([1e-9, 2e-9, 3e-9], [2.0, 1.5, 9.0])

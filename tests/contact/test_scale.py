@@ -1,4 +1,4 @@
-"""Restitution has no scale: only ratios of lengths and of pressures matter."""
+"""Restitution depends only on ratios of lengths and of pressures."""
 
 import math
 
@@ -31,7 +31,7 @@ def scaled(rough_contact, length, stiffness, p_y, plasticity="equilibrium"):
     st.floats(-4, 9), st.floats(-9, 3), st.sampled_from([2e8, 750e6, 2e9]), st.floats(10e-9, 60e-9)
 )
 def test_lengths_and_pressures_scale_out(rough_contact, s, t, p_y, depth):
-    """Spacings from 50 pm to 500 m, moduli from 100 Pa to 100 TPa."""
+    """The spacings are 50 pm to 500 m, the moduli 100 Pa to 100 TPa."""
     length, stiffness = 10.0**s, 10.0**t
     a = solve(scaled(rough_contact, 1, 1, p_y), depth, residual=1e-11)
     b = solve(scaled(rough_contact, length, stiffness, p_y), depth * length, residual=1e-11)
@@ -40,7 +40,7 @@ def test_lengths_and_pressures_scale_out(rough_contact, s, t, p_y, depth):
     assert b.loading_work == approx(a.loading_work * stiffness * length**3, rel=1e-8)
     assert b.contact_nodes == a.contact_nodes
     assert_allclose(b.pressure / stiffness, a.pressure, atol=1e-7 * p_y)
-    # m* grows as the volume: the velocity as the root of a pressure over the density
+    # m* scales with the volume, so the velocity scales with sqrt(pressure/density)
     assert collide(b).impact_velocity == approx(
         collide(a).impact_velocity * math.sqrt(stiffness), rel=1e-8
     )

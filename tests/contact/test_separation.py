@@ -1,4 +1,4 @@
-"""The way back to separation: where it ends, and what is said when it does not."""
+"""Unloading to separation: its end, and the error raised without separation."""
 
 from dataclasses import replace
 
@@ -56,7 +56,7 @@ def test_an_error_above_the_asked_one_is_mended_by_finer_steps(monkeypatch):
         return 0.5 * e * found.error / found.unloading_work
 
     assert error_of_steps() <= asked
-    monkeypatch.setattr(separation, "_FINER", (1,))
+    monkeypatch.setattr(separation, "_REFINEMENTS", (1,))
     assert error_of_steps() > asked
 
 
@@ -70,7 +70,7 @@ def test_the_error_holds_what_the_grid_takes_in_letting_go(pressed):
 
 
 def test_no_step_jumps_over_the_tension():
-    """Steps of a tenth of the recovery found half of this pull-off force; finer ones 2.2e-4 N."""
+    """Steps of a tenth of the recovery gave half of this pull-off force; finer steps 2.2e-4 N."""
     grid = Grid((128, 128), (0.25e-6, 0.25e-6))
     surface = generate_surface(grid, kind="gaussian", rms=0.1e-6, correlation_length=2e-6, seed=2)
     contact = Contact(Pair(STEEL, STEEL), surface, 750e6, work_of_adhesion=0.09)
@@ -80,7 +80,7 @@ def test_no_step_jumps_over_the_tension():
 
 
 def test_a_seed_that_lets_go_of_everything_is_parted_and_returns_nothing():
-    """So soft a surface gives way by more than the pull of 0.1 nm: no node is left in contact."""
+    """A surface this soft yields by more than the pull of 0.1 nm, so no node stays in contact."""
     contact = Contact(
         Pair(STEEL, STEEL),
         smooth(Grid(32, 0.5e-6)),
@@ -98,7 +98,7 @@ def test_a_seed_that_lets_go_of_everything_is_parted_and_returns_nothing():
 
 
 def test_energy_that_is_not_accounted_for_is_an_error(pressed):
-    """What the states lose must be the work of the steps between them."""
+    """The energy lost between states must equal the work of the steps."""
     path = list(separation.separate(pressed))
     before = separation.separation_of(path)
     missing = 0.1 * before.unloading_work

@@ -1,4 +1,4 @@
-"""Solves in several threads at once, to the last digit those of one thread."""
+"""Concurrent solves in several threads give the results of one thread, to the last digit."""
 
 from concurrent.futures import ThreadPoolExecutor
 from threading import Barrier
@@ -15,7 +15,7 @@ DEPTH = 40e-9
 
 
 def in_threads(work):
-    """The results of `work(k)` for k < THREADS, begun at the same time from an empty cache."""
+    """The results of `work(k)` for k < THREADS, started simultaneously with an empty cache."""
     operator_cache.clear()
     start = Barrier(THREADS)
 
@@ -29,7 +29,7 @@ def in_threads(work):
 
 @pytest.mark.parametrize("adhesion", [0.0, 0.05])
 def test_one_contact_in_several_threads_is_the_same_to_the_last_digit(rough_contact, adhesion):
-    """Loaded to the same depth, and unloaded a little."""
+    """All threads load one contact to the same depth and unload it a little."""
     plain = rough_contact((170, 180), (0.08e-6, 0.08e-6), yield_pressure=2e9)
     contact = Contact(plain.pair, plain.surface, 2e9, work_of_adhesion=adhesion)
 

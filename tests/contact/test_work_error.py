@@ -20,7 +20,7 @@ def adhesive(seed, approach="equilibrium"):
 
 
 def test_it_holds_where_the_grid_pins_the_edge_of_the_contact():
-    """Against 240 steps from first touch; the quadrature alone says three quarters of it."""
+    """Compared with 240 steps from first touch; the quadrature alone states 3/4 of the error."""
     contact = adhesive(9)
     state = solve(contact, DEPTH)
     depths, forces, start = np.linspace(0, DEPTH, 241), [], None
@@ -34,7 +34,7 @@ def test_it_holds_where_the_grid_pins_the_edge_of_the_contact():
 
 @pytest.mark.parametrize(("approach", "share"), [("equilibrium", 0.02), ("pull-increments", 0.006)])
 def test_pinning_adds_a_share_of_the_surface_energy(monkeypatch, approach, share):
-    """0.02 and 0.006 of w times the area held in 93 % of 29, and in all of 11, blind contacts."""
+    """0.02 and 0.006 of w times the area sufficed in 93 % of 29 and in 11 of 11 contacts."""
     quadrature = loading.integrate_adaptively
     monkeypatch.setattr(
         loading, "integrate_adaptively", lambda *args, **kw: (quadrature(*args, **kw)[0], 0.0)
@@ -60,7 +60,7 @@ def test_it_holds_all_that_the_quadrature_says(monkeypatch):
 
 
 def test_a_cut_adds_ten_tolerances(monkeypatch):
-    """Blind contacts were off by up to nine of them, whatever the quadrature says."""
+    """Errors reached nine tolerances in validation contacts, whatever the quadrature stated."""
     quadrature, asked = loading.integrate_adaptively, []
 
     def without_error(*args, **options):
@@ -76,7 +76,7 @@ def test_a_cut_adds_ten_tolerances(monkeypatch):
 
 
 def test_increments_add_parts_of_what_the_growth_of_the_bound_adds():
-    """A tenth for nodes that had yielded before, a quarter for those that begin to."""
+    """The error is 1/10 for nodes that had yielded before and 1/4 for nodes that begin to yield."""
     grid = Grid((64, 64), (0.5e-6, 0.5e-6))
     contact = Contact(PAIR, smooth(grid), yield_strength=1e9)
     before = solve(contact, 1.5e-7)

@@ -14,7 +14,7 @@ from restitution.contact.checks.resolution import (
     unresolved_patches,
 )
 from restitution.contact.path import loading_path
-from restitution.errors import CaseError, DomainError, SurfaceError
+from restitution.errors import CaseError, DomainError, NotConvergedError, SurfaceError
 from restitution.runs.messages import input_warnings, message, naming_keys, require_possible
 
 STEEL = Pair(*2 * [Body(500e-6, 210e9, 0.25)])
@@ -228,3 +228,17 @@ def test_more_of_a_scan_is_advised_only_where_there_is_more():
     part = scan(np.zeros(COARSE.nodes), size_x_m=90e-6, size_y_m=90e-6)
     assert "a grid of about 53.7 um (the scan has 90 x 90)" in refusal(part, 1e-6)
     assert "a larger scan" in refusal(part, 4e-6)
+
+
+@pytest.mark.parametrize(
+    ("error", "words"),
+    [
+        (DomainError("force: 5 N is too much"), "load: 5 N is too much"),
+        (NotConvergedError("velocity: 1 m/s was not met"), "impact: 1 m/s was not met"),
+        (NotConvergedError("the solve at 3 nm: stopped"), "the solve at 3 nm: stopped"),
+    ],
+)
+def test_arguments_of_solvers_become_keys(error, words):
+    with pytest.raises(type(error)) as caught, naming_keys():
+        raise error
+    assert str(caught.value) == words

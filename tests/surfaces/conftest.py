@@ -1,4 +1,4 @@
-"""What tests of files share."""
+"""Fixtures of the tests of files."""
 
 import pytest
 
@@ -8,7 +8,7 @@ from restitution.surfaces import read_surface
 
 @pytest.fixture(scope="session")
 def write():
-    """Write a text to a path, which is returned."""
+    """Write a text to a path and return the path."""
 
     def call(path, text, encoding="utf-8"):
         path.write_bytes(text.encode(encoding))
@@ -19,7 +19,7 @@ def write():
 
 @pytest.fixture(scope="session")
 def refusal():
-    """The message that refuses a path: one line that names it and goes on to a remedy."""
+    """The error message for a path: one line with the path and a remedy."""
 
     def call(path, **kwargs):
         with pytest.raises(SurfaceError) as caught:

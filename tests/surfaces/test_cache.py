@@ -10,7 +10,7 @@ GRID = Grid((3, 4), (1e-6, 2e-6))
 
 
 class Maker:
-    """Makes a surface, and counts how often."""
+    """Makes a surface and counts the calls."""
 
     def __init__(self):
         self.made = 0

@@ -1,4 +1,4 @@
-"""Damaged, incomplete and hostile height files: refused at once, and never read as whole."""
+"""Damaged, incomplete and hostile height files raise an error and are never read as complete."""
 
 import contextlib
 import io
@@ -18,7 +18,7 @@ SIZE = (10e-6, 4e-6)
 
 @pytest.fixture(autouse=True)
 def _without_surface_topography(monkeypatch):
-    """These formats must work, and fail, the same way where the extra is not installed."""
+    """These formats must give the same results and errors without the optional extra."""
     monkeypatch.setitem(sys.modules, "SurfaceTopography", None)
 
 
@@ -32,22 +32,24 @@ SIZES = "# Channel: a\n# Width: 10 um\n# Height: 15 um\n"
 @pytest.mark.parametrize("damage", ["@@@", "1.0 2.0 x 4 5 6 z", "q.5 2 3 4 5 6"])
 @pytest.mark.parametrize("header", [SIZES, ""])
 def test_a_damaged_scan_line_is_not_left_out(write, refusal, tmp_path, number, damage, header):
-    # The readers of SurfaceTopography skip such a line, so that no reader may get to see it.
+    # The readers of SurfaceTopography skip such lines, so the file must not be passed to them.
     rows = [*ROWS]
     rows[number] = damage
     path = write(tmp_path / "a.txt", header + "\n".join(rows))
     if number == 0 and damage == "@@@" and not header:
-        assert "line 1 holds '@@@'" in refusal(path, size=SIZE)  # the heading of another format?
+        assert "line 1 holds '@@@'" in refusal(
+            path, size=SIZE
+        )  # possibly the heading of another format
         return
-    assert "is no scan line like the others" in refusal(path, size=(1e-5, 1.5e-5))
+    assert "is not a scan line of 6 values like the others" in refusal(path, size=(1e-5, 1.5e-5))
 
 
 @pytest.mark.parametrize(
     ("header", "words"),
     [
-        ("# ny: 10\n", "its header says 10 lines, and it holds 9 lines of 6 values"),
-        ("# nx = 7\n", "its header says 7 values, and it holds 9 lines of 6 values"),
-        ("# Pixels: 6 x 12\n", "its header says 12 lines"),
+        ("# ny: 10\n", "its header states 10 lines, but it has 9 lines of 6 values"),
+        ("# nx = 7\n", "its header states 7 values, but it has 9 lines of 6 values"),
+        ("# Pixels: 6 x 12\n", "its header states 12 lines"),
     ],
 )
 def test_lines_that_are_missing_by_the_header(write, refusal, tmp_path, header, words):

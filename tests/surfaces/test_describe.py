@@ -32,11 +32,11 @@ def test_sine(along, tolerance):
 
 def test_sine_correlation_length():
     values = describe(Surface(AMPLITUDE * np.sin(K * X), GRID))
-    # The biased estimate, integrated over whole waves of a domain of length L.
+    # The biased estimate, for whole waves on a domain of length L.
     tau, L = values["correlation_length_x_m"], GRID.size[0]
     R = math.cos(K * tau) * (1 - tau / L) + math.sin(K * tau) / (K * L)
     assert approx(0.1, abs=2e-3) == R
-    # Along y every line is constant, and the biased estimate of a constant falls as 1 − τ/L.
+    # Lines along y are constant, and the biased estimate of a constant decreases as 1 − τ/L.
     assert values["correlation_length_y_m"] == approx(0.9 * GRID.size[1], rel=1e-9)
 
 
@@ -55,7 +55,7 @@ def test_single_peak_and_pit():
     height[4, 4] = 1.0
     values = describe(Surface(height, Grid((10, 10), (1.0, 1.0))))
     assert (values["Sp_m"], values["Sv_m"]) == approx((0.99, 0.01))
-    # Of Bernoulli numbers with p = 1/100.
+    # Skewness and kurtosis of Bernoulli numbers with p = 1/100.
     assert values["Ssk"] == approx((1 - 2 * 0.01) / math.sqrt(0.01 * 0.99))
     assert values["Sku"] == approx(3 + (1 - 6 * 0.01 * 0.99) / (0.01 * 0.99))
     upside_down = describe(Surface(-height, Grid((10, 10), (1.0, 1.0))))
@@ -106,7 +106,7 @@ def test_values_are_plain_json():
 
 
 def test_units():
-    """Lengths scale with the heights or the spacing, ratios do not."""
+    """Lengths scale with the heights or the spacing; ratios do not change."""
     height = np.random.default_rng(1).normal(size=(16, 16))
     small = describe(Surface(1e-9 * height, Grid((16, 16), (1e-9, 1e-9))))
     large = describe(Surface(height, Grid((16, 16), (1.0, 1.0))))

@@ -61,7 +61,7 @@ def test_the_same_seed_is_the_same_twin_and_another_is_another():
 
 
 def waves(surface):
-    """Amplitudes of the waves, whose phases count from the origin of the grid."""
+    """Complex amplitudes of the waves, with phases relative to the origin of the grid."""
     modes = np.fft.fft2(surface.height, norm="forward")
     shift = [np.exp(2j * np.pi * (n // 2) * np.fft.fftfreq(n)) for n in surface.grid.nodes]
     return modes * np.multiply.outer(*shift)
@@ -127,7 +127,11 @@ def test_the_pixels_of_the_scan_over_the_whole_domain_are_never_made(how):
         (Surface(np.zeros(GRID.nodes) + 0.1, GRID), GRID, "is flat, so it has no twin"),
         (Surface(np.zeros((1, 90)), Grid((1, 90), GRID.spacing)), GRID, "1 x 90 pixels are too"),
         (Surface(np.eye(2), Grid((2, 2), GRID.spacing)), GRID, "2 x 2 pixels are too few"),
-        (scan(), Grid((40, 40), (8e-6, 8e-6)), "cells of 8 um carry no wave of a scan of 12.8 x"),
+        (
+            scan(),
+            Grid((40, 40), (8e-6, 8e-6)),
+            "^grid: cells of 8 um cannot carry a wave of a scan",
+        ),
     ],
 )
 def test_scans_without_a_twin(surface, grid, words):
@@ -150,7 +154,7 @@ def test_mirrored_tiles_on_coarser_and_finer_cells():
         placed = place_on_grid(large, grid)
         tiled = extend(scan(), grid, "mirror")
         assert tiled.grid == grid
-        off = (tiled.height - placed.height)[2:-2, 2:-2]  # at the rim the tiles go on
+        off = (tiled.height - placed.height)[2:-2, 2:-2]  # the rim also depends on the next tiles
         assert off.std() < tolerance * large.height.std()
 
 
@@ -182,9 +186,9 @@ def test_mirrored_tiles_keep_the_scan_in_the_middle(nodes):
         ("wrap", (1e-5, 1e-5), None, "'wrap' is unknown"),
         ("twin", (1e-5, 1e-5), None, "needs one"),
         ("twin", (1e-5, 1e-5), -1, "needs one"),
-        ("mirror", (1e-5, 1e-5), 1, "does not belong"),
-        ("twin", (0.0, 1e-5), 1, "not two positive lengths"),
-        ("mirror", (float("nan"), 1e-5), None, "not two positive lengths"),
+        ("mirror", (1e-5, 1e-5), 1, "^seed: does not apply to how='mirror'"),
+        ("twin", (0.0, 1e-5), 1, "^to: .* must be two positive lengths"),
+        ("mirror", (float("nan"), 1e-5), None, "^to: .* must be two positive lengths"),
     ],
 )
 def test_bad_requests(how, size, seed, words):

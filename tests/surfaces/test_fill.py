@@ -17,7 +17,7 @@ def with_hole(height):
 
 @pytest.mark.parametrize("form", [0.1 * X - 0.3 * Y + 1e-6, 1e5 * (X**2 - Y**2), 1e5 * X * Y])
 def test_harmonic_surfaces_come_back(form):
-    """Also on unequal spacings, whose weights the middle form would give away."""
+    """Unequal spacings are included, where wrong weights would show."""
     np.testing.assert_allclose(fill_harmonically(with_hole(form), GRID.spacing), form, atol=1e-18)
 
 
@@ -34,7 +34,7 @@ def test_fill_stays_within_the_rim_and_leaves_the_rest():
 
 
 def test_slope_is_zero_across_the_edges():
-    """An eigenfunction of the five-point Laplacian between edges without slope."""
+    """The heights are an eigenfunction of the five-point Laplacian with zero slope at the edges."""
     nx, ny = GRID.nodes
     ratio = (GRID.spacing[0] / GRID.spacing[1]) ** 2
     theta = 3 * np.pi / ny

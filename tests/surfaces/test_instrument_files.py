@@ -51,7 +51,7 @@ def test_samples(name, nodes, size, rms, rms_levelled, channel_name):
 @needs_readers
 @needs_samples
 def test_the_same_scan_in_two_formats():
-    """di-3 through SurfaceTopography, levelled, is matrix-3 read here: same axes, same scale."""
+    """di-3, read by SurfaceTopography and levelled, equals matrix-3, read by this package."""
     di = level(read_surface(SAMPLES / "di-3.di"), "tilt").height.ravel()
     text = read_surface(SAMPLES / "matrix-3.txt").height
     assert np.corrcoef(di, text.ravel())[0, 1] > 0.999
@@ -109,13 +109,14 @@ def test_another_height_channel_can_be_chosen():
         (
             "sur-2.sur",
             {},
-            "117 of 272492 pixels (0.04%) are undefined; give undefined = "
+            "117 of 272492 pixels (0.04%) are undefined; give undefined="
             '"interpolate" to fill them from their neighbours, or crop the file',
         ),
         (
             "nid-1.nid",
             {"size": (20e-6, 21e-6)},
-            "says that the scan is 20 x 20 um, but size says 20 x 21 um; leave size out, or "
+            "the scan is 20 x 20 um according to the file, but 20 x 21 um according to size; "
+            "leave size out, or "
             "correct it",
         ),
         (
@@ -149,7 +150,7 @@ def test_a_size_that_repeats_the_file_is_accepted():
 @pytest.mark.parametrize("name", ["mi-1.mi", "nid-1.nid", "di-3.di", "sur-2.sur", "tmd-1.tmd"])
 @pytest.mark.parametrize("share", [0.001, 0.05, 0.6, 0.99])
 def test_truncated_instrument_files(tmp_path, name, share, refusal):
-    """One error, or, where only later channels are cut off, the whole of this channel."""
+    """A truncated file raises an error, unless the channel itself is complete."""
     content = (SAMPLES / name).read_bytes()
     path = tmp_path / name
     path.write_bytes(content[: int(share * len(content))])
@@ -179,7 +180,7 @@ def test_readers_leave_the_terminal_alone(capfd):
 
 @needs_readers
 def test_text_of_other_programs_is_handed_over(tmp_path):
-    """Gwyddion in German, SPIP, and a list of coordinates with its units."""
+    """The texts are Gwyddion's in German, SPIP's, and a list of coordinates with units."""
     matrix = "0 10 20 30 40\n1 11 21 31 41\n2 12 22 32 42\n3 13 23 33 43\n"
     expected = 1e-9 * (10.0 * np.arange(5)[:, None] + np.arange(4)[None, :])
     german = "# Kanal: z\n# Breite: 10 µm\n# Höhe: 4 µm\n# Einheiten: nm\n" + matrix
@@ -223,7 +224,7 @@ def test_pickles_are_not_run_by_any_reader(tmp_path, suffix, refusal):
 
 
 class FakeTopography:
-    """Heights of 1, 2, … of `unit`, on pixels of 1 unless the file gave a size."""
+    """Heights 1, 2, … in `unit`, on pixels of size 1 unless the file has a size."""
 
     def __init__(self, unit, physical_sizes, scale=1.0):
         self.unit, self.physical_sizes, self.scale = unit, physical_sizes, scale
@@ -238,7 +239,7 @@ class FakeTopography:
 
 
 def fake_channel(name, **changes):
-    """A channel as SurfaceTopography describes it: a height map in nm of 2 x 1 um."""
+    """A channel as in SurfaceTopography: a height map in nm, 2 x 1 um large."""
     channel = SimpleNamespace(
         name=name,
         index=0,
@@ -258,7 +259,7 @@ def fake_channel(name, **changes):
 
 @pytest.fixture
 def fake_file(tmp_path, monkeypatch):
-    """Make a file that SurfaceTopography opens to the given channels."""
+    """Make a file in which SurfaceTopography finds the given channels."""
 
     def make(*channels, version="1.27.1", default=0):
         def open_topography(path):
@@ -296,7 +297,7 @@ def test_unit_and_size_become_metres(fake_file, capfd):
 
 def test_size_is_needed_where_the_file_has_none(fake_file, refusal):
     path, _ = fake_file(fake_channel("z", physical_sizes=None))
-    assert 'size = ["10 um", "10 um"]' in refusal(path)
+    assert "size=(10e-6, 10e-6)" in refusal(path)
     assert read_surface(path, size=(1e-5, 2e-5)).grid.spacing == approx((2e-6, 5e-6))
 
 
@@ -339,4 +340,4 @@ def test_failure_while_reading_is_one_error(fake_file, refusal):
 def test_versions_that_misread_files_are_refused(fake_file, refusal):
     path, _ = fake_file(fake_channel("z"), version="1.25.0")
     message = refusal(path)
-    assert "takes SurfaceTopography 1.27 or later, and 1.25.0 is installed" in message
+    assert "needs SurfaceTopography 1.27 or later, but 1.25.0 is installed" in message

@@ -9,14 +9,14 @@ from scipy.stats import lognorm, norm
 from restitution.surfaces.johnson import possible, translation
 from tolerance import approx
 
-# Equal steps of probability are too coarse for tails; this is the density on a fine line.
+# Expectations use the density on fine steps of z: steps of equal probability miss the tails.
 Z = np.linspace(-9, 9, 200_001)
 WEIGHT = norm.pdf(Z) * (Z[1] - Z[0])
 
 
 def moments(apply):
     x = apply(Z)
-    assert np.all(np.diff(x) >= 0)  # the order of heights is kept
+    assert np.all(np.diff(x) >= 0)  # the map is increasing
     mean = WEIGHT @ x
     variance = WEIGHT @ (x - mean) ** 2
     return (

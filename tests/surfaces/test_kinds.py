@@ -36,7 +36,7 @@ def test_the_spectrum_falls_as_the_hurst_exponent_says(hurst, periodic):
     slopes = []
     for seed in range(5):
         surface = generate(kind="self-affine", hurst=hurst, seed=seed, periodic=periodic)
-        if not periodic:  # a window keeps the open edges from leaking over the short waves
+        if not periodic:  # a window prevents leakage from the edges to short waves
             window = np.hanning(GRID.nodes[0])[:, None] * np.hanning(GRID.nodes[1])[None, :]
             surface = type(surface)(surface.height * window, GRID)
         q, power = spectral_density(surface)
@@ -60,7 +60,7 @@ def test_the_spectrum_is_flat_above_the_rolloff_and_empty_beyond_the_shortest():
 
 @pytest.mark.parametrize("angle", [0, 30, 90, 120])
 def test_the_lay_is_where_it_is_said_to_be(angle):
-    """The autocorrelation reaches 10 % at the one length along the lay, the other across it."""
+    """The autocorrelation falls to 10 % at one length along the lay and at the other across it."""
     lay = math.radians(angle)
     acf = np.zeros(GRID.nodes)
     for seed in range(20):
@@ -93,7 +93,7 @@ def test_skewness_and_kurtosis_are_met(kind, periodic, pair):
     assert found["Sq_m"] == approx(1e-7, rel=1e-12)
     assert found["Ssk"] == approx(pair[0], abs=0.03)
     assert found["Sku"] == approx(pair[1], rel=0.03)
-    # The waves stay those of the normal surface.
+    # The spectrum is that of the surface with normal heights.
     assert found["Sdq"] == approx(normal["Sdq"], rel=0.05 if periodic else 0.1)
     assert found["correlation_length_y_m"] == approx(normal["correlation_length_y_m"], rel=0.15)
     again = generate(kind=kind, periodic=periodic, skewness=pair[0], kurtosis=pair[1])
@@ -113,7 +113,7 @@ def test_mild_cases_are_filtered_and_strong_ones_adjusted():
 @pytest.mark.parametrize("kind", KINDS)
 def test_edges_match_only_where_the_surface_is_periodic(kind):
     def step(periodic):
-        """Across the edges, over that between neighbours inside."""
+        """Mean step across the edges over that between neighbours inside."""
         z = generate(kind=kind, periodic=periodic).height
         return np.sqrt(np.mean((z[0] - z[-1]) ** 2) / np.mean(np.diff(z, axis=0) ** 2))
 

@@ -1,4 +1,4 @@
-"""Height maps in NumPy and text files, which need no package beyond the required ones."""
+"""Height maps in NumPy and text files, which need no optional package."""
 
 import os
 import pickle
@@ -14,13 +14,13 @@ from restitution.surfaces import Surface, read_surface
 from tolerance import approx
 
 SIZE = (10e-6, 4e-6)
-# A ramp that tells both coordinates, of 5 pixels along x and 4 along y: nothing is symmetric.
+# Heights that differ between all pixels, 5 along x and 4 along y, without symmetry.
 RAMP = 1e-9 * (10.0 * np.arange(5)[:, None] + np.arange(4)[None, :])
 
 
 @pytest.fixture(autouse=True)
 def _without_surface_topography(monkeypatch):
-    """These formats must work, and fail, the same way where the extra is not installed."""
+    """These formats must give the same results and errors without the optional extra."""
     monkeypatch.setitem(sys.modules, "SurfaceTopography", None)
 
 
@@ -73,7 +73,7 @@ def test_npz_takes_height_or_the_only_array(tmp_path):
 
 def test_npz_that_leaves_the_choice_open(refusal, tmp_path):
     np.savez(tmp_path / "two.npz", a=RAMP, b=RAMP)
-    assert "arrays a, b, and none is called 'height'" in refusal(tmp_path / "two.npz", size=SIZE)
+    assert "arrays a, b, but not 'height'" in refusal(tmp_path / "two.npz", size=SIZE)
 
 
 def test_npz_size_must_be_two_numbers(refusal, tmp_path):
@@ -137,7 +137,7 @@ def test_damaged_numpy_files(refusal, tmp_path, suffix):
     damaged = tmp_path / f"damaged{suffix}"
     for length in (1, 5, 40, 100, len(content) - 1):
         damaged.write_bytes(content[:length])
-        assert refusal(damaged, size=SIZE).startswith("is no plain NumPy file")
+        assert refusal(damaged, size=SIZE).startswith("is not a plain NumPy file")
 
 
 def test_header_that_promises_more_than_memory_holds(refusal, tmp_path):
@@ -183,7 +183,7 @@ def test_any_damage_gives_a_surface_or_one_error(tmp_path, suffix, data):
     ],
 )
 def test_text_lines_are_scan_lines(write, tmp_path, name, separator):
-    """A line of text is y, its columns are x: the transpose of the array."""
+    """Lines of text are y and columns are x, so the array is the transpose of the text."""
     lines = [separator.join(f"{z:.12e}" for z in line) for line in RAMP.T]
     path = write(tmp_path / name, "# made for a test\n" + "\n".join(lines) + "\n")
     surface = read_surface(path, size=SIZE)
@@ -238,13 +238,14 @@ def test_size_may_repeat_but_not_contradict_the_header(write, refusal, tmp_path)
     path = write(tmp_path / "a.txt", HEADER.replace("{um}", "um") + MATRIX)
     assert read_surface(path, size=(10.000001e-6, 4e-6)).provenance["size_x_m"] == 1e-5
     message = refusal(path, size=(10.0001e-6, 4e-6))
-    assert "10 x 4 um, but size says 10.0001 x 4 um" in message
+    assert "10 x 4 um according to the file, but 10.0001 x 4 um according to size" in message
 
 
 def test_header_with_one_side_only(write, refusal, tmp_path):
     path = write(tmp_path / "a.txt", "# Width: 10 um\n" + MATRIX_IN_METRES)
-    assert "does not say how large" in refusal(path)
-    assert "10 x ? um, but size says 20 x 4 um" in refusal(path, size=(20e-6, 4e-6))
+    assert "does not contain the size" in refusal(path)
+    message = refusal(path, size=(20e-6, 4e-6))
+    assert "10 x ? um according to the file, but 20 x 4 um according to size" in message
     assert read_surface(path, size=SIZE).grid.spacing == approx((2e-6, 1e-6))
 
 
@@ -260,7 +261,7 @@ def test_values_that_are_no_lengths(write, refusal, tmp_path):
 def test_headers_that_set_scales_unknown_here_are_not_guessed_at(write, refusal, tmp_path, line):
     path = write(tmp_path / "a.txt", f"{line}\n{MATRIX}")
     message = refusal(path, size=SIZE)
-    assert "may set a unit or a scale" in message
+    assert "may set an unknown unit or scale" in message
     assert 'pip install "SurfaceTopography>=1.27"' in message
 
 
@@ -281,7 +282,7 @@ def test_other_comments_are_only_comments(write, tmp_path):
         ("x0,x1,x2,x3\n1,2,3,4\n", "line 1 holds 'x0', which is not a number"),
         (
             "1 2 3 4\n\n5 6 7 8j\n",
-            'line 3, "5 6 7 8j", is no scan line like the others of 4 values',
+            'line 3, "5 6 7 8j", is not a scan line of 4 values like the others',
         ),
     ],
 )
@@ -297,7 +298,7 @@ def test_binary_content_under_a_text_name(refusal, tmp_path):
 
 def test_missing_size_is_asked_for(refusal, tmp_path):
     message = refusal(save(tmp_path / "ramp.npy", RAMP))
-    assert 'size = ["10 um", "10 um"]' in message
+    assert "such as size=(10e-6, 10e-6)" in message
 
 
 @pytest.mark.parametrize("size", [(0.0, 1e-5), (1e-5, -1e-5), (np.nan, 1e-5), (1e-5, np.inf)])
@@ -324,7 +325,7 @@ def test_undefined_pixels(refusal, tmp_path):
     path = save(tmp_path / "holes.npy", height)
     message = refusal(path, size=SIZE)
     assert "2 of 400 pixels (0.50%) are undefined" in message
-    assert 'undefined = "interpolate"' in message
+    assert 'undefined="interpolate"' in message
     surface = read_surface(path, size=SIZE, undefined="interpolate")
     defined = np.isfinite(height)
     np.testing.assert_array_equal(surface.height[defined], height[defined])
@@ -383,6 +384,6 @@ def test_provenance(tmp_path):
 def test_other_formats_need_the_extra(write, refusal, tmp_path):
     message = refusal(write(tmp_path / "scan.sur", "DIGITAL SURF"))
     assert message == (
-        "reading this format takes the SurfaceTopography package; install the readers with "
+        "reading this format needs the SurfaceTopography package; install the readers with "
         '`pip install "SurfaceTopography>=1.27"` (the extra "measured")'
     )

@@ -31,7 +31,7 @@ def test_a_wave_has_its_power_at_its_wave_vector():
 
 
 def test_an_estimate_from_a_part_agrees_with_the_whole():
-    # Averaged over seeds: nine tapers leave each mode a scatter of a third.
+    # Average over seeds, because with nine tapers each mode scatters by a third.
     grid, part = Grid((512, 512), (0.1e-6, 0.1e-6)), Grid((256, 256), (0.1e-6, 0.1e-6))
     ratios = []
     for seed in range(4):
@@ -47,13 +47,13 @@ def test_an_estimate_from_a_part_agrees_with_the_whole():
             found.wave_number < 2 * math.pi / 0.9e-6
         )
         ratios.append((found.density / between)[inside])
-    # Nearer to the roll-off, four waves to the part, waves are smeared into their neighbours.
+    # At longer waves (four per part), near the roll-off, the resolution smears the spectrum.
     assert len(ratios[0]) >= 4
     assert np.mean(ratios, axis=0) == approx(1, abs=0.12)
 
 
 def test_a_slope_does_not_leak_into_short_waves():
-    # Not periodic: a plain periodogram of this surface would fall with q^-2 from its edges.
+    # Not periodic: the jump at the edges would make a plain periodogram decrease as q^-2.
     grid = Grid((256, 256), (0.1e-6, 0.1e-6))
     x, y = grid.x[:, None], grid.y[None, :]
     height = 1e-7 * np.sin(2 * math.pi * x / 40e-6 + 1) * np.cos(2 * math.pi * y / 33e-6)

@@ -1,9 +1,12 @@
+import pickle
+
 import numpy as np
 import pytest
 
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface, generate_surface, place_on_grid
+from restitution.surfaces.refused import RefusedSurfaceError
 from tolerance import approx
 
 ROUGH = generate_surface(
@@ -28,7 +31,7 @@ def test_identical_grid_leaves_the_heights():
 @pytest.mark.parametrize("scan", [(40, 31), (41, 30)])
 @pytest.mark.parametrize("nodes", [(20, 11), (21, 12), (40, 1), (1, 30)])
 def test_equal_spacing_crops_about_the_origin(scan, nodes):
-    # Heights that tell their own coordinates, in pixels: no interpolation may touch them.
+    # Heights encode their coordinates in pixels, so that interpolation would show.
     spacing = (0.1e-6, 0.2e-6)
     i, j = np.indices(scan)
     surface = Surface(1000.0 * (i - scan[0] // 2) + (j - scan[1] // 2), Grid(scan, spacing))
@@ -81,7 +84,7 @@ def test_a_coarser_grid_gets_the_waves_it_can_carry_and_says_so():
     grid = Grid((40, 32), (0.3e-6, 0.3e-6))
 
     def sines(on, *numbers):
-        # Waves that fit between the first and the last pixel: k half periods.
+        # Waves with k half periods between the first and the last pixel.
         length = scan.x[-1] - scan.x[0]
         wave = sum(np.sin(np.pi * k * (on.x - scan.x[0]) / length) for k in numbers)
         return wave[:, None] + np.zeros((1, on.nodes[1]))
@@ -92,7 +95,7 @@ def test_a_coarser_grid_gets_the_waves_it_can_carry_and_says_so():
     np.testing.assert_allclose(placed.height, long.height, atol=1e-12)
     text = placed.provenance["placement"]
     assert text.startswith("sampled every 0.3 x 0.3 um from pixels of 0.1 x 0.1 um")
-    assert "waves shorter than 0.6 x 0.6 um were taken out" in text
+    assert "after removing waves shorter than 0.6 x 0.6 um" in text
 
 
 def test_what_is_left_out_is_told():
@@ -134,10 +137,15 @@ def test_grid_that_reaches_beyond_the_scan_is_refused():
     with pytest.raises(SurfaceError) as caught:
         place_on_grid(ROUGH, Grid((10, 64), (0.1e-6, 0.1e-6)))
     assert str(caught.value) == (
-        "grid: its 1 x 6.4 um reach beyond the surface of 4 x 6.2 um; use a smaller grid.nodes or "
-        "grid.spacing, a larger scan, or "
-        "roughness.extend"
+        "grid: its 1 x 6.4 um reach beyond the surface of 4 x 6.2 um; use a smaller grid or a "
+        "larger surface, or continue the surface with extend"
     )
+
+
+def test_a_refused_surface_survives_pickling():
+    error = RefusedSurfaceError("flat-scan", "x: is flat", "give another")
+    copy = pickle.loads(pickle.dumps(error))
+    assert (str(copy), copy.code) == ("x: is flat; give another", "flat-scan")
 
 
 def test_grid_that_is_larger_by_rounding_is_accepted():

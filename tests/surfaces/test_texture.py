@@ -48,7 +48,7 @@ def test_a_lay_is_found():
 
 
 def test_the_core_of_normally_distributed_heights():
-    # The flattest 40 % of the normal distribution's quantiles are those about its middle.
+    # The flattest 40 % of the quantiles of a normal distribution are around its middle.
     found = texture(rough(correlation_length=0.4e-6))
     assert found["Sk_m"] == approx(2 * 0.5244 / 0.4 * 5e-8, rel=0.03)
     assert found["Spk_m"] == approx(found["Svk_m"], rel=0.15)
@@ -56,7 +56,7 @@ def test_the_core_of_normally_distributed_heights():
 
 
 def test_the_core_of_known_steps():
-    # Nine tenths between 0 and 1, a tenth of them straight peaks of up to 3 above.
+    # Nine tenths of the heights are between 0 and 1, one tenth are linear peaks up to 3 above.
     n = 200
     heights = np.concatenate([np.linspace(0, 1, 9 * n * n // 10), np.linspace(1, 4, n * n // 10)])
     surface = Surface(heights.reshape(n, n), Grid((n, n), (1.0, 1.0)))

@@ -1,4 +1,4 @@
-"""Formats that SurfaceTopography writes as well as reads: what was written is what is read."""
+"""Formats that SurfaceTopography can write: reading returns the heights written."""
 
 import warnings
 
@@ -31,7 +31,7 @@ def test_undefined_pixels_are_filled_only_on_request(write_scan, path, refusal):
     height = HEIGHT.copy()
     height[3, 4] = height[20, 9] = np.nan
     write_scan(path, height, SIZE)
-    assert refusal(path).startswith("2 of 1120 pixels (0.18%) are undefined; give undefined = ")
+    assert refusal(path).startswith("2 of 1120 pixels (0.18%) are undefined; give undefined=")
     filled = read_surface(path, undefined="interpolate").height
     known = ~np.isnan(height)
     np.testing.assert_allclose(filled[known], HEIGHT[known], rtol=1e-12, atol=1e-20)
@@ -42,7 +42,7 @@ def test_a_size_repeats_the_file_or_is_refused(write_scan, path, refusal):
     write_scan(path, HEIGHT, SIZE)
     assert read_surface(path, size=(20.000001e-6, 7e-6)).grid.size == approx(SIZE, rel=1e-6)
     assert refusal(path, size=(20e-6, 8e-6)).startswith(
-        "says that the scan is 20 x 7 um, but size says 20 x 8 um"
+        "the scan is 20 x 7 um according to the file, but 20 x 8 um according to size"
     )
 
 

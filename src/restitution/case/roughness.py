@@ -30,10 +30,31 @@ from restitution.surfaces.cache import kept
 from restitution.surfaces.extend import Extension
 from restitution.surfaces.generate import RoughnessKind
 from restitution.surfaces.refine import divided
+from restitution.surfaces.refused import Code, RefusedSurfaceError
 from restitution.surfaces.shift import place_of
+from restitution.surfaces.twin import LEAST_PIXELS
 
 MOST_REALISATIONS = 1000
 MOST_PLACES = 10_000  # of a scan
+
+# Keys of the case file, by arguments of `crop` and `remove_outliers`.
+_CLEANING_KEYS = {
+    "x": "roughness.crop.x",
+    "y": "roughness.crop.y",
+    "threshold": "roughness.outliers",
+}
+# Remedies in terms of the case file, by `RefusedSurfaceError.code`.
+_REMEDIES: dict[Code, str] = {
+    "cells-above-scan": "use a smaller grid.spacing",
+    "flat-scan": 'leave roughness.extend out, or set roughness.extend = "mirror"',
+    "grid-beyond-surface": "use a smaller grid.nodes or grid.spacing, a larger scan, or "
+    "roughness.extend",
+    "size-unknown": 'give its edge lengths, such as roughness.size = ["10 um", "10 um"]',
+    "too-few-pixels": f"use a scan of at least {LEAST_PIXELS} x {LEAST_PIXELS}, or set "
+    'roughness.extend = "mirror"',
+    "undefined-pixels": 'set roughness.undefined = "interpolate" to fill them from their '
+    "neighbours, or crop the file",
+}
 
 
 def _range(value: Any) -> Any:
@@ -57,13 +78,15 @@ Seed = Annotated[int, Field(ge=0, lt=2**63)]
 
 
 @contextmanager
-def _naming(arguments: Mapping[str, Any]) -> Iterator[None]:
-    """Turn the name of an argument at the head of a refusal into the key of the case file."""
+def _naming(keys: Mapping[str, str]) -> Iterator[None]:
+    """Make errors of surfaces name the case file: `keys` instead of arguments, and its remedies."""
     try:
         yield
+    except RefusedSurfaceError as error:
+        raise SurfaceError(f"{error.fact}; {_REMEDIES[error.code]}") from None
     except SurfaceError as error:
-        name = str(error).split(":", 1)[0]
-        raise SurfaceError(f"roughness.{error}" if name in arguments else str(error)) from None
+        argument, colon, text = str(error).partition(":")
+        raise SurfaceError(keys.get(argument, argument) + colon + text) from None
 
 
 class GeneratedRoughness(Table):
@@ -94,7 +117,7 @@ class GeneratedRoughness(Table):
         needs.require(max(made, needs.generated_bytes(fine, normal=True, periodic=True)), fine)
         asked = self.model_dump(exclude={"realisations"})
         key = {"generated": asked, "nodes": grid.nodes, "spacing": grid.spacing, "refine": factor}
-        with _naming(asked):
+        with _naming({argument: f"roughness.{argument}" for argument in asked}):
             return kept(key, lambda: refine(generate_surface(grid, **asked), factor))
 
 
@@ -143,13 +166,15 @@ class MeasuredRoughness(Table):
 
     def scan(self, folder: Path) -> Surface:
         """What was measured, cleaned and levelled; `file` is relative to `folder`."""
-        scan = read_surface(
-            folder / self.file, channel=self.channel, size=self.size, undefined=self.undefined
-        )
-        if self.crop != CropTable():
-            scan = crop(scan, x=self.crop.x, y=self.crop.y)
-        if self.outliers is not None:
-            scan = remove_outliers(scan, self.outliers)
+        with _naming({}):
+            scan = read_surface(
+                folder / self.file, channel=self.channel, size=self.size, undefined=self.undefined
+            )
+        with _naming(_CLEANING_KEYS):
+            if self.crop != CropTable():
+                scan = crop(scan, x=self.crop.x, y=self.crop.y)
+            if self.outliers is not None:
+                scan = remove_outliers(scan, self.outliers)
         # Levelled as a whole before a grid's part is cut out: the form belongs to the scan.
         return place_of(level(scan, self.detrend), self.place)
 
@@ -170,7 +195,8 @@ class MeasuredRoughness(Table):
             "spacing": grid.spacing,
             "refine": factor,
         }
-        return kept(asked, lambda: self._placed(scan, grid, factor))
+        with _naming({}):
+            return kept(asked, lambda: self._placed(scan, grid, factor))
 
     def _placed(self, scan: Surface, grid: Grid, factor: int) -> Surface:
         """The `scan`, continued if asked for, on cells `factor` times as small as `grid`'s."""

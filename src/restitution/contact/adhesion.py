@@ -1,4 +1,4 @@
-"""Contact sets of adhesive contacts: which nodes are released or come in at one indentation."""
+"""Contact sets of adhesive contacts: which nodes attach or are released at one indentation."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ def release_nodes(
     first_guess: Array | None = None,
     residual: float,
 ) -> tuple[State, State]:
-    """Hold the nodes `held` of `box` in contact, then release until none has to let go.
+    """Hold the nodes `held` in contact, then release nodes until the criterion is met everywhere.
 
-    `first_guess` is an array on `box`, too. Returns the state before the first release and the one
-    after the last.
+    `held` and `first_guess` are arrays on `box`. Returns the state before the first release and the
+    state after the last one.
     """
     grid, pair = contact.grid, contact.pair
     around = union(candidate_box(contact, indentation, history), bounding_box(held, box))
@@ -52,7 +52,8 @@ def release_nodes(
     rule = criterion(
         contact.detachment, pair.contact_modulus, contact.work_of_adhesion, grid.spacing
     )
-    # No node keeps more than the tension limit, so twice that is as good as no bound, and easier.
+    # Nodes beyond the tension limit are released, so twice the limit never restricts the result.
+    # A finite bound is easier for the solver than an infinite one.
     tension = 2 * tension_limit(pair.contact_modulus, contact.work_of_adhesion, grid.spacing)
     before_release: State | None = None
     convolutions = 0
@@ -70,7 +71,7 @@ def release_nodes(
         state = replace(state, convolutions=convolutions)
         before_release = before_release or state
         pressure = state.box_pressure
-        # Nodes that were pushed into contact are held from now on.
+        # Nodes that came into compression are held from now on.
         held |= pressure > 0
         released = rule.releases(pressure, state.box_displacement, gap, held)
         if not released.any():
@@ -89,7 +90,7 @@ def grow_contact(
     first_guess: Array | None = None,
     residual: float,
 ) -> State:
-    """Grow the contact of the undeformed bodies from `held`, ring by ring, while it holds."""
+    """Grow the contact of the undeformed bodies from `held` by rings of nodes until it stops."""
     from scipy.ndimage import binary_dilation
 
     ring = np.ones((3, 3), dtype=bool)
@@ -97,7 +98,7 @@ def grow_contact(
         contact, indentation, box, held, limit=limit, first_guess=first_guess, residual=residual
     )
     convolutions = state.convolutions
-    # At first touch the node that touches carries nothing yet; what grows from it may.
+    # At first touch the touching node carries no pressure yet, but its neighbours may attach.
     touching = state.box_pressure != 0 if state.contact_nodes else reframe(held, box, state.box)
     while True:
         wider_box = widen(state.box, 1, contact.grid.nodes)
@@ -119,11 +120,11 @@ def grow_contact(
 def unload_adhesive(
     state: State, indentation: float, *, first_guess: Array | None = None, residual: float
 ) -> State:
-    """Move an adhesive contact to a smaller `indentation` and let nodes go there.
+    """Move an adhesive contact to a smaller `indentation` and release nodes there.
 
-    `first_guess` is an array on the box of `state`. The new state remembers the force just before
-    the first release: with the contact held the force is linear in the indentation, so the work up
-    to there is exact by the trapezium.
+    `first_guess` is an array on the box of `state`. The new state stores the force just before the
+    first release. While the contact area is fixed, the force is linear in the indentation, so the
+    trapezoidal rule gives the work up to that point exactly.
     """
     before_release, settled = release_nodes(
         state.contact,

@@ -1,4 +1,4 @@
-"""The two particles, and what their contact depends on: R*, E*, m*."""
+"""The two particles and the reduced quantities of their contact: R*, E*, m*."""
 
 from __future__ import annotations
 
@@ -10,10 +10,16 @@ from restitution.errors import CaseError
 
 @dataclass(frozen=True)
 class Body:
-    """An isotropic elastic sphere, or a wall when the radius is infinite.
+    """An isotropic elastic sphere, or a wall if the radius is infinite.
 
-    `radius` m, `youngs_modulus` Pa, `poissons_ratio` in (−1, 0.5], `density` kg/m³ (needed only for
-    velocities; a wall's mass is infinite whatever its density). Raises `CaseError` outside these.
+    Attributes:
+        radius: Radius of the sphere (m); inf for a wall.
+        youngs_modulus: Young's modulus (Pa), positive.
+        poissons_ratio: Poisson's ratio (1), above −1 and at most 0.5.
+        density: Density (kg/m³), positive. Only velocities need it, and a wall never does.
+
+    Raises:
+        CaseError: A value lies outside its range.
     """
 
     radius: float
@@ -33,7 +39,7 @@ class Body:
 
     @property
     def mass(self) -> float | None:
-        """Mass of the sphere, kg; inf for a wall, None when the density is not given."""
+        """Mass of the sphere (kg); inf for a wall, None if the density is not given."""
         if math.isinf(self.radius):
             return math.inf
         if self.density is None:
@@ -43,7 +49,15 @@ class Body:
 
 @dataclass(frozen=True)
 class Pair:
-    """Two bodies in normal contact. Raises `CaseError` for two walls."""
+    """Two bodies in normal contact.
+
+    Attributes:
+        first: One body.
+        second: The other body; the same object for two equal spheres.
+
+    Raises:
+        CaseError: Both bodies are walls.
+    """
 
     first: Body
     second: Body
@@ -54,19 +68,19 @@ class Pair:
 
     @property
     def radius(self) -> float:
-        """R*, m: 1/R* = 1/R₁ + 1/R₂."""
+        """Reduced radius R* (m): 1/R* = 1/R₁ + 1/R₂."""
         return 1 / (1 / self.first.radius + 1 / self.second.radius)
 
     @property
     def contact_modulus(self) -> float:
-        """E*, Pa: 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂."""
+        """Contact modulus E* (Pa): 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂."""
         return 1 / sum(
             (1 - body.poissons_ratio**2) / body.youngs_modulus for body in (self.first, self.second)
         )
 
     @property
     def mass(self) -> float | None:
-        """m*, kg: 1/m* = 1/m₁ + 1/m₂; None when a sphere's density is not given."""
+        """Reduced mass m* (kg): 1/m* = 1/m₁ + 1/m₂; None if a sphere's density is not given."""
         if self.first.mass is None or self.second.mass is None:
             return None
         return 1 / (1 / self.first.mass + 1 / self.second.mass)

@@ -1,8 +1,8 @@
-"""The contact before it is loaded: bodies, surface and yield, and the gap between them.
+"""The contact before loading: bodies, surface, yield model, and the gap between the bodies.
 
-Conventions: gap > 0 open, pressure > 0 compressive, indentation (approach of the bodies) > 0
-closing and zero at the first touch of the undeformed bodies. Arrays `[i, j]` ↔ `[x, y]` at cell
-centres.
+Conventions: a gap above 0 is open, a pressure above 0 is compressive. The indentation (approach of
+the bodies) is 0 at the first touch of the undeformed bodies and grows as they approach. Arrays are
+`[i, j]` ↔ `[x, y]`, with values at cell centres.
 """
 
 from __future__ import annotations
@@ -26,29 +26,45 @@ from restitution.theory import JKR, yield_coefficient
 Plasticity = Literal["expanding-cavity", "equilibrium", "truncated"]
 Approach = Literal["equilibrium", "hertzian", "pull-increments"]
 FULL_CONSTRAINT = 2.8  # pressure over yield strength of fully plastic contact (Tabor 1951)
-_OFF_NODE = 0.31, 0.17  # of a cell: no symmetry of the grid maps this point onto itself
+_OFF_NODE = 0.31, 0.17  # in cells; no symmetry of the grid maps this point onto itself
 
 
 @dataclass(frozen=True)
 class Contact:
     """A pair of bodies whose composite roughness is `surface`.
 
-    Bodies yield by their `yield_strength` (Pa, of a tensile test) or by a `yield_pressure` (Pa, the
-    largest pressure the surface carries: a hardness, about 2.8 times the yield strength); at most
-    one of them is finite, and elastic bodies have neither. `plasticity` is
+    At most one of `yield_strength` and `yield_pressure` is finite; elastic bodies have neither.
+    The models of `plasticity` are
 
-    * `expanding-cavity`, for a yield strength: the largest pressure grows with deformation, see
-      `cavity`; `tangent_modulus` (Pa) is the slope of the tensile stress over strain after yield;
-    * `equilibrium`, for a yield pressure: pressure and surface in equilibrium under that bound;
-    * `truncated`: the elastic pressure truncated at the yield pressure (Thornton and Ning 1998).
+    * `expanding-cavity`: needs a yield strength. The pressure bound grows with deformation, see
+      `contact.cavity`.
+    * `equilibrium`: needs a yield pressure. Pressure and surface are in equilibrium under this
+      constant bound.
+    * `truncated`: needs a yield pressure. The elastic pressure is truncated at it (Thornton and
+      Ning 1998, Powder Technol. 99, 154–162).
 
-    None is the first for a yield strength, else the second.
+    Contacts are equal (and have equal hashes) if their values are equal and their surface is the
+    same object. `gap` and `elongation` are computed once and are read-only.
 
-    Contacts are equal (and hash alike) when their values are equal and their surface is the same
-    object. `gap` and `elongation` are computed once, and read-only.
+    Attributes:
+        pair: The two bodies.
+        surface: Composite roughness, on the grid of the contact.
+        yield_pressure: Largest pressure that the surface carries (Pa): a hardness, about 2.8 times
+            the yield strength. inf if unused.
+        plasticity: Model of yielding. None selects `expanding-cavity` if a yield strength is given
+            and `equilibrium` otherwise.
+        work_of_adhesion: Work of adhesion w (J/m²); 0 without adhesion.
+        approach: Where adhesion acts during loading: `equilibrium` finds the adhesive equilibrium
+            at each depth, `pull-increments` retracts the bodies by 0.1 nm from a contact without
+            adhesion, `hertzian` loads without adhesion.
+        detachment: Criterion by which nodes are released, see `contact.detachment`.
+        yield_strength: Yield strength of a tensile test (Pa); inf if unused.
+        tangent_modulus: Slope of tensile stress over strain after yield (Pa), for
+            `expanding-cavity`.
 
-    Raises `CaseError` for values that are none or do not go together, and for a pair or a surface
-    that is none.
+    Raises:
+        CaseError: A value is invalid, values exclude each other, or `pair` or `surface` has another
+            type.
     """
 
     pair: Pair
@@ -80,7 +96,7 @@ class Contact:
             if value not in known:
                 names = ", ".join(filter(None, known))
                 raise CaseError(f'{name}: "{value}" is not one of {names}')
-        # The compiled loops take double precision only.
+        # The compiled loops accept double precision only.
         for name in ("yield_pressure", "work_of_adhesion", "yield_strength", "tangent_modulus"):
             object.__setattr__(self, name, float(getattr(self, name)))
         if not self.yield_pressure > 0:
@@ -116,15 +132,15 @@ class Contact:
 
     @property
     def hardness(self) -> float:
-        """Pressure of a fully plastic contact, Pa; inf for elastic bodies."""
+        """Pressure of a fully plastic contact (Pa); inf for elastic bodies."""
         return FULL_CONSTRAINT * self.yield_strength if self.grows else self.yield_pressure
 
     @property
     def first_yield_pressure(self) -> float:
-        """Largest pressure (Pa) under which smooth bodies stay elastic; inf for elastic bodies.
+        """Largest pressure at which smooth bodies stay elastic (Pa); inf for elastic bodies.
 
-        `yield_coefficient` times the yield strength, with the mean Poisson's ratio of both bodies,
-        or the yield pressure.
+        It is the yield pressure, or the yield strength times the `yield_coefficient` at the mean
+        Poisson's ratio of the bodies.
         """
         if not self.grows:
             return self.yield_pressure
@@ -133,13 +149,13 @@ class Contact:
 
     @property
     def hardening_modulus(self) -> float:
-        """Slope of the flow stress over *plastic* strain, Pa: E_t/(1 − E_t/E)."""
+        """Slope of the flow stress over *plastic* strain (Pa): E_t/(1 − E_t/E)."""
         E = min(body.youngs_modulus for body in (self.pair.first, self.pair.second))
         return self.tangent_modulus / (1 - self.tangent_modulus / E)
 
     @property
     def truncates(self) -> bool:
-        """Whether the elastic pressure is truncated at p_y (`truncated`)."""
+        """Whether the elastic pressure is truncated at the yield pressure (`truncated`)."""
         return self.plasticity == "truncated" and math.isfinite(self.yield_pressure)
 
     @property
@@ -149,7 +165,7 @@ class Contact:
 
     @property
     def adhesive_length(self) -> float:
-        """Length scale of adhesion, (w²R*/E*²)^⅓, m; 0 without adhesion."""
+        """Length scale of adhesion (w²R*/E*²)^⅓ (m); 0 without adhesion."""
         if not self.adhesive:
             return 0.0
         pair = self.pair
@@ -157,28 +173,36 @@ class Contact:
 
     @property
     def crack_opening(self) -> float:
-        """How far the surfaces part over the first cell outside an edge that lets go, m.
+        """Opening of a straight contact edge about to recede, one cell outside it (m).
 
-        1.86 sqrt(w h/E*) on a straight edge of the grid; see `detachment`.
+        1.86 sqrt(w h/E*); see `contact.detachment`.
         """
         h = math.sqrt(self.grid.cell_area)
         return 1.86 * math.sqrt(self.work_of_adhesion * h / self.pair.contact_modulus)
 
     def residual_length(self, indentation: float) -> float:
-        """The length that residuals at `indentation` (m) are divided by, m."""
+        """Length by which residuals of adhesive contacts are divided.
+
+        Args:
+            indentation: Approach of the bodies (m).
+
+        Returns:
+            The indentation or the length scale of adhesion, whichever is larger (m).
+        """
         return max(abs(indentation), self.adhesive_length)
 
     @property
     def grid(self) -> Grid:
-        """The grid of the surface, on which everything is solved."""
+        """Grid of the surface, on which the contact is solved."""
         return self.surface.grid
 
     @property
     def apex(self) -> tuple[float, float]:
-        """x and y of the lowest point of the smooth bodies, m: on a node, the origin.
+        """Coordinates x and y of the lowest point of the smooth bodies (m).
 
-        An adhesive contact without roughness (`smooth`) has it between nodes. Centred on a node,
-        whole rings of nodes attach and release at once: twice the error of restitution.
+        The point is the origin, a node, except for an adhesive contact without roughness
+        (`smooth`), where it lies between nodes. If it were a node, whole rings of nodes would
+        attach and release at once, which doubles the error of restitution.
         """
         if not self.adhesive or self.surface.provenance.get("source") != "smooth":
             return 0.0, 0.0
@@ -187,29 +211,29 @@ class Contact:
 
     @cached_property
     def slope(self) -> float:
-        """The rms slope of the surface."""
+        """Root mean square slope of the surface (1)."""
         return rms_slope(self.surface)
 
     @cached_property
     def gap(self) -> NDArray[np.float64]:
-        """Initial gap h₀ = (x² + y²)/(2R*) − z, shifted to min h₀ = 0; shape `grid.nodes`, m.
+        """Initial gap h₀ = (x² + y²)/(2R*) − z, shifted to min h₀ = 0 (m), shape `grid.nodes`.
 
-        x and y count from the lowest point of the undeformed bodies, `apex`.
+        x and y are measured from `apex`.
         """
         axes = zip((self.grid.x, self.grid.y), self.apex, strict=True)
         x, y = ((along - centre) ** 2 / (2 * self.pair.radius) for along, centre in axes)
         gap: NDArray[np.float64] = np.add.outer(x, y)
-        gap -= self.surface.height  # in place: other arrays of this size would take as long
+        gap -= self.surface.height  # in place: allocating another array takes as long
         gap -= gap.min()
         return freeze(gap)
 
     @cached_property
     def elongation(self) -> NDArray[np.float64]:
-        """How elongated asperities are at each node, (1 − κ₂/κ₁)²; shape `grid.nodes`.
+        """Elongation of asperities at each node, (1 − κ₂/κ₁)² (1), shape `grid.nodes`.
 
-        κ₂ and κ₁ are the smaller and the larger curvature of the gap in size, by second
-        differences: 0 where it is round and 1 along a ridge. The outermost nodes of the grid, which
-        no contact may reach, have 0.
+        κ₂ and κ₁ are the smaller and the larger absolute principal curvature of the gap, by second
+        differences: 0 for a round asperity and 1 along a ridge. The outermost nodes of the grid,
+        which a contact must not reach, have 0.
         """
         gap, inner = self.gap, slice(1, -1)
         hx, hy = self.grid.spacing
@@ -225,10 +249,16 @@ class Contact:
 
 
 def _kind(value: object) -> str:
-    """What `value` is, in words."""
     return f"an object of type {type(value).__name__}"
 
 
 def smooth(grid: Grid) -> Surface:
-    """The surface without roughness on `grid`."""
+    """Make a surface without roughness.
+
+    Args:
+        grid: Grid of the surface.
+
+    Returns:
+        Surface with all heights 0.
+    """
     return Surface(freeze(np.zeros(grid.nodes)), grid, {"source": "smooth", "kind": "smooth"})

@@ -1,27 +1,28 @@
-"""Which nodes of an adhesive contact let go: two local criteria.
+"""Detachment criteria: which nodes of an adhesive contact are released.
 
-Adhesion has no range here (the JKR limit): nodes in contact carry tension, others do not pull. In
-the continuum the edge of the contact recedes where the energy released per area, G, reaches the
-work of adhesion w. On a grid the edge is a staircase of nodes, and there are two ways to ask:
+Adhesion has no range here (the JKR limit): nodes in contact can carry tension, other nodes do not
+attract. In the continuum the contact edge recedes where the energy release rate G reaches the work
+of adhesion w. On a grid the edge is a staircase of nodes. Two local criteria are available:
 
-`pohrt-popov`: a node lets go when its tension passes the limit at which a single node, alone on the
-half-space, would (Pohrt and Popov 2015, Facta Universitatis 13, 3–10). Simple, and independent of
-the order of release; but nodes on a straight edge hold on until G is 1.8 w, those at a kink until
-1.0 w, so that pull-off is overestimated by 1.5 h/a.
+`pohrt-popov`: a node is released if its tension exceeds the limit σ_c of a single node on the
+half-space (Pohrt and Popov 2015, Facta Universitatis 13, 3–10). The criterion is simple and
+independent of the order of release. However, nodes on a straight edge hold until G = 1.8 w and
+nodes at a kink until G = 1.0 w, so the pull-off force is overestimated by 1.5 h/a (relative).
 
 `crack-closure`: the edge is a crack, and G is the work of closing it by one cell (Rybicki and
 Kanninen 1977, Eng. Fract. Mech. 9, 931–938): ½ |p| times the opening, for each face between a node
-in contact and one outside. On a straight edge this is G to 1e-3, on a staircase its mean over the
-faces is. So G is averaged along the edge, over about four cells, and never across to another patch.
-The opening is what the surfaces have moved apart beyond the smooth continuation of their contact:
+in contact and one outside. On a straight edge this gives G to 1e-3; on a staircase its mean over
+the faces does. G is therefore averaged along the edge over about four cells, but never across to
+another patch. The opening is the separation of the surfaces beyond the smooth continuation of their
+contact:
 
     opening = (u₊ − 2u₀ + u₋) + (h₀ − 2h₋ + h₋₋),
 
-u the elastic displacement, h the gap before it, 0 the node at the edge, + the one outside, − those
-inside. The second bracket is the curvature of the surfaces under the contact, continued; whatever
-shape they have outside, where they never touched, is no opening.
+where u is the elastic displacement, h the gap before it, 0 the edge node, + the node outside, and −
+and −− the nodes inside. The second bracket continues the curvature of the surfaces in the contact.
+The initial gap outside, where the surfaces never touched, does not count as opening.
 
-With rectangular cells σ_c² = 2πE*w hx hy/I, with I the integral of 1/r over the cell twice; for
+For rectangular cells σ_c² = 2πE*w hx hy/I, where I is the double integral of 1/r over the cell; for
 square cells σ_c² = E*w/(κh), κ = (2/3π)[1 − √2 + 3 ln(1 + √2)] = 0.473201.
 """
 
@@ -42,16 +43,16 @@ Detachment = Literal["crack-closure", "pohrt-popov"]
 
 _FACES = np.array([(1, 0), (-1, 0), (0, 1), (0, -1)])
 _AROUND = np.array([(-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1), (0, 0)])
-_SMOOTHING_STEPS = 32  # each spreads by ⅔ cell² along an edge: some five cells in all
-_RELEASE_RADIUS = 3  # cells around a released node that wait for the next solve
-_ALIKE = 1e-3  # of the largest tension: a smaller difference is what a solve leaves
+_SMOOTHING_STEPS = 32  # variance ⅔ cell² along the edge per step: about five cells in all
+_RELEASE_RADIUS = 3  # no second node within this many cells of a released one before the next solve
+_TIE = 1e-3  # of the largest tension; smaller differences are within the error of a solve
 _TINY = float(np.finfo(float).tiny)
 
 
 def tension_limit(
     contact_modulus: float, work_of_adhesion: float, spacing: tuple[float, float]
 ) -> float:
-    """Largest tension σ_c of a node alone, Pa: it lets go when that gains energy."""
+    """Largest tension σ_c of a single node (Pa), beyond which its release lowers the energy."""
     hx, hy = spacing
     twice = 2 * (hx**2 * hy * math.asinh(hy / hx) + hx * hy**2 * math.asinh(hx / hy)) + 2 / 3 * (
         hx**3 + hy**3 - math.hypot(hx, hy) ** 3
@@ -60,45 +61,45 @@ def tension_limit(
 
 
 class Criterion(Protocol):
-    """Which of the nodes in contact let go now."""
+    """Selects the nodes in contact that are released next."""
 
     def releases(self, p: Array, u: Array, h: Array, touching: Mask) -> Mask:
-        """Nodes to release at pressure p, displacement u and gap h before it; all of one shape."""
+        """Nodes to release, from pressure p, displacement u and the gap h before displacement."""
 
 
 @dataclass(frozen=True)
 class TensionLimit:
-    """`pohrt-popov`."""
+    """The criterion `pohrt-popov`."""
 
     limit: float
 
     def releases(self, p: Array, u: Array, h: Array, touching: Mask) -> Mask:
-        """All nodes beyond the limit."""
+        """All nodes whose tension exceeds the limit."""
         return touching & (p < -self.limit)
 
 
 @dataclass(frozen=True)
 class CrackClosure:
-    """`crack-closure`; single nodes beyond the tension limit let go, too."""
+    """The criterion `crack-closure`; nodes beyond the tension limit are released as well."""
 
     work_of_adhesion: float
     limit: float
 
     def releases(self, p: Array, u: Array, h: Array, touching: Mask) -> Mask:
-        """The tensest node of each stretch of the edge along which G has reached w."""
+        """The node of largest tension in each stretch of the edge along which G ≥ w."""
         from scipy.ndimage import minimum_filter
 
         edge, G = energy_release_rate(p, u, h, touching)
-        # Releasing neighbours at once would overshoot: each relieves the others. Of nodes that are
-        # alike the first goes, so that the last digits decide nothing.
+        # The release of a node relieves its neighbours, so releasing several together would
+        # overshoot. Ties are broken by index, so that rounding does not decide.
         ready = np.where((self.work_of_adhesion <= G) & (p[edge] < 0), p[edge], 0.0)
-        ready = np.round(ready / (_ALIKE * max(-float(ready.min(initial=0.0)), _TINY)))
+        ready = np.round(ready / (_TIE * max(-float(ready.min(initial=0.0)), _TINY)))
         ready = np.where(ready < 0, ready + 0.5 * np.arange(ready.size) / ready.size, 0.0)
         tension = np.zeros_like(p)
         tension[edge] = ready
-        tensest = minimum_filter(tension, size=2 * _RELEASE_RADIUS + 1, mode="constant")
+        largest = minimum_filter(tension, size=2 * _RELEASE_RADIUS + 1, mode="constant")
         released = touching & (p < -self.limit)
-        released[edge] |= (ready < 0) & (ready == tensest[edge])
+        released[edge] |= (ready < 0) & (ready == largest[edge])
         return released
 
 
@@ -108,7 +109,7 @@ def criterion(
     work_of_adhesion: float,
     spacing: tuple[float, float],
 ) -> Criterion:
-    """The criterion of that name."""
+    """The criterion named `detachment`."""
     limit = tension_limit(contact_modulus, work_of_adhesion, spacing)
     if detachment == "pohrt-popov":
         return TensionLimit(limit)
@@ -118,26 +119,26 @@ def criterion(
 def energy_release_rate(
     p: Array, u: Array, h: Array, touching: Mask
 ) -> tuple[tuple[NDArray[np.intp], NDArray[np.intp]], Array]:
-    """Nodes at the edge of the contact (indices) and G there, J/m², averaged along the edge."""
+    """Indices of the edge nodes of the contact, and G (J/m²) there, averaged along the edge."""
     T = np.zeros((touching.shape[0] + 2, touching.shape[1] + 2), dtype=bool)
     T[1:-1, 1:-1] = touching
     surrounded = T[:-2, 1:-1] & T[2:, 1:-1] & T[1:-1, :-2] & T[1:-1, 2:]
     i, j = np.nonzero(touching & ~surrounded)
     side, node = np.nonzero(~T[i + 1 + _FACES[:, :1], j + 1 + _FACES[:, 1:]])
-    # Flat indices: a step outwards is one number. Where one leaves the array the contact is at the
-    # rim of the grid, which is refused.
+    # In flat indices a step outwards is one number. An index can leave the array only if the
+    # contact is at the edge of the grid, which raises an error later.
     row = touching.shape[1]
     here = i[node] * row + j[node]
     outwards = (_FACES @ np.array([row, 1]))[side]
 
-    def taken(values: Array, cells: int) -> Array:
-        """The values so many cells outwards of each face."""
+    def values_at(values: Array, cells: int) -> Array:
+        """`values` at `cells` cells outwards from the edge node of each face."""
         found: Array = np.take(values, here + cells * outwards, mode="clip")
         return found
 
-    opening = taken(u, 1) - 2 * taken(u, 0) + taken(u, -1)
+    opening = values_at(u, 1) - 2 * values_at(u, 0) + values_at(u, -1)
     inside = np.take(touching, here - outwards, mode="clip")
-    opening += inside * (taken(h, 0) - 2 * taken(h, -1) + taken(h, -2))
+    opening += inside * (values_at(h, 0) - 2 * values_at(h, -1) + values_at(h, -2))
     opened = np.bincount(node, weights=np.maximum(opening, 0.0), minlength=i.size)
     faces = np.bincount(node, minlength=i.size)
     sums = np.column_stack([-0.5 * p[i, j] * opened, faces])
@@ -148,14 +149,15 @@ def energy_release_rate(
 def _diffusion(
     i: NDArray[np.intp], j: NDArray[np.intp], shape: tuple[int, ...]
 ) -> tuple[NDArray[np.intp], Array]:
-    """Neighbours of each node and their weights, of shape (nodes, 9), in a step of diffusion.
+    """Neighbours of each edge node and their weights in a diffusion step, shapes (nodes, 9).
 
-    It goes along the edge and conserves the sum (Metropolis). Who has fewer is its own neighbour.
+    The step diffuses along the edge and conserves the sum (Metropolis weights). A node takes the
+    place of its missing neighbours.
     """
     here = np.arange(i.size)
     number = np.full((shape[0] + 2, shape[1] + 2), -1)
     number[i + 1, j + 1] = here
-    # One row for each node: its eight neighbours, and last itself.
+    # Each row holds the eight neighbours of a node and, last, the node itself.
     neighbours = number[i[:, None] + 1 + _AROUND[:, 0], j[:, None] + 1 + _AROUND[:, 1]]
     joined = neighbours >= 0
     neighbours = np.where(joined, neighbours, here[:, None])

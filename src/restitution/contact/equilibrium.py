@@ -1,15 +1,15 @@
-"""Pressure and yield at a prescribed indentation: the one solve behind everything.
+"""Pressure and yield at a prescribed indentation: every contact is solved here.
 
-With the gap h before the solve (initial gap plus earlier plastic displacement) the pressure is the
-minimiser of
+Let h be the gap before the solve (initial gap plus earlier plastic displacement). The pressure
+minimises
 
-    ½ pᵀK p − pᵀ(δ − h),   lower ≤ p ≤ p_y,
+    ½ pᵀK p − pᵀ(δ − h),   lower ≤ p ≤ p_y.
 
-whose gradient g = K p + h − δ is the deformed gap: open (g ≥ 0) where p = 0, closed (g = 0) between
-the bounds, and where p = p_y the surface gives way plastically by u_p = −g. Without adhesion the
-lower bound is zero, and contact lies inside {h < δ}, because K p > 0 wherever there is pressure:
-solving on that box alone is exact. With adhesion the lower bound is a tension on the nodes that are
-held in contact; the box holds them, too, and two cells around.
+The gradient g = K p + h − δ is the deformed gap: open (g ≥ 0) where p = 0 and closed (g = 0)
+between the bounds. Where p = p_y the surface yields by u_p = −g. Without adhesion the lower bound
+is zero, and the contact lies inside {h < δ}, because K p > 0 under every positive pressure; solving
+on the bounding box of that set is therefore exact. With adhesion the lower bound is a tension on
+the nodes held in contact; the box then also contains these nodes and a margin of two cells.
 """
 
 from __future__ import annotations
@@ -33,16 +33,16 @@ from restitution.numerics.read_only import freeze
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-RESIDUAL = 1e-8  # default tolerance: violation of the contact conditions over the overlap
+RESIDUAL = 1e-8  # default tolerance on the violation of the contact conditions, over the overlap
 MAX_ITERATIONS = 1000
 
 
 @dataclass(frozen=True)
 class HeldNodes:
-    """The nodes of a box that are held in contact and may carry tension.
+    """The nodes of a box that are held in contact and can carry tension.
 
-    `mask` shows them and `first_guess` (Pa; None is zero) starts the solve; both are arrays on the
-    box. `tension` is the largest, Pa.
+    `mask` marks them, `tension` (Pa) is the largest tension allowed, and `first_guess` (Pa; None is
+    zero) is the initial pressure. `mask` and `first_guess` are arrays on the box.
     """
 
     mask: Mask
@@ -52,10 +52,10 @@ class HeldNodes:
 
 @dataclass(frozen=True)
 class Solution:
-    """What a solve has found on a box: arrays of its shape.
+    """Result of a solve on a box, as arrays of its shape.
 
-    The `overlap` δ − h before it and the deformed gap `gap` (m), the `pressure` (Pa), and what the
-    solve left and took: `residual`, `convolutions`.
+    `overlap` is δ − h (m), `gap` the deformed gap (m) and `pressure` in Pa. `residual` and the
+    number of `convolutions` describe the solve.
     """
 
     overlap: Array
@@ -77,15 +77,11 @@ def solve_pressure(
 ) -> State:
     """Solve with upper bound `limit` on the surface deformed by `history`.
 
-    The lower bound is 0, or minus their tension at the nodes that are `held`. Arguments:
-        indentation: δ, m.
-        box: block of the grid to solve on; contains the `candidate_box` and all held nodes.
-        limit: Pa, a number or an array of the shape of the grid.
-        held: nodes held in contact; None without adhesion, and then there is no first guess.
-        residual: tolerance of the violation of the contact conditions, as a fraction of the overlap
-            δ − min h, or with adhesion of the indentation or the length scale of adhesion.
-
-    Raises `NotConvergedError`. Contact at the grid edge is not checked here.
+    The lower bound is 0, or minus the tension at the `held` nodes (None without adhesion). `limit`
+    (Pa) is a number or an array of the shape of the grid. `box` contains the `candidate_box` and
+    all held nodes. `residual` bounds the violation of the contact conditions, relative to the
+    overlap δ − min h or, with adhesion, to `Contact.residual_length`. Raises `NotConvergedError`.
+    Contact at the grid edge is not checked here.
     """
     device, shape = current(), shape_of(box)
     b = _overlap(contact, indentation, box, history)
@@ -123,8 +119,8 @@ def solve_pressure(
     if not found.converged:
         raise NotConvergedError(
             f"the solve at an indentation of {1e9 * indentation:.6g} nm stopped at a residual of "
-            f"{reached:.1e} (asked: {residual:.0e}) after {found.iterations} iterations; ask for a "
-            "larger residual, or smooth or refine the surface"
+            f"{reached:.1e} (tolerance: {residual:.0e}) after {found.iterations} iterations; "
+            "increase the tolerance (residual), or smooth or refine the surface"
         )
     solution = Solution(
         b, device.get(found.point), device.get(found.gradient), reached, convolutions
@@ -133,7 +129,7 @@ def solve_pressure(
 
 
 def _overlap(contact: Contact, indentation: float, box: Box, history: State | None = None) -> Array:
-    """The overlap δ − h of the undeformed bodies on `box`, m."""
+    """The overlap δ − h on `box` (m) before elastic deformation."""
     b: Array = indentation - contact.gap[box]
     if history is not None:
         b -= history.plastic_displacement[box]
@@ -141,12 +137,12 @@ def _overlap(contact: Contact, indentation: float, box: Box, history: State | No
 
 
 def _scale_of(contact: Contact, indentation: float, b: Array) -> float:
-    """The length by which residuals are divided: the overlap, or the length of adhesion, m."""
+    """The length (m) by which residuals are divided; `b` is the overlap."""
     return contact.residual_length(indentation) if contact.adhesive else float(b.max())
 
 
 def _operators_of(contact: Contact) -> Operators:
-    """The half-space operator of a contact and its approximate inverse, on grids of any level."""
+    """A function that makes the half-space operator and its approximate inverse for any level."""
     E_star, (hx, hy) = contact.pair.contact_modulus, contact.grid.spacing
 
     def operators(shape: tuple[int, int], level: int) -> tuple[FreeConvolution, SpectralFilter]:
@@ -167,9 +163,9 @@ def build_state(
 ) -> State:
     """The state of a `solution` on `box`.
 
-    Where the pressure is at the limit and the deformed gap is negative, the gap becomes plastic
-    displacement. The displacement overwrites `solution.gap`. With a limit for each node the plastic
-    work stays that of `history`; `loading` integrates it.
+    Where the pressure is at the limit and the deformed gap is negative, the gap is subtracted from
+    the plastic displacement. The elastic displacement overwrites `solution.gap`. If `limit` is an
+    array, the plastic work stays that of `history`, and `loading` integrates it.
     """
     pressure, gap = solution.pressure, solution.gap
     plastic, work, adhesive_work, work_error = _past(contact, history)
@@ -200,14 +196,14 @@ def build_state(
 
 
 def candidate_box(contact: Contact, indentation: float, history: State | None = None) -> Box | None:
-    """The box of all nodes with a gap below `indentation`: contact without adhesion lies inside.
+    """The bounding box of the nodes with a gap below `indentation`, or None without such nodes.
 
-    None if there is no such node.
+    It contains every contact without adhesion.
     """
     nodes = contact.grid.nodes
     if history is None:
         return bounding_box(contact.gap < indentation)
-    if indentation <= history.indentation:  # no contact where there was none
+    if indentation <= history.indentation:  # unloading makes no contact outside the former box
         region = widen(history.box, 2, nodes)
     else:
         region = (slice(0, nodes[0]), slice(0, nodes[1]))
@@ -216,7 +212,7 @@ def candidate_box(contact: Contact, indentation: float, history: State | None = 
 
 
 def separated_state(contact: Contact, indentation: float, history: State | None = None) -> State:
-    """The state without any contact."""
+    """The state of bodies out of contact."""
     nothing = np.zeros((0, 0))
     plastic, work, adhesive_work, work_error = _past(contact, history)
     bound = contact.first_yield_pressure if history is None else history.bound
@@ -237,7 +233,7 @@ def separated_state(contact: Contact, indentation: float, history: State | None 
 
 
 def _past(contact: Contact, history: State | None) -> tuple[Array, float, float, float]:
-    """Plastic displacement, plastic and adhesive work, and the error of the works."""
+    """Plastic displacement, plastic work, adhesive work and work error of `history`."""
     if history is None:
         return np.zeros(contact.grid.nodes), 0.0, 0.0, 0.0
     return (

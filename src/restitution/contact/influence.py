@@ -1,7 +1,7 @@
 """Elastic half-space: displacement under a rectangle of uniform pressure.
 
-Conventions: pressure > 0 pushes into the body, displacement > 0 is into the body, both bodies are
-lumped into one half-space of contact modulus E*: 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂.
+Pressure and displacement are positive into the body. Both bodies are combined into one half-space
+of contact modulus E*: 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from restitution.numerics.multipoles import multipoles
 Array = NDArray[np.float64]
 Operator = TypeVar("Operator", FreeConvolution, SpectralFilter)
 
-# Beyond this distance (in cell diagonals) the series below differs from Love's formula by less than
-# 2e-12 of the value, while the formula itself loses digits to cancellation as (r/h)².
+# Beyond this distance (in cell diagonals) the relative error of the series below is under 2e-12,
+# while Love's formula loses digits to cancellation as (r/h)².
 _FAR = 32.0
 
 
@@ -46,7 +46,7 @@ def love_displacement(x: Array, y: Array, hx: float, hy: float, contact_modulus:
 
 
 def far_displacement(x: Array, y: Array, hx: float, hy: float, contact_modulus: float) -> Array:
-    """The same far from the cell: Taylor series of the point load averaged over the cell.
+    """`love_displacement` far from the cell: the point load's Taylor series averaged over the cell.
 
     u πE*/(p hx hy) = [1 + (hx²∂x² + hy²∂y²)/24 + hx⁴∂x⁴/1920 + hx²hy²∂x²∂y²/576 + hy⁴∂y⁴/1920] 1/r;
     the next term is of relative order (h/r)⁶. `x` and `y` (m) are a column and a row.
@@ -73,7 +73,7 @@ def influence_coefficients(
     device: Device = CPU,
 ) -> Array:
     """Displacement at lag (i, j) cells, i as a column (from 0) and j as a row (from 0), m/Pa."""
-    # Lengths scale: u/h depends on the shape of the cells and on the lag alone.
+    # u/h depends only on the aspect ratio of the cells and on the lag, so unit cells are enough.
     hx, hy = spacing
     lags, aspect, scale = (i.size, j.size), hy / hx, hx / contact_modulus
     if i.size * j.size <= _most_coefficients():
@@ -87,9 +87,9 @@ def influence_coefficients(
 def half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
 ) -> FreeConvolution:
-    """The operator p ↦ u on a block of nodes of the free (non-periodic) half-space.
+    """The operator p ↦ u on a block of `shape` nodes of the free (non-periodic) half-space.
 
-    Arrays are of that shape, on the current device.
+    It takes and returns arrays of this shape on the current device.
     """
     return _operator(_half_space, shape, spacing, contact_modulus)
 
@@ -101,8 +101,8 @@ def inverse_half_space(
     return _operator(_inverse_half_space, shape, spacing, contact_modulus)
 
 
-# Largest operator and largest block of coefficients that are kept, as fractions of the cache.
-# Larger operators would fill it as a contact grows; the default keeps those of up to 1400² nodes.
+# Largest operator and largest block of coefficients that are cached, as fractions of the cache.
+# Larger operators would fill it as a contact grows; by default 1400² nodes is the limit.
 _MAX_OPERATOR, _MAX_COEFFICIENTS = 1 / 15, 2 / 3
 
 
@@ -112,7 +112,7 @@ def _operator(
     spacing: tuple[float, float],
     contact_modulus: float,
 ) -> Operator:
-    """The operator of the cache, or a new one, with a workspace of its own."""
+    """The operator, from the cache if possible, with a workspace of its own."""
     key = build, shape, spacing, contact_modulus, current()
     operator: Operator | None = operator_cache.get(key)
     if operator is None:
@@ -123,10 +123,10 @@ def _operator(
 
 
 def _unit_coefficients(lags: tuple[int, int], aspect: float, device: Device) -> Array:
-    """Coefficients for cells 1 × `aspect` and E* = 1; not to be changed.
+    """Coefficients for cells 1 × `aspect` and E* = 1, as a view that callers must not change.
 
-    Boxes follow the contact, so that most solves need the coefficients of a block that is larger or
-    smaller than the last one. The cache keeps the largest block so far.
+    The block size follows the contact and differs between most solves. The cache keeps the largest
+    block so far, and smaller blocks are parts of it.
     """
     key = _compute_coefficients, aspect, device
     known: Array | None = operator_cache.get(key)
@@ -142,7 +142,7 @@ def _unit_coefficients(lags: tuple[int, int], aspect: float, device: Device) -> 
 
 
 def _most_coefficients() -> int:
-    """The largest number of coefficients that are kept."""
+    """The largest number of coefficients that are cached."""
     return int(_MAX_COEFFICIENTS * operator_cache.max_bytes) // np.dtype(np.float64).itemsize
 
 
@@ -164,7 +164,7 @@ def _half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float, device: Device
 ) -> FreeConvolution:
     def kernel(i: NDArray[np.int64], j: NDArray[np.int64]) -> Array:
-        # It comes as a row of i and a column of j.
+        # FreeConvolution passes i as a row and j as a column.
         return influence_coefficients(j, i, spacing[::-1], contact_modulus, device)
 
     return FreeConvolution(kernel, shape, device)
@@ -176,7 +176,8 @@ def _inverse_half_space(
 
     def symbol(qx: Array, qy: Array) -> Array:
         q: Array = np.sqrt((qx / spacing[0]) ** 2 + (qy / spacing[1]) ** 2)
-        # The mean mode has no inverse on a periodic half-space; half of the longest wave serves.
+        # The mean has no finite displacement on a periodic half-space, hence no inverse: use half
+        # the wave number of the longest wave.
         longest = [2 * np.pi / min(spacing)]
         longest += [float(q[1, 0])] if q.shape[0] > 1 else []
         longest += [float(q[0, 1])] if q.shape[1] > 1 else []

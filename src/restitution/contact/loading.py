@@ -1,8 +1,9 @@
-"""Loading the undeformed bodies to one indentation, and the work that takes.
+"""Load the undeformed bodies to one indentation, and compute the loading work.
 
-Under the yield bound the state of a monotonic loading does not depend on its path, so one solve
-from the undeformed bodies is enough. Without adhesion the work is then W = E_el + p_y V_p; with a
-cut pressure (`truncated`) or with adhesion on approach it is the integral of the force.
+Under the pressure bound the state of monotonic loading does not depend on its path, so one solve
+from the undeformed bodies is enough. Under a constant bound without adhesion the work is
+W = E_el + p_y V_p. With a truncated pressure or with adhesion on approach it is the integral of the
+force; under a growing bound the plastic work is summed over increments.
 """
 
 from __future__ import annotations
@@ -24,44 +25,54 @@ from restitution.contact.equilibrium import (
     solve_pressure,
 )
 from restitution.contact.influence import half_space
+from restitution.contact.plastic_work import plastic_work
 from restitution.contact.state import State
 from restitution.errors import CaseError
-from restitution.numerics.box import Box, bounding_box, shape_of
+from restitution.numerics.box import bounding_box, shape_of
 from restitution.numerics.quadrature import integrate_adaptively
 from restitution.numerics.read_only import freeze
 
 Array = NDArray[np.float64]
 
 PULL_INCREMENT = 1e-10  # m: the pull after each loading increment (Ghanbarzadeh et al. 2019, §2.2)
-_TRUNCATION_TOLERANCE = 3e-5  # of force times indentation, where the work needs quadrature
-_TRUNCATION_MARGIN = 10.0  # tolerances that are added to the error of that quadrature
-_TRUNCATION_PANELS = 4  # the force cut off is zero up to first yield, wherever that is
-# The force of an adhesive contact jumps as asperities come in: more is asked of it in vain. 1.5e-3
-# of the work is at most 0.00075 in restitution.
+_TRUNCATION_TOLERANCE = 3e-5  # of the quadrature, relative to force times indentation
+_TRUNCATION_MARGIN = 10.0  # tolerances added to the error of this quadrature
+_TRUNCATION_PANELS = 4  # the integrand is zero up to first yield, which must not hide the rest
+# The force of an adhesive contact jumps as asperities attach, which limits the accuracy. 1.5e-3 of
+# the work is at most 0.00075 in restitution.
 _ADHESIVE_TOLERANCE = 1.5e-3
 _ADHESIVE_HALVINGS = 5
-# Nodes come in one after the other, and which of them do depends on the steps: against 240 steps
-# from first touch, the work of blind contacts was off by up to this share of w times the area (93 %
-# of 29 contacts with `equilibrium`, all of 11 with `pull-increments`), whatever the quadrature.
+# Nodes attach one after the other, and the set of them depends on the steps. Relative to w times
+# the area, the work differed from that of 240 steps from first touch by up to these values: in 93 %
+# of 29 validation contacts with `equilibrium`, and in all 11 with `pull-increments`.
 _PINNING = {"equilibrium": 0.02, "pull-increments": 0.006, "hertzian": 0.0}
-# Depths between which the plastic work is summed grow by this ratio at most; from this part of the
-# indentation on. Errors are parts of what the growth of the bound adds to the work of a step, for
-# nodes that had yielded before it and for those that begin to (against 11 times as many depths).
+# The plastic work is summed over depths that start at _SHALLOW times the indentation and grow by at
+# most the factor _RATIO, for which the errors of `plastic_work` hold.
 _RATIO, _SHALLOW = 1.42, 0.2
-_RULE_ERROR, _NEW, _NEW_ERROR = 0.1, 0.8, 0.25
-_WORK_RESIDUAL = 1e-6  # of the solves in between, whose force errors stay well below that
+_WORK_RESIDUAL = 1e-6  # of the intermediate solves; their force errors are well below it
 
 
 def solve(
     contact: Contact, indentation: float, *, start: State | None = None, residual: float = RESIDUAL
 ) -> State:
-    """Load the undeformed bodies to `indentation` (m) in one solve and return the state there.
+    """Load the undeformed bodies to `indentation` in one solve.
 
-    `start`, a shallower state of the same contact, serves as the point from which the work is
-    integrated where it has to be (`truncated`, or adhesion on approach; else that is first touch),
-    and with adhesion on approach as first guess. Raises `CaseError` for an indentation that is not
-    positive or a start on another grid, `NotConvergedError` when `residual` is not reached, and
-    `DomainError` when the contact reaches the edge of the grid.
+    Args:
+        contact: Contact to load.
+        indentation: Approach of the bodies (m), positive.
+        start: Shallower state of the same contact. If the work is an integral (`expanding-cavity`,
+            `truncated`, or adhesion on approach), it is integrated from this state instead of first
+            touch. With adhesion on approach this state is also the first guess.
+        residual: Tolerance on the violation of the contact conditions (1), relative to the overlap
+            or, with adhesion, to `Contact.residual_length`.
+
+    Returns:
+        State at `indentation`.
+
+    Raises:
+        CaseError: The indentation is not positive, or `start` is on another grid.
+        NotConvergedError: The tolerance was not reached.
+        DomainError: The contact reaches the edge of the grid.
     """
     if not 0 < indentation < math.inf:
         raise CaseError(f"indentation: {indentation} m is not a positive depth")
@@ -74,17 +85,32 @@ def solve(
 
 
 def step(state: State, indentation: float, *, residual: float = RESIDUAL) -> State:
-    """Move a deformed contact to another `indentation` (m), deeper or shallower.
+    """Move a deformed contact to another indentation, deeper or shallower.
 
-    What has yielded stays yielded, and what adheres lets go only where it has to. Raises as
-    `solve`, and `CaseError` for deeper loading of a `truncated` contact, which has no law for
-    loading a deformed surface.
+    Plastic displacement is permanent, and adhering nodes stay in contact until the detachment
+    criterion releases them.
+
+    Args:
+        state: State to start from.
+        indentation: New approach of the bodies (m).
+        residual: Tolerance on the violation of the contact conditions (1), as in `solve`.
+
+    Returns:
+        State at `indentation`.
+
+    Raises:
+        CaseError: The indentation is not finite, or a `truncated` contact would be loaded deeper:
+            this model is not defined for deformed surfaces.
+        NotConvergedError: The tolerance was not reached.
+        DomainError: The contact reaches the edge of the grid.
     """
     contact = state.contact
     if not math.isfinite(indentation):
-        raise CaseError(f"indentation: {indentation} m is not a depth")
+        raise CaseError(f"indentation: {indentation} m is not a finite depth")
     if contact.plasticity == "truncated" and indentation > state.indentation:
-        raise CaseError("a truncated contact can only be unloaded; use solve for a deeper one")
+        raise CaseError(
+            "indentation: a truncated contact can only be unloaded; use solve to load it deeper"
+        )
     if contact.adhesive:
         new = unload_adhesive(state, indentation, residual=residual)
     else:
@@ -94,7 +120,7 @@ def step(state: State, indentation: float, *, residual: float = RESIDUAL) -> Sta
             limit = freeze(np.maximum(limit, grown))
         new = solve_nonadhesive(contact, indentation, limit, residual, history=state)
         if contact.grows:
-            work, _ = _plastic_work(state, new)
+            work, _ = plastic_work(state, new)
             new = replace(
                 new,
                 plastic_work=state.plastic_work + work,
@@ -107,7 +133,7 @@ def step(state: State, indentation: float, *, residual: float = RESIDUAL) -> Sta
 def solve_without_work(
     contact: Contact, indentation: float, *, start: State | None, residual: float
 ) -> State:
-    """`solve` without its work, and letting contact at the edge of the grid pass."""
+    """`solve` without the loading work and without the check for contact at the grid edge."""
     limit, convolutions = _limit_at(contact, indentation, residual)
     if contact.adhesive and contact.approach == "equilibrium":
         shallower = start if start is not None and start.indentation <= indentation else None
@@ -128,7 +154,7 @@ def solve_without_work(
             residual=residual,
         )
     elif contact.adhesive and contact.approach == "pull-increments":
-        # The pull may let go of everything: the state is then parted, with zero force.
+        # The pull may release all nodes: the bodies are then out of contact, with zero force.
         pressed = solve_nonadhesive(contact, indentation + PULL_INCREMENT, limit, residual)
         state = unload_adhesive(pressed, indentation, residual=residual)
         state = replace(state, adhesive_work=0.0, is_first_loading=True)
@@ -140,9 +166,9 @@ def solve_without_work(
 
 
 def _limit_at(contact: Contact, indentation: float, residual: float) -> tuple[Array | float, int]:
-    """The pressure bound of the solve, Pa, and the convolutions that finding it took.
+    """The pressure bound of the solve (Pa), and the convolutions that computing it took.
 
-    It is infinite where the pressure is truncated afterwards.
+    The bound is infinite if the pressure is truncated afterwards.
     """
     if contact.grows:
         return yield_bound(contact, max(indentation, 0.0), residual)
@@ -156,7 +182,10 @@ def solve_nonadhesive(
     residual: float,
     history: State | None = None,
 ) -> State:
-    """The contact without adhesion, always from nothing: coarser grids beat any earlier state."""
+    """The contact without adhesion.
+
+    An earlier state is never the first guess: the solution on coarser grids is a better one.
+    """
     box = candidate_box(contact, indentation, history)
     if box is None:
         return separated_state(contact, indentation, history)
@@ -166,11 +195,11 @@ def solve_nonadhesive(
 
 
 def truncate_pressure(elastic: State) -> State:
-    """Truncate the elastic pressure at p_y; the rest of the contact does not take up what is cut.
+    """Truncate the elastic pressure at p_y, without redistributing the pressure removed.
 
-    Force and area are then those of Thornton and Ning (1998). The plastic displacement is what the
-    cut pressure leaves of the interference (next to the contact too), so that unloading starts from
-    the cut pressure.
+    Force and area are then those of Thornton and Ning (1998). The plastic displacement is the
+    interference that remains under the truncated pressure (next to the contact, too), so that
+    unloading starts from the truncated pressure.
     """
     contact, indentation, box = elastic.contact, elastic.indentation, elastic.box
     pressure = np.minimum(elastic.box_pressure, contact.yield_pressure)
@@ -189,14 +218,14 @@ def truncate_pressure(elastic: State) -> State:
 
 
 def work_is_integrated(contact: Contact) -> bool:
-    """Whether the loading work of `contact` is an integral, with an error."""
+    """Whether the loading work of `contact` is integrated numerically, with an error."""
     if contact.truncates or contact.grows:
         return True
     return contact.adhesive and contact.approach != "hertzian"
 
 
 def with_work(state: State, start: State | None) -> State:
-    """A state of `solve_without_work` with its work: from `start` or first touch if it is ∫F dδ."""
+    """A state of `solve_without_work` with its work, integrated from `start` or first touch."""
     contact, indentation = state.contact, state.indentation
     if not work_is_integrated(contact):
         return state
@@ -210,7 +239,7 @@ def with_work(state: State, start: State | None) -> State:
         if not contact.adhesive or contact.approach == "hertzian":
             return replace(state, work_error=error)
     known = state.stored_energy + state.plastic_work
-    if _gain_hardly_matters(state):
+    if _adhesive_work_is_negligible(state):
         # Integrated works were between 0.37 and 0.93 of w times the area, most of them above 0.7.
         return replace(state, adhesive_work=gain, work_error=0.5 * gain)
     if contact.adhesive and contact.approach != "hertzian":
@@ -219,7 +248,7 @@ def with_work(state: State, start: State | None) -> State:
         work, error, convolutions = _work_by_truncation(state, start)
     convolutions += state.convolutions
     if contact.plasticity == "truncated":
-        # The cut pressure's plastic work is what is left of the work; it has no formula of its own.
+        # The plastic work of a truncated pressure has no formula: it is the work less the energy.
         return replace(
             state,
             plastic_work=work - state.stored_energy,
@@ -230,8 +259,8 @@ def with_work(state: State, start: State | None) -> State:
     return replace(state, adhesive_work=known - work, work_error=error, convolutions=convolutions)
 
 
-def _gain_hardly_matters(state: State) -> bool:
-    """Whether all that adhesion can have done on approach is within the tolerance of the work."""
+def _adhesive_work_is_negligible(state: State) -> bool:
+    """Whether the largest possible work of adhesion on approach is within the work's tolerance."""
     contact = state.contact
     if not contact.adhesive or contact.approach != "equilibrium":
         return False
@@ -242,7 +271,7 @@ def _gain_hardly_matters(state: State) -> bool:
 
 
 def _work_by_force(state: State, start: State | None) -> tuple[float, float, int]:
-    """Work, its error and the convolutions it took, by quadrature of the force."""
+    """Loading work (J) by quadrature of the force, its error (J), and the convolutions it took."""
     contact, indentation = state.contact, state.indentation
     guess, convolutions = start, 0
 
@@ -272,10 +301,10 @@ def _work_by_force(state: State, start: State | None) -> tuple[float, float, int
 
 
 def _work_by_increments(state: State, start: State | None) -> tuple[float, float, int]:
-    """Plastic work under a bound that grows, its error, and the convolutions it took.
+    """Plastic work (J) under a growing bound, its error (J), and the convolutions it took.
 
-    It is summed over depths that grow by `_RATIO` at most, from `start` or from where nearly
-    nothing has yielded.
+    The work is summed over increasing depths from `start`, or from `_SHALLOW` times the
+    indentation, where little has yielded.
     """
     contact, indentation = state.contact, state.indentation
     first = _SHALLOW * indentation if start is None else start.indentation
@@ -289,52 +318,23 @@ def _work_by_increments(state: State, start: State | None) -> tuple[float, float
         if depth != indentation:
             now = solve_without_work(contact, depth, start=None, residual=_WORK_RESIDUAL)
             convolutions += now.convolutions
-        increment, its_error = _plastic_work(before, now)
+        increment, its_error = plastic_work(before, now)
         work, error, before = work + increment, error + its_error, now
     return work, error, convolutions
 
 
-def _plastic_work(before: State | None, after: State) -> tuple[float, float]:
-    """Work (J) of yielding from one state to the next, at most `_RATIO` as deep, and its error.
-
-    Each node yields by Δu under bounds that grow from b₁ to b₂. With u linear in the indentation
-    δ, and b in its logarithm, its work is Δu [b₁ + (b₂ − b₁) (δ₂/(δ₂ − δ₁) − 1/ln(δ₂/δ₁))]. A node
-    that begins to yield in this step does so under bounds nearer to b₂: the share of b₂ − b₁ is
-    `_NEW`. The error is a part of what b₂ − b₁ adds, `_RULE_ERROR` or `_NEW_ERROR`.
-    """
-    contact, box = after.contact, after.box
-    given, begun = after.plastic_displacement[box], np.asarray(contact.first_yield_pressure)
-    old, ratio = np.zeros(1, dtype=bool), math.inf
-    if before is not None:
-        begun = _on(before.bound, box)
-        old = before.plastic_displacement[box] > 0
-        given = given - before.plastic_displacement[box]
-        if before.indentation > 0:
-            ratio = after.indentation / before.indentation
-    share = ratio / (ratio - 1) - 1 / math.log(ratio) if 1 < ratio < math.inf else 0.5
-    area = contact.grid.cell_area
-    whole = float(np.sum(given * begun)) * area
-    growth = given * (_on(after.bound, box) - begun)
-    on, new = (float(np.sum(growth, where=nodes)) * area for nodes in (old, ~old))
-    return whole + share * on + _NEW * new, _RULE_ERROR * abs(on) + _NEW_ERROR * abs(new)
-
-
-def _on(bound: Array | float, box: Box) -> Array:
-    """A bound of each node, or one for all, on a box of the grid."""
-    return np.asarray(bound) if np.ndim(bound) == 0 else np.asarray(bound)[box]
-
-
 def _pinning_error(state: State) -> float:
-    """Error of the work (J) because the grid holds the edge of the contact between its nodes."""
+    """Error of the work (J) because the grid pins the contact edge between its nodes."""
     contact = state.contact
     return _PINNING[contact.approach] * contact.work_of_adhesion * state.contact_area
 
 
 def _work_by_truncation(state: State, start: State | None) -> tuple[float, float, int]:
-    """The same for a cut pressure without adhesion on approach.
+    """`_work_by_force` for a truncated pressure without adhesion on approach.
 
-    What the cut takes away integrates to the elastic energy less the work: exact below yield, and
-    the better of the two integrals until it takes more than it leaves.
+    The force removed by the truncation integrates to the elastic energy less the work. This
+    integral is exact below first yield, and the more accurate one while the force removed is
+    smaller than the force left.
     """
     contact, indentation = state.contact, state.indentation
     p_y, area = contact.yield_pressure, contact.grid.cell_area
@@ -373,8 +373,8 @@ def _work_by_truncation(state: State, start: State | None) -> tuple[float, float
             tolerance,
             panels=_TRUNCATION_PANELS,
         )
-        # Nodes yield one after the other, so the force has many small kinks, between which the
-        # two rules may agree by chance: blind contacts were off by up to nine tolerances.
+        # Nodes yield one after the other, so the force has many small kinks, and the two rules of
+        # the quadrature can agree by chance: errors reached nine tolerances in validation contacts.
         its_error += _TRUNCATION_MARGIN * tolerance
     if by_excess:
         increment = end.stored_energy - energy - increment

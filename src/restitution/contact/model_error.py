@@ -1,10 +1,10 @@
-"""How far the model of plasticity may move COR, from finite elements (docs/validation.md).
+"""Error of COR due to the plasticity model, from finite elements (docs/validation.md).
 
-The largest relative differences of COR found there are given against the COR that plasticity alone
-leaves, e_p = sqrt(E_el/(E_el + W_p)): it falls steadily from first yield to full plasticity, on
-smooth bodies and on asperities. Those of `expanding-cavity` depend on how steep the asperities are,
-too: on ψ = E* S/Y with S the rms slope. Beyond the range of the references the last value stands,
-and so it may be too small there.
+The largest relative differences of COR found there are tabulated over the COR due to plasticity
+alone, e_p = sqrt(E_el/(E_el + W_p)). e_p decreases monotonically from first yield to full
+plasticity, for smooth bodies and for asperities. The differences of `expanding-cavity` also depend
+on the steepness of the asperities ψ = E* S/Y, where S is the rms slope. Beyond the range of the
+references the last value is used and may be too small.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 
 from restitution.contact.state import State
 
-# COR without adhesion, and the largest relative difference found there.
+# COR without adhesion, and the largest relative difference at this COR.
 _CONSTANT = {
     "equilibrium": (
         (0.34, 0.5, 0.56, 0.68, 0.77, 0.86, 0.9999, 1.0),
@@ -26,16 +26,16 @@ _CONSTANT = {
         (0.3, 0.65, 0.65, 0.55, 0.45, 0.37, 0.3, 0.18, 0.17, 0.11, 0.07),
     ),
 }
-# ψ and the largest relative difference; and the part of it near COR = 1.
+# Largest relative difference over ψ, and its reduction factor over COR near COR = 1.
 _STEEPNESS, _GROWING = (0.0, 4.0, 6.0, 26.0), (0.03, 0.035, 0.045, 0.05)
 _NEAR_ONE = (0.94, 0.98, 1.0), (1.0, 0.5, 0.2)
-_ONSET = 1.6 / 2.8  # first yield over a yield pressure, which is fully plastic contact
+_ONSET = 1.6 / 2.8  # pressure at first yield over that of full plasticity, the yield pressure
 
 
 def model_error(state: State, restitution: float) -> float:
-    """Error of `restitution` (of an impact as deep as `state`) by the model of plasticity.
+    """Error of `restitution`, of an impact up to `state`, due to the plasticity model.
 
-    Zero where no node is at the pressure of first yield, and for bodies that are elastic.
+    It is 0 if no node has reached the pressure of first yield, and for elastic bodies.
     """
     contact = state.contact
     onset = contact.first_yield_pressure * (1.0 if contact.grows else _ONSET)
@@ -44,7 +44,7 @@ def model_error(state: State, restitution: float) -> float:
     stored, lost = state.stored_energy, state.plastic_work
     returned = stored / (stored + lost) if stored + lost > 0 else 0.0
     error = largest_difference(state, math.sqrt(returned))
-    # What adhesion takes is taken from either: e² and e_p² differ by as much.
+    # Adhesion removes the same energy whatever the plastic loss: e² and e_p² change equally.
     high, low = (
         math.sqrt(max(restitution**2 + returned * ((1 + off) ** 2 - 1), 0.0))
         for off in (error, -error)
@@ -53,7 +53,7 @@ def model_error(state: State, restitution: float) -> float:
 
 
 def largest_difference(state: State, restitution: float) -> float:
-    """The largest relative difference of COR found where plasticity alone leaves `restitution`."""
+    """Largest relative error of COR where plasticity alone gives a COR of `restitution`."""
     contact = state.contact
     if not contact.grows:
         return float(np.interp(restitution, *_CONSTANT[str(contact.plasticity)]))

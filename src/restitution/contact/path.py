@@ -1,4 +1,4 @@
-"""Paths: states one after another, as generators that can be streamed, shown and stopped."""
+"""Loading and unloading paths, as generators of states that can be streamed and stopped."""
 
 from __future__ import annotations
 
@@ -24,11 +24,27 @@ def loading_path(
     velocities: Iterable[float] | None = None,
     residual: float = RESIDUAL,
 ) -> Iterator[State]:
-    """Yield the state at each of `indentations` (m), `forces` (N) or impact `velocities` (m/s).
+    """Load the undeformed bodies to each of several depths.
 
-    They come in the order given. Work that has to be integrated is integrated from each state to
-    the next. Raises as `solve`, `solve_at_force` and `solve_at_velocity`, and `CaseError` unless
-    exactly one of the three is given.
+    Give exactly one of `indentations`, `forces` and `velocities`. If the work is an integral, it is
+    integrated from each state to the next.
+
+    Args:
+        contact: Contact to load.
+        indentations: Approaches of the bodies (m).
+        forces: Normal forces (N).
+        velocities: Impact velocities (m/s).
+        residual: Tolerance on the violation of the contact conditions (1), as in `solve`; only for
+            `indentations`.
+
+    Yields:
+        State at each depth, in the order given.
+
+    Raises:
+        CaseError: None or more than one of the three is given, or a value is not positive, or a
+            velocity is given for bodies without density.
+        NotConvergedError: A tolerance was not reached.
+        DomainError: The contact reaches the edge of the grid.
     """
     if sum(given is not None for given in (indentations, forces, velocities)) != 1:
         raise CaseError("a loading path takes one of indentations, forces and velocities")
@@ -51,12 +67,25 @@ def unloading_path(
     tolerance: float = RESTITUTION_ERROR,
     residual: float = RESIDUAL,
 ) -> Iterator[State]:
-    """Yield `state` and more on the way back to separation, where the force is zero.
+    """Unload a contact to separation, where the force is back to zero.
 
-    With adhesion the steps are as many as an error of restitution of `tolerance` takes, see
-    `separate`. Without, where the restitution is known from the energies, there are `steps`.
-    The steps crowd towards separation as (1 − t)², which makes the force of a Hertz-like unloading,
-    (δ − δ_s)^1.5, a cubic in t. Raises as `solve`.
+    Steps become shorter towards separation as (1 − t)², because the force of a Hertzian unloading,
+    (δ − δ_s)^1.5, is then a cubic in t.
+
+    Args:
+        state: State to unload.
+        steps: Number of steps (1) without adhesion.
+        tolerance: Error of the coefficient of restitution (1) that chooses the steps with adhesion,
+            see `contact.separation`.
+        residual: Tolerance on the violation of the contact conditions (1), as in `solve`; only
+            without adhesion.
+
+    Yields:
+        `state`, then the state after each step.
+
+    Raises:
+        NotConvergedError: A tolerance was not reached, or adhesive bodies did not separate.
+        DomainError: The contact reaches the edge of the grid.
     """
     if state.contact.adhesive:
         yield from separate(state, tolerance=tolerance)

@@ -1,4 +1,4 @@
-"""Contact under a prescribed force: the indentation that carries it."""
+"""Contact under a prescribed force."""
 
 from __future__ import annotations
 
@@ -12,26 +12,38 @@ from restitution.errors import CaseError, DomainError, NotConvergedError
 from restitution.theory import Hertz
 
 FORCE_TOLERANCE = 1e-8
-_SOLVE_RESIDUAL = 1e-10  # so that the noise of a solve stays well below the force tolerance
+_SOLVE_RESIDUAL = 1e-10  # keeps the error of a solve well below the force tolerance
 
 
 def solve_at_force(contact: Contact, force: float, *, start: State | None = None) -> State:
-    """Load the undeformed bodies to `force` (N), met within 1e-8 of itself, and return the state.
+    """Load the undeformed bodies to `force`, within a relative error of 1e-8.
 
-    The force grows with indentation, so a bracketing root finder cannot fail; each of its solves
-    starts from the one before. Raises `CaseError` for a force that is not positive, `DomainError`
-    when the grid cannot carry it, and as `solve`.
+    The force increases with the indentation, so a bracketing root finder always converges. With
+    adhesion each of its solves starts from the previous one.
+
+    Args:
+        contact: Contact to load.
+        force: Normal force (N), positive.
+        start: State of the same contact at a lower force, as for `solve`.
+
+    Returns:
+        State under `force`.
+
+    Raises:
+        CaseError: The force is not positive.
+        DomainError: The grid cannot carry the force, or the contact reaches its edge.
+        NotConvergedError: The force jumps at this indentation, or a solve did not converge.
     """
     from scipy.optimize import brentq
 
     if not 0 < force < math.inf:
-        raise CaseError(f"load: {force} N is not a positive force")
+        raise CaseError(f"force: {force} N is not positive")
     nx, ny = contact.grid.nodes
     capacity = contact.hardness * contact.grid.cell_area * nx * ny
     if force >= capacity:
         raise DomainError(
-            f"load: {force:.4g} N is more than the whole grid carries at the yield pressure "
-            f"({capacity:.4g} N); use a larger grid or a smaller load"
+            f"force: {force:.4g} N is more than the whole grid carries at the yield pressure "
+            f"({capacity:.4g} N); use a larger grid or a smaller force"
         )
     state = start
     convolutions = 0
@@ -52,8 +64,8 @@ def solve_at_force(contact: Contact, force: float, *, start: State | None = None
     state = solve(contact, indentation, start=start, residual=_SOLVE_RESIDUAL)
     if abs(state.force / force - 1) > FORCE_TOLERANCE:
         raise NotConvergedError(
-            f"load: {force:.6g} N was met only within {abs(state.force / force - 1):.1e} at an "
-            f"indentation of {1e9 * indentation:.6g} nm; the force jumps there (too few nodes in "
-            "contact): refine the grid or change the load"
+            f"force: {force:.6g} N was met only within {abs(state.force / force - 1):.1e} at an "
+            f"indentation of {1e9 * indentation:.6g} nm, where the force jumps (too few nodes in "
+            "contact); refine the grid or change the force"
         )
     return replace(state, convolutions=state.convolutions + convolutions)

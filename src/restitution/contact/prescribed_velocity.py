@@ -1,4 +1,4 @@
-"""Contact at an impact velocity: the indentation at which the approach is used up."""
+"""Contact at an impact velocity: its deepest point, where the kinetic energy is used up."""
 
 from __future__ import annotations
 
@@ -14,34 +14,46 @@ from restitution.errors import CaseError, NotConvergedError
 from restitution.theory import Hertz
 
 VELOCITY_TOLERANCE = 1e-6
-# Where the work is integrated, it is known no better than some parts in a thousand.
+# For works that are integrated, whose relative errors are some 1e-3.
 _INTEGRATED_TOLERANCE = 1e-4
-_WIDEST = 3.0  # times the last depth: the longest step towards a deeper bracket
+_MAX_GROWTH = 3.0  # of the depth, per step towards the upper end of the bracket
 
 
 def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None = None) -> State:
-    """Load the undeformed bodies until ½ m* V² = W(δ) and return the state.
+    """Load the undeformed bodies until the loading work is ½ m* V².
 
-    `velocity` V (m/s) is met within 1e-6 of itself where the work is exact, within 1e-4 of what
-    the state's own work says where it is integrated (`work_error` is what that is worth). Once
-    positive the work grows with indentation, so a bracketing root finder cannot fail. `start` is a
-    state of the same contact at a lower velocity, as for `solve`. Raises `CaseError` for a velocity
-    that is not positive or a body without density, and as `solve`.
+    The velocity of the state is V within a relative error of 1e-6 if the work is exact. If it is an
+    integral, the velocity computed from `State.loading_work` is V within 1e-4, and
+    `State.work_error` applies in addition. Where the work is positive it increases with the
+    indentation, so a bracketing root finder always converges.
+
+    Args:
+        contact: Contact to load.
+        velocity: Impact velocity V (m/s), positive.
+        start: State of the same contact at a lower velocity, as for `solve`.
+
+    Returns:
+        State at the deepest point of the impact.
+
+    Raises:
+        CaseError: The velocity is not positive, or a body has no density.
+        DomainError: The contact reaches the edge of the grid.
+        NotConvergedError: The work jumps at this indentation, or a solve did not converge.
     """
     from scipy.optimize import toms748
 
     mass = contact.pair.mass
     if mass is None:
-        raise CaseError("density: is missing; an impact velocity needs the masses")
+        raise CaseError("density: is missing; give both bodies one, as a velocity needs the masses")
     if not 0 < velocity < math.inf:
-        raise CaseError(f"velocity: {velocity} m/s is not a positive velocity")
+        raise CaseError(f"velocity: {velocity} m/s is not positive")
     work = 0.5 * mass * velocity**2
     tolerance = _INTEGRATED_TOLERANCE if work_is_integrated(contact) else VELOCITY_TOLERANCE
     found: dict[float, State] = {}
 
     def excess(indentation: float) -> float:
-        """Nearly linear in the indentation: works grow as its power 2 to 2.5."""
-        indentation = float(indentation)  # no NumPy scalar, which the root finder makes of it
+        """A function with the sign of W − ½ m* V², made nearly linear: W grows as δ^2 to δ^2.5."""
+        indentation = float(indentation)  # the root finder passes a NumPy scalar
         if indentation == 0:
             return -1.0
         guess = max(
@@ -53,14 +65,14 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
         found[indentation] = state = with_work(state, guess)
         return math.copysign((abs(state.loading_work) / work) ** 0.4, state.loading_work) - 1
 
-    # Hertz's depth for this work; yield and roughness make it deeper.
+    # Start at Hertz's depth for this work; yield and roughness make the contact deeper.
     smooth = Hertz(contact.pair.radius, contact.pair.contact_modulus)
     high = float(smooth.indentation_from_energy(work))
     low, above = 0.0, excess(high)
     while above < 0:
-        low, high = high, high * min(_WIDEST, max(1.05, 1.05 / max(1 + above, 1e-9)))
+        low, high = high, high * min(_MAX_GROWTH, max(1.05, 1.05 / max(1 + above, 1e-9)))
         above = excess(high)
-    # ΔV/V = ½ ΔW/W ≈ Δδ/δ to 1.25 Δδ/δ.
+    # ΔV/V = ½ ΔW/W is between Δδ/δ and 1.25 Δδ/δ.
     deepest = float(toms748(excess, low, high, xtol=0.3 * tolerance * high, rtol=1e-12, k=1))
     if deepest not in found:
         excess(deepest)
@@ -70,7 +82,7 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
     if miss > max(tolerance, state.work_error / work):
         raise NotConvergedError(
             f"velocity: {velocity:.6g} m/s was met only within {miss:.1e} at an indentation of "
-            f"{1e9 * deepest:.6g} nm; the work jumps there (too few nodes in contact): refine the "
+            f"{1e9 * deepest:.6g} nm, where the work jumps (too few nodes in contact); refine the "
             "grid or change the velocity"
         )
     return replace(state, convolutions=sum(each.convolutions for each in found.values()))

@@ -1,8 +1,9 @@
-"""Unloading an adhesive contact until it has separated, in steps that fit the error asked for.
+"""Unload an adhesive contact to separation, in steps chosen for a tolerance.
 
-At each step the bodies move back with the contact held, which is linear, and then nodes let go at
-the new indentation. Letting go late costs work: the steps' exact (sawtooth) work is below that of a
-continuous withdrawal by half of what the force jumps at the end of each.
+In each step the bodies retract with a fixed contact area, which is linear, and then nodes are
+released at the new indentation. Releasing them late costs work: the exact work of the steps (a
+sawtooth) is below that of continuous unloading by half the force jump times the step, for each
+step.
 """
 
 from __future__ import annotations
@@ -22,21 +23,22 @@ from restitution.numerics.quadrature import integrate_curve
 from restitution.theory import Kendall
 
 RESTITUTION_ERROR = 0.002
-_ACCURACY = 1e-3  # of the solves on the way, in parts of the opening at the edge
-_STEPS_OF_RECOVERY = 8  # at least so many steps over the elastic recovery
-_STEPS_OF_TENSION = 16  # and so many over the stretch a punch of this area bears in tension
-_FINEST = 400
-_FINER = (1, 2, 4)  # times as many steps, as long as the error is above what was asked
+_ACCURACY = 1e-3  # residual of the solves over the crack opening at the edge
+_STEPS_OF_RECOVERY = 8  # fewest steps over the elastic recovery
+_STEPS_OF_TENSION = 16  # fewest steps over the pull-off displacement of a punch of this area
+_FINEST = 400  # the shortest step is the pull-off displacement over this number
+_REFINEMENTS = (1, 2, 4)  # numbers of steps, relative to the first, until the tolerance is met
 _MOST_STEPS = 3000
-# The trapezium through the settled states removes the work of letting go late, to first order. Of
-# that work, what steps ten times finer still moved was below a tenth with crack closure and below
-# a third with the tension limit, whose contacts let go in larger jumps; half more is reported.
+# Integration through the states after each release removes the work of late release to first order.
+# With ten times finer steps, the remaining error was below a tenth of this work for crack closure
+# and below a third for the tension limit, whose contacts release nodes in larger jumps. The values
+# are 1.5 times as large.
 _LATENESS = {"crack-closure": 0.15, "pohrt-popov": 0.5}
 
 
 @dataclass(frozen=True)
 class Separation:
-    """What unloading to separation returned: work, its error, pull-off and where it ended."""
+    """Result of unloading to separation: works and their error (J), force (N), indentation (m)."""
 
     unloading_work: float
     error: float
@@ -48,20 +50,20 @@ class Separation:
 
 
 def separate(state: State, *, tolerance: float = RESTITUTION_ERROR) -> Iterator[State]:
-    """Yield `state` and the states on the way to separation, the last one without contact.
+    """Yield `state` and the states of unloading to separation, the last one without contact.
 
-    A `state` without contact is all of it.
-
-    `tolerance` is the error of the coefficient of restitution that the steps may cause; where their
-    own estimate is above it, the way back is gone again in finer steps, at last four times as many.
-    Raises `NotConvergedError` when the bodies do not come apart.
+    A `state` without contact is the only one yielded. `tolerance` is the error of the coefficient
+    of restitution that the steps may cause. While the estimated error is larger, unloading is
+    repeated with 2 and finally 4 times as many steps. Raises `NotConvergedError` if the bodies do
+    not separate.
     """
-    for finer in _FINER:
-        path = list(_way_back(state, tolerance / finer, finer))
+    for finer in _REFINEMENTS:
+        path = list(_unload(state, tolerance / finer, finer))
         separation = separation_of(path)
         returned, given = separation.unloading_work, state.loading_work
-        # e = sqrt(W_u/W_l) makes 2 de/e = dW_u/W_u + dW_l/W_l. A pair that sticks has no e. The
-        # error of the loading work, which finer steps do not reduce, takes half of it at most.
+        # e = sqrt(W_u/W_l) gives 2 de/e = dW_u/W_u + dW_l/W_l; a pair that sticks has no e. The
+        # error of the loading work, which finer steps do not reduce, counts up to half the
+        # tolerance.
         if returned <= 0 or given <= 0:
             break
         half = 0.5 * math.sqrt(returned / given)
@@ -71,12 +73,12 @@ def separate(state: State, *, tolerance: float = RESTITUTION_ERROR) -> Iterator[
     yield from path
 
 
-def _way_back(state: State, tolerance: float, finer: int) -> Iterator[State]:
-    """`state` and the states to separation, by at least `finer` times as many steps as usual."""
+def _unload(state: State, tolerance: float, finer: int) -> Iterator[State]:
+    """`state` and the states to separation, in at least `finer` times the usual number of steps."""
     contact = state.contact
     yield state
     if state.contact_nodes == 0:
-        return  # `approach = "pull-increments"` has let go of everything already
+        return  # `approach = "pull-increments"` has released all nodes already
     recovery, allowed = _plan(state, tolerance)
     step = recovery / (finer * _STEPS_OF_RECOVERY)
     previous: State | None = None
@@ -87,8 +89,8 @@ def _way_back(state: State, tolerance: float, finer: int) -> Iterator[State]:
         if state.force < 0.1 * abs(_punch_force(state)):
             longest = min(longest, shortened)
         elif previous is not None:
-            # Not past the force's zero, where the tension asks for shorter steps: the slope of a
-            # Hertz-like recovery leads to two thirds of the way there.
+            # Stop near zero force, beyond which tension requires shorter steps. Extrapolating the
+            # slope of a Hertz-like recovery covers two thirds of the way there.
             slope = (previous.force - state.force) / (previous.indentation - state.indentation)
             if slope > 0:
                 longest = min(longest, max(1.3 * state.force / slope, shortened))
@@ -103,7 +105,7 @@ def _way_back(state: State, tolerance: float, finer: int) -> Iterator[State]:
         )
         late = _late_force(new)
         if new.contact_nodes == 0:
-            # The last stretch: approach the break until the step is a small part of it.
+            # Pull-off lies within this step: shorten it until it is at most `reach`/`_FINEST`.
             if step > reach / _FINEST:
                 step /= 4
                 continue
@@ -119,22 +121,22 @@ def _way_back(state: State, tolerance: float, finer: int) -> Iterator[State]:
     raise NotConvergedError(
         f"the bodies have not separated after {_MOST_STEPS} steps of unloading (indentation "
         f"{1e9 * state.indentation:.4g} nm, force {state.force:.3g} N); check work_of_adhesion, "
-        f"{contact.work_of_adhesion:g} J/m2, or ask for a larger restitution error"
+        f"{contact.work_of_adhesion:g} J/m2, or increase the tolerance of the restitution"
     )
 
 
 def separation_of(path: list[State]) -> Separation:
-    """The energies of a path that `separate` has yielded."""
+    """The energies of a `path` from `separate`."""
     depth = np.array([state.indentation for state in path])
     force = np.array([state.force for state in path])
     start, end = path[0], path[-1]
     work = -integrate_curve(depth, force)
     trapezoid = -float(np.trapezoid(force, depth))
-    # What half of the steps would have made of it: four times the error, and more.
+    # Error estimate: the work from every second state has at least four times the error.
     fewer = np.append(np.arange(0, len(path) - 1, 2), len(path) - 1)
     halved = -integrate_curve(depth[fewer], force[fewer])
     late = -float(np.dot([_late_force(state) for state in path[1:]], np.diff(depth)))
-    # The energy that the states have lost must be the work of their steps, pulled and let go.
+    # The energy lost between the states must equal the work of the steps with late release.
     unaccounted = (start.loading_work - end.loading_work) - (trapezoid - late)
     return Separation(
         unloading_work=work,
@@ -150,30 +152,30 @@ def separation_of(path: list[State]) -> Separation:
 
 
 def _late_force(state: State) -> float:
-    """Half of what the force jumped when nodes let go at the end of a step, N."""
+    """Half of the force jump when nodes were released at the end of a step (N)."""
     assert state.force_before_release is not None  # set by every `unload_adhesive`
     return 0.5 * (state.force - state.force_before_release)
 
 
 def _plan(state: State, tolerance: float) -> tuple[float, float]:
-    """Length of the elastic recovery (m), and the loss of force per step (N) the error allows."""
+    """Length of the elastic recovery (m), and the largest `_late_force` (N) within `tolerance`."""
     stored, adhesion = state.stored_energy, state.contact.work_of_adhesion * state.contact_area
-    # Elastic recovery of a Hertz-like contact, from its force, and of a punch of its area.
+    # Elastic recovery of a Hertz-like contact, from its force, and of a punch of the same area.
     a = math.sqrt(state.contact_area / math.pi)
     recovery = 1.5 * math.sqrt(stored / (state.contact.pair.contact_modulus * a))
     if state.force > 0:
         recovery = min(recovery, 2.2 * stored / state.force)
     recovery = max(recovery, _tension_reach(state))
-    # Of pairs that stick or nearly do, COR below 0.05 is not worth ever finer steps.
+    # Pairs that stick or nearly do get the steps of COR = 0.05, not ever finer ones.
     work = max(state.loading_work, 0.05 * stored)
     restitution = math.sqrt(max(stored - adhesion, 0.0) / work)
-    # dCOR = dW/(2 W_l COR); half is left to the error of the loading work.
+    # dCOR = dW/(2 W_l COR); half of the tolerance is left for the error of the loading work.
     allowed = 1.0 * tolerance * max(restitution, 0.05) * work
     return recovery, allowed / (_LATENESS[state.contact.detachment] * recovery)
 
 
 def _tension_reach(state: State) -> float:
-    """Displacement (m) at which a punch of the same area breaks off (Kendall 1971)."""
+    """Pull-off displacement (m) of a punch of the same area (Kendall 1971)."""
     punch, a = _punch(state)
     return float(punch.pull_off_displacement(a))
 
@@ -185,16 +187,17 @@ def _punch_force(state: State) -> float:
 
 
 def _punch(state: State) -> tuple[Kendall, float]:
-    """Punches of these bodies, and the radius (m) of the one that has the area of the contact."""
+    """Kendall's law for the bodies, and the radius (m) of the punch with the contact area."""
     contact = state.contact
     punch = Kendall(contact.pair.contact_modulus, contact.work_of_adhesion)
     return punch, math.sqrt(state.contact_area / math.pi)
 
 
 def _predict(previous: State | None, state: State, step: float) -> NDArray[np.float64] | None:
-    """Linear continuation of the pressure, on the nodes that are still in contact.
+    """Linear extrapolation of the pressure by `step`, on the nodes in contact.
 
-    Not for speed: a step is solved loosely, and ends nearer to the solution from a guess that is.
+    It is for accuracy, not speed: the tolerance of a step is large, and a better first guess ends
+    nearer to the solution.
     """
     if previous is None:
         return None

@@ -1,7 +1,7 @@
-"""One state of a contact: what a solve returns and the next step starts from.
+"""One state of a contact: a solve returns it, and the next step starts from it.
 
-Nothing here changes after it is made: arrays are read-only. Fields hold what was solved for; force,
-area, energies and maps are properties of it.
+States are immutable and their arrays read-only. Fields hold the solution; force, area, energies and
+maps are properties.
 """
 
 from __future__ import annotations
@@ -22,17 +22,28 @@ Array = NDArray[np.float64]
 class State:
     """A contact in equilibrium at one indentation.
 
-    `box` is the part of the grid that was solved on; `box_pressure` (Pa) and the elastic
-    displacement `box_displacement` (m) are known there, and outside it the pressure is zero.
-    `plastic_displacement` (m, the surface is left lower by it) has the shape of the grid, and so
-    has `bound`, the largest pressure (Pa) that each node carries from now on, unless it is one for
-    all.
-    `plastic_work` (J) is what yielding has dissipated so far and `adhesive_work` what adhesion has
-    done, known within `work_error`. `residual` is the largest violation of the contact conditions
-    over the indentation, `convolutions` what the solve cost.
+    Arrays that could still be written to elsewhere are copied. States are compared and hashed by
+    identity; compare their fields to compare values.
 
-    The arrays are read-only, and copies of those given unless nobody can write to those. States are
-    equal (and hash) by identity: compare their fields to compare values.
+    Attributes:
+        contact: The contact before loading.
+        indentation: Approach of the bodies (m).
+        box: Block of the grid on which the contact was solved; the pressure is zero outside.
+        box_pressure: Pressure (Pa) on `box`; tension is negative.
+        box_displacement: Elastic displacement (m) on `box`.
+        plastic_displacement: Depth (m) by which yielding has lowered the surface, shape
+            `grid.nodes`.
+        bound: Largest pressure (Pa) that a node can carry from now on: one number, or an array of
+            shape `grid.nodes`.
+        plastic_work: Work dissipated by yielding so far (J).
+        adhesive_work: Work done by adhesion so far (J).
+        work_error: Error of the two works together (J).
+        residual: Largest violation of the contact conditions (1), relative to the overlap or, with
+            adhesion, to `Contact.residual_length`.
+        convolutions: Number of convolutions (1) that the solve took.
+        force_before_release: Force before nodes were released in this step of adhesive unloading
+            (N); None after loading.
+        is_first_loading: Whether the undeformed bodies were loaded to this state directly (bool).
     """
 
     contact: Contact
@@ -58,54 +69,65 @@ class State:
 
     @property
     def pressure(self) -> Array:
-        """Pressure on the whole grid, Pa."""
+        """Pressure on the whole grid (Pa), shape `grid.nodes`."""
         rows, columns = (slice(0, n) for n in self.contact.grid.nodes)
         return self.pressure_on((rows, columns))
 
     def pressure_on(self, box: Box) -> Array:
-        """Pressure on a box of the grid, Pa."""
+        """Pressure on a block of the grid.
+
+        Args:
+            box: Slices of the rows and columns.
+
+        Returns:
+            Pressure (Pa), shape of `box`.
+        """
         return reframe(self.box_pressure, self.box, box)
 
     @property
     def force(self) -> float:
-        """Normal force F = Σ p hx hy, N."""
+        """Normal force F = Σ p hx hy (N)."""
         return float(self.box_pressure.sum()) * self.contact.grid.cell_area
 
     @property
     def contact_nodes(self) -> int:
-        """Number of nodes that carry pressure."""
+        """Number of nodes with a pressure other than zero (1)."""
         return int(np.count_nonzero(self.box_pressure))
 
     @property
     def contact_area(self) -> float:
-        """Real contact area, nodes in contact times hx hy, m²."""
+        """Real contact area (m²): nodes in contact times hx hy."""
         return self.contact_nodes * self.contact.grid.cell_area
 
     @property
     def stored_energy(self) -> float:
-        """Elastic energy E_el = ½ Σ p u hx hy, J."""
+        """Elastic energy E_el = ½ Σ p u hx hy (J)."""
         twice = float(np.einsum("ij,ij->", self.box_pressure, self.box_displacement))
         return 0.5 * twice * self.contact.grid.cell_area
 
     @property
     def plastic_volume(self) -> float:
-        """Volume V_p = Σ u_p hx hy by which yielding has lowered the surface, m³."""
+        """Volume V_p = Σ u_p hx hy (m³) by which yielding has lowered the surface."""
         return float(self.plastic_displacement.sum()) * self.contact.grid.cell_area
 
     @property
     def loading_work(self) -> float:
-        """Work done on the bodies so far, W = E_el + plastic work, J."""
+        """Work done on the bodies so far (J): E_el + plastic work − adhesive work."""
         return self.stored_energy + self.plastic_work - self.adhesive_work
 
     @property
     def separation_indentation(self) -> float:
-        """Indentation at which the bodies part on unloading: min(h₀ + u_p), m (no adhesion)."""
-        # What is in contact lies lower than all that is outside the box.
+        """Indentation min(h₀ + u_p) at which bodies without adhesion separate (m)."""
+        # Nodes in contact have a smaller gap than any node outside the box.
         box = self.box if self.contact_nodes else ...
         return float((self.contact.gap[box] + self.plastic_displacement[box]).min())
 
     def patch_sizes(self) -> NDArray[np.int64]:
-        """Nodes in each contact patch (nodes joined by an edge), largest first."""
+        """Sizes of the contact patches, which are sets of nodes connected by cell edges.
+
+        Returns:
+            Numbers of nodes (1), shape (patches,), largest first.
+        """
         from scipy.ndimage import label
 
         labels, count = label(self.box_pressure != 0)

@@ -14,13 +14,20 @@ from restitution.contact.checks.resolution import (
     NODES_PER_RADIUS,
 )
 from restitution.contact.contact import Contact
-from restitution.errors import CaseError, DomainError, RestitutionError, SurfaceError
+from restitution.errors import (
+    CaseError,
+    DomainError,
+    NotConvergedError,
+    RestitutionError,
+    SurfaceError,
+)
 
 _ERRORS: dict[Code, type[RestitutionError]] = {
     "roughness-above-radius": CaseError,
     "contact-beyond-radius": CaseError,
     "pixel-above-contact": SurfaceError,
 }
+_KEYS = {"force": "load", "velocity": "impact"}  # by arguments of the solvers
 
 
 def require_possible(contact: Contact, indentation: float) -> None:
@@ -37,11 +44,16 @@ def input_warnings(contact: Contact, indentation: float) -> list[str]:
 
 @contextmanager
 def naming_keys() -> Iterator[None]:
-    """Raise contact at the edge of the grid as a `DomainError` that names keys of the case file."""
+    """Make the errors of a solve name keys of the case file instead of arguments."""
     try:
         yield
     except EdgeReachedError as error:
         raise DomainError(message(error.finding)) from error
+    except (DomainError, NotConvergedError) as error:
+        argument, _, text = str(error).partition(":")
+        if argument not in _KEYS:
+            raise
+        raise type(error)(f"{_KEYS[argument]}:{text}") from error
 
 
 def message(found: Finding) -> str:

@@ -1,4 +1,4 @@
-"""Height maps: generate or read them, clean, level, extend, place on a grid and describe them."""
+"""Height maps: generate, read, clean, level, extend, resample and describe surfaces."""
 
 from restitution.surfaces.clean import crop, remove_outliers
 from restitution.surfaces.composite import composite

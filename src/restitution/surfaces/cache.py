@@ -1,7 +1,8 @@
-"""Surfaces that took long to make, kept in the user's cache folder.
+"""Cache of surfaces that took long to make, in the user's cache folder.
 
-A file holds the heights, the provenance and the key: all that the surface depends on, the version
-of the program among it. What cannot be written or read is made anew without a word.
+A file contains the heights, the provenance and the key, which is everything the surface depends on,
+including the version of the program. If a file cannot be written or read, the surface is made again
+without a message.
 """
 
 from __future__ import annotations
@@ -22,14 +23,14 @@ import numpy as np
 from restitution.numerics.grid import Grid
 from restitution.surfaces.surface import Surface
 
-_LONG = 1.0  # s: what is made faster is not kept
-_MOST = 2**30  # bytes of all that is kept
+_LONG = 1.0  # s; surfaces that are made faster are not cached
+_MOST = 2**30  # bytes of all files
 _LARGEST = 2**28  # bytes of one surface
-_REST = 2**12  # bytes of a file beside the heights
+_REST = 2**12  # bytes of a file besides the heights
 
 
 def kept(parameters: Mapping[str, Any], make: Callable[[], Surface]) -> Surface:
-    """What `make` returns, which depends on `parameters` (of JSON's types) and nothing else."""
+    """The surface that `make` returns, cached by `parameters` (JSON types), which determine it."""
     key = json.dumps({"version": version("restitution"), **parameters}, sort_keys=True)
     file = _folder() / f"{hashlib.sha256(key.encode()).hexdigest()}.npz"
     found = _read(file, key)
@@ -49,8 +50,8 @@ def _folder() -> Path:
 
 
 def _read(file: Path, key: str) -> Surface | None:
-    """The surface in `file`; None where there is none, or it is damaged or another."""
-    # A damaged file raises what its reader finds first: any error there is a reason to go on.
+    """The surface in `file`; None if the file is missing, damaged or of another key."""
+    # A damaged file can raise any exception in its reader, and none of them matters here.
     with suppress(Exception):
         with file.open("rb") as stream, np.load(stream, allow_pickle=False) as content:
             told = json.loads(str(content["told"]))
@@ -59,7 +60,7 @@ def _read(file: Path, key: str) -> Surface | None:
             nodes, spacing = told["nodes"], told["spacing"]
             grid = Grid((nodes[0], nodes[1]), (spacing[0], spacing[1]))
             surface = Surface(np.asarray(content["height"], np.float64), grid, told["provenance"])
-        os.utime(file)  # the oldest is what was not used for longest
+        os.utime(file)  # the modification time is the time of last use
         return surface
     return None
 
@@ -73,7 +74,7 @@ def _write(file: Path, key: str, surface: Surface) -> None:
     }
     with suppress(OSError, TypeError, ValueError):
         file.parent.mkdir(parents=True, exist_ok=True)
-        _make_room(file.parent, surface.height.nbytes + _REST)
+        _free_space(file.parent, surface.height.nbytes + _REST)
         with NamedTemporaryFile(dir=file.parent, suffix=".part", delete=False) as stream:
             try:
                 np.savez(stream, height=surface.height, told=np.array(json.dumps(told)))
@@ -84,13 +85,13 @@ def _write(file: Path, key: str, surface: Surface) -> None:
                 raise
 
 
-def _make_room(folder: Path, size: int) -> None:
-    """Drop the oldest surfaces until one of `size` bytes fits, and what was never finished."""
+def _free_space(folder: Path, size: int) -> None:
+    """Delete abandoned temporary files, and the oldest surfaces until `size` bytes fit."""
     files = [(entry.stat(), entry) for entry in folder.iterdir() if entry.is_file()]
     files.sort(key=lambda item: item[0].st_mtime)
     total = size + sum(stat.st_size for stat, _ in files)
     for stat, entry in files:
-        forgotten = entry.suffix == ".part" and stat.st_mtime < time.time() - 3600
-        if total > _MOST or forgotten:
+        abandoned = entry.suffix == ".part" and stat.st_mtime < time.time() - 3600
+        if total > _MOST or abandoned:
             entry.unlink(missing_ok=True)
             total -= stat.st_size

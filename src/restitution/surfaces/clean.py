@@ -1,4 +1,4 @@
-"""What does not belong to a surface, taken out of its scan: a margin, and spikes."""
+"""Remove margins and spikes from a scan."""
 
 from __future__ import annotations
 
@@ -15,15 +15,26 @@ from restitution.surfaces.surface import Surface
 Range = tuple[float, float]
 
 _NEIGHBOURHOOD = 5  # pixels across
-_SIGMA = 1.4826  # of a normal distribution, over the median of its deviations
-_MOST = 0.1  # of the pixels: what is more frequent is no outlier
+_SIGMA = 1.4826  # standard deviation over median absolute deviation, normal distribution
+_MOST = 0.1  # largest fraction of pixels that can be outliers
 
 
 def crop(surface: Surface, *, x: Range | None = None, y: Range | None = None) -> Surface:
-    """The pixels of `surface` whose centres lie within the ranges `x` and `y` (m).
+    """Cut out the pixels whose centres lie within ranges of x and y.
 
-    Coordinates are those of `surface.grid`, zero in the middle, as its maps show them; the part
-    gets its own zero in its middle. Raises `SurfaceError` for a range that holds no pixel.
+    Coordinates are those of `surface.grid`, with zero in the middle. The new surface has its own
+    zero in its middle.
+
+    Args:
+        surface: Surface to crop.
+        x: Lowest and highest x (m); None keeps all.
+        y: Lowest and highest y (m); None keeps all.
+
+    Returns:
+        Surface of the pixels inside.
+
+    Raises:
+        SurfaceError: No pixel lies within a range.
     """
     part, nodes = [], []
     for name, within, centres in (("x", x, surface.grid.x), ("y", y, surface.grid.y)):
@@ -32,8 +43,8 @@ def crop(surface: Surface, *, x: Range | None = None, y: Range | None = None) ->
             inside = np.flatnonzero((within[0] <= centres) & (centres <= within[1]))
         if inside.size == 0:
             raise SurfaceError(
-                f"crop: no pixel of the scan has its {name} between "
-                f"{_um(*(within or (0.0, 0.0)))}; it reaches from {_um(centres[0], centres[-1])}"
+                f"{name}: no pixel of the scan lies between {_um(*(within or (0.0, 0.0)))}; choose "
+                f"a range between {_um(centres[0], centres[-1])}"
             )
         part.append(slice(int(inside[0]), int(inside[-1]) + 1))
         nodes.append(int(inside.size))
@@ -52,30 +63,39 @@ def crop(surface: Surface, *, x: Range | None = None, y: Range | None = None) ->
 
 
 def remove_outliers(surface: Surface, threshold: float) -> Surface:
-    """Replace pixels that stand out from their neighbourhood, harmonically from those around them.
+    """Replace outliers by harmonic interpolation of the pixels around them.
 
-    A pixel stands out where it differs from the median of the 5 x 5 pixels around it by more than
-    `threshold` standard deviations of such differences; their standard deviation is taken from the
-    median of their absolute values, on which outliers have no hold. 6 to 10 takes dust, spikes and
-    slipped scan lines; less takes summits. The provenance gains how many there were and the
-    largest step. Raises `SurfaceError` for a threshold that is not positive and where more than
-    10 % of the pixels stand out.
+    A pixel is an outlier if it differs from the median of the 5 x 5 pixels around it by more than
+    `threshold` standard deviations of such differences. The standard deviation is estimated from
+    the median absolute difference, which is robust against outliers. The provenance gains the
+    number of outliers and the largest difference.
+
+    Args:
+        surface: Surface to clean.
+        threshold: Number of standard deviations (1). 6 to 10 removes dust, spikes and slipped scan
+            lines; smaller values also remove summits.
+
+    Returns:
+        Surface without outliers.
+
+    Raises:
+        SurfaceError: The threshold is not positive, or more than 10 % of the pixels are outliers.
     """
     from scipy.ndimage import median_filter
 
     if not (math.isfinite(threshold) and threshold > 0):
-        raise SurfaceError(f"outliers: {threshold:g} is not a positive number of deviations")
+        raise SurfaceError(f"threshold: {threshold:g} must be positive")
     height = surface.height
     step = np.abs(height - median_filter(height, _NEIGHBOURHOOD, mode="reflect"))
     deviation = _SIGMA * float(np.median(step))
-    # A surface most of whose pixels are the median of their neighbours has no scale of its own.
+    # Without a scale (most pixels equal the median of their neighbours) there are no outliers.
     out = step > threshold * deviation if deviation > 0 else np.zeros(height.shape, bool)
     count = int(np.count_nonzero(out))
     if count > _MOST * out.size:
         raise SurfaceError(
-            f"outliers: {count / out.size:.0%} of the pixels differ from their neighbourhood by "
-            f"more than {threshold:g} standard deviations; that many belong to the surface, so "
-            "give a larger number, or leave it out"
+            f"threshold: {count / out.size:.0%} of the pixels differ from their neighbourhood by "
+            f"more than {threshold:g} standard deviations, too many to be outliers; give a larger "
+            "number, or keep the outliers"
         )
     return replace(
         surface,

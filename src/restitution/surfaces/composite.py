@@ -1,4 +1,4 @@
-"""Two rough bodies seen as one rough and one smooth body: the sum of their heights."""
+"""Composite roughness: two rough bodies are replaced by one rough and one smooth body."""
 
 from __future__ import annotations
 
@@ -10,21 +10,30 @@ from restitution.surfaces.surface import Surface, is_periodic
 
 
 def composite(surfaces: Sequence[Surface]) -> Surface:
-    """The sum of the heights of `surfaces`, all on one grid: the gap they leave is that of both.
+    """Add the heights of surfaces: the gap between rough bodies depends on this sum alone.
 
-    Both surfaces are taken with their summits up and with the axes of the contact: where the
-    orientation of two scans to each other matters, one is to be handed over turned or mirrored.
-    The provenance holds that of the parts, numbered from 1, and of the whole what the rest of the
-    program asks for: the files, the coarsest pixel, what the grid does not carry and whether all
-    are periodic. Raises `SurfaceError` for none and for different grids.
+    All surfaces have their summits up and share the axes of the contact. If the relative
+    orientation of two scans matters, rotate or mirror one of them first.
+
+    The provenance contains that of each part, numbered from 1, and for the whole: the files, the
+    coarsest pixel, the waves that the grid does not carry, and whether all parts are periodic.
+
+    Args:
+        surfaces: Surfaces on one grid.
+
+    Returns:
+        Sum of the surfaces; the surface itself if there is only one.
+
+    Raises:
+        SurfaceError: `surfaces` is empty, or the grids differ.
     """
     if not surfaces:
-        raise SurfaceError("composite: there is no surface to add; give at least one")
+        raise SurfaceError("surfaces: is empty; give at least one surface")
     first = surfaces[0]
     if len(surfaces) == 1:
         return first
     if any(surface.grid != first.grid for surface in surfaces):
-        raise SurfaceError("composite: the surfaces are on different grids; place them on one")
+        raise SurfaceError("surfaces: are on different grids; place all of them on one grid")
     provenances = [surface.provenance for surface in surfaces]
     whole: dict[str, str | float] = {"source": "composite", "kind": f"sum of {len(surfaces)}"}
     files = [str(p["file"]) for p in provenances if "file" in p]
@@ -35,7 +44,7 @@ def composite(surfaces: Sequence[Surface]) -> Surface:
         if pixels:
             whole[f"pixel_{axis}_m"] = max(pixels)
     if "refined" in provenances[0]:
-        whole["refined"] = provenances[0]["refined"]  # of all parts, as they are on one grid
+        whole["refined"] = provenances[0]["refined"]  # equal for all parts, which share the grid
     whole.update(_removed(provenances))
     if all(is_periodic(surface) for surface in surfaces):
         whole["periodicity"] = "periodic over the domain"
@@ -49,7 +58,7 @@ def composite(surfaces: Sequence[Surface]) -> Surface:
 
 
 def _removed(provenances: Sequence[Mapping[str, str | float]]) -> dict[str, float]:
-    """What the grid does not carry of the parts: the worst of them, and the rms of all."""
+    """Waves that the grid does not carry: rms height of all parts, largest values otherwise."""
     known = [p for p in provenances if "removed_slope" in p]
     if not known:
         return {}

@@ -1,8 +1,8 @@
 """Numbers that characterise a rough surface, after ISO 25178-2.
 
 z is the height less its mean, ⟨ ⟩ the mean over all cells. The standard defines its parameters
-on the scale-limited surface, so tilt and form are to be taken out first (`level`). Clauses are
-those of ISO 25178-2:2012.
+on the scale-limited surface, so subtract tilt and form first (`level`). Clauses are those of
+ISO 25178-2:2012.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 
 from restitution.surfaces.surface import Surface
 
-# Where the autocorrelation is read off: Hu & Tonder's (1992) correlation length, as in
-# `generate_surface`. (The standard's autocorrelation length Sal uses 0.2.)
+# Autocorrelation at Hu and Tonder's (1992) correlation length, as in `generate_surface`. (The
+# standard's autocorrelation length Sal uses 0.2.)
 _CORRELATION_LEVEL = 0.1
 
 
 def describe(surface: Surface) -> dict[str, float | None]:
-    """Height, slope and correlation parameters of `surface`, in SI units.
+    """Compute height, slope and correlation parameters, after ISO 25178-2:2012.
 
     - `Sq_m`: root mean square height, ⟨z²⟩^½ (4.1.1)
     - `Ssk`: skewness, ⟨z³⟩/Sq³ (4.1.2)
@@ -29,16 +29,20 @@ def describe(surface: Surface) -> dict[str, float | None]:
     - `Sv_m`: maximum pit height, −min z (4.1.5)
     - `Sz_m`: maximum height, Sp + Sv (4.1.6)
     - `Sa_m`: arithmetical mean height, ⟨|z|⟩ (4.1.7)
-    - `Sdq`: root mean square gradient, ⟨(∂z/∂x)² + (∂z/∂y)²⟩^½ (4.3.1), of the surface joined
-      linearly from cell to cell. (Central differences would not see the shortest waves at all.)
+    - `Sdq`: root mean square gradient, ⟨(∂z/∂x)² + (∂z/∂y)²⟩^½ (4.3.1), by differences between
+      neighbouring cells. (Central differences are blind to the shortest waves.)
     - `rms_curvature_per_m`: half the root mean square Laplacian, ½⟨(∇²z)²⟩^½, by second
-      differences; for asperities alike along x and y their rms curvature.
+      differences. For isotropic asperities this is their rms curvature.
     - `correlation_length_x_m`, `correlation_length_y_m`: lag along that axis at which the biased
-      autocorrelation estimate of z, normalised to 1 at lag zero, first falls to 10 % (Hu &
+      autocorrelation estimate of z, normalised to 1 at lag zero, first falls to 10 % (Hu and
       Tonder 1992), interpolated linearly between lags.
 
-    `Ssk`, `Sku` and the correlation lengths of a flat surface are undefined and given as None,
-    and so is a correlation length that the domain is too short to show.
+    Args:
+        surface: Surface to describe; subtract its tilt and form first (`level`).
+
+    Returns:
+        Parameters by name (SI). `Ssk`, `Sku` and the correlation lengths of a flat surface
+        are None, as is a correlation length that exceeds the domain.
     """
     height = surface.height
     z = height - height.mean()
@@ -58,7 +62,7 @@ def describe(surface: Surface) -> dict[str, float | None]:
         "correlation_length_x_m": None,
         "correlation_length_y_m": None,
     }
-    # What is left of a constant height once its mean is taken off is rounding, not roughness.
+    # A constant height less its mean can differ from zero by rounding.
     if Sq > 8 * np.finfo(np.float64).eps * float(np.abs(height).max()):
         unit = z / Sq
         values["Ssk"] = float(np.mean(unit**3))
@@ -69,7 +73,7 @@ def describe(surface: Surface) -> dict[str, float | None]:
 
 
 def rms_slope(surface: Surface) -> float:
-    """Root mean square gradient `Sdq`, as `describe` gives it."""
+    """Root mean square gradient `Sdq`, as in `describe`."""
     hx, hy = surface.grid.spacing
     z = surface.height - surface.height.mean()
     return math.sqrt(_mean_square_slope(z, hx) + _mean_square_slope(z.T, hy))
@@ -95,7 +99,7 @@ def _correlation_length(z: NDArray[np.float64], h: float) -> float | None:
     """Lag (m) along the first axis where the autocorrelation first falls to 10 %, or None."""
     from scipy.fft import irfft, next_fast_len, rfft
 
-    # Padding with zeros to twice the length keeps the two ends from being correlated.
+    # Padding with zeros to twice the length prevents correlations between the two ends.
     n = z.shape[0]
     padded = next_fast_len(2 * n, real=True)
     power = np.sum(np.abs(rfft(z, n=padded, axis=0)) ** 2, axis=1)

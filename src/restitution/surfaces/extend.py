@@ -1,6 +1,6 @@
-"""A scan continued beyond what was measured: by tiles of its mirror image, or by a twin.
+"""Continue a scan beyond the area measured: by tiles of its mirror image, or by a twin.
 
-Neither is the surface that was measured, and both say so (`notice` in the provenance).
+Neither is the surface that was measured, as the `notice` in the provenance states.
 """
 
 from __future__ import annotations
@@ -20,32 +20,43 @@ Extension = Literal["twin", "mirror"]
 def extend(
     surface: Surface, to: Grid | tuple[float, float], how: Extension, *, seed: int | None = None
 ) -> Surface:
-    """The scan `surface` continued over the grid `to`, or over edges `to` (m) with its own pixels.
+    """Continue a scan over a larger area.
 
-    - `twin`: another surface, of random phases from `seed`, with the spectrum, the distribution of
-      heights and the rms slope of the scan; see `twin`. It has no waves longer than the scan.
-    - `mirror`: the scan in the middle, continued by its mirror image beyond every edge, and so on.
-      It repeats itself, and slopes jump where tiles meet.
+    - `twin`: another surface with random phases, and with the spectrum, the distribution of heights
+      and the rms slope of the scan. It has no waves longer than the scan.
+    - `mirror`: the scan in the middle, surrounded by tiles that are its mirror images. The surface
+      repeats every two tiles, and slopes jump where tiles meet.
 
-    Waves that the cells of the grid cannot carry are left out. Raises `SurfaceError` for another
-    `how`, a size that is not positive, a twin without a seed, a mirrored surface with one, and as
-    `twin`.
+    Waves that the cells of the grid cannot carry are left out.
+
+    Args:
+        surface: Scan to continue.
+        to: Grid of the new surface, or its edge lengths (m), with the pixels of the scan as cells.
+        how: Method, `twin` or `mirror`.
+        seed: Seed of the random phases (1), for a twin only.
+
+    Returns:
+        Surface whose provenance has a `notice` that it is not the scan.
+
+    Raises:
+        SurfaceError: An argument is invalid, or a twin is asked of a scan that is flat, has fewer
+            than 16 pixels along an axis or is smaller than two cells.
     """
     if how not in get_args(Extension):
-        raise SurfaceError(f"extend: {how!r} is unknown; choose 'twin' or 'mirror'")
+        raise SurfaceError(f"how: {how!r} is unknown; choose 'twin' or 'mirror'")
     grid = to if isinstance(to, Grid) else _with_pixels_of(surface, to)
     if how == "twin":
         if seed is None or seed < 0:
-            raise SurfaceError("seed: a twin needs one, a whole number from 0 up")
+            raise SurfaceError("seed: a twin needs one; give a whole number from 0 up")
         return twin(surface, grid, seed)
     if seed is not None:
-        raise SurfaceError('seed: does not belong to extend = "mirror"; leave it out')
+        raise SurfaceError("seed: does not apply to how='mirror'; leave it out")
     return mirrored(surface, grid)
 
 
 def _with_pixels_of(surface: Surface, size: tuple[float, float]) -> Grid:
     if not all(math.isfinite(edge) and edge > 0 for edge in size):
-        raise SurfaceError(f"extend: {size} m are not two positive lengths")
+        raise SurfaceError(f"to: {size} m must be two positive lengths")
     nx, ny = (
         math.ceil(edge / h * (1 - 1e-9)) for edge, h in zip(size, surface.grid.spacing, strict=True)
     )

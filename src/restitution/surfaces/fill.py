@@ -1,4 +1,4 @@
-"""Heights for the pixels an instrument could not measure."""
+"""Fill pixels that an instrument could not measure."""
 
 from __future__ import annotations
 
@@ -9,12 +9,11 @@ from numpy.typing import NDArray
 def fill_harmonically(
     height: NDArray[np.float64], spacing: tuple[float, float]
 ) -> NDArray[np.float64]:
-    """Fill NaN pixels with the solution of Laplace's equation between the defined ones.
+    """Fill NaN pixels with the solution of Laplace's equation between the defined pixels.
 
-    `height` has shape (nx, ny) with at least one defined pixel, `spacing` is (hx, hy) in m.
-    The fill is as smooth as the rim of each hole allows and stays between the lowest and the
-    highest height on that rim: it adds no summit that could make contact. Across the edge of
-    the scan the slope is zero.
+    `height` has shape (nx, ny) and at least one defined pixel; `spacing` is (hx, hy) in m. The
+    heights in each hole stay between the lowest and the highest height on its rim, so no summit is
+    added that could make contact. The normal slope at the edge of the scan is zero.
     """
     from scipy.sparse import coo_array
     from scipy.sparse.linalg import spsolve
@@ -30,7 +29,7 @@ def fill_harmonically(
     diagonal, right_side = np.zeros(count), np.zeros(count)
     rows, columns, values = [np.arange(count)], [np.arange(count)], [diagonal]
     for axis, h in enumerate(spacing):
-        # Only the ratio of the two weights matters.
+        # Only the ratio of the weights along x and y matters.
         weight = (max(spacing) / h) ** 2
         for step in (1, -1):
             here, there = _neighbours(axis, step)
@@ -47,13 +46,13 @@ def fill_harmonically(
         shape=(count, count),
     )
     filled = height.copy()
-    # The matrix is symmetric, which this ordering of the unknowns exploits.
+    # This ordering of the unknowns exploits the symmetry of the matrix.
     filled[unknown] = spsolve(laplacian.tocsc(), right_side, permc_spec="MMD_AT_PLUS_A")
     return filled
 
 
 def _neighbours(axis: int, step: int) -> tuple[tuple[slice, slice], tuple[slice, slice]]:
-    """Slices of all pixels that have a neighbour `step` along `axis`, and of those neighbours."""
+    """Slices of all pixels that have a neighbour at `step` along `axis`, and of the neighbours."""
     low, high = slice(None, -1), slice(1, None)
     here, there = [slice(None), slice(None)], [slice(None), slice(None)]
     here[axis], there[axis] = (low, high) if step > 0 else (high, low)

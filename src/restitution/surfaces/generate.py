@@ -1,9 +1,9 @@
-"""Random rough surfaces: waves of prescribed amplitudes, heights of prescribed distribution.
+"""Random rough surfaces with prescribed wave amplitudes and height distribution.
 
-    z = IFFT(H · FFT(white noise)),   H the amplitudes of `spectra`
+    z = IFFT(H · FFT(white noise)),
 
-(Hu and Tonder 1992, Int. J. Mach. Tools Manufact. 32, 83–90), with normally distributed heights
-unless a skewness and a kurtosis are asked for (`heights`).
+where H are the amplitudes of `spectra` (Hu and Tonder 1992, Int. J. Mach. Tools Manufact. 32,
+83–90). Heights are normally distributed unless another skewness or kurtosis is given (`heights`).
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ from restitution.surfaces.surface import Surface
 Array = NDArray[np.float64]
 RoughnessKind = Literal["exponential", "gaussian", "self-affine"]
 
-_MARGIN = 2.0  # correlation lengths around a surface that is not to be periodic
+_MARGIN = 2.0  # margin that makes a surface non-periodic, in correlation lengths
 
 
 class Waves(TypedDict, total=False):
-    """What describes the waves of each kind: lengths in m, the `lay` in rad."""
+    """Arguments that describe the waves: lengths in m, `lay` in rad."""
 
     correlation_length: float | tuple[float, float] | None
     lay: float | None
@@ -56,33 +56,47 @@ def generate_surface(
     periodic: bool = True,
     **waves: Unpack[Waves],
 ) -> Surface:
-    """Make a random surface with zero mean and exactly the rms height `rms` (Rq, m).
+    """Generate a random surface with zero mean and a given rms height.
 
-    The `kind` says which other keywords describe the waves:
-        exponential, gaussian: the autocorrelation. `correlation_length` β (m), or two, along the
-            `lay` and across it; `lay` is the angle (rad) of the first from the x axis, default 0.
-        self-affine: the `hurst` exponent and, if it is not to be a power law up to the domain, the
-            wavelength `rolloff` (m) above which the spectrum is flat.
-        any: `shortest` (m) leaves out all shorter waves.
-    A keyword that is None counts as left out.
+    The same arguments give the same surface on every machine and with every NumPy version, within
+    rounding. Another grid draws other noise, so the same seed on a finer grid gives another
+    surface; use `refine` to refine this one.
 
-    Where `skewness` and `kurtosis` (3 is normal) differ from the normal distribution's, noise is
-    translated before it is filtered if that suffices; else heights and amplitudes are adjusted in
-    turns, and `provenance` holds the misfit of the amplitudes.
+    For a skewness or kurtosis that is not normal, the noise is transformed before it is filtered.
+    If the filter cannot reach these moments, heights and amplitudes are adjusted alternately, and
+    the provenance has the misfit of the amplitudes.
 
-    The same arguments give the same surface on every machine and numpy version, to rounding. The
-    surface is periodic over the domain of `grid` (opposite edges match), unless `periodic` is
-    false. Another grid draws other noise, so the same seed on a finer grid is another surface and
-    not a refinement of this one.
+    Args:
+        grid: Grid of the surface.
+        kind: Autocorrelation `exponential` or `gaussian`, or a `self-affine` power spectrum.
+        rms: Root mean square height Rq (m), exact.
+        seed: Seed of the noise (1), not negative.
+        skewness: Skewness of the heights (1).
+        kurtosis: Kurtosis of the heights (1), 3 for a normal distribution; at least
+            skewness² + 1.1.
+        periodic: Whether opposite edges of the surface match (bool).
+        **waves: Waves of the `kind`; None is the same as leaving an argument out.
+            `correlation_length` (m; exponential, gaussian): length over which the autocorrelation
+            falls to 10 %, or two lengths, along and across the lay.
+            `lay` (rad; exponential, gaussian): angle of the first length from the x axis,
+            default 0.
+            `hurst` (1; self-affine): Hurst exponent.
+            `rolloff` (m; self-affine): wavelength above which the spectrum is flat; without it the
+            power law extends to the domain.
+            `shortest` (m; all kinds): wavelength below which waves are left out.
 
-    Raises `SurfaceError` for an unknown `kind`, keywords that do not belong to it, a negative seed,
-    lengths that are not positive or that the grid cannot hold, and moments that no distribution
-    has (kurtosis below skewness² + 1.1); `TypeError` for a keyword that no kind has.
+    Returns:
+        Surface on `grid`.
+
+    Raises:
+        SurfaceError: The kind is unknown, an argument does not belong to it or is out of range, the
+            grid cannot carry the waves, or the moments are impossible.
+        TypeError: An argument belongs to no kind.
     """
     spectrum = _spectrum(kind, waves)
     if not (math.isfinite(rms) and rms > 0):
         raise SurfaceError(
-            f'rms: {rms:g} m is not a positive length; give the rms height, such as "0.1 um"'
+            f"rms: {rms:g} m is not a positive length; give the rms height, such as 0.1 um"
         )
     if seed < 0:
         raise SurfaceError(f"seed: {seed} is negative; give a whole number from 0 up")
@@ -107,16 +121,15 @@ def generate_surface(
 
 
 def _spectrum(kind: str, waves: Waves) -> Spectrum:
-    """The spectrum of that kind, refusing what belongs to another."""
+    """The spectrum of `kind`. Raises `SurfaceError` for an argument of another kind."""
     if kind not in _WAVES:
         raise SurfaceError(
-            f"kind: {kind!r} is no kind of roughness known here; "
-            "choose 'exponential', 'gaussian' or 'self-affine'"
+            f"kind: {kind!r} is unknown; choose 'exponential', 'gaussian' or 'self-affine'"
         )
     for name, value in waves.items():
         if name not in Waves.__annotations__:
             raise TypeError(f"generate_surface() got an unexpected keyword argument {name!r}")
-        # The default lay, 0, is as good as none.
+        # A lay of 0 is the default and allowed for every kind.
         if name not in _WAVES[kind] and value is not None and (name, value) != ("lay", 0):
             raise SurfaceError(f"{name}: does not belong to kind = {kind!r}; leave it out")
     shortest = waves.get("shortest")
@@ -129,7 +142,7 @@ def _spectrum(kind: str, waves: Waves) -> Spectrum:
     if beta is None:
         raise SurfaceError(
             f"correlation_length: missing; kind = {kind!r} needs the length over which "
-            'the autocorrelation falls to 10 %, such as "2 um"'
+            "the autocorrelation falls to 10 %, such as 2 um"
         )
     autocorrelation: Literal["exponential", "gaussian"]
     autocorrelation = "exponential" if kind == "exponential" else "gaussian"
@@ -140,16 +153,16 @@ def _spectrum(kind: str, waves: Waves) -> Spectrum:
 def _heights(
     grid: Grid, spectrum: Spectrum, seed: int, wanted: tuple[float, float], periodic: bool
 ) -> tuple[Array, dict[str, str | float]]:
-    """Heights to any scale, and how they were made."""
+    """Heights, not yet scaled, and provenance entries on the method."""
     from scipy.fft import irfft2, rfft2
 
     larger = grid if periodic else _enlarged(grid, spectrum.longest)
     noise, H = white_noise(larger.nodes, seed), spectrum.amplitude(larger)
-    # The mean is no wave; neither is there one along an axis of a single node.
+    # The mean is not a wave, and a grid of one node has no other mode.
     if not H.ravel()[1:].any() or grid.nodes == (1, 1):
         raise SurfaceError(
-            f"grid.nodes: {grid.nodes[0]} x {grid.nodes[1]} nodes carry no wave of this roughness; "
-            "give more of them"
+            f"grid: {grid.nodes[0]} x {grid.nodes[1]} nodes cannot carry a wave of this roughness; "
+            "give more nodes"
         )
     made: dict[str, str | float] = {"method": "Hu and Tonder 1992"}
     z: Array | None = None
@@ -168,14 +181,14 @@ def _heights(
             z, made["amplitude_misfit"] = adjusted(z, heights)
             made["method"] = "Schreiber and Schmitz 1996, adjusted amplitudes"
     z = z[: grid.nodes[0], : grid.nodes[1]].copy()
-    if not periodic and wanted != (0.0, 3.0):  # a part has other moments than the whole
+    if not periodic and wanted != (0.0, 3.0):  # cropping has changed the moments
         heights = distribution(z.size, *wanted)
         z = z if heights is None else in_order(heights, z)
     return z, made
 
 
 def _enlarged(grid: Grid, longest: float) -> Grid:
-    """A grid so much larger that opposite edges of a part like `grid` are strangers."""
+    """A larger grid, on which opposite edges of a part the size of `grid` are uncorrelated."""
     from scipy.fft import next_fast_len
 
     nx, ny = (

@@ -1,17 +1,18 @@
-"""Rough surfaces with waves of given amplitudes and heights of given skewness and kurtosis.
+"""Rough surfaces with given wave amplitudes and given skewness and kurtosis of the heights.
 
-`filtered`: white noise is translated (Johnson) before it is filtered, to moments that the filter
-will turn into those asked for,
+`filtered`: white noise η is transformed (Johnson's translation) before it is filtered, to moments
+that the filter changes to those wanted,
 
     Sk_z = Sk_η Σθ³/(Σθ²)^{3/2},   K_z − 3 = (K_η − 3) Σθ⁴/(Σθ²)²,
 
-θ the filter's response to a single impulse (Watson and Spedding 1982, Wear 83, 215–231; Manesh et
-al. 2010, Tribol. Int. 43, 2218–2225). The sum over many nodes draws heights back towards the normal
-distribution, so this reaches mild cases only.
+where θ is the impulse response of the filter (Watson and Spedding 1982, Wear 83, 215–231; Manesh et
+al. 2010, Tribol. Int. 43, 2218–2225). Filtering sums over many nodes, so heights tend to the normal
+distribution, and only moderate moments can be reached.
 
 `adjusted`: the heights are replaced by those of the wanted distribution in the same order, then the
-amplitudes by the wanted ones with the same phases, and again (Schreiber and Schmitz 1996, Phys.
-Rev. Lett. 77, 635–638). Ends with the heights: their distribution is exact, the amplitudes nearly.
+amplitudes by the wanted ones with the same phases, and so on alternately (Schreiber and Schmitz
+1996, Phys. Rev. Lett. 77, 635–638). The last step replaces the heights, so their distribution is
+exact and the amplitudes are approximate.
 """
 
 from __future__ import annotations
@@ -27,16 +28,16 @@ from restitution.surfaces.johnson import possible, translation
 Array = NDArray[np.float64]
 Waves = Callable[[Array], Array]
 
-_STRONGEST = 3.0, 40.0  # skewness and kurtosis of noise that is still worth translating
-_CLOSE = 0.02  # of the moments (of kurtosis: of it)
+_STRONGEST = 3.0, 40.0  # largest skewness and kurtosis of the noise in `filtered`
+_CLOSE = 0.02  # tolerance on skewness (absolute) and kurtosis (relative)
 _CORRECTIONS = 12
 _ADJUSTMENTS = 60
-_NEGLIGIBLE = 1e-3  # misfit of amplitudes
-_STANDSTILL = 0.05  # of the misfit of amplitudes, from one adjustment to the next
+_NEGLIGIBLE = 1e-3  # misfit of amplitudes at which the adjustment ends
+_STANDSTILL = 0.05  # relative decrease of the misfit, per adjustment, below which it ends
 
 
 def filtered(noise: Array, H: Array, skewness: float, kurtosis: float) -> Array | None:
-    """Heights by a digital filter; None where it does not reach the moments with this noise."""
+    """Heights by filtering `noise` with `H`; None if this does not reach the moments."""
     from scipy.fft import irfft2, rfft2
 
     theta = irfft2(H, s=noise.shape)
@@ -56,7 +57,7 @@ def filtered(noise: Array, H: Array, skewness: float, kurtosis: float) -> Array 
         skew, kurt = moments(z)
         if abs(skew - skewness) < _CLOSE and abs(kurt - kurtosis) < _CLOSE * kurtosis:
             return z
-        # One realisation is off its expectation: ask for as much more or less.
+        # The moments of one realisation differ from their expectation: correct the target by that.
         asked = (
             asked[0] + (skewness - skew) / skewing if skewing else 0.0,
             asked[1] + (kurtosis - kurt) / peaking,
@@ -65,10 +66,10 @@ def filtered(noise: Array, H: Array, skewness: float, kurtosis: float) -> Array 
 
 
 def adjusted(z: Array, heights: Array) -> tuple[Array, float]:
-    """The ascending `heights` in the shape of z, with z's amplitudes, and their misfit.
+    """The sorted `heights`, arranged to have nearly the amplitudes of `z`, and the misfit.
 
-    Amplitudes are scaled to the mean square of `heights`; the misfit is the root mean square of
-    their difference over their own.
+    The amplitudes of `z` are scaled to the mean square of `heights`. The misfit is the root mean
+    square difference from them, relative to their root mean square.
     """
     from scipy.fft import irfft2, rfft2
 
@@ -88,14 +89,14 @@ def adjusted(z: Array, heights: Array) -> tuple[Array, float]:
 
 
 def in_order(heights: Array, z: Array) -> Array:
-    """Sorted `heights`, placed so that their order over the surface is that of z."""
+    """The sorted `heights`, placed in the rank order of `z`."""
     placed = np.empty(z.size)
     placed[np.argsort(z, axis=None, kind="stable")] = heights
     return placed.reshape(z.shape)
 
 
 def distribution(n: int, skewness: float, kurtosis: float) -> Array | None:
-    """n heights in ascending order with mean 0, variance 1 and those moments; None if none."""
+    """n sorted heights with mean 0, variance 1, skewness and kurtosis; None if not found."""
     from scipy.special import ndtri
 
     translate = translation(skewness, kurtosis)
@@ -107,7 +108,7 @@ def distribution(n: int, skewness: float, kurtosis: float) -> Array | None:
 
 
 def moments(z: Array) -> tuple[float, float]:
-    """Skewness and kurtosis."""
+    """Skewness and kurtosis of `z`."""
     unit = z - z.mean()
     unit = unit / math.sqrt(float(np.mean(unit**2)))
     return float(np.mean(unit**3)), float(np.mean(unit**4))

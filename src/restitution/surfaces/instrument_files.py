@@ -1,9 +1,8 @@
-"""Instruments' own file formats, through the SurfaceTopography package.
+"""Read instruments' own file formats through the SurfaceTopography package.
 
-SurfaceTopography gives heights as `[i, j]` ↔ `[x, y]`, as this package does, with y running down
-the picture (its readers are made so that `imshow(heights.T)` shows what the instrument shows), and
-a physical size that is the number of pixels times the pixel. It is imported on use: it is an
-optional extra.
+SurfaceTopography returns heights as `[i, j]` ↔ `[x, y]`, like this package, with y pointing down
+the picture (`imshow(heights.T)` shows the picture of the instrument). Its physical size is the
+number of pixels times the pixel size. The package is an optional extra and imported on use.
 """
 
 from __future__ import annotations
@@ -21,8 +20,8 @@ import numpy as np
 from restitution.errors import SurfaceError
 from restitution.surfaces.scan import Y_DOWN, Scan, in_metres
 
-# Earlier versions read the sample files wrongly without a word: .tmd a thousand times too small
-# along all three axes, undefined pixels of .sur as heights (found with 1.25.0).
+# Earlier versions misread the sample files without an error (1.25.0: .tmd a thousand times too
+# small along all axes, undefined pixels of .sur as heights).
 _OLDEST_VERSION = (1, 27)
 INSTALL_READERS = (
     'install the readers with `pip install "SurfaceTopography>=1.27"` (the extra "measured")'
@@ -30,18 +29,18 @@ INSTALL_READERS = (
 
 
 class UnrecognisedError(SurfaceError):
-    """A file that no reader opens: of an unknown format, or damaged."""
+    """A file that no reader can open: its format is unknown, or it is damaged."""
 
 
 class NoReadersError(SurfaceError):
-    """SurfaceTopography, which brings the readers, is not installed or too old."""
+    """SurfaceTopography, which has the readers, is not installed or too old."""
 
 
 def read_instrument(path: Path, channel: int | None) -> Scan:
-    """Read height channel `channel`, or the default one of the file's reader.
+    """Read height channel `channel`, or the default channel of the reader.
 
-    Raises `NoReadersError`, `UnrecognisedError` when no reader opens the file, and `SurfaceError`
-    when the channel does not exist or is not a height map in a unit of length.
+    Raises `NoReadersError`, `UnrecognisedError` if no reader can open the file, and `SurfaceError`
+    if the channel does not exist or is not a height map in a unit of length.
     """
     with _quiet():
         open_topography = _import_readers(path)
@@ -70,13 +69,13 @@ def _import_readers(path: Path) -> Callable[[str], Any]:
         import SurfaceTopography
     except ImportError as error:
         raise NoReadersError(
-            f"{path}: reading this format takes the SurfaceTopography package; {INSTALL_READERS}"
+            f"{path}: reading this format needs the SurfaceTopography package; {INSTALL_READERS}"
         ) from error
     version = SurfaceTopography.__version__
     if tuple(int(part) for part in re.findall(r"\d+", version)[:2]) < _OLDEST_VERSION:
         oldest = ".".join(map(str, _OLDEST_VERSION))
         raise NoReadersError(
-            f"{path}: reading this format takes SurfaceTopography {oldest} or later, and {version} "
+            f"{path}: reading this format needs SurfaceTopography {oldest} or later, but {version} "
             f"is installed; {INSTALL_READERS}"
         )
     open_topography: Callable[[str], Any] = SurfaceTopography.open_topography
@@ -103,13 +102,13 @@ def _read_channel(path: Path, reader: Any, channel: int | None) -> Scan:
             f"{_value_unit(chosen) or 'no stated unit'}) is not a height map that can be converted "
             f"to metres; {remedy}"
         )
-    # Without a size in the file the reader insists on one: its pixel count stands in for it.
+    # If the file has no size, the reader requires one: pass the pixel count as a placeholder.
     sized = chosen.physical_sizes is not None
     topography = chosen.topography(physical_sizes=None if sized else chosen.nb_grid_pts)
     x, y = (in_metres(float(side), topography.unit) for side in topography.physical_sizes)
     heights = topography.to_unit("m").heights()
     return Scan(
-        # An undefined pixel is masked; numpy's own fill value would be taken for a height.
+        # Undefined pixels are masked; NumPy's default fill value would look like a height.
         np.ma.filled(np.ma.asarray(heights, dtype=np.float64), np.nan),
         (x, y) if sized else (None, None),
         {
@@ -131,16 +130,16 @@ def _default_index(reader: Any, channels: list[Any]) -> int:
 
 
 def _is_height(channel: Any) -> bool:
-    # The kind is asked for because the unit alone leaves A open: ampere or ångström.
+    # The unit alone is ambiguous: A is ampere or ångström.
     is_length = in_metres(1.0, _value_unit(channel)) is not None
     return bool(channel.is_height_channel and is_length and channel.dim == 2)
 
 
 def _value_unit(channel: Any) -> str | None:
-    """Unit of the values of a channel, None when it is not known.
+    """Unit of the values of a channel; None if unknown.
 
-    `channel.unit` is the unit of the lateral lengths, unless the reader could not convert the
-    values to it: then it is a pair (lateral unit, value unit).
+    `channel.unit` is the lateral unit, or a pair (lateral unit, value unit) if the reader could not
+    convert the values to the lateral unit.
     """
     unit: str | None
     unit = channel.unit[1] if isinstance(channel.unit, tuple) else channel.data_unit
@@ -156,7 +155,7 @@ def _list(some: list[Any], channels: list[Any]) -> str:
 
 
 def _why_unreadable(error: Exception, suffix: str) -> str:
-    """One clause out of SurfaceTopography's list of what each of its readers tried."""
+    """The part of SurfaceTopography's error message on the reader named after `suffix`."""
     named_after_suffix = rf"tried {re.escape(suffix.removeprefix('.'))}reader:\s*(.+)"
     reason = re.search(named_after_suffix, str(error), re.IGNORECASE)
     if reason is None:
@@ -171,7 +170,7 @@ def _first_line(error: Exception) -> str:
 
 @contextlib.contextmanager
 def _quiet() -> Iterator[None]:
-    """Keep what third-party readers print and warn off the user's terminal."""
+    """Suppress output and warnings of third-party readers."""
     with (
         warnings.catch_warnings(),
         contextlib.redirect_stdout(io.StringIO()),

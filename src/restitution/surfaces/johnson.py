@@ -1,10 +1,10 @@
-"""Johnson's translations: a standard normal variable given any possible skewness and kurtosis.
+"""Johnson's translations: transform a standard normal variable z to a given skewness and kurtosis.
 
     unbounded (SU):  x = sinh((z − γ)/δ)        bounded (SB):  x = 1/(1 + exp(−(z − γ)/δ))
 
-z standard normal. On the line between the two regions is the lognormal distribution, which both
-approach. Johnson (1949), Biometrika 36, 149–176; fitting by moments: Hill, Hill and Holder (1976),
-Applied Statistics 25, 180–189 (AS 99). Kurtosis is that of ISO 25178, 3 for a normal variable.
+The lognormal distribution is the limit of both, on the line between their regions. Johnson (1949),
+Biometrika 36, 149–176; fitting by moments: Hill, Hill and Holder (1976), Applied Statistics 25,
+180–189 (AS 99). Kurtosis is that of ISO 25178, 3 for a normal variable.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-# Below skewness² + 1 there is no distribution, and just above it only two heights, nearly.
+# No kurtosis is below skewness² + 1, and distributions near this limit are nearly two-valued.
 LEAST_KURTOSIS = 1.1
 _ABSCISSAE, _WEIGHTS = np.polynomial.hermite_e.hermegauss(201)
-_EXACT, _CLOSE = 1e-6, 2e-3  # on the lognormal line itself both forms only come close
+_EXACT, _CLOSE = 1e-6, 2e-3  # misfits; on the lognormal line both forms are only close
 _STARTS = ((0.0, 0.0), (0.5, 0.3), (1.5, 0.5), (3.0, 0.8), (0.5, -0.7), (1.2, -1.2), (2.5, -1.5))
 
 
@@ -35,14 +35,14 @@ class _Fit:
 
 
 def possible(skewness: float, kurtosis: float) -> bool:
-    """Whether a distribution with such moments can be made."""
+    """Whether a distribution with these moments can be constructed."""
     return math.isfinite(skewness) and skewness**2 + LEAST_KURTOSIS <= kurtosis < math.inf
 
 
 def translation(skewness: float, kurtosis: float) -> Callable[[Array], Array] | None:
-    """The map of a standard normal variable to one of mean 0, variance 1 and those moments.
+    """An increasing map of a standard normal variable to mean 0, variance 1 and these moments.
 
-    It is increasing. None where no parameters are found that give the moments to 0.2 %.
+    None if no parameters are found that give the moments to 0.2 %.
     """
     if skewness == 0 and kurtosis == 3:
         return np.array
@@ -74,7 +74,7 @@ def _bounded(z: Array, gamma: float, log_delta: float) -> Array:
 
 
 def _moments(form: Callable[..., Array], shape: Array) -> tuple[float, float, float, float]:
-    """Mean, standard deviation, skewness and kurtosis, by Gauss–Hermite quadrature."""
+    """Mean, standard deviation, skewness and kurtosis of x, by Gauss–Hermite quadrature."""
     weight = _WEIGHTS / _WEIGHTS.sum()
     x = form(_ABSCISSAE, *shape)
     mean = float(weight @ x)
@@ -89,12 +89,12 @@ def _moments(form: Callable[..., Array], shape: Array) -> tuple[float, float, fl
 
 
 def _fitted(form: Callable[..., Array], skewness: float, kurtosis: float) -> _Fit:
-    """The parameters (γ, ln δ) of a form that come closest to the moments."""
+    """The fit of the parameters (γ, ln δ) of a form to the moments."""
     from scipy.optimize import least_squares
 
     def miss(shape: Array) -> Array:
         _, _, skew, kurt = _moments(form, shape)
-        # Kurtosis on a scale on which lognormal tails are not infinitely far away.
+        # The logarithm keeps the very large kurtosis of lognormal tails in range.
         return np.array([skew - skewness, math.log(kurt / kurtosis)])
 
     best: _Fit | None = None

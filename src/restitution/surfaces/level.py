@@ -1,4 +1,4 @@
-"""Levelling: what a scan shows of the tilt and the form of its sample, taken out."""
+"""Levelling: subtract the tilt and the form of the sample from a scan."""
 
 from __future__ import annotations
 
@@ -18,13 +18,21 @@ _DEGREE = {"center": 0, "tilt": 1, "curvature": 2}
 def level(surface: Surface, how: Levelling) -> Surface:
     """Subtract the least-squares mean, plane or paraboloid (1, x, y, x², xy, y²) of the heights.
 
-    `how` is "none", "center" (mean), "tilt" (plane) or "curvature" (paraboloid). The provenance
-    entry `levelling` lists what was subtracted, in order. Raises `SurfaceError` for another
-    `how`.
+    The provenance entry `levelling` lists the forms subtracted, in order.
+
+    Args:
+        surface: Surface to level.
+        how: `none`, `center` (mean), `tilt` (plane) or `curvature` (paraboloid).
+
+    Returns:
+        Levelled surface.
+
+    Raises:
+        SurfaceError: `how` is unknown.
     """
     if how not in get_args(Levelling):
         raise SurfaceError(
-            f"levelling: {how!r} is unknown; choose one of {', '.join(get_args(Levelling))}"
+            f"how: {how!r} is unknown; choose one of {', '.join(get_args(Levelling))}"
         )
     before = [str(surface.provenance["levelling"])] if "levelling" in surface.provenance else []
     done = [step for step in [*before, how] if step != "none"]
@@ -39,10 +47,10 @@ def level(surface: Surface, how: Levelling) -> Surface:
 
 
 def _least_squares_form(height: NDArray[np.float64], degree: int) -> NDArray[np.float64]:
-    """Polynomial of total degree `degree` closest to the heights, shape (nx, ny).
+    """Least-squares polynomial of total degree `degree` through the heights, shape (nx, ny).
 
-    On a regular grid the products of the two axes' orthonormal polynomials are themselves
-    orthonormal, so the fit is a projection: no matrix with a row for each pixel is needed.
+    On a regular grid the products of orthonormal polynomials along x and y are orthonormal, so the
+    fit is a projection and needs no matrix with a row for each pixel.
     """
     P, Q = (_orthonormal_polynomials(n, degree) for n in height.shape)
     coefficients = P.T @ height @ Q
@@ -53,6 +61,6 @@ def _least_squares_form(height: NDArray[np.float64], degree: int) -> NDArray[np.
 
 
 def _orthonormal_polynomials(n: int, degree: int) -> NDArray[np.float64]:
-    """Columns 0…degree (as many as n points can tell apart) on n equidistant points."""
+    """Polynomials of degree 0 to `degree` (at most n − 1) on n equidistant points, as columns."""
     s = np.linspace(-1.0, 1.0, n) if n > 1 else np.zeros(1)
     return np.linalg.qr(np.vander(s, min(degree + 1, n), increasing=True)).Q

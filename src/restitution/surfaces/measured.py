@@ -1,4 +1,4 @@
-"""Measured topographies: one function for every file format, one kind of error."""
+"""Read measured topographies: one function for all file formats, with one type of error."""
 
 from __future__ import annotations
 
@@ -22,17 +22,18 @@ from restitution.surfaces.instrument_files import (
     read_instrument,
 )
 from restitution.surfaces.numpy_files import NUMPY_SUFFIXES, read_numpy
+from restitution.surfaces.refused import RefusedSurfaceError
 from restitution.surfaces.scan import MOST_PIXELS, Scan
 from restitution.surfaces.surface import Surface
 from restitution.surfaces.text_files import TEXT_SUFFIXES, NotAMatrixError, read_text
 
 UndefinedPixels = Literal["error", "interpolate"]
 
-# Beyond this part of the scan the fill, which is smooth, would show up in every statistic.
+# Largest fraction of a scan that is filled; more of the smooth fill would affect all statistics.
 _LARGEST_FILL = 0.2
-# Two statements of a scan's size that differ by less, relatively, are the same one, rounded.
+# Relative difference up to which the sizes in the file and in the argument agree.
 _SIZE_ROUNDING = 1e-6
-# No scan is taller than this many times its longer side; heights not in metres are, by far.
+# Largest height range over the longer edge; heights in another unit than metres exceed it by far.
 _TALLEST = 10.0
 _LARGEST = 2**30  # bytes of a file
 
@@ -44,27 +45,38 @@ def read_surface(
     size: tuple[float, float] | None = None,
     undefined: UndefinedPixels = "error",
 ) -> Surface:
-    """Read a measured height map; heights in m, shape (nx, ny) ↔ (x, y), not levelled.
+    """Read a measured height map, without levelling it.
 
     - `.npy`, `.npz`: a 2-D array in metres, `array[i, j]` at x_i, y_j.
-    - `.txt`, `.csv`, `.dat`, `.asc`: a matrix in metres, a scan line (constant y) on each line.
-    - everything else, and text that is no plain matrix: SurfaceTopography's readers, which come
-      with the extra `measured`.
+    - `.txt`, `.csv`, `.dat`, `.asc`: a matrix in metres, with a scan line (constant y) on each
+      line.
+    - All other files, and text that is not a plain matrix: the readers of SurfaceTopography, from
+      the extra `measured`.
 
-    `channel` counts from 0; without it the reader's default height channel is taken. `size` is
-    the length of the x and y edges (pixels times pixel size) in m: needed where the file does
-    not give it, and not to be contradicted where it does. With `undefined="interpolate"` up to
-    20 % undefined pixels are filled harmonically from their neighbours.
+    The provenance contains the file, its SHA-256, format and channel, the size, and the number of
+    undefined pixels.
 
-    The provenance names the file, its SHA-256, format and channel, the size, and the undefined
-    pixels. Raises `SurfaceError`, and nothing else, for a file that cannot be used.
+    Args:
+        path: File to read.
+        channel: Number of the channel (1), from 0; None selects the reader's default height
+            channel.
+        size: Lengths of the x and y edges (m), pixels times pixel size. Required if the file does
+            not contain them; they must agree if it does.
+        undefined: `interpolate` fills up to 20 % of undefined pixels harmonically from their
+            neighbours, `error` rejects them.
+
+    Returns:
+        Surface with heights (m), shape (nx, ny).
+
+    Raises:
+        SurfaceError: The file cannot be used, for any reason, or an argument is invalid.
     """
     if undefined not in get_args(UndefinedPixels):
         raise SurfaceError(f"undefined: {undefined!r} is unknown; choose 'error' or 'interpolate'")
     if size is not None and not all(math.isfinite(side) and side > 0 for side in size):
         raise SurfaceError(
-            f"size: {_text(size)} um are not two positive lengths; give those of the scan, such "
-            'as size = ["10 um", "10 um"]'
+            f"size: {_text(size)} um are not two positive lengths; give the edge lengths of the "
+            "scan in m"
         )
     file = Path(path)
     _check_readable(file)
@@ -103,7 +115,7 @@ def read_surface(
 
 
 def _check_readable(file: Path) -> None:
-    """Raise `SurfaceError` unless the file is there, a file, readable, not empty nor too large."""
+    """Raise `SurfaceError` for a missing, unreadable, irregular, empty or too large file."""
     try:
         kind = file.stat()
         if stat.S_ISDIR(kind.st_mode):
@@ -145,8 +157,8 @@ def _read_scan(file: Path, channel: int | None) -> Scan:
         try:
             scan = read_text(file)
         except NotAMatrixError as not_a_matrix:
-            # Instruments use these suffixes, too. What none of their readers knows is judged as
-            # the matrix its name says it is.
+            # Instruments use these suffixes, too. If no instrument reader knows the file, report
+            # the error of the matrix reader.
             try:
                 return read_instrument(file, channel)
             except UnrecognisedError:
@@ -168,24 +180,25 @@ def _agreed_size(file: Path, scan: Scan, given: tuple[float, float] | None) -> t
     """Edge lengths (m) from the file and the argument, which must not contradict each other."""
     if not all(side is None or (math.isfinite(side) and side > 0) for side in scan.size):
         raise SurfaceError(
-            f"{file}: says that the scan is {_text(scan.size)} um, which are not two positive "
-            "lengths; correct the file"
+            f"{file}: its size of the scan, {_text(scan.size)} um, is not two positive lengths; "
+            "correct the file"
         )
     x, y = scan.size
     if given is None:
         if x is None or y is None:
-            raise SurfaceError(
-                f"{file}: does not say how large the scan is; give its edge lengths, such as "
-                'size = ["10 um", "10 um"]'
+            raise RefusedSurfaceError(
+                "size-unknown",
+                f"{file}: does not contain the size of the scan",
+                "give its edge lengths in m, such as size=(10e-6, 10e-6)",
             )
         return x, y
     for stated, wanted in zip(scan.size, given, strict=True):
         if stated is not None and not math.isclose(stated, wanted, rel_tol=_SIZE_ROUNDING):
             raise SurfaceError(
-                f"{file}: says that the scan is {_text(scan.size)} um, but size says "
-                f"{_text(given)} um; leave size out, or correct it"
+                f"{file}: the scan is {_text(scan.size)} um according to the file, but "
+                f"{_text(given)} um according to size; leave size out, or correct it"
             )
-    # What the file says is the original; the argument may be a rounding of it.
+    # Prefer the size in the file, because the argument may be rounded.
     return given[0] if x is None else x, given[1] if y is None else y
 
 
@@ -196,9 +209,10 @@ def _check_undefined(file: Path, missing: int, total: int, undefined: UndefinedP
             f"the {_LARGEST_FILL:.0%} that can be filled; measure again, or crop the file"
         )
     if missing and undefined == "error":
-        raise SurfaceError(
-            f"{file}: {missing} of {total} pixels ({missing / total:.2%}) are undefined; give "
-            'undefined = "interpolate" to fill them from their neighbours, or crop the file'
+        raise RefusedSurfaceError(
+            "undefined-pixels",
+            f"{file}: {missing} of {total} pixels ({missing / total:.2%}) are undefined",
+            'give undefined="interpolate" to fill them from their neighbours, or crop the file',
         )
 
 

@@ -1,4 +1,4 @@
-"""A scan continued by its mirror image beyond every edge, and so on, at the nodes of a grid."""
+"""Tile a grid with a scan and its mirror images."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ Array = NDArray[np.float64]
 
 
 def mirrored(scan: Surface, grid: Grid) -> Surface:
-    """The tiles of `scan` at the nodes of `grid`, one of them in the middle.
+    """Tiles of `scan` and its mirror images at the nodes of `grid`, with the scan in the middle.
 
-    A grid that the scan covers gets the scan alone. Waves that the cells of `grid` cannot carry are
-    taken out of the tiles, otherwise heights are those of a cubic spline through the pixels.
+    If the scan covers the grid, there is only one tile. Waves that the cells of `grid` cannot carry
+    are removed. Heights are interpolated between pixels by a cubic spline.
     """
     if all(g <= s * (1 + 1e-9) for g, s in zip(grid.size, scan.grid.size, strict=True)):
         return place_on_grid(scan, grid)
@@ -57,7 +57,7 @@ def _axes(grid: Grid) -> tuple[tuple[int, float], tuple[int, float]]:
 
 
 def _pixel(along: Array, axis: tuple[int, float]) -> Array:
-    """Where in the scan, in pixels from its first, the tiles have the heights `along` an axis."""
+    """Fractional pixel of the scan that each coordinate `along` an axis (m) maps to."""
     n, h = axis
     from_edge = np.mod(along / h + n // 2 + 0.5, 2 * n)
     folded: Array = np.minimum(from_edge, 2 * n - from_edge) - 0.5

@@ -1,4 +1,4 @@
-"""Height matrices in NumPy files: `array[i, j]` is the height at x_i, y_j."""
+"""Read height matrices from NumPy files: `array[i, j]` is the height at x_i, y_j."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ SAVE_AS_NUMPY = "save the heights in metres as a 2-D array with numpy.save"
 
 
 def read_numpy(path: Path) -> Scan:
-    """Read the 2-D array of a `.npy`, or the array `height` or the only one of a `.npz`, in m.
+    """Read the 2-D array (m) of a `.npy`, or the array `height` (or the only array) of a `.npz`.
 
-    A `.npz` may also hold `size`, the two edge lengths in m. Raises `SurfaceError` for anything
-    else, and for pickled objects without loading them.
+    A `.npz` may also contain `size`, the two edge lengths (m). Raises `SurfaceError` for other
+    content, including pickled objects, which are not loaded.
     """
     array, size, details = _load_arrays(path)
     if array.ndim != 2 or min(array.shape) < 2:
@@ -32,7 +32,7 @@ def read_numpy(path: Path) -> Scan:
         raise SurfaceError(
             f"{path}: holds data of type {array.dtype}, not real numbers; {SAVE_AS_NUMPY}"
         )
-    # A longer float that does not fit becomes infinite, and is then reported as undefined.
+    # A long double beyond the range of float64 becomes infinite and is reported as undefined.
     with np.errstate(over="ignore"):
         height = np.array(array, dtype=np.float64)
     return Scan(height, size, details)
@@ -41,12 +41,12 @@ def read_numpy(path: Path) -> Scan:
 def _load_arrays(
     path: Path,
 ) -> tuple[NDArray[np.generic], tuple[float | None, float | None], dict[str, str | float]]:
-    # Unpickling runs code that the file brings, so it stays forbidden in both branches.
+    # Unpickling would run code from the file, so both branches forbid it.
     try:
         _check_headers(path)
         if path.suffix.lower() == ".npy":
-            # Mapping the file compares the shape its header promises with its length, where
-            # loading it would allocate whatever a damaged header asks for.
+            # Memory mapping checks the shape in the header against the length of the file; loading
+            # would allocate the memory that a damaged header asks for.
             return np.lib.format.open_memmap(path, mode="r"), (None, None), {"format": "npy"}
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as archive:
             key = _height_key(path, archive.files)
@@ -56,7 +56,7 @@ def _load_arrays(
         raise
     except Exception as error:
         raise SurfaceError(
-            f"{path}: is no plain NumPy file (damaged, or with pickled objects, which are never "
+            f"{path}: is not a plain NumPy file (damaged, or with pickled objects, which are never "
             f"loaded); {SAVE_AS_NUMPY}"
         ) from error
 
@@ -67,8 +67,8 @@ def _height_key(path: Path, keys: list[str]) -> str:
     others = [key for key in keys if key != "size"]
     if len(others) != 1:
         raise SurfaceError(
-            f"{path}: holds the arrays {', '.join(keys) or '(none)'}, and none is called 'height'; "
-            "name the height map 'height'"
+            f"{path}: holds the arrays {', '.join(keys) or '(none)'}, but not 'height'; name the "
+            "height map 'height'"
         )
     return others[0]
 
@@ -84,7 +84,7 @@ def _size_entry(path: Path, entry: NDArray[np.generic]) -> tuple[float, float]:
 
 
 def _check_headers(path: Path) -> None:
-    """Raise `SurfaceError` where an array would unpack to more pixels than a scan may have."""
+    """Raise `SurfaceError` if an array would unpack to more pixels than a scan may have."""
     if path.suffix.lower() == ".npy":
         with path.open("rb") as stream:
             _check_header(path, stream)

@@ -2,11 +2,11 @@
 
     C(q) = |∫ z exp(−iq·r) d²r|²/A,   Sq² = (2π)⁻² ∫ C d²q,   (Surf. Topogr. 5, 013001, eqs 2, 6)
 
-C in m⁴, A the area of the surface. A scan is not periodic: the jump between its opposite edges
-would put a spectrum of its own above that of the surface. So it is multiplied by sine tapers, nine
-in all, whose spectra are averaged (Riedel and Sidorenko 1995, IEEE Trans. Signal Process. 43,
-188–195): together they see all of the scan but its rim, and what leaks from long waves to short
-ones falls with the fourth power of the wave number. Waves are smeared over ±1.5/size.
+C is in m⁴, and A is the area of the surface. A scan is not periodic, and the jump between its
+opposite edges would dominate the spectrum. The scan is therefore multiplied by nine sine tapers,
+and the spectra are averaged (Riedel and Sidorenko 1995, IEEE Trans. Signal Process. 43, 188–195).
+Together the tapers cover all of the scan except its rim, and the leakage from long waves to short
+ones decreases with the fourth power of the wave number. The resolution in frequency is ±1.5/size.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 
 _TAPERS = 3  # along either axis
 _BANDS_PER_OCTAVE = 4
-_SECTOR = 15  # degrees on either side of an axis
+_SECTOR = 15  # ° on either side of an axis
 
 
 class RadialSpectrum(NamedTuple):
@@ -34,7 +34,7 @@ class RadialSpectrum(NamedTuple):
 
 
 class DirectedSpectrum(NamedTuple):
-    """A `spectrum` averaged over some `directions`, named in words."""
+    """A `spectrum` averaged over `directions`, a description in words."""
 
     directions: str
     spectrum: RadialSpectrum
@@ -43,7 +43,7 @@ class DirectedSpectrum(NamedTuple):
 def power_spectral_density(surface: Surface) -> Array:
     """C (m⁴), shape `grid.nodes`, at the wave vectors of `numpy.fft.fftfreq` times 2π.
 
-    Of a periodic surface it is exact, otherwise an estimate (see above).
+    It is exact for a periodic surface, otherwise an estimate by tapers.
     """
     from scipy.fft import fft2
 
@@ -61,10 +61,10 @@ def power_spectral_density(surface: Surface) -> Array:
 
 
 def radial_spectrum(surface: Surface, density: Array | None = None) -> RadialSpectrum:
-    """`power_spectral_density` (or `density`, if it is at hand), averaged over directions.
+    """The power spectral density, averaged over directions.
 
-    Bands are a quarter of an octave wide, up to the shortest wave that both axes carry. Where
-    `density` is NaN, directions are left out.
+    `density` is that of `surface`, if already known; wave vectors at which it is NaN are left out.
+    Bands are a quarter of an octave wide, up to the shortest wave that both axes carry.
     """
     C = power_spectral_density(surface) if density is None else density
     q = wave_numbers(C.shape, surface.grid.spacing)
@@ -81,7 +81,7 @@ def radial_spectrum(surface: Surface, density: Array | None = None) -> RadialSpe
 
 
 def directed_spectra(surface: Surface) -> list[DirectedSpectrum]:
-    """`radial_spectrum` over all directions, and over those within 15° of x and of y."""
+    """The radial spectrum over all directions, and over those within 15° of x and of y."""
     C = power_spectral_density(surface)
     qx, qy = (
         2 * math.pi * np.fft.fftfreq(n, h)
@@ -101,7 +101,7 @@ def directed_spectra(surface: Surface) -> list[DirectedSpectrum]:
 
 
 def wave_numbers(nodes: tuple[int, ...], spacing: tuple[float, float]) -> Array:
-    """|q| (rad/m) of the modes of `fft2`, shape `nodes`."""
+    """Wave numbers |q| (rad/m) of the modes of `fft2`, shape `nodes`."""
     qx, qy = (2 * math.pi * np.fft.fftfreq(n, h) for n, h in zip(nodes, spacing, strict=True))
     return np.asarray(np.hypot(qx[:, None], qy[None, :]))
 

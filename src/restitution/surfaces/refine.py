@@ -1,4 +1,4 @@
-"""The same surface on a finer or a coarser grid over the same domain, by its spectrum."""
+"""Resample a surface to a finer or coarser grid over the same domain, by its spectrum."""
 
 from __future__ import annotations
 
@@ -13,15 +13,25 @@ Array = NDArray[np.float64]
 
 
 def refine(surface: Surface, factor: int) -> Surface:
-    """`surface` on cells `factor` times as small along either axis, over the same domain.
+    """Divide the cells of a surface, over the same domain.
 
     Heights at the new nodes are those of the trigonometric polynomial through the old ones (zero
-    padding of the spectrum): no wave is added. A surface that is not periodic is continued by its
-    mirror image first, so that its edges do not ring. Both grids keep their origin (see `Grid`).
-    Raises `SurfaceError` for a factor below 1.
+    padding of the spectrum), so no wave is added. A surface that is not periodic is continued by
+    its mirror image first to avoid ringing at its edges. The origins of the grids coincide (see
+    `Grid`).
+
+    Args:
+        surface: Surface to refine.
+        factor: Number of new cells (1) per old cell along either axis, at least 1.
+
+    Returns:
+        Surface on the finer grid.
+
+    Raises:
+        SurfaceError: The factor is below 1.
     """
     if factor < 1:
-        raise SurfaceError(f"refine: {factor} is not a number of cells to divide one into")
+        raise SurfaceError(f"factor: {factor} must be a positive integer")
     if factor == 1:
         return surface
     how = "periodic" if is_periodic(surface) else "mirrored"
@@ -34,14 +44,14 @@ def refine(surface: Surface, factor: int) -> Surface:
 
 
 def coarsen(surface: Surface, factor: int = 2) -> Surface:
-    """`surface` on cells `factor` times as large, without the waves that these cannot carry.
+    """`surface` on cells `factor` times as large, without waves shorter than two such cells.
 
-    Where `factor` does not divide the number of nodes, the cells are up to one part in that number
-    smaller. Waves shorter than two cells are left out, and the rest is kept to the last digit.
-    Raises `SurfaceError` for a factor below 1.
+    If `factor` does not divide the number of nodes, the cells are slightly smaller, so that a whole
+    number of them covers the domain. Waves that remain are not changed. Raises `SurfaceError` for a
+    factor below 1.
     """
     if factor < 1:
-        raise SurfaceError(f"coarsen: {factor} is not a number of cells to join")
+        raise SurfaceError(f"factor: {factor} must be a positive integer")
     nx, ny = (-(-n // factor) for n in surface.grid.nodes)
     wide, long = surface.grid.size
     grid = Grid((nx, ny), (wide / nx, long / ny))
@@ -49,7 +59,7 @@ def coarsen(surface: Surface, factor: int = 2) -> Surface:
 
 
 def _resampled(surface: Surface, nodes: tuple[int, int]) -> Array:
-    """Heights of `surface` at the nodes of a grid with so many over the same domain."""
+    """Heights of `surface` on a grid of `nodes` (nx, ny) over the same domain."""
     height = surface.height
     for n in nodes:
         height = _at_nodes(height, n, periodic=is_periodic(surface)).T
@@ -65,19 +75,19 @@ def divided(grid: Grid, factor: int) -> Grid:
 
 
 def _at_nodes(height: Array, nodes: int, *, periodic: bool) -> Array:
-    """Values along the first axis at another number of nodes over the same length."""
+    """`height` resampled along the first axis to another number of nodes over the same length."""
     from scipy.fft import irfft, rfft
 
     n = height.shape[0]
-    first = n // 2 - (nodes // 2) * n / nodes  # of the new nodes, in old cells
+    first = n // 2 - (nodes // 2) * n / nodes  # position of the first new node, in old cells
     values = height if periodic else np.concatenate([height, height[::-1]])
     period = values.shape[0]
     new_period = nodes * period // n
     modes = rfft(values, axis=0)
     if period % 2 == 0:
-        modes[-1] *= 0.5  # the shortest wave is no longer its own mirror image
+        modes[-1] *= 0.5  # the Nyquist mode stands for two conjugate modes now
     if new_period < period:
-        # The wave of two new cells cannot be told from its mirror image there: it goes, too.
+        # The new Nyquist mode (two cells) is ambiguous in phase, so it is left out as well.
         modes = modes[: (new_period + 1) // 2]
     number = np.arange(modes.shape[0])[:, None]
     modes *= new_period / period * np.exp(2j * np.pi * number * first / period)

@@ -1,4 +1,4 @@
-"""From the pixels of a scan to the cells of the contact's grid."""
+"""Resample a surface from its pixels to the cells of another grid."""
 
 from __future__ import annotations
 
@@ -8,31 +8,36 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.surfaces.describe import rms_slope
+from restitution.surfaces.refused import RefusedSurfaceError
 from restitution.surfaces.surface import Surface
 
 Array = NDArray[np.float64]
 
-# Lengths that differ by less than this part of themselves are the same length, rounded.
-_ROUNDING = 1e-9
+_ROUNDING = 1e-9  # relative difference up to which two lengths are equal
 
 
 def place_on_grid(surface: Surface, grid: Grid) -> Surface:
-    """Take the centred part of `surface` onto `grid`; heights at cell centres, shape `grid.nodes`.
+    """Resample the centred part of a surface to the cells of a grid.
 
-    Both keep their origin (see `Grid`). With equal spacings the cells coincide: pixels are cropped
-    and no height changes. Otherwise a cubic spline through the pixel centres is evaluated at the
-    cell centres. Along an axis with coarser cells the waves that these cannot carry (shorter than
-    two of them) are taken out first: they would come back as longer ones. Beyond the outermost
-    pixel centres, where a grid as large as the scan has a rim of cells less than a pixel wide, the
-    height is held and not extrapolated.
+    The origins coincide (see `Grid`). With equal spacings the cells coincide with pixels: the
+    surface is cropped, and heights do not change. Otherwise a cubic spline through the pixel
+    centres is evaluated at the cell centres. Along an axis with coarser cells, waves shorter than
+    two cells are removed first, because they would be aliased to longer ones. Beyond the outermost
+    pixel centres (less than a pixel) the height is constant, not extrapolated.
 
-    The provenance gains `placement` (how) and what was left out (`left_out`), so that a caller can
-    tell a grid finer or coarser than its data.
+    The provenance gains `placement` (the method) and the entries of `left_out`.
 
-    Raises `SurfaceError` when `grid` is larger than the surface.
+    Args:
+        surface: Surface to resample, such as a scan.
+        grid: Grid to place it on, at most as large as the surface.
+
+    Returns:
+        Surface on `grid`.
+
+    Raises:
+        SurfaceError: The grid is larger than the surface.
     """
     _check_covers(surface.grid, grid)
     kept = carried(surface, grid.spacing)
@@ -55,15 +60,16 @@ def place_on_grid(surface: Surface, grid: Grid) -> Surface:
         **left_out(surface, kept, grid.spacing),
     }
     if not np.allclose(grid.size, surface.grid.size, rtol=_ROUNDING, atol=0):
-        provenance.pop("periodicity", None)  # a part does not match at opposite edges
+        provenance.pop("periodicity", None)  # a part of a periodic surface is not periodic
     return replace(surface, height=np.ascontiguousarray(height), grid=grid, provenance=provenance)
 
 
 def carried(surface: Surface, spacing: tuple[float, float], *, mirrored: bool = False) -> Array:
     """The heights of `surface` without the waves that cells of `spacing` (m) cannot carry.
 
-    Along either axis these are the ones shorter than two cells. The surface is continued beyond its
-    edges with the opposite sign, less the straight line from end to end, or `mirrored`.
+    These are waves shorter than two cells along either axis. Beyond its edges the surface is
+    continued by its mirror image if `mirrored`; otherwise each line, less the straight line between
+    its ends, is continued antisymmetrically.
     """
     height = surface.height
     keep = _carried_mirrored if mirrored else _carried
@@ -76,11 +82,11 @@ def carried(surface: Surface, spacing: tuple[float, float], *, mirrored: bool = 
 
 
 def left_out(surface: Surface, kept: Array, spacing: tuple[float, float]) -> dict[str, float]:
-    """Provenance of a surface of which cells of `spacing` (m) carry the heights `kept`.
+    """Provenance entries for a surface of which cells of `spacing` (m) carry the heights `kept`.
 
-    `removed_rms_m` and `removed_slope`: of the waves taken out, the slope as a part of the
-    surface's own; `shortest_carried_m`: the shortest wave there is now; `pixel_x_m`, `pixel_y_m`:
-    the coarsest pixel the heights have passed through.
+    `removed_rms_m` and `removed_slope`: rms height of the waves removed, and their rms slope over
+    that of the surface; `shortest_carried_m`: the shortest wave left; `pixel_x_m`, `pixel_y_m`: the
+    coarsest pixel to which the heights have been sampled.
     """
     before = surface.provenance
     pixel = [
@@ -97,22 +103,23 @@ def left_out(surface: Surface, kept: Array, spacing: tuple[float, float]) -> dic
         "pixel_y_m": pixel[1],
         "shortest_carried_m": 2 * max(*spacing, *pixel),
         "removed_rms_m": math.hypot(had_rms, rms),
-        # What is left of the slope was 1 − had² of its mean square.
+        # Earlier removals have left the fraction 1 − had² of the mean square slope.
         "removed_slope": math.sqrt(had_slope**2 + max(1 - had_slope**2, 0.0) * slope**2),
     }
 
 
 def _check_covers(scan: Grid, grid: Grid) -> None:
     if any(g > s * (1 + _ROUNDING) for g, s in zip(grid.size, scan.size, strict=True)):
-        raise SurfaceError(
+        raise RefusedSurfaceError(
+            "grid-beyond-surface",
             f"grid: its {_micrometres(grid.size)} um reach beyond the surface of "
-            f"{_micrometres(scan.size)} um; use a smaller grid.nodes or grid.spacing, a larger "
-            "scan, or roughness.extend"
+            f"{_micrometres(scan.size)} um",
+            "use a smaller grid or a larger surface, or continue the surface with extend",
         )
 
 
 def same_spacing(scan: Grid, grid: Grid) -> bool:
-    """Whether two grids have the same cells, but for rounding."""
+    """Whether two grids have cells of the same size, within rounding."""
     return all(
         math.isclose(g, s, rel_tol=_ROUNDING)
         for g, s in zip(grid.spacing, scan.spacing, strict=True)
@@ -120,8 +127,8 @@ def same_spacing(scan: Grid, grid: Grid) -> bool:
 
 
 def crop_to(height: Array, nodes: tuple[int, int]) -> Array:
-    """The part of `height` with so many `nodes` about the same origin."""
-    # `Grid` has its origin at node n // 2, so these are the same point.
+    """The part of `height` with `nodes` (nx, ny) about the same origin."""
+    # The origin of a `Grid` is node n // 2.
     i, j = (have // 2 - want // 2 for have, want in zip(height.shape, nodes, strict=True))
     return height[i : i + nodes[0], j : j + nodes[1]]
 
@@ -131,9 +138,8 @@ def _carried(height: Array, ratio: float) -> Array:
     from scipy.fft import dst, idst
 
     n = height.shape[0]
-    # Less the straight line from end to end, and continued with the opposite sign on either side,
-    # heights have neither steps nor kinks at the ends. Sine k then has a wave length of 2(n − 1)/k
-    # pixels.
+    # Less the straight line between its ends and continued antisymmetrically, a line of heights has
+    # neither steps nor kinks at the ends. Sine k then has a wavelength of 2(n − 1)/k pixels.
     line = height[:1] + (height[-1:] - height[:1]) * np.linspace(0.0, 1.0, n)[:, None]
     modes = dst((height - line)[1:-1], type=1, axis=0)
     modes[math.floor((n - 1) * ratio) :] = 0.0
@@ -142,17 +148,17 @@ def _carried(height: Array, ratio: float) -> Array:
 
 
 def _carried_mirrored(height: Array, ratio: float) -> Array:
-    """The same of heights that are continued by their mirror image."""
+    """`_carried` for heights that are continued by their mirror image."""
     from scipy.fft import dct, idct
 
-    modes = dct(height, type=2, axis=0)  # cosine k has a wave length of 2n/k pixels
+    modes = dct(height, type=2, axis=0)  # cosine k has a wavelength of 2n/k pixels
     modes[math.floor(height.shape[0] * ratio) + 1 :] = 0.0
     kept: Array = idct(modes, type=2, axis=0)
     return kept
 
 
 def spline(height: Array, at: Array, to: Array) -> Array:
-    """Cubic spline along the first axis, from coordinates `at` to `to`, held beyond the ends."""
+    """Cubic spline along the first axis from `at` to `to`, constant beyond the ends."""
     from scipy.interpolate import make_interp_spline
 
     if at.size == 1:
@@ -168,7 +174,7 @@ def _describe_interpolation(scan: Grid, grid: Grid) -> str:
         nyquist = _micrometres((2 * grid.spacing[0], 2 * grid.spacing[1]))
         return (
             f"sampled every {_micrometres(grid.spacing)} um from pixels of "
-            f"{_micrometres(scan.spacing)} um, once waves shorter than {nyquist} um were taken out"
+            f"{_micrometres(scan.spacing)} um, after removing waves shorter than {nyquist} um"
         )
     return (
         f"interpolated from {_micrometres(scan.spacing)} um to {_micrometres(grid.spacing)} um "

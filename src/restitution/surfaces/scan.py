@@ -1,4 +1,4 @@
-"""What a reader of height maps hands over, before it is checked and made a `Surface`."""
+"""A scan: the result of a file reader, before it is checked and converted to a `Surface`."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-# How many of each unit make a metre: division by 1e6 gives 10 um as 1e-05, to the last bit.
+# Units per metre: division by 1e6 makes 10 um exactly 1e-05, multiplication by 1e-6 does not.
 _PER_METRE = {
     "km": 1e-3,
     "m": 1.0,
@@ -24,21 +24,19 @@ _PER_METRE = {
     "fm": 1e15,
 }
 
+MOST_PIXELS = 2**26  # of a scan; more would take gigabytes of memory before any check
 
-# Of a scan: more would take gigabytes before anything is known of it.
-MOST_PIXELS = 2**26
-
-# For files of scan lines: y counts them, and they are drawn downwards, as instruments do.
+# Provenance of files of scan lines: y counts the lines from the top of the picture.
 Y_DOWN = {"y_axis": "down"}
 
 
 @dataclass(frozen=True)
 class Scan:
-    """Heights in m, shape (nx, ny), NaN where undefined, and what the file says about them.
+    """Heights (m), shape (nx, ny), NaN where undefined, and further content of the file.
 
-    `size` is the length of the x and the y edge in m, None where the file does not give it.
-    `details` become part of the provenance, `Y_DOWN` among them where the file is an image whose
-    first line is at the top.
+    `size` are the lengths of the x and the y edge (m), None if the file does not contain them.
+    `details` become part of the provenance; they include `Y_DOWN` if the first line of the file is
+    at the top of the picture.
     """
 
     height: NDArray[np.float64]
@@ -47,9 +45,9 @@ class Scan:
 
 
 def in_metres(value: float, unit: object) -> float | None:
-    """`value` of `unit` in metres, None when `unit` is not a unit of length."""
+    """`value` in `unit`, converted to metres; None if `unit` is not a unit of length."""
     if not isinstance(unit, str):
         return None
-    # NFKC makes one letter of the two code points that look like µ, and of the two like Å.
+    # NFKC unifies the two code points that look like µ, and the two that look like Å.
     per_metre = _PER_METRE.get(unicodedata.normalize("NFKC", unit))
     return None if per_metre is None else value / per_metre

@@ -1,4 +1,4 @@
-"""Another place of a scan under the particle."""
+"""Move a scan so that the particle touches it at another place."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ import numpy as np
 
 from restitution.surfaces.surface import Surface, is_periodic
 
-# Multiples of these fill a square evenly, however many are taken: powers of the inverse of the
-# plastic number, the root of x³ = x + 1.
+# Additive recurrence with low discrepancy: the first and second power of the inverse of the plastic
+# number, the root of x³ = x + 1. Its first N points fill a square evenly for any N.
 _STEPS = 1 / 1.324717957244746, 1 / 1.324717957244746**2
 
 
 def place_of(surface: Surface, number: int) -> Surface:
-    """`surface` moved so that another point of it is in the middle; number 0 is the surface itself.
+    """`surface` moved so that point `number` of it is in the middle; point 0 is the middle itself.
 
-    Points 1, 2 … fill the scan evenly, whatever their number. Beyond the edges the surface is
-    continued periodically if it is periodic, and by its mirror image otherwise.
+    The points fill the scan evenly for any count. Beyond its edges the surface is continued
+    periodically if it is periodic, and by its mirror image otherwise.
     """
     if number == 0:
         return surface

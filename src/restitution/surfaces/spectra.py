@@ -1,19 +1,19 @@
-"""What the waves of a generated surface are to be like: amplitudes over the wave vector.
+"""Spectra of generated surfaces: wave amplitudes as functions of the wave vector.
 
-`Autocorrelated` surfaces have a given autocorrelation,
+`Autocorrelated` surfaces have the autocorrelation
 
     R(τ) = Rq² exp(−2.3 ρ)   (exponential)     R(τ) = Rq² exp(−2.3 ρ²)   (Gaussian)
     ρ = sqrt((τ₁/β₁)² + (τ₂/β₂)²),
 
-τ₁ along the lay and τ₂ across it; β, the correlation length, is where the autocorrelation has
+with lags τ₁ along the lay and τ₂ across it. At the correlation lengths β the autocorrelation has
 fallen to 10 % (e^−2.3 = 0.100). Hu and Tonder (1992), Int. J. Mach. Tools Manufact. 32, 83–90.
 
 `SelfAffine` surfaces have the power spectral density
 
     C(q) = const. for q < q_r,   (q/q_r)^−2(H+1) up to q_s,   0 beyond,
 
-H the Hurst exponent, 2π/q_r the roll-off and 2π/q_s the shortest wavelength. Persson et al. (2005),
-J. Phys.: Condens. Matter 17, R1–R62.
+where H is the Hurst exponent, 2π/q_r the roll-off and 2π/q_s the shortest wavelength. Persson et
+al. (2005), J. Phys.: Condens. Matter 17, R1–R62.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Autocorrelated:
-    """Exponential or Gaussian autocorrelation; lengths in m, `lay` in radians from the x axis."""
+    """Exponential or Gaussian autocorrelation; lengths in m, `lay` in rad from the x axis."""
 
     kind: Literal["exponential", "gaussian"]
     correlation_length: tuple[float, float]
@@ -42,16 +42,16 @@ class Autocorrelated:
 
     @property
     def longest(self) -> float:
-        """The length over which heights forget each other, m."""
+        """The distance (m) beyond which heights are uncorrelated."""
         return max(self.correlation_length)
 
     def check(self, grid: Grid) -> None:
-        """Raise `SurfaceError` where `grid` cannot hold such waves."""
+        """Raise `SurfaceError` if `grid` cannot carry these waves."""
         for axis, beta in enumerate(self.correlation_length):
             where = (
                 f"along {'xy'[axis]}" if self.lay == 0 else ("along", "across")[axis] + " the lay"
             )
-            # Turned against the grid a length has to fit both axes.
+            # If the lay is rotated, each length has to fit both axes of the grid.
             spacing, size = grid.spacing[axis], grid.size[axis]
             if self.lay != 0:
                 spacing, size = max(grid.spacing), min(grid.size)
@@ -64,7 +64,7 @@ class Autocorrelated:
         _check_shortest(self.shortest, grid)
 
     def amplitude(self, grid: Grid) -> Array:
-        """Amplitudes for `rfft2` of white noise on `grid`, to any scale."""
+        """Amplitudes for `rfft2` of white noise on `grid`, up to a constant factor."""
         from scipy.fft import rfft2
 
         x, y = (
@@ -77,12 +77,12 @@ class Autocorrelated:
         rho2 = (along / self.correlation_length[0]) ** 2
         rho2 = rho2 + (across / self.correlation_length[1]) ** 2
         R = np.exp(-2.3 * (np.sqrt(rho2) if self.kind == "exponential" else rho2))
-        # Wrapping puts a kink into R at half of the domain, so S may dip below zero there.
+        # Periodic wrapping makes a kink in R at half the domain, so its spectrum can be negative.
         H: Array = np.sqrt(np.maximum(rfft2(R).real, 0.0))
-        return _cut(H, grid, self.shortest)
+        return _without_short_waves(H, grid, self.shortest)
 
     def parameters(self, grid: Grid) -> dict[str, str | float]:
-        """What describes the waves on `grid`, for the provenance of a surface."""
+        """Provenance entries on the waves on `grid`."""
         axes = ("x", "y") if self.lay == 0 else ("along_lay", "across_lay")
         lengths = zip(axes, self.correlation_length, strict=True)
         return {
@@ -95,7 +95,10 @@ class Autocorrelated:
 
 @dataclass(frozen=True)
 class SelfAffine:
-    """A power law between two wavelengths (m), flat above the longer one; `rolloff` may be None."""
+    """A power law between the wavelengths `shortest` and `rolloff` (m), and constant above.
+
+    Without `rolloff` it extends to the domain.
+    """
 
     hurst: float
     rolloff: float | None = None
@@ -103,11 +106,11 @@ class SelfAffine:
 
     @property
     def longest(self) -> float:
-        """The length over which heights forget each other, m."""
+        """The distance (m) beyond which heights are uncorrelated."""
         return math.inf if self.rolloff is None else self.rolloff
 
     def check(self, grid: Grid) -> None:
-        """Raise `SurfaceError` where `grid` cannot hold such waves."""
+        """Raise `SurfaceError` if `grid` cannot carry these waves."""
         if not 0 < self.hurst <= 1:
             raise SurfaceError(
                 f"hurst: {self.hurst:g} is not an exponent above 0 and up to 1; real "
@@ -126,15 +129,15 @@ class SelfAffine:
             )
 
     def amplitude(self, grid: Grid) -> Array:
-        """Amplitudes for `rfft2` of white noise on `grid`, to any scale."""
+        """Amplitudes for `rfft2` of white noise on `grid`, up to a constant factor."""
         q = _wave_numbers(grid)
         q_r = 2 * math.pi / (max(grid.size) if self.rolloff is None else self.rolloff)
         H: Array = np.maximum(q / q_r, 1.0) ** -(self.hurst + 1.0)
         H[0, 0] = 0.0
-        return _cut(H, grid, self.shortest)
+        return _without_short_waves(H, grid, self.shortest)
 
     def parameters(self, grid: Grid) -> dict[str, str | float]:
-        """What describes the waves on `grid`, for the provenance of a surface."""
+        """Provenance entries on the waves on `grid`."""
         return {
             "hurst": float(self.hurst),
             "rolloff_m": float(self.rolloff or max(grid.size)),
@@ -145,15 +148,15 @@ class SelfAffine:
 Spectrum = Autocorrelated | SelfAffine
 
 
-def _cut(H: Array, grid: Grid, shortest: float | None) -> Array:
-    """The amplitudes without waves shorter than `shortest`."""
+def _without_short_waves(H: Array, grid: Grid, shortest: float | None) -> Array:
+    """The amplitudes `H`, set to zero for waves shorter than `shortest`."""
     if shortest is not None:
         H[_wave_numbers(grid) > 2 * math.pi / shortest * (1 + 1e-9)] = 0.0
     return H
 
 
 def _wave_numbers(grid: Grid) -> Array:
-    """|q| of the modes of `rfft2`, rad/m."""
+    """Wave numbers |q| (rad/m) of the modes of `rfft2`."""
     (nx, ny), (hx, hy) = grid.nodes, grid.spacing
     qx, qy = np.fft.fftfreq(nx, hx)[:, None], np.fft.rfftfreq(ny, hy)[None, :]
     return np.asarray(2 * math.pi * np.hypot(qx, qy))
@@ -163,12 +166,12 @@ def _check_correlation_length(where: str, beta: float, spacing: float, size: flo
     if not (math.isfinite(beta) and beta > 0):
         raise SurfaceError(
             f"correlation_length: {beta:g} m {where} is not a positive length; "
-            'give one such as "5 um"'
+            "give one such as 5 um"
         )
     if beta < spacing:
         raise SurfaceError(
             f"correlation_length: {beta * 1e6:g} um {where} is below the grid "
-            f"spacing of {spacing * 1e6:g} um and cannot be resolved; refine grid.spacing or give "
+            f"spacing of {spacing * 1e6:g} um and cannot be resolved; reduce grid.spacing or give "
             "a longer correlation length"
         )
     if beta > 0.5 * size:
@@ -185,15 +188,15 @@ def _check_shortest(shortest: float | None, grid: Grid) -> None:
     _check_positive("shortest", shortest)
     if not 2 * max(grid.spacing) <= shortest < max(grid.size):
         raise SurfaceError(
-            f"shortest: {shortest * 1e6:g} um is no wavelength that the grid can hold "
-            f"({2e6 * max(grid.spacing):g} to {1e6 * max(grid.size):g} um); refine grid.spacing, "
-            "or leave it out"
+            f"shortest: {shortest * 1e6:g} um is not a wavelength that the grid can carry "
+            f"({2e6 * max(grid.spacing):g} to {1e6 * max(grid.size):g} um); reduce grid.spacing, "
+            "or leave shortest out"
         )
 
 
 def _check_positive(name: str, wavelength: float) -> None:
     if not (math.isfinite(wavelength) and wavelength > 0):
         raise SurfaceError(
-            f"{name}: {wavelength:g} m is not a positive wavelength; give one such as "
-            '"10 um", or leave it out'
+            f"{name}: {wavelength:g} m is not a positive wavelength; give one such as 10 um, or "
+            f"leave {name} out"
         )

@@ -1,4 +1,4 @@
-"""The height map: what every source of roughness makes and the contact consumes."""
+"""The height map that all sources of roughness return and that the contact takes."""
 
 from __future__ import annotations
 
@@ -15,12 +15,18 @@ from restitution.numerics.read_only import read_only
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """Heights (m, up is towards the other body) of shape `grid.nodes`, and where they come from.
+    """Heights on a grid, and their provenance.
 
-    `height` is read-only: a copy of the array given, unless nobody can write to that one. Surfaces
-    are equal (and hash) by identity: compare `height` and `grid` to compare values.
-    `provenance` holds plain values (text and numbers) that are stored with every result.
-    Raises `SurfaceError` when the shape does not fit the grid or a height is undefined.
+    An array that could still be written to elsewhere is copied. Surfaces are compared and hashed by
+    identity; compare `height` and `grid` to compare values.
+
+    Attributes:
+        height: Heights (m), positive towards the other body, shape `grid.nodes`; read-only.
+        grid: Grid of the heights.
+        provenance: Text and numbers (SI) on the origin of the heights, stored with every result.
+
+    Raises:
+        SurfaceError: The shape does not fit the grid, or a height is undefined.
     """
 
     height: NDArray[np.float64]
@@ -30,13 +36,13 @@ class Surface:
     def __post_init__(self) -> None:
         if self.height.shape != self.grid.nodes:
             raise SurfaceError(
-                f"heights of shape {self.height.shape} do not fit a grid of {self.grid.nodes} nodes"
+                f"height: shape {self.height.shape} does not fit a grid of {self.grid.nodes} nodes"
             )
         undefined = self.height.size - np.count_nonzero(np.isfinite(self.height))
         if undefined:
             raise SurfaceError(
-                f"{undefined} of {self.height.size} heights are undefined (NaN or infinite); "
-                "fill or crop them first"
+                f"height: {undefined} of {self.height.size} heights are undefined (NaN or "
+                "infinite); fill or crop them first"
             )
         object.__setattr__(self, "height", read_only(self.height))
         object.__setattr__(self, "provenance", dict(self.provenance))

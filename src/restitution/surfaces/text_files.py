@@ -1,7 +1,7 @@
-"""Height matrices in plain text, read without any further package.
+"""Read height matrices from plain text.
 
-A line of the file is a scan line: the column is x, the line is y, as Gwyddion, SurfaceTopography
-and the instruments write it. Heights are `[i, j]` ↔ `[x, y]`, as everywhere in this package.
+A line of the file is a scan line: columns are x, lines are y, as in files of Gwyddion,
+SurfaceTopography and instruments. Heights are `[i, j]` ↔ `[x, y]`, as everywhere in this package.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from restitution.surfaces.scan import Y_DOWN, Scan, in_metres
 
 TEXT_SUFFIXES = frozenset({".txt", ".csv", ".dat", ".asc"})
 
-_LEAST_VALUES = 4  # of a scan line: fewer are coordinates or a profile
-_LONGEST = 200  # characters of a value in a header
+_LEAST_VALUES = 4  # of a scan line; fewer are coordinates or a profile
+_LONGEST = 200  # characters of a value in the header
 _NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?"
 _QUANTITY = re.compile(rf"(?P<number>{_NUMBER})\s*(?P<unit>\S+)")
-# Keys by which other programs' headers (SPIP, Nova, Gwyddion's XYZ) fix units and scales.
+# Keys that set units and scales in headers of other programs (SPIP, Nova, Gwyddion's XYZ).
 _FOREIGN_KEY = re.compile(r"unit|length|pixel|bit2|file format|factor", re.IGNORECASE)
-# Keys that say how many values (x) and lines (y) there are.
+# Keys for the number of values (x) and of lines (y).
 _COLUMNS = frozenset({"nx", "columns", "values per line"})
 _LINES = frozenset({"ny", "rows", "lines"})
 _OWN_KEYS = frozenset({"width", "height", "value units"})
@@ -34,19 +34,19 @@ _Counts = dict[str, int]
 
 
 class NotAMatrixError(SurfaceError):
-    """A text file that is no plain matrix of heights, but may be an instrument's own format."""
+    """A text file that is not a plain matrix of heights, but may be an instrument's own format."""
 
 
 def read_text(path: Path) -> Scan:
-    """Read a matrix of heights in m, separated by white space, commas or semicolons.
+    """Read a matrix of heights (m), separated by white space, commas or semicolons.
 
-    Lines that start with # are comments; `# Width:` and `# Height:` give the size,
-    `# Value units:` the unit of the heights, and keys such as `# nx:`, `# ny:` and `# Pixels:` how
-    many values and lines there are. An empty field, `nan` or `bad` is undefined. With
-    semicolons the comma is a decimal sign.
+    Lines that start with # are comments. `# Width:` and `# Height:` give the size,
+    `# Value units:` the unit of the heights, and keys such as `# nx:`, `# ny:` and `# Pixels:` the
+    numbers of values and lines. An empty field, `nan` or `bad` is undefined. If fields are
+    separated by semicolons, the comma is the decimal sign.
 
-    Raises `NotAMatrixError` when the content is not such a matrix but may be understood by
-    another reader, `SurfaceError` when it is one and is damaged or does not hold heights.
+    Raises `NotAMatrixError` if the content is not such a matrix but another reader may understand
+    it, and `SurfaceError` for a matrix that is damaged or does not contain heights.
     """
     lines = [line.strip() for line in _decode(path).splitlines()]
     data = [(n, line) for n, line in enumerate(lines, 1) if line and not line.startswith("#")]
@@ -82,10 +82,10 @@ def _decode(path: Path) -> str:
 
 
 def _parse_rows(path: Path, data: list[tuple[int, str]], *, plain: bool) -> list[list[float]]:
-    """The values of every line. `NotAMatrixError` for text, `SurfaceError` for damaged lines.
+    """The values of all lines. Raises `NotAMatrixError` for text, `SurfaceError` for damaged lines.
 
-    Other readers skip a line that they do not understand: among scan lines it is a damaged one, and
-    before them, too, where the file is known to be `plain` (a matrix with comments).
+    Text among scan lines is a damaged line, which other readers would skip. So is text before them,
+    if the comments show that the file is a `plain` matrix.
     """
     rows: list[list[float] | None] = []
     first: NotAMatrixError | None = None
@@ -103,8 +103,8 @@ def _parse_rows(path: Path, data: list[tuple[int, str]], *, plain: bool) -> list
     for i, (row, (number, line)) in enumerate(zip(rows, data, strict=True)):
         if row is None and usual and (plain or begin < i or _is_nearly_a_row(path, line, usual)):
             raise SurfaceError(
-                f"{path}: line {number}, {shown(line, 20)}, is no scan line like the others of "
-                f"{usual} values, so the file is damaged; export it again"
+                f"{path}: line {number}, {shown(line, 20)}, is not a scan line of {usual} values "
+                "like the others, so the file is damaged; export it again"
             )
     raise first
 
@@ -150,7 +150,7 @@ def _parse_field(path: Path, number: int, text: str) -> float:
 def _read_header(
     path: Path, comments: list[str]
 ) -> tuple[tuple[float | None, float | None], float, dict[str, str | float], _Counts]:
-    """Edge lengths (m), metres for each unit of height, details and counts, from the comments."""
+    """Edge lengths (m), metres per unit of height, provenance details and counts of `comments`."""
     sides: dict[str, float] = {}
     metres_per_value = 1.0
     details: dict[str, str | float] = {}
@@ -179,16 +179,16 @@ def _read_header(
                 )
             details["channel_name"] = value
         elif length is not None or _FOREIGN_KEY.search(key):
-            # Guessing at a scale could be wrong by a factor of a million without a sign of it.
+            # A wrong guess could scale heights by a factor of a million unnoticed.
             raise NotAMatrixError(
-                f"{path}: its header line {comment[:60]!a} may set a unit or a scale that is not "
-                "understood; state '# Width:', '# Height:' and '# Value units:' only"
+                f"{path}: its header line {comment[:60]!a} may set an unknown unit or scale; give "
+                "only '# Width:', '# Height:' and '# Value units:'"
             )
     return (sides.get("width"), sides.get("height")), metres_per_value, details, counts
 
 
 def _statement(comment: str) -> tuple[str, str]:
-    """Key (lower case) and value of a line `# key: value` or `# key = value`; or empty."""
+    """Key (lower case) and value of a line `# key: value` or `# key = value`, otherwise empty."""
     text = comment[1:]
     ends = [at for at in (text.find(":"), text.find("=")) if at >= 0]
     if not ends:
@@ -197,7 +197,7 @@ def _statement(comment: str) -> tuple[str, str]:
 
 
 def _counts(key: str, value: str) -> _Counts:
-    """How many values and lines a statement says there are."""
+    """The numbers of values and lines that a header entry gives."""
     if key in _COLUMNS | _LINES and value.isdecimal() and len(value) < 10:
         return {"values" if key in _COLUMNS else "lines": int(value)}
     if key in ("pixels", "resolution", "shape") and (both := _BOTH.fullmatch(value)):
@@ -205,10 +205,10 @@ def _counts(key: str, value: str) -> _Counts:
     return {}
 
 
-def _check_counts(path: Path, said: _Counts, found: tuple[int, int]) -> None:
+def _check_counts(path: Path, stated: _Counts, found: tuple[int, int]) -> None:
     for what, there in zip(("values", "lines"), found, strict=True):
-        if said.get(what, there) != there:
+        if stated.get(what, there) != there:
             raise SurfaceError(
-                f"{path}: its header says {said[what]} {what}, and it holds {found[1]} lines of "
+                f"{path}: its header states {stated[what]} {what}, but it has {found[1]} lines of "
                 f"{found[0]} values, so a part is missing; export it again"
             )

@@ -1,8 +1,7 @@
-"""How a surface is textured and what of it carries: areal parameters after ISO 25178-2.
+"""Texture and material ratio parameters after ISO 25178-2.
 
-`describe` gives the parameters of heights and slopes; these need the whole autocorrelation or the
-material ratio curve. Clauses are those of ISO 25178-2:2012. Tilt and form are to be taken out
-first.
+Unlike the parameters of `describe`, these need the whole autocorrelation or the material ratio
+curve. Clauses are those of ISO 25178-2:2012. Subtract tilt and form first (`level`).
 """
 
 from __future__ import annotations
@@ -18,13 +17,13 @@ from restitution.surfaces.surface import Surface, is_periodic
 Array = NDArray[np.float64]
 
 _BINS = 80  # of the density of heights
-_DECAY = 0.2  # of the autocorrelation, for Sal and Str (4.2)
+_DECAY = 0.2  # autocorrelation at the lags of Sal and Str (4.2)
 _DIRECTIONS = 180  # over a half turn
-_CORE = 0.4  # of the material ratio that the core's secant spans (5.2)
+_CORE = 0.4  # material ratio that the secant of the core spans (5.2)
 
 
 class Autocorrelation(NamedTuple):
-    """Lags (m) along x and y, from −size/2 up, and the autocorrelation there, 1 at lag zero."""
+    """Lags (m) along x and y, from −size/2, and the autocorrelation there, 1 at lag zero."""
 
     x: Array
     y: Array
@@ -32,14 +31,14 @@ class Autocorrelation(NamedTuple):
 
 
 class MaterialRatio(NamedTuple):
-    """Heights (m) above the mean, falling, at material ratios (0 to 1): the Abbott curve."""
+    """Abbott curve: decreasing heights (m) above the mean at material ratios from 0 to 1."""
 
     ratio: Array
     height: Array
 
 
 class HeightDensity(NamedTuple):
-    """Heights (m) above the mean, their probability density (1/m) and the normal one of that Sq."""
+    """Heights (m) above the mean, their probability density and a normal one of equal Sq (1/m)."""
 
     height: Array
     density: Array
@@ -51,12 +50,12 @@ def texture(surface: Surface) -> dict[str, float | None]:
 
     - `Sal_m`: autocorrelation length, the shortest lag at which the autocorrelation falls to 0.2
       (4.2.1)
-    - `Str`: texture aspect ratio, that lag over the longest one; near 1 without a lay, near 0 with
-      one; None where no lag up to half of the domain is long enough (4.2.2)
-    - `lay_deg`: direction of the longest lag, from the x axis, 0 up to 180: the lay where Str is
-      small
-    - `Sdr`: developed interfacial area ratio, of the surface's triangles over their projection,
-      less 1 (4.3.2)
+    - `Str`: texture aspect ratio, the shortest over the longest such lag; near 1 without a lay and
+      near 0 with one; None if the autocorrelation stays above 0.2 in some direction up to half of
+      the domain (4.2.2)
+    - `lay_deg`: direction of the longest lag, from the x axis, 0 to 180: the lay if Str is small
+    - `Sdr`: developed interfacial area ratio, the area of triangles between nodes over their
+      projection, less 1 (4.3.2)
     - `Sk_m`, `Spk_m`, `Svk_m`: core, reduced peak and reduced dale height; `Smr1`, `Smr2`: material
       ratios where peaks and dales begin (5.2 to 5.4, after ISO 13565-2)
     """
@@ -77,7 +76,7 @@ def texture(surface: Surface) -> dict[str, float | None]:
 
 
 def height_density(surface: Surface) -> HeightDensity:
-    """The histogram of the heights less their mean, beside the normal distribution; 0 if flat."""
+    """The density of the heights less their mean, and the normal density (0 for flat surfaces)."""
     z = surface.height - surface.height.mean()
     density, edges = np.histogram(1e9 * z, bins=_BINS, density=True)
     height = 0.5 * (edges[1:] + edges[:-1])
@@ -91,8 +90,8 @@ def height_density(surface: Surface) -> HeightDensity:
 def autocorrelation(surface: Surface) -> Autocorrelation:
     """Autocorrelation of the heights less their mean, shape (nx, ny), lag zero at (nx//2, ny//2).
 
-    Of a periodic surface over its period; otherwise each lag is the mean over the pairs of pixels
-    that there are, on which the ends of a scan have no hold.
+    It is periodic for a periodic surface. Otherwise the value at each lag is the mean over the
+    pairs of pixels at this lag, so that the finite size of a scan does not bias it.
     """
     from scipy.fft import irfft2, next_fast_len, rfft2
 
@@ -112,14 +111,14 @@ def autocorrelation(surface: Surface) -> Autocorrelation:
 
 
 def material_ratio(surface: Surface, points: int = 1001) -> MaterialRatio:
-    """The Abbott curve: what part of the surface is above each height."""
+    """The Abbott curve: the fraction of the surface above each height."""
     ratio = np.linspace(0.0, 1.0, points)
     z = surface.height - surface.height.mean()
     return MaterialRatio(ratio, np.quantile(z, 1 - ratio))
 
 
 def _decay_lags(R: Autocorrelation) -> Array:
-    """Lag (m) at which the autocorrelation first falls to 0.2 in each direction; NaN: nowhere."""
+    """Lag (m) at which the autocorrelation first falls to 0.2 in each direction; NaN if nowhere."""
     from scipy.ndimage import map_coordinates
 
     reach = min(-R.x[0], -R.y[0])
@@ -144,7 +143,7 @@ def _decay_lags(R: Autocorrelation) -> Array:
 
 
 def _developed_area(surface: Surface) -> float:
-    """Sdr: two triangles to a cell, their area over its projection, less 1."""
+    """Sdr: the area of two triangles per cell over its projection, less 1."""
     z, (hx, hy) = surface.height, surface.grid.spacing
     if min(z.shape) < 2:
         return 0.0
@@ -165,7 +164,7 @@ def _core(curve: MaterialRatio) -> dict[str, float | None]:
     top = float(height[start] - slope * ratio[start])
     bottom = top + float(slope)
     above, below = np.maximum(height - top, 0.0), np.maximum(bottom - height, 0.0)
-    # Reached by so much of the surface; the triangles over these have the area of what is beyond.
+    # Triangles over Smr1 and 1 − Smr2 have the areas of the curve above and below the core.
     Smr1, Smr2 = float(np.mean(height > top)), float(np.mean(height >= bottom))
     peaks, dales = (float(trapezoid(part, ratio)) for part in (above, below))
     return {

@@ -1,20 +1,21 @@
-"""A statistical twin of a scan: another surface, of any size, alike in all that is counted.
+"""Statistical twin of a scan: another surface, of any size, with the statistics of the scan.
 
-The waves of a twin (`wave_spectrum`) have random phases at first. Then heights and amplitudes are
-adjusted in turns (Schreiber and Schmitz 1996, Phys. Rev. Lett. 77, 635–638), for only together
-do phases give the heights a skewness and a kurtosis. Phases and adjustment depend on the scan, the
-period and the seed, never on the grid: a grid twice as fine gets the same surface and its shorter
-waves.
+The waves of a twin (`wave_spectrum`) first get random phases. Then heights and amplitudes are
+adjusted alternately (Schreiber and Schmitz 1996, Phys. Rev. Lett. 77, 635–638), because the
+skewness and kurtosis of the heights depend on the phases of all waves together. Phases and
+adjustment depend on the scan, the period and the seed, but not on the grid: a grid twice as fine
+gets the same surface with shorter waves added.
 
-That is why the adjustment goes from long waves to short ones:
+For this reason the adjustment proceeds from long waves to short ones:
 
-* Longest band: all waves together, on as few nodes as carry them. The wanted heights are those of
-  the scan without its shorter waves. It ends with the amplitudes, which are exact.
-* Each further band halves the shortest wave. Only the new phases are adjusted.
-* Bands end where the waves left over have 1 % of the scan's mean square height: they say next to
-  nothing about its distribution, and keep their random phases.
+* Longest band: all its waves are adjusted together, on the fewest nodes that carry them. The target
+  heights are those of the scan without its shorter waves. The last adjustment is that of the
+  amplitudes, which are therefore exact.
+* Each further band halves the shortest wavelength. Only the new phases are adjusted.
+* The bands end where the remaining waves have 1 % of the scan's mean square height. These waves
+  hardly affect the distribution of heights and keep their random phases.
 
-A coarse grid takes its waves out of the first band that has all of them.
+A coarse grid takes its waves from the first band that contains all of them.
 """
 
 from __future__ import annotations
@@ -24,40 +25,41 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.surfaces.describe import describe, rms_slope
 from restitution.surfaces.psd import power_spectral_density, radial_spectrum
+from restitution.surfaces.refused import RefusedSurfaceError
 from restitution.surfaces.resample import carried, crop_to, left_out, place_on_grid
 from restitution.surfaces.surface import Surface
 from restitution.surfaces.wave_spectrum import Modes, WaveSpectrum, spectrum_of
 
 Array = NDArray[np.float64]
 
-_LEAST_PIXELS = 16  # of a scan along either axis: fewer say too little about its spectrum
-_LEFT_OVER = 0.01  # of the mean square height, in waves that are not adjusted
-_FIRST_BAND = 2**20  # nodes of the longest band, at most
-_LEAST_FIRST = 8  # pixels of the scan, once the shorter waves are left out
+LEAST_PIXELS = 16  # of a scan along either axis; fewer do not determine its spectrum
+_UNADJUSTED = 0.01  # fraction of the mean square height in waves that are not adjusted
+_FIRST_BAND = 2**20  # most nodes of the longest band
+_LEAST_FIRST = 8  # fewest pixels of the scan, without its shorter waves, in the longest band
 _WORK = 2**24  # nodes times adjustments of a band
 _ADJUSTMENTS = 3, 60  # fewest and most
-_NEGLIGIBLE = 1e-3  # misfit of heights
-_STANDSTILL = 0.05  # of the misfit of heights, from one adjustment to the next
-_PARTS = 16  # of the twin, as large as the scan, that its spectrum is compared on
-_COMPARED = 2**23  # nodes of these parts in all, if there are more than one
-_UNLIKE = 0.5  # misfit of the spectrum from which on the twin is said not to be one
-_PROBABILITIES = 0.5 * (1 - np.cos(np.linspace(0, np.pi, 4097)))  # closer in the tails
+_NEGLIGIBLE = 1e-3  # misfit of heights at which the adjustment ends
+_STANDSTILL = 0.05  # relative decrease of the misfit, per adjustment, below which it ends
+_PARTS = 16  # most parts of the twin, as large as the scan, in the comparison of spectra
+_COMPARED = 2**23  # most nodes of these parts together, if there is more than one
+_UNLIKE = 0.5  # misfit of the spectrum above which the notice warns
+_PROBABILITIES = 0.5 * (1 - np.cos(np.linspace(0, np.pi, 4097)))  # denser in the tails
 _TABLE = 2**14  # steps between the lowest and the highest node
 
 
 def twin(scan: Surface, grid: Grid, seed: int) -> Surface:
     """A twin of `scan` on `grid`, periodic over it (or over a multiple, if the scan is larger).
 
-    With all waves Rq is the scan's, and skewness and kurtosis nearly. What the cells of `grid`
-    cannot carry is left out (`removed_…` in the provenance). How far the spectrum of the others is
-    off is in `spectrum_misfit`: root mean square of the relative difference, on parts as large as
-    the scan, over bands of a quarter octave, each by its share of the mean squares of height and
-    slope. The provenance has the scan's own statistics, too (`scan_…`). Raises `SurfaceError` for a
-    scan that is flat or has fewer than 16 pixels along an axis, and for cells that carry no wave.
+    Including all waves, Rq is that of the scan; skewness and kurtosis are close to it. Waves that
+    the cells of `grid` cannot carry are left out (`removed_…` in the provenance). `spectrum_misfit`
+    is the root mean square of the relative difference of the spectra, on parts as large as the
+    scan, over bands of a quarter octave, weighted by their shares of the mean squares of height and
+    slope. The provenance also contains the statistics of the scan (`scan_…`). Raises `SurfaceError`
+    for a scan that is flat or has fewer than 16 pixels along an axis, and for cells that are too
+    large for any wave of the scan.
     """
     _check(scan, grid)
     repeats = tuple(
@@ -74,22 +76,29 @@ def twin(scan: Surface, grid: Grid, seed: int) -> Surface:
 def _check(scan: Surface, grid: Grid) -> None:
     name = scan.provenance.get("file", "the scan")
     pixels = " x ".join(map(str, scan.grid.nodes))
-    if min(scan.grid.nodes) < _LEAST_PIXELS:
-        raise SurfaceError(
-            f"{name}: {pixels} pixels are too few for the spectrum of a twin; give a scan of at "
-            f'least {_LEAST_PIXELS} x {_LEAST_PIXELS}, or extend = "mirror"'
+    if min(scan.grid.nodes) < LEAST_PIXELS:
+        raise RefusedSurfaceError(
+            "too-few-pixels",
+            f"{name}: {pixels} pixels are too few for the spectrum of a twin",
+            f'give a scan of at least {LEAST_PIXELS} x {LEAST_PIXELS}, or how="mirror"',
         )
     if np.ptp(scan.height) <= 8 * np.finfo(np.float64).eps * float(np.abs(scan.height).max()):
-        raise SurfaceError(f"{name}: is flat, so it has no twin; leave out roughness.extend")
+        raise RefusedSurfaceError(
+            "flat-scan",
+            f"{name}: is flat, so it has no twin",
+            'give another scan, or how="mirror"',
+        )
     if any(2 * h >= s for h, s in zip(grid.spacing, scan.grid.size, strict=True)):
-        raise SurfaceError(
-            f"grid.spacing: cells of {1e6 * max(grid.spacing):g} um carry no wave of a scan of "
-            f"{1e6 * scan.grid.size[0]:.4g} x {1e6 * scan.grid.size[1]:.4g} um; make them smaller"
+        raise RefusedSurfaceError(
+            "cells-above-scan",
+            f"grid: cells of {1e6 * max(grid.spacing):g} um cannot carry a wave of a scan of "
+            f"{1e6 * scan.grid.size[0]:.4g} x {1e6 * scan.grid.size[1]:.4g} um",
+            "use a smaller spacing",
         )
 
 
 def _adjusted(spectrum: WaveSpectrum, scan: Surface, grid: Grid, seed: int) -> Modes:
-    """The waves of the twin that `grid` carries, as `rfft2` on it orders them."""
+    """The waves of the twin that `grid` carries, in the order of `rfft2` on it."""
     cells = _bands(spectrum, scan)
     modes: Modes | None = None
     most = 0, 0
@@ -97,7 +106,7 @@ def _adjusted(spectrum: WaveSpectrum, scan: Surface, grid: Grid, seed: int) -> M
         modes, most = _band(spectrum, scan, cell, seed, modes, most)
         if all(c <= h for c, h in zip(cell, grid.spacing, strict=True)):
             break
-    assert modes is not None  # there is at least one band
+    assert modes is not None  # `_bands` returns at least one
     wanted = spectrum.numbers(grid.spacing)
     common = min(wanted[0], most[0]), min(wanted[1], most[1])
     if wanted == common:
@@ -109,8 +118,8 @@ def _adjusted(spectrum: WaveSpectrum, scan: Surface, grid: Grid, seed: int) -> M
 
 
 def _bands(spectrum: WaveSpectrum, scan: Surface) -> list[tuple[float, float]]:
-    """Cells (m) that carry the waves of each band, coarsest first."""
-    most = (1 - _LEFT_OVER) * float(np.var(scan.height))
+    """Cell sizes (m) that carry the waves of each band, coarsest first."""
+    most = (1 - _UNADJUSTED) * float(np.var(scan.height))
 
     def cell(level: int) -> tuple[float, float]:
         return scan.grid.spacing[0] * 2.0**level, scan.grid.spacing[1] * 2.0**level
@@ -136,7 +145,7 @@ def _band(
     known: Modes | None,
     kept: tuple[int, int],
 ) -> tuple[Modes, tuple[int, int]]:
-    """The waves that `cell` carries, those of `known` up to the numbers `kept` as they are."""
+    """The waves that `cell` carries, keeping those of `known` up to the wave numbers `kept`."""
     from scipy.fft import irfft2, rfft2
 
     most = spectrum.numbers(cell)
@@ -165,12 +174,12 @@ def _band(
 
 
 def _with_heights(z: Array, heights: Array) -> Array:
-    """z with the distribution of the ascending `heights`, in the same order."""
+    """`z` mapped monotonically to the distribution of the sorted `heights`."""
     have = np.sort(z, axis=None)
     low, high = float(have[0]), float(have[-1])
     if not low < high:
         return z
-    # A table with equal steps is read much faster than one that has to be searched.
+    # A table with equal steps is faster, because it needs no search.
     table = np.interp(np.linspace(low, high, _TABLE + 1), _quantiles(have), _quantiles(heights))
     return _between(table, (z - low) * (_TABLE / (high - low)))
 
@@ -180,7 +189,7 @@ def _quantiles(ascending: Array) -> Array:
 
 
 def _between(table: Array, at: Array) -> Array:
-    """Linear interpolation at the places `at`, counted from the first of `table`."""
+    """Linear interpolation of `table` at the fractional indices `at`."""
     before = np.minimum(at.astype(np.intp), table.size - 2)
     first = table[before]
     before += 1
@@ -188,7 +197,7 @@ def _between(table: Array, at: Array) -> Array:
 
 
 def _nodes(most: tuple[int, int]) -> tuple[int, int]:
-    """As few nodes as carry waves up to the numbers `most`, and are quick to transform."""
+    """The fewest nodes that carry waves up to the numbers `most` and are fast to transform."""
     from scipy.fft import next_fast_len
 
     return (
@@ -198,7 +207,7 @@ def _nodes(most: tuple[int, int]) -> tuple[int, int]:
 
 
 def _copy(source: Modes, target: Modes, most: tuple[int, int]) -> None:
-    """Put the waves of `source` up to the numbers `most` into `target`."""
+    """Copy the waves of `source` up to the numbers `most` into `target`."""
     M, N = most
     target[: M + 1, : N + 1] = source[: M + 1, : N + 1]
     if M:
@@ -206,7 +215,7 @@ def _copy(source: Modes, target: Modes, most: tuple[int, int]) -> None:
 
 
 def _heights(modes: Modes, nodes: tuple[int, int]) -> Array:
-    """The sum of the waves, whose phases count from the origin of `Grid`, node n // 2."""
+    """The sum of the waves, with phases relative to the origin of `Grid`, node n // 2."""
     from scipy.fft import irfft2
 
     number = np.fft.fftfreq(nodes[0], 1 / nodes[0]), np.arange(modes.shape[1])
@@ -242,7 +251,7 @@ def _provenance(
     if misfit > _UNLIKE:
         notice += (
             "; one spectrum does not describe this scan (steps, scratches, single particles, or "
-            "a form that is left in it?): crop it, take out outliers or level it"
+            "residual form?): crop it, remove outliers or level it"
         )
     return {
         **scan.provenance,
@@ -261,9 +270,9 @@ def _provenance(
 
 
 def _misfit(made: Surface, scan: Surface) -> float:
-    """How far the radial spectrum of parts of `made` is from that of `scan`, relatively.
+    """The relative difference of the radial spectra of parts of `made` and of `scan`.
 
-    Only waves that both carry are compared.
+    Only waves that both can carry are compared.
     """
     grid, pixel = made.grid, scan.grid.spacing
     nx, ny = (
@@ -286,7 +295,7 @@ def _misfit(made: Surface, scan: Surface) -> float:
     q, C = of_scan.wave_number[both], of_scan.density[both]
     if not q.size or not C.max() > 0:
         return 0.0
-    # Bands count by their share of the mean squares of height and slope, ∫ C q^(2 or 4) d(ln q).
+    # Weights are the bands' shares of the mean squares of height and slope, ∫ C q^(2 or 4) d(ln q).
     share = sum(power / power.sum() for power in (C * q**k for k in (2, 4)))
     off = (of_twin.density[both] / np.maximum(C, 1e-12 * C.max()) - 1) ** 2
     return float(np.sqrt(np.average(off, weights=share)))

@@ -1,12 +1,12 @@
-"""The waves of a statistical twin: amplitudes from the spectrum of a scan, over another period.
+"""Waves of a statistical twin: amplitudes from the spectrum of a scan, for another period.
 
 1. The scan's power spectrum C (`psd`) is interpolated linearly to the wave vectors of the twin.
    Waves longer than the scan have not been measured and are left out.
-2. It is multiplied by a + b/k² such that height and slope have the scan's mean squares: tapers see
-   less of the scan's rim than of its middle.
+2. The result is multiplied by a + b/k² so that height and slope have the mean squares of the scan.
+   (The tapers of C give the rim of the scan less weight than its middle.)
 
-Both depend on the scan and on the period of the twin, never on the grid, so that grids of every
-spacing get the same waves.
+Both steps depend on the scan and the period of the twin, but not on the grid, so grids of all
+spacings get the same waves.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ from restitution.surfaces.surface import Surface
 Array = NDArray[np.float64]
 Modes = NDArray[np.complex128]
 
-_SUMMED = 2**20  # waves that are summed one by one for the mean squares; others by an integral
-_LEAST = 2  # waves over the scan, up to which they are always summed one by one
-_ROWS = 2**20  # waves that are made at a time
+_SUMMED = 2**20  # most waves summed one by one in the mean squares; the rest is an integral
+_LEAST = 2  # waves per scan up to which waves are always summed one by one
+_ROWS = 2**20  # waves computed at a time
 _ROUNDING = 1e-9
 
 
@@ -35,16 +35,16 @@ _ROUNDING = 1e-9
 class WaveSpectrum:
     """Mean square heights of the waves (m, n) of a surface with edges `period` (m).
 
-    Wave (m, n) has the wave vector 2π(m/Px, n/Py). `density` is the scan's spectrum, zero wave
-    vector in the middle, in mean square height per wave of the twin.
+    Wave (m, n) has the wave vector 2π(m/Px, n/Py). `density` is the spectrum of the scan, as mean
+    square height (m²) per wave of the twin, with the zero wave vector in the middle.
     """
 
     density: Array
-    waves: tuple[float, float]  # per wave of the scan, along either axis
+    waves: tuple[float, float]  # waves of the twin per wave of the scan, along either axis
     pixel: tuple[float, float]  # of the scan, m
     period: tuple[float, float]
     flat: float = 1.0  # a
-    steep: float = 0.0  # b, for k in waves over the scan
+    steep: float = 0.0  # b, for k in waves per scan
 
     def power(self, m: NDArray[np.int64], n: NDArray[np.int64]) -> Array:
         """Mean square height (m²) of the waves (m, n), shape (m.size, n.size)."""
@@ -52,7 +52,7 @@ class WaveSpectrum:
         return np.maximum(C * (self.flat + self.steep / np.maximum(k2, 1.0)), 0.0)
 
     def _raw(self, m: NDArray[np.int64], n: NDArray[np.int64]) -> tuple[Array, Array]:
-        """Interpolated density, and k² in waves over the scan."""
+        """Interpolated density, and k², where k is the number of waves per scan."""
         from scipy.ndimage import map_coordinates
 
         kx, ky = m / self.waves[0], n / self.waves[1]
@@ -64,7 +64,7 @@ class WaveSpectrum:
         return C, k2
 
     def numbers(self, spacing: tuple[float, float]) -> tuple[int, int]:
-        """Largest wave numbers m and n that cells of `spacing` (m) carry, and the scan has."""
+        """Largest wave numbers m and n that both the scan and cells of `spacing` (m) carry."""
         most = [
             math.ceil(0.5 * edge / max(h, pixel) * (1 - _ROUNDING)) - 1
             for edge, h, pixel in zip(self.period, spacing, self.pixel, strict=True)
@@ -72,9 +72,9 @@ class WaveSpectrum:
         return most[0], most[1]
 
     def modes(self, most: tuple[int, int], nodes: tuple[int, int], seed: int) -> Modes:
-        """Waves up to the numbers `most` with random phases, as `rfft2` on `nodes` orders them.
+        """Waves up to the numbers `most` with random phases, in the order of `rfft2` on `nodes`.
 
-        The transform is normalised "forward": heights are the sum of the modes.
+        The normalisation is "forward": heights are the sum of the modes.
         """
         M, N = most
         full: Modes = np.zeros((nodes[0], nodes[1] // 2 + 1), dtype=np.complex128)
@@ -99,16 +99,17 @@ def spectrum_of(scan: Surface, period: tuple[float, float]) -> WaveSpectrum:
     if abs(np.linalg.det(moments)) > 1e-9 * abs(moments[0, 0] * moments[1, 1]):
         a, b = (float(value) for value in np.linalg.solve(moments, wanted))
     spectrum = WaveSpectrum(C, raw.waves, raw.pixel, period, a, b)
-    # Powers are cut off at zero: the mean square height is to be exact all the same.
+    # Clipping the power at zero changes the mean square height: correct it.
     excess = _moments(spectrum, raw=False)[0, 0] / wanted[0]
     return WaveSpectrum(C, raw.waves, raw.pixel, period, a / excess, b / excess)
 
 
 def _moments(spectrum: WaveSpectrum, *, raw: bool = True) -> Array:
-    """Mean squares of height and slope (rows), of C and of C/k² (columns; 0 unless `raw`).
+    """Mean squares of height and slope (rows) for C and for C/k² (columns).
 
-    Slopes are those between neighbouring pixels, as `rms_slope` takes them. Long waves are summed
-    one by one, short ones over the wave vectors of the scan.
+    If not `raw`, the first column is for the corrected power and the second is 0. Slopes are
+    between neighbouring pixels, as in `rms_slope`. Long waves are summed one by one, short ones
+    over the wave vectors of the scan.
     """
     wx, wy = spectrum.waves
     (mx, my), (hx, hy) = spectrum.density.shape, spectrum.pixel

@@ -1,1 +1,1 @@
-"""How far a contact can be trusted: findings on its input, its grid and its results."""
+"""Checks of a contact: findings about its input, its grid and its results."""

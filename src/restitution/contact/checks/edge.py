@@ -1,4 +1,4 @@
-"""Contact at the edge of its grid: where it is, and which grid would hold it."""
+"""Contact at the edge of the grid: detect it, and find a grid that is large enough."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from restitution.contact.contact import Contact
 from restitution.contact.state import State
 from restitution.errors import DomainError
 
-_MARGIN = 1.2  # of a grid over the width that the contact may take
-_OFF_CENTRE = 0.25  # of the width of the grid
+_MARGIN = 1.2  # width of the grid advised over the largest width that the contact can have
+_OFF_CENTRE = 0.25  # distance from the centre, in widths of the grid, that counts as off-centre
 
 
 class EdgeReachedError(DomainError):
-    """The contact reaches the edge of the grid; `finding` says where, and what would hold it."""
+    """The contact reaches the edge of the grid; `finding` has the values of `edge_values`."""
 
     def __init__(self, finding: Finding) -> None:
         wide, long = (1e6 * edge for edge in finding["size"])
@@ -33,7 +33,7 @@ class EdgeReachedError(DomainError):
 
 
 def require_inside_grid(state: State) -> None:
-    """Raise `EdgeReachedError` when a node on the rim of the grid is in contact."""
+    """Raise `EdgeReachedError` if a node on the edge of the grid is in contact."""
     p, grid = state.box_pressure, state.contact.grid
     (top, left), (bottom, right) = (
         (part.start for part in state.box),
@@ -53,10 +53,10 @@ def require_inside_grid(state: State) -> None:
 
 
 def edge_values(contact: Contact, indentation: float) -> dict[str, Any]:
-    """What a finding about the edge of the grid holds, lengths in m.
+    """Values of a finding about the edge of the grid, lengths in m.
 
-    `indentation`; `size` of the grid; `needed` edges; `first_touch` and whether it is
-    `off_centre`; of a measured surface, else None, its `levelling` and the size of the `scan`.
+    `indentation`; `size` of the grid; `needed` edge lengths; `first_touch` and whether it is
+    `off_centre`; for a measured surface its `levelling` and the size of the `scan`, else None.
     """
     provenance, size = contact.surface.provenance, contact.grid.size
     touch = first_touch(contact)
@@ -74,28 +74,28 @@ def edge_values(contact: Contact, indentation: float) -> dict[str, Any]:
 
 
 def edges_in_words(finding: Finding) -> str:
-    """The `needed` edge lengths of a finding, in µm."""
+    """The `needed` edge lengths of `finding` as text, in µm."""
     wide, long = finding["needed"]
     return f"{1e6 * wide:.3g} um" + ("" if math.isclose(wide, long) else f" x {1e6 * long:.3g} um")
 
 
 def first_touch(contact: Contact) -> tuple[float, float]:
-    """Where the bodies touch first: x, y of the lowest gap, m."""
+    """Coordinates x and y of the smallest gap (m), where the bodies touch first."""
     i, j = np.unravel_index(int(contact.gap.argmin()), contact.gap.shape)
     return float(contact.grid.x[i]), float(contact.grid.y[j])
 
 
 def needed_edges(contact: Contact, indentation: float) -> tuple[float, float]:
-    """Edge lengths (m) of a grid that holds the contact at `indentation`; none below the present.
+    """Edge lengths (m) of a grid that contains the contact; never below the present lengths.
 
-    Contact lies where h₀ < δ. With heights up to z_max and h₀ = r²/(2R*) − z − c that is within
-    r² < 2R*(δ + z_max + c): sqrt(2R*δ) for smooth bodies.
+    Contact lies where h₀ < δ. With heights up to z_max and h₀ = r²/(2R*) − z − c this means
+    r² < 2R*(δ + z_max + c), or r < sqrt(2R*δ) for smooth bodies.
     """
     R, x, y = contact.pair.radius, contact.grid.x[:, None], contact.grid.y[None, :]
     height = contact.surface.height
     shift = float(((x * x + y * y) / (2 * R) - height).min())
     reach = math.sqrt(2 * R * (indentation + float(height.max()) + shift))
     wide, long = contact.grid.size
-    # The edge that is reached has to move out even where heights alone would explain it.
+    # The grid grows by the margin even if its shorter edge already exceeds 2 · reach.
     needed = max(2 * reach, min(wide, long)) * _MARGIN
     return max(wide, needed), max(long, needed)

@@ -1,4 +1,4 @@
-"""A finding: what a check has found, as data. `runs.messages` has the sentences."""
+"""A finding: the result of a check, as data. `runs.messages` puts findings into words."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Any, Literal
 
 Code = Literal[
-    # The contact cannot be solved, or not with a meaning.
+    # The contact cannot be solved, or the result would be meaningless.
     "roughness-above-radius",
     "contact-beyond-radius",
     "pixel-above-contact",
@@ -25,7 +25,7 @@ Code = Literal[
     "oblong-pixels",
     "coarser-than-scan",
     "surface-notice",
-    # The grid does not resolve what was solved.
+    # The grid does not resolve the solution.
     "patches-unresolved",
     "adhesion-unresolved",
 ]
@@ -33,9 +33,9 @@ Code = Literal[
 
 @dataclass(frozen=True)
 class Finding:
-    """What a check has found: its code, and the values that bear on it by name (SI units).
+    """The result of a check: its code and its values by name (SI units).
 
-    The function that makes a finding says which values it has. `values` is read-only.
+    The function that makes a finding documents its values. `values` is read-only.
     """
 
     code: Code

@@ -1,4 +1,4 @@
-"""Checks of a contact before it is solved: slips of a unit, and the limits of the theory."""
+"""Checks of a contact before it is solved: wrong units, and the limits of the theory."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from restitution.contact.contact import Contact
 from restitution.surfaces import level, rms_slope
 from restitution.theory import Hertz, Kendall
 
-_TILTED = 0.5  # of the variance of the heights that a plane explains
-_OBLONG = 0.01  # difference of the edges of a pixel
-_STEEP = 0.5  # rms slope beyond which small-slope theory misleads
+_TILTED = 0.5  # fraction of the variance of the heights that a plane explains
+_OBLONG = 0.01  # relative difference of the edges of a pixel
+_STEEP = 0.5  # rms slope beyond which small-slope theory is inaccurate
 _PRESSURES = (1e-5, 0.3)  # p_y/E* of materials, from soft polymers to the ideal strength
-_NEAR_EDGE = 0.1  # of the width of the grid
-_DISPLACED = 0.7  # of the displacement outside a smooth contact, for rough ones carry less force
+_NEAR_EDGE = 0.1  # distance from the edge, in widths of the grid
+_DISPLACED = 0.7  # reduction of the displacement outside a contact, as rough ones carry less force
 
 
 def impossible(contact: Contact, indentation: float) -> Finding | None:
-    """Why loading `contact` to `indentation` (m) has no meaning; None where nothing is found.
+    """The reason why loading `contact` to `indentation` (m) is meaningless; None if there is none.
 
     * `roughness-above-radius`: `radius` of the smaller particle, `peak` above the mean (m);
     * `contact-beyond-radius`: predicted `radius`, `indentation`, `reduced_radius` (m);
@@ -44,17 +44,17 @@ def impossible(contact: Contact, indentation: float) -> Finding | None:
 
 
 def doubtful(contact: Contact, indentation: float) -> list[Finding]:
-    """What speaks against loading `contact` to `indentation` (m), besides `impossible`.
+    """Reasons to doubt a result of loading `contact` to `indentation` (m), besides `impossible`.
 
     The findings of `resolution_findings`, and
 
-    * `tilted-scan`: `file`, `explained`, the part of the variance that a plane explains;
-    * `edge-predicted`: `gap` at the edge at first touch (m), and those of `edge_values`;
+    * `tilted-scan`: `file`, `explained`, the fraction of the variance that a plane explains;
+    * `edge-predicted`: `gap` at the edge at first touch (m), and the values of `edge_values`;
     * `steep-surface`: rms `slope`, `limit`;
-    * `unusual-yield-pressure`: its `ratio` to E*, and that of materials, `low` to `high`;
+    * `unusual-yield-pressure`: its `ratio` to E*, and the range of materials, `low` to `high`;
     * `oblong-pixels`: `file`, edges `x` and `y` of a pixel (m);
     * `coarser-than-scan`: `spacing`, `pixel` (m), `axis`;
-    * `surface-notice`: `notice`, what the surface says of itself where it is not what was measured.
+    * `surface-notice`: `notice` from the provenance of a surface that differs from its scan.
     """
     checks = (
         _tilt(contact),
@@ -70,7 +70,7 @@ def doubtful(contact: Contact, indentation: float) -> list[Finding]:
 
 def _tilt(contact: Contact) -> Finding | None:
     surface = contact.surface
-    # Of a composite each part has its own.
+    # In a composite each part has an entry.
     levelled = {value for key, value in surface.provenance.items() if key.endswith("levelling")}
     if not levelled & {"none", "center"}:
         return None
@@ -82,11 +82,11 @@ def _tilt(contact: Contact) -> Finding | None:
 
 
 def _edge(contact: Contact, indentation: float) -> Finding | None:
-    """Contact at the rim of the grid, with a margin for what smooth bodies do not tell."""
+    """Whether contact at the edge of the grid is expected, with a margin for roughness."""
     radius = predicted_radius(contact.pair, indentation, contact.hardness)
     gap, grid = contact.gap, contact.grid
     half_width = 0.5 * min(grid.size)
-    if radius >= half_width:  # `contact-beyond-grid`
+    if radius >= half_width:  # reported as `contact-beyond-grid`
         return None
     rim = float(min(gap[0].min(), gap[-1].min(), gap[:, 0].min(), gap[:, -1].min()))
     position = zip(first_touch(contact), grid.size, strict=True)
@@ -97,16 +97,16 @@ def _edge(contact: Contact, indentation: float) -> Finding | None:
 
 
 def _closed_gap(contact: Contact, indentation: float, distance: float) -> float:
-    """The undeformed gap up to which bodies are predicted to touch `distance` off the centre, m.
+    """The largest undeformed gap (m) that is predicted to close at `distance` from the centre.
 
-    It is the indentation less the displacement F/(πE*r) outside a smooth contact. Adhesion deepens
-    the indentation by the pull-off displacement of a punch as wide as the contact (JKR). Where the
-    roughness is as high as the indentation is deep, single asperities carry the load, and displace
-    little.
+    It is the indentation less the displacement F/(πE*r) outside a smooth contact. With adhesion the
+    pull-off displacement of a punch as wide as the contact (JKR) is added to the indentation. The
+    displacement is reduced as the roughness approaches the indentation, because single asperities
+    then carry the load.
     """
     pair, p_y, w = contact.pair, contact.hardness, contact.work_of_adhesion
     E_star, deeper = pair.contact_modulus, indentation
-    for _ in range(10):  # a fixed point: `radius` grows with its square root at most
+    for _ in range(10):  # fixed-point iteration; it contracts because `deeper` grows with √radius
         radius = predicted_radius(pair, deeper, p_y)
         if not contact.adhesive:
             break
@@ -133,7 +133,7 @@ def _yield_pressure(contact: Contact) -> Finding | None:
 
 
 def _oblong(contact: Contact) -> Finding | None:
-    """Scans are square in their pixels: others may lack lines, stretched over the stated size."""
+    """Pixels that are not square: scan lines may be missing in the file."""
     provenance = contact.surface.provenance
     for key, hx in provenance.items():
         if not key.endswith("pixel_x_m") or (key != "pixel_x_m" and not key.startswith("part_")):

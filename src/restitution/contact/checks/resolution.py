@@ -1,6 +1,6 @@
-"""Whether the grid holds a contact and its nodes resolve it.
+"""Checks that the grid is large enough for a contact and that its nodes resolve it.
 
-Nothing here is solved; the predicted contact is that of smooth spheres.
+The contact is not solved here; it is predicted from smooth spheres.
 """
 
 from __future__ import annotations
@@ -18,19 +18,19 @@ from restitution.contact.state import State
 from restitution.numerics.box import widen
 from restitution.theory import JKR, FirstYield, Hertz
 
-# Smooth spheres follow the tables to 0.3 % from eight nodes over the contact radius; refining rough
-# surfaces, restitution is within 2 % (root mean square; 5 % at worst) of that on the finest grid
-# once half of the contact lies in patches of 20 nodes or more (docs/resolution.md).
+# Smooth spheres are within 0.3 % of tabulated values from eight nodes per contact radius. For rough
+# surfaces, restitution is within 2 % (root mean square; 5 % at worst) of the value on the finest
+# grid if half of the contact lies in patches of at least 20 nodes (docs/resolution.md).
 NODES_PER_RADIUS = 8
 NODES_PER_PATCH = 20
-# From four nodes over the pull-off radius on, pull-off is within 4 % in the mean and 7 % wherever
-# the apex lies between the nodes (docs/adhesion.md).
+# With four or more nodes per pull-off radius, the pull-off force is within 4 % in the mean and 7 %
+# at worst, over positions of the apex between the nodes (docs/adhesion.md).
 ADHESIVE_NODES = 4
-_HALF_SPACE = 0.2  # contact radius over R*, beyond which a sphere is not a half-space
+_HALF_SPACE = 0.2  # contact radius over R* beyond which the half-space approximation fails
 
 
 def predicted_radius(pair: Pair, indentation: float, yield_pressure: float = math.inf) -> float:
-    """Contact radius of the smooth bodies, m: Hertz sqrt(R*δ), or sqrt(2R*δ) once fully plastic."""
+    """Contact radius (m) of smooth bodies: Hertz's sqrt(R*δ), or sqrt(2R*δ) if fully plastic."""
     R = pair.radius
     yielded = math.inf
     if math.isfinite(yield_pressure):
@@ -41,10 +41,10 @@ def predicted_radius(pair: Pair, indentation: float, yield_pressure: float = mat
 
 
 def adhesive_nodes(state: State) -> float:
-    """Nodes over the radius at which one asperity of this contact pulls off, a_c/h.
+    """Nodes per pull-off radius of an asperity, a_c/h; inf without adhesion.
 
-    a_c = (9πw/(8E*κ²))^⅓ (JKR) with κ the mean curvature of the undeformed gap over the contact,
-    1/R* for smooth spheres; inf without adhesion.
+    a_c = (9πw/(8E*κ²))^⅓ (JKR), where κ is the mean curvature of the undeformed gap over the
+    contact, 1/R* for smooth spheres.
     """
     contact, box = state.contact, state.box
     if not contact.adhesive:
@@ -65,19 +65,19 @@ def adhesive_nodes(state: State) -> float:
 
 
 def pull_off_radius(contact: Contact, radius: float) -> float:
-    """Contact radius a_c at which a sphere of `radius` pulls off (JKR), m."""
+    """Contact radius a_c (m) at pull-off of a sphere of `radius` (JKR)."""
     sphere = JKR(radius, contact.pair.contact_modulus, contact.work_of_adhesion)
     return float(sphere.pull_off_radius)
 
 
 def expected_pull_off_error(contact: Contact) -> float:
-    """Relative error of the pull-off force of smooth spheres on this grid, as measured (docs)."""
+    """Relative error of the pull-off force of smooth spheres on this grid (docs/adhesion.md)."""
     nodes = pull_off_radius(contact, contact.pair.radius) / max(contact.grid.spacing)
     return {"pohrt-popov": 1.5, "crack-closure": 0.25}[contact.detachment] / nodes
 
 
 def coarse_scan(contact: Contact, indentation: float) -> Finding | None:
-    """`pixel-above-contact`: one pixel of a scan is larger than the contact at `indentation`.
+    """`pixel-above-contact`: one pixel of a scan exceeds the contact radius at `indentation` (m).
 
     Values: `file`, `pixel`, `radius` (m), `indentation`.
     """
@@ -100,7 +100,7 @@ def coarse_scan(contact: Contact, indentation: float) -> Finding | None:
 
 
 def resolution_findings(contact: Contact, indentation: float) -> list[Finding]:
-    """What the contact of the smooth bodies at `indentation` (m) says of the grid.
+    """Findings about the grid from the contact of the smooth bodies at `indentation` (m).
 
     * `contact-beyond-grid`: `radius`, `indentation`, `half_width` (m), `whole_scan`;
     * `few-nodes`: `spacing`, `radius` (m);
@@ -135,7 +135,10 @@ def resolution_findings(contact: Contact, indentation: float) -> list[Finding]:
 
 
 def median_patch(patches: NDArray[np.int64]) -> int:
-    """Nodes of the patch that the median node of the contact lies in; `patches` as in `State`."""
+    """Size in nodes of the patch that contains the median contact node.
+
+    `patches` are the sizes of `State.patch_sizes`, largest first.
+    """
     if patches.size == 0:
         return 0
     covered = np.cumsum(patches)
@@ -143,14 +146,14 @@ def median_patch(patches: NDArray[np.int64]) -> int:
 
 
 def resolves(median_patch_nodes: float) -> bool:
-    """Whether the grid resolves a contact half of whose nodes lie in patches of so many or more."""
+    """Whether the grid resolves a contact with this size of its median patch."""
     return median_patch_nodes >= NODES_PER_PATCH
 
 
 def unresolved_patches(depths: Sequence[float], median_patches: Sequence[float]) -> list[Finding]:
-    """`patches-unresolved`: contact patches have too few nodes at some of the depths (m).
+    """`patches-unresolved`: contact patches have too few nodes at some `depths` (m).
 
-    Values: `few`, the number of those depths; `depths`, of all; `deepest` of the few, m.
+    Values: `few`, the number of these depths; `depths`, the number of all; `deepest` of these (m).
     """
     few = [depth for depth, n in zip(depths, median_patches, strict=True) if not resolves(n)]
     if not few:
@@ -160,9 +163,9 @@ def unresolved_patches(depths: Sequence[float], median_patches: Sequence[float])
 
 
 def unresolved_adhesion(depths: Sequence[float], nodes: Sequence[float]) -> list[Finding]:
-    """`adhesion-unresolved`: the pull-off radius has too few `nodes` at some of the depths (m).
+    """`adhesion-unresolved`: the pull-off radius has too few `nodes` at some `depths` (m).
 
-    Values: `few`, the number of those depths; `depths`, of all; `nodes`, the fewest.
+    Values: `few`, the number of these depths; `depths`, the number of all; `nodes`, the fewest.
     """
     few = sum(n < ADHESIVE_NODES for _, n in zip(depths, nodes, strict=True))
     if not few:
@@ -172,7 +175,7 @@ def unresolved_adhesion(depths: Sequence[float], nodes: Sequence[float]) -> list
 
 
 def grid_of_a_scan(contact: Contact) -> bool:
-    """Whether the grid takes up a whole scan, so that only a larger scan gives a larger grid."""
+    """Whether the grid covers a whole scan, so that only a larger scan allows a larger grid."""
     provenance = contact.surface.provenance
     if provenance.get("source") != "measured":
         return False
@@ -181,6 +184,6 @@ def grid_of_a_scan(contact: Contact) -> bool:
 
 
 def _coarsest_pixel(contact: Contact) -> float:
-    """The coarsest pixel that resampled heights have passed through, m; 0 when they have not."""
+    """The coarsest pixel (m) in the provenance of the surface; 0 if it is not from a scan."""
     provenance = contact.surface.provenance
     return max(float(provenance.get(key, 0.0)) for key in ("pixel_x_m", "pixel_y_m"))

@@ -1,0 +1,48 @@
+"""Plastic work under a bound that grows with deformation."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.contact.state import State
+from restitution.numerics.box import Box
+
+Array = NDArray[np.float64]
+
+# Errors are fractions of the contribution of the growth of the bound: _RULE_ERROR for nodes that
+# had yielded before the step, _NEW_ERROR for nodes that begin to yield (from a comparison with 11
+# times as many depths). _NEW weights this contribution for the latter.
+_RULE_ERROR, _NEW, _NEW_ERROR = 0.1, 0.8, 0.25
+
+
+def plastic_work(before: State | None, after: State) -> tuple[float, float]:
+    """Plastic work (J) between two states, `after` at most 1.42 times as deep, and its error (J).
+
+    Each node yields by Δu while its bound grows from b₁ to b₂. If u is linear in the indentation δ
+    and b linear in ln δ, its work is Δu [b₁ + (b₂ − b₁) (δ₂/(δ₂ − δ₁) − 1/ln(δ₂/δ₁))]. A node that
+    begins to yield in this step does so under bounds nearer to b₂: its factor of b₂ − b₁ is `_NEW`.
+    The error is the fraction `_RULE_ERROR` or `_NEW_ERROR` of the term with b₂ − b₁.
+    """
+    contact, box = after.contact, after.box
+    given, begun = after.plastic_displacement[box], np.asarray(contact.first_yield_pressure)
+    old, ratio = np.zeros(1, dtype=bool), math.inf
+    if before is not None:
+        begun = _on(before.bound, box)
+        old = before.plastic_displacement[box] > 0
+        given = given - before.plastic_displacement[box]
+        if before.indentation > 0:
+            ratio = after.indentation / before.indentation
+    share = ratio / (ratio - 1) - 1 / math.log(ratio) if 1 < ratio < math.inf else 0.5
+    area = contact.grid.cell_area
+    whole = float(np.sum(given * begun)) * area
+    growth = given * (_on(after.bound, box) - begun)
+    on, new = (float(np.sum(growth, where=nodes)) * area for nodes in (old, ~old))
+    return whole + share * on + _NEW * new, _RULE_ERROR * abs(on) + _NEW_ERROR * abs(new)
+
+
+def _on(bound: Array | float, box: Box) -> Array:
+    """`bound`, a number or an array of the shape of the grid, on a box."""
+    return np.asarray(bound) if np.ndim(bound) == 0 else np.asarray(bound)[box]

@@ -1,0 +1,27 @@
+"""Errors whose remedy names arguments, so that a caller can name its own input instead."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from restitution.errors import SurfaceError
+
+Code = Literal[
+    "cells-above-scan",
+    "flat-scan",
+    "grid-beyond-surface",
+    "size-unknown",
+    "too-few-pixels",
+    "undefined-pixels",
+]
+
+
+class RefusedSurfaceError(SurfaceError):
+    """A surface that cannot be made: a `fact` with its `code`, and a `remedy` for callers."""
+
+    def __init__(self, code: Code, fact: str, remedy: str) -> None:
+        super().__init__(code, fact, remedy)
+        self.code, self.fact, self.remedy = code, fact, remedy
+
+    def __str__(self) -> str:
+        return f"{self.fact}; {self.remedy}"
