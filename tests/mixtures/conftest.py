@@ -2,8 +2,8 @@ import pytest
 
 MIXTURE = """
 title = "Beads and a wall"
-[materials.glass]
-material = "glass"
+[materials.alu]
+material = "aluminium"
 radius = ["50 um", "80 um", "150 um"]
 roughness = { kind = "gaussian", rms = "0.05 um", correlation_length = "4 um", seed = 1 }
 [materials.pmma]

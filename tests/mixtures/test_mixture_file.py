@@ -14,9 +14,9 @@ def test_every_pair_is_there_once(mixture_text):
     found = families(parse_mixture(mixture_text()))
     counts = {family.name: len(family.meetings) for family in found}
     assert counts == {
-        "glass+glass": 6,
-        "glass+pmma": 3,
-        "glass+drum": 3,
+        "alu+alu": 6,
+        "alu+pmma": 3,
+        "alu+drum": 3,
         "pmma+pmma": 1,
         "pmma+drum": 1,
     }
@@ -43,24 +43,24 @@ def test_sizes(mixture_text, radius, radii):
 
 
 def test_a_pair_may_have_an_interface_of_its_own(mixture_text):
-    own = '[pairs."drum+glass"]\nwork_of_adhesion = "0.05 J/m^2"\n[grid]'
+    own = '[pairs."drum+alu"]\nwork_of_adhesion = "0.05 J/m^2"\n[grid]'
     mixture = parse_mixture(mixture_text(("[grid]", own)))
     found = {family.name: family.case(family.radii[0]) for family in families(mixture)}
-    assert 'work_of_adhesion = "0.05 J/m^2"' in found["glass+drum"]
-    assert 'work_of_adhesion = "0 J/m^2"' in found["glass+glass"]
+    assert 'work_of_adhesion = "0.05 J/m^2"' in found["alu+drum"]
+    assert 'work_of_adhesion = "0 J/m^2"' in found["alu+alu"]
 
 
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ("[grid]", '[pairs."glass+copper"]\n[grid]', 'pairs."glass+copper": is not a pair of'),
+        ("[grid]", '[pairs."alu+copper"]\n[grid]', 'pairs."alu+copper": is not a pair of'),
         (RADII, '{ bins = [["20 um", "80 um"], ["70 um", "90 um"]] }', "bins: overlap between"),
         (RADII, '{ edges = ["20 um", "10 um"] }', "edges: must increase"),
         (RADII, '{ median = "20 um" }', "give one of edges, bins, or median with geometric_std"),
-        (RADII, '["50 um mm"]', "materials.glass.radius"),
-        (RADII, '["50 um", "50 um"]', "materials.glass.radius: a radius is given twice"),
+        (RADII, '["50 um mm"]', "materials.alu.radius"),
+        (RADII, '["50 um", "50 um"]', "materials.alu.radius: a radius is given twice"),
         (RADII, '["50"]', "has no unit"),
-        (f"radius = {RADII}\n", "", "materials.glass.radius: is missing"),
+        (f"radius = {RADII}\n", "", "materials.alu.radius: is missing"),
         (
             'material = "pmma"',
             'youngs_modulus = "3 GPa"\npoissons_ratio = 0.4',
@@ -68,10 +68,10 @@ def test_a_pair_may_have_an_interface_of_its_own(mixture_text):
         ),
         ('material = "pmma"', 'material = "unobtainium"', "materials.pmma"),
         ('material = "steel"', 'material = "steel"\nradius = "1 mm"', "a wall is flat"),
-        ("[walls.drum]", "[walls.glass]", "walls.glass: is the name of a material, too"),
+        ("[walls.drum]", "[walls.alu]", "walls.alu: is the name of a material, too"),
         ("[impact]", "[impacts]", "impacts: unknown key"),
         ('from = "0.1 m/s"', 'from = "2 m/s"', "from must be smaller than to"),
-        ('rms = "0.05 um"', 'rms = "0.05"', "glass+glass"),
+        ('rms = "0.05 um"', 'rms = "0.05"', "alu+alu"),
     ],
 )
 def test_what_is_refused(mixture_text, old, new, words):

@@ -171,9 +171,11 @@ def _error_of(curve: RatioCurve, radius: float, near: list[RatioCurve]) -> float
 
 
 def _column_at(law: Law, name: str, velocity: float) -> float:
-    """The field `name` of the points, linear in ln V."""
-    values = law.column(name)
-    return float(np.interp(math.log(velocity), np.log(law.column("velocity")), values))
+    """The field `name` of the points at `velocity` (m/s), between them a power of V."""
+    L, values = np.log(law.column("velocity")), law.column(name)
+    if (values <= 0).any():
+        return float(np.interp(math.log(velocity), L, values))
+    return math.exp(np.interp(math.log(velocity), L, np.log(values)))
 
 
 def _root(ratio: float) -> float:
