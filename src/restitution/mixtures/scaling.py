@@ -21,7 +21,7 @@ from restitution.mixtures.family import Family, Meeting
 
 Array = NDArray[np.float64]
 
-_SHARE = 0.5  # of the error of the computed laws that interpolation may add
+_SHARE, _MOST = 0.25, 0.05  # of the error of computed laws, and of COR: interpolation may add it
 _SAME = 1e-9  # radii are equal within this relative difference
 
 
@@ -45,12 +45,12 @@ class Computed:
         """Whether the law of the pair needs no further radius.
 
         That is where the error by interpolation in R* is at no velocity above the limit of the
-        mixture, or above half of the error that the computed laws have.
+        mixture, or above a quarter of the error of the computed laws (but at most `_MOST`).
         """
         law, errors = self.law(meeting), self.interpolation_errors(meeting)
         limit = self.family.mixture.interpolation_error
         return all(
-            error <= max(limit, _SHARE * (point.error - error))
+            error <= max(limit, min(_SHARE * (point.error - error), _MOST))
             for point, error in zip(law.points, errors, strict=True)
         )
 
