@@ -53,7 +53,7 @@ def between(low: Values, high: Values, **quantities: Values) -> tuple[Array, ...
 
 
 def keep_positive(law: object, *names: str) -> None:
-    """Check the named fields of a frozen `law` with `positive` and store them as read-only arrays."""
+    """Check named fields of a frozen `law` with `positive` and store them as read-only arrays."""
     for name in names:
         keep(law, name, *positive(**{name: getattr(law, name)}))
 

@@ -43,7 +43,7 @@ class Brilliantov:
     The field and arguments may be arrays and broadcast (see `restitution.theory`).
 
     Attributes:
-        dissipation: Dissipation β = γ/k^{3/5} ((s/m)^{1/5}, SI).
+        dissipation: Dissipation β = γ/k^{3/5} (SI, s^{1/5}·m^{−1/5}).
 
     Raises:
         CaseError: The dissipation is not positive and finite.
