@@ -95,7 +95,7 @@ def test_a_step_is_that_of_the_expressions(single, kind, shape, seed, step):
 @settings(deadline=None, max_examples=25)
 @given(shapes, seeds)
 def test_a_step_to_a_bound_ends_on_it(compiled, shape, seed):
-    """A rounding error away from the bound, the next iteration would treat the node as free."""
+    """If it ended a rounding error away, the next iteration would treat the node as free."""
     rng = np.random.default_rng(seed)
     direction, step = (
         function if compiled else function.__wrapped__

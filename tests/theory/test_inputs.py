@@ -169,7 +169,7 @@ IMPACT_LAWS: list[type[ImpactLaw]] = [
     for law, name, names, _ in QUANTITIES
     if name == "restitution" and names == ("velocity", "mass")
 ]
-HELD_AT_ZERO = (JKR, "force"), (JKR, "contact_radius"), (JKR, "unloading_work")  # until the break
+HELD_AT_ZERO = (JKR, "force"), (JKR, "contact_radius"), (JKR, "unloading_work")  # adhesive
 # parameters of the law without effect on a quantity
 LEFT_OUT = {
     (Hertz, "contact_radius"): ("contact_modulus",),

@@ -100,7 +100,7 @@ def test_depth_and_contact_radius_are_inverse(x):
 def test_force_by_depth_and_by_contact_radius_agree_on_the_stable_branch(x):
     a = x * A_B
     d = np.maximum(LAW.indentation_at_contact_radius(a), D_B)
-    # close to the break the error of a is the root of the rounding error of δ
+    # close to the break the error of a is the square root of the rounding error of δ
     assert_allclose(LAW.contact_radius(d), a, rtol=1e-13 if x > 1.01 else 1e-7)
     assert_allclose(
         LAW.force(d),
@@ -224,7 +224,7 @@ def test_all_materials_share_one_curve(x, length, stress, adhesion):
     other = JKR(length * R, stress * E_STAR, adhesion * W)
     d, d_other = x * -D_B, x * -other.break_indentation
     a_other = other.break_radius
-    # at the break the error of a is the root of the rounding error of δ
+    # at the break the error of a is the square root of the rounding error of δ
     rtol = 1e-11 if x > -0.999 else 1e-6
     assert_allclose(
         other.contact_radius(np.maximum(d_other, other.break_indentation)) / a_other,

@@ -210,8 +210,11 @@ class ThorntonNing:
     def restitution(self, velocity: Values, mass: Values) -> Array:
         """Coefficient of restitution after an impact.
 
-        With q = V_y/V the result above V_y is e = (6√3/5)^½ (1 − q²/6)^½ [q/(q + 2(6/5 −
-        q²/5)^½)]^¼, which tends to 1.185 q^¼.
+        Above V_y, with q = V_y/V,
+
+            e = (6√3/5)^½ (1 − q²/6)^½ [q/(q + 2(6/5 − q²/5)^½)]^¼,
+
+        which tends to 1.185 q^¼ at high velocity.
 
         Args:
             velocity: Relative normal impact velocity V (m/s).

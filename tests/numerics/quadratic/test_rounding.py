@@ -27,7 +27,7 @@ def rounded(A, applied):
 def test_from_nearby_two_gradients_are_computed_exactly_the_first_and_the_last(
     minimise, random_matrix, random_bounds, far
 ):
-    """The rounding errors of small steps are small."""
+    """Rounding errors of small steps are small, so no further gradient is needed."""
     rng = np.random.default_rng(2)
     A, b = random_matrix(rng, 20), 3 * rng.normal(size=20)
     bounds = random_bounds(rng, 20)
