@@ -58,9 +58,7 @@ instruction_set: str = INSTRUCTION_SETS[loops.instruction_set] if loops else "no
 
 
 def missing() -> str | None:
-    """Return one sentence with the reason and the remedy if no compiled kernels are used, else
-    None.
-    """
+    """Why no compiled kernels are used, with the remedy, in one sentence; None if they are."""
     if loops is not None:
         return None
     return f"NumPy does the work of compiled kernels, which takes 3 to 6 times as long: {_reason}"

@@ -13,8 +13,7 @@ _GROUPS = Path("/sys/fs/cgroup")
 
 
 def available() -> float:
-    """Memory limit of this process (bytes): the smallest of machine, control groups and address
-    space.
+    """Memory limit (bytes): the smallest of machine, control groups and address space.
 
     Infinite if the system does not report any limit.
     """

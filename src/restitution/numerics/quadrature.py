@@ -10,8 +10,7 @@ from numpy.typing import ArrayLike
 
 
 def integrate_curve(x: ArrayLike, f: ArrayLike) -> float:
-    """Integral of the monotone cubic interpolant (PCHIP) of the points (x, f); x may increase or
-    decrease.
+    """Integral of the monotone cubic interpolant (PCHIP) of the points (x, f), x in either order.
 
     The trapezoidal rule is biased on a convex curve; PCHIP is not, and it never overshoots.
     """

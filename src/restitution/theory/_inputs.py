@@ -14,8 +14,7 @@ Values: TypeAlias = float | Array
 
 
 def positive(**quantities: Values) -> tuple[Array, ...]:
-    """Return the named quantities as float arrays; raise `CaseError` unless all are positive and
-    finite.
+    """Return the named quantities as float arrays; `CaseError` unless all are positive and finite.
 
     The error message names the keyword, so pass each quantity under its public argument name.
     """
@@ -33,8 +32,7 @@ def positive(**quantities: Values) -> tuple[Array, ...]:
 
 
 def between(low: Values, high: Values, **quantities: Values) -> tuple[Array, ...]:
-    """Return the named quantities as float arrays; raise `CaseError` unless finite and within
-    bounds.
+    """Return the named quantities as float arrays; `CaseError` unless finite and within bounds.
 
     The error message names the keyword, so pass each quantity under its public argument name.
     """

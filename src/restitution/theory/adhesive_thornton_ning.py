@@ -1,5 +1,4 @@
-"""Thornton & Ning (1998): elastic, perfectly plastic spheres with adhesion; the energy losses add
-up.
+"""Thornton & Ning (1998): elastic, perfectly plastic spheres with adhesion.
 
 C. Thornton, Z. Ning, Powder Technology 99 (1998) 154–162. With e_p from `ThorntonNing`, V_s from
 `JKR` and V_y from `FirstYield`:
@@ -10,14 +9,15 @@ C. Thornton, Z. Ning, Powder Technology 99 (1998) 154–162. With e_p from `Thor
 e is continuous at V_y, where e_p = 1. It rises from 0 at V_s to a peak above V_y and then falls.
 
 The sum of the two losses is an assumption: each loss is computed as if the other were absent. The
-adhesive loss is that of the undeformed radius R*, although yielding flattens the contact to R_p >
-R*, whose detachment takes more work (∝ R_p^{4/3}). Yielding caused by adhesion alone is neglected.
-So e is an upper estimate, accurate if the adhesive loss is small at first yield, V_s ≪ V_y.
+adhesive loss is that of the undeformed radius R*, although yielding flattens the contact to
+R_p > R*, whose detachment takes more work (∝ R_p^{4/3}). Yielding caused by adhesion alone is
+neglected. So e is an upper estimate, accurate if the adhesive loss is small at first yield
+(V_s ≪ V_y).
 
 If V_s > V_y, the pair yields below its sticking velocity and the formula fails. Such a pair sticks
 up to V_y (e = 0); above V_y the result is NaN. An example is ammonium fluorescein (radius 2.45 μm,
-1350 kg/m³, E = 1.2 GPa, w = 0.2 J/m², p_y = 35.3 MPa, on a wall of 182 GPa; both ν = 0.3): V_s =
-0.567 m/s, V_y = 0.183 m/s.
+1350 kg/m³, E = 1.2 GPa, w = 0.2 J/m², p_y = 35.3 MPa, on a wall of 182 GPa; both ν = 0.3):
+V_s = 0.567 m/s, V_y = 0.183 m/s.
 
 The ranges of `ThorntonNing` and `JKR` apply too: quasi-static normal impacts of smooth spheres and
 a large Tabor parameter.

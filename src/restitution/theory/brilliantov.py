@@ -1,5 +1,4 @@
-"""Viscoelastic Hertz contact (Brilliantov, Pöschel): Padé form of the restitution by Müller &
-Pöschel.
+"""Viscoelastic Hertz contact (Brilliantov, Pöschel): restitution as a Padé form.
 
 N. V. Brilliantov, F. Spahn, J.-M. Hertzsch, T. Pöschel, Phys. Rev. E 53 (1996) 5382–5392; R.
 Ramírez, T. Pöschel, N. V. Brilliantov, T. Schwager, Phys. Rev. E 60 (1999) 4465–4472; P. Müller, T.
@@ -61,8 +60,7 @@ class Brilliantov:
     def from_material(
         cls, radius: Values, contact_modulus: Values, dissipative_time: Values, mass: Values
     ) -> Self:
-        """Make the law from the dissipative constant of the material: β = 3/2 A
-        (4E*R*^½/3m*)^{2/5}.
+        """Make the law from the dissipative constant: β = 3/2 A (4E*R*^½/3m*)^{2/5}.
 
         Args:
             radius: Reduced radius R* (m).

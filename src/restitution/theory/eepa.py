@@ -2,8 +2,8 @@
 
 J. P. Morrissey, thesis, University of Edinburgh (2013); S. C. Thakur, J. P. Morrissey, J. Sun, J.
 F. Chen, J. Y. Ooi, Granular Matter 16 (2014) 383–400. With the springs k₁ (loading), k₂ (unloading)
-and k_adh (adhesion), one exponent n for all (1: linear, 3/2: Hertz-like), the constant f₀ ≤ 0 and d
-= δ_max:
+and k_adh (adhesion), one exponent n for all (1: linear, 3/2: Hertz-like), the constant f₀ ≤ 0 and
+d = δ_max:
 
     loading     F = f₀ + k₁δⁿ
     unloading   F = f₀ + k₂(δⁿ − δ_pⁿ),  δ_p = (1 − k₁/k₂)^{1/n} d
@@ -13,8 +13,8 @@ and k_adh (adhesion), one exponent n for all (1: linear, 3/2: Hertz-like), the c
     impact      ½ m* V² = W_l, e² = W_u/W_l, 0 where W_u ≤ 0: stuck, in contact at δ > 0
 
 The contact begins and ends at δ = 0, where the force jumps between f₀ and zero. Without adhesion
-(f₀ = 0, k_adh = 0) it ends at δ_p, where F = 0, and e does not depend on velocity: e² = [1 − (n +
-1)q + n q^{1+1/n}] k₂/k₁ with q = 1 − k₁/k₂, which is k₁/k₂ for n = 1.
+(f₀ = 0, k_adh = 0) it ends at δ_p, where F = 0, and e does not depend on velocity:
+e² = [1 − (n + 1)q + n q^{1+1/n}] k₂/k₁ with q = 1 − k₁/k₂, which is k₁/k₂ for n = 1.
 
 k_adh is a constant here. Codes that derive it from a surface energy (EDEM, PFC, LIGGGHTS' default)
 make it a function of δ_p, and the exponent of their adhesive branch (Morrissey's χ) may differ from
@@ -162,9 +162,9 @@ class EEPA:
     def indentation_from_velocity(self, velocity: Values, mass: Values) -> Array:
         """Largest indentation of an impact.
 
-        With K = ½m*V², a = ((n + 1) K/k₁)^{1/(n+1)} is the indentation without f₀, and b = (−(n +
-        1) f₀/k₁)^{1/n} the indentation that f₀ alone causes. The root lies between max(a, b) and a
-        + b.
+        With K = ½m*V², a = ((n + 1) K/k₁)^{1/(n+1)} is the indentation without f₀, and
+        b = (−(n + 1) f₀/k₁)^{1/n} the indentation that f₀ alone causes. The root lies between
+        max(a, b) and a + b.
 
         Args:
             velocity: Relative normal impact velocity V (m/s).

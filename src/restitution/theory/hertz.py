@@ -101,8 +101,7 @@ class Hertz:
         return scalar_or_array(np.sqrt(self.radius * touching(indentation)))
 
     def contact_area(self, indentation: Values) -> Array:
-        """Contact area at an indentation: half the area in which the undeformed spheres would
-        overlap.
+        """Contact area at an indentation, half the area of overlap of the undeformed spheres.
 
         Args:
             indentation: Approach of the spheres δ (m).

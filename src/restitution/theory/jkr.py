@@ -7,8 +7,8 @@ With the work of adhesion w, Hertz minus a flat punch (`kendall`) of the same co
     F = 4E*a³/(3R*) − (8πE*wa³)^½,   δ = a²/R* − (2πwa/E*)^½
 
 Forces are positive in compression and δ closes the contact; only `pull_off_force` is a magnitude.
-With a_b = (πwR*²/8E*)^{1/3}, F_c = 3/2 πwR* and U = E*a_b⁵/R*², all quantities are polynomials in s
-= (a/a_b)^½:
+With a_b = (πwR*²/8E*)^{1/3}, F_c = 3/2 πwR* and U = E*a_b⁵/R*², all quantities are polynomials in
+s = (a/a_b)^½:
 
     δ = (s⁴ − 4s) a_b²/R*,   F = (s⁶ − 6s³) F_c/9
     U_el/U = 8/15 s¹⁰ − 16/3 s⁷ + 16 s⁴,   U_T = U_el − wπa² = U_el − 8 s⁴ U,   dU_T = F dδ
@@ -229,8 +229,7 @@ class JKR:
         return scalar_or_array(np.where(np.asarray(indentation) <= 0, 0.0, W_l))
 
     def unloading_work(self, indentation: Values) -> Array:
-        """Work from the break to an indentation, which the contact returns on separation: W_u = W_l
-        − W_s.
+        """Work returned on separation, from an indentation to the break: W_u = W_l − W_s.
 
         Args:
             indentation: Approach of the spheres δ (m).
@@ -245,9 +244,7 @@ class JKR:
 
     @property
     def hysteresis_loss(self) -> Array:
-        """Energy W_s = 7.092 (w⁵R*⁴/E*²)^{1/3} (J) dissipated in one cycle of contact, at any
-        depth.
-        """
+        """Energy W_s = 7.092 (w⁵R*⁴/E*²)^{1/3} (J) dissipated per cycle at any depth."""
         return (_AT_BREAK - _AT_JUMP_IN) * self._energy_unit
 
     def impact_velocity(self, maximum_indentation: Values, mass: Values) -> Array:
@@ -340,9 +337,9 @@ class JKR:
     def _root(self, indentation: Values) -> Array:
         """s = (a/a_b)^½ on the stable branch: the root s ≥ 1 of s⁴ − 4s = 3k; 0 below the break.
 
-        With k = δ/|δ_b| ≥ −1 and y = 2p² the positive root of Ferrari's cubic y³ + 3ky = 2, s = p +
-        (1/p − p²)^½. Cardano's formula is y = t − k/t with t³ = 1 + (1 + k³)^½. It is evaluated as
-        2/(t² + k + k²/t²), which has no cancellation at any depth.
+        With k = δ/|δ_b| ≥ −1 and y = 2p² the positive root of Ferrari's cubic y³ + 3ky = 2,
+        s = p + (1/p − p²)^½. Cardano's formula is y = t − k/t with t³ = 1 + (1 + k³)^½. It is
+        evaluated as 2/(t² + k + k²/t²), which has no cancellation at any depth.
         """
         d, d_b = np.asarray(indentation, dtype=np.float64), self.break_indentation
         above = np.maximum((d - d_b) / -d_b, 0.0)  # 1 + k, exactly 0 at the break

@@ -94,8 +94,7 @@ class Johnson:
         return self._velocity(self._energy_of_unity / e**8, mass)
 
     def velocity_at_full_radius(self, mass: Values) -> Array:
-        """Impact velocity at which the contact radius reaches the reduced radius: W = π 3Y a⁴/4R*,
-        a = R*.
+        """Impact velocity at which a reaches R*: W = π 3Y a⁴/4R*.
 
         Args:
             mass: Reduced mass m* (kg).

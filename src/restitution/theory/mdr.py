@@ -26,8 +26,8 @@ least 5 % (more for a larger Y/E*), rises a little, and then decreases with V. L
 
 These parts of LAMMPS are left out: the growth of the apparent radius by the displaced volume and
 the ellipse in place of Hertz's parabola below δ_Y, both of relative order δ/R (they change e by
-10⁻⁴ at δ = 0.01 R), and the bulk response of spheres confined on all sides. The result is NaN for δ
-> R.
+10⁻⁴ at δ = 0.01 R), and the bulk response of spheres confined on all sides. The result is NaN for
+δ > R.
 Units, shapes and errors are those of `restitution.theory`.
 """
 
@@ -254,9 +254,7 @@ class MDR:
         return recovery
 
     def _returned(self, d: Values) -> Array:
-        """Unloading work W_u (J): (1 + δ_R/d) E*A²B/12 for an indenter of height A = 2d and width B
-        = 2a.
-        """
+        """Unloading work W_u (J): (1 + δ_R/d) E*A²B/12, with height A = 2d and width B = 2a."""
         E_star = self.elastic.contact_modulus
         plastic = 2 / 3 * E_star * self._elastic_depth(d) * self._contact_radius(d)
         elastic = self.elastic.stored_energy(d)

@@ -2,8 +2,8 @@
 
 `AdhesiveThorntonNing` adds adhesion. C. Thornton, Z. Ning, Powder Technology 99 (1998) 154–162; the
 plastic law is that of Thornton, J. Appl. Mech. 64 (1997) 383–386. The Hertz pressure is truncated
-at p_y, and the contact is not brought back into equilibrium: it keeps a² = R*δ. With x = δ/δ_y, f =
-F/F_y and W in units of F_y δ_y:
+at p_y, and the contact is not brought back into equilibrium: it keeps a² = R*δ. With x = δ/δ_y,
+f = F/F_y and W in units of F_y δ_y:
 
     loading     f = x^{3/2} for x ≤ 1, then the tangent  f = (3x − 1)/2,  F = F_y + πp_yR*(δ − δ_y)
                 W_l = ⅖ x^{5/2} for x ≤ 1, then  W_l = ⅖ + (x − 1) + ¾ (x − 1)²

@@ -8,8 +8,8 @@ and reloading have a larger stiffness k₂, which may grow with the largest forc
     impact      δ_max = V (m*/k₁)^½,  e² = W_u/W_l = k₁/k₂
 
 The paper has two special cases. S = 0 is its constant law, e = (k₁/k_u)^½ at any velocity. k_u = k₁
-is its variable law, e = (1 + S V (m*/k₁)^½)^{−½}; the paper writes the square root with ω₀ =
-(2k₁/m)^½, which equals (k₁/m*)^½ for two equal spheres of mass m.
+is its variable law, e = (1 + S V (m*/k₁)^½)^{−½}; the paper writes the square root with
+ω₀ = (2k₁/m)^½, which equals (k₁/m*)^½ for two equal spheres of mass m.
 
 The contact ends where F returns to zero, at δ₀ > 0, not at δ = 0. There is no adhesion and no
 length scale: the springs are parameters to be fitted, and R* and E* do not enter.

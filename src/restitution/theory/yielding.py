@@ -87,8 +87,8 @@ class FirstYield:
 def yield_coefficient(poissons_ratio: Values) -> Array:
     """Ratio C = 1.295 exp(0.736 ν) of the peak Hertz pressure at first yield to the yield strength.
 
-    The fit to the largest von Mises stress below a Hertz contact is accurate within ½ % for 0 ≤ ν ≤
-    ½. C = 1.61 at ν = 0.3.
+    The fit to the largest von Mises stress below a Hertz contact is accurate within ½ % for
+    0 ≤ ν ≤ ½. C = 1.61 at ν = 0.3.
 
     Args:
         poissons_ratio: Poisson's ratio ν (1).

@@ -30,9 +30,7 @@ class OperatorCache:
 
     @property
     def max_bytes(self) -> int:
-        """Largest total size of all values (bytes). A smaller value drops entries until the rest
-        fits.
-        """
+        """Largest total size of all values (bytes). Setting it drops values that no longer fit."""
         return self._max_bytes
 
     @max_bytes.setter

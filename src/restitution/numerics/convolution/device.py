@@ -60,8 +60,7 @@ class Device(Protocol):
         workspace: Array,
         out: Array,
     ) -> None:
-        """Multiply the Fourier modes of `values` by a real, even spectrum; write the result to
-        `out`.
+        """Multiply the Fourier modes of `values` by a real, even spectrum; write to `out`.
 
         `values` and `out` have shape (nx, ny); `values` is padded with zeros to `periods`.
         `spectrum` is the transpose of a quadrant made by `even_spectrum`; its precision is that of

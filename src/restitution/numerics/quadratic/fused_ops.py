@@ -22,9 +22,7 @@ Bounds = tuple[Bound, Bound]  # lower, upper
 
 
 def as_rows(lower: Bound, upper: Bound, p: Array) -> Bounds:
-    """Convert the bounds to the form that loops accept: a number becomes an array that repeats one
-    row.
-    """
+    """Convert number bounds to arrays that repeat one row, as the loops require."""
 
     def rows(bound: Bound) -> Bound:
         if isinstance(bound, np.ndarray) or not loop_takes(p):
@@ -94,8 +92,7 @@ def violates_bounds(p: Array, d: Array, step: float, bounds: Bounds) -> bool:
 def take_step(
     p: Array, g: Array, d: Array, Kd: Array, step: float, bounds: Bounds, out: Array
 ) -> float:
-    """Move p to p + `step` d and g to g + `step` Kd; `out` and the result are as in
-    `projected_gradient`.
+    """Move p to p + `step` d and g to g + `step` Kd; `out`, result: see `projected_gradient`.
 
     If the step is full (1), nodes truncated at a bound end exactly on it, without rounding error.
     """
@@ -109,9 +106,7 @@ def take_step(
 
 
 def _free(p: Array, g: Array, bounds: Bounds) -> NDArray[np.bool_]:
-    """Nodes that can move downhill: between the bounds, or on a bound with a gradient that pulls
-    them off.
-    """
+    """Nodes that can move downhill: between the bounds, or on one and moving away from it."""
     lower, upper = bounds
     free = p > lower
     free |= g < 0

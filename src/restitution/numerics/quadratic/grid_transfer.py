@@ -26,9 +26,7 @@ def restrict(fine: Array, coarse: Array) -> None:
 
 @use_loop
 def prolong(coarse: Array, fine: Array) -> None:
-    """Write the linear interpolation of `coarse` into `fine`, constant beyond the outermost
-    centres.
-    """
+    """Write the linear interpolation of `coarse` into `fine`; constant beyond the outer centres."""
     rows, columns = fine.shape
     taller = _doubled_rows(coarse)[:rows].T
     fine[...] = _doubled_rows(taller)[:columns].T

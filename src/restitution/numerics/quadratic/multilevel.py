@@ -121,8 +121,8 @@ def mean_damped_preconditioner(inverse: Operator, p: Array, b: Array, upper: Bou
     inverse of a smoothing operator amplifies the short waves of this drop, more so on finer grids
     (McLean and Steinbach 1999, Adv. Comput. Math. 11, 271–286). So it overestimates the constant
     part, by up to 30 times on rough contacts, and conjugate gradients would have to correct this
-    part again whenever nodes reach or leave a bound. The guess `p` gives the factor, because K p =
-    b on those nodes. Means around 8 × 8 places represent the nearly constant part.
+    part again whenever nodes reach or leave a bound. The guess `p` gives the factor, because
+    K p = b on those nodes. Means around 8 × 8 places represent the nearly constant part.
     """
     free, free_nodes, contact_nodes = _between_the_bounds(p, upper)
     if free_nodes <= 0.5 * contact_nodes:  # no guess, or mostly yielding
@@ -163,8 +163,7 @@ def _is_worth_its_check(window: Box, size: tuple[int, int]) -> bool:
 
 
 def _first_guess(operators: Operators, b: Array, upper: Bound, level: int) -> Array:
-    """Return the prolonged solution on the grid of `level`, which starts from the next coarser
-    grid.
+    """Return the prolonged solution on the grid of `level`, started from the next coarser grid.
 
     On the coarsest grid the guess is zero.
     """
