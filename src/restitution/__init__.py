@@ -60,8 +60,8 @@ __all__ = [
     "unloading_path",
 ]
 
-# Where each name above comes from. They are imported on first use: the command line is in this
-# package, too, and is to answer (and to be stopped) before numpy is loaded.
+# The module of each name above. Names are imported on first use, so that the command line, which is
+# in the same package, can answer (and be interrupted) before NumPy is loaded.
 _HOMES = {
     "collision": ("Collision", "collide"),
     "contact.bodies": ("Body", "Pair"),

@@ -1,9 +1,9 @@
 """From energies to a collision: restitution, impact velocity, sticking.
 
-Quasi-static normal impact: no waves, no friction, no rate effects. The contact ends at separation,
-where the force is back to zero, after pull-off where there is adhesion. Without adhesion unloading
-is elastic and reversible, so it returns the stored energy; with adhesion it is followed step by
-step, or estimated.
+The impact is quasi-static and normal, without waves, friction or rate effects. The contact ends at
+separation: where the force returns to zero or, with adhesion, where the last node detaches. Without
+adhesion, unloading is elastic and reversible, so it returns the stored energy. With adhesion,
+unloading is simulated step by step or estimated.
 """
 
 from __future__ import annotations
@@ -17,18 +17,27 @@ from restitution.contact.separation import RESTITUTION_ERROR, separate, separati
 from restitution.contact.state import State
 
 UnloadingMethod = Literal["path", "energy-estimate"]
-# Error of the grid in letting go, as a share of w times the area; steps do not show it. Crack
-# closure releases at 0.985 to 0.99 of w, the tension limit at 1.0 (kink) to 1.8 w (straight edge).
+# Error of the detachment criterion on a grid, as a fraction of w times the area; refining the steps
+# does not reveal it. Crack closure detaches at 0.985 to 0.99 w, the tension limit at 1.0 w (kink in
+# the contact edge) to 1.8 w (straight edge).
 _RELEASE_ERROR = {"crack-closure": 0.015, "pohrt-popov": 0.4}
 
 
 @dataclass(frozen=True)
 class Collision:
-    """What one collision takes and returns.
+    """Works of one collision and the quantities that follow from them.
 
-    Works of loading and unloading (J) with their errors, the reduced mass m* (kg; None when a
-    density is not given), the energy that adhesion has dissipated (J), the largest tension on the
-    way back (N) and the indentation at which the bodies part (m).
+    Attributes:
+        loading_work: Work of loading W_l (J).
+        unloading_work: Work of unloading W_u (J).
+        mass: Reduced mass m* (kg); None if a density is missing.
+        separation_indentation: Indentation at which the bodies separate (m); NaN if it is not
+            known.
+        pull_off_force: Largest tension during unloading (N); NaN if it is not known.
+        adhesive_loss: Energy dissipated by adhesion (J).
+        loading_work_error: Error of the work of loading (J).
+        unloading_work_error: Error of the work of unloading (J).
+        convolutions: Number of convolutions that unloading took.
     """
 
     loading_work: float
@@ -43,17 +52,17 @@ class Collision:
 
     @property
     def sticks(self) -> bool:
-        """Whether nothing is returned: the pair does not come apart by itself."""
+        """Whether the pair sticks: it returns no work, so it does not separate by itself."""
         return self.unloading_work <= 0 or self.loading_work <= 0
 
     @property
     def restitution(self) -> float:
-        """Coefficient of restitution sqrt(W_u/W_l) (Johnson 1985, §11.5); 0 when it sticks."""
+        """Coefficient of restitution sqrt(W_u/W_l) (1) (Johnson 1985, §11.5); 0 if they stick."""
         return _restitution(self.unloading_work, self.loading_work)
 
     @property
     def restitution_error(self) -> float:
-        """How far the errors of the two works, which are independent, may move the restitution."""
+        """Error of the restitution (1) from the errors of the two works, which are independent."""
         here, W_u, W_l = self.restitution, self.unloading_work, self.loading_work
         dW_u, dW_l = self.unloading_work_error, self.loading_work_error
         by_unloading = (_restitution(W_u + dW_u, W_l), _restitution(W_u - dW_u, W_l))
@@ -64,10 +73,10 @@ class Collision:
 
     @property
     def impact_velocity(self) -> float | None:
-        """Approach velocity V with ½ m* V² = W_l, m/s.
+        """Approach velocity V (m/s) from ½ m* V² = W_l.
 
-        None when a density is not given, and where adhesion has done more work than the approach:
-        every impact goes deeper.
+        None if a density is missing, and if W_l < 0: adhesion then draws every impact deeper than
+        this.
         """
         if self.mass is None or self.loading_work < 0:
             return None
@@ -81,12 +90,24 @@ def collide(
     method: UnloadingMethod = "path",
     tolerance: float = RESTITUTION_ERROR,
 ) -> Collision:
-    """The collision whose deepest point is `state`, a state of loading.
+    """Compute the collision whose deepest point is `state`.
 
-    With adhesion its unloading is `unloading` (from `separate`), or is followed here to an error of
-    restitution of `tolerance`; `method="energy-estimate"` takes W_u = E_el − wA instead, with no
-    pull-off force (NaN), and wA again as its error: what snapping off dissipates, and the grid's
-    share in letting go, stayed below that in every case compared. Raises as `separate`.
+    Without adhesion, the work of unloading is the stored energy. `method="path"` simulates
+    unloading with adhesion. `method="energy-estimate"` uses W_u = E_el − wA with an error of wA and
+    does not compute the pull-off force or the separation (NaN). In every case compared, the energy
+    dissipated at detachment plus the error of the grid in the detachment stayed below wA.
+
+    Args:
+        state: Deepest state of the collision, reached by loading.
+        unloading: States from `separate`, if they are known; only used with adhesion.
+        method: How to compute the work of unloading with adhesion.
+        tolerance: Error of the restitution (1) to which unloading is refined.
+
+    Returns:
+        Works of loading and unloading, and restitution.
+
+    Raises:
+        NotConvergedError: The bodies did not separate, or a solve did not converge.
     """
     contact = state.contact
     elastic = Collision(
@@ -125,5 +146,5 @@ def collide(
 def _restitution(unloading_work: float, loading_work: float) -> float:
     if unloading_work <= 0 or loading_work <= 0:
         return 0.0
-    # What is returned cannot exceed what was given; numerical error may, by restitution_error.
+    # W_u cannot exceed W_l, except by numerical errors, which restitution_error covers.
     return min(1.0, math.sqrt(unloading_work / loading_work))

@@ -1,24 +1,24 @@
-"""What can go wrong for a reason the user can mend.
+"""Errors that the user can fix.
 
-Every message is one sentence that names the key, file or quantity at fault, followed by the
-remedy. The command line prints it as its one red line and exits with status 1.
+Each message is one sentence that names the key, file or quantity at fault, followed by the remedy.
+The command line prints it in red on one line and exits with status 1.
 """
 
 
 class RestitutionError(Exception):
-    """A problem with the input or the computation whose message says what to change."""
+    """A problem with the input or the computation; the message says what to change."""
 
 
 class CaseError(RestitutionError, ValueError):
-    """A case (file or arguments) that does not describe a contact."""
+    """Invalid values in a case file or in the arguments of a function."""
 
 
 class SurfaceError(RestitutionError, ValueError):
-    """A surface or a topography file that cannot be used as asked."""
+    """A surface or a topography file that cannot be used for the requested operation."""
 
 
 class NotConvergedError(RestitutionError):
-    """A solve whose residual stayed above its tolerance; the numbers are withheld."""
+    """A solve whose residual stayed above its tolerance; no result is returned."""
 
 
 class DomainError(RestitutionError):
@@ -26,18 +26,18 @@ class DomainError(RestitutionError):
 
 
 class OutputError(RestitutionError):
-    """A results folder that cannot be written, or that must not be overwritten."""
+    """A results folder that is not writable or must not be overwritten."""
 
 
 def one_line(text: str) -> str:
-    """`text` with line breaks and other control characters escaped, so that it stays one line."""
+    """Escape line breaks and other control characters in `text`, so that it stays on one line."""
     return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
 
 
 def shown(value: object, limit: int = 60) -> str:
-    """A value of the user's as a message repeats it: text in quotes, short, and on one line."""
+    """Format a value that the user gave for a message: on one line, shortened, text in quotes."""
     if isinstance(value, bool):
-        return str(value).lower()  # as TOML writes it
+        return str(value).lower()  # as in TOML
     try:
         text = one_line(value if isinstance(value, str) else repr(value))
     except ValueError:  # Python refuses to print an integer of more than 4300 digits

@@ -1,4 +1,4 @@
-"""Small problems with dense matrices, and threads."""
+"""Small problems with dense matrices, and the number of threads."""
 
 from dataclasses import replace
 from functools import partial
@@ -11,7 +11,7 @@ from restitution.numerics.quadratic.minimise import BoundedQuadratic, minimise_q
 
 @pytest.fixture(params=[1, 2, 3, 40])
 def threads(request):
-    """So many threads for what is worth them; then as many as before."""
+    """Set the number of threads, and restore it afterwards."""
     loops = pytest.importorskip("restitution.numerics.loops", reason="built without a compiler")
     before = loops.threads_for(10**9)
     loops.use_threads(request.param)
@@ -21,9 +21,9 @@ def threads(request):
 
 @pytest.fixture(scope="session")
 def minimise():
-    """Minimise with a dense matrix A; the points it was applied to come along.
+    """Minimise with a dense matrix A; return the result and the points to which A was applied.
 
-    The program's arrays are of two dimensions: a column serves.
+    The minimiser takes two-dimensional arrays, so points are columns.
     """
 
     def found_and_applied(
@@ -49,7 +49,7 @@ def minimise():
 
 @pytest.fixture(scope="session")
 def random_matrix():
-    """A symmetric positive definite one of that condition."""
+    """Symmetric positive definite matrix with a given condition number."""
 
     def made(rng, n, condition=10.0):
         Q = np.linalg.qr(rng.normal(size=(n, n)))[0]
@@ -61,7 +61,7 @@ def random_matrix():
 
 @pytest.fixture(scope="session")
 def random_bounds():
-    """Finite, one-sided and absent bounds, negative lower ones among them."""
+    """Bounds on both sides, on one side or on none; lower bounds may be negative."""
 
     def made(rng, n):
         kind = rng.integers(0, 4, n)
@@ -74,7 +74,7 @@ def random_bounds():
 
 @pytest.fixture(scope="session")
 def kkt_violation():
-    """The three conditions of the minimiser, node by node."""
+    """Violation of the optimality conditions, computed node by node."""
 
     def largest(A, b, p, lower, upper):
         worst = 0.0

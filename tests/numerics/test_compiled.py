@@ -1,4 +1,4 @@
-"""The compiled loops against the expressions that say what they do."""
+"""The compiled loops, compared with the array expressions."""
 
 import numpy as np
 import pytest
@@ -31,7 +31,7 @@ shapes = st.tuples(st.integers(1, 9), st.integers(1, 40))
 
 
 def bounds(rng, kind, shape):
-    """None above and zero below, numbers, or arrays that also are absent in places."""
+    """Bounds: only p ≥ 0, two numbers, or arrays with some infinite values."""
     if kind == "contact":
         return 0.0, np.inf
     if kind == "numbers":
@@ -46,7 +46,7 @@ def point(rng, lower, upper, shape):
 
 
 def both(operation, *args):
-    """What the expression and the loop return, with the arguments that they have left."""
+    """Results of the expression and of the loop, each with its arguments after the call."""
     outcomes = []
     for function in (operation.__wrapped__, operation):
         mine = [a.copy() if isinstance(a, np.ndarray) else a for a in args]
@@ -95,7 +95,7 @@ def test_a_step_is_that_of_the_expressions(single, kind, shape, seed, step):
 @settings(deadline=None, max_examples=25)
 @given(shapes, seeds)
 def test_a_step_to_a_bound_ends_on_it(compiled, shape, seed):
-    """Not a rounding away, where the next iteration would find it free."""
+    """If it ended a rounding error away, the next iteration would treat the node as free."""
     rng = np.random.default_rng(seed)
     direction, step = (
         function if compiled else function.__wrapped__
@@ -146,7 +146,7 @@ def test_means_around_places_are_those_of_the_expressions(single, shape, places,
 
 
 def test_a_constant_on_a_part_is_lowered_to_a_share_of_it():
-    """Whatever the part; and of what is linear only its means around the places."""
+    """This holds for any subset of the nodes."""
     rng = np.random.default_rng(11)
     r = 2.0 * (rng.random((60, 45)) < 0.4)
     sums, nodes = np.empty((2, 8, 8))
@@ -157,9 +157,9 @@ def test_a_constant_on_a_part_is_lowered_to_a_share_of_it():
 
 
 def test_threads_share_the_rows_and_change_nothing(threads):
-    """Not the last digit of a sum, either."""
+    """Sums agree to the last digit."""
     rng = np.random.default_rng(5)
-    shape = (1701, 1300)  # one array in single precision is worth threads
+    shape = (1701, 1300)  # large enough for threads even in single precision
     p, g = rng.random(shape), rng.normal(size=shape)
     d, r, z, r_old, Kd = rng.normal(size=(5, *shape)).astype(np.float32)
     box = as_rows(0.0, 0.9, p)
@@ -206,7 +206,7 @@ def test_threads_share_the_rows_and_change_nothing(threads):
 @settings(deadline=None, max_examples=25)
 @given(shapes, seeds)
 def test_what_is_not_finite_is_no_small_violation(single, bad, shape, seed):
-    """A maximum that passes over NaN would call such a solve converged."""
+    """If the maximum ignored NaN, the solve would count as converged."""
     rng = np.random.default_rng(seed)
     p, g = rng.random(shape) + 1, rng.normal(size=shape)
     out, d, Kd = np.empty(shape, single), np.zeros(shape, single), np.zeros(shape, single)
@@ -257,9 +257,9 @@ def test_multipoles_are_those_of_the_expression(shape, seed):
 def test_a_loop_refuses_arrays_whose_results_would_be_lost():
     fine = np.zeros((8, 12))
     for coarse in (
-        np.zeros((4, 6), np.float16),  # converted
-        np.zeros((4, 12))[:, ::2],  # not in one piece
-        np.broadcast_to(np.zeros(6), (4, 6)),  # read only
+        np.zeros((4, 6), np.float16),  # would need conversion
+        np.zeros((4, 12))[:, ::2],  # rows not contiguous
+        np.broadcast_to(np.zeros(6), (4, 6)),  # read-only
     ):
         with pytest.raises(TypeError, match="incompatible function arguments"):
             restrict(fine, coarse)

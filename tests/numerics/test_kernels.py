@@ -1,4 +1,4 @@
-"""Which compiled kernels run, that all give the same answer, and how their threads fail."""
+"""Selection of the compiled kernels, agreement of their results, and failures of their threads."""
 
 import os
 import subprocess
@@ -22,7 +22,7 @@ print(kernels.instruction_set, solve(Contact(Pair(body, body), surface, 4e9), 60
 
 
 def python(program, **environment):
-    """A process that was handed this program."""
+    """Run a program in a new process."""
     return subprocess.run(
         [sys.executable, "-c", program],
         capture_output=True,
@@ -43,7 +43,7 @@ def solved(program=SOLVE, **environment):
 
 @pytest.fixture(scope="module")
 def expected():
-    """The force by NumPy."""
+    """The force computed by NumPy."""
     name, force = solved(RESTITUTION_KERNELS="numpy")
     assert name == "none"
     return force
@@ -82,7 +82,7 @@ def test_unknown_kernels_are_refused():
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 @pytest.mark.parametrize("threads", [1, 2, 7])
 def test_memory_that_ends_in_a_thread_is_an_exception(threads):
-    """Each part of `refine` allocates a row; the process has no room for one more."""
+    """Each part of `prolong` allocates a row, for which the process has no memory left."""
     done = python(f"""
 import resource
 import numpy as np
@@ -100,7 +100,7 @@ try:
 except MemoryError:
     print("refused")
 resource.setrlimit(resource.RLIMIT_AS, limits)
-loops.prolong(coarse, fine)  # nothing is left behind
+loops.prolong(coarse, fine)  # the failure has no after-effects
 print(one.min(), one.max())
 """)
     assert (done.returncode, done.stdout) == (0, "refused\n1.0 1.0\n"), done.stderr

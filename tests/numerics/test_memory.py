@@ -34,7 +34,9 @@ def test_the_least_limit_counts(monkeypatch):
     monkeypatch.setattr(memory, "_of_address_space", lambda: 4e9)
     assert memory.available() == 3e9
     memory.require(2.9e9, "this", "use less")
-    with pytest.raises(CaseError, match=r"^this take about 3.1 GB of memory, and 3 GB are there"):
+    with pytest.raises(
+        CaseError, match=r"^this take about 3.1 GB of memory, but 3 GB are available"
+    ):
         memory.require(3.1e9, "this", "use less")
 
 

@@ -1,4 +1,4 @@
-"""Path integrals against closed forms, and what the adaptive rule says about itself."""
+"""Integrals compared with closed forms, and the error estimate of the adaptive rule."""
 
 import math
 
@@ -12,7 +12,7 @@ from tolerance import approx
 
 
 def adaptive(f, a, b, tolerance):
-    """Integral, error estimate and the points that were asked for, in order."""
+    """Integral, error estimate and the evaluation points in order."""
     asked = []
 
     def watched(x):
@@ -56,7 +56,7 @@ def test_a_curve_converges_at_third_order_and_without_the_bias_of_the_trapezium(
 
 
 def test_the_unloading_spacing_integrates_a_hertzian_force():
-    """(1 − t)² spacing makes the force a cubic of the step number."""
+    """With (1 − t)² spacing the force is a cubic polynomial of the step number."""
     t = np.linspace(0, 1, 17)
     x = (1 - t) ** 2
     assert -integrate_curve(x, x**1.5) == approx(0.4, rel=2e-4)
@@ -65,7 +65,7 @@ def test_the_unloading_spacing_integrates_a_hertzian_force():
 def test_a_curve_does_not_overshoot_a_jump():
     x = np.linspace(0, 1, 11)
     f = (x > 0.45).astype(float)
-    assert 0.5 <= integrate_curve(x, f) <= 0.6  # a spline through it would ring
+    assert 0.5 <= integrate_curve(x, f) <= 0.6  # a cubic spline would oscillate
 
 
 @settings(deadline=None, max_examples=50)
@@ -111,7 +111,7 @@ def test_a_kink_is_resolved_to_the_tolerance(name):
     value, error, asked = adaptive(f, 0.0, 1.0, 1e-6)
     assert value == approx(exact, abs=1e-6)
     assert error <= 1e-6
-    assert len(asked) < 80  # and not by brute force
+    assert len(asked) < 80  # refined only where necessary
 
 
 @pytest.mark.parametrize("name", ROUGH)
@@ -126,10 +126,10 @@ def test_points_are_asked_for_once_and_the_intervals_from_left_to_right():
     f, _ = ROUGH["two slopes"]
     _, _, asked = adaptive(f, 0.0, 1.0, 1e-9)
     assert len(asked) == len(set(asked))
-    assert not {0.0, 1.0} & set(asked)  # these were known
+    assert not {0.0, 1.0} & set(asked)  # the end values are arguments
     assert all(0 < x < 1 for x in asked)
-    # Work done on the left is finished before the right is begun: past the first halving, no
-    # point left of the middle follows one beyond three quarters.
+    # The left half is finished before the right half begins: after the first bisection, no point
+    # left of the middle follows one right of it.
     refined = asked[3:]
     beyond = next(k for k, x in enumerate(refined) if x > 0.5)
     assert all(x < 0.5 for x in refined[:beyond])
@@ -149,7 +149,7 @@ def test_the_tolerance_is_absolute_and_the_interval_may_be_anywhere():
 
 
 def test_the_error_of_two_rules_is_taken_off():
-    """Richardson: with one halving Simpson's rule becomes Boole's, exact up to the fifth power."""
+    """After one bisection, extrapolation gives Boole's rule, exact up to the fifth power."""
     for power in range(6):
         value, _, asked = adaptive(lambda x, n=power: x**n, 0.0, 1.0, math.inf)
         assert value == approx(1 / (power + 1), rel=1e-14)
@@ -157,14 +157,14 @@ def test_the_error_of_two_rules_is_taken_off():
 
 
 def test_the_error_is_the_difference_of_one_step_from_two():
-    """∫x⁴ over [0, 1]: Simpson's rule gives 5/24, its two halves 77/384."""
+    """∫x⁴ over [0, 1]: Simpson's rule gives 5/24, on two halves 77/384."""
     value, error, _ = adaptive(lambda x: x**4, 0.0, 1.0, 1.0)
     assert error == approx(5 / 24 - 77 / 384, rel=1e-12)
     assert value == approx(0.2, rel=1e-12)
 
 
 def test_panels_begin_side_by_side():
-    """Three panels of [1, 4] ask at 2 and 3, and at the middle of each."""
+    """Three panels of [1, 4] evaluate at 2, 3 and the middle of each panel."""
     asked = []
 
     def line(x):

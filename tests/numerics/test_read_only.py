@@ -1,4 +1,4 @@
-"""Arrays that nobody can write to."""
+"""Read-only arrays."""
 
 import numpy as np
 

@@ -13,12 +13,12 @@ V_Y = FirstYield(*SHARP).velocity(MASS)
 
 
 def adhesion(ratio):
-    """The work of adhesion that makes V_s/V_y equal to `ratio`: V_s grows as w^{5/6}."""
+    """Work of adhesion for V_s/V_y = `ratio`; V_s grows as w^{5/6}."""
     return (ratio * V_Y / JKR(R, E_STAR, 1.0).sticking_velocity(MASS)) ** 1.2
 
 
 def restitution(v, ratio):
-    """e at V/V_y and V_s/V_y."""
+    """Coefficient of restitution at given V/V_y and V_s/V_y."""
     return AdhesiveThorntonNing(R, E_STAR, P_Y, adhesion(ratio)).restitution(v * V_Y, MASS)
 
 
@@ -73,7 +73,7 @@ def test_ammonium_fluorescein_is_such_a_pair():
     V = np.array([0.1, 0.183, 0.184, V_s, 1.6, 10.0])
     e = AdhesiveThorntonNing(R, E_star, p_y, w).restitution(V, mass)
     assert_array_equal(e, [0, 0, np.nan, np.nan, np.nan, np.nan])
-    assert JKR(R, E_star, w).tabor_parameter(3e-10) > 5  # JKR applies, additivity does not
-    # one array of works of adhesion spans both sides of the range
+    assert JKR(R, E_star, w).tabor_parameter(3e-10) > 5  # JKR is valid, additivity is not
+    # an array of works of adhesion may lie on both sides of the limit
     e = AdhesiveThorntonNing(R, E_star, p_y, np.array([1e-3, 0.2])).restitution(1.0, mass)
     assert_array_equal(np.isnan(e), [False, True])

@@ -12,7 +12,7 @@ R, E_STAR, MASS, TIME = 250e-6, 1e9, 2e-6, 1e-6
 
 
 def collision(V, k, gamma):
-    """e of ẍ + k x^{3/2} + γ x^½ ẋ = 0, ẋ(0) = V, ended where ẍ returns to zero at x > 0."""
+    """e from ẍ + k x^{3/2} + γ x^½ ẋ = 0, ẋ(0) = V, until ẍ returns to zero at x > 0."""
     length, time = (V**2 / k) ** 0.4, (k**2 * V) ** -0.2
 
     def motion(t, state):

@@ -22,7 +22,7 @@ def test_a_value_worked_out_by_hand():
     law = EEPA(1.0, 2.0, 2.0, -0.5, 1.0)
     assert law.residual_indentation(2.0) == approx(1.0, rel=1e-15)
     assert law.pull_off_force(2.0) == approx(1.5, rel=1e-14)
-    # W_l = −1 + 2 = 1, W_u = −1 + 1 − ½ = −½: stuck
+    # W_l = −1 + 2 = 1, W_u = −1 + 1 − ½ = −½: it sticks
     assert law.loading_work(2.0) == approx(1.0, rel=1e-14)
     assert law.unloading_work(2.0) == approx(-0.5, rel=1e-14)
     assert law.indentation_from_velocity(2**0.5, 1.0) == approx(2.0)
@@ -90,7 +90,7 @@ def test_linear_springs_are_walton_and_braun_and_luding_at_the_limit():
     e = EEPA(K1, K2, 0.0, 0.0, 1.0).restitution(V, MASS)
     assert_allclose(e, WaltonBraun(K1, K2, 0.0).restitution(V, MASS), rtol=1e-12)
     d = 1e-6
-    R_star = 0.5 * d * (1 - K1 / K2) / 0.01  # puts the limit of plasticity depth 0.01 at d
+    R_star = 0.5 * d * (1 - K1 / K2) / 0.01  # at d the limit of plasticity depth 0.01 is reached
     sticky = Luding(R_star, K1, K2, K_ADH, 0.01).unloading_work(d)
     assert_allclose(EEPA(K1, K2, K_ADH, 0.0, 1.0).unloading_work(d), sticky, rtol=1e-12)
 

@@ -1,4 +1,4 @@
-"""The laws stand first in the house: they know nothing of the rooms that use them."""
+"""The laws import nothing from the rooms that use them."""
 
 import ast
 from pathlib import Path

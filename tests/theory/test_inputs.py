@@ -1,4 +1,4 @@
-"""The rules every law shares: shapes, no contact, no body."""
+"""The conventions that all laws share: shapes, separated spheres, invalid parameters."""
 
 from dataclasses import FrozenInstanceError, fields, replace
 from operator import attrgetter
@@ -44,7 +44,7 @@ MATERIAL = {
     "constant_force": -1e-9,
     "exponent": 1.5,
 }
-# what changes during an impact: zero or less means that nothing touches
+# state of an impact; zero or negative values mean separated spheres
 STATE = {
     "indentation": 1e-7,
     "maximum_indentation": 2e-7,
@@ -54,7 +54,7 @@ STATE = {
     "velocity": 0.1,
 }
 
-# arguments of a quantity that have to be positive, as a material's
+# arguments of a quantity that must be positive, like material parameters
 GIVEN = {"mass": 2e-6, "equilibrium_separation": 3e-10, "restitution": 0.3}
 VALUES = MATERIAL | STATE | GIVEN
 
@@ -71,7 +71,7 @@ REFUSED = dict.fromkeys(MATERIAL | GIVEN, NOT_POSITIVE) | {
 
 UNLOADING = ("indentation", "maximum_indentation")
 DEEPEST = ("maximum_indentation",)
-# law, quantity, its arguments, and its value where nothing touches
+# law, quantity, its arguments, and its value for separated spheres
 QUANTITIES = [
     (Hertz, "force", ("indentation",), 0),
     (Hertz, "force_at_contact_radius", ("contact_radius",), 0),
@@ -169,8 +169,8 @@ IMPACT_LAWS: list[type[ImpactLaw]] = [
     for law, name, names, _ in QUANTITIES
     if name == "restitution" and names == ("velocity", "mass")
 ]
-HELD_AT_ZERO = (JKR, "force"), (JKR, "contact_radius"), (JKR, "unloading_work")  # to the break
-# parameters of the law that a quantity does not depend on
+HELD_AT_ZERO = (JKR, "force"), (JKR, "contact_radius"), (JKR, "unloading_work")  # adhesive
+# parameters of the law without effect on a quantity
 LEFT_OUT = {
     (Hertz, "contact_radius"): ("contact_modulus",),
     (Hertz, "contact_area"): ("contact_modulus",),
@@ -204,12 +204,12 @@ def parameters(law):
 
 
 def made(law, **other):
-    """The law of the material, with other parameters where they are given."""
+    """Law of the default material with the parameters `other` instead of its own."""
     return law(**{name: other.get(name, MATERIAL[name]) for name in parameters(law)})
 
 
 def found(law, quantity, names, values=VALUES):
-    """The quantity of a law, at the arguments in `values`."""
+    """Value of a quantity of a law at the arguments `values`."""
     value = attrgetter(quantity)(made(law, **values))
     return value if names is None else value(**{name: values[name] for name in names})
 
@@ -236,7 +236,7 @@ def test_no_contact_is_an_answer(law, quantity, names, untouched):
     for state in states:
         for value in (-1e-7,) if (law, quantity) in HELD_AT_ZERO else (0.0, -1e-7):
             values = VALUES | {state: value}
-            if state == "maximum_indentation":  # below it nothing has touched either
+            if state == "maximum_indentation":  # the indentation must not exceed it
                 values |= dict.fromkeys(states, value)
             assert found(law, quantity, names, values) == untouched
         assert np.isnan(found(law, quantity, names, VALUES | {state: np.nan}))
@@ -272,7 +272,7 @@ def test_a_law_is_frozen(law):
             setattr(several, name, 1.0)
         with pytest.raises(ValueError, match="read-only"):
             getattr(several, name)[0] = 1.0
-        values[0] = np.nan  # the law has its own
+        values[0] = np.nan  # the law copied its fields
         assert np.isfinite(getattr(several, name)).all()
     law = made(law)
     assert law == law

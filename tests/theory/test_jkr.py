@@ -68,7 +68,7 @@ def test_the_four_points_of_the_curve():
     assert_allclose(LAW.break_force, force(A_B), rtol=1e-13)
     assert_allclose(LAW.jump_in_force, LAW.force(0.0), rtol=1e-13)
     assert_allclose(LAW.force(0.0), -8 / 9 * F_C, rtol=1e-13)
-    # they are extremes: F is least at a_c, δ at a_b
+    # F has its minimum at a_c, δ at a_b
     near = np.linspace(0.9, 1.1, 201)
     assert np.argmin(force(near * a_c)) == 100
     assert np.argmin(indentation(near * A_B)) == 100
@@ -92,7 +92,7 @@ def test_depth_and_contact_radius_are_inverse(x):
     d = x * -D_B
     a = LAW.contact_radius(d)
     assert a >= A_B
-    # at the break the two are of second order in each other
+    # at the break δ is quadratic in the change of a
     assert_allclose(LAW.indentation_at_contact_radius(a), d, rtol=1e-13, atol=1e-14 * -float(D_B))
 
 
@@ -100,7 +100,7 @@ def test_depth_and_contact_radius_are_inverse(x):
 def test_force_by_depth_and_by_contact_radius_agree_on_the_stable_branch(x):
     a = x * A_B
     d = np.maximum(LAW.indentation_at_contact_radius(a), D_B)
-    # close to the break a rounding of δ moves a by its root
+    # close to the break the error of a is the square root of the rounding error of δ
     assert_allclose(LAW.contact_radius(d), a, rtol=1e-13 if x > 1.01 else 1e-7)
     assert_allclose(
         LAW.force(d),
@@ -127,8 +127,8 @@ def test_the_total_energy_changes_by_the_work_of_the_force(x):
 
 @given(st.floats(1e-3, 1e2))
 def test_the_elastic_energy_releases_the_work_of_adhesion_at_fixed_grips(x):
-    # ∂U_el/∂(πa²) = w at constant δ is what makes a an equilibrium. Hertz to a, then drawn back
-    # by a²/R* − δ against 2E*a: U_el = E* (a⁵/5R*² − 2a³δ/3R* + aδ²) for any a and δ
+    # In equilibrium ∂U_el/∂(πa²) = w at constant δ. Hertz loading to a, then unloading at fixed a
+    # by a²/R* − δ with stiffness 2E*a: U_el = E* (a⁵/5R*² − 2a³δ/3R* + aδ²) for any a and δ
     a = x * A_B
     d = LAW.indentation_at_contact_radius(a)
     stored = E_STAR * np.polynomial.Polynomial([0, d**2, 0, -2 * d / (3 * R), 0, 1 / (5 * R**2)])
@@ -144,7 +144,7 @@ def test_the_works_are_the_integrals_of_the_force(x):
     def work(lower):
         span = d - lower
 
-        def power(t):  # with δ = lower + span t² the root at the break is smooth
+        def power(t):  # δ = lower + span t² makes the square root at the break smooth
             return LAW.force(lower + span * t**2) * 2 * t * span
 
         ends = [0.0, *np.geomspace(1e-2, 1, 9)]
@@ -198,7 +198,7 @@ def test_hertz_is_approached_as_the_root_of_the_work_of_adhesion():
     a = HERTZ.contact_radius(d)
     drawn = (2 * np.pi * w * a / E_STAR) ** 0.5
     first = 2 * E_STAR * a * drawn - (8 * np.pi * E_STAR * w * a**3) ** 0.5
-    assert_allclose(first, 0, atol=1e-12 * F_H)  # they cancel: the force differs in order w
+    assert_allclose(first, 0, atol=1e-12 * F_H)  # they cancel, so the force differs only in order w
     order = np.diff(np.log(np.abs(JKR(R, E_STAR, w).force(d) / F_H - 1))) / np.diff(np.log(w))
     assert_allclose(order, 1, atol=0.01)
 
@@ -213,7 +213,7 @@ def test_the_seed_papers_normalised_curve():
     F = LAW.force_at_contact_radius(a * length) / F_C
     assert_allclose(d, 3 * a**2 - 4 * a**0.5, rtol=1e-11, atol=1e-12)
     assert_allclose(F, a**3 - 2 * a**1.5, rtol=1e-11, atol=1e-12)
-    # eq 14 is a fit to them, no better than 3 % of F_c up to d̄ = 3 and off beyond
+    # eq. 14 is a fit to these: error up to 3 % of F_c for d̄ ≤ 3, larger beyond
     d = np.linspace(-1, 3, 50)
     fit = 0.12 * (d + 1) ** (5 / 3) - 1
     assert_allclose(LAW.force(d * depth) / F_C, fit, atol=0.03)
@@ -224,7 +224,7 @@ def test_all_materials_share_one_curve(x, length, stress, adhesion):
     other = JKR(length * R, stress * E_STAR, adhesion * W)
     d, d_other = x * -D_B, x * -other.break_indentation
     a_other = other.break_radius
-    # at the break itself a rounding of δ moves a by its root
+    # at the break the error of a is the square root of the rounding error of δ
     rtol = 1e-11 if x > -0.999 else 1e-6
     assert_allclose(
         other.contact_radius(np.maximum(d_other, other.break_indentation)) / a_other,
@@ -270,7 +270,7 @@ def test_restitution_by_works_by_depth_and_by_velocity_agree(x):
 
 
 def test_impacts_that_adhesion_alone_draws_deeper_have_no_velocity():
-    # W_l = 0 at 2.2585 |δ_b|: an impact of no velocity reaches that; W_u = 0 at 2.8381 |δ_b|
+    # W_l = 0 at 2.2585 |δ_b|, the depth of an impact at zero velocity; W_u = 0 at 2.8381 |δ_b|
     V = LAW.impact_velocity(np.array([2.258, 2.259]) * -D_B, MASS)
     assert np.isnan(V[0])
     assert 0 < V[1] < 0.1 * (2 * W_S / MASS) ** 0.5
@@ -322,5 +322,5 @@ def test_the_tabor_parameter_is_the_neck_over_the_range_of_the_forces():
     z0 = 3e-10
     neck = -LAW.break_indentation / (0.75 * np.pi ** (2 / 3))
     assert_allclose(LAW.tabor_parameter(z0), neck / z0, rtol=1e-13)
-    # JKR's own pull-off indentation is of the order of the range where μ is of the order of one
+    # at μ ≈ 1 the pull-off indentation of JKR is about the range of the forces
     assert 0.5 < -LAW.pull_off_indentation / neck < 1

@@ -29,7 +29,7 @@ def test_the_printed_coefficient_rounds_up_the_one_derived():
     p_d = 3 * Y
     F = math.pi * a**2 * p_d
     W = math.pi * p_d * a**4 / (4 * R)
-    R_p = 4 * E_STAR * a**3 / (3 * F)  # Hertz's sphere with this contact at this force
+    R_p = 4 * E_STAR * a**3 / (3 * F)  # radius of the Hertz sphere with this contact at this force
     W_u = Hertz(R_p, E_STAR).stored_energy(a**2 / R_p)
     assert_allclose(W_u, 0.3 * F**2 / (E_STAR * a), rtol=1e-13)
     V = (2 * W / MASS) ** 0.5

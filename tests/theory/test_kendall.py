@@ -12,7 +12,7 @@ radii = st.floats(1e-9, 1e-4)
 
 
 def test_a_value_worked_out_by_hand():
-    # E* = 2, w = 1/π, a = 4: F = (16·64)^½ = 32, drawn out by 32/(2·2·4) = 2
+    # E* = 2, w = 1/π, a = 4: F = (16·64)^½ = 32, displacement 32/(2·2·4) = 2
     assert Kendall(2.0, 1 / np.pi).pull_off_force(4.0) == approx(32.0, rel=1e-14)
     assert Kendall(2.0, 1 / np.pi).pull_off_displacement(4.0) == approx(2.0, rel=1e-14)
 
@@ -28,7 +28,7 @@ def test_the_crack_at_the_rim_releases_the_work_of_adhesion(a):
     area = np.pi * np.array([a - h, a + h]) ** 2
     released = 0.5 * F**2 * -np.diff(compliance) / np.diff(area)
     assert_allclose(released, W, rtol=1e-6)
-    # half of the work is left over
+    # half of the work is dissipated
     assert_allclose(0.5 * F * d, 2 * W * np.pi * a**2, rtol=1e-13)
 
 

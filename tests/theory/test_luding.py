@@ -120,7 +120,7 @@ def test_up_to_the_limit_it_is_walton_and_brauns_variable_law():
 
 
 def test_strong_adhesion_sticks_at_depths_where_much_is_plastic():
-    # stuck: ½k₂(d − δ₀)² < ½k_cδ_minδ₀, that is k₁² < k_c (k₂ − k₁)²/(k₂ + k_c)
+    # sticks if ½k₂(d − δ₀)² < ½k_cδ_minδ₀, that is k₁² < k_c (k₂ − k₁)²/(k₂ + k_c)
     law = Luding(R, K1, K2, 1e7, PHI)
     v = np.array([1e-3, 0.1, 0.5, 1.0])
     e = law.restitution(v * V_LIMIT, MASS)

@@ -101,7 +101,7 @@ def test_unloading_starts_at_the_loading_force_and_ends_at_zero(d):
 
 
 def test_unloading_starts_as_a_flat_punch_stiffened_by_the_recovery():
-    # dF/dδ of the ellipse at half its height is 2E*a, over 1 + δ_R/d < 1 of the finite sphere
+    # dF/dδ of the ellipse at half height is 2E*a, divided by 1 + δ_R/d < 1 for the finite sphere
     d = 20 * D_Y
     h = 1e-6 * d
     slope = (LAW.loading_force(d) - LAW.unloading_force(d - h, d)) / h
@@ -152,7 +152,7 @@ def test_only_ratios_matter():
 
 
 def test_it_lies_near_thornton_and_ning_at_the_same_peak_pressure():
-    # 2.75 Y on average is 4.1 Y at the peak of Hertz's pressure (LAMMPS, V = 0.5 and 2.5 m/s)
+    # a mean pressure of 2.75 Y is a peak Hertz pressure of 4.1 Y (LAMMPS, V = 0.5 and 2.5 m/s)
     V = np.array([0.5, 2.5])
     other = ThorntonNing(R, E_STAR, 4.1 * Y).restitution(V, MASS)
     assert_allclose(LAW.restitution(V, MASS), other, rtol=0.15)
@@ -195,7 +195,7 @@ def test_the_force_of_lammps(lammps):
 
 @pytest.fixture
 def lammps(lammps_environment, tmp_path):
-    """Run a script in LAMMPS; rows of height, velocity and force at least until separation."""
+    """Run a LAMMPS script; return rows of height, velocity and force, up to separation or later."""
     program = shutil.which("lmp", path=lammps_environment["PATH"])
     if program is None:
         pytest.skip("LAMMPS (lmp) is not installed")

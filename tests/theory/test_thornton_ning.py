@@ -64,7 +64,7 @@ def test_unloading_starts_at_the_loading_force_and_ends_at_zero(x):
     assert LAW.unloading_force(d_p, d) == 0
     assert LAW.unloading_force(0.5 * d_p, d) == 0
     assert LAW.unloading_force(d_p + 1e-6 * d, d) > 0
-    # pressed further than before, the contact yields on
+    # beyond the previous maximum the contact yields further
     assert LAW.unloading_force(2 * d, d) == LAW.loading_force(2 * d)
 
 
@@ -73,7 +73,7 @@ def test_the_unloading_radius_is_the_published_one(x):
     F = LAW.loading_force(x * D_Y)
     published = 4 * E_STAR / (3 * F) * ((2 * F + F_Y) / (2 * np.pi * P_Y)) ** 1.5
     assert_allclose(LAW.unloading_radius(x * D_Y), published, rtol=1e-12)
-    # unloading keeps the contact it starts from: a² = R_p (δ − δ_p) = R* δ
+    # unloading starts with the same contact area: a² = R_p (δ − δ_p) = R* δ
     R_p, d_p = LAW.unloading_radius(x * D_Y), LAW.residual_indentation(x * D_Y)
     assert_allclose(R_p * (x * D_Y - d_p), R * x * D_Y, rtol=1e-12)
 

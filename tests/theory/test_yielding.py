@@ -23,7 +23,7 @@ def test_the_exact_coefficient_rounds_to_the_published_one():
 
 
 def test_a_sphere_on_a_wall_recovers_the_published_velocity_in_density():
-    # Davies (1949): V_y = 1.56 (p_y⁵/(E*⁴ρ))^½ for a sphere of density ρ, whatever its radius
+    # Davies (1949): V_y = 1.56 (p_y⁵/(E*⁴ρ))^½ for a sphere of density ρ and any radius
     density = 7800.0
     mass = 4 / 3 * 3.141592653589793 * R**3 * density
     V_y = ONSET.velocity(mass)

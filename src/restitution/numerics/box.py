@@ -14,15 +14,15 @@ NOWHERE: Box = (slice(0, 0), slice(0, 0))
 
 
 def shape_of(box: Box) -> tuple[int, int]:
-    """The number of nodes of the box along x and y."""
+    """Number of nodes of the box along x and y."""
     rows, columns = box
     return rows.stop - rows.start, columns.stop - columns.start
 
 
 def bounding_box(mask: NDArray[np.bool_], within: Box | None = None) -> Box | None:
-    """The smallest box that contains every true node of `mask`; None if no node is true.
+    """Return the smallest box that contains every true node of `mask`; None if no node is true.
 
-    `within` is the box that `mask` covers; by default the whole grid.
+    `within` is the box that `mask` covers, by default the whole grid.
     """
     rows = np.flatnonzero(mask.any(axis=1))
     if rows.size == 0:
@@ -34,7 +34,7 @@ def bounding_box(mask: NDArray[np.bool_], within: Box | None = None) -> Box | No
 
 
 def widen(box: Box, cells: int, nodes: tuple[int, int]) -> Box:
-    """The box enlarged by `cells` on each side, within a grid of `nodes`."""
+    """Enlarge the box by `cells` on each side, up to the edges of a grid with `nodes` nodes."""
     rows, columns = (
         slice(max(part.start - cells, 0), min(part.stop + cells, n))
         for part, n in zip(box, nodes, strict=True)
@@ -43,7 +43,7 @@ def widen(box: Box, cells: int, nodes: tuple[int, int]) -> Box:
 
 
 def union(first: Box | None, second: Box | None) -> Box | None:
-    """The smallest box that contains both; None stands for an empty box."""
+    """Return the smallest box that contains both; None stands for an empty box."""
     if first is None or second is None:
         return second if first is None else first
     rows, columns = (

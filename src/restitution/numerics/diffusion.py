@@ -14,8 +14,8 @@ Array = NDArray[np.float64]
 def diffuse(neighbours: NDArray[np.intp], weights: Array, steps: int, values: Array) -> None:
     """Replace the two values at each node by the weighted sums over its neighbours, `steps` times.
 
-    `neighbours` (indices of nodes) and `weights` have shape (nodes, neighbours), `values` has shape
-    (nodes, 2) and is overwritten. Raises `IndexError` for an index that is not that of a node.
+    `neighbours` (node indices) and `weights` have shape (nodes, neighbours). `values` has shape
+    (nodes, 2) and is overwritten. Raises `IndexError` for an index outside the nodes.
     """
     for _ in range(steps):
         values[...] = np.einsum("ij,ijk->ik", weights, values[neighbours])

@@ -1,5 +1,6 @@
-// The file LOOPS for each kind of processor, in a namespace, with vectors of LANE_BYTES: `plain` for any,
-// and where a compiler takes several kinds in one file (MANY_PROCESSORS) `avx2` and `avx512`.
+// Includes the file LOOPS once for each instruction set, in a namespace of its own, with vectors of
+// LANE_BYTES: `plain` for any processor and, if the compiler supports several instruction sets in one
+// file (MANY_PROCESSORS), `avx2` and `avx512`.
 
 namespace plain {
 #define LANE_BYTES 16

@@ -1,4 +1,4 @@
-"""A uniform rectangular grid of cells. Arrays are `[i, j]` ↔ `[x, y]`, values at cell centres."""
+"""Uniform rectangular grid. Arrays are indexed `[i, j]` along x and y; values at cell centres."""
 
 from __future__ import annotations
 
@@ -15,13 +15,22 @@ from restitution.errors import CaseError, shown
 
 @dataclass(frozen=True, init=False)
 class Grid:
-    """Cells of `spacing` (hx, hy) in metres, `nodes` (nx, ny) of them; a number is for both axes.
+    """Uniform rectangular grid of cells.
 
-    The origin is the centre of cell (nx // 2, ny // 2), so that the lowest point of a sphere on it
-    is a node at any grid size, and grids of one spacing coincide whatever their sizes.
+    The origin is the centre of cell (nx // 2, ny // 2). So the lowest point of a sphere at the
+    origin is a node for any grid size, and grids of equal spacing have coincident nodes.
 
-    Raises `CaseError` for nodes that are not whole numbers from 1, and for a spacing that is not a
-    positive length.
+    Args:
+        nodes: Number of nodes (nx, ny), or one number for both axes.
+        spacing: Cell size (hx, hy) (m), or one number for both axes.
+
+    Attributes:
+        nodes: Number of nodes (nx, ny).
+        spacing: Cell size (hx, hy) (m).
+
+    Raises:
+        CaseError: The numbers of nodes are not positive integers, or a spacing is not a positive
+            length.
     """
 
     nodes: tuple[int, int]
@@ -32,7 +41,7 @@ class Grid:
         if not all(isinstance(n, Integral) or n == math.floor(n) for n in (nx, ny)):
             raise CaseError(f"grid.nodes: {nodes!r} are not whole numbers")
         if min(nx, ny) < 1:
-            raise CaseError(f"grid.nodes: {(nx, ny)} holds no cell; give at least 1 x 1 nodes")
+            raise CaseError(f"grid.nodes: {(nx, ny)} is too small; give at least 1 x 1 nodes")
         hx, hy = _both("spacing", spacing, "a length in m, or two (hx, hy)")
         if not all(math.isfinite(h) and h > 0 for h in (hx, hy)):
             raise CaseError(f"grid.spacing: {(hx, hy)} m is not a positive length")
@@ -41,27 +50,27 @@ class Grid:
 
     @property
     def cell_area(self) -> float:
-        """Area of one cell, m²."""
+        """Area of one cell (m²)."""
         return self.spacing[0] * self.spacing[1]
 
     @property
     def size(self) -> tuple[float, float]:
-        """Edge lengths of the domain, nodes times spacing, m."""
+        """Edge lengths of the domain, nodes times spacing (m)."""
         return self.nodes[0] * self.spacing[0], self.nodes[1] * self.spacing[1]
 
     @property
     def x(self) -> NDArray[np.float64]:
-        """Cell centres along the first axis, shape (nx,), m; zero at nx // 2."""
+        """Cell centres along the first axis (m), shape (nx,); zero at index nx // 2."""
         return _centres(self.nodes[0], self.spacing[0])
 
     @property
     def y(self) -> NDArray[np.float64]:
-        """Cell centres along the second axis, shape (ny,), m; zero at ny // 2."""
+        """Cell centres along the second axis (m), shape (ny,); zero at index ny // 2."""
         return _centres(self.nodes[1], self.spacing[1])
 
 
 def _both(name: str, value: Any, wanted: str) -> tuple[Any, Any]:
-    """`value` for both axes, if it is one number. Raises `CaseError` naming the argument."""
+    """Return `value` for both axes if it is one number; raise `CaseError` if it is invalid."""
     along = (value, value) if isinstance(value, Real) else value
     try:
         first, second = along

@@ -1,11 +1,11 @@
-"""The compiled kernels: whether they run in this process, and for which instruction set.
+"""The compiled kernels: whether this process uses them, and for which instruction set.
 
-The hot operations are written twice: as an expression of whole arrays, which holds on any device,
-and as a loop in C++ that does the same in one pass over memory. Tests compare the two. The loops
-are the module `restitution.numerics.loops`. Where it was not compiled, or does not load, NumPy
-does the same work several times more slowly. The environment variable RESTITUTION_KERNELS, read
-once, chooses: "avx512", "avx2" or "plain" kernels, or "numpy" for none. Without it they are those
-for the widest vectors that the processor has.
+The hot operations are written twice: as an expression of whole arrays, which works on any device,
+and as a C++ loop that does the same in one pass over memory. Tests compare the two. The loops are
+the module `restitution.numerics.loops`. If it was not compiled or cannot be loaded, NumPy does the
+same work several times more slowly. The environment variable RESTITUTION_KERNELS, read once,
+selects "avx512", "avx2" or "plain" kernels, or "numpy" for none. By default the kernels with the
+widest vectors that the processor supports are used.
 """
 
 from __future__ import annotations
@@ -31,9 +31,10 @@ Result = TypeVar("Result")
 
 
 def _load() -> tuple[Any, str]:
-    """The compiled module, or None; and why it is None, with the remedy.
+    """Return the compiled module, or None and the reason with its remedy.
 
-    Raises `CaseError` where RESTITUTION_KERNELS names unknown kernels, or some that do not load.
+    Raises `CaseError` if RESTITUTION_KERNELS names unknown kernels or kernels that cannot be
+    loaded.
     """
     wanted = os.environ.get(VARIABLE, "")
     if wanted == "numpy":
@@ -57,14 +58,14 @@ instruction_set: str = INSTRUCTION_SETS[loops.instruction_set] if loops else "no
 
 
 def missing() -> str | None:
-    """Why no compiled kernels run, with the remedy, in one sentence; None where they run."""
+    """Why no compiled kernels are used, with the remedy, in one sentence; None if they are."""
     if loops is not None:
         return None
     return f"NumPy does the work of compiled kernels, which takes 3 to 6 times as long: {_reason}"
 
 
 def use_loop(expression: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
-    """Decorate `expression` so that its compiled loop is called where the first array allows it."""
+    """Decorate `expression` to call its compiled loop if the first array allows it."""
     if loops is None:
         return expression
     loop = getattr(loops, expression.__name__)
@@ -77,7 +78,7 @@ def use_loop(expression: Callable[Arguments, Result]) -> Callable[Arguments, Res
 
 
 def loop_takes(values: Any) -> bool:
-    """Whether `values` is a NumPy matrix whose rows are contiguous, as loops require."""
+    """Whether `values` is a 2D NumPy array with contiguous rows, as the loops require."""
     if loops is None or type(values) is not np.ndarray or values.ndim != 2:
         return False
     return values.strides[1] == values.itemsize or values.shape[1] < 2

@@ -1,4 +1,4 @@
-// The compiled module: loops and convolutions for the processor at hand.
+// The compiled module: loops and convolutions for the processor it runs on.
 
 #include "thread_team.h"
 #include "rows.h"
@@ -23,7 +23,8 @@ struct Kernels {
     void (*define_convolve)(py::module_&);
 };
 
-// With the widest vectors of this processor, or those that the environment names.
+// Defines the kernels with the widest vectors that the processor supports, or those that the environment
+// variable names.
 PYBIND11_MODULE(loops, module) {
     module.def("use_threads", [](int most) { most_threads = std::max(most, 1); });
     module.def("threads_for", &threads_for);

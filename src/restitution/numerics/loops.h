@@ -1,6 +1,6 @@
-// All loops of the compiled module. loops.cpp includes this once for each kind of processor.
+// All loops of the compiled module. loops.cpp includes this file once for each instruction set.
 //
-// Arrays are (nx, ny), of double or single precision, each row contiguous.
+// Arrays have shape (nx, ny), double or single precision and contiguous rows.
 
 #include "reductions.h"
 

@@ -1,4 +1,4 @@
-"""The memory available to this process, and the check before something large is made."""
+"""Memory available to this process, and the check before a large allocation."""
 
 from __future__ import annotations
 
@@ -8,30 +8,30 @@ from pathlib import Path
 
 from restitution.errors import CaseError
 
-_PAGE = 2**12  # a limit above half of all addresses, rounded to pages, means no limit
+_PAGE = 2**12  # control groups report "no limit" as 2**63 rounded down to pages
 _GROUPS = Path("/sys/fs/cgroup")
 
 
 def available() -> float:
-    """Bytes this process may use in all: the least limit of machine, control groups and process.
+    """Memory limit (bytes): the smallest of machine, control groups and address space.
 
-    Infinite if the system does not report any.
+    Infinite if the system does not report any limit.
     """
     return min(_of_machine(), _of_control_groups(), _of_address_space())
 
 
 def require(needed: float, what: str, remedy: str) -> None:
-    """Raise `CaseError` if `what` needs more memory in all (`needed`, bytes) than is available."""
+    """Raise `CaseError` if `what` needs more memory in total (`needed`, bytes) than available."""
     there = available()
     if needed > there:
         raise CaseError(
-            f"{what} take about {in_words(needed)} of memory, and {in_words(there)} are there; "
+            f"{what} take about {in_words(needed)} of memory, but {in_words(there)} are available; "
             f"{remedy}"
         )
 
 
 def in_words(size: float) -> str:
-    """A number of bytes in words, for messages."""
+    """Format a number of bytes for messages."""
     return f"{size / 1e9:.3g} GB" if size >= 1e9 else f"{size / 1e6:.0f} MB"
 
 
@@ -43,7 +43,7 @@ def _of_machine() -> float:
 
 
 def _of_control_groups(groups: str = "/proc/self/cgroup") -> float:
-    """The least limit of the control groups of this process and of their parents."""
+    """Smallest memory limit of the control groups of this process and of their parents."""
     least = math.inf
     try:
         lines = Path(groups).read_text(encoding="utf-8").splitlines()
@@ -61,7 +61,7 @@ def _of_control_groups(groups: str = "/proc/self/cgroup") -> float:
         else:
             continue
         group = root / path.lstrip("/")
-        # In a container the path may be that of the host and not exist, but its root does.
+        # In a container the path may be the host's and not exist here, but the root exists.
         for folder in (group, *group.parents):
             least = min(least, _limit(folder / file))
             if folder == root:
@@ -72,13 +72,13 @@ def _of_control_groups(groups: str = "/proc/self/cgroup") -> float:
 def _limit(file: Path) -> float:
     try:
         limit = float(file.read_text(encoding="ascii"))
-    except (OSError, ValueError):  # no limit, or "max"
+    except (OSError, ValueError):  # no such file, or "max" (no limit)
         return math.inf
     return limit if limit < 2**63 - _PAGE else math.inf
 
 
 def _of_address_space() -> float:
-    """The limit of `ulimit -v`, less addresses that are reserved but not resident."""
+    """Limit of `ulimit -v`, minus addresses that are reserved but not resident."""
     try:
         import resource
     except ImportError:

@@ -12,9 +12,10 @@ Array = NDArray[np.float64]
 
 @use_loop
 def multipoles(x: Array, y: Array, moments: Array, out: Array) -> None:
-    """Write Σ_kl moments[k, l] c^l / r^(2k + 1) at (x, y), a column and a row, into `out`.
+    """Write Σ_kl moments[k, l] c^l / r^(2k + 1) into `out`, shape (nx, ny).
 
-    c = x²/r² is the squared direction cosine along x; `moments` has shape (3, 3).
+    `x` has shape (nx, 1) and `y` shape (1, ny). c = x²/r² is the squared direction cosine along x.
+    `moments` has shape (3, 3).
     """
     s = 1.0 / (x * x + y * y)
     c = x * x * s

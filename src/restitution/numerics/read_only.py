@@ -1,4 +1,4 @@
-"""Arrays that nobody can write to: what frozen objects hold."""
+"""Read-only arrays for frozen objects."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ Scalar = TypeVar("Scalar", bound=np.generic)
 
 
 def freeze(values: NDArray[Scalar]) -> NDArray[Scalar]:
-    """Make `values` itself read-only and return it. For arrays that the caller has just made."""
+    """Make `values` itself read-only and return it; for arrays that the caller has just created."""
     values.flags.writeable = False
     return values
 
 
 def read_only(values: NDArray[Scalar]) -> NDArray[Scalar]:
-    """`values` as an array that nobody can write to.
+    """Return `values` as an array that cannot be written to.
 
-    It is `values` itself where that, and the array that it is a view of, is read-only already. Else
-    it is a copy, so that `values` stays writeable for its owner and changes nothing here.
+    If `values` and the arrays that it is a view of are already read-only, it is returned itself.
+    Otherwise the result is a copy, and `values` stays writeable for its owner.
     """
     owner: object = values
     while isinstance(owner, np.ndarray):

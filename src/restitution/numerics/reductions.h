@@ -1,8 +1,7 @@
-// Maxima and sums over arrays, and what partial results over blocks of rows add up to. loops.h
-// includes this.
+// Maxima and sums over arrays, and partial results over blocks of rows, which `add` combines.
 
-// The largest magnitude of the values seen. `doubt` sums zero times each value, so that the result is
-// NaN if any value is not finite; a maximum alone would skip NaN.
+// Largest magnitude. `doubt` sums zero times each value, so that the result is NaN if any value is not
+// finite; a maximum alone would skip NaN.
 template <class T>
 struct Peak {
     T most = 0, doubt = 0;

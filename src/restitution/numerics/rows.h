@@ -1,4 +1,4 @@
-// Two-dimensional arrays with contiguous rows, as the compiled loops take them.
+// Two-dimensional arrays with contiguous rows, the arguments of the compiled loops.
 
 #pragma once
 
@@ -26,7 +26,7 @@ void expect_one_shape(const First& a, const Others&... others) {
 }
 
 namespace pybind11::detail {
-// Arrays are taken as they are or rejected: results written to a converted copy would be lost.
+// Arrays are never converted: results written to a converted copy would be lost.
 template <class T>
 struct type_caster<Rows<T>> {
     PYBIND11_TYPE_CASTER(Rows<T>, const_name("numpy.ndarray"));
@@ -45,12 +45,12 @@ struct type_caster<Rows<T>> {
 };
 }  // namespace pybind11::detail
 
-// GCC and Clang compile for other processors of this kind than the one that all code is for.
+// GCC and Clang can compile single functions for instruction sets beyond the baseline.
 #if defined(__GNUC__) && defined(__x86_64__)
 #define MANY_PROCESSORS
 #endif
 
-// Defined in convolution/convolve.cpp; add its functions to the module.
+// Add the convolution to the module; defined in convolution/convolve.cpp.
 void define_plain_convolve(py::module_& module);
 #ifdef MANY_PROCESSORS
 void define_avx2_convolve(py::module_& module);

@@ -1,4 +1,4 @@
-// Threads for one step over large arrays. They are started for it and end with it.
+// Threads for one operation on large arrays. They start with it and end with it.
 
 #pragma once
 
@@ -12,11 +12,11 @@
 #include <thread>
 #include <vector>
 
-// What a step is shared among at most; one, until somebody says how many there are to be.
+// Largest number of threads; `use_threads` sets it.
 inline std::atomic<int> most_threads{1};
 
-// Bytes of what a loop goes through, and of a transform, below which threads cost more than they save
-// (measured on two cores).
+// Sizes of the arrays of a loop and of a transform below which threads cost more than they save (bytes,
+// measured on two cores).
 constexpr Index LOOP_WORTH_THREADS = 8 << 20, BYTES_WORTH_THREADS = 4 * 350 * 350;
 
 template <class T>
@@ -26,16 +26,16 @@ Index bytes_of(const Rows<T>& rows) {
 
 inline int threads_for(Index bytes) { return bytes > BYTES_WORTH_THREADS ? most_threads.load() : 1; }
 
-// How often a thread that waits for others looks again, giving way each time, before it sleeps: about
-// as long as threads of one step are apart on an idle machine (0.1 ms). On a shared one the others may
-// be away for milliseconds, and looking for them takes the processor from whoever has work.
+// How often a waiting thread polls, yielding each time, before it sleeps. On an idle machine this covers
+// the time between the first and the last thread of a step (0.1 ms). On a shared machine a thread may be
+// suspended for milliseconds, and polling for it would take the processor from threads that have work.
 constexpr int LOOKS = 200;
 
-// Threads that do the same steps together.
+// Threads that share the steps of an operation.
 class ThreadTeam {
   public:
-    // Let `work(k)` run in `threads` threads, or in as many as there are to be had. An exception in one
-    // of them ends the steps in all, and is thrown here once they have ended.
+    // Run `work(k)` in `threads` threads, or in as many as the system provides. An exception in one
+    // thread stops the steps in all of them and is rethrown here after all have ended.
     template <class Work>
     void run(int threads, Work work) {
         std::vector<std::thread> others;
@@ -46,7 +46,7 @@ class ThreadTeam {
         };
         try {
             for (int k = 1; k < threads; ++k) others.emplace_back(begin, k);
-        } catch (const std::exception&) {  // no more threads, or no memory for them
+        } catch (const std::exception&) {  // the system provides no more threads
         }
         tell([&] { count_ = int(others.size()) + 1; });
         guarded([&] { work(0); });
@@ -54,7 +54,8 @@ class ThreadTeam {
         if (error_) std::rethrow_exception(error_);
     }
 
-    // `step(i)` for i = 0, every, 2 every, … below n, by whoever is free; then wait for the others.
+    // Call `step(i)` for i = 0, every, 2 every, … below n, each in the next free thread; then wait for
+    // all threads.
     template <class Step>
     void parallel_for(Index n, Index every, Step step) {
         const Index steps = (n + every - 1) / every;
@@ -74,8 +75,8 @@ class ThreadTeam {
     std::atomic<int> count_{0}, arrived_{0}, round_{0};
     std::atomic<Index> next_{0};
     std::atomic<bool> failed_{false};
-    std::exception_ptr error_;  // the first
-    std::mutex mutex_;          // held while what `wait` waits for changes
+    std::exception_ptr error_;  // the first one thrown
+    std::mutex mutex_;          // held while a condition of `wait` changes
     std::condition_variable changed_;
 
     template <class Change>
@@ -110,8 +111,8 @@ class ThreadTeam {
     }
 };
 
-// What `some(begin, end)` finds in a few rows of these arrays at a time, added up in their order: it
-// does not depend on the number of threads.
+// Add up the results of `some(begin, end)` over blocks of rows. The blocks and their order, and so the
+// result, do not depend on the number of threads.
 template <class Some, class First, class... Others>
 auto over_rows(Some some, const First& rows, const Others&... others) {
     expect_one_shape(rows, others...);

@@ -1,25 +1,24 @@
-"""Closed forms for smooth spheres, one law a module; each module states where it holds.
+"""Closed forms for smooth spheres, one law per module. Each module states its range of validity.
 
-A law is a frozen object: its parameters are fields, checked once when it is made, and its
-quantities are properties and methods, `Hertz(radius, contact_modulus).force(indentation)`. Laws of
-an impact follow `ImpactLaw`: `restitution(velocity, mass)`.
+A law is a frozen object. Its parameters are fields, checked on construction, and its quantities are
+properties and methods: `Hertz(radius, contact_modulus).force(indentation)`. Laws that predict an
+impact follow `ImpactLaw`: `restitution(velocity, mass)`.
 
-Shared by every law of this room:
+These conventions hold for every law:
 
-- **Units** SI throughout: m, Pa, N, J, kg, m/s. `radius` is the reduced radius R*,
-  `contact_modulus` E*, `mass` the reduced mass m*: 1/R* = 1/R₁ + 1/R₂, 1/m* = 1/m₁ + 1/m₂,
-  1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂. Indentation (the rigid approach δ) closes the contact when
-  positive and is zero at first touch.
-- **Shapes** Any argument may be a number or an array; they broadcast, and the result has the
-  broadcast shape (a NumPy scalar where every argument is a number).
-- **No contact is an answer** Where indentation, force or velocity is zero or negative nothing
-  touches: every force, pressure, length, area and energy is 0 and every restitution 1. A contact
-  that adheres holds on at negative indentation; nothing touches below its break. Spheres that
-  touch and stick have restitution 0. NaN stays NaN.
-- **No answer is NaN** Where a formula has no answer for bodies and states that can be, the result
-  is NaN there, and the method says where that is.
-- **No body is an error** A radius, modulus, pressure, strength or mass that is not positive and
-  finite raises `CaseError` (a `ValueError`) naming the argument.
+- **Units** are SI: m, Pa, N, J, kg, m/s. `radius` is the reduced radius R*, `contact_modulus` is
+  E*, and `mass` is the reduced mass m*: 1/R* = 1/R₁ + 1/R₂, 1/m* = 1/m₁ + 1/m₂,
+  1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂. The indentation δ is the rigid-body approach, zero at first
+  touch and positive when the contact is compressed.
+- **Shapes**: every argument and field may be a number or an array. They broadcast, and the result
+  has the broadcast shape (a NumPy scalar if all are numbers).
+- **Separated spheres**: at zero or negative indentation, force or velocity every force, pressure,
+  length, area and energy is 0 and the restitution is 1. Adhesive contacts also exist at negative
+  indentation, down to the point where they break. Spheres that stick have restitution 0. NaN
+  arguments give NaN.
+- **Outside its range** a formula without a solution returns NaN; the method says where.
+- **Invalid parameters**: a radius, modulus, pressure, strength or mass that is not positive and
+  finite raises `CaseError` (a `ValueError`) that names the argument.
 """
 
 from .adhesive_thornton_ning import AdhesiveThorntonNing

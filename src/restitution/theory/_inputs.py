@@ -1,4 +1,4 @@
-"""What the laws accept: numbers or arrays, checked by name, with one rule for no contact."""
+"""Checks of the arguments of the laws, and the rule for separated spheres."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Values: TypeAlias = float | Array
 def positive(**quantities: Values) -> tuple[Array, ...]:
     """Return the named quantities as float arrays; `CaseError` unless all are positive and finite.
 
-    The keyword becomes the name in the message, so pass each under its public argument name.
+    The error message names the keyword, so pass each quantity under its public argument name.
     """
     arrays = []
     for name, value in quantities.items():
@@ -34,7 +34,7 @@ def positive(**quantities: Values) -> tuple[Array, ...]:
 def between(low: Values, high: Values, **quantities: Values) -> tuple[Array, ...]:
     """Return the named quantities as float arrays; `CaseError` unless finite and within bounds.
 
-    The keyword becomes the name in the message, so pass each under its public argument name.
+    The error message names the keyword, so pass each quantity under its public argument name.
     """
     arrays = []
     for name, value in quantities.items():
@@ -51,29 +51,29 @@ def between(low: Values, high: Values, **quantities: Values) -> tuple[Array, ...
 
 
 def keep_positive(law: object, *names: str) -> None:
-    """Check the named fields of a frozen `law` by `positive` and keep them as read-only arrays."""
+    """Check named fields of a frozen `law` with `positive` and store them as read-only arrays."""
     for name in names:
         keep(law, name, *positive(**{name: getattr(law, name)}))
 
 
 def keep_between(law: object, name: str, low: Values, high: Values = np.inf) -> None:
-    """Check a field of a frozen `law` by `between` and keep it as a read-only array."""
+    """Check a field of a frozen `law` with `between` and store it as a read-only array."""
     keep(law, name, *between(low, high, **{name: getattr(law, name)}))
 
 
 def touching(value: Values) -> Array:
-    """Return a state variable (indentation, force, velocity) with negative values set to zero."""
+    """Return an indentation, force or velocity with negative values set to zero."""
     return scalar_or_array(np.maximum(np.asarray(value, dtype=np.float64), 0.0))
 
 
 def scalar_or_array(values: Values) -> Array:
-    """Return a NumPy scalar in place of an array without dimensions, any other array as it is."""
+    """Return a NumPy scalar for a zero-dimensional array, and any other array unchanged."""
     result: Array = np.asarray(values, dtype=np.float64)[()]
     return result
 
 
 def keep(law: object, name: str, value: Values) -> None:
-    """Keep a field of a frozen `law` as a read-only array of its own."""
+    """Store a copy of `value` as a read-only field of a frozen `law`."""
     kept = np.array(value, dtype=np.float64)
     kept.flags.writeable = False
     object.__setattr__(law, name, kept)

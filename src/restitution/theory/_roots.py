@@ -1,7 +1,7 @@
 """Roots of increasing functions, for whole arrays at once.
 
 T. R. Chandrupatla, Advances in Engineering Software 28 (1997) 145–149: inverse quadratic
-interpolation where it is safe, halving where it is not. Every item keeps a bracket.
+interpolation where it is safe, bisection elsewhere. Every element keeps its own bracket.
 """
 
 from __future__ import annotations
@@ -13,21 +13,22 @@ from numpy.typing import NDArray
 
 from ._inputs import Array, Values
 
-_MOST = 200  # steps; about 10 are usual, and halving alone takes 100 from [0, 1] to 1e-14
-_EXACT = 2 * np.finfo(float).eps  # relative width of a bracket that is done
+_MAX_STEPS = 200  # about 10 are usual; bisection takes 100 for a root of 1e-14 in [0, 1]
+_EXACT = 2 * np.finfo(float).eps  # relative width of a converged bracket
 
 
 def increasing_root(excess: Callable[[Array], Array], low: Values, high: Values) -> Array:
-    """Where `excess`, which increases, passes zero between `low` and `high`; NaN stays NaN.
+    """Return the root of the increasing function `excess` between `low` and `high`; NaN stays NaN.
 
-    `low` where `excess` is positive there already, `high` where it is negative there still.
+    The result is `low` where `excess` is already positive there, and `high` where it is still
+    negative there.
     """
     low, high = (np.asarray(end, float) for end in np.broadcast_arrays(low, high))
     below, above = excess(low), excess(high)
     root = np.where(below >= 0, low, np.where(above <= 0, high, low + high + below + above))
     inside = (below < 0) & (above > 0)
     if inside.any():
-        with np.errstate(all="ignore"):  # of items that are done, and of steps not taken
+        with np.errstate(all="ignore"):  # elements that have converged, steps not taken
             found = _chandrupatla(excess, low, high, below, above, inside)
         root = np.where(inside, found, root)
     return root
@@ -41,11 +42,14 @@ def _chandrupatla(
     above: Array,
     inside: NDArray[np.bool_],
 ) -> Array:
-    """The roots of the items `inside`; the newest point is 1, the other end 2, the one before 3."""
+    """Return the roots of the elements `inside`.
+
+    Point 1 is the newest, point 2 the other end of the bracket, point 3 the previous point.
+    """
     x1, f1, x2, f2 = high, above, low, below
     root, share = np.full_like(x1, np.nan), np.full_like(x1, 0.5)
     waiting = inside
-    for _ in range(_MOST):
+    for _ in range(_MAX_STEPS):
         x = x1 + share * (x2 - x1)
         f = excess(x)
         same = (f > 0) == (f1 > 0)
@@ -67,7 +71,7 @@ def _chandrupatla(
 
 
 def _interpolated(x1: Array, f1: Array, x2: Array, f2: Array, x3: Array, f3: Array) -> Array:
-    """The share of the way from point 1 to point 2 at which the next trial is."""
+    """Return the next trial as a fraction of the way from point 1 to point 2."""
     xi, phi = (x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2)
     safe = (phi**2 < xi) & ((1 - phi) ** 2 < 1 - xi)
     quadratic = f1 / (f2 - f1) * f3 / (f2 - f3) + (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (

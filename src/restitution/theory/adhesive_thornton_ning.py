@@ -1,25 +1,26 @@
-"""Thornton & Ning (1998): elastic, then perfectly plastic spheres with adhesion, losses added.
+"""Thornton & Ning (1998): elastic, perfectly plastic spheres with adhesion.
 
-C. Thornton, Z. Ning, Powder Technology 99 (1998) 154–162. With e_p that of `ThorntonNing`, V_s
-that of `JKR` and V_y that of `FirstYield`:
+C. Thornton, Z. Ning, Powder Technology 99 (1998) 154–162. With e_p from `ThorntonNing`, V_s from
+`JKR` and V_y from `FirstYield`:
 
     V ≤ V_y    e² = 1 − (V_s/V)²        elastic and adhesive, 0 for V ≤ V_s: the spheres stick
     V > V_y    e² = e_p² − (V_s/V)²     plastic and adhesive losses added
 
-Continuous at V_y, where e_p = 1: e rises from 0 at V_s to a peak above V_y and falls beyond.
+e is continuous at V_y, where e_p = 1. It rises from 0 at V_s to a peak above V_y and then falls.
 
-Additivity is assumed, not derived: each loss is taken as if the other were absent. The tear-off is
-that of the unflattened R*, though yielding flattens the contact to R_p > R*, which takes more to
-tear off (as R_p^{4/3}); and adhesion is taken to yield nothing by itself. So e is an upper
-estimate, good where adhesion loses little by the time anything yields, V_s ≪ V_y.
+The sum of the two losses is an assumption: each loss is computed as if the other were absent. The
+adhesive loss is that of the undeformed radius R*, although yielding flattens the contact to
+R_p > R*, whose detachment takes more work (∝ R_p^{4/3}). Yielding caused by adhesion alone is
+neglected. So e is an upper estimate, accurate if the adhesive loss is small at first yield
+(V_s ≪ V_y).
 
-Where V_s > V_y the pair yields before it could rebound at all, and the formula fails: at and below
-V_y such a pair sticks, e = 0; above V_y there is no answer, NaN. Ammonium fluorescein is such a
-pair (radius 2.45 μm, 1350 kg/m³, E = 1.2 GPa, w = 0.2 J/m², p_y = 35.3 MPa, on a wall of 182 GPa;
-both ν = 0.3): V_s = 0.567 m/s, V_y = 0.183 m/s.
+If V_s > V_y, the pair yields below its sticking velocity and the formula fails. Such a pair sticks
+up to V_y (e = 0); above V_y the result is NaN. An example is ammonium fluorescein (radius 2.45 μm,
+1350 kg/m³, E = 1.2 GPa, w = 0.2 J/m², p_y = 35.3 MPa, on a wall of 182 GPa; both ν = 0.3):
+V_s = 0.567 m/s, V_y = 0.183 m/s.
 
-The ranges of `ThorntonNing` and `JKR` apply too: quasi-static normal impacts of smooth
-spheres, a large Tabor parameter.
+The ranges of `ThorntonNing` and `JKR` apply too: quasi-static normal impacts of smooth spheres and
+a large Tabor parameter.
 Units, shapes and errors are those of `restitution.theory`.
 """
 
@@ -37,9 +38,22 @@ from .thornton_ning import ThorntonNing
 
 @dataclass(frozen=True, eq=False)
 class AdhesiveThorntonNing:
-    """Spheres that yield at `yield_pressure` p_y (Pa) and have `work_of_adhesion` w (J/m²).
+    """Impact of elastic, perfectly plastic spheres with adhesion.
 
-    `radius` is R* (m), `contact_modulus` E* (Pa).
+    The fields and arguments may be arrays and broadcast (see `restitution.theory`).
+
+    Attributes:
+        radius: Reduced radius R* (m).
+        contact_modulus: Contact modulus E* (Pa).
+        yield_pressure: Contact pressure p_y at yield (Pa), not the yield strength of a tensile
+            test.
+        work_of_adhesion: Work of adhesion w (J/m²).
+
+    Raises:
+        CaseError: A field is not positive and finite.
+
+    Source:
+        C. Thornton, Z. Ning, Powder Technology 99 (1998) 154–162.
     """
 
     radius: Values
@@ -52,19 +66,27 @@ class AdhesiveThorntonNing:
 
     @cached_property
     def elastic(self) -> JKR:
-        """The contact if nothing yielded."""
+        """Adhesive contact without yield."""
         return JKR(self.radius, self.contact_modulus, self.work_of_adhesion)
 
     @cached_property
     def plastic(self) -> ThorntonNing:
-        """The contact without adhesion."""
+        """Elastic-plastic contact without adhesion."""
         return ThorntonNing(self.radius, self.contact_modulus, self.yield_pressure)
 
     def restitution(self, velocity: Values, mass: Values) -> Array:
-        """Coefficient of restitution e after an impact at relative normal `velocity` (m/s).
+        """Coefficient of restitution after an impact.
 
-        0 where the spheres stick; NaN for V > V_y where V_s > V_y, outside the range; 1 at and
-        below zero velocity, where none approaches.
+        Args:
+            velocity: Relative normal impact velocity V (m/s).
+            mass: Reduced mass m* (kg).
+
+        Returns:
+            Coefficient of restitution e (1); 0 if the spheres stick, 1 at zero or negative
+            velocity, NaN for V > V_y if V_s > V_y (outside the range of the formula).
+
+        Raises:
+            CaseError: `mass` is not positive and finite.
         """
         V, V_y = touching(velocity), self.plastic.first_yield.velocity(mass)
         V_s = self.elastic.sticking_velocity(mass)

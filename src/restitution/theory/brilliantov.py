@@ -1,8 +1,8 @@
-"""Viscoelastic Hertz contact (Brilliantov, Pöschel): restitution by Müller and Pöschel's Padé form.
+"""Viscoelastic Hertz contact (Brilliantov, Pöschel): restitution as a Padé form.
 
-N. V. Brilliantov, F. Spahn, J.-M. Hertzsch, T. Pöschel, Phys. Rev. E 53 (1996) 5382–5392;
-R. Ramírez, T. Pöschel, N. V. Brilliantov, T. Schwager, Phys. Rev. E 60 (1999) 4465–4472; P. Müller,
-T. Pöschel, Phys. Rev. E 84 (2011) 021302, arXiv:1102.5247. The equation of motion of the approach x
+N. V. Brilliantov, F. Spahn, J.-M. Hertzsch, T. Pöschel, Phys. Rev. E 53 (1996) 5382–5392; R.
+Ramírez, T. Pöschel, N. V. Brilliantov, T. Schwager, Phys. Rev. E 60 (1999) 4465–4472; P. Müller, T.
+Pöschel, Phys. Rev. E 84 (2011) 021302, arXiv:1102.5247. The equation of motion of the approach x
 
     ẍ + k x^{3/2} + γ x^½ ẋ = 0,   ẋ(0) = V,   until the force returns to zero (ẍ = 0, x > 0)
 
@@ -12,11 +12,12 @@ depends on one number, v = β^½ V^{1/10} with β = γ/k^{3/5}:
     series   e = 1 − 1.153449 v² + 0.798267 v⁴ + 0.266666 v⁵ − …
     Padé     e = (1 + 0.501086 v)/(1 + 0.501086 v + 1.15345 v² + 0.577977 v³ + 0.532178 v⁴)
 
-Against the equation itself, solved numerically, the Padé form is within 10⁻⁵ of e up to v = 0.2
-(e ≥ 0.95), 10⁻³ up to v = 0.6 (e ≥ 0.68) and 0.009 everywhere; for e < 0.2 that is over 5 % of e.
+Compared with a numerical solution of the equation, the error of the Padé form in e is at most 10⁻⁵
+up to v = 0.2 (e ≥ 0.95), 10⁻³ up to v = 0.6 (e ≥ 0.68) and 0.009 for any v. For e < 0.2 the last
+bound is more than 5 % of e.
 
-Valid for a material that relaxes faster than the impact lasts, for smooth spheres with a ≪ R* that
-neither yield nor adhere. Ending the contact at x = 0 instead would give a lower e.
+Valid for a material that relaxes faster than the impact lasts and for smooth spheres with a ≪ R*
+without yield or adhesion. Ending the contact at x = 0 instead would give a lower e.
 Units, shapes and errors are those of `restitution.theory`.
 """
 
@@ -36,7 +37,19 @@ _DENOMINATOR = 0.532178, 0.577977, 1.15345, 0.501086, 1.0
 
 @dataclass(frozen=True, eq=False)
 class Brilliantov:
-    """Viscoelastic spheres with `dissipation` β = γ/k^{3/5}, in (s/m)^{1/5}."""
+    """Impact of viscoelastic spheres.
+
+    The field and arguments may be arrays and broadcast (see `restitution.theory`).
+
+    Attributes:
+        dissipation: Dissipation β = γ/k^{3/5} (SI, s^{1/5}·m^{−1/5}).
+
+    Raises:
+        CaseError: The dissipation is not positive and finite.
+
+    Source:
+        P. Müller, T. Pöschel, Phys. Rev. E 84 (2011) 021302.
+    """
 
     dissipation: Values
 
@@ -47,14 +60,31 @@ class Brilliantov:
     def from_material(
         cls, radius: Values, contact_modulus: Values, dissipative_time: Values, mass: Values
     ) -> Self:
-        """The law with β = 3/2 A (4E*R*^½/3m*)^{2/5} of the dissipative constant A (s)."""
+        """Make the law from the dissipative constant: β = 3/2 A (4E*R*^½/3m*)^{2/5}.
+
+        Args:
+            radius: Reduced radius R* (m).
+            contact_modulus: Contact modulus E* (Pa).
+            dissipative_time: Dissipative constant A (s).
+            mass: Reduced mass m* (kg).
+
+        Returns:
+            The law for these spheres.
+
+        Raises:
+            CaseError: An argument is not positive and finite.
+        """
         A, m = positive(dissipative_time=dissipative_time, mass=mass)
         return cls(1.5 * A * (Hertz(radius, contact_modulus).force(1.0) / m) ** 0.4)
 
     def restitution(self, velocity: Values) -> Array:
-        """Coefficient of restitution e after an impact at relative normal `velocity` (m/s).
+        """Coefficient of restitution after an impact.
 
-        1 at and below zero velocity.
+        Args:
+            velocity: Relative normal impact velocity V (m/s).
+
+        Returns:
+            Coefficient of restitution e (1); 1 at zero or negative velocity.
         """
         v = self.dissipation**0.5 * touching(velocity) ** 0.1
         return scalar_or_array(np.polyval(_NUMERATOR, v) / np.polyval(_DENOMINATOR, v))

@@ -1,9 +1,9 @@
 """EEPA, the Edinburgh elasto-plastic adhesive model: power-law springs and a constant attraction.
 
-J. P. Morrissey, thesis, University of Edinburgh (2013); S. C. Thakur, J. P. Morrissey, J. Sun,
-J. F. Chen, J. Y. Ooi, Granular Matter 16 (2014) 383–400. With the springs k₁ (loading), k₂
-(unloading) and k_adh (adhesion), one exponent n for all (1: linear, 3/2: Hertz-like), the constant
-f₀ ≤ 0 and d = δ_max:
+J. P. Morrissey, thesis, University of Edinburgh (2013); S. C. Thakur, J. P. Morrissey, J. Sun, J.
+F. Chen, J. Y. Ooi, Granular Matter 16 (2014) 383–400. With the springs k₁ (loading), k₂ (unloading)
+and k_adh (adhesion), one exponent n for all (1: linear, 3/2: Hertz-like), the constant f₀ ≤ 0 and
+d = δ_max:
 
     loading     F = f₀ + k₁δⁿ
     unloading   F = f₀ + k₂(δⁿ − δ_pⁿ),  δ_p = (1 − k₁/k₂)^{1/n} d
@@ -12,15 +12,14 @@ f₀ ≤ 0 and d = δ_max:
                 W_u = f₀d + [k₂ − (n + 1)(k₂ − k₁) + n(k₂ + k_adh) μ^{n+1}] d^{n+1}/(n + 1)
     impact      ½ m* V² = W_l, e² = W_u/W_l, 0 where W_u ≤ 0: stuck, in contact at δ > 0
 
-The contact begins and ends at δ = 0, where the force jumps between f₀ and zero; without any
-adhesion nothing acts below δ_p and it ends at F = 0 there. Then e does not depend on velocity:
+The contact begins and ends at δ = 0, where the force jumps between f₀ and zero. Without adhesion
+(f₀ = 0, k_adh = 0) it ends at δ_p, where F = 0, and e does not depend on velocity:
 e² = [1 − (n + 1)q + n q^{1+1/n}] k₂/k₁ with q = 1 − k₁/k₂, which is k₁/k₂ for n = 1.
 
 k_adh is a constant here. Codes that derive it from a surface energy (EDEM, PFC, LIGGGHTS' default)
 make it a function of δ_p, and the exponent of their adhesive branch (Morrissey's χ) may differ from
-n; the dashpot is left out. The springs are parameters to be fitted; R* and E* do not enter.
-Units, shapes and errors are those of `restitution.theory`, with stiffness in N/mⁿ; here k₂ must not
-be below k₁ nor n below 1, and k_adh and f₀ may be zero.
+n. The dashpot is left out. The springs are parameters to be fitted; R* and E* do not enter.
+Units, shapes and errors are those of `restitution.theory`, with stiffness in N/mⁿ.
 """
 
 from __future__ import annotations
@@ -44,9 +43,23 @@ from .law import restitution_of_work
 
 @dataclass(frozen=True, eq=False)
 class EEPA:
-    """Springs `loading_stiffness` k₁, `unloading_stiffness` k₂, `adhesive_stiffness` k_adh (N/mⁿ).
+    """Impact of bodies with the Edinburgh elasto-plastic adhesive model.
 
-    `constant_force` is f₀ ≤ 0 (N), `exponent` n ≥ 1.
+    The fields and arguments may be arrays and broadcast (see `restitution.theory`).
+
+    Attributes:
+        loading_stiffness: Stiffness k₁ of first loading (N/mⁿ, SI).
+        unloading_stiffness: Stiffness k₂ of unloading (N/mⁿ, SI), at least k₁.
+        adhesive_stiffness: Stiffness k_adh of the adhesive branch (N/mⁿ, SI), at least 0.
+        constant_force: Constant force f₀ (N), at most 0 (attractive).
+        exponent: Exponent n of all branches (1), at least 1.
+
+    Raises:
+        CaseError: A field is not finite or not in its range.
+
+    Source:
+        J. P. Morrissey, thesis, University of Edinburgh (2013); S. C. Thakur et al., Granular
+        Matter 16 (2014) 383–400.
     """
 
     loading_stiffness: Values
@@ -63,15 +76,29 @@ class EEPA:
         keep_between(self, "exponent", 1.0)
 
     def loading_force(self, indentation: Values) -> Array:
-        """Normal force (N) on first loading; f₀ alone as soon as they touch."""
+        """Normal force on first loading.
+
+        Args:
+            indentation: Approach of the spheres δ (m).
+
+        Returns:
+            Normal force F (N); it jumps from 0 to f₀ at first touch.
+        """
         d = touching(indentation)
         F = self.constant_force + self.loading_stiffness * d**self.exponent
         return scalar_or_array(np.where(d == 0, 0.0, F))
 
     def unloading_force(self, indentation: Values, maximum_indentation: Values) -> Array:
-        """Normal force (N) at `indentation` after first loading to `maximum_indentation` (both m).
+        """Normal force on unloading after first loading to `maximum_indentation`.
 
-        Above `maximum_indentation` the contact is loading again, and the force is `loading_force`.
+        Above `maximum_indentation` the force is `loading_force`.
+
+        Args:
+            indentation: Approach of the spheres δ (m).
+            maximum_indentation: Indentation at which unloading began, δ_max (m).
+
+        Returns:
+            Normal force F (N), negative if attractive.
         """
         d, d_max = touching(indentation), touching(maximum_indentation)
         k1, k2, k_adh = self._springs
@@ -81,26 +108,51 @@ class EEPA:
         return scalar_or_array(np.where(onwards, self.loading_force(d), unloading))
 
     def residual_indentation(self, maximum_indentation: Values) -> Array:
-        """Indentation δ_p (m) at which the force of unloading from `maximum_indentation` is f₀."""
+        """Indentation at which the force is f₀ on unloading.
+
+        Args:
+            maximum_indentation: Indentation at which unloading began, δ_max (m).
+
+        Returns:
+            Residual indentation δ_p (m).
+        """
         k1, k2, _ = self._springs
         return (1 - k1 / k2) ** (1 / self.exponent) * touching(maximum_indentation)
 
     def pull_off_force(self, maximum_indentation: Values) -> Array:
-        """Greatest attraction k_adhδ_minⁿ − f₀ (N, positive) on unloading.
+        """Largest attractive force on unloading.
 
-        Zero where nothing has touched.
+        Args:
+            maximum_indentation: Indentation at which unloading began, δ_max (m).
+
+        Returns:
+            Magnitude of the force k_adhδ_minⁿ − f₀ (N); 0 without any indentation.
         """
         d, (k1, k2, k_adh) = touching(maximum_indentation), self._springs
         F_c = k_adh * (k2 - k1) / (k2 + k_adh) * d**self.exponent - self.constant_force
         return scalar_or_array(np.where(d == 0, 0.0, F_c))
 
     def loading_work(self, indentation: Values) -> Array:
-        """Work W_l = ∫F dδ (J) from first touch on; negative if f₀ pulls them in."""
+        """Work done from first touch to an indentation on first loading.
+
+        Args:
+            indentation: Approach of the spheres δ (m).
+
+        Returns:
+            Loading work W_l = ∫F dδ (J), negative where f₀ draws the bodies together.
+        """
         d, n = touching(indentation), self.exponent
         return self.constant_force * d + self.loading_stiffness * d ** (n + 1) / (n + 1)
 
     def unloading_work(self, maximum_indentation: Values) -> Array:
-        """Work W_u (J) given back down to δ = 0; negative where they stick."""
+        """Work returned from `maximum_indentation` to δ = 0.
+
+        Args:
+            maximum_indentation: Indentation at which unloading began, δ_max (m).
+
+        Returns:
+            Unloading work W_u (J), negative if the bodies stick.
+        """
         d, n = touching(maximum_indentation), self.exponent
         k1, k2, k_adh = self._springs
         mu = ((k2 - k1) / (k2 + k_adh)) ** (1 / n)
@@ -108,11 +160,21 @@ class EEPA:
         return self.constant_force * d + k_u * d ** (n + 1) / (n + 1)
 
     def indentation_from_velocity(self, velocity: Values, mass: Values) -> Array:
-        """Largest indentation (m) of an impact at relative normal `velocity` (m/s).
+        """Largest indentation of an impact.
 
-        With K = ½m*V², the root lies between the greater and the sum of a = ((n + 1)
-        K/k₁)^{1/(n+1)}, the depth without f₀, and b = (−(n + 1) f₀/k₁)^{1/n}, the depth that f₀
-        alone draws to.
+        With K = ½m*V², a = ((n + 1) K/k₁)^{1/(n+1)} is the indentation without f₀, and
+        b = (−(n + 1) f₀/k₁)^{1/n} the indentation that f₀ alone causes. The root lies between
+        max(a, b) and a + b.
+
+        Args:
+            velocity: Relative normal impact velocity V (m/s).
+            mass: Reduced mass m* (kg).
+
+        Returns:
+            Indentation δ (m).
+
+        Raises:
+            CaseError: `mass` is not positive and finite.
         """
         (m,) = positive(mass=mass)
         k1, f0, n = self.loading_stiffness, self.constant_force, self.exponent
@@ -122,9 +184,18 @@ class EEPA:
         return scalar_or_array(np.where(np.asarray(velocity) <= 0, 0.0, d))
 
     def restitution(self, velocity: Values, mass: Values) -> Array:
-        """Coefficient of restitution e = (W_u/W_l)^½ after an impact at `velocity` (m/s).
+        """Coefficient of restitution after an impact.
 
-        0 where they stick; 1 at and below zero velocity, where none approaches.
+        Args:
+            velocity: Relative normal impact velocity V (m/s).
+            mass: Reduced mass m* (kg).
+
+        Returns:
+            Coefficient of restitution e = (W_u/W_l)^½ (1); 0 if the bodies stick, 1 at zero or
+            negative velocity.
+
+        Raises:
+            CaseError: `mass` is not positive and finite.
         """
         W_u = self.unloading_work(self.indentation_from_velocity(velocity, mass))
         return restitution_of_work(W_u, velocity, mass)

@@ -1,7 +1,7 @@
 """Jackson & Green (2005): finite-element fit of an elastic, perfectly plastic sphere on a flat.
 
-R. L. Jackson, I. Green, J. Tribology 127 (2005) 343–354, doi 10.1115/1.1866166. With E* the contact
-modulus (their E′), Y the yield strength of a tensile test (their S_y) and ω* = ω/ω_c:
+R. L. Jackson, I. Green, J. Tribology 127 (2005) 343–354, doi 10.1115/1.1866166. With the contact
+modulus E* (their E′), the yield strength Y of a tensile test (their S_y) and ω* = ω/ω_c:
 
     C = 1.295 exp(0.736 ν),  ω_c = (πCY/2E*)² R*,  P_c = 4/3 (R*/E*)² (πCY/2)³,  A_c = πR*ω_c
     ω* ≤ 1.9    P/P_c = ω*^{3/2},  A/A_c = ω*: Hertz, although yielding began inside at ω* = 1
@@ -11,14 +11,13 @@ modulus (their E′), Y the yield strength of a tensile test (their S_y) and ω*
 
 CY is the peak pressure at first yield: ω_c is `FirstYield.indentation` with p_y = CY.
 
-Loading only, against a rigid frictionless flat. The fit is to five steel-like materials (Y/E*
-from 0.001 to 0.007, ν = 0.32; von Mises, no hardening) and to a/R* ≤ 0.412: there the force is
-within 1 % of the finite elements on average and 3.5 % at worst, the area within 1.3 % and 4.3 %.
-Elsewhere it extrapolates: the branches of the force, which meet to 0.1 % at ν = 0.32, leave a step
-at ω* = 1.9 of +7.5 % at ν = 0, +1.5 % at ν = 0.25 and −3.4 % at ν = 0.5. For two deformable bodies
-take Y and ν of the one with the smaller CY.
-Units, shapes and errors are those of `restitution.theory`; a Poisson ratio that is not above −1 and
-at most ½ raises `CaseError` too.
+The fit covers only loading against a rigid frictionless flat. It is a fit to five steel-like
+materials (Y/E* from 0.001 to 0.007, ν = 0.32; von Mises, no hardening) up to a/R* = 0.412. In this
+range the force is within 1 % of the finite elements on average and 3.5 % at worst, the area within
+1.3 % and 4.3 %. Elsewhere it extrapolates: the branches of the force meet within 0.1 % at ν = 0.32,
+but the force jumps at ω* = 1.9 by +7.5 % at ν = 0, +1.5 % at ν = 0.25 and −3.4 % at ν = 0.5. For
+two deformable bodies use Y and ν of the one with the smaller CY.
+Units, shapes and errors are those of `restitution.theory`.
 """
 
 from __future__ import annotations
@@ -33,14 +32,27 @@ from .hertz import Hertz
 from .yielding import FirstYield, yield_coefficient
 
 TRANSITION = 1.9
-"""ω* up to which the fit is Hertz."""
+"""ω* up to which the fit equals Hertz."""
 
 
 @dataclass(frozen=True, eq=False)
 class JacksonGreen:
-    """A sphere of `yield_strength` Y (Pa, of a tensile test) and `poissons_ratio` ν on a flat.
+    """Fit of the first loading of an elastic, perfectly plastic sphere against a rigid flat.
 
-    `radius` is R* (m), `contact_modulus` E* (Pa).
+    The fields and arguments may be arrays and broadcast (see `restitution.theory`).
+
+    Attributes:
+        radius: Reduced radius R* (m).
+        contact_modulus: Contact modulus E* (Pa).
+        yield_strength: Yield strength Y of a tensile test (Pa).
+        poissons_ratio: Poisson's ratio ν (1).
+
+    Raises:
+        CaseError: A field is not positive and finite, or Poisson's ratio is not above −1 and at
+            most ½.
+
+    Source:
+        R. L. Jackson, I. Green, J. Tribology 127 (2005) 343–354.
     """
 
     radius: Values
@@ -50,35 +62,54 @@ class JacksonGreen:
 
     def __post_init__(self) -> None:
         keep_positive(self, "radius", "contact_modulus", "yield_strength")
-        yield_coefficient(self.poissons_ratio)  # raises where there is none
+        yield_coefficient(self.poissons_ratio)  # raises CaseError outside its range
         keep(self, "poissons_ratio", self.poissons_ratio)
 
     @cached_property
     def elastic(self) -> Hertz:
-        """The contact up to the transition."""
+        """Hertz contact that the fit follows up to ω* = 1.9."""
         return Hertz(self.radius, self.contact_modulus)
 
     @cached_property
     def first_yield(self) -> FirstYield:
-        """ω_c and P_c, at which the sphere first yields, below its surface: p_y = CY."""
+        """First yield (ω_c and P_c), below the surface: p_y = CY."""
         p_c = yield_coefficient(self.poissons_ratio) * self.yield_strength
         return FirstYield(self.radius, self.contact_modulus, p_c)
 
     def contact_area(self, indentation: Values) -> Array:
-        """Contact area A (m²) on first loading."""
+        """Contact area on first loading.
+
+        Args:
+            indentation: Approach of the spheres δ (m).
+
+        Returns:
+            Contact area A (m²).
+        """
         B = 0.14 * np.exp(23 * self.yield_strength / self.contact_modulus)
         deep = np.maximum(self._normalised(indentation), TRANSITION)
         return self.elastic.contact_area(indentation) * (deep / TRANSITION) ** B
 
     def contact_radius(self, indentation: Values) -> Array:
-        """Contact radius a (m) on first loading; the fit was made for a ≤ 0.412 R*."""
+        """Contact radius on first loading; the range of the fit is a ≤ 0.412 R*.
+
+        Args:
+            indentation: Approach of the spheres δ (m).
+
+        Returns:
+            Contact radius a (m).
+        """
         return (self.contact_area(indentation) / np.pi) ** 0.5
 
     def hardness(self, contact_radius: Values) -> Array:
-        """Mean contact pressure H_G (Pa) of full plastic flow at a given contact radius (m).
+        """Mean contact pressure of fully plastic flow.
 
-        2.84 yield strengths in the limit of no contact, less as the contact grows beside the
-        sphere.
+        It tends to 2.84 Y for small contacts and decreases as a/R* grows.
+
+        Args:
+            contact_radius: Contact radius a (m).
+
+        Returns:
+            Mean pressure H_G (Pa).
         """
         a = touching(contact_radius)
         with np.errstate(divide="ignore"):  # a = 0: exp(−∞) = 0
@@ -86,7 +117,14 @@ class JacksonGreen:
         return scalar_or_array(2.84 * self.yield_strength * share)
 
     def loading_force(self, indentation: Values) -> Array:
-        """Normal force P (N) on first loading."""
+        """Normal force on first loading.
+
+        Args:
+            indentation: Approach of the spheres δ (m).
+
+        Returns:
+            Normal force P (N).
+        """
         w, first = self._normalised(indentation), self.first_yield
         deep = np.maximum(w, TRANSITION)
         H_G = self.hardness(self.contact_radius(deep * first.indentation))
@@ -95,5 +133,5 @@ class JacksonGreen:
         return scalar_or_array(first.force * np.where(w <= TRANSITION, w**1.5, fit))
 
     def _normalised(self, indentation: Values) -> Array:
-        """ω* = ω/ω_c, zero where nothing touches."""
+        """ω* = ω/ω_c, zero for separated bodies."""
         return touching(indentation) / self.first_yield.indentation

@@ -1,49 +1,51 @@
-"""Johnson, Kendall & Roberts (1971): elastic spheres that attract only where they touch.
+"""Johnson, Kendall & Roberts (1971): elastic spheres with adhesion inside the contact area only.
 
-K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. Lond. A 324 (1971) 301–313,
-doi 10.1098/rspa.1971.0141; D. Maugis, *Contact, Adhesion and Rupture of Elastic Solids*, Springer
-2000. With w the work of adhesion, Hertz less a flat punch (`kendall`) of the same contact radius a:
+K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. Lond. A 324 (1971) 301–313, doi
+10.1098/rspa.1971.0141; D. Maugis, *Contact, Adhesion and Rupture of Elastic Solids*, Springer 2000.
+With the work of adhesion w, Hertz minus a flat punch (`kendall`) of the same contact radius a:
 
     F = 4E*a³/(3R*) − (8πE*wa³)^½,   δ = a²/R* − (2πwa/E*)^½
 
 Forces are positive in compression and δ closes the contact; only `pull_off_force` is a magnitude.
-With a_b = (πwR*²/8E*)^{1/3}, F_c = 3/2 πwR* and U = E*a_b⁵/R*², all is polynomial in s = (a/a_b)^½:
+With a_b = (πwR*²/8E*)^{1/3}, F_c = 3/2 πwR* and U = E*a_b⁵/R*², all quantities are polynomials in
+s = (a/a_b)^½:
 
     δ = (s⁴ − 4s) a_b²/R*,   F = (s⁶ − 6s³) F_c/9
     U_el/U = 8/15 s¹⁰ − 16/3 s⁷ + 16 s⁴,   U_T = U_el − wπa² = U_el − 8 s⁴ U,   dU_T = F dδ
 
-    s³ = 1    break at fixed grips, the smallest δ there is:  δ_b = −3a_b²/R*,  F = −5/9 F_c
+    s³ = 1    break at fixed grips, the smallest possible δ:  δ_b = −3a_b²/R*,  F = −5/9 F_c
     s³ = 3    pull-off at fixed load, the smallest F:  a_c = (9πwR*²/8E*)^{1/3},  F = −F_c
     s³ = 4    δ = 0, where an approaching pair jumps in:  F = −8/9 F_c
     s³ = 6    no load:  a = (9πwR*²/2E*)^{1/3}
 
-s ≥ 1 is stable at fixed grips, s < 1 unstable. Methods of the contact radius hold on both
-branches, methods of the indentation on the stable one: it exists from δ_b up, but a pair enters
-it only by jumping in at δ = 0 (F is 0 before) and leaves it only at δ_b. Nothing touches below
-δ_b, so all is 0 there. One cycle from apart to apart loses the same energy however deep it went,
-what the jump in and the break shed,
+The branch s ≥ 1 is stable at fixed grips, s < 1 is unstable. Methods that take the contact radius
+hold on both branches, methods that take the indentation on the stable one. The stable branch exists
+for δ ≥ δ_b. On approach the pair jumps into it at δ = 0 (F = 0 before), and on separation it leaves
+it at δ_b; below δ_b all quantities are 0. A full cycle of contact dissipates the same energy from
+any depth, in the jump in and in the break:
 
     W_s = −∫ F dδ from δ_b to 0 = U_T(δ_b) − U_T(0) = 8/5 (2 + 3·4^{4/3}) U
         = 7.092 (w⁵R*⁴/E*²)^{1/3},
 
 printed as 7.09 by Thornton & Ning, Powder Technology 99 (1998) 154–162.
 
-With V the velocity before the jump in, an elastic impact of reduced mass m* sticks up to V_s:
+With the velocity V before the jump in, an elastic impact of reduced mass m* sticks up to V_s:
 
     ½ m* V_s² = W_s:  V_s = (14.18/m*)^½ (w⁵R*⁴/E*²)^{1/6},   e² = 1 − (V_s/V)², 0 for V ≤ V_s
 
-(the same authors print 14.18; 2 × 7.092 = 14.184 exactly, used here).
+(the same authors print 14.18; the exact value 2 × 7.092 = 14.184 is used here).
 
-Valid for quasi-static normal impacts where Hertz is (a ≪ R*, nothing yields: V and V_s below
-`FirstYield.velocity`) and for forces of short range, that is for a large Tabor parameter
+Valid for quasi-static normal impacts in the range of Hertz (a ≪ R*, no yield: V and V_s below
+`FirstYield.velocity`) and for surface forces of short range, that is for a large Tabor parameter
 
     μ = (R*w²/(E*²z₀³))^{1/3}
 
-(D. Tabor, J. Colloid Interface Sci. 58 (1977) 2–13), the neck JKR draws out over the range z₀ of
-the forces. μ > 5 is JKR, μ < 0.1 DMT or rigid (Johnson & Greenwood, J. Colloid Interface Sci. 192
-(1997) 326–333). Pull-off comes near its JKR value long before the jump in does, for forces of
-finite range act before touch: W_s needs a larger μ (Ciavarella, Greenwood & Barber, J. Mech. Phys.
-Solids 98 (2017) 236–244). Small hard particles have a small μ, and then stick less than V_s says.
+(D. Tabor, J. Colloid Interface Sci. 58 (1977) 2–13), the ratio of the height of the JKR neck to the
+range z₀ of the forces. μ > 5 is JKR, μ < 0.1 is DMT or rigid (Johnson & Greenwood, J. Colloid
+Interface Sci. 192 (1997) 326–333). With growing μ the pull-off force approaches its JKR value long
+before the jump in does, because forces of finite range act before first touch. So W_s needs a
+larger μ (Ciavarella, Greenwood & Barber, J. Mech. Phys. Solids 98 (2017) 236–244). Small hard
+particles have a small μ, and then stick less than V_s predicts.
 Units, shapes and errors are those of `restitution.theory`.
 """
 
@@ -65,9 +67,20 @@ _AT_JUMP_IN = -24 / 5 * 4 * math.cbrt(4)  # U_T/U at s³ = 4
 
 @dataclass(frozen=True, eq=False)
 class JKR:
-    """Elastic spheres that adhere with `work_of_adhesion` w (J/m²) where they touch.
+    """JKR contact of elastic spheres with adhesion.
 
-    `radius` is R* (m), `contact_modulus` E* (Pa).
+    The fields and arguments may be arrays and broadcast (see `restitution.theory`).
+
+    Attributes:
+        radius: Reduced radius R* (m).
+        contact_modulus: Contact modulus E* (Pa).
+        work_of_adhesion: Work of adhesion w (J/m²).
+
+    Raises:
+        CaseError: A field is not positive and finite.
+
+    Source:
+        K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. Lond. A 324 (1971) 301–313.
     """
 
     radius: Values
@@ -78,46 +91,86 @@ class JKR:
         keep_positive(self, "radius", "contact_modulus", "work_of_adhesion")
 
     def force(self, indentation: Values) -> Array:
-        """Normal force F (N) on the stable branch, compressive positive; 0 below the break δ_b.
+        """Normal force on the stable branch.
 
-        −5/9 F_c at δ_b, −F_c at its least, −8/9 F_c at δ = 0. An approaching pair feels nothing
-        before δ = 0; `loading_work` counts from there.
+        F is −5/9 F_c at δ_b and −8/9 F_c at δ = 0, with a minimum of −F_c between them. The force
+        before the jump in at δ = 0 is not included; `loading_work` starts there.
+
+        Args:
+            indentation: Approach of the spheres δ (m).
+
+        Returns:
+            Normal force F (N), positive in compression; 0 below the break δ_b.
         """
         s = self._root(indentation)
         return self.pull_off_force / 9 * s**3 * (s**3 - 6)
 
     def contact_radius(self, indentation: Values) -> Array:
-        """Contact radius a (m) on the stable branch, at least a_b; 0 below the break δ_b."""
+        """Contact radius on the stable branch.
+
+        Args:
+            indentation: Approach of the spheres δ (m).
+
+        Returns:
+            Contact radius a ≥ a_b (m); 0 below the break δ_b.
+        """
         return self.break_radius * self._root(indentation) ** 2
 
     def force_at_contact_radius(self, contact_radius: Values) -> Array:
-        """Normal force F(a) (N), compressive positive; both branches."""
+        """Normal force at a contact radius, on both branches.
+
+        Args:
+            contact_radius: Contact radius a (m).
+
+        Returns:
+            Normal force F (N), positive in compression.
+        """
         pressed = self._pressed.force_at_contact_radius(contact_radius)
         return pressed - self._drawn.pull_off_force(contact_radius)
 
     def indentation_at_contact_radius(self, contact_radius: Values) -> Array:
-        """Indentation δ(a) (m), negative where the spheres are drawn apart; both branches."""
+        """Indentation at a contact radius, on both branches.
+
+        Args:
+            contact_radius: Contact radius a (m).
+
+        Returns:
+            Indentation δ (m), negative if the spheres are pulled apart.
+        """
         a = touching(contact_radius)
         return a**2 / self.radius - self._drawn.pull_off_displacement(a)
 
     def stored_energy_at_contact_radius(self, contact_radius: Values) -> Array:
-        """Elastic energy U_el(a) (J); both branches.
+        """Elastic energy at a contact radius, on both branches.
 
-        Press to a as Hertz does, then draw back at fixed contact by δ′ = (2πwa/E*)^½ against the
-        stiffness 2E*a of a punch: U_el = 8E*a⁵/(15R*²) − 4E*a³δ′/(3R*) + E*aδ′².
+        Hertz loading to a, then unloading of a punch of stiffness 2E*a by δ′ = (2πwa/E*)^½ at fixed
+        contact gives U_el = 8E*a⁵/(15R*²) − 4E*a³δ′/(3R*) + E*aδ′².
+
+        Args:
+            contact_radius: Contact radius a (m).
+
+        Returns:
+            Elastic energy U_el (J).
         """
         R, E_star, a = self.radius, self.contact_modulus, touching(contact_radius)
         drawn = self._drawn.pull_off_displacement(a)
         return E_star * a * (8 * a**4 / (15 * R**2) - 4 * a**2 * drawn / (3 * R) + drawn**2)
 
     def total_energy_at_contact_radius(self, contact_radius: Values) -> Array:
-        """Elastic and surface energy U_T(a) = U_el − wπa² (J), 0 when apart; dU_T/dδ = F."""
+        """Elastic plus surface energy at a contact radius, on both branches; dU_T/dδ = F.
+
+        Args:
+            contact_radius: Contact radius a (m).
+
+        Returns:
+            Total energy U_T = U_el − wπa² (J), 0 for separated spheres.
+        """
         a = touching(contact_radius)
         return self.stored_energy_at_contact_radius(a) - np.pi * self.work_of_adhesion * a**2
 
     @property
     def pull_off_force(self) -> Array:
-        """F_c = 3/2 πwR* (N): the tension, as a magnitude, that parts the spheres at fixed load."""
+        """Magnitude F_c = 3/2 πwR* (N) of the tension that separates the spheres at fixed load."""
         return scalar_or_array(1.5 * np.pi * self.work_of_adhesion * self.radius)
 
     @property
@@ -132,7 +185,7 @@ class JKR:
 
     @property
     def break_force(self) -> Array:
-        """Force −5/9 F_c (N) from which the contact breaks at fixed grips."""
+        """Force −5/9 F_c (N) at which the contact breaks at fixed grips."""
         return -5 / 9 * self.pull_off_force
 
     @cached_property
@@ -158,22 +211,32 @@ class JKR:
 
     @property
     def adhesive_length(self) -> Array:
-        """Length of the neck (w²R*/E*²)^{1/3} (m): δ_b is −1.61 of it."""
+        """Height of the neck (w²R*/E*²)^{1/3} (m); δ_b is −1.61 times this length."""
         R, E_star, w = self.radius, self.contact_modulus, self.work_of_adhesion
         return scalar_or_array((w * w * R / E_star**2) ** (1 / 3))
 
     def loading_work(self, indentation: Values) -> Array:
-        """Work W_l = ∫F dδ (J) from the jump in at δ = 0 to `indentation`; 0 where that is ≤ 0.
+        """Work from the jump in at δ = 0 to an indentation.
 
-        Negative at small indentation, where adhesion still draws the spheres together.
+        Args:
+            indentation: Approach of the spheres δ (m).
+
+        Returns:
+            Loading work W_l = ∫F dδ (J), negative at small indentation, where adhesion draws the
+            spheres together; 0 for δ ≤ 0.
         """
         W_l = self._energy_unit * (_total_energy(self._root(indentation)) - _AT_JUMP_IN)
         return scalar_or_array(np.where(np.asarray(indentation) <= 0, 0.0, W_l))
 
     def unloading_work(self, indentation: Values) -> Array:
-        """Work W_u = ∫F dδ (J) from the break to `indentation`, given back on the way apart.
+        """Work returned on separation, from an indentation to the break: W_u = W_l − W_s.
 
-        W_u = W_l − W_s. Negative where parting takes more work than was stored; 0 below the break.
+        Args:
+            indentation: Approach of the spheres δ (m).
+
+        Returns:
+            Unloading work W_u = ∫F dδ (J), negative if separation takes more work than was stored;
+            0 below the break.
         """
         s = self._root(indentation)
         W_u = self._energy_unit * (_total_energy(s) - _AT_BREAK)
@@ -181,42 +244,85 @@ class JKR:
 
     @property
     def hysteresis_loss(self) -> Array:
-        """Energy W_s = 7.092 (w⁵R*⁴/E*²)^{1/3} (J) lost in one cycle of contact, at any depth."""
+        """Energy W_s = 7.092 (w⁵R*⁴/E*²)^{1/3} (J) dissipated per cycle at any depth."""
         return (_AT_BREAK - _AT_JUMP_IN) * self._energy_unit
 
     def impact_velocity(self, maximum_indentation: Values, mass: Values) -> Array:
-        """Relative normal velocity V (m/s) that reaches `maximum_indentation`: ½ m* V² = W_l.
+        """Impact velocity that reaches an indentation: ½ m* V² = W_l.
 
-        NaN where W_l < 0: adhesion alone draws every impact deeper than that.
+        Args:
+            maximum_indentation: Largest indentation of the impact δ_max (m).
+            mass: Reduced mass m* (kg).
+
+        Returns:
+            Relative normal velocity V (m/s); NaN if W_l < 0, because then every impact goes deeper.
+
+        Raises:
+            CaseError: `mass` is not positive and finite.
         """
         (m,), W_l = positive(mass=mass), self.loading_work(maximum_indentation)
         return scalar_or_array(np.where(W_l < 0, np.nan, (2 * np.abs(W_l) / m) ** 0.5))
 
     def sticking_velocity(self, mass: Values) -> Array:
-        """Relative normal velocity V_s (m/s) of the fastest elastic impact that sticks."""
+        """Relative normal velocity of the fastest elastic impact that sticks.
+
+        Args:
+            mass: Reduced mass m* (kg).
+
+        Returns:
+            Sticking velocity V_s (m/s).
+
+        Raises:
+            CaseError: `mass` is not positive and finite.
+        """
         (m,) = positive(mass=mass)
         return (2 * self.hysteresis_loss / m) ** 0.5
 
     def restitution(self, velocity: Values, mass: Values) -> Array:
-        """Coefficient of restitution e = (1 − (V_s/V)²)^½ after an impact at `velocity` (m/s).
+        """Coefficient of restitution after an impact.
 
-        0 where the spheres stick, V ≤ V_s; 1 at and below zero velocity, where none approaches.
+        Args:
+            velocity: Relative normal impact velocity V (m/s).
+            mass: Reduced mass m* (kg).
+
+        Returns:
+            Coefficient of restitution e = (1 − (V_s/V)²)^½ (1); 0 if the spheres stick (V ≤ V_s), 1
+            at zero or negative velocity.
+
+        Raises:
+            CaseError: `mass` is not positive and finite.
         """
         V, V_s = touching(velocity), self.sticking_velocity(mass)
         q = V_s / np.maximum(V, V_s)
         return scalar_or_array(np.where(np.asarray(velocity) <= 0, 1.0, ((1 - q) * (1 + q)) ** 0.5))
 
     def restitution_at_indentation(self, maximum_indentation: Values) -> Array:
-        """Coefficient of restitution e = (W_u/W_l)^½ after loading to `maximum_indentation` (m).
+        """Coefficient of restitution after loading to `maximum_indentation`.
 
-        0 where W_u ≤ 0 (they stick); 1 at and below zero indentation, where nothing has touched.
+        Args:
+            maximum_indentation: Indentation at which unloading began, δ_max (m).
+
+        Returns:
+            Coefficient of restitution e = (W_u/W_l)^½ (1); 0 if W_u ≤ 0 (the spheres stick), 1 at
+            zero or negative indentation.
         """
         W_l, W_s = self.loading_work(maximum_indentation), self.hysteresis_loss
         e = (1 - W_s / np.maximum(W_l, W_s)) ** 0.5
         return scalar_or_array(np.where(np.asarray(maximum_indentation) <= 0, 1.0, e))
 
     def tabor_parameter(self, equilibrium_separation: Values) -> Array:
-        """Tabor's μ; `equilibrium_separation` z₀ (m) is that of the surface forces, 0.15–0.4 nm."""
+        """Tabor parameter, the ratio of the height of the neck to the range of the surface forces.
+
+        Args:
+            equilibrium_separation: Equilibrium separation z₀ of the surface forces (m), about
+                0.15–0.4 nm.
+
+        Returns:
+            Tabor parameter μ (1).
+
+        Raises:
+            CaseError: `equilibrium_separation` is not positive and finite.
+        """
         (z0,) = positive(equilibrium_separation=equilibrium_separation)
         return self.adhesive_length / z0
 
@@ -231,9 +337,9 @@ class JKR:
     def _root(self, indentation: Values) -> Array:
         """s = (a/a_b)^½ on the stable branch: the root s ≥ 1 of s⁴ − 4s = 3k; 0 below the break.
 
-        With k = δ/|δ_b| ≥ −1, and p² half the one positive root of Ferrari's cubic y³ + 3ky = 2,
-        s = p + (1/p − p²)^½. Cardano gives y = t − k/t with t³ = 1 + (1 + k³)^½; here it is written
-        as 2/(t² + k + k²/t²), which does not cancel at any depth.
+        With k = δ/|δ_b| ≥ −1 and y = 2p² the positive root of Ferrari's cubic y³ + 3ky = 2,
+        s = p + (1/p − p²)^½. Cardano's formula is y = t − k/t with t³ = 1 + (1 + k³)^½. It is
+        evaluated as 2/(t² + k + k²/t²), which has no cancellation at any depth.
         """
         d, d_b = np.asarray(indentation, dtype=np.float64), self.break_indentation
         above = np.maximum((d - d_b) / -d_b, 0.0)  # 1 + k, exactly 0 at the break
@@ -250,5 +356,5 @@ class JKR:
 
 
 def _total_energy(s: Array) -> Array:
-    """U_T/U."""
+    """Total energy U_T/U."""
     return s**4 * (8 / 15 * s**6 - 16 / 3 * s**3 + 8)

@@ -1,21 +1,22 @@
-"""Johnson (1985): fully plastic impact of a sphere, elastic rebound; no adhesion.
+"""Johnson (1985): fully plastic impact of a sphere, elastic rebound, no adhesion.
 
-K. L. Johnson, Contact Mechanics (Cambridge, 1985), section 11.5. The contact of radius a flows at
-the one pressure p_d and keeps δ = a²/2R*; the rebound is Hertz's from the flattened surface:
+K. L. Johnson, Contact Mechanics (Cambridge, 1985), section 11.5. The contact of radius a flows at a
+constant pressure p_d and keeps δ = a²/2R*. The rebound is that of a Hertz contact with the
+flattened surface:
 
     ½ m* V² = W = πp_da⁴/4R*,   W_u = 3F²/10E*a,  F = πa²p_d
     e² = W_u/W = (3π^{5/4} 4^{3/4}/10) (p_d/E*) (W/p_dR*³)^{−1/4}
 
-He sets p_d = 3Y, the indentation pressure of a material of yield strength Y, and prints
+Johnson sets p_d = 3Y, the indentation pressure of a material of yield strength Y, and prints
 
     e = 3.8 (Y/E*)^½ (½m*V²/YR*³)^{−1/8}
 
-which is used here, although the line before it gives 3.74.
+This coefficient is used here; the preceding equation gives 3.74.
 
-Valid once the plastic zone has broken out, E*a/YR* > 30 or so (his section 6.3): e < 0.6 whatever
-the materials, V > 190 V_y with `FirstYield.velocity` at p_y = 1.6 Y. Below, the contact carries
-less than 3Y and the formula returns too much; it reaches 1 at 28.5 V_y and is held there. Above,
-the limit is a ≪ R*. Rate effects on p_d are left out.
+Valid for fully developed plastic flow, E*a/YR* > 30 or so (his section 6.3): e < 0.6 for any
+material, V > 190 V_y with `FirstYield.velocity` at p_y = 1.6 Y. At lower velocity the contact
+pressure is below 3Y and the formula overestimates e; it reaches 1 at 28.5 V_y and is limited to 1
+below. At high velocity the limit is a ≪ R*. Rate effects on p_d are neglected.
 Units, shapes and errors are those of `restitution.theory`.
 """
 
@@ -28,14 +29,25 @@ import numpy as np
 from ._inputs import Array, Values, keep_positive, positive, scalar_or_array, touching
 
 COEFFICIENT = 3.8
-"""As printed; (3π^{5/4} 4^{3/4}/10)^½ 3^{5/8} = 3.743 as derived."""
+"""As printed by Johnson; the derived value is (3π^{5/4} 4^{3/4}/10)^½ 3^{5/8} = 3.743."""
 
 
 @dataclass(frozen=True, eq=False)
 class Johnson:
-    """Spheres that flow at three times the `yield_strength` Y (Pa) of a tensile test.
+    """Fully plastic impact of a sphere at a contact pressure of three times the yield strength.
 
-    `radius` is R* (m), `contact_modulus` E* (Pa).
+    The fields and arguments may be arrays and broadcast (see `restitution.theory`).
+
+    Attributes:
+        radius: Reduced radius R* (m).
+        contact_modulus: Contact modulus E* (Pa).
+        yield_strength: Yield strength Y of a tensile test (Pa).
+
+    Raises:
+        CaseError: A field is not positive and finite.
+
+    Source:
+        K. L. Johnson, *Contact Mechanics* (1985), section 11.5.
     """
 
     radius: Values
@@ -46,9 +58,19 @@ class Johnson:
         keep_positive(self, "radius", "contact_modulus", "yield_strength")
 
     def restitution(self, velocity: Values, mass: Values) -> Array:
-        """Coefficient of restitution e after an impact at relative normal `velocity` (m/s).
+        """Coefficient of restitution after an impact.
 
-        At most 1, which is where it is out of its range; the formula holds for e < 0.6.
+        The formula holds for e < 0.6; it is limited to 1 at low velocity.
+
+        Args:
+            velocity: Relative normal impact velocity V (m/s).
+            mass: Reduced mass m* (kg).
+
+        Returns:
+            Coefficient of restitution e (1).
+
+        Raises:
+            CaseError: `mass` is not positive and finite.
         """
         (m,) = positive(mass=mass)
         reduced = 0.5 * m * touching(velocity) ** 2 / (self.yield_strength * self.radius**3)
@@ -56,17 +78,38 @@ class Johnson:
         return scalar_or_array((unity / np.maximum(reduced, unity)) ** 0.125)
 
     def velocity_at_restitution(self, restitution: Values, mass: Values) -> Array:
-        """Relative normal velocity V (m/s) after which e is `restitution`, 1 or less."""
+        """Impact velocity that gives a coefficient of restitution.
+
+        Args:
+            restitution: Coefficient of restitution e (1), above 0 and at most 1.
+            mass: Reduced mass m* (kg).
+
+        Returns:
+            Relative normal velocity V (m/s).
+
+        Raises:
+            CaseError: `restitution` or `mass` is not positive and finite.
+        """
         (e,) = positive(restitution=restitution)
         return self._velocity(self._energy_of_unity / e**8, mass)
 
     def velocity_at_full_radius(self, mass: Values) -> Array:
-        """Relative normal velocity V (m/s) of an impact that reaches a = R*: W = π 3Y a⁴/4R*."""
+        """Impact velocity at which a reaches R*: W = π 3Y a⁴/4R*.
+
+        Args:
+            mass: Reduced mass m* (kg).
+
+        Returns:
+            Relative normal velocity V (m/s).
+
+        Raises:
+            CaseError: `mass` is not positive and finite.
+        """
         return self._velocity(0.75 * np.pi, mass)
 
     @property
     def _energy_of_unity(self) -> Values:
-        """½m*V²/YR*³ at which e = 1."""
+        """Reduced energy ½m*V²/YR*³ at which e = 1."""
         return (COEFFICIENT**2 * self.yield_strength / self.contact_modulus) ** 4
 
     def _velocity(self, reduced: Values, mass: Values) -> Array:

@@ -1,17 +1,19 @@
-"""Kendall (1971): a flat circular punch stuck to an elastic half-space, all of it at once.
+"""Kendall (1971): a flat circular punch that adheres to an elastic half-space.
 
 K. Kendall, J. Phys. D: Appl. Phys. 4 (1971) 1186–1195, doi 10.1088/0022-3727/4/8/320. The contact
-radius a stays fixed, so the punch is a spring of stiffness 2E*a whose rim is a crack of energy
-release rate F²/(8πE*a³). It parts where that reaches the work of adhesion w:
+radius a is fixed, so the punch is a spring of stiffness 2E*a. Its rim is a crack with energy
+release rate F²/(8πE*a³). The punch detaches when this rate reaches the work of adhesion w:
 
-    F = (8πE*wa³)^½,   drawn apart by F/(2E*a) = (2πwa/E*)^½.
+    F = (8πE*wa³)^½,   displacement F/(2E*a) = (2πwa/E*)^½.
 
-Nothing recedes first: the least tension is the last. F grows as a^{3/2}, so the pressure F/(πa²) it
-takes falls with size, and the work ½F²/(2E*a) = 2πwa² is twice the surface energy; the other half
-is lost. Both numbers are what JKR takes off Hertz at the same contact radius (`jkr`).
+The whole contact detaches at once, because crack growth raises the energy release rate. F grows as
+a^{3/2}, so the mean pressure F/(πa²) at detachment falls with size. The work ½F²/(2E*a) = 2πwa² is
+twice the surface energy; the other half is dissipated. JKR theory is Hertz theory minus this force
+and this displacement at the same contact radius (`jkr`).
 
-Valid for a rigid punch (or an elastic one, in E*, where its sides do not matter), frictionless or
-incompressible, with forces of range much shorter than the opening (2πwa/E*)^½, and a ≪ the bodies.
+Valid for a rigid punch (or an elastic one whose compliance is part of E*, if its sides do not
+matter), if the contact is frictionless or incompressible, the range of the surface forces is much
+shorter than the displacement (2πwa/E*)^½, and a is much smaller than the bodies.
 Units, shapes and errors are those of `restitution.theory`.
 """
 
@@ -26,7 +28,20 @@ from ._inputs import Array, Values, keep_positive, scalar_or_array, touching
 
 @dataclass(frozen=True, eq=False)
 class Kendall:
-    """A punch on a half-space of `contact_modulus` E* (Pa), `work_of_adhesion` w (J/m²)."""
+    """Flat circular punch that adheres to an elastic half-space.
+
+    The fields and arguments may be arrays and broadcast (see `restitution.theory`).
+
+    Attributes:
+        contact_modulus: Contact modulus E* (Pa).
+        work_of_adhesion: Work of adhesion w (J/m²).
+
+    Raises:
+        CaseError: A field is not positive and finite.
+
+    Source:
+        K. Kendall, J. Phys. D: Appl. Phys. 4 (1971) 1186–1195.
+    """
 
     contact_modulus: Values
     work_of_adhesion: Values
@@ -35,11 +50,25 @@ class Kendall:
         keep_positive(self, "contact_modulus", "work_of_adhesion")
 
     def pull_off_force(self, contact_radius: Values) -> Array:
-        """Tension (8πE*wa³)^½ (N), as a magnitude, that parts a punch of `contact_radius` (m)."""
+        """Tension that detaches a punch.
+
+        Args:
+            contact_radius: Radius a of the punch (m).
+
+        Returns:
+            Magnitude of the tension (8πE*wa³)^½ (N).
+        """
         E_star, w, a = self.contact_modulus, self.work_of_adhesion, touching(contact_radius)
         return scalar_or_array(np.sqrt(8 * np.pi * E_star * w * a**3))
 
     def pull_off_displacement(self, contact_radius: Values) -> Array:
-        """Distance (2πwa/E*)^½ (m), as a magnitude, by which the punch is drawn out as it parts."""
+        """Displacement of the punch, away from the half-space, at which it detaches.
+
+        Args:
+            contact_radius: Radius a of the punch (m).
+
+        Returns:
+            Magnitude of the displacement (2πwa/E*)^½ (m).
+        """
         E_star, w, a = self.contact_modulus, self.work_of_adhesion, touching(contact_radius)
         return scalar_or_array(np.sqrt(2 * np.pi * a * w / E_star))

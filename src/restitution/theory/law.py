@@ -1,4 +1,4 @@
-"""What the laws of contact share where callers treat them alike: the answer to an impact."""
+"""The interface that laws of impact share, and the restitution from works."""
 
 from __future__ import annotations
 
@@ -10,18 +10,29 @@ from ._inputs import Array, Values, positive, scalar_or_array, touching
 
 
 class ImpactLaw(Protocol):
-    """A contact law that answers an impact."""
+    """A contact law that predicts the restitution of an impact."""
 
     def restitution(self, velocity: Values, mass: Values) -> Array:
-        """Coefficient of restitution after an impact of `mass` m* (kg) at `velocity` (m/s)."""
+        """Coefficient of restitution after a normal impact.
+
+        Args:
+            velocity: Relative normal impact velocity V (m/s).
+            mass: Reduced mass m* (kg).
+
+        Returns:
+            Coefficient of restitution e (1).
+
+        Raises:
+            CaseError: `mass` is not positive and finite.
+        """
         ...
 
 
 def restitution_of_work(unloading_work: Values, velocity: Values, mass: Values) -> Array:
-    """Coefficient of restitution e = (W_u/½m*V²)^½: 0 where W_u ≤ 0, never above 1.
+    """Coefficient of restitution e = (W_u/½m*V²)^½, at most 1, and 0 where W_u ≤ 0.
 
-    `unloading_work` W_u (J) is what the contact gives back. 1 at and below zero `velocity` (m/s),
-    where nothing approaches.
+    `unloading_work` W_u (J) is the work that the contact returns. The result is 1 at zero or
+    negative `velocity` (m/s).
     """
     (m,) = positive(mass=mass)
     W_l = 0.5 * m * touching(velocity) ** 2

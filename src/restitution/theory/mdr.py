@@ -1,33 +1,34 @@
-"""MDR, the law of LAMMPS' `pair_style granular mdr`: one elastic, perfectly plastic contact.
+"""MDR, the law of LAMMPS' `pair_style granular mdr`, for one elastic, perfectly plastic contact.
 
-W. Zunker, K. Kamrin, J. Mech. Phys. Solids 183 (2024) 105492, in the form in which LAMMPS evaluates
-it (read in its source, release 22Jul2025): one sphere of radius R on a rigid flat, here without
-adhesion (`dgamma` 0) and damping. With x = δ_max/R, E* = E/(1 − ν²) and G = E/(2 + 2ν):
+W. Zunker, K. Kamrin, J. Mech. Phys. Solids 183 (2024) 105492, as implemented in the source of
+LAMMPS (release 22Jul2025): one sphere of radius R on a rigid flat, here without adhesion (`dgamma`
+0) and damping. With x = δ_max/R, E* = E/(1 − ν²) and G = E/(2 + 2ν):
 
     pressure    p_Y = Y (1 + 1.75 exp(−4.4x)), the mean pressure of the yielded contact
     yield       at δ_Y, where Hertz's mean pressure 4E*(δ/R)^½/3π reaches p_Y
     loading     Hertz up to δ_Y, then  F = πp_Ya²,  a² = 2Rδ − δ² + δ_Y² − δ_YR
-    unloading   an elliptical indenter 2a wide and A = 4p_Ya/E* high leaves the transformed half
-                space; with d = A/2, the depth at full load, and its depth δ_e = ½A(1 − cos θ),
+    unloading   an elliptical indenter of width 2a and height A = 4p_Ya/E* leaves the transformed
+                half-space; with its depth at full load d = A/2 and its depth δ_e = ½A(1 − cos θ),
                 F = ½E*Aa (θ − sin θ cos θ),  δ_e = d [1 − (δ_max − δ)/(d + δ_R)]
                 δ_R = F_max [(1 − 2ν) z (s − z) − 2 (1 − ν) a²]/(2πGa²s),  z = R − δ_max + d,
                 s² = a² + z²: the recovery of the sphere's finite body, negative
     work        W_u = (1 + δ_R/d) 8p_Y²a³/3E*;  W_l = ∫F dδ by quadrature
     impact      ½ m V² = W_l, e² = W_u/W_l; separation is where F returns to zero
 
-Y is the yield strength of a tensile test; the contact stays elastic up to a mean pressure of almost
-2.75 Y, a peak of 4.1 Y, and then is fully plastic at once. δ, R and m are those of the one sphere.
-LAMMPS puts a flat between two spheres: two equal ones that approach at V are two impacts on a flat
-at V/2, each with the radius and mass of one sphere. A flat that yields or bends is not in the law.
+Y is the yield strength of a tensile test. The contact stays elastic up to a mean pressure of almost
+2.75 Y (a peak of 4.1 Y) and is then fully plastic at once. δ, R and m are those of the one sphere.
+LAMMPS puts a flat between two spheres: the impact of two equal spheres at relative velocity V is
+two impacts on a flat at V/2, each with the radius and mass of one sphere. The law has no flat that
+yields or deforms.
 
-At yield the rebound changes at once from Hertz's to the ellipse's: e falls from 1 by a step of 5 %
-or more (more for a greater Y/E*), rises a little, and then decreases with V. So it does in LAMMPS.
+At yield the rebound changes abruptly from Hertz to the elliptical indenter: e drops from 1 by at
+least 5 % (more for a larger Y/E*), rises a little, and then decreases with V. LAMMPS does the same.
 
-Left out of LAMMPS: the growth of the apparent radius by the displaced volume and the ellipse in
-place of Hertz's parabola below δ_Y, both of relative order δ/R (with them e differs by 10⁻⁴ at
-δ = 0.01 R), and the bulk response of spheres confined on all sides. NaN beyond δ = R.
-Units, shapes and errors are those of `restitution.theory`; here a Poisson ratio that is not from 0
-to ½ raises `CaseError` too, as LAMMPS refuses it.
+These parts of LAMMPS are left out: the growth of the apparent radius by the displaced volume and
+the ellipse in place of Hertz's parabola below δ_Y, both of relative order δ/R (they change e by
+10⁻⁴ at δ = 0.01 R), and the bulk response of spheres confined on all sides. The result is NaN for
+δ > R.
+Units, shapes and errors are those of `restitution.theory`.
 """
 
 from __future__ import annotations
@@ -49,14 +50,26 @@ from ._inputs import (
 from ._roots import increasing_root
 from .hertz import Hertz
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)  # exact to rounding for a smooth law
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)  # exact within rounding
 
 
 @dataclass(frozen=True, eq=False)
 class MDR:
-    """One sphere of `radius` R (m), `youngs_modulus` E and `yield_strength` Y (Pa) on a rigid flat.
+    """Impact of one sphere on a rigid flat with the MDR law.
 
-    `poissons_ratio` ν is from 0 to ½.
+    The fields and arguments may be arrays and broadcast (see `restitution.theory`).
+
+    Attributes:
+        radius: Radius R of the sphere (m).
+        youngs_modulus: Young's modulus E (Pa).
+        poissons_ratio: Poisson's ratio ν (1), from 0 to ½ as in LAMMPS.
+        yield_strength: Yield strength Y of a tensile test (Pa).
+
+    Raises:
+        CaseError: A field is not positive and finite, or Poisson's ratio is not from 0 to ½.
+
+    Source:
+        W. Zunker, K. Kamrin, J. Mech. Phys. Solids 183 (2024) 105492.
     """
 
     radius: Values
@@ -70,11 +83,18 @@ class MDR:
 
     @cached_property
     def elastic(self) -> Hertz:
-        """The contact up to yield."""
+        """Hertz contact that the law follows up to yield."""
         return Hertz(self.radius, self.youngs_modulus / (1 - self.poissons_ratio**2))
 
     def yield_pressure(self, indentation: Values) -> Array:
-        """Mean pressure p_Y (Pa) of a yielded contact: 2.75 Y at first, falling to Y."""
+        """Mean pressure of the yielded contact, which falls from 2.75 Y at δ = 0 towards Y.
+
+        Args:
+            indentation: Indentation of the sphere δ (m).
+
+        Returns:
+            Mean pressure p_Y (Pa).
+        """
         d = touching(indentation)
         return self.yield_strength * (1 + 1.75 * np.exp(-4.4 * d / self.radius))
 
@@ -82,7 +102,7 @@ class MDR:
     def yield_indentation(self) -> Array:
         """Indentation δ_Y (m) at which the mean Hertz pressure reaches `yield_pressure`.
 
-        s²R with s the root of s = c (1 + 1.75 exp(−4.4s²)), c = 3πY/4E*.
+        δ_Y = s²R with the root s of s = c (1 + 1.75 exp(−4.4s²)), c = 3πY/4E*.
         """
         nu = self.poissons_ratio
         c = 0.75 * np.pi * self.yield_strength * (1 - nu**2) / self.youngs_modulus
@@ -90,21 +110,40 @@ class MDR:
         return scalar_or_array(s**2 * self.radius)
 
     def loading_force(self, indentation: Values) -> Array:
-        """Normal force (N) on first loading; NaN beyond δ = R."""
+        """Normal force on first loading.
+
+        Args:
+            indentation: Indentation of the sphere δ (m).
+
+        Returns:
+            Normal force F (N); NaN for δ > R.
+        """
         return scalar_or_array(self._force(self._inside(indentation)))
 
     def loading_work(self, indentation: Values) -> Array:
-        """Work W_l = ∫F dδ (J) done from first touch to `indentation` on first loading.
+        """Work done from first touch to an indentation on first loading.
 
-        Hertz's up to δ_Y, Gauss–Legendre quadrature beyond; NaN beyond δ = R.
+        It is Hertz's up to δ_Y and a Gauss–Legendre quadrature beyond.
+
+        Args:
+            indentation: Indentation of the sphere δ (m).
+
+        Returns:
+            Loading work W_l = ∫F dδ (J); NaN for δ > R.
         """
         return scalar_or_array(self._work(self._inside(indentation)))
 
     def unloading_force(self, indentation: Values, maximum_indentation: Values) -> Array:
-        """Normal force (N) at `indentation` after first loading to `maximum_indentation` (both m).
+        """Normal force on unloading after first loading to `maximum_indentation`.
 
-        Zero at and below `residual_indentation`. Above `maximum_indentation` the contact is loading
-        again, and the force is `loading_force`. NaN beyond δ = R.
+        Above `maximum_indentation` the force is `loading_force`.
+
+        Args:
+            indentation: Indentation of the sphere δ (m).
+            maximum_indentation: Indentation at which unloading began, δ_max (m).
+
+        Returns:
+            Normal force F (N); 0 at and below `residual_indentation`, NaN for δ > R.
         """
         d, d_max = self._inside(indentation), self._inside(maximum_indentation)
         left = np.clip((d_max - d) / self._recovery(d_max), 0.0, 1.0)
@@ -114,16 +153,41 @@ class MDR:
         return scalar_or_array(np.where(onwards, self._force(d), relative * self._force(d_max)))
 
     def residual_indentation(self, maximum_indentation: Values) -> Array:
-        """Indentation δ_max − (d + δ_R) (m) at which unloading ends; 0 if none yielded."""
+        """Indentation at which unloading ends.
+
+        Args:
+            maximum_indentation: Indentation at which unloading began, δ_max (m).
+
+        Returns:
+            Residual indentation δ_max − (d + δ_R) (m); 0 up to yield.
+        """
         d = self._inside(maximum_indentation)
         return scalar_or_array(np.where(d <= self.yield_indentation, 0.0, d - self._recovery(d)))
 
     def unloading_work(self, maximum_indentation: Values) -> Array:
-        """Work W_u (J) given back from `maximum_indentation` to separation; W_l if none yielded."""
+        """Work returned from `maximum_indentation` to separation.
+
+        Args:
+            maximum_indentation: Indentation at which unloading began, δ_max (m).
+
+        Returns:
+            Unloading work W_u (J); W_l up to yield.
+        """
         return scalar_or_array(self._returned(self._inside(maximum_indentation)))
 
     def indentation_from_velocity(self, velocity: Values, mass: Values) -> Array:
-        """Largest indentation (m) of an impact at normal `velocity` (m/s); NaN where beyond R."""
+        """Largest indentation of an impact on the flat.
+
+        Args:
+            velocity: Normal impact velocity V of the sphere (m/s).
+            mass: Mass m of the sphere (kg).
+
+        Returns:
+            Indentation δ (m); NaN if it would exceed R.
+
+        Raises:
+            CaseError: `mass` is not positive and finite.
+        """
         (m,) = positive(mass=mass)
         K = 0.5 * m * touching(velocity) ** 2
         d = increasing_root(lambda d: self._work(d) - K, 0 * K, self.radius)
@@ -131,34 +195,43 @@ class MDR:
         return scalar_or_array(np.where(np.asarray(velocity) <= 0, 0.0, d))
 
     def restitution(self, velocity: Values, mass: Values) -> Array:
-        """Coefficient of restitution e = (W_u/W_l)^½ of one sphere that meets a rigid flat.
+        """Coefficient of restitution of the sphere after an impact on the flat.
 
-        `velocity` (m/s) and `mass` (kg) are the sphere's; for two equal spheres give half their
-        relative velocity. 1 up to yield; NaN where the indentation would exceed the radius.
+        Args:
+            velocity: Normal impact velocity V of the sphere (m/s); half the relative velocity of
+                two equal spheres.
+            mass: Mass m of the sphere (kg).
+
+        Returns:
+            Coefficient of restitution e = (W_u/W_l)^½ (1); 1 up to yield, NaN if the indentation
+            would exceed R.
+
+        Raises:
+            CaseError: `mass` is not positive and finite.
         """
         d, d_Y = self.indentation_from_velocity(velocity, mass), self.yield_indentation
         e = (self._returned(d) / self._work(np.maximum(d, d_Y))) ** 0.5
         return scalar_or_array(np.where(d <= d_Y, 1.0, np.minimum(e, 1.0)))
 
     def _inside(self, indentation: Values) -> Array:
-        """δ (m), zero where nothing touches and NaN beyond R."""
+        """δ (m), zero for separated bodies and NaN beyond R."""
         d = touching(indentation)
         return np.where(d > self.radius, np.nan, d)
 
     def _contact_radius(self, d: Values) -> Array:
-        """a (m) of the yielded contact, Hertz's at yield and held there below."""
+        """Contact radius a (m) of the yielded contact; below yield its value at yield."""
         R, d_Y = self.radius, self.yield_indentation
         t = touching(d - d_Y)
         a: Array = (R * d_Y + t * (2 * (R - d_Y) - t)) ** 0.5
         return a
 
     def _force(self, d: Values) -> Array:
-        """F (N) on first loading."""
+        """Normal force F (N) on first loading."""
         plastic = np.pi * self._contact_radius(d) ** 2 * self.yield_pressure(d)
         return np.where(d <= self.yield_indentation, self.elastic.force(d), plastic)
 
     def _work(self, d: Values) -> Array:
-        """W_l (J)."""
+        """Loading work W_l (J)."""
         d_Y = self.yield_indentation
         half = touching(d - d_Y) / 2
         forces = sum(
@@ -168,11 +241,11 @@ class MDR:
         return self.elastic.stored_energy(np.minimum(d, d_Y)) + half * forces
 
     def _elastic_depth(self, d: Values) -> Array:
-        """d = A/2 (m), the transformed depth at full load."""
+        """Transformed depth d = A/2 (m) at full load."""
         return 2 * self.yield_pressure(d) * self._contact_radius(d) / self.elastic.contact_modulus
 
     def _recovery(self, d: Values) -> Array:
-        """d + δ_R (m); F_max/(2πGa²d) = E*/(4Ga) = 1/(2a(1 − ν))."""
+        """Total recovery d + δ_R (m), with F_max/(2πGa²d) = E*/(4Ga) = 1/(2a(1 − ν))."""
         a, d_e, nu = self._contact_radius(d), self._elastic_depth(d), self.poissons_ratio
         z = self.radius - d + d_e
         s = (a**2 + z**2) ** 0.5
@@ -181,7 +254,7 @@ class MDR:
         return recovery
 
     def _returned(self, d: Values) -> Array:
-        """W_u (J): (1 + δ_R/d) E*A²B/12 with the indenter's height A = 2d and width B = 2a."""
+        """Unloading work W_u (J): (1 + δ_R/d) E*A²B/12, with height A = 2d and width B = 2a."""
         E_star = self.elastic.contact_modulus
         plastic = 2 / 3 * E_star * self._elastic_depth(d) * self._contact_radius(d)
         elastic = self.elastic.stored_energy(d)

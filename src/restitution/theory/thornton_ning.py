@@ -1,9 +1,9 @@
-"""Thornton & Ning (1998): elastic, then perfectly plastic spheres, here without adhesion.
+"""Thornton & Ning (1998): elastic, perfectly plastic spheres, here without adhesion.
 
-With adhesion: `AdhesiveThorntonNing`.
-C. Thornton, Z. Ning, Powder Technology 99 (1998) 154–162; the plastic law is that of Thornton,
-J. Appl. Mech. 64 (1997) 383–386. The Hertz pressure is cut off at p_y; the rest of the contact is
-not brought back into equilibrium and keeps a² = R*δ. With x = δ/δ_y, f = F/F_y, W in F_y δ_y:
+`AdhesiveThorntonNing` adds adhesion. C. Thornton, Z. Ning, Powder Technology 99 (1998) 154–162; the
+plastic law is that of Thornton, J. Appl. Mech. 64 (1997) 383–386. The Hertz pressure is truncated
+at p_y, and the contact is not brought back into equilibrium: it keeps a² = R*δ. With x = δ/δ_y,
+f = F/F_y and W in units of F_y δ_y:
 
     loading     f = x^{3/2} for x ≤ 1, then the tangent  f = (3x − 1)/2,  F = F_y + πp_yR*(δ − δ_y)
                 W_l = ⅖ x^{5/2} for x ≤ 1, then  W_l = ⅖ + (x − 1) + ¾ (x − 1)²
@@ -12,13 +12,13 @@ not brought back into equilibrium and keeps a² = R*δ. With x = δ/δ_y, f = F/
                 F = 4/3 E* R_p^½ (δ − δ_p)^{3/2},  (δ_max − δ_p)/δ_y = f/x^½,  W_u = ⅖ f²/x^½
     impact      ½ m* V² = W_l, e² = W_u/W_l; separation is where F returns to zero.
 
-Restitution depends on x alone, or on V/V_y alone. Both forms below are the same function: with
-v = V/V_y, f² = (6v² − 1)/5 turns one into the other exactly.
+Restitution depends on x alone, or equivalently on v = V/V_y alone. The two methods below are the
+same function: f² = (6v² − 1)/5 relates x to v exactly.
 
-Valid for quasi-static, normal, frictionless impacts of smooth spheres with a ≪ R*. Up to yield it
-is Hertz; beyond, it carries less load than a contact in equilibrium at the same p_y, the more so
-the deeper, because a yielded contact spreads towards 2πR*δ while this one keeps πR*δ. Its p_y is
-that of `FirstYield`: a contact pressure, not the yield strength.
+Valid for quasi-static, normal, frictionless impacts of smooth spheres with a ≪ R*. Up to yield the
+law is Hertz. Beyond yield it carries less load than a contact in equilibrium at the same p_y, and
+the difference grows with depth, because the area of a yielded contact tends to 2πR*δ but this one
+keeps πR*δ. Its p_y is that of `FirstYield`: a contact pressure, not the yield strength.
 Units, shapes and errors are those of `restitution.theory`.
 """
 
@@ -36,9 +36,21 @@ from .yielding import FirstYield
 
 @dataclass(frozen=True, eq=False)
 class ThorntonNing:
-    """Spheres that yield where the contact pressure reaches `yield_pressure` p_y (Pa).
+    """Impact of elastic, perfectly plastic spheres without adhesion.
 
-    `radius` is R* (m), `contact_modulus` E* (Pa).
+    The fields and arguments may be arrays and broadcast (see `restitution.theory`).
+
+    Attributes:
+        radius: Reduced radius R* (m).
+        contact_modulus: Contact modulus E* (Pa).
+        yield_pressure: Contact pressure p_y at yield (Pa), not the yield strength of a tensile
+            test.
+
+    Raises:
+        CaseError: A field is not positive and finite.
+
+    Source:
+        C. Thornton, Z. Ning, Powder Technology 99 (1998) 154–162.
     """
 
     radius: Values
@@ -50,56 +62,93 @@ class ThorntonNing:
 
     @cached_property
     def elastic(self) -> Hertz:
-        """The contact up to yield."""
+        """Hertz contact that the law follows up to yield."""
         return Hertz(self.radius, self.contact_modulus)
 
     @cached_property
     def first_yield(self) -> FirstYield:
-        """Where Hertz's contact ends."""
+        """First yield, the end of the elastic range."""
         return FirstYield(self.radius, self.contact_modulus, self.yield_pressure)
 
     def loading_force(self, indentation: Values) -> Array:
-        """Normal force (N) on first loading: Hertz up to δ_y, its tangent there beyond."""
+        """Normal force on first loading: Hertz up to δ_y, then its tangent at δ_y.
+
+        Args:
+            indentation: Approach of the spheres δ (m).
+
+        Returns:
+            Normal force F (N).
+        """
         d, d_y, F_y = touching(indentation), self.first_yield.indentation, self.first_yield.force
         plastic = F_y + np.pi * self.yield_pressure * self.radius * (d - d_y)
         return scalar_or_array(np.where(d <= d_y, self.elastic.force(d), plastic))
 
     def indentation(self, force: Values) -> Array:
-        """Indentation (m) under `force` (N) on first loading; the inverse of `loading_force`."""
+        """Indentation under a force on first loading; the inverse of `loading_force`.
+
+        Args:
+            force: Normal force F (N).
+
+        Returns:
+            Indentation δ (m).
+        """
         f, d_y = touching(force) / self.first_yield.force, self.first_yield.indentation
         return scalar_or_array(d_y * np.where(f <= 1, f ** (2 / 3), (2 * f + 1) / 3))
 
     def loading_work(self, indentation: Values) -> Array:
-        """Work W_l = ∫F dδ (J) done from first touch to `indentation` on first loading."""
+        """Work done from first touch to an indentation on first loading.
+
+        Args:
+            indentation: Approach of the spheres δ (m).
+
+        Returns:
+            Loading work W_l = ∫F dδ (J).
+        """
         d, d_y, F_y = touching(indentation), self.first_yield.indentation, self.first_yield.force
         t = d - d_y
         plastic = 0.4 * F_y * d_y + F_y * t + 0.5 * np.pi * self.yield_pressure * self.radius * t**2
         return scalar_or_array(np.where(d <= d_y, self.elastic.stored_energy(d), plastic))
 
     def unloading_radius(self, maximum_indentation: Values) -> Array:
-        """Reduced radius R_p (m) of the flattened spheres on unloading; R* if nothing yielded.
+        """Reduced radius of the flattened spheres on unloading.
 
-        R_p = R* x^{3/2}/f is the published (4E*/3F) [(2F + F_y)/(2πp_y)]^{3/2}, whose bracket is
-        a².
+        R_p = R* x^{3/2}/f equals the published (4E*/3F) [(2F + F_y)/(2πp_y)]^{3/2}, whose bracket
+        is a².
+
+        Args:
+            maximum_indentation: Indentation at which unloading began, δ_max (m).
+
+        Returns:
+            Reduced radius R_p (m); R* up to yield.
         """
         x = self._yielded(maximum_indentation)
         return self.radius * x**1.5 / _line(x)
 
     def residual_indentation(self, maximum_indentation: Values) -> Array:
-        """Indentation δ_p (m) at which unloading from `maximum_indentation` ends.
+        """Indentation at which unloading ends.
 
-        0 where nothing yielded.
+        Args:
+            maximum_indentation: Indentation at which unloading began, δ_max (m).
+
+        Returns:
+            Residual indentation δ_p (m); 0 up to yield.
         """
         x = self._yielded(maximum_indentation)
         s = x**0.5
-        # x − f/s with f = (3s² − 1)/2, factored so that nothing cancels near yield
+        # x − f/s with f = (3s² − 1)/2, factored to avoid cancellation near yield
         return self.first_yield.indentation * ((x - 1) / (s + 1)) ** 2 * (s + 0.5) / s
 
     def unloading_force(self, indentation: Values, maximum_indentation: Values) -> Array:
-        """Normal force (N) at `indentation` after first loading to `maximum_indentation` (both m).
+        """Normal force on unloading after first loading to `maximum_indentation`.
 
-        Zero at and below `residual_indentation`. Above `maximum_indentation` the contact is loading
-        again, and the force is `loading_force`.
+        Above `maximum_indentation` the force is `loading_force`.
+
+        Args:
+            indentation: Approach of the spheres δ (m).
+            maximum_indentation: Indentation at which unloading began, δ_max (m).
+
+        Returns:
+            Normal force F (N); 0 at and below `residual_indentation`.
         """
         d, R_p = touching(indentation), self.unloading_radius(maximum_indentation)
         left = d - self.residual_indentation(maximum_indentation)
@@ -108,9 +157,13 @@ class ThorntonNing:
         return scalar_or_array(np.where(beyond, self.loading_force(d), unloading))
 
     def unloading_work(self, maximum_indentation: Values) -> Array:
-        """Work W_u (J) given back from `maximum_indentation` to separation.
+        """Work returned from `maximum_indentation` to separation.
 
-        W_l where nothing yielded.
+        Args:
+            maximum_indentation: Indentation at which unloading began, δ_max (m).
+
+        Returns:
+            Unloading work W_u (J); W_l up to yield.
         """
         d, first = touching(maximum_indentation), self.first_yield
         x = self._yielded(d)
@@ -119,15 +172,35 @@ class ThorntonNing:
         return scalar_or_array(np.where(d <= first.indentation, elastic, plastic))
 
     def impact_velocity(self, maximum_indentation: Values, mass: Values) -> Array:
-        """Relative normal velocity V (m/s) that reaches `maximum_indentation`: ½ m* V² = W_l."""
+        """Impact velocity that reaches an indentation: ½ m* V² = W_l.
+
+        Args:
+            maximum_indentation: Largest indentation of the impact δ_max (m).
+            mass: Reduced mass m* (kg).
+
+        Returns:
+            Relative normal velocity V (m/s).
+
+        Raises:
+            CaseError: `mass` is not positive and finite.
+        """
         (m,) = positive(mass=mass)
         return (2 * self.loading_work(maximum_indentation) / m) ** 0.5
 
     def indentation_from_velocity(self, velocity: Values, mass: Values) -> Array:
-        """Largest indentation (m) of an impact at relative normal `velocity` (m/s).
+        """Largest indentation of an impact; the inverse of `impact_velocity`.
 
-        The inverse of `impact_velocity`: x = (V/V_y)^{4/5} up to yield, beyond it x = (1 + 2f)/3
-        with f² = (6 (V/V_y)² − 1)/5.
+        x = (V/V_y)^{4/5} up to yield and x = (1 + 2f)/3 beyond, with f² = (6 (V/V_y)² − 1)/5.
+
+        Args:
+            velocity: Relative normal impact velocity V (m/s).
+            mass: Reduced mass m* (kg).
+
+        Returns:
+            Indentation δ (m).
+
+        Raises:
+            CaseError: `mass` is not positive and finite.
         """
         v = touching(velocity) / self.first_yield.velocity(mass)
         f = ((6 * np.maximum(v, 1.0) ** 2 - 1) / 5) ** 0.5
@@ -135,10 +208,23 @@ class ThorntonNing:
         return scalar_or_array(self.first_yield.indentation * x)
 
     def restitution(self, velocity: Values, mass: Values) -> Array:
-        """Coefficient of restitution e after an impact at relative normal `velocity` (m/s).
+        """Coefficient of restitution after an impact.
 
-        1 up to the yield velocity; with q = V_y/V beyond it (Thornton & Ning 1998)
-        e = (6√3/5)^½ (1 − q²/6)^½ [q/(q + 2(6/5 − q²/5)^½)]^¼, which tends to 1.185 q^¼.
+        Above V_y, with q = V_y/V,
+
+            e = (6√3/5)^½ (1 − q²/6)^½ [q/(q + 2(6/5 − q²/5)^½)]^¼,
+
+        which tends to 1.185 q^¼ at high velocity.
+
+        Args:
+            velocity: Relative normal impact velocity V (m/s).
+            mass: Reduced mass m* (kg).
+
+        Returns:
+            Coefficient of restitution e (1); 1 up to the yield velocity V_y.
+
+        Raises:
+            CaseError: `mass` is not positive and finite.
         """
         V, V_y = touching(velocity), self.first_yield.velocity(mass)
         q = V_y / np.maximum(V, V_y)
@@ -147,20 +233,26 @@ class ThorntonNing:
         return scalar_or_array(np.where(V_y >= V, 1.0, np.minimum(e, 1.0)))
 
     def restitution_at_indentation(self, maximum_indentation: Values) -> Array:
-        """Coefficient of restitution e = (W_u/W_l)^½ after loading to `maximum_indentation` (m).
+        """Coefficient of restitution e = (W_u/W_l)^½ after loading to `maximum_indentation`.
 
-        The same number as `restitution` at `impact_velocity(maximum_indentation, …)`; 1 up to δ_y.
+        It equals `restitution` at `impact_velocity(maximum_indentation, …)`.
+
+        Args:
+            maximum_indentation: Indentation at which unloading began, δ_max (m).
+
+        Returns:
+            Coefficient of restitution e (1); 1 up to yield.
         """
         x = self._yielded(maximum_indentation)
         W_l = 0.4 + (x - 1) + 0.75 * (x - 1) ** 2
         return (0.4 * _line(x) ** 2 / x**0.5 / W_l) ** 0.5
 
     def _yielded(self, maximum_indentation: Values) -> Array:
-        """x = δ/δ_y, held at 1 below yield, where every ratio to Hertz is 1."""
+        """x = δ/δ_y, set to 1 below yield, where every ratio to Hertz is 1."""
         x: Array = np.maximum(touching(maximum_indentation) / self.first_yield.indentation, 1.0)
         return x
 
 
 def _line(x: Array) -> Array:
-    """f = F/F_y on the plastic line, 1 at x = 1."""
+    """f = F/F_y on the tangent beyond yield, 1 at x = 1."""
     return (3 * x - 1) / 2

@@ -1,20 +1,19 @@
-"""Walton & Braun (1986): two springs, the stiffer one for unloading; partially latched.
+"""Walton & Braun (1986): partially latched springs; unloading is stiffer than loading.
 
-O. R. Walton, R. L. Braun, J. Rheology 30 (1986) 949–980. First loading follows k₁; unloading and
-reloading a stiffer k₂, which may grow with the largest force F_max so far:
+O. R. Walton, R. L. Braun, J. Rheology 30 (1986) 949–980. First loading has stiffness k₁. Unloading
+and reloading have a larger stiffness k₂, which may grow with the largest force so far, F_max:
 
     loading     F = k₁δ
     unloading   F = k₂(δ − δ₀),  δ₀ = δ_max (1 − k₁/k₂),  k₂ = k_u + S F_max,  F_max = k₁δ_max
     impact      δ_max = V (m*/k₁)^½,  e² = W_u/W_l = k₁/k₂
 
-Two laws of the paper are special cases. S = 0 is its constant law, e = (k₁/k_u)^½ at any velocity.
-k_u = k₁ is its variable law, e = (1 + S V (m*/k₁)^½)^{−½}; the paper writes the root with
-ω₀ = (2k₁/m)^½, which for two equal spheres of mass m is (k₁/m*)^½.
+The paper has two special cases. S = 0 is its constant law, e = (k₁/k_u)^½ at any velocity. k_u = k₁
+is its variable law, e = (1 + S V (m*/k₁)^½)^{−½}; the paper writes the square root with
+ω₀ = (2k₁/m)^½, which equals (k₁/m*)^½ for two equal spheres of mass m.
 
-The contact ends where F returns to zero, at δ₀ > 0, and not at δ = 0. No adhesion and no scale of
-length: the springs are parameters to be fitted, and R* and E* do not enter.
-Units, shapes and errors are those of `restitution.theory`; here k_u must not be below k₁, and S may
-be zero.
+The contact ends where F returns to zero, at δ₀ > 0, not at δ = 0. There is no adhesion and no
+length scale: the springs are parameters to be fitted, and R* and E* do not enter.
+Units, shapes and errors are those of `restitution.theory`.
 """
 
 from __future__ import annotations
@@ -36,7 +35,21 @@ from ._inputs import (
 
 @dataclass(frozen=True, eq=False)
 class WaltonBraun:
-    """Springs `loading_stiffness` k₁ and `unloading_stiffness` k_u (N/m), `hardening` S (1/m)."""
+    """Impact of bodies with partially latched springs.
+
+    The fields and arguments may be arrays and broadcast (see `restitution.theory`).
+
+    Attributes:
+        loading_stiffness: Stiffness k₁ of first loading (N/m).
+        unloading_stiffness: Unloading stiffness k_u in the limit F_max = 0 (N/m), at least k₁.
+        hardening: Increase S of the unloading stiffness per unit of F_max (1/m), at least 0.
+
+    Raises:
+        CaseError: A field is not finite or not in its range.
+
+    Source:
+        O. R. Walton, R. L. Braun, J. Rheology 30 (1986) 949–980.
+    """
 
     loading_stiffness: Values
     unloading_stiffness: Values
@@ -48,14 +61,27 @@ class WaltonBraun:
         keep_between(self, "hardening", 0.0)
 
     def loading_force(self, indentation: Values) -> Array:
-        """Normal force (N) on first loading."""
+        """Normal force on first loading.
+
+        Args:
+            indentation: Approach of the spheres δ (m).
+
+        Returns:
+            Normal force F = k₁δ (N).
+        """
         return self.loading_stiffness * touching(indentation)
 
     def unloading_force(self, indentation: Values, maximum_indentation: Values) -> Array:
-        """Normal force (N) at `indentation` after first loading to `maximum_indentation` (both m).
+        """Normal force on unloading after first loading to `maximum_indentation`.
 
-        Zero at and below `residual_indentation`. Above `maximum_indentation` the contact is loading
-        again, and the force is `loading_force`.
+        Above `maximum_indentation` the force is `loading_force`.
+
+        Args:
+            indentation: Approach of the spheres δ (m).
+            maximum_indentation: Indentation at which unloading began, δ_max (m).
+
+        Returns:
+            Normal force F (N); 0 at and below `residual_indentation`.
         """
         d, k2 = touching(indentation), self._stiffness(maximum_indentation)
         unloading = k2 * touching(d - self.residual_indentation(maximum_indentation))
@@ -63,14 +89,29 @@ class WaltonBraun:
         return scalar_or_array(np.where(beyond, self.loading_force(d), unloading))
 
     def residual_indentation(self, maximum_indentation: Values) -> Array:
-        """Indentation δ₀ (m) at which unloading from `maximum_indentation` ends."""
+        """Indentation at which unloading ends.
+
+        Args:
+            maximum_indentation: Indentation at which unloading began, δ_max (m).
+
+        Returns:
+            Residual indentation δ₀ (m).
+        """
         k2 = self._stiffness(maximum_indentation)
         return (1 - self.loading_stiffness / k2) * touching(maximum_indentation)
 
     def restitution(self, velocity: Values, mass: Values) -> Array:
-        """Coefficient of restitution e = (k₁/k₂)^½ after an impact at `velocity` (m/s).
+        """Coefficient of restitution after an impact.
 
-        1 at and below zero velocity, where none approaches.
+        Args:
+            velocity: Relative normal impact velocity V (m/s).
+            mass: Reduced mass m* (kg).
+
+        Returns:
+            Coefficient of restitution e = (k₁/k₂)^½ (1); 1 at zero or negative velocity.
+
+        Raises:
+            CaseError: `mass` is not positive and finite.
         """
         (m,), k1 = positive(mass=mass), self.loading_stiffness
         d = touching(velocity) * (m / k1) ** 0.5
@@ -78,6 +119,6 @@ class WaltonBraun:
         return scalar_or_array(np.where(np.asarray(velocity) <= 0, 1.0, e))
 
     def _stiffness(self, maximum_indentation: Values) -> Array:
-        """k₂ (N/m)."""
+        """Unloading stiffness k₂ (N/m)."""
         d = touching(maximum_indentation)
         return self.unloading_stiffness + self.hardening * self.loading_stiffness * d

@@ -1,12 +1,13 @@
-"""The end of the elastic range: where the peak of the Hertz pressure reaches `yield_pressure`.
+"""First yield of a Hertz contact: the peak pressure reaches the yield pressure p_y.
 
-`yield_pressure` p_y is a contact pressure, never the yield strength Y of a tensile test:
-p_y ≈ 1.6 Y where a sphere first yields under its surface, and 2.8–3 Y, its hardness, where it
-flows fully (Johnson 1985, sections 6.1 and 6.3). Setting p₀ = 2E*a/(πR*) = p_y with a² = R*δ gives
+`yield_pressure` p_y is a contact pressure, not the yield strength Y of a tensile test: p_y ≈ 1.6 Y
+at first yield below the surface, and 2.8–3 Y (the hardness) for fully plastic flow (Johnson 1985,
+sections 6.1 and 6.3). Setting p₀ = 2E*a/(πR*) = p_y with a² = R*δ gives
 
     δ_y = (πp_y/2E*)² R*,   F_y = π³R*²p_y³/(6E*²),   ½ m* V_y² = W(δ_y) = ⅖ F_y δ_y.
 
-Exact within Hertz's theory, so valid where that is: δ_y ≪ R*, which p_y ≪ E* ensures. No adhesion.
+Exact within Hertz theory and valid in the same range: δ_y ≪ R*, which holds if p_y ≪ E*. No
+adhesion.
 Units, shapes and errors are those of `restitution.theory`.
 """
 
@@ -21,15 +22,27 @@ from restitution.errors import CaseError
 
 from ._inputs import Array, Values, keep_positive, positive, scalar_or_array
 
-_COEFFICIENT = math.sqrt(math.pi**5 / 30)  # 3.19385, of V_y in (p_y⁵R*³/(E*⁴m*))^½
-_EXP = np.vectorize(math.exp, otypes=[np.float64])  # the same on every processor, unlike np.exp
+_COEFFICIENT = math.sqrt(math.pi**5 / 30)  # 3.19385, V_y in units of (p_y⁵R*³/(E*⁴m*))^½
+_EXP = np.vectorize(math.exp, otypes=[np.float64])  # same result on every processor, unlike np.exp
 
 
 @dataclass(frozen=True, eq=False)
 class FirstYield:
-    """Where Hertz's pressure reaches `yield_pressure` p_y (Pa).
+    """First yield of a Hertz contact, where its peak pressure reaches the yield pressure.
 
-    `radius` is R* (m), `contact_modulus` E* (Pa).
+    The fields and arguments may be arrays and broadcast (see `restitution.theory`).
+
+    Attributes:
+        radius: Reduced radius R* (m).
+        contact_modulus: Contact modulus E* (Pa).
+        yield_pressure: Contact pressure p_y at yield (Pa), not the yield strength of a tensile
+            test.
+
+    Raises:
+        CaseError: A field is not positive and finite.
+
+    Source:
+        K. L. Johnson, *Contact Mechanics* (1985), sections 4.2 and 6.1.
     """
 
     radius: Values
@@ -41,21 +54,30 @@ class FirstYield:
 
     @property
     def indentation(self) -> Array:
-        """Indentation δ_y (m) at which the peak pressure reaches `yield_pressure`."""
+        """Indentation δ_y = (πp_y/2E*)² R* (m) at first yield."""
         R, E_star, p_y = self.radius, self.contact_modulus, self.yield_pressure
         return scalar_or_array((np.pi * p_y / (2 * E_star)) ** 2 * R)
 
     @property
     def force(self) -> Array:
-        """Normal force F_y (N) at which the peak pressure reaches `yield_pressure`."""
+        """Normal force F_y = π³R*²p_y³/(6E*²) (N) at first yield."""
         R, E_star, p_y = self.radius, self.contact_modulus, self.yield_pressure
         return scalar_or_array(np.pi**3 / 6 * (R / E_star) ** 2 * p_y**3)
 
     def velocity(self, mass: Values) -> Array:
-        """Relative normal velocity V_y (m/s) of the fastest impact that stays elastic.
+        """Relative normal velocity of the fastest impact that stays elastic.
 
-        ½ m* V_y² = W(δ_y) gives V_y = (π⁵/30)^½ (p_y⁵R*³/(E*⁴m*))^½, which Thornton & Ning (1998)
-        print as 3.194 (p_y⁵R*³/(E*⁴m*))^½; the exact coefficient is used here.
+        ½ m* V_y² = W(δ_y) gives V_y = (π⁵/30)^½ (p_y⁵R*³/(E*⁴m*))^½. Thornton & Ning (1998) round
+        the coefficient to 3.194; the exact value is used here.
+
+        Args:
+            mass: Reduced mass m* (kg).
+
+        Returns:
+            Yield velocity V_y (m/s).
+
+        Raises:
+            CaseError: `mass` is not positive and finite.
         """
         R, E_star, p_y = self.radius, self.contact_modulus, self.yield_pressure
         (m,) = positive(mass=mass)
@@ -63,17 +85,28 @@ class FirstYield:
 
 
 def yield_coefficient(poissons_ratio: Values) -> Array:
-    """C = 1.295 exp(0.736 ν), the peak Hertz pressure at first yield over the yield strength.
+    """Ratio C = 1.295 exp(0.736 ν) of the peak Hertz pressure at first yield to the yield strength.
 
-    R. L. Jackson, I. Green, J. Tribology 127 (2005) 343–354: a fit, within ½ % for 0 ≤ ν ≤ ½, to
-    the largest von Mises stress under a Hertz contact; 1.61 at ν = 0.3. Raises `CaseError` for a
-    ratio that is not above −1 and at most ½.
+    The fit to the largest von Mises stress below a Hertz contact is accurate within ½ % for
+    0 ≤ ν ≤ ½. C = 1.61 at ν = 0.3.
+
+    Args:
+        poissons_ratio: Poisson's ratio ν (1).
+
+    Returns:
+        Yield coefficient C (1).
+
+    Raises:
+        CaseError: Poisson's ratio is not above −1 and at most ½.
+
+    Source:
+        R. L. Jackson, I. Green, J. Tribology 127 (2005) 343–354.
     """
     nu = np.asarray(poissons_ratio, dtype=np.float64)
     bad = ~((nu > -1) & (nu <= 0.5))
     if bad.any():
         raise CaseError(
-            f"poissons_ratio: {nu[bad].flat[0]:g} is not that of a stable solid; "
-            "give one above -1 and at most 0.5"
+            f"poissons_ratio: {nu[bad].flat[0]:g} is not possible for a stable solid; "
+            "give a value above -1 and at most 0.5"
         )
     return scalar_or_array(1.295 * _EXP(0.736 * nu))

@@ -1,4 +1,4 @@
-"""The cache of operators: its limits, and many threads."""
+"""The cache of operators: its limits, and its use by several threads."""
 
 from concurrent.futures import ThreadPoolExecutor
 
@@ -34,7 +34,7 @@ def test_the_least_recently_used_is_dropped_first(cache):
     cache.get("a")
     cache.put("d", block(30))
     assert [key for key in "abcd" if cache.get(key) is not None] == ["a", "c", "d"]
-    cache.put("e", block(60))  # as many as have to go
+    cache.put("e", block(60))  # several entries are dropped if necessary
     assert [key for key in "abcde" if cache.get(key) is not None] == ["d", "e"]
 
 

@@ -1,4 +1,4 @@
-"""The FFT convolution against the sum it stands for."""
+"""Convolution by FFT, compared with the direct sum."""
 
 import ducc0
 import numpy as np
@@ -14,9 +14,9 @@ from restitution.numerics.convolution.operators import FreeConvolution, Spectral
 from restitution.numerics.quadratic.minimise import _ROUNDING
 from tolerance import approx
 
-# 1 x 1, single rows, primes and powers of two; up to 19 x 23 the direct sum stays quick.
+# 1 x 1, single rows, primes and powers of two; up to 23 x 23 the direct sum is fast.
 sizes = st.sampled_from([1, 2, 3, 5, 7, 8, 11, 13, 16, 17, 19, 23])
-SINGLE = 2e-6  # what single precision may lose of the largest value
+SINGLE = 2e-6  # error of single precision relative to the largest value
 
 shapes = st.tuples(sizes, sizes)
 spacings = st.tuples(st.floats(0.1, 10), st.floats(0.1, 10))
@@ -30,7 +30,7 @@ def point_load(spacing):
 
 
 def direct(kernel, p):
-    """Σ_kl K[|i − k|, |j − l|] p[k, l], term by term."""
+    """The direct sum Σ_kl K[|i − k|, |j − l|] p[k, l]."""
     nx, ny = p.shape
     table = kernel(np.arange(nx)[:, None], np.arange(ny)[None, :])
     lag_x = abs(np.arange(nx)[:, None] - np.arange(nx))
@@ -103,7 +103,7 @@ def test_it_is_counted_and_leaves_its_input_and_its_earlier_answers_alone():
     first = K(p)
     kept = first.copy()
     K(100 * p)
-    assert_array_equal(K(p), first)  # nothing is left over from the call before
+    assert_array_equal(K(p), first)  # no residue of the previous call
     assert_array_equal(first, kept)
     assert_array_equal(p, given_p)
     assert K.count == 3
@@ -122,7 +122,7 @@ def test_the_memory_layout_of_the_input_does_not_matter():
 @pytest.mark.parametrize("n", [32, 181, 1024])
 @pytest.mark.parametrize("kind", ["random", "positive", "one side", "checkers", "one node"])
 def test_single_precision_errs_by_as_much_as_the_minimiser_counts_on(kind, n):
-    """Of the largest value, however much of the array cancels."""
+    """The bound is relative to the largest result, even if positive and negative values cancel."""
     rng = np.random.default_rng(n)
     p = rng.normal(size=(n, n))
     if kind == "positive":
@@ -143,7 +143,7 @@ def test_single_precision_errs_by_as_much_as_the_minimiser_counts_on(kind, n):
 @settings(deadline=None, max_examples=20)
 @given(shapes, seeds)
 def test_single_precision_is_quick_and_nearly_right(shape, seed):
-    """Also between exact products in the same memory."""
+    """Products in both precisions may alternate in the same workspace."""
     p = np.random.default_rng(seed).normal(size=shape)
     K = FreeConvolution(point_load((1.0, 2.0)), shape)
     exact, scale = K(p), np.abs(K(np.abs(p))).max()
@@ -173,7 +173,7 @@ def test_a_filter_that_passes_everything_returns_its_input(shape, seed):
 
 @pytest.mark.parametrize(("mx", "my"), [(0, 0), (3, 0), (0, 2), (2, 5), (6, 4)])
 def test_a_wave_is_multiplied_by_its_symbol(mx, my):
-    shape = (12, 10)  # fast sizes: no padding, so that a wave is one mode
+    shape = (12, 10)  # fast sizes: no padding, so a wave is a single mode
     x, y = np.meshgrid(np.arange(12), np.arange(10), indexing="ij")
     qx, qy = 2 * np.pi * mx / 12, 2 * np.pi * my / 10
     wave = np.cos(qx * x + qy * y)
@@ -185,7 +185,7 @@ def test_a_wave_is_multiplied_by_its_symbol(mx, my):
 @settings(deadline=None, max_examples=20)
 @given(shapes, seeds)
 def test_a_filter_is_symmetric_and_keeps_the_sign_of_its_symbol(shape, seed):
-    """What a preconditioner must be, padded sizes included."""
+    """A preconditioner needs both properties, for padded sizes too."""
     r, s = np.random.default_rng(seed).normal(size=(2, *shape))
     symbol = SpectralFilter(lambda qx, qy: 0.1 + np.hypot(qx, qy), shape)
     bound = SINGLE * np.linalg.norm(r) * np.linalg.norm(s)
@@ -215,7 +215,7 @@ def loops():
     return pytest.importorskip("restitution.numerics.loops", reason="built without a compiler")
 
 
-# Sizes of any factors that are transformed, of vectors' lengths and one more, even and odd.
+# Even and odd sizes with all supported factors, among them vector lengths and one more.
 periods = st.sampled_from(
     [1, 2, 3, 4, 5, 7, 8, 14, 15, 16, 21, 25, 30, 32, 42, 48, 60, 63, 80, 90, 128]
 )
@@ -225,7 +225,7 @@ periods = st.sampled_from(
 @settings(deadline=None, max_examples=40)
 @given(st.tuples(periods, periods), st.data(), st.sampled_from([1e-3, 1.0, 7.0]), seeds)
 def test_compiled_convolution_is_that_of_whole_arrays(kinds, both, data, scale, seed):
-    """In any period, padded or not, for any even spectrum, all kinds of numbers."""
+    """For any period, with or without padding, any even spectrum and any mix of precisions."""
     shape = tuple(data.draw(st.integers(1, n)) for n in both)
     rng = np.random.default_rng(seed)
     given_kind, kind, result_kind = kinds
@@ -237,14 +237,14 @@ def test_compiled_convolution_is_that_of_whole_arrays(kinds, both, data, scale, 
     module.convolve(values, 1 / scale, spectrum, *both, workspace, scale, found)
     plain = accelerator("plain", np, scipy.fft)
     plain.convolve(values.astype("d"), spectrum.astype("d"), both, scale, workspace, expected)
-    # No value is larger than all waves together.
+    # Bound of any value: the sum of the amplitudes of all waves.
     largest = np.abs(values).sum() * np.abs(spectrum).max() * both[0] * both[1]
     assert_allclose(found, expected, atol=(1e-15 if kinds == "ddd" else 5e-7) * largest)
 
 
 @pytest.mark.parametrize("kind", ["f", "d"])
 def test_waves_too_many_for_the_cache(kind):
-    """They are stored in another way; the last rows and waves are parts of a vector."""
+    """The sizes are not multiples of the vector length, so the last vectors are incomplete."""
     shape, periods = (1001, 1703), (2016, 3430)
     rng = np.random.default_rng(6)
     values = rng.normal(size=shape)

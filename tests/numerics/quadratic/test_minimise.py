@@ -1,4 +1,4 @@
-"""The minimiser against enumerated active sets and an independent least-squares solver."""
+"""The minimiser, compared with enumerated active sets and a least-squares solver."""
 
 import itertools
 
@@ -22,7 +22,7 @@ seeds = st.integers(0, 2**32 - 1)
 
 
 def enumerated(A, b, lower, upper):
-    """The best of the stationary points of all faces of the box."""
+    """The stationary point of lowest energy among all faces of the box."""
     best, best_energy = None, np.inf
     for side in itertools.product((-1, 0, 1), repeat=b.size):
         side = np.array(side)
@@ -89,19 +89,19 @@ def test_the_energy_falls_at_every_iteration(minimise, random_matrix, random_bou
 @settings(deadline=None, max_examples=30)
 @given(st.integers(5, 40), seeds)
 def test_an_iteration_takes_one_product(minimise, random_matrix, random_bounds, n, seed):
-    """Whether or not it meets a bound; an iteration that computes the gradient anew is one, too."""
+    """Also if it reaches a bound. Recomputing the gradient counts as an iteration."""
     rng = np.random.default_rng(seed)
     A, b = random_matrix(rng, n), 3 * rng.normal(size=n)
     found, applied = minimise(A, b, *random_bounds(rng, n))
     assert found.converged
-    assert len(applied) <= found.iterations + 2  # the first gradient, and the one believed
+    assert len(applied) <= found.iterations + 2  # the first and the accepted gradient
 
 
 @pytest.mark.parametrize("scale", [1e-6, 1e6])
 def test_a_preconditioner_of_another_scale_costs_some_iterations(
     minimise, random_matrix, random_bounds, scale
 ):
-    """The length of the first trial step is that of the preconditioner, and wrong here."""
+    """The preconditioner sets the length of the first trial step, which is wrong here."""
     rng = np.random.default_rng(13)
     A, b = random_matrix(rng, 20), 3 * rng.normal(size=20)
     lower, upper = random_bounds(rng, 20)
@@ -113,7 +113,7 @@ def test_a_preconditioner_of_another_scale_costs_some_iterations(
 
 
 def test_a_preconditioner_that_points_up_is_followed_down(minimise, random_matrix, random_bounds):
-    """One that only approximates an inverse may do so."""
+    """An approximate inverse may give an ascent direction."""
     rng = np.random.default_rng(17)
     A, b = random_matrix(rng, 20), 3 * rng.normal(size=20)
     bounds = random_bounds(rng, 20)
@@ -124,20 +124,20 @@ def test_a_preconditioner_that_points_up_is_followed_down(minimise, random_matri
 
 
 def test_without_bounds_it_is_conjugate_gradients(minimise, random_matrix):
-    """At most n steps in exact arithmetic, and one with the exact inverse."""
+    """It takes at most n steps in exact arithmetic, and one step with the exact inverse."""
     rng = np.random.default_rng(3)
     A, b = random_matrix(rng, 12, condition=5.0), rng.normal(size=12)
     free = np.full(12, np.inf)
     found, _ = minimise(A, b, -free, free)
     assert_allclose(found.point, np.linalg.solve(A, b), atol=1e-9)
-    assert found.iterations <= 12 + 5  # and a new gradient for each ten-thousandth of the violation
+    assert found.iterations <= 12 + 5  # and a recomputed gradient per factor 1e4
     at_once, applied = minimise(A, b, -free, free, inverse=np.linalg.inv(A))
     assert_allclose(at_once.point, np.linalg.solve(A, b), atol=1e-9)
-    assert len(applied) <= 3  # the step, and the gradient that is believed
+    assert len(applied) <= 3  # first gradient, step, accepted gradient
 
 
 def test_the_answer_is_believed_on_a_gradient_computed_there(minimise, random_matrix):
-    """Updated along the steps, the gradient drifts."""
+    """A gradient that is only updated along the steps drifts."""
     rng = np.random.default_rng(9)
     A, b = random_matrix(rng, 30), rng.normal(size=30)
     found, applied = minimise(A, b, np.full(30, -np.inf), np.full(30, np.inf))
@@ -168,7 +168,7 @@ def test_a_start_outside_the_bounds_is_put_onto_them(minimise, random_matrix, st
 
 def test_an_optimal_start_costs_one_product(minimise):
     A = np.array([[2.0, 1.0], [1.0, 2.0]])
-    # p = (1, 0): g = (0, 1), at the lower bound and pushed onto it
+    # p = (1, 0): g = (0, 1) pushes p₂ against its lower bound
     found, applied = minimise(
         A, np.array([2.0, 0.0]), np.zeros(2), np.full(2, np.inf), start=np.array([1.0, 0.0])
     )
@@ -181,12 +181,12 @@ def test_an_optimal_start_costs_one_product(minimise):
 def test_values_worked_out_by_hand(minimise):
     A = np.array([[2.0, 1.0], [1.0, 2.0]])
     big = np.full(2, np.inf)
-    # free: (2, -1); p₂ ≥ 0 holds: p₁ = 3/2; p₁ ≤ 1 holds: p = (1, 0)
+    # without bounds: (2, -1); with p₂ ≥ 0: (3/2, 0); with p₁ ≤ 1 too: (1, 0)
     b = np.array([3.0, 0.0])
     assert_allclose(minimise(A, b, -big, big)[0].point, [2, -1], atol=1e-9)
     assert_allclose(minimise(A, b, np.zeros(2), big)[0].point, [1.5, 0], atol=1e-9)
     assert_allclose(minimise(A, b, np.zeros(2), np.ones(2))[0].point, [1, 0], atol=1e-9)
-    # room for tension: p₂ ≥ −½ holds p₂ there, p₁ = (3 + ½)/2
+    # tension allowed: p₂ ≥ −½ is active, p₁ = (3 + ½)/2
     tension = np.array([0.0, -0.5])
     assert_allclose(minimise(A, b, tension, big)[0].point, [1.75, -0.5], atol=1e-9)
 
@@ -266,7 +266,7 @@ def test_violation_looks_only_where_a_node_may_move():
 
 @pytest.mark.parametrize("push", [1.0, -1.0])
 def test_a_node_between_equal_bounds_is_held(minimise, push):
-    """Prescribed pressures: both signs of the gradient are optimal there."""
+    """The pressure is prescribed there, so either sign of the gradient is optimal."""
     A = np.array([[2.0, 1.0], [1.0, 2.0]])
     lower, upper = np.array([0.5, 0.0]), np.array([0.5, 9.0])
     found, _ = minimise(A, np.array([5 * push, 2.5]), lower, upper)

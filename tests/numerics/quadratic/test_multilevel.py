@@ -1,4 +1,4 @@
-"""The nested solve against the plain one: same answer, from any first guess and window."""
+"""The multilevel solve gives the result of the plain one, for any first guess and window."""
 
 import numpy as np
 import pytest
@@ -42,7 +42,7 @@ def nested(b, upper, **options):
 
 
 def bowl(shape, depth=1.0, rough=0.0, seed=0):
-    """δ − h of a paraboloid that touches half of the grid, with waves on it."""
+    """δ − h of a wavy paraboloid whose contact covers about half of the grid."""
     x, y = (np.linspace(-1, 1, n) for n in shape)
     b = depth * (1 - 1.2 * (x[:, None] ** 2 + y**2))
     random = np.random.default_rng(seed)
@@ -70,7 +70,7 @@ def test_the_answer_is_that_of_the_plain_solve(shape, rough, upper):
 
 @pytest.fixture
 def windows(monkeypatch):
-    """The shapes that are solved on, in order."""
+    """Shapes of all solves, in order."""
     seen = []
 
     def watched(problem, **options):
@@ -82,7 +82,7 @@ def windows(monkeypatch):
 
 
 def bowl_and_spike():
-    """And a spike of one node far from it, lost in the means over 2 x 2 nodes."""
+    """A bowl and, far from it, a spike of one node that the means over 2 x 2 nodes hide."""
     b = bowl((200, 200), depth=0.2) - 0.1
     b[10, 15] = 0.15
     return b
@@ -99,7 +99,7 @@ def test_the_window_holds_what_the_guess_leaves_closed(windows):
 
 
 def test_a_window_takes_no_product_that_another_tells(windows, monkeypatch):
-    """The one that finds it is its first gradient; the check is its last, in double precision."""
+    """The product that finds the window gives the first gradient, the final check the last one."""
     products = []
 
     def watched(method):
@@ -122,7 +122,7 @@ def test_a_window_takes_no_product_that_another_tells(windows, monkeypatch):
 
 
 def test_what_the_guess_does_not_see_widens_the_window(windows, monkeypatch):
-    """Too much pressure in the middle opens the gap at the spike."""
+    """The guess has too much pressure in the middle, which opens the gap at the spike."""
     b = bowl_and_spike()
     guess = np.zeros_like(b)
     guess[90:110, 90:110] = 10 * plain(b, np.inf).point.max()
@@ -136,10 +136,10 @@ def test_what_the_guess_does_not_see_widens_the_window(windows, monkeypatch):
 
 
 def test_the_window_and_the_coarse_grids_save_products():
-    """Over five surfaces: on one, chance decides about as much."""
+    """Sums over five surfaces, because the result of a single one varies too much."""
     ours = theirs = 0
     for seed in range(5):
-        b = bowl((480, 480), rough=0.3, seed=seed)  # where there is something to save
+        b = bowl((480, 480), rough=0.3, seed=seed)  # large enough to save time
         found, products = nested(b, np.inf)
         assert found.converged
         K, inverse = system(b.shape, 0)
@@ -156,7 +156,7 @@ def test_the_window_and_the_coarse_grids_save_products():
 
 
 def islands(n, width):
-    """A pressure on squares `width` nodes wide and as far apart, K of it, and an inverse."""
+    """Pressure p on squares of `width` nodes, `width` apart; K p; and an approximate inverse."""
     one = np.arange(n) // width % 2 == 1
     p = 1.0 * np.outer(one, one)
     K, inverse = system((n, n), 0)
@@ -169,13 +169,13 @@ def test_a_constant_on_islands_is_too_stiff_and_less_so_with_less_of_the_mean():
     constant = p.astype(np.float32)
 
     def stiffness(precondition):
-        """Of the constant on the islands, to go by its energies."""
+        """Estimate of the Rayleigh quotient of the constant on the islands."""
         return np.vdot(precondition(constant), p) * b[p > 0].sum() / np.count_nonzero(p) ** 2
 
     plain = stiffness(inverse)
     assert plain > 8
     assert stiffness(less) == approx(_USUAL_STIFFNESS, rel=1e-5)
-    # A checkerboard has no means: nothing changes.
+    # The local means of a checkerboard vanish, so nothing changes.
     board = (constant * (-1.0) ** np.add.outer(np.arange(256), np.arange(256))).astype(np.float32)
     assert_allclose(less(board), inverse(board), atol=1e-2 * inverse(board).max())
 
@@ -200,7 +200,7 @@ def guess(b, upper):
 
 @pytest.mark.parametrize("rough", [0.0, 0.02])
 def test_where_nearly_all_yields_the_guess_knows_the_edge(rough, monkeypatch):
-    """Halfway between two nodes is no pressure that nodes beside a jump have."""
+    """Interpolation alone gives nodes beside the jump wrong, intermediate pressures."""
     b, upper = bowl((200, 220), rough=rough), 0.002
     answer = plain(b, upper).point
     free = (answer > 0) & (answer < upper)

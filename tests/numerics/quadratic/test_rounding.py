@@ -1,4 +1,4 @@
-"""The minimiser where products are rounded: what that does to the gradient, and to the answer."""
+"""The minimiser with rounded products: effects on the gradient and on the result."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ seeds = st.integers(0, 2**32 - 1)
 
 
 def rounded(A, applied):
-    """A in single precision, as an operator."""
+    """Operator of the matrix A in single precision."""
     single = A.astype(np.float32)
 
     def apply(p, out=None):
@@ -27,7 +27,7 @@ def rounded(A, applied):
 def test_from_nearby_two_gradients_are_computed_exactly_the_first_and_the_last(
     minimise, random_matrix, random_bounds, far
 ):
-    """Rounding does little to small steps."""
+    """Rounding errors of small steps are small, so no further gradient is needed."""
     rng = np.random.default_rng(2)
     A, b = random_matrix(rng, 20), 3 * rng.normal(size=20)
     bounds = random_bounds(rng, 20)
@@ -46,7 +46,7 @@ def test_from_nearby_two_gradients_are_computed_exactly_the_first_and_the_last(
 def test_what_rounding_does_to_the_gradient_is_part_of_a_rough_residual(
     minimise, random_matrix, random_bounds, kkt_violation, n, tolerance, seed
 ):
-    """However often the gradient has to be computed anew for that."""
+    """The gradient may have to be recomputed several times to achieve this."""
     rng = np.random.default_rng(seed)
     A, b = random_matrix(rng, n), 3 * rng.normal(size=n)
     bounds = random_bounds(rng, n)
@@ -68,7 +68,7 @@ def test_what_rounding_does_to_the_gradient_is_part_of_a_rough_residual(
 def test_a_product_that_is_not_finite_ends_the_solve_at_once(
     minimise, random_matrix, random_bounds, bad, rough
 ):
-    """Single precision may overflow."""
+    """Single precision can overflow."""
     rng = np.random.default_rng(19)
     A, b = random_matrix(rng, 20), 3 * rng.normal(size=20)
     products = []
@@ -84,7 +84,7 @@ def test_a_product_that_is_not_finite_ends_the_solve_at_once(
     assert not found.converged
     assert np.isfinite(found.point).all()
     assert len(products) == 4
-    assert len(exact) <= (1 if rough else 2)  # the last gradient, and the first
+    assert len(exact) <= (1 if rough else 2)  # the last gradient and perhaps the first
 
 
 @pytest.mark.parametrize("known", [False, True])

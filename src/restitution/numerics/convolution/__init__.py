@@ -1,1 +1,1 @@
-"""Convolution by FFT: operators, the devices that they run on, and the cache that keeps them."""
+"""Convolution by FFT: operators, devices and the cache of operators."""

@@ -1,4 +1,4 @@
-"""The cache of operators and kernels: limited in size, shared by threads, emptied by `clear`."""
+"""Cache of operators and kernels: limited in size and safe to use from several threads."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from typing import Any, Protocol
 
 
 class HasBytes(Protocol):
-    """Something that knows its size, as arrays and operators do."""
+    """An object that reports its size, such as an array or an operator."""
 
     @property
     def nbytes(self) -> int:
-        """Size of its arrays, bytes."""
+        """Size of its arrays (bytes)."""
 
 
 class OperatorCache:
-    """Values by key, at most `max_items` of them and `max_bytes` in all.
+    """Cache of at most `max_items` values with at most `max_bytes` in total.
 
-    The least recently used values are dropped first. All methods are safe in threads. Values are
+    The least recently used values are dropped first. All methods are thread-safe. Values are
     shared, so callers must not change them.
     """
 
@@ -30,7 +30,7 @@ class OperatorCache:
 
     @property
     def max_bytes(self) -> int:
-        """Largest size of all values together, bytes. Setting it drops what no longer fits."""
+        """Largest total size of all values (bytes). Setting it drops values that no longer fit."""
         return self._max_bytes
 
     @max_bytes.setter
@@ -41,7 +41,7 @@ class OperatorCache:
 
     @property
     def nbytes(self) -> int:
-        """Size of all values together, bytes."""
+        """Total size of all values (bytes)."""
         with self._lock:
             return self._size()
 
@@ -49,7 +49,7 @@ class OperatorCache:
         return len(self._values)
 
     def get(self, key: Hashable) -> Any:
-        """The value of `key`, or None."""
+        """Return the value for `key`, or None."""
         with self._lock:
             if key not in self._values:
                 return None
@@ -57,7 +57,7 @@ class OperatorCache:
             return self._values[key]
 
     def put(self, key: Hashable, value: HasBytes) -> None:
-        """Keep `value`, unless it is larger than the whole cache may be."""
+        """Store `value`, unless it alone exceeds `max_bytes`."""
         with self._lock:
             if value.nbytes > self._max_bytes:
                 return
@@ -66,7 +66,7 @@ class OperatorCache:
             self._shrink()
 
     def clear(self) -> None:
-        """Drop all values. Solves that use one of them are not disturbed."""
+        """Drop all values. Solves that use one of them are not affected."""
         with self._lock:
             self._values.clear()
 
@@ -80,5 +80,5 @@ class OperatorCache:
             self._values.popitem(last=False)
 
 
-# Boxes follow the contact, so that older operators are rarely used again.
+# Boxes follow the growing contact, so older operators are rarely used again.
 operator_cache = OperatorCache(max_bytes=384 * 2**20, max_items=17)

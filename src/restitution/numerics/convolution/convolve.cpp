@@ -1,9 +1,9 @@
 // Convolution of an array with an even kernel: transform along both axes, multiply by the spectrum,
-// transform back. The code that depends on the processor is in convolve.h.
+// transform back. The vectorised code, which depends on the instruction set, is in convolve.h.
 //
 // A few columns at a time are transformed, so that they stay in the cache. Zero padding is neither
-// stored nor transformed: for n values in a period of 2 m ≥ 2 n, a transform of length m gives the
-// modes of even wave number, and the same transform of the values times exp(−πi j/m) the odd ones.
+// stored nor transformed. For n values in a period of 2 m ≥ 2 n, a transform of length m gives the modes
+// of even wave number; the same transform of the values times exp(−πi j/m) gives the odd ones.
 
 #include "thread_team.h"
 #include "rows.h"
@@ -24,13 +24,13 @@
 
 constexpr double PI = 3.14159265358979323846;
 
-// Plan of the transform of a period, for any processor. If at least half of the period is padding, it
-// is transformed in two parts, the even modes and the odd ones.
+// Plan of the transform of a period, for any instruction set. If at least half of the period is padding,
+// the transform has two parts: the even modes and the odd ones.
 template <class T>
 struct Plan {
     Index period;
     int parts;
-    Index length;  // of a part
+    Index length;  // of one part
     std::vector<int> radices;
     std::vector<std::vector<std::complex<T>>> twiddles;  // of each stage
     std::vector<std::complex<T>> half_turn;              // exp(−πi j/length)
@@ -38,8 +38,8 @@ struct Plan {
 
     Plan(Index period, int parts)
         : period(period), parts(parts), length(period / parts), places(period) {
-        Index rest = length;  // the factor that is left after these stages
-        for (int radix : {4, 2, 3, 5, 7})  // the fastest of five orders tried
+        Index rest = length;  // factor that remains after these stages
+        for (int radix : {4, 2, 3, 5, 7})  // the fastest of five orders measured
             for (; rest % radix == 0; rest /= radix) radices.push_back(radix);
         if (rest != 1) throw std::invalid_argument("only factors 2, 3, 5 and 7 are transformed");
         rest = length;
@@ -81,7 +81,7 @@ struct Roots {
 template <class T, int r>
 const Roots<T, r> ROOTS;
 
-// The plan for `values` in a period. Plans are kept, since making one takes longer than a transform.
+// The plan for `values` in a period. Plans are kept, because making one takes longer than a transform.
 template <class T>
 std::shared_ptr<const Plan<T>> plan_for(Index values, Index period) {
     if (values > period) throw std::invalid_argument("more values than the period holds");
@@ -104,8 +104,8 @@ inline std::unique_ptr<void, Free> allocate(Index bytes) {
     return std::unique_ptr<void, Free>(::operator new(bytes, std::align_val_t(LINE)));
 }
 
-// Rows begin at cache lines, an odd number of lines apart: rows a power of two apart would evict each
-// other from the cache.
+// Rows begin at cache lines and are an odd number of lines apart, because rows a power of two apart would
+// evict each other from the cache.
 inline Index bytes_of_row(Index bytes) { return ((bytes + LINE - 1) / LINE | 1) * LINE; }
 
 template <class T>
@@ -121,8 +121,8 @@ Rows<T> rows_in(Rows<unsigned char> workspace, Index rows, Index length) {
             bytes_of_row(length * Index(sizeof(T))) / Index(sizeof(T))};
 }
 
-// Vectors of n values: the compiler's, or arrays where it has none. NO_VECTORS tries on GCC what other
-// compilers get.
+// Vectors of n values: vector types of the compiler or, if it has none, arrays. NO_VECTORS selects the
+// arrays on GCC too, to test them.
 #if defined(__GNUC__) && !defined(NO_VECTORS)
 #define COMPILER_VECTORS
 template <class T, int n>

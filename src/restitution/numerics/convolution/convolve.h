@@ -1,6 +1,6 @@
-// Convolution of an array with an even kernel, in vectors. Each lane holds a column of its own, so the
-// code of a transform is that for one column. convolve.cpp describes the method and includes this
-// file once for each kind of processor, with LANE_BYTES the size of its vectors.
+// Vectorised convolution of an array with an even kernel. Each lane holds one column, so a transform is
+// written as for a single column. convolve.cpp describes the method and includes this file once for
+// each instruction set, with LANE_BYTES the size of its vectors.
 
 template <class T>
 struct Lanes {
@@ -82,9 +82,9 @@ void join(int radix, Lanes<T>* x, Index length, const std::complex<T>* twiddle) 
     }
 }
 
-// In place; the modes stay in the order in which the stages produce them (decimation in frequency;
-// Gentleman and Sande 1966). `backward` inverts the stages in reverse order. Each part is finished
-// before the next one begins, so that it stays in the cache.
+// Transform in place. The modes stay in the order in which the stages produce them (decimation in
+// frequency; Gentleman and Sande 1966). `backward` inverts the stages in reverse order. Each part is
+// finished before the next one begins, so that it stays in the cache.
 template <class T>
 void forward(const Plan<T>& plan, Lanes<T>* x, Index length, std::size_t stage = 0) {
     if (length == 1) return;
@@ -103,7 +103,7 @@ void backward(const Plan<T>& plan, Lanes<T>* x, Index length, std::size_t stage 
     join<false>(radix, x, part, plan.twiddles[stage].data());
 }
 
-// The vector whose k-th value is number `Order::of(k)` of the values of a followed by those of b.
+// Vector whose k-th value is value number `Order::of(k)` of the concatenation of a and b.
 template <class Order, class Vector, int... k>
 inline Vector shuffle(Vector a, Vector b, std::integer_sequence<int, k...>) {
 #ifndef COMPILER_VECTORS
@@ -125,7 +125,7 @@ inline Vector shuffle(Vector a, Vector b) {
 struct Low {  // a0 b0 a1 b1 …
     static constexpr int of(int k, int n) { return k / 2 + k % 2 * n; }
 };
-struct High {  // the same from the middle on
+struct High {  // the same for the upper halves of a and b
     static constexpr int of(int k, int n) { return (n + k) / 2 + k % 2 * n; }
 };
 struct Even {  // a0 a2 … b0 b2 …
@@ -148,7 +148,7 @@ inline void transpose(Vector* x) {
     }
 }
 
-// Copy `some` values, at most `most`. A copy of fixed size compiles to moves, not to a call.
+// Copy `some` values, at most `most`. A copy of fixed size compiles to moves instead of a call.
 template <class T, Index most>
 inline void copy_some(void* to, const void* from, Index some) {
     if (some >= most)
@@ -157,7 +157,7 @@ inline void copy_some(void* to, const void* from, Index some) {
         std::memcpy(to, from, some * sizeof(T));
 }
 
-// Load `some` values of a row as a vector, and store them, times a factor that may be outside the
+// Load `some` values of a row into a vector or store them, multiplied by a factor that may be outside the
 // range of single precision.
 template <class T, class From>
 inline typename Lanes<T>::Vector load(const From* from, double factor, Index some) {
@@ -197,7 +197,7 @@ inline void store_modes(const Lanes<T>& x, std::complex<T>* to, Index some) {
 template <class T>
 struct Columns {
     const Plan<T>& plan;
-    Lanes<T>* x;  // as long as a period
+    Lanes<T>* x;  // the length of a period
 
     // Expects x[i] for i < values.
     void transform(Index values) {
@@ -231,7 +231,7 @@ struct Convolution {
     Rows<const T> weights;
     Rows<std::complex<T>> modes;
 
-    // Two blocks of real columns are transformed together, as real and imaginary part.
+    // Two blocks of real columns are transformed together as real and imaginary parts.
     template <class From>
     void into_waves(Rows<const From> values, double factor, Index first, Lanes<T>* workspace) const {
         Columns<T> columns{along_x, workspace};
@@ -309,8 +309,9 @@ struct Convolution {
     }
 };
 
-// `out` = `factor_back` K ∗ (`factor` `values`), circular in (px, py). `weights` (py/2 + 1, px/2 + 1)
-// are a quadrant of the spectrum of K, real, even and transposed. `workspace` has `workspace_bytes`.
+// `out` = `factor_back` K ∗ (`factor` `values`), circular with periods (px, py). `weights`, shape
+// (py/2 + 1, px/2 + 1), is the transposed quadrant of the real, even spectrum of K. `workspace` has
+// `workspace_bytes` bytes.
 template <class From, class T, class To>
 void convolve(Rows<const From> values, double factor, Rows<const T> weights, Index px, Index py,
               Rows<unsigned char> workspace, double factor_back, Rows<To> out) {

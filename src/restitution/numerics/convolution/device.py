@@ -1,8 +1,8 @@
 """Devices: where arrays are stored and convolved, in compiled loops on the CPU or by CuPy on a GPU.
 
 The solver accepts any arrays that follow NumPy's protocols (`__array_ufunc__`, NEP 13, and
-`__array_function__`, NEP 18), as CuPy's do. The operations without such a protocol, creation and
-convolution of arrays, are methods of a `Device`. Solves run on the `current` device:
+`__array_function__`, NEP 18), as CuPy's do. The protocols do not cover the creation and convolution
+of arrays, so these are methods of a `Device`. Solves run on the `current` device:
 
     with on_device("gpu"):
         state = solve(contact, 1e-6)
@@ -28,28 +28,28 @@ DeviceName = Literal["cpu", "gpu", "auto"]
 
 
 class Device(Protocol):
-    """Creates arrays and convolves them."""
+    """A device that stores arrays and convolves them."""
 
     name: str
 
     def put(self, values: Array) -> Array:
-        """Copy an array from the host's memory to the device."""
+        """Copy an array from host memory to the device."""
 
     def get(self, values: Array) -> Array:
-        """Copy an array of the device to the host's memory."""
+        """Copy an array from the device to host memory."""
 
     def arange(self, n: int) -> Array:
-        """The integers 0 … n − 1."""
+        """Return the integers 0 … n − 1."""
 
     def even_spectrum(self, quadrant: Array) -> Array:
-        """Spectrum of a real array that is even along both axes, given one quadrant of it.
+        """Spectrum of a real array that is even along both axes, from one quadrant of it.
 
-        It is divided by the number of values, so that the inverse transform needs no factor. The
-        quadrant may be overwritten.
+        The spectrum is divided by the number of values, so that the inverse transform needs no
+        factor. The quadrant may be overwritten.
         """
 
     def workspace(self, shape: tuple[int, int], periods: tuple[int, int]) -> Array:
-        """A work array for `convolve`, for arrays of that shape."""
+        """Return a work array for `convolve` with arrays of this shape."""
 
     def convolve(
         self,
@@ -62,9 +62,9 @@ class Device(Protocol):
     ) -> None:
         """Multiply the Fourier modes of `values` by a real, even spectrum; write to `out`.
 
-        `values` and `out` have shape (nx, ny); zeros pad the values to `periods`. `spectrum` is the
-        transpose of a quadrant made by `even_spectrum`; its precision is that of the computation.
-        Values are divided by `scale` before, and the result is multiplied by it.
+        `values` and `out` have shape (nx, ny); `values` is padded with zeros to `periods`.
+        `spectrum` is the transpose of a quadrant made by `even_spectrum`; its precision is that of
+        the computation. `values` are divided by `scale` first, and the result is multiplied by it.
         """
 
 
@@ -75,7 +75,7 @@ class _Compiled:
 
     def __init__(self, loops: Any) -> None:
         self._loops = loops
-        # The number of threads of ducc0, which `DUCC0_NUM_THREADS` sets.
+        # Use as many threads as ducc0, whose number DUCC0_NUM_THREADS sets.
         loops.use_threads(ducc0.misc.thread_pool_size())
 
     def put(self, values: Array) -> Array:
@@ -150,12 +150,12 @@ class _Arrays:
         nx, ny = values.shape
         px, py = periods
         scaled = np.divide(values, scale, dtype=np.float64)
-        # One axis after the other, so that rows of padding are not transformed.
+        # One axis after the other, so that padding rows are not transformed.
         modes = self._fft.rfft(scaled.astype(spectrum.dtype), n=py, axis=1)
         modes = self._fft.fft(modes, n=px, axis=0)
         weights, last = spectrum.T, px // 2
         modes[: last + 1] *= weights
-        # Negative wave numbers. In an odd period the largest one has a negative counterpart, too.
+        # Negative wave numbers. In an odd period the largest one has a negative counterpart too.
         modes[last + 1 :] *= weights[px - last - 1 : 0 : -1]
         modes = self._fft.ifft(modes, axis=0, norm="forward", overwrite_x=True)[:nx]
         padded = self._fft.irfft(modes, n=py, axis=1, norm="forward")
@@ -163,7 +163,7 @@ class _Arrays:
 
 
 def accelerator(name: str, arrays: Any, fft: Any) -> Device:
-    """A device that uses a library like CuPy (`arrays`) and its version of scipy.fft (`fft`)."""
+    """Return a device for a CuPy-like library (`arrays`) and its version of scipy.fft (`fft`)."""
     return _Arrays(name, arrays, fft)
 
 
@@ -180,15 +180,23 @@ _current: ContextVar[Device] = ContextVar("device", default=CPU)
 
 
 def current() -> Device:
-    """The device on which solves run in the current context."""
+    """Return the device on which solves run in the current context."""
     return _current.get()
 
 
 @contextmanager
 def on_device(device: DeviceName | Device) -> Iterator[Device]:
-    """Run solves on a device: "cpu", "gpu", or "auto", a GPU if one is available.
+    """Run the solves in a `with` block on a device.
 
-    Raises `CaseError` for "gpu" if CuPy or a usable GPU is missing.
+    Args:
+        device: Device, or its name: "cpu", "gpu", or "auto" for a GPU if one is available, else the
+            CPU.
+
+    Yields:
+        The device in use.
+
+    Raises:
+        CaseError: The device is "gpu", and CuPy or a usable GPU is missing.
     """
     chosen = _named(device) if isinstance(device, str) else device
     token = _current.set(chosen)
@@ -215,7 +223,7 @@ def _gpu() -> Device:
         import cupy
         import cupyx.scipy.fft
 
-        cupy.cuda.Device().use()  # raises if there is no GPU
+        cupy.cuda.Device().use()  # raises without a GPU
     except ImportError as error:
         raise CaseError(
             f"device: gpu needs CuPy ({error}); install the extra gpu, from a checkout with "

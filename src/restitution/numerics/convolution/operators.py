@@ -1,13 +1,13 @@
 """Linear (non-periodic) convolution with a real, even kernel by zero-padded FFT.
 
-Conventions: for nodes (i, j) of a grid of shape (nx, ny),
+For nodes (i, j) of a grid of shape (nx, ny),
 
     u[i, j] = Σ_kl  K[|i − k|, |j − l|] p[k, l].
 
 Zero padding to any size ≥ 2n − 1 makes the circular convolution equal to the linear one (Liu, Wang
 and Liu 2000, Wear 243, 101–111, "DC-FFT"); kernel values at lags beyond n − 1 have no effect. The
-kernel is even along both axes, so its spectrum is real and the DCT-I of one quadrant, which takes
-a quarter of the storage.
+kernel is even along both axes. So its spectrum is real and equals the DCT-I of one quadrant, which
+takes a quarter of the storage.
 """
 
 from __future__ import annotations
@@ -25,23 +25,23 @@ from restitution.numerics.convolution.device import CPU, Device
 from restitution.numerics.reductions import max_magnitude
 
 Array = NDArray[np.float64]
-# Values of the kernel at lags i and j, integers that broadcast. The operator overwrites the array.
+# The kernel at integer lags i and j, which broadcast. The operator overwrites the result.
 Kernel = Callable[[NDArray[np.int64], NDArray[np.int64]], Array]
 
 
 def fast_size(minimum: int) -> int:
-    """The smallest size ≥ `minimum` whose only factors are 2, 3, 5 and 7."""
+    """Return the smallest size ≥ `minimum` that has only the prime factors 2, 3, 5 and 7."""
     return next(size for size in count(minimum) if pow(2 * 3 * 5 * 7, 64, size) == 0)
 
 
 class _Spectral:
-    """Multiplication of the Fourier modes of an array by a real, even spectrum, zero-padded.
+    """Multiplication of the Fourier modes of a zero-padded array by a real, even spectrum.
 
     `count` is the number of products so far.
 
-    An operator may be used by several threads; a lock around its workspace makes them take turns.
-    To work at the same time, each takes an operator `with_own_workspace`. The workspace is
-    allocated on first use and kept.
+    Several threads may use one operator, but a lock on its workspace lets only one of them compute
+    at a time. For parallel products each thread takes an operator `with_own_workspace`. The
+    workspace is allocated on first use and kept.
     """
 
     def __init__(self, shape: tuple[int, int], periods: tuple[int, int], device: Device) -> None:
@@ -53,7 +53,7 @@ class _Spectral:
         self._workspace: NDArray[Any] | None = None
 
     def with_own_workspace(self) -> Self:
-        """The same operator with a workspace and a count of its own, for another solve."""
+        """Return the same operator with its own workspace and `count`, for another solve."""
         other = copy(self)
         other._lock, other._workspace, other.count = Lock(), None, 0
         return other
@@ -71,7 +71,7 @@ class _Spectral:
 class FreeConvolution(_Spectral):
     """Convolution of arrays with one kernel.
 
-    `diagonal` is the kernel at lag (0, 0): the effect of a node's value at the node itself.
+    `diagonal` is the kernel at lag (0, 0): the response of a node to its own value.
     """
 
     def __init__(self, kernel: Kernel, shape: tuple[int, int], device: Device = CPU) -> None:
@@ -85,15 +85,15 @@ class FreeConvolution(_Spectral):
 
     @property
     def nbytes(self) -> int:
-        """Size of the spectra, bytes."""
+        """Size of the spectra (bytes)."""
         return int(self._spectrum.nbytes + self._single_spectrum.nbytes)
 
     def __call__(self, p: Array, out: Array | None = None) -> Array:
-        """K ∗ p, same shape as `p`: in a new array, or in `out`."""
+        """Return K ∗ p, same shape as `p`, in a new array or in `out`."""
         return self._convolve(p, self._spectrum, out, 1.0)
 
     def single_precision(self, p: Array, out: Array | None = None) -> Array:
-        """K ∗ p computed in single precision: errors up to 9e-7 of the largest value."""
+        """Return K ∗ p computed in single precision; errors are up to 9e-7 of the largest value."""
         return self._convolve(p, self._single_spectrum, out, 1.0)
 
 
@@ -101,8 +101,8 @@ class SpectralFilter(_Spectral):
     """Multiplication by a real, even symbol of the wave vector; a cheap approximate operator.
 
     `symbol(qx, qy)` takes the angular wave numbers (rad per cell, ≥ 0) as arrays that broadcast and
-    returns a new array. Arrays are padded only to a fast size, so the filter is periodic. It works
-    in single precision, which suffices for a preconditioner.
+    returns a new array. Arrays are padded only to a fast size, so the filter is periodic. It
+    computes in single precision, which is enough for a preconditioner.
     """
 
     def __init__(
@@ -121,11 +121,11 @@ class SpectralFilter(_Spectral):
 
     @property
     def nbytes(self) -> int:
-        """Size of the symbol, bytes."""
+        """Size of the symbol (bytes)."""
         return int(self._symbol.nbytes)
 
     def __call__(self, r: Array, out: Array | None = None) -> Array:
-        """Return the filtered array, same shape as `r`: in a new array, or in `out`."""
-        # Scaled to values around one: single precision has a limited range.
+        """Return the filtered array, same shape as `r`, in a new array or in `out`."""
+        # Scale the values to about one: single precision has a limited range.
         scale = max_magnitude(r)
         return self._convolve(r, self._symbol, out, scale if scale != 0 else 1.0)

@@ -1,10 +1,10 @@
-// Steps of the minimiser, each in one pass over memory. They compute the same as the expressions of
-// the same names in fused_ops.py, which describe them. Bounds are arrays; all their rows may be the
-// same one. The order of the terms of a sum is not fixed, so that the compiler may use vectors.
+// Steps of the minimiser, each in one pass over memory. fused_ops.py documents them and has the
+// equivalent array expressions. Bounds are arrays; all their rows may be the same memory. The order of
+// summation is left to the compiler, so that it may use vectors.
 
 using Bounds = std::pair<Rows<const double>, Rows<const double>>;  // lower, upper
 
-// The gradient of a node that can move downhill within its bounds, else zero.
+// The gradient if the node can move downhill within its bounds, else zero.
 inline double free_gradient(double p, double g, double low, double high) {
     const bool falls = (p > low) | (g < 0), rises = (p < high) | (g > 0);
     return (falls & rises) ? g : 0.0;
@@ -83,7 +83,7 @@ std::pair<double, bool> projected_direction(Rows<T> d, double beta, Rows<const T
             T* di = d[i];
             const double *pi = p[i], *gi = g[i], *low = lower[i], *high = upper[i];
             const T *zi = z[i], *ri = r[i];
-            // Free of branches, with all alternatives computed, or the compiler does not vectorise it.
+            // No branches: the compiler vectorises this loop only if all alternatives are computed.
 #pragma omp simd reduction(+ : slope, cut)
             for (Index j = 0; j < p.length; ++j) {
                 const bool falls = (pi[j] > low[j]) | (gi[j] < 0);

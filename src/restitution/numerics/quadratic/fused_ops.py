@@ -1,9 +1,9 @@
-"""Steps of the minimiser on whole arrays, several operations in one pass over memory.
+"""Steps of the minimiser, each with several array operations that its loop fuses into one pass.
 
-Arguments are those of `minimise`: the point p, its gradient g, the lower and the upper bound
-(numbers, or arrays of the shape of p), the projected gradient r, the preconditioned one z, the step
-d and its product Kd. p, g and the bounds are of double precision, the others of double or single
-precision.
+The arguments are those of `minimise`: the point p, its gradient g, the lower and the upper bound
+(numbers, or arrays of the shape of p), the projected gradient r, the preconditioned gradient z, the
+step d and its product Kd. p, g and the bounds are in double precision, the others in double or
+single precision.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ Bounds = tuple[Bound, Bound]  # lower, upper
 
 
 def as_rows(lower: Bound, upper: Bound, p: Array) -> Bounds:
-    """The bounds as loops take them: numbers become arrays like p that store a single row."""
+    """Convert number bounds to arrays that repeat one row, as the loops require."""
 
     def rows(bound: Bound) -> Bound:
         if isinstance(bound, np.ndarray) or not loop_takes(p):
@@ -34,9 +34,9 @@ def as_rows(lower: Bound, upper: Bound, p: Array) -> Bounds:
 
 @use_loop
 def projected_gradient(p: Array, g: Array, b: Array, bounds: Bounds, out: Array) -> float:
-    """Turn the product K p in `g` into the gradient K p − b, and project it into `out`.
+    """Turn the product K p in `g` into the gradient K p − b, and write its projection to `out`.
 
-    The projected gradient is zero at nodes on a bound whose gradient pushes them onto it. Returns
+    The projected gradient is zero at nodes on a bound whose gradient pushes them against it. Return
     its largest magnitude, the violation of the optimality conditions.
     """
     g -= b
@@ -47,13 +47,13 @@ def projected_gradient(p: Array, g: Array, b: Array, bounds: Bounds, out: Array)
 
 @use_loop
 def dot_products(z: Array, r: Array, r_old: Array) -> tuple[float, float]:
-    """r·z and r_old·z."""
+    """Return r·z and r_old·z."""
     return dot(r, z), dot(r_old, z)
 
 
 @use_loop
 def curvature(d: Array, Kd: Array) -> tuple[float, float]:
-    """d·Kd and the largest magnitude of Kd."""
+    """Return d·Kd and the largest magnitude of Kd."""
     return dot(d, Kd), max_magnitude(Kd)
 
 
@@ -68,9 +68,9 @@ def projected_direction(
     r: Array,
     bounds: Bounds,
 ) -> tuple[float, bool]:
-    """Turn the step d at p into `beta` d − `length` z on the free nodes, cut off at the bounds.
+    """Replace the step d at p by `beta` d − `length` z on the free nodes, truncated at the bounds.
 
-    Returns r·d, and whether any node was cut off.
+    Return r·d and whether a bound truncated the step at any node.
     """
     np.multiply(d, beta, out=d, dtype=np.float64)
     np.subtract(d, np.multiply(z, length, dtype=np.float64), out=d)
@@ -92,9 +92,9 @@ def violates_bounds(p: Array, d: Array, step: float, bounds: Bounds) -> bool:
 def take_step(
     p: Array, g: Array, d: Array, Kd: Array, step: float, bounds: Bounds, out: Array
 ) -> float:
-    """Move p to p + `step` d and g to g + `step` Kd; `out` and result as in `projected_gradient`.
+    """Move p to p + `step` d and g to g + `step` Kd; `out`, result: see `projected_gradient`.
 
-    A full step (1) that was cut off at a bound ends exactly on it, without rounding.
+    If the step is full (1), nodes truncated at a bound end exactly on it, without rounding error.
     """
     lower, upper = bounds
     low, high = ((step == 1) & (d == (bound - p).astype(d.dtype, copy=False)) for bound in bounds)
@@ -106,7 +106,7 @@ def take_step(
 
 
 def _free(p: Array, g: Array, bounds: Bounds) -> NDArray[np.bool_]:
-    """Nodes that can move downhill: between the bounds, or on one and pushed off it."""
+    """Nodes that can move downhill: between the bounds, or on one and moving away from it."""
     lower, upper = bounds
     free = p > lower
     free |= g < 0
@@ -128,5 +128,5 @@ def _is_outside(p: Array, bounds: Bounds) -> bool:
 
 
 def _is_unbounded(upper: Bound) -> bool:
-    """Whether there is no upper bound at all, so that nothing needs to be compared with it."""
+    """Whether there is no upper bound at all, so that comparisons with it can be skipped."""
     return isinstance(upper, float) and upper == np.inf

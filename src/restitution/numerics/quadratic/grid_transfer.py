@@ -1,6 +1,6 @@
-"""Restriction to a grid of cells twice as wide, and prolongation back.
+"""Restriction to a grid with cells twice as wide, and prolongation back.
 
-Cells are merged in pairs along each axis, from the first on; a last odd one stands alone.
+Cells are merged in pairs along each axis, starting with the first; an odd last cell stays alone.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 @use_loop
 def restrict(fine: Array, coarse: Array) -> None:
-    """Write the means of 2 × 2 nodes into `coarse`; a last odd row or column counts twice."""
+    """Write the means of 2 × 2 nodes into `coarse`; an odd last row or column counts twice."""
     rows, columns = (n % 2 for n in fine.shape)
     fine = np.pad(fine, [(0, rows), (0, columns)], mode="edge")
     np.add(fine[::2, ::2], fine[1::2, ::2], out=coarse)
@@ -33,7 +33,7 @@ def prolong(coarse: Array, fine: Array) -> None:
 
 
 def _doubled_rows(coarse: Array) -> Array:
-    """Linear interpolation along the first axis to twice as many rows."""
+    """Interpolate linearly along the first axis to twice as many rows."""
     before = np.concatenate([coarse[:1], coarse[:-1]])
     after = np.concatenate([coarse[1:], coarse[-1:]])
     n, columns = coarse.shape

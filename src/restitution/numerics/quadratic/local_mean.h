@@ -1,9 +1,8 @@
-// Means of an array around a few places of the grid. They compute the same as the expressions of the
-// same names in local_mean.py, which describe them.
+// Local means of an array. local_mean.py documents them and has the equivalent array expressions.
 
 // Linear weights of the nodes along an axis at evenly spaced places. Part k holds the nodes between
-// the centres of places k and k + 1 (the first and the last part also those beyond the centres); such a
-// node has weight 1 − `to_next` at place k and `to_next` at place k + 1.
+// the centres of places k and k + 1; the first and the last part also hold the nodes beyond the centres.
+// A node in part k has weight 1 − `to_next` at place k and `to_next` at place k + 1.
 template <class T>
 struct Axis {
     std::vector<Index> begin;  // first node of each part, and one past the last node
@@ -25,7 +24,7 @@ struct Axis {
     }
 };
 
-// Values at the places, row by row.
+// Values at the places, in row-major order.
 struct PlaceSums {
     std::vector<double> values;
 
@@ -41,7 +40,7 @@ void local_sums(Rows<const T> r, Rows<double> sums, Rows<double> nodes) {
     const Axis<T> along_x(r.count, sums.count), along_y(r.length, across);
     const auto some = [&](Index first, Index last) {
         PlaceSums found{std::vector<double>(2 * places)};
-        // Sums down the columns of a part, weighted for the two places of each row.
+        // Column sums of a part, weighted for the two places of each row.
         std::vector<T> all(r.length), next(r.length), here(r.length), there(r.length);
         const auto add = [&](std::vector<T>& column, double* at) {
             for (Index l = 0; l < along_y.parts(); ++l) {

@@ -1,4 +1,4 @@
-"""Means of an array around a few evenly spaced places of the grid, over its nonzero nodes."""
+"""Local means of an array over its nonzero nodes, around a coarse lattice of points ("places")."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from numpy.typing import NDArray
 
 from restitution.numerics.kernels import use_loop
 
-Array = NDArray[Any]  # of double or single precision
+Array = NDArray[Any]  # double or single precision
 
 
 @use_loop
 def local_sums(r: Array, sums: Array, nodes: Array) -> None:
-    """Write Σ r and the number of nodes where r ≠ 0, around each place, into `sums` and `nodes`.
+    """Write Σ r and the number of nodes with r ≠ 0 around each place into `sums` and `nodes`.
 
-    Both have shape (places, places), with at least two places. Between the centres of two places a
-    node is shared between them, linearly (hat functions).
+    Both have shape (places, places), with at least two places. A node between two places
+    contributes to both with linear weights (hat functions).
     """
     over_x, over_y = _hat_weights(r, sums)
     sums[...] = over_x.T @ r @ over_y
@@ -26,7 +26,7 @@ def local_sums(r: Array, sums: Array, nodes: Array) -> None:
 
 @use_loop
 def subtract_local_mean(r: Array, share: float, sums: Array, nodes: Array, out: Array) -> None:
-    """Write r less `share` of its mean around each node into `out`, and zero where r = 0.
+    """Write r minus `share` times its local mean into `out`, and zero where r = 0.
 
     `sums` and `nodes` are those of `local_sums`, interpolated between the places.
     """

@@ -2,8 +2,8 @@
 
     minimise  ½ pᵀK p − pᵀb   subject to   lower ≤ p ≤ upper,
 
-K symmetric positive definite and known only through its product with an array. With the gradient
-g = K p − b the solution is characterised by (Karush–Kuhn–Tucker)
+with K symmetric positive definite and known only through its product with an array. With the
+gradient g = K p − b the solution satisfies the conditions of Karush, Kuhn and Tucker:
 
     g ≥ 0 where p = lower,   g = 0 between the bounds,   g ≤ 0 where p = upper.
 
@@ -34,8 +34,8 @@ from restitution.numerics.reductions import max_magnitude
 
 Array = NDArray[np.float64]
 
-# Rounding error of a product, in units in the last place of its largest value (measured on 64² to
-# 4096² nodes: up to 8).
+# Rounding error of a product with K, in machine epsilons of its largest value (at most 8 on 64²
+# to 4096² nodes).
 _ROUNDING = 10.0
 # The estimated gradient is used while the violation is at least this multiple of its error.
 _CLEAR = 3.0
@@ -43,23 +43,24 @@ _CLEAR = 3.0
 _FULL_STEP_FRACTION = 0.8
 # Initial trial step, chosen near the typical accepted one because bounds truncate early steps.
 _INITIAL_STEP = 0.3
-# The optimal length oscillates, so the trial length follows it damped (square root) and limited.
+# The optimal length oscillates, so changes of the trial length are limited and damped (root).
 _MIN_STEP, _MAX_STEP, _STEP_DAMPING = 0.1, 3.0, 0.5
 
 
 class Operator(Protocol):
-    """A linear map of arrays of one shape."""
+    """A linear operator on arrays of one shape."""
 
     def __call__(self, p: Array, /, out: Array | None = None) -> Array:
-        """The map of `p`: in a new array, or in `out`."""
+        """Return the product with `p`, in a new array or in `out`."""
 
 
 @dataclass(frozen=True, eq=False)
 class BoundedQuadratic:
-    """The problem: ½ pᵀK p − pᵀb, and lower ≤ p ≤ upper.
+    """The problem: ½ pᵀK p − pᵀb with lower ≤ p ≤ upper.
 
-    `K` is of double precision, `b` has shape (nx, ny), and a bound is a number or an array of that
-    shape. `K_single` is K in single precision, for the products along the steps; default K itself.
+    `K` is in double precision, `b` has shape (nx, ny), and a bound is a number or an array of that
+    shape. `K_single` is K in single precision, for the products along the steps; by default K
+    itself.
     """
 
     K: Operator
@@ -71,7 +72,7 @@ class BoundedQuadratic:
 
 @dataclass(frozen=True)
 class Minimum:
-    """Where the minimiser stopped: the point, its gradient, and how accurate both are.
+    """Final point of the minimiser, its gradient and the accuracy of both.
 
     `residual` is the violation plus the estimated error of the gradient.
     """
@@ -95,28 +96,27 @@ def minimise_quadratic(
 ) -> Minimum:
     """Projected conjugate gradients, Polak–Ribière+, preconditioned on the free nodes.
 
-    The search among the free nodes follows Polonsky and Keer (1999, Wear 231, 206–219) with bounds
-    on both sides, with three changes. (1) The direction, with a trial length suggested by earlier
-    steps, is projected onto the bounds before the product with K, not after it; the step is the
-    optimal fraction of it, so an iteration takes one product and the energy always falls. (2) The
-    direction is not reset when nodes enter or leave a bound: Polak–Ribière's β, between zero and
-    the β of Fletcher and Reeves (Gilbert and Nocedal 1992, SIAM J. Optim. 2, 21–42), forgets by
-    itself, since steps that end at a bound are not optimal. (3) The residual is preconditioned by
-    an approximate inverse of K, which need be neither symmetric nor a descent direction.
+    The search on the free nodes follows Polonsky and Keer (1999, Wear 231, 206–219) with bounds on
+    both sides and three changes. (1) The direction, with a trial length suggested by earlier steps,
+    is projected onto the bounds before the product with K, not after it. The step is the optimal
+    fraction of the projected direction, so an iteration takes one product and the energy always
+    falls. (2) The direction is not reset when nodes reach or leave a bound. Polak–Ribière's β,
+    limited to between zero and the β of Fletcher and Reeves (Gilbert and Nocedal 1992, SIAM J.
+    Optim. 2, 21–42), decreases after steps that end at a bound, because they are not optimal.
+    (3) The residual is preconditioned by an approximate inverse of K, which need not be symmetric
+    nor give a descent direction.
 
-    Arguments:
-        start: initial point, shape (nx, ny); overwritten.
-        precondition: approximate inverse of K.
-        tolerance: on the violation, in the units of `b`.
-        K_start: `K_single` of a `start` within the bounds, if known; overwritten.
-        accept_estimated_gradient: accept a gradient that was updated along the steps if violation
-            and estimated error are within `tolerance` together. Otherwise the result is accepted
-            only on a gradient computed with K at the final point.
+    `start` is the initial point, shape (nx, ny), and is overwritten. `precondition` is an
+    approximate inverse of K. `tolerance` is on the violation, in the units of `b`. `K_start` is the
+    product of `K_single` and a `start` within the bounds, if known, and is overwritten. With
+    `accept_estimated_gradient` the result may rest on the gradient that was updated along the
+    steps, if the violation and the estimated error are together within `tolerance`. Otherwise the
+    result is accepted only with a gradient computed with K at the final point.
 
     The first gradient is computed with K, unless `K_start` is given or the estimate is accepted.
     Then the products along the steps update it. Their rounding errors are added up as independent
-    ones, and the gradient is computed with K again when the violation is no longer well above the
-    error. If the solve does not converge, the result says so; nothing is raised.
+    errors, and the gradient is computed with K again when the violation is no longer well above the
+    error. If the solve does not converge, the result says so; no exception is raised.
     """
     # Work arrays that only determine the direction have the precision of the products.
     work_type: Any = np.float64 if problem.K_single is None else np.float32
@@ -133,7 +133,7 @@ def minimise_quadratic(
     g = K_start  # projected_gradient subtracts b
     residual = projected_gradient(p, g, b, bounds, r)
     rz_old, iteration = 0.0, 0
-    step_change = 1.0  # the last change of the trial length
+    step_change = 1.0  # factor of the last change of the trial length
     trial_length = _INITIAL_STEP
 
     for iteration in range(1, max_iterations + 1):
@@ -148,7 +148,7 @@ def minimise_quadratic(
         rz, overlap = dot_products(z, r, r_old)
         beta = (rz - max(overlap, 0.0)) / rz_old if rz_old > 0 else 0.0
         beta = beta * step_change if beta > 0 else 0.0
-        length = math.copysign(trial_length, rz)  # an approximate inverse may point uphill
+        length = math.copysign(trial_length, rz)  # negative for an ascent direction
         slope, cut = projected_direction(d, beta, z, length, p, g, r, bounds)
         Kd = K_single(d, out=Kd)
         dKd, max_Kd = curvature(d, Kd)
@@ -173,9 +173,9 @@ def minimise_quadratic(
 
 
 def violation(p: Array, product: Array, b: Array, lower: Bound, upper: Bound) -> float:
-    """Largest violation of the optimality conditions, in the units of the gradient.
+    """Return the largest violation of the optimality conditions, in the units of the gradient.
 
-    `product` holds K p and is overwritten by the gradient.
+    `product` holds K p and is overwritten with the gradient.
     """
     bounds = as_rows(lower, upper, p)
     return projected_gradient(p, product, b, bounds, np.empty_like(p, dtype=np.float32))

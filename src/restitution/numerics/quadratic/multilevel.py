@@ -1,11 +1,11 @@
 """Box-constrained minimisation with a multilevel start: coarser grids first, then a window.
 
 The problem is that of `minimise` with lower = 0 on a uniform grid. Restricted to means over 2 × 2
-nodes it is the same problem on a grid with half as many nodes along each axis. Its solution is a
-first guess of all but the shortest waves (nested iteration; Venner and Lubrecht 2000, *Multilevel
-Methods in Lubrication*). The guess also shows where the pressure is, so the fine problem is solved
-on a window around it. The optimality conditions are then checked on all nodes; violations outside
-widen the window.
+nodes, it becomes the same problem on a grid with half as many nodes along each axis. The solution
+there is a good first guess of all but the shortest waves (nested iteration; Venner and Lubrecht
+2000, *Multilevel Methods in Lubrication*). The guess also shows where the pressure is nonzero, so
+the fine problem is solved on a window around this region. The optimality conditions are then
+checked on all nodes, and the window is widened to include violations outside it.
 """
 
 from __future__ import annotations
@@ -33,26 +33,26 @@ from restitution.numerics.reductions import dot
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-# Builds the operator and its approximate inverse on a block of that many nodes, which are 2ⁿ times
-# as wide as the finest at level n.
+# Builds the operator and its approximate inverse for a shape (in nodes) and a level n, at which the
+# spacing is 2ⁿ times that of the finest grid.
 Operators = Callable[[tuple[int, int], int], tuple[FreeConvolution, SpectralFilter]]
 
-# Nodes along the shorter edge: below the first number a guess costs more than it saves, below the
-# second one the coarsest grid has been reached.
+# Minimum numbers of nodes along the shorter edge: for a first guess, which costs more than it saves
+# on smaller grids, and for a further restriction.
 _MIN_NODES_FOR_GUESS, _MIN_NODES_TO_COARSEN = 120, 80
-# Tolerance on coarser grids, as a fraction of the largest b. Prolongation loses anything finer.
+# Tolerance on coarser grids, as a fraction of the largest b. Prolongation errors are larger.
 _COARSE_ACCURACY = 1e-2
 _COARSE_ITERATIONS = 60
 _MARGIN = 3  # nodes around the guess
-# Largest window, as a fraction of all nodes: the check of a larger one costs more than it saves.
+# Largest window, as a fraction of all nodes: a larger one saves less than its check costs.
 _MAX_WINDOW_FRACTION = 0.7
 _PLACES = 8  # places along each axis around which means are taken
 # Largest fraction of contact nodes strictly between the bounds for which the guess corrects the
-# edge of the contact by the gradient; and the part of the pressure that would close a gap at one
-# node alone that the correction uses (0.15 to 0.5 are nearly as good).
+# edge of the contact by the gradient; and the size of the correction as a fraction of the pressure
+# that would close the gap at one node alone (0.15 to 0.5 work nearly as well).
 _MAX_FREE_FRACTION, _GAP_FRACTION = 0.05, 0.3
-# Rayleigh quotient of K·M, M the approximate inverse, on the free nodes above which the mean is
-# damped; and the largest damping factor that is worth its cost.
+# Rayleigh quotient of K·M on the free nodes (M is the approximate inverse) above which the mean is
+# damped; and the largest damping factor that still saves time.
 _USUAL_STIFFNESS, _MAX_DAMPING_FACTOR = 3.5, 0.7
 
 
@@ -67,13 +67,13 @@ def solve_multilevel(
     """Minimise with 0 ≤ p ≤ `upper` from a multilevel start.
 
     `b` has shape (nx, ny); `upper` is a number or an array of that shape. `tolerance` is on the
-    violation, in the units of `b`. Returns the result and the number of products with K on the
-    finest grid. If the solve does not converge, the result says so; nothing is raised.
+    violation, in the units of `b`. Return the result and the number of products with K on the
+    finest grid. If the solve does not converge, the result says so; no exception is raised.
     """
     whole_grid: Box = (slice(0, b.shape[0]), slice(0, b.shape[1]))
     size = shape_of(whole_grid)
     p, Kp, products = np.zeros_like(b), None, 0
-    whole_K, whole_inverse = operators(size, 0)  # first: smaller blocks share its coefficients
+    whole_K, whole_inverse = operators(size, 0)  # first: smaller blocks reuse its coefficients
     if min(size) >= _MIN_NODES_FOR_GUESS:
         p = _first_guess(operators, b, upper, level=1)
     window = bounding_box(p > 0)
@@ -102,7 +102,7 @@ def solve_multilevel(
             return found, products + whole_K.count
         products += K.count
         iterations, converged = found.iterations, found.converged
-        del K, inverse, found  # frees their arrays before the check allocates its own
+        del K, inverse, found  # free their arrays before the check allocates more
         g = whole_K(p, out=Kp)
         residual = violation(p, g, b, 0.0, upper)
         if residual <= tolerance or not converged:
@@ -117,12 +117,12 @@ def solve_multilevel(
 def mean_damped_preconditioner(inverse: Operator, p: Array, b: Array, upper: Bound) -> Operator:
     """`inverse`, with the local mean of its argument damped where `inverse` overestimates it.
 
-    A constant on a part of the nodes ends in steps. The inverse of a smoothing operator amplifies
-    the short waves of a step, the more the finer the grid (McLean and Steinbach 1999, Adv. Comput.
-    Math. 11, 271–286), and so overestimates the constant: up to 30 times on rough contacts, far
-    more than everything else, and conjugate gradients would have to correct it again whenever nodes
-    change sides. The guess `p` tells by how much, because K p = b on its nodes. Means around 8 × 8
-    places stand for the nearly constant part.
+    The mean of a residual is constant on the contact nodes and drops to zero at their edge. The
+    inverse of a smoothing operator amplifies the short waves of this drop, more so on finer grids
+    (McLean and Steinbach 1999, Adv. Comput. Math. 11, 271–286). So it overestimates the constant
+    part, by up to 30 times on rough contacts, and conjugate gradients would have to correct this
+    part again whenever nodes reach or leave a bound. The guess `p` gives the factor, because
+    K p = b on those nodes. Means around 8 × 8 places represent the nearly constant part.
     """
     free, free_nodes, contact_nodes = _between_the_bounds(p, upper)
     if free_nodes <= 0.5 * contact_nodes:  # no guess, or mostly yielding
@@ -145,25 +145,25 @@ def mean_damped_preconditioner(inverse: Operator, p: Array, b: Array, upper: Bou
 
 
 def _is_array(bound: Bound) -> TypeGuard[Array]:
-    """Whether each node has a bound of its own."""
+    """Whether each node has its own bound."""
     return np.ndim(bound) > 0
 
 
 def _between_the_bounds(p: Array, upper: Bound) -> tuple[Mask, int, int]:
-    """The nodes with 0 < p < `upper`, their number, and the number of nodes with 0 < p."""
+    """Return the mask of 0 < p < `upper`, its number of nodes, and the number with p > 0."""
     touching = p > 0
     free = touching & (p < upper)
     return free, int(np.count_nonzero(free)), int(np.count_nonzero(touching))
 
 
 def _is_worth_its_check(window: Box, size: tuple[int, int]) -> bool:
-    """Whether a window on a grid of that size saves more than the check of all nodes costs."""
+    """Whether a window on a grid of this size saves more than the check of all nodes costs."""
     rows, columns = shape_of(window)
     return rows * columns <= _MAX_WINDOW_FRACTION * size[0] * size[1]
 
 
 def _first_guess(operators: Operators, b: Array, upper: Bound, level: int) -> Array:
-    """The prolonged solution on the grid of `level`, itself begun on the next coarser one.
+    """Return the prolonged solution on the grid of `level`, started from the next coarser grid.
 
     On the coarsest grid the guess is zero.
     """
@@ -192,7 +192,7 @@ def _first_guess(operators: Operators, b: Array, upper: Bound, level: int) -> Ar
     if free_nodes > _MAX_FREE_FRACTION * contact_nodes:
         prolong(found.point, guess)
         return guess
-    # In a nearly fully plastic contact the pressure jumps to zero somewhere between two nodes. The
-    # gradient at both, plastic displacement at the one and gap at the other, places the jump.
+    # In a nearly fully plastic contact the pressure jumps to zero between two nodes. The gradient
+    # at both (plastic displacement at one, gap at the other) tells where.
     prolong(found.point - _GAP_FRACTION / K.diagonal * found.gradient, guess)
     return np.clip(guess, 0.0, upper, out=guess)
