@@ -2,6 +2,7 @@
 
 import csv
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,6 +16,9 @@ from restitution.mixtures.scaling import Computed
 from restitution.results.writer import ResultsFolder
 from restitution.runs.run import run_case
 from tolerance import approx
+
+
+STUDIES = Path(__file__).parents[2] / "docs" / "studies"
 
 
 def law_at(family, radius, folder):
@@ -108,3 +112,15 @@ def test_the_verb(cli, refused, mixture_text, tmp_path):
         "collision.in",
         "packing.in",
     }
+
+
+def test_the_stored_blind_check_holds():
+    with open(STUDIES / "mixture_blind.csv", newline="") as table:
+        rows = list(csv.DictReader(table))
+    held = [
+        abs(float(row["restitution_interpolated"]) - float(row["restitution_computed"]))
+        <= float(row["error"]) + 1e-5
+        for row in rows
+    ]
+    assert len(held) >= 60
+    assert sum(held) >= 0.95 * len(held)
