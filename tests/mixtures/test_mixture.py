@@ -17,7 +17,6 @@ from restitution.results.writer import ResultsFolder
 from restitution.runs.run import run_case
 from tolerance import approx
 
-
 STUDIES = Path(__file__).parents[2] / "docs" / "studies"
 
 
