@@ -53,7 +53,7 @@ STEEL = 'first = { material = "steel", radius = "500 um" }\n'
 
 
 def test_a_material_of_known_strength_yields_by_default(case_text, tmp_path):
-    """Without [interface] a steel sphere was elastic, with a COR of 1.0000 ± 0."""
+    """Without [interface] a steel sphere yields: elastic bodies would give COR = 1.0000 ± 0."""
     begin, end = case_text.index("[first]"), case_text.index("[roughness]")
     case = parse_case(STEEL + case_text[end:])
     assert case.yielding().yield_strength == case.first.yield_strength

@@ -212,7 +212,7 @@ def test_contact_off_the_domain_keeps_the_depths_before_it(cli, case_text, tmp_p
     assert "use a grid of about" in said
     assert "3 of 4 depths were computed and are kept" in said
     # What is foreseen is said before the solve that fails on it.
-    assert said.index("Warning: the contact is foreseen to reach") < said.index("Error: ")
+    assert said.index("Warning: the contact is predicted to reach") < said.index("Error: ")
     assert (tmp_path / "out" / "load-displacement.png").exists()
     assert len((tmp_path / "out" / "curve.csv").read_text().splitlines()) == 4
     assert '"status": "failed"' in (tmp_path / "out" / "summary.json").read_text()

@@ -1,4 +1,4 @@
-"""How fine a grid has to be: the first on which the shallowest contact of a case is resolved."""
+"""The grid of `grid.refine = "auto"`: the coarsest that resolves the shallowest contact."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from restitution.runs.loading import load_to
 from restitution.runs.log import Say, ignore
 
 FACTORS = (1, 2, 4, 8, 16)
-# Nodes of the finest grid that is tried unasked: a few minutes and about 2 GiB.
+# Nodes of the finest grid that "auto" tries: a few minutes and about 2 GiB.
 MOST_NODES = 2**24
 
 
 def settled(case: Case, folder: Path, warn: Say = ignore) -> Case:
-    """`case` with a number for `grid.refine = "auto"`; `warn` is told why that may not be enough.
+    """`case` with a number for `grid.refine = "auto"`; `warn` is called if it may be too small.
 
     The surface (the first of an ensemble) is refined until half of its contact at the shallowest
-    depth lies in patches of `NODES_PER_PATCH` nodes: deeper contacts have larger patches. Only the
-    shallowest depth is solved. Where no grid is fine enough, the finest of up to `MOST_NODES` nodes
-    is taken. Raises as `solve`.
+    depth lies in patches of `NODES_PER_PATCH` nodes or more. Only the shallowest depth is solved,
+    because deeper contacts have larger patches. If no grid is fine enough, the finest of up to
+    `MOST_NODES` nodes is used. Raises as `solve`.
     """
     if case.grid is None or case.grid.refine != "auto":
         return case
@@ -43,8 +43,9 @@ def settled(case: Case, folder: Path, warn: Say = ignore) -> Case:
     unit, scale = ("nm", 1e9) if case.indentation else ("N", 1) if case.load else ("m/s", 1)
     depth = f"{scale * shallowest:.4g} {unit}"
     warn(
-        f'grid.refine = "auto" ends at {finest.grid.factor if finest.grid else 1} ({why}) with the '
-        f"contact at {depth} not resolved: half of it is in patches of {patch} nodes, fewer than "
-        f"{NODES_PER_PATCH}; begin deeper, or leave out short waves (roughness.shortest)"
+        f'grid.refine = "auto" ends at {finest.grid.factor if finest.grid else 1} ({why}), and the '
+        f"contact at {depth} is not resolved: half of it is in patches of at most {patch} nodes, "
+        f"and {NODES_PER_PATCH} are needed; begin deeper, or leave out short waves "
+        "(roughness.shortest)"
     )
     return finest
