@@ -1,4 +1,4 @@
-"""LIGGGHTS gives back the restitution that was exported."""
+"""LIGGGHTS reproduces the exported restitution."""
 
 import pytest
 

@@ -85,8 +85,11 @@ def changed_cell(column, text):
         (changed_cell("force_N", "1.2x"), "line 3: force_N is '1.2x', not a number"),
         (changed_cell("resolved", "yes"), "line 3: resolved is 'yes', not true or false"),
         (lambda lines: [lines[0].replace("force_N", "farce_N"), *lines[1:]], "column force_N is"),
-        (lambda lines: [lines[0], lines[1][: lines[1].rindex(",")], *lines[2:]], "line 2 has not"),
-        (lambda lines: [*lines, "0,0"], "line 6 has not"),
+        (
+            lambda lines: [lines[0], lines[1][: lines[1].rindex(",")], *lines[2:]],
+            "line 2 does not have",
+        ),
+        (lambda lines: [*lines, "0,0"], "line 6 does not have"),
         (lambda lines: ["a" * 10], "column max_indentation_m is missing"),
         (lambda lines: [f"{lines[0]},sticks", *(f"{r},true" for r in lines[1:])], "the same name"),
         (lambda lines: lines[:-1], "a file is damaged"),

@@ -94,7 +94,7 @@ def test_a_yield_pressure_that_no_such_body_has(yield_pressure, said):
 def test_a_grid_coarser_than_the_scan():
     _, line = input_warnings(measured(ROUGH, pixel_x_m=0.5e-6, pixel_y_m=0.2e-6), 1e-7)
     assert "spacing 0.5 um is coarser than the scan's pixel 0.2 um along y" in line
-    assert "shorter than 1 um are taken out" in line
+    assert "shorter than 1 um are left out" in line
     lines = input_warnings(measured(ROUGH, pixel_x_m=0.7e-6, pixel_y_m=0.7e-6), 1e-7)
     assert not any("coarser" in line for line in lines)
 

@@ -23,11 +23,13 @@ from restitution.errors import CaseError, one_line
 from restitution.laws.law import Law, Particle
 
 FRICTION = 0.5
-PLACEHOLDER = f"Friction {FRICTION} is a placeholder: no friction was computed here, give yours."
+PLACEHOLDER = (
+    f"Friction {FRICTION} is a placeholder: friction is not computed here, set your value."
+)
 
 STEPS = 5000
 TIME_STEP = (
-    "the elastic contact time t_c = 2.87 (m*^2/(R* E*^2 V))^(1/5), so fine for the sake of e only"
+    "the elastic contact time t_c = 2.87 (m*^2/(R* E*^2 V))^(1/5); only e needs so small a step"
 )
 
 _WIDTH = 98
@@ -85,7 +87,7 @@ def pairs_at(table: PairTable, velocity: float, code: str, lowest: float) -> lis
             raise CaseError(
                 f"{law.pair} {_failure(law, e)} at {velocity:.6g} m/s, and {code} takes no "
                 f"coefficient of restitution below {lowest:g}; export at a higher velocity, or "
-                "use an adhesive contact model there"
+                "use an adhesive contact model"
             )
         found.append(Pair(i, j, table.particles[i - 1], table.particles[j - 1], law, e))
     return found
@@ -114,7 +116,7 @@ def identifier(particle: Particle, number: int) -> str:
 def header(
     table: PairTable, pairs: Sequence[Pair], velocity: float, *, code: str, ends: str
 ) -> list[str]:
-    """Comment lines above the export for `code`; `ends` says where it ends a contact."""
+    """Comment lines above the export for `code`; `ends` tells when `code` ends a contact."""
     lines = _origin(velocity, code, ends)
     lines += ["", "Types:"]
     lines += [f"  {k}: {particle}" for k, particle in enumerate(table.particles, 1)]
@@ -127,7 +129,7 @@ def summary(
     pairs: Sequence[Pair], velocity: float, *, code: str, ends: str, fragment: str
 ) -> list[str]:
     """The shorter comments above a collision that uses `fragment`; all warnings are kept."""
-    lines = [*_origin(velocity, code, ends), f"Where e comes from is told in {fragment}."]
+    lines = [*_origin(velocity, code, ends), f"The comments in {fragment} give the origin of e."]
     for pair in pairs:
         lines += _warnings(pair, velocity)
     return _wrapped(lines)
@@ -141,7 +143,7 @@ def commented(lines: Iterable[str], sign: str) -> str:
 def render(name: str, **values: object) -> str:
     """The text of the file `name`, from its template `templates/NAME.j2` with `values`.
 
-    Templates know, besides, the names and the filters of `_environment`.
+    Templates can also use the names and the filters of `_environment`.
     """
     return _environment().get_template(f"{name}.j2").render(values)
 
@@ -190,8 +192,8 @@ def _environment() -> Environment:
 def _origin(velocity: float, code: str, ends: str) -> list[str]:
     return [
         f"Coefficients of restitution for {code}, written by restitution {program_version()}.",
-        f"They hold at the impact velocity {velocity:.6g} m/s only: {code} keeps e constant, the "
-        "pairs do not. Export again for another velocity.",
+        f"They hold at the impact velocity {velocity:.6g} m/s only: {code} keeps e constant, but e "
+        "of the pairs depends on the velocity. Export again for another velocity.",
         f"End of a contact in {code}: {ends}",
         "SI units.",
     ]
@@ -208,7 +210,7 @@ def _about(pair: Pair, velocity: float) -> list[str]:
         f"  R* = {law.radius:.6g} m, E* = {law.contact_modulus:.6g} Pa, m* = {law.mass:.6g} kg",
         f"  yield pressure p_y: {p_y}; convention: {law.conventions.yield_pressure}",
         f"  end of contact in e: {law.conventions.end_of_contact}",
-        f"  the error of e is: {law.conventions.restitution_error}",
+        f"  the error of e includes: {law.conventions.restitution_error}",
         f"  elastic contact time: {contact_time(law) * velocity**-0.2:.3g} s; a time step of 1/50 "
         "of it keeps e within 1 % in LAMMPS",
         f"  computed from {law.lowest:.4g} to {law.highest:.4g} m/s; nothing is extrapolated",
@@ -226,12 +228,12 @@ def _warnings(pair: Pair, velocity: float) -> list[str]:
     if not pair.law.at(velocity).resolved:
         lines.append(
             f"WARNING: unresolved at {velocity:.6g} m/s (pair {pair.i} {pair.j}): the grid was too "
-            "coarse there, and e may be off by more than its error says"
+            "coarse there, and the error of e may be too small"
         )
     if pair.restitution == 0:
         lines.append(
-            f"WARNING: pair {pair.i} {pair.j} sticks at {velocity:.6g} m/s, and e = 0 does not "
-            "hold it together"
+            f"WARNING: pair {pair.i} {pair.j} sticks at {velocity:.6g} m/s, but e = 0 does not "
+            "keep the bodies in contact"
         )
     return lines + [f"WARNING: pair {pair.i} {pair.j}: {text}" for text in pair.law.warnings]
 
@@ -246,7 +248,7 @@ def _failure(law: Law, e: float) -> str:
     if e > 0:
         return f"has e = {e:.3g}"
     if law.sticks_everywhere:
-        return "sticks (e = 0) at every velocity that was computed, so also"
+        return "sticks (e = 0) at every computed velocity, so also"
     begins = law.sticks_below
     return "sticks (e = 0)" + ("" if begins is None else f" below {begins:.4g} m/s, so also")
 

@@ -17,8 +17,8 @@ CODE = "LAMMPS"
 LOWEST = 0.001  # reproduced within 0.5 % with `STEPS` steps a contact
 FRAGMENT, COLLISION = "restitution.lmp", "collision.in"
 _ENDS = (
-    "the overlap is back to zero. The damping pulls shortly before; do not add limit_damping, "
-    "which cuts that off and raises e (0.808 for 0.8)."
+    "the overlap is back to zero. The force is tensile shortly before, due to damping; do not add "
+    "limit_damping, which cuts off the tension and raises e (0.808 for 0.8)."
 )
 
 
