@@ -44,7 +44,7 @@ def test_adhesion_and_yield_together():
 
 @pytest.mark.parametrize("seed", range(4))
 def test_the_error_holds_for_curves_that_scatter_as_rough_ones_do(seed):
-    """Of a wavy curve every second point is used; nearly all others lie within the error."""
+    """A law from every second point of a wavy curve: nearly all others lie within the error."""
     rng = np.random.default_rng(seed)
     L = np.linspace(0, 4, 25)
     waves = sum(rng.normal(0, 0.03) * np.sin(k * L + rng.uniform(0, 6)) for k in range(1, 7))

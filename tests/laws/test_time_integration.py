@@ -179,7 +179,7 @@ def test_a_pair_that_sticks_is_held(run):
     out = run(**values, adhesion='work_of_adhesion = "0.5 J/m^2"', steps=3)
     law, force = bare_law(out), stored_force(out)
     assert law.sticks_everywhere
-    assert any("sticks at every velocity" in warning for warning in law.warnings)
+    assert any("sticks at every computed velocity" in warning for warning in law.warnings)
     for point in law.points:
         assert collide_in_time(force, point.velocity).restitution == 0
 

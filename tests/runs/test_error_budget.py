@@ -231,7 +231,7 @@ def test_a_scan_has_places(scan, tmp_path):
 
 
 def test_another_body_may_be_the_softer_one_at_an_end_of_the_spread(tmp_path):
-    """Steel is softer than glass, but not at the low ends: glass then yields at its hardness."""
+    """At the low ends of the spread glass is softer than steel and yields at its hardness."""
     text = (
         'first = { material = "steel", radius = "500 um" }\nsecond = "glass"\n[interface]\n'
         'plasticity = "expanding-cavity"\n[grid]\nnodes = 64\nspacing = "3 um"\n'

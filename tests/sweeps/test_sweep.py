@@ -67,7 +67,7 @@ def test_one_of_several_tables_is_named_by_its_number(case_text):
     assert [part.seed for part in parse_case(study.cases[0].text).roughness] == [1, 8]
     for key, words in (
         ("roughness.seed", "there are 2 tables; give the number of one"),
-        ("roughness.3.seed", "is not the number of one of 2"),
+        ("roughness.3.seed", "is not the number of a table"),
     ):
         with pytest.raises(CaseError, match=words):
             parse_study(two + f'[sweep]\n"{key}" = [8]\n')

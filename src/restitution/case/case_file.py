@@ -71,7 +71,7 @@ def naming(path: Path) -> Iterator[None]:
 
 
 def parse_toml(text: str) -> dict[str, Any]:
-    """The tables of a TOML file. Raises `CaseError`."""
+    """Parse a TOML text. Raises `CaseError`."""
     try:
         _check_dots(text)
         content = tomllib.loads(text)

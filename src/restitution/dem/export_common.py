@@ -108,7 +108,12 @@ def density_of(particle: Particle) -> float:
 
 def identifier(particle: Particle, number: int) -> str:
     """A name for `particle` that every code accepts: letters, digits and `_`, with `number`."""
-    word = re.sub(r"[^A-Za-z0-9]+", "_", plain(particle.name)).strip("_")[:24].rstrip("_").lower()
+    word = (
+        re.sub(r"[^A-Za-z0-9]+", "_", comment_text(particle.name))
+        .strip("_")[:24]
+        .rstrip("_")
+        .lower()
+    )
     word = word or "type"
     return f"{word if word[0].isalpha() else f'p_{word}'}_{number}"
 
@@ -148,7 +153,7 @@ def render(name: str, **values: object) -> str:
     return _environment().get_template(f"{name}.j2").render(values)
 
 
-def plain(text: str) -> str:
+def comment_text(text: str) -> str:
     """`text` as one line of ASCII that cannot end a comment; Greek letters become names."""
     text = unicodedata.normalize("NFKD", one_line(text).translate(_PLAIN)).translate(_PLAIN)
     text = "".join(map(_ascii, text)).translate(_SIGNS)
@@ -177,7 +182,7 @@ def _environment() -> Environment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    environment.filters |= {"number": number, "plain": plain}
+    environment.filters |= {"number": number, "comment_text": comment_text}
     environment.globals |= {
         "friction": FRICTION,
         "placeholder": PLACEHOLDER,
@@ -204,7 +209,7 @@ def _about(pair: Pair, velocity: float) -> list[str]:
     p_y = "none (elastic)" if law.yield_pressure is None else f"{law.yield_pressure:.6g} Pa"
     lines = [
         f"Pair {pair.i} {pair.j}: {pair.first} and {pair.second}",
-        f"  title: {textwrap.shorten(plain(law.title), 200, placeholder=' ...')}",
+        f"  title: {textwrap.shorten(comment_text(law.title), 200, placeholder=' ...')}",
         f"  e = {at.restitution:.6g} +/- {at.error:.2g} at {velocity:.6g} m/s"
         + _elsewhere(law, velocity),
         f"  R* = {law.radius:.6g} m, E* = {law.contact_modulus:.6g} Pa, m* = {law.mass:.6g} kg",
@@ -255,7 +260,7 @@ def _failure(law: Law, e: float) -> str:
 
 def _wrapped(lines: Iterable[str]) -> list[str]:
     found = []
-    for line in map(plain, lines):
+    for line in map(comment_text, lines):
         indent = " " * (len(line) - len(line.lstrip()) + 4)
         found += textwrap.wrap(line, _WIDTH, subsequent_indent=indent) or [""]
     return found

@@ -52,7 +52,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
 
 
 def _hardness(table: PairTable) -> str:
-    """The command with which LIGGGHTS accepts these E; empty where it needs none."""
+    """The command with which LIGGGHTS accepts these E; empty if it needs none."""
     E = [body.youngs_modulus for body in table.particles]
     if max(E) > _HARD:
         return "hard_particles yes"
