@@ -1,4 +1,4 @@
-"""Memory: the estimate, and what is refused for it."""
+"""Estimates of memory, and cases that are rejected because of them."""
 
 import resource
 import subprocess
@@ -13,7 +13,7 @@ from restitution.errors import CaseError
 from restitution.numerics import memory
 from restitution.numerics.grid import Grid
 
-# VmHWM is that of this program; ru_maxrss begins with the size of the process that started it.
+# VmHWM is the peak of this process alone; ru_maxrss starts at the size of its parent process.
 PEAK = """
 import sys
 from restitution.cli import main

@@ -1,4 +1,4 @@
-"""`refine` of a measured surface: the scan's shorter waves, down to its pixel."""
+"""`refine` of a measured surface adds the scan's shorter waves, down to its pixel."""
 
 import numpy as np
 import pytest

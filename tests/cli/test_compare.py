@@ -62,8 +62,8 @@ def test_depths_in_between_are_interpolated_and_others_left_out(cli, results, tm
     a = results("a", ("steps = 4", "steps = 7"), ('from = "20 nm"', 'from = "15 nm"'))
     b = results("b", ("steps = 4", "steps = 12"))
     _, said, _ = cli("compare", a, b, "-o", tmp_path / "rows.csv")
-    assert "interpolated between its own" in said
-    assert "does not reach are left out" in said
+    assert "the second result is interpolated" in said
+    assert "outside the range of the second are left out" in said
     rows = rows_of(tmp_path / "rows.csv")
     assert len(rows) == 6
     assert max(abs(float(row["difference"])) for row in rows) < 0.03
@@ -118,6 +118,6 @@ def test_what_cannot_be_compared(refused, results, tmp_path):
         verb="study",
         more=("--workers", "1"),
     )
-    assert "no case with the same swept values" in refused("compare", study, other)
+    assert "no case has the same swept values" in refused("compare", study, other)
     (tmp_path / "there.csv").write_text("mine")
     assert "nothing is overwritten" in refused("compare", a, a, "-o", tmp_path / "there.csv")

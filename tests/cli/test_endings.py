@@ -45,7 +45,7 @@ def test_an_unforeseen_error_is_recorded(cli, case, tmp_path, monkeypatch):
         cli("run", case, "-o", tmp_path / "out")
     summary = json.loads((tmp_path / "out" / "summary.json").read_text())
     assert summary["status"] == "failed"
-    assert summary["reason"] == ("stopped by an unforeseen error: ZeroDivisionError by\\nnought")
+    assert summary["reason"] == ("stopped by an unexpected error: ZeroDivisionError by\\nnought")
     assert summary["depths_computed"] == 2
 
 
@@ -76,7 +76,7 @@ def test_an_unloading_curve_that_misses_the_stored_energy_is_warned_of(
     monkeypatch.setattr(run, "_BALANCE", 1e-9)
     status, _, said = cli("run", case, "-o", tmp_path / "out")
     assert status == 0
-    assert "2 of 2 unloading curves return another work than was stored, at worst" in said
+    assert "the work of 2 of 2 unloading curves differs from the stored energy, at worst" in said
     assert "raise unloading.steps" in (tmp_path / "out" / "summary.json").read_text()
 
 

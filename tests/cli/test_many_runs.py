@@ -93,5 +93,5 @@ def test_what_cannot_converge_is_refused(refused, case_text, tmp_path):
     text = case_text.replace("seed = 1", "seed = 1\nrealisations = 2")
     (tmp_path / "case.toml").write_text(text)
     message = refused("converge", tmp_path / "case.toml", "-o", tmp_path / "out")
-    assert "case.toml: roughness.realisations: convergence is of one surface" in message
+    assert "case.toml: roughness.realisations: a convergence study uses one surface" in message
     assert not (tmp_path / "out").exists()

@@ -52,7 +52,7 @@ def refused_case(refused, case_text, tmp_path):
         ('"500 um"', "500", "first.radius", '500 has no unit; write for example "0.25 um"'),
         ('"500 um"', '"500"', "first.radius", "has no unit"),
         ('"500 um"', '"500 kg"', "first.radius", '"500 kg" is not a length'),
-        ('"500 um"', '"500 furlonx"', "first.radius", "a unit that is not known"),
+        ('"500 um"', '"500 furlonx"', "first.radius", "an unknown unit"),
         ('"500 um"', '"9**9**9 um"', "first.radius", "is not one number followed by a unit"),
         ('"500 um"', '"nan um"', "first.radius", "is not one number followed by a unit"),
         ('"500 um"', '"1e999 um"', "first.radius", "not a finite number"),
@@ -68,19 +68,24 @@ def refused_case(refused, case_text, tmp_path):
         ("[72, 64]", "72.5", "grid.nodes", "a whole number"),
         ("[72, 64]", "100_000", "grid.nodes", "more than a grid may have (134217728 in all)"),
         ("[72, 64]", "1" * 4000, "grid.nodes", "more than a grid may have"),
-        ("[72, 64]", "1" * 5000, "case.toml", "a number of thousands of digits; correct it"),
+        ("[72, 64]", "1" * 5000, "case.toml", "a number with thousands of digits; correct it"),
         ("seed = 1", f"seed = {2**63}", "roughness.seed", "less than"),
         ("seed = 1", 'seed = 1\n"a\\nb" = 2', "roughness.a\\nb", "unknown key"),
         ("ratio = 0.25", 'ratio = "0.25"', "first.poissons_ratio", '"0.25" should be a number'),
         ("ratio = 0.25", "ratio = true", "first.poissons_ratio", "true should be a number"),
-        ('"500 um"', '"500 km"', "first.radius", "outside what a contact can have"),
+        ('"500 um"', '"500 km"', "first.radius", "outside the plausible range (1e-12 to 1000 m)"),
         ('"500 um"', '"500 fm"', "first.radius", "check the unit"),
         ('"750 MPa"', '"750 mPa"', "interface.yield_pressure", "did you mean MPa?"),
         ('"750 MPa"', '"750 mpa"', "interface.yield_pressure", "did you mean MPa?"),
         ('"500 um"', f'"{"x" * 500}"', "first.radius", f'"{"x" * 59}…" is not one number'),
         ('"500 um"', '"5\\n\\u001b[31m um"', "first.radius", r'"5\n\x1b[31m um" is not one number'),
         ('yield_pressure = "750 MPa"', "", "interface.yield_strength", "is missing, and so are"),
-        ('"750 MPa"', '"elastic"\nplasticity = "truncated"', "interface.plasticity", "to cut at"),
+        (
+            '"750 MPa"',
+            '"elastic"\nplasticity = "truncated"',
+            "interface.plasticity",
+            "give a pressure",
+        ),
         ("steps = 4", "steps = 1", "indentation", "use values = [...]"),
         ("steps = 4", "steps = 10_001", "indentation.steps", "less than or equal to 10000"),
         ('to = "300 nm"', 'to = "20 nm"', "indentation", "use values = [...]"),
@@ -106,7 +111,7 @@ def refused_case(refused, case_text, tmp_path):
             "[unloading]",
             '[load]\nvalues = ["1 N"]\n[unloading]',
             "[load]",
-            "[indentation] and [load] are",
+            "this case has [indentation] and [load]",
         ),
         ("[first]", "[first", "case.toml", "not valid TOML"),
     ],
@@ -120,7 +125,9 @@ def test_a_key_that_is_wrong(refused_case, old, new, key, remedy):
 def test_nothing_says_how_deep(refused_case, case_text):
     span = case_text[case_text.index("[indentation]") : case_text.index("[unloading]")]
     message = refused_case((span, ""))
-    assert "give one of the tables [indentation], [load] and [impact]; none of them is" in message
+    assert (
+        "give one of the tables [indentation], [load] and [impact]; this case has none" in message
+    )
 
 
 @pytest.mark.parametrize(
@@ -149,9 +156,8 @@ def test_an_impact_needs_masses(refused_case, case_text):
 @pytest.mark.parametrize("verb", ["check", "run"])
 def test_two_flat_bodies(refused_case, verb):
     message = refused_case(('"500 um"', '"flat"'), verb=verb)
-    assert "case.toml: first.radius: is flat" in message
-    assert "[second] is left out and so defaults to [first]" in message
-    assert "both are flat; one must be a sphere" in message
+    assert "case.toml: first.radius: both bodies are flat" in message
+    assert "[second] is left out and defaults to [first]; add [second]" in message
 
 
 @pytest.mark.parametrize(
@@ -206,7 +212,7 @@ def test_contact_off_the_domain_keeps_the_depths_before_it(cli, case_text, tmp_p
     assert "use a grid of about" in said
     assert "3 of 4 depths were computed and are kept" in said
     # What is foreseen is said before the solve that fails on it.
-    assert said.index("Warning: the contact is foreseen to reach") < said.index("Error: ")
+    assert said.index("Warning: the contact is predicted to reach") < said.index("Error: ")
     assert (tmp_path / "out" / "load-displacement.png").exists()
     assert len((tmp_path / "out" / "curve.csv").read_text().splitlines()) == 4
     assert '"status": "failed"' in (tmp_path / "out" / "summary.json").read_text()
@@ -320,7 +326,7 @@ def test_a_case_that_is_no_regular_file_is_refused_at_once(refused, tmp_path):
         assert "is not a regular file" in refused("check", path)
     with (tmp_path / "large.toml").open("wb") as stream:
         stream.truncate(2**33)
-    assert "has 8589934592 bytes, more than" in refused("check", tmp_path / "large.toml")
+    assert "has 8589934592 bytes" in refused("check", tmp_path / "large.toml")
 
 
 SPACES, MANY = 10**5 * " ", 5000

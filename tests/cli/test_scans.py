@@ -137,14 +137,18 @@ def test_a_scan_may_be_refined_on_its_own_pixels(surface, scan):
     [
         ('extend = "twin"', GRID.format(nodes=200), "needs a seed"),
         ('extend = "wrap"', GRID.format(nodes=200), 'roughness.extend: "wrap" should be'),
-        ('extend = "mirror"\nseed = 1', GRID.format(nodes=200), 'seed belongs to extend = "twin"'),
+        (
+            'extend = "mirror"\nseed = 1',
+            GRID.format(nodes=200),
+            'seed applies only to extend = "twin"',
+        ),
         (
             'extend = "twin"\nseed = 1\nplace = 2',
             GRID.format(nodes=200),
-            "a twin has a seed instead",
+            "remove place, or vary seed",
         ),
         ("realisations = 0", "", "roughness.realisations: 0 should be greater than or equal to 1"),
-        ('extend = "mirror"', "", "[grid] is missing; roughness.extend says how"),
+        ('extend = "mirror"', "", "[grid] is missing; roughness.extend does not"),
         ('extend = "mirror"', "[grid]\nrefine = 2", "grid: nodes and spacing are missing"),
         ("", '[grid]\nspacing = "1 um"', 'the key "nodes" is missing'),
         ("", GRID.format(nodes=200), "a larger scan, or roughness.extend"),
@@ -195,7 +199,7 @@ def test_a_scan_without_size_asks_for_the_key(refused, case, tmp_path):
 
 def test_several_surfaces_need_a_grid_and_one_number_of_realisations(refused, case):
     one = SCAN.format(more="", grid="").replace("[roughness]", "[[roughness]]")
-    assert "only a single measured surface brings its own" in refused("check", case(tables=one * 2))
+    assert "only a single measured surface defines" in refused("check", case(tables=one * 2))
     table = '[[roughness]]\nkind = "gaussian"\nrms = "30 nm"\nseed = 1\ncorrelation_length = "2 um"'
     two = f"{table}\nrealisations = 2\n{table}\nrealisations = 3\n" + GRID.format(nodes=96)
     assert "roughness.realisations: differs" in refused("check", case(tables=two))

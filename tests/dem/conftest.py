@@ -1,4 +1,4 @@
-"""Pair tables of laws made by hand, and the DEM programs that run what was exported."""
+"""Pair tables of artificial laws, and the DEM programs that run the exports."""
 
 import re
 import shutil
@@ -17,7 +17,7 @@ PLATE = Particle(name="plate", radius=None, youngs_modulus=3e9, poissons_ratio=0
 
 @pytest.fixture(scope="session")
 def constant():
-    """Make a law of the same e at every velocity from another."""
+    """Make a law with the same e at every velocity from another law."""
 
     def make(law, e):
         changes = {"restitution": e, "ratio": e**2}
@@ -35,7 +35,7 @@ def equal(law) -> PairTable:
 
 @pytest.fixture(scope="session")
 def mixed(law) -> PairTable:
-    """Two unlike spheres, all pairs of them, and both on a wall."""
+    """Two unlike spheres and a wall, with the laws of all pairs."""
     return pair_table(
         [
             law(),
@@ -49,20 +49,20 @@ def mixed(law) -> PairTable:
 
 @pytest.fixture(scope="session")
 def on_wall(law) -> PairTable:
-    """A sphere on a wall, and nothing else."""
+    """Only a sphere on a wall."""
     return pair_table([law(second=PLATE)])
 
 
 @pytest.fixture
 def hostile(law) -> Particle:
-    """A sphere whose name tries to leave every comment and script."""
+    """A sphere whose name tries to end the comments and strings of every code."""
     name = '"""\n*/ } shell rm\r\n${x} $(y) \\'
     return law().first.model_copy(update={"name": name + "\nquit 1\u2028 ' ; # Größe µ €&"})
 
 
 @pytest.fixture
 def texts(tmp_path):
-    """Write files by name into a folder of its own."""
+    """Write files, given by name, into a new folder."""
 
     def write(files, folder="run"):
         place = tmp_path / folder
@@ -75,7 +75,7 @@ def texts(tmp_path):
 
 
 class Program:
-    """A DEM program that runs collisions as they were written; skips the test where missing."""
+    """A DEM program that runs exported collisions; skips the test if it is not installed."""
 
     def __init__(self, name, script, environment):
         path = shutil.which(name, path=environment["PATH"])
@@ -83,7 +83,7 @@ class Program:
         self.environment = environment
 
     def says(self, folder, *arguments, status=0):
-        """What it prints, run in `folder`."""
+        """The output of the program, run in `folder`."""
         done = subprocess.run(
             [*self.command, *map(str, arguments)],
             cwd=folder,
@@ -98,7 +98,7 @@ class Program:
         return said
 
     def ratios(self, folder, *arguments):
-        """The rebound ratios of the collisions it ran."""
+        """The rebound ratios that the program printed."""
         said = self.says(folder, *arguments)
         found = re.findall(r"^restitution = (\S+)", said, re.MULTILINE)
         assert found, said[-3000:]
@@ -129,12 +129,12 @@ CLEAN = {
 
 @pytest.fixture(scope="session")
 def liggghts() -> Program:
-    """LIGGGHTS as Debian has it."""
+    """LIGGGHTS as packaged in Debian."""
     return Program("liggghts", ["-in", "collision.in.liggghts", "-log", "none"], CLEAN)
 
 
 @pytest.fixture(scope="session")
 def yade(tmp_path_factory) -> Program:
-    """YADE as Debian has it; it wants a home folder to write to."""
+    """YADE as packaged in Debian; it needs a writable home folder."""
     home = {"HOME": str(tmp_path_factory.mktemp("home"))}
     return Program("yade", ["-n", "-x", "-j1"], CLEAN | home)

@@ -1,4 +1,4 @@
-"""The tables for EDEM, which was not run."""
+"""The tables for EDEM; EDEM itself is not run."""
 
 import csv
 

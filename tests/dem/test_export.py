@@ -1,4 +1,4 @@
-"""From a run to a law to the input of a DEM code, as a user types it."""
+"""From a run to a law to the input of a DEM code, with the commands of a user."""
 
 import csv
 import math
@@ -36,7 +36,7 @@ curves = 1
 
 @pytest.fixture
 def folder(cli, tmp_path):
-    """The folder of a law that was computed and made as a user would."""
+    """The folder of a law made with the commands of a user."""
     (tmp_path / "case.toml").write_text(CASE)
     assert cli("run", tmp_path / "case.toml", "-o", tmp_path / "out")[0] == 0
     status, said, _ = cli("fit-law", tmp_path / "out", "-o", tmp_path / "law")
@@ -48,7 +48,7 @@ def folder(cli, tmp_path):
 
 @pytest.fixture
 def stored(law, tmp_path):
-    """Store a law made by hand; return its folder."""
+    """Store an artificial law; return its folder."""
 
     def make(name, *arguments, **values):
         write_law(law(*arguments, **values), tmp_path / name)
@@ -115,12 +115,12 @@ def test_refusals(stored, law, refused, cli, tmp_path):
     def said(*arguments):
         return refused("export", *arguments, "-o", tmp_path / "x")
 
-    assert "takes one coefficient of restitution a pair" in said(one, "--to", "lammps")
+    assert "takes one coefficient of restitution for each pair" in said(one, "--to", "lammps")
     assert "has no unit" in said(one, "--to", "yade", "--velocity", "1")
     assert "not a velocity" in said(one, "--to", "yade", "--velocity", "1 m")
     assert "nothing is extrapolated" in said(one, "--to", "edem", "--velocity", "20 m/s")
     message = said(unlike, "--to", "lammps", "--velocity", "1 m/s")
-    assert "the law of one pair is not that of another" in message
+    assert "another pair's law cannot replace it" in message
     assert "two laws are given" in said(one, one, "--to", "csv")
     assert "holds no law" in said(tmp_path, "--to", "csv")
     assert not (tmp_path / "x").exists()
@@ -143,6 +143,6 @@ def test_the_contact_time_is_that_of_a_hertzian_impact(law):
 
     found = law()
     deepest = (15 * found.mass / (16 * found.contact_modulus * found.radius**0.5)) ** 0.4
-    # δ = δ_max sin^0.8 θ takes the singularity at the turning point out.
+    # The substitution δ = δ_max sin^0.8 θ removes the singularity at the turning point.
     share, _ = quad(lambda t: 0.8 * math.sin(t) ** -0.2, 0, math.pi / 2)
     assert contact_time(found) == approx(2 * deepest * share, rel=2e-3)

@@ -1,4 +1,4 @@
-"""LAMMPS gives back the restitution that was exported."""
+"""LAMMPS reproduces the exported restitution."""
 
 import re
 
@@ -45,7 +45,7 @@ def test_restitution_is_reproduced_from_the_least_to_one(lammps, law, constant, 
 
 
 def test_contact_has_the_stiffness_of_the_law(lammps, mixed, constant, texts):
-    """The least distance of an elastic collision is Hertz's: δ = (15 m* V²/16 E* R*^½)^⅖."""
+    """The maximum overlap of an elastic collision is Hertz's: δ = (15 m* V²/16 E* R*^½)^⅖."""
     elastic = pair_table([constant(found, 1.0) for _, _, found in mixed.pairs()])
     files = write(elastic, 1.0)
     deepest = "variable depth equal -v_gap\nfix deepest all ave/time 1 1 1 v_depth mode scalar"
@@ -105,7 +105,9 @@ def test_warnings_are_carried_into_every_file(law):
 
 def test_pairs_that_stick_are_refused(law, constant):
     sticking = constant(law(sticks_below=0.3), 0.0)
-    with pytest.raises(CaseError, match=r"sticks \(e = 0\) at every velocity.*LAMMPS.*0.001"):
+    with pytest.raises(
+        CaseError, match=r"sticks \(e = 0\) at every computed velocity.*LAMMPS.*0.001"
+    ):
         write(pair_table([sticking]), 0.1)
 
 

@@ -1,4 +1,4 @@
-"""The fitted `mdr` in the export to LAMMPS: offered for a pair, or the reason why not."""
+"""The fitted `mdr` in the export to LAMMPS: offered for a pair, or left out with the reason."""
 
 import re
 
@@ -38,7 +38,7 @@ def without_breaks(text):
 
 
 def opened(laws):
-    """The files with every mdr line in place of what stands there."""
+    """The files with every mdr line used instead of the line of the default model."""
     files = write(pair_table(laws), 1.0)
     text = files["restitution.lmp"]
     for kind in ("pair_coeff", "variable wall_"):
@@ -82,14 +82,14 @@ def test_a_wall_alone_is_told_what_its_line_needs(law, plate):
 
 
 def test_several_types_have_no_line_and_are_told_why(mixed, plate):
-    """None is dropped without a word; and LAMMPS refuses what would have been said otherwise."""
+    """Every pair without a line has a reason, and LAMMPS rejects the lines that are left out."""
     laws = [found.model_copy(update={"laws": (MDR,)}) for _, _, found in mixed.pairs()]
     said = fragment(laws)
     assert " mdr 7e" not in said
     pairs = re.findall(r"^# No mdr line for pair (\d \d): ", said, re.MULTILINE)
     assert pairs == ["1 1", "1 2", "1 3", "2 2", "2 3"]
     assert without_breaks(said).count("LAMMPS takes one mdr model in a pair_style") == 3
-    assert without_breaks(said).count("mdr at a wall only where pair_style granular has mdr") == 2
+    assert without_breaks(said).count("mdr at a wall only if pair_style granular has mdr") == 2
 
 
 def test_lammps_refuses_several_mdr_or_mdr_beside_another_model(mixed, lammps, texts):
@@ -125,5 +125,5 @@ def test_no_line_is_offered_beyond_the_velocities_of_its_fit(law):
         point.model_copy(update={"resolved": point.velocity > 0.05}) for point in law().points
     )
     found = law(laws=(MDR,), points=coarse)
-    assert "fitted from 0.05623 to 10 m/s, which leaves out 0.03 m/s" in fragment([found], 0.03)
+    assert "fitted from 0.05623 to 10 m/s, and 0.03 m/s is outside" in fragment([found], 0.03)
     assert "# pair_coeff 1 1 mdr" in fragment([found], 0.1)

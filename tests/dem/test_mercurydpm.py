@@ -1,4 +1,4 @@
-"""The header for MercuryDPM, which was not run: its text, and its syntax beside stand-ins."""
+"""The header for MercuryDPM: its text, and its syntax with stand-ins for MercuryDPM."""
 
 import re
 import shutil
@@ -11,7 +11,7 @@ from restitution.dem.pair_table import pair_table
 from restitution.errors import CaseError
 from tolerance import approx
 
-# What the header uses of MercuryDPM, as its sources declare it.
+# The parts of MercuryDPM that the header uses, as its sources declare them.
 DPM_BASE = """
 #pragma once
 using Mdouble = double;
@@ -47,7 +47,7 @@ def test_types_and_pairs_get_their_moduli_and_restitution(mixed):
     assert shear == approx(1 / (2 * 1.75 * 1.25 / 70e9 + 2 * 1.7 * 1.3 / 200e9))
     assert len(calls) == 3 + 3  # three types, three mixed pairs
     assert text.count("copyAndAddObject(type)") == 3
-    assert "Not compiled or run with MercuryDPM here" in text
+    assert "was not compiled or run with MercuryDPM" in text
 
 
 def test_it_is_valid_beside_stand_ins(mixed, hostile, law, texts):

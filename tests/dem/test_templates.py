@@ -1,4 +1,4 @@
-"""The templates of the exports: each is used, and the files they give are well-formed."""
+"""The templates of the exports: all are used, and the files are well-formed."""
 
 import shutil
 import subprocess
@@ -52,7 +52,7 @@ def test_nothing_is_left_to_fill_in(exports):
 
 @pytest.mark.parametrize("code", ["lammps", "liggghts"])
 def test_quotes_are_closed_and_continued_lines_are_indented(exports, code):
-    """A line that ends in & is continued by the next one, which is indented; no other one is."""
+    """Lines after a line that ends in & are indented, and no others."""
     for key, text in exports.items():
         if key[1] != code:
             continue
@@ -77,7 +77,7 @@ def test_what_yade_imports_and_runs_is_python(exports, texts):
     ruff = shutil.which("ruff", path=str(Path(sys.executable).parent)) or shutil.which("ruff")
     if ruff is None:
         pytest.skip("ruff is not installed")
-    # YADE's scripts import all of its names.
+    # Scripts for YADE import all names of yade.
     rules = ["--select", "E9,F,W", "--ignore", "F403,F405"]
     done = subprocess.run(
         [ruff, "check", "--isolated", "--no-cache", *rules, "."],

@@ -1,4 +1,4 @@
-"""YADE gives back the restitution that was exported, constant or as the law has it."""
+"""YADE reproduces the exported restitution, either constant or from the law."""
 
 import json
 import sys
@@ -13,7 +13,7 @@ from restitution.errors import CaseError
 from tolerance import approx
 
 VELOCITIES = (0.01, 0.07, 0.5, 2.0, 10.0)
-# YADE takes seconds to start: many collisions, each as it was written, in one process.
+# YADE takes seconds to start, so run many exported collisions in one process.
 DRIVER = """
 import json, os, sys
 for folder, *arguments in json.load(open("jobs.json")):
@@ -28,7 +28,7 @@ for folder, *arguments in json.load(open("jobs.json")):
 
 @pytest.fixture
 def collide(yade, texts):
-    """The rebound ratios of `jobs`: folder and arguments of collisions."""
+    """The rebound ratios of `jobs`, pairs of the folder and the arguments of a collision."""
 
     def run(jobs):
         jobs = [[str(folder), *arguments] for folder, *arguments in jobs]
@@ -70,7 +70,7 @@ def test_a_collision_runs_by_itself_with_what_was_exported(equal, yade, texts):
 
 @pytest.mark.parametrize("e", [1.0, 0.99, 0.9, 0.5, 0.1, 0.01])
 def test_damping_returns_its_restitution(equal, e):
-    """x″ = −x^{3/2} − 2β(3x^½/2)^½ x′, YADE's law without units, ends where that is zero."""
+    """YADE's dimensionless x″ = −x^{3/2} − 2β(3x^½/2)^½ x′; contact ends at x″ = 0."""
     beta = module(equal)["damping"](e)
 
     def slope(_, y):
@@ -108,7 +108,7 @@ def test_warnings_are_carried_into_every_file(law):
 
 
 def test_pairs_that_stick_or_are_missing_are_refused(law, constant, mixed):
-    with pytest.raises(CaseError, match=r"sticks \(e = 0\) at every velocity .*YADE"):
+    with pytest.raises(CaseError, match=r"sticks \(e = 0\) at every computed velocity.*YADE"):
         write(pair_table([constant(law(), 0.0)]), 1.0)
     laws = {(i, j): found for i, j, found in mixed.pairs()}
     with pytest.raises(CaseError, match=r"YADE needs a law for every pair"):
@@ -157,7 +157,7 @@ def test_a_wall_keeps_its_density(law):
 
 
 def module(table):
-    """The names of the module that is exported, with a stand-in for YADE."""
+    """The names of the exported module, imported with a stand-in for YADE."""
     stand_in = type(sys)("yade")
     for name in ("O", "FrictMat", "Ip2_FrictMat_FrictMat_MindlinPhys", "MatchMaker"):
         setattr(stand_in, name, None)

@@ -1,4 +1,4 @@
-"""The compact form, against laws that are known."""
+"""The compact fit, compared with known laws."""
 
 import math
 
@@ -16,7 +16,7 @@ SMOOTH = ThorntonNing(R, E_STAR, P_Y)
 
 @pytest.fixture
 def with_ratios(law):
-    """Make a law with these ratios W_u/W_l at these velocities."""
+    """Make a law with the given ratios W_u/W_l at the given velocities."""
     some = law()
 
     def make(V, ratio, **values):
@@ -63,7 +63,7 @@ def test_an_elastic_adhesive_pair_is_its_sticking_velocity(with_ratios):
 
 
 def test_both(with_ratios):
-    """Additive losses, as Thornton and Ning have them."""
+    """Losses by yielding and adhesion add up, as in Thornton and Ning's model."""
     V_y = float(SMOOTH.first_yield.velocity(MASS))
     V = V_y * np.geomspace(1.2, 100, 20)
     e = SMOOTH.restitution(V, MASS)
@@ -74,7 +74,7 @@ def test_both(with_ratios):
 
 
 def test_the_error_between_points_is_that_of_a_point_that_is_not_known(with_ratios):
-    """A kink between two points cannot be seen, but a point that stands alone can."""
+    """The estimate cannot include a kink between two points, but it includes a single outlier."""
     V = np.geomspace(0.1, 10, 12)
     ratio = np.full(12, 0.5)
     ratio[6] = 0.8
@@ -96,7 +96,7 @@ def test_numbers_are_restitutions_whatever_the_fit(with_ratios):
 
 
 def test_the_fit_has_no_value_outside_of_the_resolved_points(with_ratios):
-    """Lossless where it is resolved, 0.574 where it is not: 1 is said of the resolved only."""
+    """e = 1 at resolved points, 0.574 at others: the fit has values only for resolved ones."""
     V = np.geomspace(0.01, 10, 14)
     ratio = np.concatenate([np.full(3, 0.574**2), np.ones(4), np.linspace(0.9, 0.4, 7)])
     law = with_ratios(V, ratio)

@@ -1,4 +1,4 @@
-"""Between the points of a law, and what is said of the error there."""
+"""Interpolation between the points of a law, and its error estimate."""
 
 import csv
 import itertools
@@ -20,7 +20,7 @@ R, E_STAR, P_Y, MASS = 250e-6, 112e9, 750e6, 2e-6
 
 
 def test_an_elastic_adhesive_pair_is_exact_between_any_two_velocities():
-    """e² = 1 − (V_s/V)², steep where it begins: five velocities over more than a decade."""
+    """e² = 1 − (V_s/V)², which is steep near V_s, at five velocities over more than a decade."""
     V = np.array([0.05, 0.2, 0.5, 1.0, 2.0])
     curve = RatioCurve(V, 1 - (0.107 / V) ** 2, adhesive=True)
     for v in (0.06, 0.115, 0.15, 0.3, 1.7):
@@ -44,7 +44,7 @@ def test_adhesion_and_yield_together():
 
 @pytest.mark.parametrize("seed", range(4))
 def test_the_error_holds_for_curves_that_scatter_as_rough_ones_do(seed):
-    """Every second point of a wavy curve; what lies between is inside the error, nearly always."""
+    """A law from every second point of a wavy curve: nearly all others lie within the error."""
     rng = np.random.default_rng(seed)
     L = np.linspace(0, 4, 25)
     waves = sum(rng.normal(0, 0.03) * np.sin(k * L + rng.uniform(0, 6)) for k in range(1, 7))
@@ -58,7 +58,7 @@ def test_the_error_holds_for_curves_that_scatter_as_rough_ones_do(seed):
 
 
 def test_the_error_of_the_example_holds_between_its_velocities_and_close_to_them(law):
-    """Four rough surfaces, as `docs/studies/dem.py` computed them: twelve velocities are known."""
+    """Results of `docs/studies/dem.py` for four rough surfaces at twelve velocities."""
     with open(BETWEEN, newline="") as file:
         rows = [{key: float(text) for key, text in row.items()} for row in csv.DictReader(file)]
     held = {}
@@ -87,7 +87,7 @@ def point_of(law, row):
 
 @given(st.lists(st.floats(0, 1), min_size=2, max_size=8), st.data())
 def test_the_error_is_continuous(law, values, data):
-    """Across a point, and between: nothing jumps where the velocity moves by a millionth."""
+    """A relative change of the velocity by a millionth causes no jump, at a point or between."""
     V = np.geomspace(0.1, 10, len(values))
     errors = data.draw(st.lists(st.floats(0, 0.05), min_size=len(values), max_size=len(values)))
     rows = [
@@ -149,7 +149,7 @@ def test_where_sticking_ends(ratios, begins):
 
 
 def test_the_error_is_at_least_the_distance_from_a_straight_line():
-    """Between dense points of a smooth curve, where left-out points are hardly missed."""
+    """The points of a smooth curve are so dense that leave-one-out residuals almost vanish."""
     V = np.geomspace(1.0, 2.0, 40)
     curve = RatioCurve(V, 0.9 - 0.2 * np.log(V) ** 2, adhesive=False)
     for below, above in itertools.pairwise(V[10:30]):

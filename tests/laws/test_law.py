@@ -1,4 +1,4 @@
-"""The law of a run: what it holds, what it refuses, and what lies between its points."""
+"""The law of a run: its content, its errors for the user, and values between its points."""
 
 import csv
 import json
@@ -97,7 +97,9 @@ def test_at_a_point_the_law_is_the_point_and_between_points_it_is_between(rough)
         middle = law.at(math.sqrt(before.velocity * point.velocity))
         ends = sorted((before.restitution, point.restitution))
         assert ends[0] <= middle.restitution <= ends[1]
-        assert middle.error >= 0.5 * (before.error + point.error)  # linear, and what is between
+        assert middle.error >= 0.5 * (
+            before.error + point.error
+        )  # linear part and interpolation error
         assert middle.resolved == (before.resolved and point.resolved)
 
 
@@ -105,7 +107,7 @@ def test_at_a_point_the_law_is_the_point_and_between_points_it_is_between(rough)
 def test_nothing_is_extrapolated(rough, factor):
     law = bare_law(rough)
     velocity = factor * (law.lowest if factor < 1 else law.highest)
-    with pytest.raises(DomainError, match="outside what was computed"):
+    with pytest.raises(DomainError, match="outside the computed velocities"):
         law.at(velocity)
 
 
@@ -133,7 +135,7 @@ def test_what_is_no_law(tmp_path, rough):
     (tmp_path / "law.json").write_text('{"title": 1}')
     with pytest.raises(CaseError, match="is not a law of this version"):
         read_law(tmp_path)
-    with pytest.raises(OutputError, match="is a law already"):
+    with pytest.raises(OutputError, match="is already a law"):
         law_of(tmp_path)
     (tmp_path / "law.json").unlink()
     with pytest.raises(OutputError, match="holds no results of a run"):
@@ -147,12 +149,12 @@ def test_without_density_there_is_no_law(runs):
     text = (HEAD + PLASTIC + '[indentation]\nvalues = ["1 um"]\n' + GRID).replace(
         'density = "7850 kg/m^3"\n', ""
     )
-    with pytest.raises(CaseError, match="a density is not given"):
+    with pytest.raises(CaseError, match="gives no density"):
         law_of(runs(text))
 
 
 def test_unresolved_points_are_kept_but_not_fitted(runs):
-    """One node carries the shallowest contacts of a surface that is too rough for its grid."""
+    """On a grid too coarse for the surface, one node carries the shallowest contacts."""
     roughness = (
         '[roughness]\nkind = "gaussian"\nrms = "0.3 um"\ncorrelation_length = "2 um"\nseed = 1\n'
     )
@@ -166,7 +168,7 @@ def test_unresolved_points_are_kept_but_not_fitted(runs):
 
 
 def test_the_fitted_yield_pressure_is_that_which_went_in(truncated):
-    """Thornton and Ning's force is that of the cut pressure; their unloading is not quite."""
+    """Thornton and Ning's force is exact for truncated pressure, their unloading is not."""
     laws = {each.name: each for each in law_of(truncated).laws}
     by_force = laws["thornton-ning-force"].parameters["yield_pressure_Pa"]
     assert by_force == approx(750e6, rel=0.01)
@@ -194,7 +196,7 @@ def test_every_fitted_law_is_judged_by_its_own_numbers(truncated):
         assert each.source
         assert each.ends
     rms = {each.name: each.rms for each in law.laws}
-    # What cannot vary with velocity is no better than a constant, what can is.
+    # A law whose e does not depend on velocity fits no better than a constant; the others do.
     assert rms["eepa"] == approx(rms["constant"], rel=0.01)
     assert rms["walton-braun"] < 0.5 * rms["constant"]
     assert rms["luding"] < 0.5 * rms["constant"]

@@ -1,4 +1,4 @@
-"""Collisions in time, against closed forms and against the energies."""
+"""Collisions in time, compared with closed forms and with energies."""
 
 import csv
 import math
@@ -24,7 +24,7 @@ P_Y = 750e6
 
 
 def closed_form(pair, p_y, depths):
-    """Thornton and Ning's force law, as exact as it is stored."""
+    """Thornton and Ning's force law in the form of a stored run."""
     smooth = ThorntonNing(pair.radius, pair.contact_modulus, p_y)
     curves = []
     for deepest in depths:
@@ -146,7 +146,7 @@ def test_between_stored_curves_it_is_near_and_beyond_them_refused(run):
     found = collide_in_time(force, between)
     assert found.blended
     assert found.restitution == approx(law.at(between).restitution, abs=0.01)
-    with pytest.raises(DomainError, match="not within what was computed"):
+    with pytest.raises(DomainError, match="outside the computed velocities"):
         collide_in_time(force, 1.01 * law.highest)
     with pytest.raises(DomainError, match="nothing is extrapolated"):
         collide_in_time(force, 0.5 * law.lowest)
@@ -174,12 +174,12 @@ def test_the_verb(run, cli, refused, tmp_path):
 
 
 def test_a_pair_that_sticks_is_held(run):
-    """Slow enough that adhesion nearly cancels the work of the approach."""
+    """The impact is so slow that adhesion nearly cancels the work of the approach."""
     values = {**ADHESIVE, "first": "6 nm", "last": "7.5 nm"}
     out = run(**values, adhesion='work_of_adhesion = "0.5 J/m^2"', steps=3)
     law, force = bare_law(out), stored_force(out)
     assert law.sticks_everywhere
-    assert any("sticks at every velocity" in warning for warning in law.warnings)
+    assert any("sticks at every computed velocity" in warning for warning in law.warnings)
     for point in law.points:
         assert collide_in_time(force, point.velocity).restitution == 0
 

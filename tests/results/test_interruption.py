@@ -1,4 +1,4 @@
-"""Signals wait until what must be whole is whole."""
+"""Signals are delayed until an operation that must complete has completed."""
 
 import os
 import signal
@@ -104,7 +104,7 @@ def test_other_threads_hold_nothing(handled):
 
 
 def test_no_moment_loses_a_signal_or_a_body(handled):
-    """A process that is sent signals all the time never ends a body early."""
+    """A process that receives signals continuously never ends a body early."""
     begun = ended = raised = 0
     armed, stop = [], []
 

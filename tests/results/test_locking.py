@@ -1,4 +1,4 @@
-"""One process at a time writes in a folder."""
+"""Only one process at a time writes in a folder."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Stored results are read as they were written, or refused."""
+"""Stored results are read as they were written, or rejected."""
 
 import json
 import math
@@ -37,7 +37,7 @@ def test_what_was_written_is_read(whole, case_text):
         row["restitution"] for row in whole.rows
     ]
     assert [row["resolved"] for row in run.curve.rows] == [row["resolved"] for row in whole.rows]
-    assert math.isnan(run.curve.rows[0]["material_error"])  # no value is the library's
+    assert math.isnan(run.curve.rows[0]["material_error"])  # the case uses no library values
     assert run.curve.rows[0]["total_error"] == whole.rows[0]["total_error"]
     assert run.dataset["restitution"].values.tolist() == [row["restitution"] for row in whole.rows]
 
@@ -53,7 +53,7 @@ def test_a_changed_byte_is_refused(copy, name, where):
 
 
 def test_a_digit_is_told_by_the_checksum_alone(copy):
-    """Nothing else could tell: the number is as good as any."""
+    """Only the checksum can detect this, because the number is valid."""
     text = (copy / "curve.csv").read_text()
     last = text.splitlines()[-1].split(",")[7]
     digit = last[-1]
@@ -85,16 +85,19 @@ def changed_cell(column, text):
         (changed_cell("force_N", "1.2x"), "line 3: force_N is '1.2x', not a number"),
         (changed_cell("resolved", "yes"), "line 3: resolved is 'yes', not true or false"),
         (lambda lines: [lines[0].replace("force_N", "farce_N"), *lines[1:]], "column force_N is"),
-        (lambda lines: [lines[0], lines[1][: lines[1].rindex(",")], *lines[2:]], "line 2 has not"),
-        (lambda lines: [*lines, "0,0"], "line 6 has not"),
+        (
+            lambda lines: [lines[0], lines[1][: lines[1].rindex(",")], *lines[2:]],
+            "line 2 does not have",
+        ),
+        (lambda lines: [*lines, "0,0"], "line 6 does not have"),
         (lambda lines: ["a" * 10], "column max_indentation_m is missing"),
-        (lambda lines: [f"{lines[0]},sticks", *(f"{r},true" for r in lines[1:])], "one name"),
+        (lambda lines: [f"{lines[0]},sticks", *(f"{r},true" for r in lines[1:])], "the same name"),
         (lambda lines: lines[:-1], "a file is damaged"),
         (lambda lines: [], "column max_indentation_m is missing"),
     ],
 )
 def test_a_table_that_no_run_writes_is_refused(copy, change, said):
-    """Without checksums, too: those of a folder may be missing."""
+    """The content is checked even if the folder has no checksums."""
     (copy / CHECKSUMS).unlink()
     lines = (copy / "curve.csv").read_text().splitlines()
     (copy / "curve.csv").write_text("\n".join(change(lines)) + "\n")

@@ -41,7 +41,7 @@ def test_a_file_is_replaced_whole_or_not_at_all(tmp_path):
 
 @pytest.mark.parametrize(("off", "warned"), [(0.009, False), (0.011, True), (-0.02, True)])
 def test_unloading_that_returns_another_work_is_warned_of(off, warned):
-    """More than 1 % of the stored energy, either way."""
+    """The work differs by more than 1 % of the stored energy, up or down."""
     from restitution.runs.run import _unbalanced
 
     check = {"relative_to_stored_energy": off, "max_indentation_m": 1e-7}

@@ -1,4 +1,4 @@
-"""Several surfaces of one case: their mean, spread and confidence, and what failed."""
+"""Several surfaces of one case: mean, spread, confidence interval and failures."""
 
 import json
 
@@ -25,7 +25,7 @@ def ensemble(text, tmp_path, realisations=3, **more):
 def test_every_surface_is_what_its_seed_alone_gives(case_text, tmp_path):
     out, summary, _ = ensemble(case_text, tmp_path)
     for number in (1, 2, 3):
-        # The errors of an ensemble are found for the whole of it.
+        # The errors of an ensemble are those of its mean, not of single surfaces.
         alone = "total_error = false\n" + case_text.replace("seed = 1", f"seed = {number}")
         one = ResultsFolder(tmp_path / f"alone-{number}")
         run_realisations(parse_case(alone), alone, tmp_path, one)

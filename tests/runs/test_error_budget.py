@@ -1,4 +1,4 @@
-"""The total error of COR: what it is made of, and that each part of it counts."""
+"""The total error of COR: its parts, and the effect of each."""
 
 import json
 import math
@@ -40,7 +40,7 @@ def test_every_row_of_a_run_has_a_total_of_its_parts(case_text, tmp_path):
     rows, summary = run(case_text, tmp_path / "out")
     for each in rows:
         known = [each[name] for name in PARTS if not math.isnan(each[name])]
-        assert len(known) == 3  # no value is the library's
+        assert len(known) == 3  # the case uses no library values
         assert each["discretisation_error"] > 0
         assert each["surface_scatter"] > 0
         limit = max(each["restitution"], 1 - each["restitution"])
@@ -68,7 +68,7 @@ def test_library_values_bring_their_spread(case_text, tmp_path):
 
 
 def test_scatter_is_that_of_the_surfaces(case_text, tmp_path):
-    """Twelve other seeds lie within about twice the stated scatter of their mean."""
+    """COR of twelve other seeds lies within about twice the stated scatter of their mean."""
     rows, _ = run(case_text, tmp_path / "out")
     quick = "total_error = false\n" + case_text
     found = np.array(
@@ -146,7 +146,7 @@ def test_a_curve_is_not_extrapolated():
 
 
 def test_resolved_contacts_keep_a_small_error_of_the_grid():
-    """3 % of what 90 % of contacts with so many nodes in the median patch were off: 0.05 at 30."""
+    """The floor is 3 % of the error of 90 % of contacts with such patches: 0.05 at 30 nodes."""
     error, _ = widened_error(0.0, 0.0, row(median_patch_nodes=30.0), 0.0)
     assert error == approx(0.03 * 0.05, rel=1e-9)
 
@@ -163,7 +163,7 @@ def test_the_changes_by_materials_add_as_squares(case_text, tmp_path, monkeypatc
 
 
 def test_grids_that_agree_without_resolving_have_an_error():
-    """`converge` gave 1.0000 ± 0.0000 where 16 times finer cells give 0.979."""
+    """Both grids give COR = 1.0000, but cells 16 times finer give 0.979."""
     error, _ = widened_error(0.0, 0.0, row(median_patch_nodes=1, restitution=1.0), 0.0)
     assert error > 0.4
 
@@ -197,14 +197,14 @@ velocity = ["0.003 m/s", "0.01 m/s", "0.03 m/s"]
 
 @pytest.fixture(params=["di-3.di", "own.npz"])
 def scan(request):
-    """A scan of 10 x 10 um on 256 x 256 pixels: of an AFM, where there is one, and of our own."""
+    """Scans of 10 x 10 um on 256 x 256 pixels: one of an AFM, if available, and a generated one."""
     if request.param == "own.npz":
         return request.getfixturevalue("own_scan")
     return request.getfixturevalue("topographies") / request.param
 
 
 def test_the_error_holds_what_the_grid_took_from_a_twin(scan, tmp_path):
-    """On 0.25 um cells COR was 0.9418 ± 0.0042, `resolved`; eight times finer ones give 0.84."""
+    """Cells of 0.25 um give COR = 0.9418 as if resolved; cells eight times finer give 0.84."""
     text = TWIN.format(file=scan.as_posix())
     rows, summary = run(text, tmp_path / "out")
     case = parse_case(text)
@@ -231,7 +231,7 @@ def test_a_scan_has_places(scan, tmp_path):
 
 
 def test_another_body_may_be_the_softer_one_at_an_end_of_the_spread(tmp_path):
-    """Steel is softer than glass, but not at the low ends: glass then yields at its hardness."""
+    """At the low ends of the spread glass is softer than steel and yields at its hardness."""
     text = (
         'first = { material = "steel", radius = "500 um" }\nsecond = "glass"\n[interface]\n'
         'plasticity = "expanding-cavity"\n[grid]\nnodes = 64\nspacing = "3 um"\n'

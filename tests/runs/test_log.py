@@ -1,4 +1,4 @@
-"""How a run ends is noted, and what it has computed is kept, whatever ends it."""
+"""The end of a run is recorded and its results are kept, whatever ends it."""
 
 from contextlib import nullcontext
 
@@ -15,7 +15,7 @@ from restitution.runs.log import RunLog
         (None, "complete", ""),
         (KeyboardInterrupt(), "interrupted", "stopped by the user"),
         (DomainError("the edge"), "failed", "the edge"),
-        (ValueError("a bug\n"), "failed", "stopped by an unforeseen error: ValueError a bug"),
+        (ValueError("a bug\n"), "failed", "stopped by an unexpected error: ValueError a bug"),
     ],
 )
 def test_it_says_how_a_run_ended_and_keeps_what_there_is(error, status, reason, tmp_path):

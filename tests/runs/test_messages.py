@@ -1,4 +1,4 @@
-"""What is said of a contact, in the words of the case file."""
+"""Messages about a contact, in terms of the keys of the case file."""
 
 import math
 import re
@@ -46,7 +46,7 @@ def test_contact_at_the_rim_is_foreseen_where_smooth_bodies_would_not_have_it():
     bump = 8e-7 * np.exp(-(((X + 14e-6) / 1e-6) ** 2) - (Y / 1e-6) ** 2)
     lines = input_warnings(Contact(STEEL, Surface(bump, GRID), 750e6), 1e-7)
     assert len(lines) == 1
-    assert "foreseen to reach the edge of the grid" in lines[0]
+    assert "predicted to reach the edge of the grid" in lines[0]
     assert "first at x = -14 um, y = 0 um, off the centre" in lines[0]
     # a ridge that is lower than the centre, but not by enough
     ridge = 3.5e-7 * np.exp(-(((X - 15e-6) / 2e-6) ** 2)) + 0 * Y
@@ -59,7 +59,7 @@ def test_contact_at_the_rim_is_foreseen_where_smooth_bodies_would_not_have_it():
 @pytest.mark.parametrize("yield_pressure", [math.inf, 750e6])
 @pytest.mark.parametrize(("rms", "work_of_adhesion"), [(0.0, 0.0), (2e-8, 0.0), (0.0, 1.0)])
 def test_what_reaches_the_edge_is_foreseen_before(yield_pressure, rms, work_of_adhesion):
-    """The grid that holds a contact is found by trial: on all smaller ones it is foreseen."""
+    """Contact at the edge is predicted on every grid smaller than the one found by trial."""
     for nodes in range(60, 26, -2):
         grid = Grid((nodes, nodes), (0.25e-6, 0.25e-6))
         surface = smooth(grid)
@@ -68,14 +68,14 @@ def test_what_reaches_the_edge_is_foreseen_before(yield_pressure, rms, work_of_a
             surface = generate_surface(grid, **shape)
         contact = Contact(STEEL, surface, yield_pressure, work_of_adhesion=work_of_adhesion)
         said = input_warnings(contact, 1e-7)
-        foreseen = any("foreseen to reach" in line for line in said)
+        predicted = any("predicted to reach" in line for line in said)
         try:
             next(iter(loading_path(contact, [1e-7])))
         except DomainError:
-            assert foreseen
+            assert predicted
             return
         if nodes == 60:
-            assert not foreseen
+            assert not predicted
     pytest.fail("no grid was too small")
 
 
@@ -94,7 +94,7 @@ def test_a_yield_pressure_that_no_such_body_has(yield_pressure, said):
 def test_a_grid_coarser_than_the_scan():
     _, line = input_warnings(measured(ROUGH, pixel_x_m=0.5e-6, pixel_y_m=0.2e-6), 1e-7)
     assert "spacing 0.5 um is coarser than the scan's pixel 0.2 um along y" in line
-    assert "shorter than 1 um are taken out" in line
+    assert "shorter than 1 um are left out" in line
     lines = input_warnings(measured(ROUGH, pixel_x_m=0.7e-6, pixel_y_m=0.7e-6), 1e-7)
     assert not any("coarser" in line for line in lines)
 
@@ -132,7 +132,7 @@ def narrow(pair=STEEL, **provenance):
 
 
 def depth_of(radius, reduced_radius=250e-6):
-    """The depth at which the elastic smooth contact has this radius (m)."""
+    """The depth (m) at which the elastic smooth contact has the given radius (m)."""
     return radius**2 / reduced_radius
 
 
@@ -140,7 +140,7 @@ def test_a_contact_larger_than_the_grid():
     beyond = depth_of(8.01e-6)
     (line,) = input_warnings(narrow(), beyond)
     assert line == (
-        f"the contact is foreseen to reach 8.01 um from the centre at an indentation of "
+        f"the contact is predicted to reach 8.01 um from the centre at an indentation of "
         f"{1e9 * beyond:.4g} nm, but the grid ends at 8 um: use more nodes or stop earlier"
     )
     whole = narrow(source="measured", size_x_m=16e-6, size_y_m=20e-6)

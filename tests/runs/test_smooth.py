@@ -21,7 +21,7 @@ def values(*arguments, **options):
 
 
 def test_it_follows_the_table_of_smooth_contact():
-    """Restitution at x = δ/δ_y, docs/method.md, whatever the grid of the case is."""
+    """COR against x = δ/δ_y agrees with docs/method.md on any grid of the case."""
     for x, cor in [(2, 0.9379), (6, 0.752), (16, 0.6010), (36, 0.496)]:
         found = values(Contact(PAIR, smooth(GRID), P_Y), rows(x * YIELD))
         assert found["smooth_indentation"][-1] == approx(x * YIELD)

@@ -1,4 +1,4 @@
-"""Where cases are computed: what is refused."""
+"""Executors of cases: the errors for the user."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""Studies: kept case by case, finished after whatever has stopped them."""
+"""Studies: each case is stored when done, and an interrupted study can be resumed."""
 
 import csv
 import json
@@ -38,7 +38,7 @@ class _Nowhere:
 
 
 def here(places=1):
-    """Cases computed in this process."""
+    """An executor that computes cases in this process."""
     executor = ThreadPoolExecutor(places)
     return Workers(executor, places, 1, _Nowhere(), list, lambda _: executor)
 
@@ -56,7 +56,7 @@ def text(case_text):
 
 @pytest.fixture(scope="module")
 def whole(text, tmp_path_factory):
-    """The table of the study that nothing has stopped."""
+    """The table of the study without interruption."""
     folder = tmp_path_factory.mktemp("whole")
     run(text, folder)
     return folder / "out"
@@ -177,7 +177,7 @@ def test_a_damaged_case_is_computed_again(whole, text, tmp_path, damage, checked
 
 def test_what_a_folder_holds_is_respected(whole, text, tmp_path):
     study = parse_study(text)
-    with pytest.raises(OutputError, match="or go on with --resume"):
+    with pytest.raises(OutputError, match="or continue with --resume"):
         StudyFolder(whole, study, resume=False)
     with pytest.raises(OutputError, match="holds another study"):
         StudyFolder(whole, parse_study(text.replace("[1, 2, 3]", "[1, 2]")), resume=True)
@@ -247,7 +247,7 @@ def test_kill_9_at_any_moment_loses_the_cases_in_flight_at_most(text, tmp_path):
     resume, seen = (), []
     for kill in range(10):
         process = begin(tmp_path, *resume)
-        # From before the first case to after the last, and while cases are written.
+        # At moments from before the first case to after the last, also while cases are written.
         while len(list(cases.glob("case-*"))) < (12 * kill) // 9 and process.poll() is None:
             time.sleep(0.01)
         time.sleep(pick.uniform(0, 0.1))  # less than a case takes
@@ -339,7 +339,7 @@ def test_interruption_says_how_to_go_on(whole, text, tmp_path):
 
 
 def test_a_worker_that_dies_between_two_cases_is_replaced():
-    """Then the executor says so when the next case is handed to it, not by a result."""
+    """The executor then raises the error on `submit`, not by a result."""
 
     class Dead:
         def submit(self, *_):

@@ -1,4 +1,4 @@
-"""The study file: what varies, and the cases that follow."""
+"""The study file: the keys that vary, and the cases that follow."""
 
 import tomllib
 
@@ -66,8 +66,8 @@ def test_one_of_several_tables_is_named_by_its_number(case_text):
     study = parse_study(two + '[sweep]\n"roughness.2.seed" = [8]\n')
     assert [part.seed for part in parse_case(study.cases[0].text).roughness] == [1, 8]
     for key, words in (
-        ("roughness.seed", "there are 2 tables; say which"),
-        ("roughness.3.seed", "is not the number of one of 2"),
+        ("roughness.seed", "there are 2 tables; give the number of one"),
+        ("roughness.3.seed", "is not the number of a table"),
     ):
         with pytest.raises(CaseError, match=words):
             parse_study(two + f'[sweep]\n"{key}" = [8]\n')
@@ -86,7 +86,7 @@ def test_one_of_several_tables_is_named_by_its_number(case_text):
         ("[sweep]\n'title.x' = [1]", '"title" is a value, not a table'),
         (
             "[sweep]\nmode = 'paired'\n'roughness.seed' = [1, 2]\n'roughness.rms' = ['1 um']",
-            "needs lists of one length; there are roughness.seed 2, roughness.rms 1",
+            "needs lists of equal length; the lengths are roughness.seed 2, roughness.rms 1",
         ),
         ("[sweep", "not valid TOML"),
     ],
@@ -98,5 +98,5 @@ def test_what_is_wrong_is_said(case_text, sweep, words):
 
 def test_too_many_cases_are_refused_before_they_are_made(case_text):
     many = list(range(1000))
-    with pytest.raises(CaseError, match="makes 1000000 cases"):
+    with pytest.raises(CaseError, match="gives 1000000 cases"):
         parse_study(case_text + f"[sweep]\n'roughness.seed' = {many}\n'first.density' = {many}\n")

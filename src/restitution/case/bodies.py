@@ -1,4 +1,4 @@
-"""`[first]`, `[second]` and `[interface]`: what the bodies are made of, and where they yield."""
+"""`[first]`, `[second]` and `[interface]`: materials, yielding and adhesion."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from restitution.contact.contact import FULL_CONSTRAINT, Approach, Plasticity
 from restitution.contact.detachment import Detachment
 from restitution.errors import CaseError, shown
 
-# What a library's material gives a body, with the unit of each.
+# Values that a library material supplies to a body, with their units.
 _FROM_LIBRARY = {
     "youngs_modulus": "Pa",
     "poissons_ratio": "",
@@ -35,15 +35,15 @@ _FROM_LIBRARY = {
 _STRENGTHS = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*(?:\*\s*)?Y\s*")
 
 
-def _flat_is_infinite(value: Any) -> Any:
+def _none_if_flat(value: Any) -> Any:
     return None if value == "flat" else value
 
 
 class BodyTable(Table):
-    """`[first]` and `[second]`; the name of a material alone is a flat wall of it."""
+    """`[first]` and `[second]`; a material's name in place of the table means a flat wall."""
 
     material: str | None = None
-    radius: Annotated[Length | None, BeforeValidator(_flat_is_infinite)]
+    radius: Annotated[Length | None, BeforeValidator(_none_if_flat)]
     youngs_modulus: Pressure
     poissons_ratio: Annotated[float, Field(gt=-1, le=0.5)]
     density: Density | None = None
@@ -53,7 +53,7 @@ class BodyTable(Table):
     @model_validator(mode="before")
     @classmethod
     def _with_material(cls, value: Any) -> Any:
-        """Put in what the library knows and the table leaves out."""
+        """Fill omitted keys with values of the library."""
         table = {"material": value, "radius": "flat"} if isinstance(value, str) else value
         if not isinstance(table, dict) or not isinstance(table.get("material"), str):
             return table
@@ -71,7 +71,7 @@ class BodyTable(Table):
         return Body(radius, self.youngs_modulus, self.poissons_ratio, self.density)
 
     def from_library(self) -> dict[str, Property[Any]]:
-        """The values that are the library's, with their spread and source."""
+        """The values that come from the library, with their spread and source."""
         if self.material is None:
             return {}
         known = material(self.material)
@@ -86,9 +86,9 @@ DEFAULT_RULE: YieldRule = (FULL_CONSTRAINT, "yield_strength")
 
 
 def _pressure_or_rule(value: Any) -> float | YieldRule | None:
-    """A pressure in Pa; "2.8 Y" as (2.8, "yield_strength"), "hardness" as (1.0, "hardness").
+    """A pressure (Pa), infinite for "elastic"; or a rule, a factor and its quantity.
 
-    "elastic" is an infinite pressure, and None what is left out.
+    "2.8 Y" is the rule (2.8, "yield_strength"), "hardness" the rule (1.0, "hardness").
     """
     if value is None:
         return None
@@ -101,13 +101,15 @@ def _pressure_or_rule(value: Any) -> float | YieldRule | None:
     if match is None:
         return read_positive(value, "Pa")
     if not 0.5 <= (factor := float(match[1])) <= 10:
-        raise ValueError(f"{shown(value)} is no contact pressure; it is 1.6 Y to about 3 Y")
+        raise ValueError(
+            f"{shown(value)} is not a contact pressure; correct the factor, usually 1.6 to 3"
+        )
     return factor, "yield_strength"
 
 
 @dataclass(frozen=True)
 class Yielding:
-    """How a contact yields: what `Contact` takes, in Pa, and in words where it is from."""
+    """The yield model of a contact: arguments of `Contact` (Pa), and their origin in words."""
 
     source: str
     plasticity: Plasticity = "equilibrium"
@@ -117,18 +119,18 @@ class Yielding:
 
     @property
     def hardness(self) -> float:
-        """Pressure of a fully plastic contact, Pa; inf for elastic bodies."""
+        """Pressure of a fully plastic contact (Pa); inf for elastic bodies."""
         return min(self.yield_pressure, FULL_CONSTRAINT * self.yield_strength)
 
     def arguments(self) -> dict[str, Any]:
-        """The arguments of `Contact` that say how it yields."""
+        """The arguments of `Contact` that define its yield model."""
         found = asdict(self)
         del found["source"]
         return found
 
 
 class InterfaceTable(Table):
-    """`[interface]`; omitted: bodies of known strength yield, and none adheres."""
+    """`[interface]`; by default, bodies of known strength yield, and there is no adhesion."""
 
     yield_strength: Pressure | None = None
     tangent_modulus: Pressure | None = None
@@ -146,9 +148,9 @@ class InterfaceTable(Table):
             for key in ("yield_strength", "tangent_modulus"):
                 if getattr(self, key) is not None:
                     raise ValueError(
-                        f"yield_pressure, {key}: give one of them; yield_pressure is a constant "
-                        "bound, and a yield strength (of a tensile test) one that grows with "
-                        "deformation"
+                        f"yield_pressure, {key}: give one of them; yield_pressure bounds the "
+                        "pressure by a constant, yield_strength (of a tensile test) by a value "
+                        "that grows with deformation"
                     )
             if grows:
                 raise ValueError(
@@ -166,15 +168,15 @@ class InterfaceTable(Table):
 
     @property
     def adhesion(self) -> float:
-        """The work of adhesion, J/m²: zero where it is left out."""
+        """The work of adhesion (J/m²); zero if it is left out."""
         return self.work_of_adhesion or 0.0
 
     def yielding(self, first: BodyTable, second: BodyTable) -> Yielding:
-        """How the contact of two bodies yields.
+        """The yield model of the contact of two bodies, of which the softer one yields.
 
-        Of two bodies the softer one does. By default a body of known yield strength has a bound
-        that grows with deformation, and one of known hardness alone (glass) yields at that. Raises
-        `CaseError` where what the model needs is not known.
+        By default a body of known yield strength has a pressure bound that grows with deformation;
+        a body without one (glass) yields at its hardness. Raises `CaseError` if a value that the
+        model needs is unknown.
         """
         if self.plasticity in ("equilibrium", "truncated"):
             rule = DEFAULT_RULE if self.yield_pressure is None else self.yield_pressure
@@ -200,8 +202,8 @@ class InterfaceTable(Table):
             return pressure
         name, body = ("first", first) if found[0] is None else ("second", second)
         raise CaseError(
-            f"interface.yield_strength: is missing, and so is that of {_named(name, body)}, "
-            "which is the softer body; give it, or a yield_pressure"
+            f"interface.yield_strength: is missing, and {_named(name, body)}, the softer body, "
+            "has no yield_strength; give one of them, or a yield_pressure"
         )
 
     def _growing(self, yield_strength: float, source: str) -> Yielding:
@@ -215,7 +217,7 @@ class InterfaceTable(Table):
     def _at_a_pressure(
         self, rule: float | YieldRule, first: BodyTable, second: BodyTable
     ) -> Yielding:
-        """Yield at one pressure, which `rule` says; a body without Y yields at its hardness."""
+        """Yielding at the pressure that `rule` gives; a body without Y yields at its hardness."""
         model = self.plasticity or "equilibrium"
         if isinstance(rule, float):
             source = "elastic" if math.isinf(rule) else "given"
@@ -238,7 +240,7 @@ class InterfaceTable(Table):
                     )
                 raise CaseError(
                     f"interface.yield_pressure: needs {name}.{quantity}, which is not given"
-                    + (f" and not known of {body.material}" if body.material else "")
+                    + (f", and the library has none for {body.material}" if body.material else "")
                     + "; give it, or the pressure itself"
                 )
         pressure, source = min(found)

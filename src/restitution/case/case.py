@@ -1,4 +1,4 @@
-"""A whole case: its tables together, as data in SI units."""
+"""The whole case file: all tables, as data in SI units."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from restitution.surfaces.refine import divided
 
 
 def _one_or_more(value: Any) -> Any:
-    """One table, or a list of them."""
+    """A tuple of one table, or of all tables of a list."""
     return tuple(value) if isinstance(value, list) else (value,)
 
 
-DEPTHS = ("indentation", "load", "impact")  # the tables that may say how deep
+DEPTHS = ("indentation", "load", "impact")  # tables that can prescribe the depths
 
 
 class Case(Table):
@@ -48,24 +48,26 @@ class Case(Table):
     def _whole(self) -> Case:
         given = [name for name in DEPTHS if getattr(self, name) is not None]
         if len(given) != 1:
-            which = f"[{'] and ['.join(given)}] are" if given else "none of them is"
+            which = f"[{'] and ['.join(given)}]" if given else "none of them"
             raise ValueError(
-                f"give one of the tables [indentation], [load] and [impact]; {which} in this case"
+                f"give one of the tables [indentation], [load] and [impact]; this case has {which}"
             )
         if self.impact is not None:
             self._check_masses()
         elastic = math.isinf(self.yielding().hardness)
         if self.interface.plasticity == "truncated" and elastic:
             raise ValueError(
-                'interface.plasticity = "truncated" needs the pressure to cut at, and '
-                'yield_pressure is "elastic"; give a pressure, or leave plasticity out'
+                'interface.plasticity = "truncated" needs a yield_pressure, which is "elastic" '
+                "here; give a pressure, or remove plasticity"
             )
         if self._own_grid() is None:
             self._check_scan_brings_grid()
         if self.grid is not None and isinstance(self.grid.refine, tuple):
             self._check_factors(self.grid.refine)
         if len({part.realisations for part in self.roughness} - {1}) > 1:
-            raise ValueError("roughness.realisations: differs between the tables; give one number")
+            raise ValueError(
+                "roughness.realisations: differs between the tables; give all the same number"
+            )
         return self
 
     def _check_factors(self, factors: tuple[int, ...]) -> None:
@@ -79,31 +81,33 @@ class Case(Table):
     def _check_masses(self) -> None:
         for name, body in (("first", self.first), ("second", self.second)):
             if body is not None and body.radius is not None and body.density is None:
-                raise ValueError(f"{name}.density: is missing; an impact velocity needs it")
+                raise ValueError(
+                    f"{name}.density: is missing; give it, because [impact] needs the mass"
+                )
 
     def _check_scan_brings_grid(self) -> None:
         if len(self.roughness) == 1 and isinstance(self.roughness[0], MeasuredRoughness):
             if self.roughness[0].extend is None:
                 return
-            why = "roughness.extend says how a scan is continued, not how far"
+            why = "roughness.extend does not define the size of the grid"
         elif self.roughness:
-            why = "only a single measured surface brings its own"
+            why = "only a single measured surface defines its own grid"
         else:
-            why = "only a measured surface brings its own"
+            why = "only a measured surface defines its own grid"
         if self.grid is None:
-            raise ValueError(f"the table [grid] is missing; {why}")
-        raise ValueError(f"grid: nodes and spacing are missing; {why}")
+            raise ValueError(f"the table [grid] is missing; {why}: give nodes and spacing")
+        raise ValueError(f"grid: nodes and spacing are missing; {why}: give both")
 
     def _own_grid(self) -> Grid | None:
         return None if self.grid is None else self.grid.grid()
 
     @property
     def realisations(self) -> int:
-        """How many surfaces are to be made of this roughness."""
+        """Number of surfaces to compute."""
         return max((part.realisations for part in self.roughness), default=1)
 
     def realisation(self, number: int) -> Case:
-        """This case with one surface, the `number`th (from 0): so much is added to the seeds."""
+        """This case with only surface `number` (from 0), which is added to seeds and places."""
         parts = tuple(
             part.variant(number).model_copy(update={"realisations": 1})
             if part.realisations > 1
@@ -113,18 +117,18 @@ class Case(Table):
         return self.model_copy(update={"roughness": parts})
 
     def variant(self, number: int) -> Case:
-        """This case with another surface of the same kind: every part has another seed or place."""
+        """This case with another surface of its kind: `number` is added to seeds and places."""
         parts = tuple(
             part.variant(number).model_copy(update={"realisations": 1}) for part in self.roughness
         )
         return self.model_copy(update={"roughness": parts})
 
     def has_library_values(self) -> bool:
-        """Whether a value of the bodies is the library's, which has a spread."""
+        """Whether a value of the bodies comes from the materials library, which has a spread."""
         return any(body.from_library() for body in (self.first, self.second) if body is not None)
 
     def refined(self, factor: int) -> Case:
-        """This case on cells `factor` times as small as [grid] says, whatever its `refine`."""
+        """This case with cells `factor` times smaller than those of [grid]; replaces `refine`."""
         grid = (self.grid or GridTable()).model_copy(update={"refine": factor})
         return self.model_copy(update={"grid": grid})
 
@@ -135,34 +139,33 @@ class Case(Table):
         return [1 if self.grid is None else self.grid.factor] * len(self.depths())
 
     def pair(self) -> Pair:
-        """The two bodies; `CaseError` when both are flat."""
+        """The two bodies. Raises `CaseError` if both are flat."""
         first = self.first.body()
         if math.isinf(first.radius) and self.second is None:
             raise CaseError(
-                "first.radius: is flat, and the table [second] is left out and so defaults to "
-                "[first]: both are flat; one must be a sphere: write [second], or for [first] "
-                'radius = "500 um"'
+                "first.radius: both bodies are flat, because [second] is left out and defaults to "
+                '[first]; add [second], or give [first] a radius such as "500 um"'
             )
         return Pair(first, first if self.second is None else self.second.body())
 
     def yielding(self) -> Yielding:
-        """How the contact yields. Raises `CaseError` where what it needs is not known."""
+        """The yield model of the contact. Raises `CaseError` if a value for it is missing."""
         return self.interface.yielding(self.first, self.second or self.first)
 
     def surface(self, folder: Path) -> Surface:
         """The composite roughness on the grid; files are relative to `folder`."""
         grid, factor = self._own_grid(), 1 if self.grid is None else self.grid.factor
         if grid is None:
-            (scan,) = cast(tuple[MeasuredRoughness], self.roughness)  # _whole
+            (scan,) = cast(tuple[MeasuredRoughness], self.roughness)  # checked by _whole
             return scan.surface(None, folder, factor)
         if not self.roughness:
             return smooth(divided(grid, factor))
         return composite([part.surface(grid, folder, factor) for part in self.roughness])
 
     def contact(self, folder: Path) -> Contact:
-        """Everything before the first solve; files are relative to `folder`.
+        """The contact before the first solve; files are relative to `folder`.
 
-        Raises `CaseError` where a run takes more memory than there is.
+        Raises `CaseError` if a run needs more memory than is available.
         """
         pair = self.pair()
         if grid := self._own_grid():
@@ -180,14 +183,14 @@ class Case(Table):
         )
 
     def run_bytes(self, grid: Grid) -> float:
-        """Memory that a run on `grid` takes."""
+        """Memory (bytes) of a run on `grid`."""
         yielding = self.yielding()
         plasticity = "none" if math.isinf(yielding.hardness) else yielding.plasticity
         adhesive = self.interface.adhesion > 0
         return needs.run_bytes(grid, plasticity=plasticity, adhesive=adhesive)
 
     def depths(self) -> list[float]:
-        """The indentations (m), loads (N) or impact velocities (m/s) asked for, increasing."""
+        """The prescribed indentations (m), loads (N) or impact velocities (m/s), increasing."""
         table = self.indentation or self.load or self.impact
-        assert table is not None  # _whole
+        assert table is not None  # checked by _whole
         return table.series()

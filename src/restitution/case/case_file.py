@@ -1,4 +1,4 @@
-"""The case file: read, turned into a `Case`, and what is said of one that is wrong."""
+"""Read a case file into a `Case`; error messages name the key and the remedy."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 from pydantic import ValidationError
 
@@ -26,10 +26,12 @@ from restitution.case.schema import (
     UnloadingTable,
 )
 from restitution.errors import CaseError, SurfaceError, shown
+from restitution.surfaces.generate import RoughnessKind
 
 _LARGEST = 2**22  # bytes of a case file
-_DEEPEST = 32  # tables and lists within each other, and parts of a key
-_NAMED = 3  # further keys with a problem
+_DEEPEST = 32  # nested tables and lists, and parts of a dotted key
+_NAMED = 3  # further wrong keys that a message names
+_KINDS = (*get_args(RoughnessKind), "measured")
 
 
 def read_case(path: Path) -> tuple[Case, str]:
@@ -49,7 +51,7 @@ def read_text(path: Path) -> str:
             )
         if kind.st_size > _LARGEST:
             raise CaseError(
-                f"{path}: has {kind.st_size} bytes, more than the {_LARGEST} a case file may have; "
+                f"{path}: has {kind.st_size} bytes, and a case file may have at most {_LARGEST}; "
                 "name a case file"
             )
         return path.read_text(encoding="utf-8-sig")  # editors on Windows write a byte order mark
@@ -61,7 +63,7 @@ def read_text(path: Path) -> str:
 
 @contextmanager
 def naming(path: Path) -> Iterator[None]:
-    """Put the name of the case file before what is wrong with what it describes."""
+    """Put the name of the case file in front of error messages."""
     try:
         yield
     except (CaseError, SurfaceError) as error:
@@ -69,20 +71,20 @@ def naming(path: Path) -> Iterator[None]:
 
 
 def parse_toml(text: str) -> dict[str, Any]:
-    """The tables of a TOML file. Raises `CaseError`."""
+    """Parse a TOML text. Raises `CaseError`."""
     try:
         _check_dots(text)
         content = tomllib.loads(text)
         _check_depth(content)
         return content
-    except CaseError:  # a ValueError, too
+    except CaseError:  # is also a ValueError
         raise
     except RecursionError:
         raise _too_deep() from None
     except tomllib.TOMLDecodeError as error:
         raise CaseError(f"not valid TOML: {error}") from None
     except ValueError:  # Python refuses to read an integer of more than 4300 digits
-        raise CaseError("holds a number of thousands of digits; correct it") from None
+        raise CaseError("contains a number with thousands of digits; correct it") from None
 
 
 def _too_deep() -> CaseError:
@@ -90,14 +92,14 @@ def _too_deep() -> CaseError:
 
 
 def _check_dots(text: str) -> None:
-    """Refuse keys of very many parts, for which the reader of TOML takes minutes."""
+    """Reject dotted keys of very many parts, which `tomllib` takes minutes to parse."""
     for word in re.split(r"[^\w.\-\"']+", text):
         if word.count(".") > _DEEPEST and ".." not in word.strip("."):
             raise _too_deep()
 
 
 def _check_depth(content: dict[str, Any]) -> None:
-    """Refuse tables so deep that showing them would fail."""
+    """Reject tables nested so deeply that printing them would fail."""
     level: list[Any] = [content]
     for _ in range(_DEEPEST):
         inner = [v.values() if isinstance(v, dict) else v for v in level]
@@ -121,7 +123,7 @@ def in_words(error: ValidationError, root: type[Table] = Case, before: str = "")
 
     `root` is the table that was checked, and `before` the dotted path of its key in the file.
     """
-    # A key that is not known explains one that is missing, not the other way round.
+    # Report unknown keys first: a misspelt key explains a missing one.
     problems = error.errors(include_url=False)
     problems.sort(key=lambda problem: problem["type"] != "extra_forbidden")
     where = f"{before}." if before else ""
@@ -129,7 +131,7 @@ def in_words(error: ValidationError, root: type[Table] = Case, before: str = "")
 
 
 def _others(problems: list[Any]) -> str:
-    """The other keys with a problem, up to three by name."""
+    """The other wrong keys, up to three by name, as the end of a message."""
     names = list(dict.fromkeys(_key_of(problem) for problem in problems))[1:]
     if not names:
         return ""
@@ -137,7 +139,7 @@ def _others(problems: list[Any]) -> str:
     return f" (also wrong: {', '.join(names[:_NAMED] + more)})"
 
 
-# pydantic's kinds of problem in the words of a case file.
+# What each pydantic error type expects.
 _WORDS = {
     "model_type": "a table",
     "model_attributes_type": "a table",
@@ -155,9 +157,8 @@ _WORDS = {
 
 
 def _keys(problem: Any) -> list[str]:
-    # The tags of a union ("gaussian") and the places in a list are not keys of the file.
-    tags = {"exponential", "gaussian", "self-affine", "measured"}
-    return [str(k) for k in problem["loc"] if isinstance(k, str) and k not in tags]
+    # Union tags ("gaussian") and list indices are not keys of the file.
+    return [str(k) for k in problem["loc"] if isinstance(k, str) and k not in _KINDS]
 
 
 def _key_of(problem: Any) -> str:
@@ -165,7 +166,7 @@ def _key_of(problem: Any) -> str:
 
 
 def _in_words(problem: Any, root: type[Table]) -> str:
-    """One line for one of pydantic's problems: the key, what is wrong, the remedy."""
+    """One line for a pydantic error: the key, the problem and the remedy."""
     keys, key = _keys(problem), _key_of(problem)
     prefix = f"{key}: " if key else ""
     kind, context = problem["type"], problem.get("ctx", {})
@@ -180,7 +181,8 @@ def _in_words(problem: Any, root: type[Table]) -> str:
         what = f"the table [{key}]" if len(keys) == 1 else f'the key "{key}"'
         return f"{what} is missing"
     if kind == "union_tag_not_found":
-        return f'{key}.kind is missing; write "exponential", "gaussian" or "measured"'
+        kinds = ", ".join(f'"{kind}"' for kind in _KINDS)
+        return f"{key}.kind is missing; write one of {kinds}"
     if kind == "union_tag_invalid":
         return f"{key}.kind: {shown(context['tag'])} is not one of {context['expected_tags']}"
     if kind == "value_error":
@@ -190,7 +192,7 @@ def _in_words(problem: Any, root: type[Table]) -> str:
 
 
 def _keys_of(path: list[str], loc: tuple[Any, ...], root: type[Table]) -> list[str]:
-    """The keys that the table at `path` knows, as written in the file."""
+    """The valid keys of the table at `path`, as written in the file."""
     if path[:2] == ["roughness", "crop"]:
         return list(CropTable.model_fields)
     tables: dict[str, type[Table]] = {

@@ -1,4 +1,4 @@
-"""What follows from a case before anything is solved."""
+"""Quantities that follow from a case without a solve."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from restitution.theory import JKR, FirstYield, Hertz, ThorntonNing
 
 
 def deepest_indentation(case: Case) -> float:
-    """The deepest indentation, m.
+    """The deepest indentation (m), an estimate unless the case prescribes it.
 
-    Under a prescribed load it is where smooth elastic bodies carry it; at a prescribed velocity,
-    where it takes smooth bodies (Thornton and Ning's, if they yield).
+    For a load it is that of smooth elastic bodies, for an impact velocity that of smooth bodies
+    which yield as Thornton and Ning's do.
     """
     last, pair = case.depths()[-1], case.pair()
     if case.indentation is not None:
@@ -22,14 +22,14 @@ def deepest_indentation(case: Case) -> float:
     if case.load is not None:
         return float(Hertz(pair.radius, pair.contact_modulus).indentation(last))
     assert pair.mass is not None  # Case._check_masses
-    # As good as elastic: beyond any pressure of a contact.
+    # E* exceeds any contact pressure, so it stands for an infinite yield pressure.
     p_y = min(case.yielding().hardness, pair.contact_modulus)
     smooth = ThorntonNing(pair.radius, pair.contact_modulus, p_y)
     return float(smooth.indentation_from_velocity(last, pair.mass))
 
 
 def derived_quantities(case: Case, contact: Contact) -> dict[str, float | None]:
-    """R*, E*, m*, yield quantities and the predicted contact, keyed with SI units; None: not so."""
+    """R*, E*, m*, yield and predicted contact; keys carry SI units; None if not applicable."""
     pair, p_y = contact.pair, contact.hardness
     deepest = deepest_indentation(case)
     radius = predicted_radius(pair, deepest, p_y)

@@ -23,8 +23,8 @@ Text = Annotated[str, Field(min_length=1)]
 class Property(Table, Generic[Quantity]):
     """One quantity of a material, in SI units.
 
-    `low` and `high` are the spread among sources and grades. `verified` says that `value` was read
-    in the source or a copy of it, or computed from what was read there.
+    `low` and `high` are the spread among sources and grades. `verified` means that `value` was read
+    in the source or a copy of it, or computed from values read there.
     """
 
     value: Quantity
@@ -41,10 +41,10 @@ class Property(Table, Generic[Quantity]):
 
 
 class Material(Table):
-    """A material: E and ν of its bulk, true density (kg/m³), Y and H (Pa) where there are any.
+    """A material: bulk E and ν, true density (kg/m³), and, if known, Y and H (Pa).
 
     `yield_strength` Y is uniaxial; `hardness` H is a mean contact pressure, force over projected
-    area. What `note` says belongs to every value.
+    area. `note` holds for every value.
     """
 
     key: Text
@@ -59,9 +59,9 @@ class Material(Table):
 
 
 def material(name: str) -> Material:
-    """The material of that name or alias, in upper or lower case.
+    """The material with this name or alias, in upper or lower case.
 
-    Raises `CaseError` when there is none.
+    Raises `CaseError` if there is none.
     """
     known = {
         _plain(each): found
@@ -89,5 +89,5 @@ def materials() -> dict[str, Material]:
 
 
 def _plain(name: str) -> str:
-    """`name` as keys are written: lower case, with hyphens."""
+    """`name` in the form of the keys: lower case, with hyphens."""
     return re.sub(r"[\s_-]+", "-", name.strip().lower())

@@ -1,4 +1,4 @@
-"""What a case leaves out and what is taken instead, in words: nothing is ideal without a word."""
+"""Warnings about keys that a case leaves out, and the values that are used instead."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from restitution.case.roughness import GeneratedRoughness
 from restitution.theory import JKR, Hertz
 
 TYPICAL_ADHESION = 0.05  # J/m²: within the 0.01 to 0.09 of Ghanbarzadeh et al. (2019)
-# Adhesion takes (V_s/V)² from e² (Thornton and Ning 1998): 0.01 of e = 0.7 at 8.5 V_s.
+# Adhesion lowers e² by (V_s/V)² (Thornton and Ning 1998): at 8.5 V_s, e = 0.7 falls by 0.01.
 _MATTERS = 8.5
 
 
 def omissions(case: Case) -> list[str]:
-    """One line for each key that is left out where an ideal or a default value is taken."""
+    """One warning for each omitted key for which a default or ideal value is used."""
     lines = (_default_yield(case), _no_adhesion(case), _no_shortest_wave(case))
     return [line for line in lines if line]
 
@@ -22,8 +22,8 @@ def omissions(case: Case) -> list[str]:
 def adhesion_matters_below(case: Case) -> float | None:
     """Impact velocity (m/s) below which adhesion would change COR by more than about 0.01.
 
-    For smooth bodies, so an upper bound for rough ones. None where the case gives a work of
-    adhesion, or no masses.
+    Computed for smooth bodies, so it is an upper bound for rough ones. None if the case gives a
+    work of adhesion or lacks a density.
     """
     pair = case.pair()
     if case.interface.work_of_adhesion is not None or pair.mass is None:
@@ -51,8 +51,8 @@ def _no_adhesion(case: Case) -> str | None:
     if below is None or _lowest_velocity(case) >= below:
         return None
     return (
-        f"interface.work_of_adhesion is left out, and nothing adheres: at {TYPICAL_ADHESION} J/m2, "
-        f"a common value, adhesion changes COR by more than 0.01 below about {below:.2g} m/s "
+        "interface.work_of_adhesion is left out, so there is no adhesion: a typical value of "
+        f"{TYPICAL_ADHESION} J/m2 changes COR by more than 0.01 below about {below:.2g} m/s "
         '(smooth bodies); give it, or "0 J/m^2"'
     )
 
@@ -75,8 +75,8 @@ def _no_shortest_wave(case: Case) -> str | None:
             continue
         if part.shortest is None:
             return (
-                f'roughness.shortest is left out: a surface of kind = "{part.kind}" has no '
-                "smallest asperity, and this one ends at waves of two grid spacings; shallow COR "
-                "depends on that, and total_error does not include it"
+                f'roughness.shortest is left out: kind = "{part.kind}" has no shortest wave, so '
+                "the grid sets it to two spacings; COR of shallow contacts depends on it, and "
+                "total_error does not include this; give roughness.shortest"
             )
     return None

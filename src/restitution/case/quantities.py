@@ -1,4 +1,4 @@
-"""Dimensional values in a case file: a string with a number and a unit, read into SI."""
+"""Dimensional values in a case file: strings with a number and a unit, converted to SI."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from pydantic import BeforeValidator
 
 from restitution.errors import shown
 
-# One number, then one unit expression: names, powers, * and /. Nothing that could be arithmetic on
-# numbers, so that a case file cannot make the unit parser compute. A digit right behind a name is
-# its power: "g/cm3" is g/cm^3.
+# One number, then one unit expression of names, powers, * and /. Arithmetic on numbers is excluded,
+# so that a case file cannot make the unit parser compute. A digit directly after a name is its
+# power: "g/cm3" is g/cm^3.
 _NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?"
 _UNIT = r"[^\W\d]+(?:\s*(?:\^|\*\*)\s*-?\d|\d)?"
 _POWER = re.compile(r"(?<=[^\W\d])(\d)")
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*((?:{_UNIT})(?:\s*[*/·]\s*{_UNIT})*)\s*", re.UNICODE)
 
-# Characters of a quantity: more are none, and take patterns and the unit parser too long.
+# Characters of a quantity: patterns and the unit parser would take too long for longer texts.
 LONGEST = 100
 
 _EXAMPLES = {
@@ -41,7 +41,7 @@ _NAMES = {
     "rad": "an angle",
     "m/s": "a velocity",
 }
-# Spellings of which one in the wrong case is recognised.
+# Usual units, suggested when one is written in the wrong case.
 _USUAL = {
     "m": ("m", "cm", "mm", "um", "µm", "nm", "pm"),
     "Pa": ("Pa", "kPa", "MPa", "GPa", "N/mm^2", "N/mm2"),
@@ -51,7 +51,7 @@ _USUAL = {
     "rad": ("deg", "rad"),
     "m/s": ("m/s", "cm/s", "mm/s", "um/s", "km/h"),
 }
-# Beyond these a number is a slip of the unit, and formulas would over- or underflow.
+# Outside these bounds the unit is almost certainly wrong, and formulas would over- or underflow.
 _BOUNDS = {
     "m": (1e-12, 1e3),
     "Pa": (1.0, 1e15),
@@ -68,7 +68,7 @@ def _registry() -> pint.UnitRegistry[float]:
 
 
 def read_quantity(value: object, unit: str) -> float:
-    """Return `value`, such as "500 um", in the SI `unit`; raise `ValueError` in plain words."""
+    """Convert `value`, such as "500 um", to the SI `unit`. Raises `ValueError`."""
     example = f"write for example {_EXAMPLES[unit]}"
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         raise ValueError(f"{shown(value)} has no unit; {example}")
@@ -86,9 +86,9 @@ def read_quantity(value: object, unit: str) -> float:
         remedy = _other_case(match[2], unit) or example
         raise ValueError(f"{shown(value)} is not {_NAMES[unit]}; {remedy}") from None
     except (pint.PintError, ValueError, TypeError, AttributeError, AssertionError, KeyError):
-        # The last two are how pint meets "¼" and "m⁰".
+        # pint raises the last two for "¼" and "m⁰".
         remedy = _other_case(match[2], unit) or example
-        raise ValueError(f"{shown(value)} has a unit that is not known; {remedy}") from None
+        raise ValueError(f"{shown(value)} has an unknown unit; {remedy}") from None
     result = number * factor
     if not math.isfinite(result):
         raise ValueError(f"{shown(value)} is not a finite number; {example}")
@@ -96,7 +96,7 @@ def read_quantity(value: object, unit: str) -> float:
 
 
 def _other_case(name: str, unit: str) -> str | None:
-    """Advice when `name` is a usual unit but for upper and lower case ("gpa")."""
+    """Advice if `name` differs from a usual unit only in upper and lower case ("gpa")."""
     for usual in _USUAL[unit]:
         if usual.lower() == name.lower() and usual != name:
             return f"did you mean {usual}?"
@@ -104,7 +104,7 @@ def _other_case(name: str, unit: str) -> str | None:
 
 
 def read_positive(value: Any, unit: str, *, or_zero: bool = False) -> float:
-    """The same for what must be greater than zero, or not less, and as large as in a contact."""
+    """Convert as `read_quantity`, and require a positive value (or zero) that is plausible."""
     result = read_quantity(value, unit)
     if or_zero and result == 0:
         return 0.0
@@ -117,7 +117,7 @@ def read_positive(value: Any, unit: str, *, or_zero: bool = False) -> float:
         match = _QUANTITY.fullmatch(value)
         hint = _other_case(match[2], unit) if match else None
         raise ValueError(
-            f"{shown(value)} is outside what a contact can have ({low:g} to {high:g} {unit}); "
+            f"{shown(value)} is outside the plausible range ({low:g} to {high:g} {unit}); "
             f"check the unit{f': {hint}' if hint else ''}"
         )
     return result

@@ -58,7 +58,7 @@ _REMEDIES: dict[Code, str] = {
 
 
 def _range(value: Any) -> Any:
-    """A list of two positions, the second above the first."""
+    """A tuple of a list of two positions."""
     if not isinstance(value, list) or len(value) != 2:
         raise ValueError(f"{shown(value)} should be a list of two positions")
     return tuple(value)
@@ -110,7 +110,7 @@ class GeneratedRoughness(Table):
         return self.model_copy(update={"seed": self.seed + number})
 
     def surface(self, grid: Grid, _: Path, factor: int = 1) -> Surface:
-        """The roughness of `grid`, its waves continued on cells `factor` times as small."""
+        """The surface generated on `grid`, interpolated to cells `factor` times smaller."""
         fine = divided(grid, factor)
         normal = (self.skewness, self.kurtosis) == (0.0, 3.0)
         made = needs.generated_bytes(grid, normal=normal, periodic=self.periodic)
@@ -122,7 +122,7 @@ class GeneratedRoughness(Table):
 
 
 class CropTable(Table):
-    """`roughness.crop`: what part of a scan is used."""
+    """`roughness.crop`: the part of a scan that is used."""
 
     x: Range | None = None
     y: Range | None = None
@@ -150,11 +150,11 @@ class MeasuredRoughness(Table):
             raise ValueError('extend = "twin" draws a random surface and needs a seed; give one')
         if self.seed is not None and self.extend != "twin":
             raise ValueError(
-                'seed belongs to extend = "twin"; a scan is one surface, and has places: leave '
-                "seed out, or give place"
+                'seed applies only to extend = "twin"; remove seed, or give place to use another '
+                "place of the scan"
             )
         if self.place and self.extend == "twin":
-            raise ValueError("place belongs to a scan; a twin has a seed instead: leave place out")
+            raise ValueError('place does not apply to extend = "twin"; remove place, or vary seed')
         return self
 
     def variant(self, number: int) -> Self:
@@ -165,7 +165,7 @@ class MeasuredRoughness(Table):
         return self.model_copy(update={"place": self.place + number})
 
     def scan(self, folder: Path) -> Surface:
-        """What was measured, cleaned and levelled; `file` is relative to `folder`."""
+        """The scan, cleaned and levelled; `file` is relative to `folder`."""
         with _naming({}):
             scan = read_surface(
                 folder / self.file, channel=self.channel, size=self.size, undefined=self.undefined
@@ -175,13 +175,13 @@ class MeasuredRoughness(Table):
                 scan = crop(scan, x=self.crop.x, y=self.crop.y)
             if self.outliers is not None:
                 scan = remove_outliers(scan, self.outliers)
-        # Levelled as a whole before a grid's part is cut out: the form belongs to the scan.
+        # Level the whole scan before a part is cut out, because the form is that of the whole.
         return place_of(level(scan, self.detrend), self.place)
 
     def surface(self, grid: Grid | None, folder: Path, factor: int = 1) -> Surface:
-        """The roughness on cells `factor` times as small as those of `grid`, or as the pixels.
+        """The roughness on cells `factor` times smaller than those of `grid` (None: the pixels).
 
-        Smaller cells get the scan's shorter waves, down to its pixel; below, no waves are added.
+        Smaller cells resolve shorter waves of the scan, down to its pixel; finer cells add none.
         """
         scan = self.scan(folder)
         grid = grid or scan.grid
@@ -199,9 +199,9 @@ class MeasuredRoughness(Table):
             return kept(asked, lambda: self._placed(scan, grid, factor))
 
     def _placed(self, scan: Surface, grid: Grid, factor: int) -> Surface:
-        """The `scan`, continued if asked for, on cells `factor` times as small as `grid`'s."""
+        """The `scan`, extended if requested, on cells `factor` times smaller than in `grid`."""
         if self.extend == "twin":
-            # The waves of a twin have no nodes to continue them from: all grids are alike.
+            # The waves of a twin do not depend on the grid: evaluate them directly on the fine one.
             placed, steps = extend(scan, divided(grid, factor), "twin", seed=self.seed), factor
         else:
             steps = self._steps_to_pixel(grid, scan.grid, factor)
@@ -216,7 +216,7 @@ class MeasuredRoughness(Table):
         return replace(finer, provenance={**finer.provenance, "refined": factor, "refinement": how})
 
     def _steps_to_pixel(self, grid: Grid, pixels: Grid, factor: int) -> int:
-        """The part of `factor` after which cells of `grid` are no longer larger than the pixel."""
+        """The part of `factor` that makes cells of `grid` no larger than the pixel."""
         steps = 1
         while factor % (2 * steps) == 0 and any(
             h / steps > pixel * (1 + 1e-9)

@@ -1,4 +1,4 @@
-"""The tables of a case file: what all have in common, and those of grid, depths and unloading."""
+"""Tables of the case file: their base class, and those of grid, depths and unloading."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ MOST_STEPS = 10_000  # of a curve
 
 
 class Table(BaseModel):
-    """A table: no key that is not known, no value of another type."""
+    """A table that rejects unknown keys and values of a wrong type."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, populate_by_name=True)
 
 
 def _two(value: Any) -> Any:
-    """One value for both axes, or a list of two."""
+    """A tuple for both axes, of one value or of a list of two."""
     if not isinstance(value, list):
         return value, value
     if len(value) != 2:
@@ -68,7 +68,7 @@ def _factors(value: Any) -> int | tuple[int, ...] | str:
 
 
 class GridTable(Table):
-    """`[grid]`; `nodes` and `spacing` may be omitted for a scan, which brings its own."""
+    """`[grid]`; `nodes` and `spacing` may be omitted for a scan, which defines its own."""
 
     nodes: Annotated[tuple[Nodes, Nodes], PairOf, AfterValidator(_few_enough)] | None = None
     spacing: Annotated[tuple[Length, Length], PairOf] | None = None
@@ -85,16 +85,16 @@ class GridTable(Table):
 
     @property
     def factor(self) -> int:
-        """Cells along x and y that one cell is divided into, at the deepest depth.
+        """Number of parts into which a cell is divided along x and y at the deepest depth.
 
-        1 for "auto", where the number is still to be found.
+        1 for "auto".
         """
         if isinstance(self.refine, tuple):
             return self.refine[-1]
         return 1 if self.refine == "auto" else self.refine
 
     def grid(self) -> Grid | None:
-        """The grid before it is refined, None if it is that of the scan."""
+        """The grid before refinement, None if the scan defines it."""
         if self.nodes is None or self.spacing is None:
             return None
         return Grid(self.nodes, self.spacing)
@@ -124,19 +124,19 @@ class Series(Table, Generic[Quantity]):
             raise ValueError(f"give from, to and steps (or {self.list_key} = [...])")
         elif self.from_ == self.to:
             raise ValueError(
-                f"from and to are the same; for a single one use {self.list_key} = [...]"
+                f"from and to are equal; for a single value use {self.list_key} = [...]"
             )
         elif not cast(float, self.from_) < cast(float, self.to):
             raise ValueError("from must be smaller than to")
         elif self.steps == 1:
             raise ValueError(
-                "steps = 1 does not reach from one to the other; give at least 2, or for a single "
-                f"one use {self.list_key} = [...]"
+                "steps = 1 does not span from and to; give at least 2, or for a single value use "
+                f"{self.list_key} = [...]"
             )
         return self
 
     def series(self) -> list[float]:
-        """The values asked for, in SI units, increasing."""
+        """The prescribed values in SI units, increasing."""
         if self.values is not None:
             return sorted(cast(set[float], set(self.values)))
         space = np.geomspace if self.scale == "log" else np.linspace
@@ -157,7 +157,7 @@ class ImpactTable(Series[Velocity]):
 
 
 class UnloadingTable(Table):
-    """`[unloading]`: which curves are written, and how unloading is computed."""
+    """`[unloading]`: how many curves are written, and how unloading is computed."""
 
     curves: Annotated[int, Field(ge=0, le=MOST_STEPS)] = 3
     steps: Annotated[int, Field(ge=4, le=MOST_STEPS)] = 16

@@ -1,1 +1,1 @@
-"""Laws as the input of DEM codes."""
+"""Exports of laws to DEM codes."""

@@ -14,7 +14,7 @@ from restitution.results.writer import replace_file, table_text, writing
 
 CODES = ("lammps", "liggghts", "yade", "mercurydpm", "edem", "csv")
 TABLE = "restitution.csv"
-# Quantities of the whole law.
+# Columns that have the same value at every velocity of a law.
 _WHOLE = (
     "yield_velocity_smooth_m_per_s",
     "sticking_velocity_smooth_m_per_s",
@@ -42,8 +42,8 @@ def export(laws: Sequence[Law], code: str, velocity: float | None) -> dict[str, 
     if velocity is None:
         law = laws[0]
         raise CaseError(
-            f"velocity: {code} takes one coefficient of restitution a pair, which holds at one "
-            f'velocity; give it with --velocity, such as "{law.lowest:.3g} m/s" to '
+            f"velocity: {code} takes one coefficient of restitution for each pair, which holds at "
+            f'one velocity; give the velocity with --velocity, from "{law.lowest:.3g} m/s" to '
             f'"{law.highest:.3g} m/s"'
         )
     texts: dict[str, str] = import_module(f"restitution.dem.codes.{code}").write(table, velocity)

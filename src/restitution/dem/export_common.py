@@ -23,11 +23,13 @@ from restitution.errors import CaseError, one_line
 from restitution.laws.law import Law, Particle
 
 FRICTION = 0.5
-PLACEHOLDER = f"Friction {FRICTION} is a placeholder: no friction was computed here, give yours."
+PLACEHOLDER = (
+    f"Friction {FRICTION} is a placeholder: friction is not computed here, set your value."
+)
 
 STEPS = 5000
 TIME_STEP = (
-    "the elastic contact time t_c = 2.87 (m*^2/(R* E*^2 V))^(1/5), so fine for the sake of e only"
+    "the elastic contact time t_c = 2.87 (m*^2/(R* E*^2 V))^(1/5); only e needs so small a step"
 )
 
 _WIDTH = 98
@@ -85,7 +87,7 @@ def pairs_at(table: PairTable, velocity: float, code: str, lowest: float) -> lis
             raise CaseError(
                 f"{law.pair} {_failure(law, e)} at {velocity:.6g} m/s, and {code} takes no "
                 f"coefficient of restitution below {lowest:g}; export at a higher velocity, or "
-                "use an adhesive contact model there"
+                "use an adhesive contact model"
             )
         found.append(Pair(i, j, table.particles[i - 1], table.particles[j - 1], law, e))
     return found
@@ -106,7 +108,12 @@ def density_of(particle: Particle) -> float:
 
 def identifier(particle: Particle, number: int) -> str:
     """A name for `particle` that every code accepts: letters, digits and `_`, with `number`."""
-    word = re.sub(r"[^A-Za-z0-9]+", "_", plain(particle.name)).strip("_")[:24].rstrip("_").lower()
+    word = (
+        re.sub(r"[^A-Za-z0-9]+", "_", comment_text(particle.name))
+        .strip("_")[:24]
+        .rstrip("_")
+        .lower()
+    )
     word = word or "type"
     return f"{word if word[0].isalpha() else f'p_{word}'}_{number}"
 
@@ -114,7 +121,7 @@ def identifier(particle: Particle, number: int) -> str:
 def header(
     table: PairTable, pairs: Sequence[Pair], velocity: float, *, code: str, ends: str
 ) -> list[str]:
-    """Comment lines above the export for `code`; `ends` says where it ends a contact."""
+    """Comment lines above the export for `code`; `ends` tells when `code` ends a contact."""
     lines = _origin(velocity, code, ends)
     lines += ["", "Types:"]
     lines += [f"  {k}: {particle}" for k, particle in enumerate(table.particles, 1)]
@@ -127,7 +134,7 @@ def summary(
     pairs: Sequence[Pair], velocity: float, *, code: str, ends: str, fragment: str
 ) -> list[str]:
     """The shorter comments above a collision that uses `fragment`; all warnings are kept."""
-    lines = [*_origin(velocity, code, ends), f"Where e comes from is told in {fragment}."]
+    lines = [*_origin(velocity, code, ends), f"The comments in {fragment} give the origin of e."]
     for pair in pairs:
         lines += _warnings(pair, velocity)
     return _wrapped(lines)
@@ -141,12 +148,12 @@ def commented(lines: Iterable[str], sign: str) -> str:
 def render(name: str, **values: object) -> str:
     """The text of the file `name`, from its template `templates/NAME.j2` with `values`.
 
-    Templates know, besides, the names and the filters of `_environment`.
+    Templates can also use the names and the filters of `_environment`.
     """
     return _environment().get_template(f"{name}.j2").render(values)
 
 
-def plain(text: str) -> str:
+def comment_text(text: str) -> str:
     """`text` as one line of ASCII that cannot end a comment; Greek letters become names."""
     text = unicodedata.normalize("NFKD", one_line(text).translate(_PLAIN)).translate(_PLAIN)
     text = "".join(map(_ascii, text)).translate(_SIGNS)
@@ -175,7 +182,7 @@ def _environment() -> Environment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    environment.filters |= {"number": number, "plain": plain}
+    environment.filters |= {"number": number, "comment_text": comment_text}
     environment.globals |= {
         "friction": FRICTION,
         "placeholder": PLACEHOLDER,
@@ -190,8 +197,8 @@ def _environment() -> Environment:
 def _origin(velocity: float, code: str, ends: str) -> list[str]:
     return [
         f"Coefficients of restitution for {code}, written by restitution {program_version()}.",
-        f"They hold at the impact velocity {velocity:.6g} m/s only: {code} keeps e constant, the "
-        "pairs do not. Export again for another velocity.",
+        f"They hold at the impact velocity {velocity:.6g} m/s only: {code} keeps e constant, but e "
+        "of the pairs depends on the velocity. Export again for another velocity.",
         f"End of a contact in {code}: {ends}",
         "SI units.",
     ]
@@ -202,13 +209,13 @@ def _about(pair: Pair, velocity: float) -> list[str]:
     p_y = "none (elastic)" if law.yield_pressure is None else f"{law.yield_pressure:.6g} Pa"
     lines = [
         f"Pair {pair.i} {pair.j}: {pair.first} and {pair.second}",
-        f"  title: {textwrap.shorten(plain(law.title), 200, placeholder=' ...')}",
+        f"  title: {textwrap.shorten(comment_text(law.title), 200, placeholder=' ...')}",
         f"  e = {at.restitution:.6g} +/- {at.error:.2g} at {velocity:.6g} m/s"
         + _elsewhere(law, velocity),
         f"  R* = {law.radius:.6g} m, E* = {law.contact_modulus:.6g} Pa, m* = {law.mass:.6g} kg",
         f"  yield pressure p_y: {p_y}; convention: {law.conventions.yield_pressure}",
         f"  end of contact in e: {law.conventions.end_of_contact}",
-        f"  the error of e is: {law.conventions.restitution_error}",
+        f"  the error of e includes: {law.conventions.restitution_error}",
         f"  elastic contact time: {contact_time(law) * velocity**-0.2:.3g} s; a time step of 1/50 "
         "of it keeps e within 1 % in LAMMPS",
         f"  computed from {law.lowest:.4g} to {law.highest:.4g} m/s; nothing is extrapolated",
@@ -226,12 +233,12 @@ def _warnings(pair: Pair, velocity: float) -> list[str]:
     if not pair.law.at(velocity).resolved:
         lines.append(
             f"WARNING: unresolved at {velocity:.6g} m/s (pair {pair.i} {pair.j}): the grid was too "
-            "coarse there, and e may be off by more than its error says"
+            "coarse there, and the error of e may be too small"
         )
     if pair.restitution == 0:
         lines.append(
-            f"WARNING: pair {pair.i} {pair.j} sticks at {velocity:.6g} m/s, and e = 0 does not "
-            "hold it together"
+            f"WARNING: pair {pair.i} {pair.j} sticks at {velocity:.6g} m/s, but e = 0 does not "
+            "keep the bodies in contact"
         )
     return lines + [f"WARNING: pair {pair.i} {pair.j}: {text}" for text in pair.law.warnings]
 
@@ -246,14 +253,14 @@ def _failure(law: Law, e: float) -> str:
     if e > 0:
         return f"has e = {e:.3g}"
     if law.sticks_everywhere:
-        return "sticks (e = 0) at every velocity that was computed, so also"
+        return "sticks (e = 0) at every computed velocity, so also"
     begins = law.sticks_below
     return "sticks (e = 0)" + ("" if begins is None else f" below {begins:.4g} m/s, so also")
 
 
 def _wrapped(lines: Iterable[str]) -> list[str]:
     found = []
-    for line in map(plain, lines):
+    for line in map(comment_text, lines):
         indent = " " * (len(line) - len(line.lstrip()) + 4)
         found += textwrap.wrap(line, _WIDTH, subsequent_indent=indent) or [""]
     return found

@@ -59,7 +59,7 @@ class PairTable:
             more = f" (and {len(missing) - 1} more)" if len(missing) > 1 else ""
             raise CaseError(
                 f"{code} needs a law for every {what}, and there is none for "
-                f"{missing[0]}{more}; the law of one pair is not that of another: compute it "
+                f"{missing[0]}{more}; another pair's law cannot replace it: compute the law "
                 "(`restitution run`, `restitution fit-law`) and give it, too"
             )
 
@@ -78,7 +78,7 @@ def pair_table(laws: Sequence[Law]) -> PairTable:
         i, j = sorted((number[law.first], number[law.second]))
         if (i, j) in found:
             raise CaseError(
-                f"two laws are given for {law.pair}; give one, or let the particles differ in name"
+                f"two laws are given for {law.pair}; give one, or give the particles other names"
             )
         found[i, j] = law
     return PairTable(spheres, walls, found)

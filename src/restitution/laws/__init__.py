@@ -1,1 +1,1 @@
-"""The restitution law of one pair: from stored results to fits, and beside the closed forms."""
+"""The restitution law of one pair: from stored results, with fits and closed forms."""

@@ -37,8 +37,8 @@ SOURCES = {
     "sticking": "JKR, elastic: C. Thornton, Z. Ning, Powder Technology 99 (1998) 154-162",
     "thornton-ning": "C. Thornton, Z. Ning, Powder Technology 99 (1998) 154-162",
     "johnson": "K. L. Johnson, Contact Mechanics (Cambridge, 1985), section 11.5",
-    "mdr": "W. Zunker, K. Kamrin, J. Mech. Phys. Solids 183 (2024) 105492, as LAMMPS has it",
-    "brilliantov": "P. Mueller, T. Poeschel, Phys. Rev. E 84 (2011) 021302, of the viscoelastic "
+    "mdr": "W. Zunker, K. Kamrin, J. Mech. Phys. Solids 183 (2024) 105492, as in LAMMPS",
+    "brilliantov": "P. Mueller, T. Poeschel, Phys. Rev. E 84 (2011) 021302, for the viscoelastic "
     "contact of N. V. Brilliantov et al., Phys. Rev. E 53 (1996) 5382-5392",
 }
 
@@ -70,8 +70,8 @@ class Bodies:
         for name, body in (("first", pair.first), ("second", pair.second)):
             if body.mass is None:
                 raise CaseError(
-                    f"{name}.density: is missing; an impact velocity needs it, and so does every "
-                    f'theory of restitution: write for example density = "2500 kg/m^3" in [{name}]'
+                    f"{name}.density: is missing, and every theory of restitution needs it; write "
+                    f'for example density = "2500 kg/m^3" in [{name}]'
                 )
         assert pair.mass is not None  # just checked
         tables = case.first, case.second or case.first
@@ -130,7 +130,7 @@ class Bodies:
 
     @cached_property
     def small_velocity(self) -> float:
-        """V up to which a Hertz contact is small beside the spheres."""
+        """V (m/s) up to which a Hertz contact is small compared with the spheres."""
         return float(self.hertz.impact_velocity(_SMALL * self.R, self.m))
 
     @property
@@ -192,7 +192,7 @@ def _sticking(b: Bodies, V: Array) -> Form | str:
         return "the case has no work_of_adhesion"
     V_s, V_y = b.sticking_velocity, b.yield_velocity
     limit = min(V_y, b.small_velocity) if V_s < V_y else 0.0
-    failing = "" if V_s < V_y else ", so nowhere here"
+    failing = "" if V_s < V_y else ", so at no velocity here"
     return Form(
         within(limit >= V, b.sticking.restitution(V, b.m)),
         f"nothing yields and the contact is small, {_elastic_range(b)}; V_s = {speed(V_s)} below "
@@ -208,7 +208,7 @@ def _thornton_ning(b: Bodies, V: Array) -> Form | str:
     depth = b.yielding.indentation_from_velocity(V, b.m)
     limit = float(b.yielding.impact_velocity(b.R, b.m))
     deepest = math.sqrt(float(np.max(depth, initial=0.0)) / b.R)
-    small = f"a << R* (here a/R* up to {deepest:.2g}; no answer from a = R* on, {speed(limit)})"
+    small = f"a << R* (here a/R* up to {deepest:.2g}; no value from a = R* on, {speed(limit)})"
     inside = depth < b.R
     parameters = {"yield_pressure_Pa": b.p_y}
     if b.w == 0:
@@ -216,9 +216,9 @@ def _thornton_ning(b: Bodies, V: Array) -> Form | str:
         return Form(within(inside, e), f"quasi-static impacts, {small}", parameters)
     V_s, V_y = b.sticking_velocity, b.yield_velocity
     additive = (
-        f"losses added, an upper estimate good for V_s << V_y ({speed(V_s)}, {speed(V_y)})"
+        f"sum of both losses, an upper bound, good for V_s << V_y ({speed(V_s)}, {speed(V_y)})"
         if V_s <= V_y
-        else f"up to V_y = {speed(V_y)} only, for V_s = {speed(V_s)} lies above"
+        else f"only up to V_y = {speed(V_y)}, because V_s = {speed(V_s)} is higher"
     )
     return Form(
         within(inside, AdhesiveThorntonNing(b.R, b.E, b.p_y, b.w).restitution(V, b.m)),
@@ -237,8 +237,9 @@ def _johnson(b: Bodies, V: Array) -> Form | str:
     highest = float(law.velocity_at_full_radius(b.m))
     return Form(
         within((e < _JOHNSON) & (highest > V), e),
-        f"fully plastic, e < {_JOHNSON:g}: above {speed(lowest)}; a << R* (no answer from a = R* "
-        f"on, {speed(highest)}){'' if lowest < highest else ', so nowhere here'}; pressure 3 Y",
+        f"fully plastic, e < {_JOHNSON:g}: above {speed(lowest)}; a << R* (no value from a = R* "
+        f"on, {speed(highest)}){'' if lowest < highest else ', so at no velocity here'}; "
+        "pressure 3 Y",
         takes_strength=True,
     )
 
@@ -247,12 +248,12 @@ def _mdr(b: Bodies, V: Array) -> Form | str:
     if b.elastic:
         return _ELASTIC
     if not b.walls and not b.equal:
-        return "of two spheres it knows two equal ones only"
+        return "it needs equal spheres, or a sphere and a wall"
     if b.yielding_wall:
-        return "the wall is the softer one, and its flat does not yield"
+        return "the wall is softer than the sphere, and its model has no yielding wall"
     nu = b.sphere_poisson
     if nu < 0:
-        return "it takes no negative Poisson ratio"
+        return "it does not hold for a negative Poisson's ratio"
     n = 2 if b.equal else 1
     E = n * b.E * (1 - nu**2)
     sphere = MDR(n * b.R, E, nu, b.strength)
@@ -260,7 +261,7 @@ def _mdr(b: Bodies, V: Array) -> Form | str:
     flat = (
         "two equal spheres, a flat between them"
         if b.equal
-        else "a sphere on a rigid flat, the wall's compliance put into E"
+        else "a sphere on a rigid flat, E including the wall's compliance"
     )
     return Form(
         sphere.restitution(V / n, n * b.m),
@@ -287,7 +288,7 @@ def _elastic_range(b: Bodies) -> str:
 
 def _tabor(b: Bodies) -> str:
     mu = float(b.sticking.tabor_parameter(b.separation))
-    beside = f"here {mu:.2g}" + (", so it sticks less than this says" if mu < 5 else "")
+    beside = f"here {mu:.2g}" + (", so the true V_s is lower" if mu < 5 else "")
     return f"JKR, a Tabor parameter above 5 ({beside})"
 
 

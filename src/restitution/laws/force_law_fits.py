@@ -218,7 +218,7 @@ def _eepa(law: Law) -> FittedLaw:
         dict(zip(_EEPA, springs(x), strict=True)),
         source="S. C. Thakur et al., Granular Matter 16 (2014) 383-400; exponent 3/2 given",
         ends="indentation zero" if adhesive else _AT_FORCE_ZERO,
-        note="" if adhesive else "without adhesion its restitution is the same at every velocity",
+        note="" if adhesive else "without adhesion e is the same at every velocity",
     )
 
 
@@ -248,7 +248,7 @@ def _mdr(law: Law) -> FittedLaw | None:
         "lammps-mdr",
         lambda V: restitution(V, x),
         {"yield_strength_Pa": math.exp(x[0]), "youngs_modulus_Pa": E, "poissons_ratio": nu},
-        source="W. Zunker, K. Kamrin, J. Mech. Phys. Solids 183 (2024) 105492, as LAMMPS has it",
+        source="W. Zunker, K. Kamrin, J. Mech. Phys. Solids 183 (2024) 105492, as in LAMMPS",
         ends=_AT_FORCE_ZERO,
         note="without its adhesion" if law.work_of_adhesion > 0 else "",
     )
@@ -330,7 +330,7 @@ def _judged(
     miss = found - law.column("restitution")
     miss = miss[np.isfinite(found) & law.column("resolved").astype(bool)]
     if not miss.size:
-        miss, note = np.ones(1), "has no answer at these velocities"
+        miss, note = np.ones(1), "has no value at these velocities"
     return FittedLaw(
         name=name,
         source=source,

@@ -36,7 +36,7 @@ def bare_law(out: Path) -> Law:
     An ensemble gives the law of its mean curve, with errors that include the confidence interval
     of the mean; a convergence study gives errors that include the error of its grid. Depths without
     an impact velocity (adhesion did more work than the approach) are left out. Raises `OutputError`
-    if the folder holds no run, `CaseError` if the run has no impact velocities.
+    if the folder holds no run, `CaseError` if no depth has an impact velocity.
     """
     run = _read(out)
     try:
@@ -53,8 +53,8 @@ def _law(out: Path, run: RunResults) -> Law:
     derived, model = summary["derived"], summary["model"]
     if derived.get("reduced_mass_kg") is None:
         raise CaseError(
-            f"{out}: has no impact velocities, for a density is not given in its case; give "
-            "first.density (and second.density) and run it again"
+            f"{out}: has no impact velocities, because its case gives no density; give "
+            "first.density (and second.density) and run the case again"
         )
     points = _points(run, case.total_error)
     if not points:
@@ -68,8 +68,8 @@ def _law(out: Path, run: RunResults) -> Law:
         )
     if left := len(rows) - len(points):
         warnings.append(
-            f"{left} of {len(rows)} depths are left out: no impact turns back there, because "
-            "adhesion has done more work than the approach, or no force was found"
+            f"{left} of {len(rows)} depths are left out: no impact reverses there, because "
+            "adhesion did more work than the approach, or there is no force"
         )
     pair = case.pair()
     for name, value in (
@@ -79,7 +79,7 @@ def _law(out: Path, run: RunResults) -> Law:
     ):
         if value is None or not math.isclose(derived[name], value, rel_tol=_SAME):
             raise OutputError(
-                f"{out}: {name} of summary.json is not that of the case in results.nc; a file is "
+                f"{out}: {name} in summary.json differs from the case in results.nc; a file is "
                 "damaged: run the case again"
             )
     law = Law(
@@ -106,8 +106,8 @@ def _law(out: Path, run: RunResults) -> Law:
     )
     if law.sticks_everywhere:
         warnings.append(
-            f"the pair sticks at every velocity that was computed (up to {law.highest:.4g} m/s); "
-            "where it begins to rebound is above"
+            f"the pair sticks at every computed velocity (up to {law.highest:.4g} m/s); it may "
+            "rebound above"
         )
     return law.model_copy(
         update={"sticks_below": law.curve().begins(), "warnings": tuple(warnings)}
@@ -117,13 +117,15 @@ def _law(out: Path, run: RunResults) -> Law:
 def _read(out: Path) -> RunResults:
     if (out / "study.toml").is_file():
         raise OutputError(
-            f"{out}: is a study of many cases, and a law is that of one pair; run the case by "
-            "itself (`restitution run`) and name its folder"
+            f"{out}: is a study of many cases, and a law describes one pair; run one case with "
+            "`restitution run` and name its folder"
         )
     if (out / LAW_FILE).is_file():
-        raise OutputError(f"{out}: is a law already; name the folder of the run it was made of")
+        raise OutputError(f"{out}: is already a law; name the folder of a run")
     if (out / "curve.csv").is_file() and not (out / "summary.json").exists():
-        raise OutputError(f"{out}: this run has not ended, or was killed; run it (again)")
+        raise OutputError(
+            f"{out}: this run has not ended, or was killed; wait for it, or run the case again"
+        )
     if not (out / "curve.csv").is_file() and not (out / "results.nc").is_file():
         raise OutputError(
             f"{out}: holds no results of a run; name the folder of -o of `restitution run`"

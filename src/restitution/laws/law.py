@@ -192,7 +192,7 @@ class Law(_Stored):
         radii = [body.radius for body in (self.first, self.second) if body.radius is not None]
         R = 1 / sum(1 / radius for radius in radii)
         if abs(self.radius / R - 1) > 1e-6:
-            raise ValueError("radius: is not that of the two bodies")
+            raise ValueError("radius: is not R* of the two bodies")
         return self
 
     @property
@@ -231,9 +231,9 @@ class Law(_Stored):
         """
         if not self.lowest * (1 - _SAME) <= velocity <= self.highest * (1 + _SAME):
             raise DomainError(
-                f"velocity: {velocity:.6g} m/s is outside what was computed for {self.pair} "
+                f"velocity: {velocity:.6g} m/s is outside the computed velocities of {self.pair} "
                 f"({self.lowest:.4g} to {self.highest:.4g} m/s), and nothing is extrapolated; "
-                "compute the law further, or ask for a velocity within"
+                "choose a velocity within, or compute a law for more velocities"
             )
         V = self.column("velocity")
         nearest = self.points[int(np.abs(V / velocity - 1).argmin())]

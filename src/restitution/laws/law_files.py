@@ -1,4 +1,4 @@
-"""Laws as files (`law.json` with all of it, `table.csv`, `laws.csv`), and theories as a table."""
+"""Laws as files (`law.json` is complete; `table.csv`, `laws.csv`), and theories as a table."""
 
 from __future__ import annotations
 

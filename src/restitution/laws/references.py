@@ -1,4 +1,4 @@
-"""Closed forms for the smooth bodies of a stored run, beside which its curves are drawn."""
+"""Closed forms for the smooth bodies of a stored run, drawn beside its curves."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _THORNTON_NING = "smooth, Thornton–Ning (truncated pressure)"
 
 @dataclass(frozen=True, eq=False)
 class Reference:
-    """Values `y` of a closed form at `x` (SI units), and whether it knows yielding."""
+    """Values `y` of a closed form at `x` (SI units), and whether it includes yielding."""
 
     label: str
     x: Array
@@ -60,12 +60,12 @@ def restitution_references_by_indentation(results: xr.Dataset) -> list[Reference
 
 
 def restitution_references_by_velocity(results: xr.Dataset) -> list[Reference]:
-    """COR against impact velocity (m/s), where any is known; NaN where a law has no answer."""
+    """COR against impact velocity (m/s); NaN where a law has no value."""
     R, E_star, p_y, w = _parameters(results)
     velocity, mass = results["impact_velocity"].values, results.attrs["derived_reduced_mass_kg"]
     fine, m = _between(velocity), float(mass)
     if w > 0 and np.isfinite(p_y):
-        # Where adhesion and yield do not simply add, this law has no answer.
+        # This law is NaN where the losses by adhesion and by yield are not additive.
         cor = AdhesiveThorntonNing(R, E_star, p_y, w).restitution(fine, m)
         return [Reference("smooth, Thornton–Ning with adhesion", fine, cor, True)]
     if w > 0:

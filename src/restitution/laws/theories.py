@@ -126,7 +126,7 @@ def check_same_pair(case: Case, law: Law) -> None:
     if differing:
         raise CaseError(
             f"the law of {law.pair} is of another pair: its {', its '.join(differing)}; name the "
-            "case it was computed from, or another law"
+            "case from which it was computed, or another law"
         )
 
 
@@ -143,7 +143,7 @@ def _answers(case: Case, V: Array) -> Iterator[Theory | tuple[str, str]]:
             holds += f"; {bodies.convention}"
             parameters = {"yield_strength_Pa": bodies.strength, **parameters}
         if bodies.w > 0 and not answer.with_adhesion:
-            holds += "; the adhesion of this pair is left out"
+            holds += "; without the adhesion of this pair"
         yield Theory(name, SOURCES[name], holds, parameters, answer.restitution)
 
 
@@ -228,10 +228,12 @@ def _cannot_fit(law: Law) -> str:
     """The reason why nothing can be fitted to `law`; empty if fits are possible."""
     e = law.column("restitution", resolved=True)
     if not e.size:
-        return "no velocity of the law is resolved by its grid, and there is nothing to fit to"
+        return "the grid resolves no velocity of the law, so there is nothing to fit"
     if e.min() > 1 - LOSS:
-        return "the law loses nothing, and there is nothing to fit"
-    return "all of the law sticks, and there is nothing to fit" if e.max() < LOSS else ""
+        return "e = 1 at every velocity of the law, so there is nothing to fit"
+    return (
+        "e = 0 at every velocity of the law, so there is nothing to fit" if e.max() < LOSS else ""
+    )
 
 
 def _dissipation(law: Law) -> float:

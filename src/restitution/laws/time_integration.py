@@ -96,9 +96,9 @@ class StoredForce:
         after = int(near[0]) if near.size else int(np.searchsorted(depths, deepest))
         if after == depths.size or (after == 0 and not near.size):
             raise DomainError(
-                f"the particles turn at {1e9 * deepest:.4g} nm, and unloading curves were stored "
-                f"from {1e9 * depths[0]:.4g} to {1e9 * depths[-1]:.4g} nm only; nothing is "
-                "extrapolated: raise unloading.curves, or choose another velocity"
+                f"the particles turn at {1e9 * deepest:.4g} nm, but unloading curves are stored "
+                f"only from {1e9 * depths[0]:.4g} to {1e9 * depths[-1]:.4g} nm, and nothing is "
+                "extrapolated; raise unloading.curves, or choose another velocity"
             )
         end, largest = self.separation(deepest), self.loading(deepest)
         upper = lower = _shape(*self.unloading[after])
@@ -125,7 +125,7 @@ def stored_force(out: Path) -> StoredForce:
     if not run.unloading:
         raise OutputError(
             f"{out}: holds no unloading curves; run the case with unloading.curves of 1 or more "
-            "(of an ensemble, name the folder of one realisation)"
+            "(for an ensemble, name the folder of one realisation)"
         )
     try:
         return _stored_force(run)
@@ -158,8 +158,8 @@ def collide_in_time(law: StoredForce, velocity: float) -> ReferenceCollision:
     """
     if not 0 < velocity <= law.highest * (1 + 1e-9):
         raise DomainError(
-            f"velocity: {velocity:.6g} m/s is not within what was computed (up to "
-            f"{law.highest:.4g} m/s); compute further, or choose a lower one"
+            f"velocity: {velocity:.6g} m/s is outside the computed velocities (above 0, up to "
+            f"{law.highest:.4g} m/s); choose one within, or run the case to a higher velocity"
         )
     m1, m2 = law.pair.first.mass, law.pair.second.mass
     assert m1 is not None  # StoredForce
@@ -320,7 +320,7 @@ def _separation(results: xr.Dataset, depth: Array) -> Callable[[float], float]:
     known = np.isfinite(ratio)
     if not known.any():
         raise OutputError(
-            "the results have no unloading that was followed to separation; run the case with "
+            "the results have no unloading to separation; run the case with "
             'unloading.method = "path"'
         )
     if known.sum() < 2:

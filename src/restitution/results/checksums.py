@@ -1,7 +1,7 @@
-"""SHA-256 of the files of a folder, so that a damaged one is not read as results.
+"""SHA-256 checksums of the files of a folder, so that damaged files are not read as results.
 
-They stand in `SHA256SUMS`, in the format of the program `sha256sum`. Files without a checksum (of a
-folder from which that file was removed, or of a program that wrote none) are not checked.
+The checksums are in `SHA256SUMS`, in the format of the program `sha256sum`. Files without a
+checksum (`SHA256SUMS` was removed or never written) are not checked.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ def checksums(folder: Path, names: Sequence[str]) -> str:
 
 
 def check_file(path: Path) -> None:
-    """Raise `OutputError` when `path` differs from what was written there."""
+    """Raise `OutputError` if `path` differs from its checksum."""
     known = _known(path.parent)
     try:
         damaged = path.name in known and known[path.name] != _checksum(path)

@@ -1,4 +1,4 @@
-"""Two runs or two studies side by side: what differs in them, and by how much."""
+"""Compare two runs or two studies: their COR, with errors, and their inputs."""
 
 from __future__ import annotations
 
@@ -15,17 +15,16 @@ from restitution.errors import OutputError
 from restitution.results.reader import RunResults, StudyResults
 
 _Row = Mapping[str, float]
-_SAME = 1e-9  # relative difference of depths that are the same
+_SAME = 1e-9  # depths are equal within this relative difference
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """Rows with the values of both and their difference, inputs that differ, and notes.
+    """Rows with the values of both results and their difference, differing inputs, and notes.
 
-    A row has what the cases have of the swept values, `max_indentation_m`, and for COR
-    `restitution_a`, `restitution_b`, `difference` (b − a), its `error` (see `_error`),
-    `significant` (the difference is larger), `resolved` (by both grids), and `force_ratio` (b over
-    a).
+    A row has the swept values of a study's case, `max_indentation_m`, `restitution_a`,
+    `restitution_b`, `difference` (b − a), its `error` (see `_error`), `significant` (the difference
+    exceeds the error), `resolved` (by both grids), and `force_ratio` (b/a).
     """
 
     rows: list[dict[str, Any]]
@@ -59,7 +58,8 @@ def _studies(a: Path, b: Path) -> Comparison:
     common = [key for key in of_a if key in of_b]
     if not common:
         raise OutputError(
-            f"{a}, {b}: these studies have no case with the same swept values in common"
+            f"{a}, {b}: no case has the same swept values in both studies; compare studies with "
+            "common values"
         )
     rows, notes = [], []
     for key in common:
@@ -75,7 +75,7 @@ def _studies(a: Path, b: Path) -> Comparison:
 def _curves(
     a: Sequence[_Row], b: Sequence[_Row], swept: Mapping[str, str]
 ) -> tuple[list[dict[str, Any]], list[str]]:
-    """Rows at the depths of `a` that `b` spans; between its depths `b` is interpolated."""
+    """Rows at the depths of `a` within the range of `b`, which is interpolated; and notes."""
     depth_b = np.array([row["max_indentation_m"] for row in b])
     rows, between, beyond = [], 0, 0
     for row in a:
@@ -87,7 +87,7 @@ def _curves(
         elif depth_b.size > 1 and depth_b[0] < depth < depth_b[-1]:
             k = int(np.searchsorted(depth_b, depth))
             other, between = [b[k - 1], b[k]], between + 1
-            # COR is nearly straight in the logarithm of depth between neighbours.
+            # Between neighbouring depths COR is nearly linear in the logarithm of depth.
             share = math.log(depth / depth_b[k - 1]) / math.log(depth_b[k] / depth_b[k - 1])
             weights = [1 - share, share]
         else:
@@ -114,18 +114,19 @@ def _curves(
         )
     notes = []
     if between:
-        notes.append("depths differ: the second is interpolated between its own")
+        notes.append("depths differ: the second result is interpolated")
     if beyond:
-        notes.append("depths of the first that the second does not reach are left out")
+        notes.append("depths of the first result outside the range of the second are left out")
     if any(math.isnan(row["discretisation_error"]) for row in (*a, *b)):
         notes.append(
-            "errors do not hold that of the grid, which one run cannot tell (restitution converge)"
+            "errors do not include the error of the grid where discretisation_error is empty "
+            "(set total_error = true, or use restitution converge)"
         )
     return rows, notes
 
 
 def _error(row: _Row) -> float:
-    """Error of COR: of unloading, of the grid, and of the mean of an ensemble, in quadrature."""
+    """Error of COR: numerical, of the grid, and of the mean of an ensemble, in quadrature."""
     parts = [row["restitution_error"], row["discretisation_error"]]
     if "restitution_low" in row:
         parts.append(0.5 * (row["restitution_high"] - row["restitution_low"]))
@@ -148,7 +149,7 @@ def _complete_cases(
 
 
 def _run(folder: Path) -> tuple[list[dict[str, float]], str]:
-    """Rows and case of a run; of one that was killed, which has its curve alone, no case."""
+    """Rows and case of a run; the case is empty if the run was killed and left only its curve."""
     run = RunResults(folder)
     if not (folder / "summary.json").exists() and not (folder / "results.nc").exists():
         return run.curve.rows, ""

@@ -1,4 +1,4 @@
-"""Hold back Ctrl-C and its like while something is done that must not be left half done.
+"""Delay Ctrl-C and similar signals during operations that must complete.
 
 Python raises `KeyboardInterrupt` between any two instructions. Inside the libraries that write and
 read netCDF files it would leave their locks taken, and the next access would wait for ever.
@@ -22,10 +22,10 @@ _handlers: dict[int, _Handler] = {}
 
 @contextmanager
 def hold_signals() -> Iterator[None]:
-    """Handle SIGINT, SIGTERM and SIGHUP after the body, however it ends.
+    """Delay SIGINT, SIGTERM and SIGHUP until the `with` body has ended, normally or by an error.
 
-    Only signals with a handler in Python are held: the others do not raise. Threads other than the
-    main one receive no signals, so that nothing is done there.
+    Only signals with a Python handler are delayed, because the others do not raise. Only the main
+    thread receives signals; in other threads this does nothing.
     """
     global _depth
     if threading.current_thread() is not threading.main_thread():
@@ -34,7 +34,7 @@ def hold_signals() -> Iterator[None]:
     if not _depth:
         _received.clear()
         _install()
-    # No signal is handled between this assignment and `try`, nor between the last one and `if`.
+    # Python handles no signal between `_depth += 1` and `try`, nor between `_depth -= 1` and `if`.
     _depth += 1
     try:
         yield
@@ -64,7 +64,7 @@ def _release() -> None:
 
 
 def _note(number: int, frame: FrameType | None) -> None:
-    """Remember a signal while signals are held; pass it on where they are not (any more)."""
+    """Store a signal while signals are held; otherwise pass it to its handler."""
     if _depth:
         _received.append(number)
     else:

@@ -1,4 +1,4 @@
-"""Keep a second process out of a folder while one writes there."""
+"""Lock a results folder against other processes."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from restitution.results.writer import writing
 
 @contextmanager
 def locked(folder: Path) -> Iterator[None]:
-    """Make `folder`, and keep other processes out of it.
+    """Make `folder`, and lock it against other processes.
 
-    The lock file is removed at the end, and the folder as well if it is new and still empty. Raises
-    `OutputError` while another process works there, and where the folder cannot be written.
+    The lock file is removed at the end, and so is the folder if it is new and still empty. Raises
+    `OutputError` if another process holds the lock or the folder cannot be written.
     """
     lock = FileLock(folder / LOCK)
     try:
@@ -38,7 +38,7 @@ def locked(folder: Path) -> Iterator[None]:
         yield
     finally:
         with hold_signals():
-            # Removed before it is released: filelock gives nobody a lock on a removed file.
+            # Remove before release: filelock grants no lock on a removed file.
             with suppress(OSError):
                 (folder / LOCK).unlink()
             lock.release()

@@ -1,7 +1,7 @@
-"""Read stored results, and refuse damaged ones: a damaged file must not pass for numbers.
+"""Read stored results, and reject damaged files.
 
-Every reader of `curve.csv`, `summary.json`, `results.nc`, `table.csv` and `study.nc` is here. Files
-are compared with their checksums where there are any, and their content with what a run can write.
+Every reader of `curve.csv`, `summary.json`, `results.nc`, `table.csv` and `study.nc` is here. It
+compares files with their checksums, if there are any, and requires content that a run can write.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Curve:
-    """The rows of a curve: as numbers (NaN where empty, flags 0 or 1), and as the file has them."""
+    """The rows of a curve as numbers (NaN for empty cells, 0 or 1 for flags) and as text."""
 
     rows: list[dict[str, float]]
     cells: list[dict[str, str]]
@@ -53,7 +53,7 @@ class _Diagnostics(BaseModel):
 
 
 class _Summary(BaseModel):
-    """What readers take from `summary.json`."""
+    """The keys of `summary.json` that readers use."""
 
     model_config = ConfigDict(extra="allow", strict=True)
     title: str
@@ -72,7 +72,7 @@ class _Summary(BaseModel):
 
 @dataclass(frozen=True)
 class UnloadingCurve:
-    """Indentation (m), rising, and force (N) on the way back from the depth `start` (m)."""
+    """Indentation (m), increasing, and force (N) of the unloading from the depth `start` (m)."""
 
     start: float
     indentation: Array
@@ -83,8 +83,7 @@ class UnloadingCurve:
 class RunResults:
     """The results of one run or convergence study in `folder`.
 
-    Each file is read when it is first asked for, and raises `OutputError` where it is missing or
-    damaged.
+    Each file is read on first use; a missing or damaged file raises `OutputError`.
     """
 
     folder: Path
@@ -125,7 +124,7 @@ class RunResults:
         return results
 
     def smooth(self) -> xr.Dataset:
-        """The curves of the smooth bodies in `results.nc`, with all of its attributes."""
+        """The curves of the smooth bodies in `results.nc`, with all attributes of the file."""
         with _opened(self._netcdf) as stored:
             return stored[[name for name in stored if str(name).startswith("smooth_")]].load()
 
@@ -144,7 +143,7 @@ class RunResults:
 
     @cached_property
     def unloading(self) -> tuple[UnloadingCurve, ...]:
-        """The unloading curves, the one from the least depth first; empty where none is stored."""
+        """The unloading curves, sorted by `start`; empty if none is stored."""
         results, curves = self.dataset, []
         if "unloading_from" not in results:
             return ()
@@ -154,7 +153,7 @@ class RunResults:
                 known = np.isfinite(x)
                 falls = known.any() and (np.diff(x[known]) < 0).all()
                 if not falls or not np.isfinite(F[known]).all():
-                    raise ValueError("an unloading curve has gaps, or does not lead upwards")
+                    raise ValueError("an unloading curve has gaps, or its depths do not decrease")
                 curves.append(UnloadingCurve(float(start), x[known][::-1], F[known][::-1]))
         except (KeyError, ValueError, IndexError, TypeError) as error:
             raise damaged(self._netcdf, f"{type(error).__name__}: {error}") from None
@@ -173,7 +172,7 @@ class RunResults:
         return case, depths
 
     def check(self) -> None:
-        """Raise `OutputError` unless the three files are there and belong together."""
+        """Raise `OutputError` unless curve, summary and dataset have the same number of depths."""
         computed, rows = self.summary["depths_computed"], len(self.curve.rows)
         _, depths = self._case_and_depths
         if not rows == depths == computed:
@@ -189,13 +188,13 @@ class EnsembleResults(RunResults):
 
     @property
     def surfaces(self) -> int:
-        """How many surfaces were computed, failed ones included."""
+        """Number of surfaces, including failed ones."""
         return len(self.summary["realisations"])
 
 
 @dataclass(frozen=True)
 class StoredCase:
-    """One case of a study: its folder's name, how it ended, its swept values and its curve."""
+    """One case of a study: name of its folder, status and reason, swept values, and curve."""
 
     name: str
     status: str
@@ -206,7 +205,7 @@ class StoredCase:
 
 @dataclass(frozen=True)
 class StudyResults:
-    """The results of a study in `folder`; files are read and refused as those of a run."""
+    """The results of a study in `folder`; files are read and checked as those of a run."""
 
     folder: Path
 
@@ -247,31 +246,28 @@ class StudyResults:
         return read_netcdf(self.folder / "study.nc")
 
     def run(self, name: str) -> RunResults:
-        """The results of the case of that name."""
+        """The results of the case `name`."""
         return RunResults(self.folder / "cases" / name)
 
 
 def read_run(folder: Path) -> RunResults:
-    """The results in `folder`, those of several surfaces as `EnsembleResults`.
-
-    Raises `OutputError`.
-    """
+    """The results in `folder`; `EnsembleResults` for several surfaces. Raises `OutputError`."""
     run = RunResults(folder)
     return EnsembleResults(folder) if "realisations" in run.summary else run
 
 
 def damaged(path: Path, why: object) -> OutputError:
-    """The refusal of a file that is not as it was written."""
+    """The error for a damaged file."""
     return OutputError(f"{path}: is damaged ({one_line(str(why))}); compute it again")
 
 
 @contextmanager
 def reading(path: Path) -> Iterator[None]:
-    """Turn what the system and decoders raise for an unreadable `path` into `OutputError`."""
+    """Convert errors of the system and of decoders while reading `path` to `OutputError`."""
     try:
         yield
     except FileNotFoundError:
-        raise OutputError(f"{path}: does not exist; name the folder of -o of a command") from None
+        raise OutputError(f"{path}: does not exist; name a folder that -o has created") from None
     except OSError as error:
         raise OutputError(f"{path}: cannot be read ({error.strerror or error})") from None
     except (ValueError, csv.Error, RecursionError) as error:
@@ -287,22 +283,22 @@ def read_text(path: Path) -> str:
 
 
 def read_json(path: Path) -> dict[str, Any]:
-    """The content of a JSON file that holds a table of names. Raises `OutputError`."""
+    """The object in a JSON file. Raises `OutputError`."""
     with reading(path):
         content = json.loads(read_text(path))
     if not isinstance(content, dict):
-        raise damaged(path, "no table of names and values")
+        raise damaged(path, "it is not a JSON object")
     return content
 
 
 def read_netcdf(path: Path) -> xr.Dataset:
-    """A netCDF file, in memory. Raises `OutputError`."""
+    """Load a netCDF file into memory. Raises `OutputError`."""
     with _opened(path) as stored:
         return stored.load()
 
 
 def _cells(path: Path, *more: str) -> list[dict[str, str]]:
-    """The rows of a table with the columns of a curve and `more`."""
+    """The rows of a table, which must have the columns of a curve and those of `more`."""
     with reading(path), open(path, newline="", encoding="utf-8") as file:
         reader = csv.DictReader(file, strict=True)
         rows = list(reader)
@@ -311,15 +307,15 @@ def _cells(path: Path, *more: str) -> list[dict[str, str]]:
     if missing:
         raise damaged(path, f"column {missing[0]} is missing")
     if len(set(columns)) < len(columns):
-        raise damaged(path, "two columns have one name")
+        raise damaged(path, "two columns have the same name")
     for line, row in enumerate(rows, 2):
         if None in row or None in row.values():
-            raise damaged(path, f"line {line} has not {len(columns)} cells")
+            raise damaged(path, f"line {line} does not have {len(columns)} cells")
     return rows
 
 
 def _numbers(path: Path, line: int, cells: Mapping[str, str]) -> dict[str, float]:
-    """The values of the columns of a curve in one row."""
+    """The numbers of one row, by column of a curve."""
     found = {}
     for name, column in ALL_COLUMNS.items():
         if name in SPREAD_COLUMNS and name not in cells:
@@ -351,9 +347,9 @@ def _check_number(path: Path, where: str, column: Column, value: float) -> None:
 
 @contextmanager
 def _opened(path: Path) -> Iterator[xr.Dataset]:
-    """A netCDF file, with signals held back: they would leave the library's locks taken."""
+    """Open a netCDF file and delay signals, which would leave the library's locks taken."""
     with reading(path):
-        open(path, "rb").close()  # says why, where the library does not
+        open(path, "rb").close()  # raises the system's reason, which the library hides
     check_file(path)
     try:
         with hold_signals(), xr.open_dataset(path, engine="netcdf4") as stored:

@@ -1,4 +1,4 @@
-"""What stored results are called, and what their columns mean: names, units and limits."""
+"""The columns of stored results: names, units, meanings and limits."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from restitution.contact.checks.resolution import ADHESIVE_NODES, NODES_PER_PATC
 
 @dataclass(frozen=True)
 class Column:
-    """A column of `curve.csv`: its variable in `results.nc`, its unit, and what a cell may hold.
+    """A column of `curve.csv`: its variable in `results.nc`, its unit, meaning and limits.
 
-    A `flag` is true or false, and an `optional` cell is empty where there is no answer. All other
-    cells are finite numbers from `low` to `high`.
+    A `flag` is true or false, and an `optional` cell may be empty. All other cells are finite
+    numbers from `low` to `high`.
     """
 
     variable: str
@@ -37,7 +37,7 @@ COLUMNS = {
     "unloading_work_J": Column("unloading_work", "J", "work returned until separation"),
     "restitution": Column("restitution", "1", "coefficient of restitution", low=0.0, high=1.0),
     "impact_velocity_m_per_s": Column(
-        "impact_velocity", "m s-1", "approach velocity that reaches here", optional=True, low=0.0
+        "impact_velocity", "m s-1", "impact velocity for this indentation", optional=True, low=0.0
     ),
     "contact_nodes": Column("contact_nodes", "1", "nodes in contact", low=0.0),
     "contact_patches": Column(
@@ -53,22 +53,22 @@ COLUMNS = {
         "convolutions", "1", "convolutions that loading and unloading took", low=0.0
     ),
     "pull_off_force_N": Column(
-        "pull_off_force", "N", "largest tension on the way back", optional=True
+        "pull_off_force", "N", "largest tension during unloading", optional=True
     ),
     "separation_indentation_m": Column(
-        "separation_indentation", "m", "where the bodies part", optional=True
+        "separation_indentation", "m", "indentation at separation", optional=True
     ),
     "restitution_error": Column(
         "restitution_error", "1", "numerical error of the restitution", low=0.0
     ),
     "sticks": Column(
-        "sticks", "1", "nothing is returned: the pair does not come apart by itself", flag=True
+        "sticks", "1", "the pair does not separate: unloading returns no work", flag=True
     ),
     "adhesion_resolved": Column(
         "adhesion_resolved", "1", f"pull-off radius of at least {ADHESIVE_NODES} nodes", flag=True
     ),
     "median_patch_nodes": Column(
-        "median_patch_nodes", "1", "nodes in the patch of the median node", low=0.0
+        "median_patch_nodes", "1", "nodes in the patch of the median contact node", low=0.0
     ),
     "resolved": Column(
         "resolved",
@@ -79,31 +79,39 @@ COLUMNS = {
     "discretisation_error": Column(
         "discretisation_error",
         "1",
-        "restitution's error by the grid, and by the waves that it leaves out of a scan",
+        "error of restitution due to the grid, and to waves of a scan that it leaves out",
         optional=True,
         low=0.0,
     ),
     "surface_scatter": Column(
-        "surface_scatter", "1", "restitution's error as one surface of many", optional=True, low=0.0
+        "surface_scatter",
+        "1",
+        "error of restitution due to scatter among surfaces",
+        optional=True,
+        low=0.0,
     ),
     "material_error": Column(
-        "material_error", "1", "restitution's error by library values", optional=True, low=0.0
+        "material_error",
+        "1",
+        "error of restitution due to the spread of library values",
+        optional=True,
+        low=0.0,
     ),
     "total_error": Column(
         "total_error",
         "1",
-        "all these errors of the restitution, in quadrature",
+        "total error of restitution: the errors above, in quadrature",
         optional=True,
         low=0.0,
     ),
     "model_error": Column(
-        "model_error", "1", "restitution's error by the model of plasticity", low=0.0
+        "model_error", "1", "error of restitution due to the model of plasticity", low=0.0
     ),
     "refine": Column(
         "refinement", "1", "cells along x and y that one cell of [grid] is divided into", low=1.0
     ),
 }
-# What the curve of an ensemble has besides: its other columns are means.
+# Additional columns of the curve of an ensemble, whose other columns are means.
 SPREAD_COLUMNS = {
     "realisations": Column("realisations", "1", "surfaces that reached this depth", low=0.0),
     "restitution_std": Column(
@@ -129,4 +137,4 @@ SPREAD_COLUMNS = {
 ALL_COLUMNS = COLUMNS | SPREAD_COLUMNS
 UNLOADING_COLUMNS = ("max_indentation_m", "indentation_m", "force_N")
 STATUS = ("complete", "failed", "missing")  # of a case in the table of a study
-LOCK = ".restitution-lock"  # of the process that writes in a folder
+LOCK = ".restitution-lock"  # held by the process that writes in a folder

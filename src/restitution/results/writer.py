@@ -1,8 +1,8 @@
-"""The results folder: what is written where, in which units, and safely.
+"""Write the results folder.
 
-`curve.csv` and `unloading.csv` grow row by row while a case runs, so that whatever stops it leaves
-what was computed. `results.nc` and `summary.json` are written once, at the end or on interruption,
-each into a temporary file that is then renamed. Signals are held back while a file is written.
+`curve.csv` and `unloading.csv` grow row by row while a case runs, so that the rows survive whatever
+stops the run. `results.nc` and `summary.json` are written once, at the end or on interruption, each
+into a temporary file that is then renamed. Signals are delayed while a file is written.
 """
 
 from __future__ import annotations
@@ -42,9 +42,9 @@ _BLOCK = 1 << 16  # bytes
 def curve_row(
     state: State, collision: Collision, refine: int = 1, touch: float = 0.0
 ) -> dict[str, float]:
-    """The row of `curve.csv` for one state of loading; NaN where there is no answer.
+    """The row of `curve.csv` for one state of loading; NaN for undefined values.
 
-    `refine` is that of the grid; `touch` (m) is the indentation at which this grid first touches.
+    `refine` is that of the grid; `touch` (m) is the indentation at its first touch.
     """
     patches = state.patch_sizes()
     median = median_patch(patches)
@@ -71,7 +71,7 @@ def curve_row(
         adhesive_nodes(state) >= ADHESIVE_NODES,
         median,
         resolves(median),
-        *(math.nan,) * 4,  # one curve cannot tell: see `error_budget`
+        *(math.nan,) * 4,  # filled in by `runs.error_budget`
         model_error(state, collision.restitution),
         refine,
     )
@@ -79,17 +79,17 @@ def curve_row(
 
 
 def versions() -> dict[str, str]:
-    """Versions of this program and of what its numbers depend on."""
+    """Versions of this program and of the packages that its results depend on."""
     packages = ("restitution", "numpy", "scipy", "ducc0", "xarray", "netCDF4")
     found = {name: importlib.metadata.version(name) for name in packages}
     return {**found, "python": platform.python_version()}
 
 
 class ResultsFolder:
-    """A folder that holds the results of one run and nothing else's."""
+    """A folder that holds only the results of one run."""
 
     def __init__(self, path: Path) -> None:
-        """Make the folder. Raises `OutputError` when it holds anything or cannot be written."""
+        """Make the folder. Raises `OutputError` if it is not empty or cannot be written."""
         self.path = path
         self.rows: list[dict[str, float]] = []
         self.unloading: list[tuple[float, list[tuple[float, float]]]] = []
@@ -97,7 +97,7 @@ class ResultsFolder:
 
     @contextmanager
     def tables(self) -> Iterator[None]:
-        """Keep the two tables open for `add` and `add_unloading`."""
+        """Open `curve.csv` and `unloading.csv` for `add` and `add_unloading`."""
         with (
             writing(self.path),
             open(self.path / "curve.csv", "w", newline="") as curve,
@@ -109,25 +109,25 @@ class ResultsFolder:
             yield
 
     def add(self, state: State, collision: Collision, refine: int = 1, touch: float = 0.0) -> None:
-        """Write the row of a state of loading (`curve_row`)."""
+        """Append the row of a state of loading (`curve_row`) to `curve.csv`."""
         row = curve_row(state, collision, refine, touch)
         with hold_signals():
-            _write_row(self._curve, [written(value) for value in row.values()])
+            _write_row(self._curve, [format_cell(value) for value in row.values()])
             self.rows.append(row)
 
     def part(self, name: str) -> ResultsFolder:
-        """A folder of results within this one, for one of several runs."""
+        """A results folder inside this one, for one of several runs."""
         return ResultsFolder(self.path / name)
 
     def put_curve(self, rows: list[dict[str, float]]) -> None:
-        """Write the whole of `curve.csv`: rows that follow from those of several runs."""
+        """Replace the whole of `curve.csv` with `rows`."""
         self.rows = rows
         write_table(self.path / "curve.csv", rows)
 
     def add_unloading(self, path: list[State], touch: float = 0.0) -> None:
-        """Write one unloading curve, from its deepest state to separation.
+        """Append one unloading curve, from its deepest state to separation, to `unloading.csv`.
 
-        `touch` (m) is the indentation at which the grid of `path` first touches.
+        `touch` (m) is the indentation at the first touch on the grid of `path`.
         """
         deepest = path[0].indentation + touch
         points = [(state.indentation + touch, state.force) for state in path]
@@ -137,16 +137,16 @@ class ResultsFolder:
             self.unloading.append((deepest, points))
 
     def discard(self) -> None:
-        """Take back a folder in which nothing was computed, so that it can be named again."""
+        """Remove the empty tables, and the folder if it is new, so that it can be named again."""
         for name in ("curve.csv", "unloading.csv"):
             (self.path / name).unlink(missing_ok=True)
         if self._new:
             self.path.rmdir()
 
     def write(self, dataset: xr.Dataset, summary: Mapping[str, Any]) -> None:
-        """Write `results.nc`, `summary.json` and the checksums of all tables and of these two.
+        """Write `results.nc`, `summary.json` and the checksums of all files.
 
-        Where `results.nc` cannot be written, `summary.json` says so. Raises `OutputError`.
+        If `results.nc` cannot be written, `summary.json` records the failure. Raises `OutputError`.
         """
         maps = {"height", "pressure", "plastic_displacement"} & set(dataset)
         packed = {str(name): {"zlib": True, "complevel": 1} for name in maps}
@@ -166,8 +166,8 @@ class ResultsFolder:
 def make_folder(path: Path, remedy: str = "move it away") -> bool:
     """Make the folder `path`, and return whether it is new.
 
-    Raises `OutputError` where it holds anything or cannot be written; `remedy` is what the user can
-    do besides naming another folder.
+    Raises `OutputError` if it is not empty or cannot be written; `remedy` is the user's alternative
+    to naming another folder.
     """
     with writing(path):
         new = not path.exists()
@@ -181,7 +181,7 @@ def make_folder(path: Path, remedy: str = "move it away") -> bool:
 
 
 def require_new_file(path: Path | None) -> None:
-    """Raise `OutputError` where there is a file `path`; None is no file."""
+    """Raise `OutputError` if the file `path` exists; None is accepted."""
     if path is not None and path.exists():
         raise OutputError(f"{path}: exists, and nothing is overwritten; name another file")
 
@@ -202,7 +202,7 @@ def write_netcdf(
         try:
             dataset.to_netcdf(to, engine="netcdf4", encoding=encoding or {})
         except (RuntimeError, OSError) as error:
-            # The library raises "HDF error", or names another reason, where the disk is full.
+            # On a full disk the library hides the reason: writing here raises the system's error.
             with open(to, "ab") as file:
                 file.write(bytes(_BLOCK))
             raise OSError(f"{path.name}: {error}") from error
@@ -228,14 +228,14 @@ def table_text(rows: Sequence[Mapping[str, float | str]]) -> str:
     if rows:
         table = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
         table.writeheader()
-        table.writerows({key: written(value) for key, value in row.items()} for row in rows)
+        table.writerows({key: format_cell(value) for key, value in row.items()} for row in rows)
     return text.getvalue()
 
 
 def replace_file(path: Path, write: Callable[[Path], object]) -> None:
     """Let `write` fill a temporary file and rename it to `path`. Raises `OutputError`.
 
-    Signals are held back meanwhile.
+    Signals are delayed meanwhile.
     """
     temporary = path.with_name(f".{path.name}.part")
     with hold_signals(), writing(path.parent):
@@ -243,7 +243,7 @@ def replace_file(path: Path, write: Callable[[Path], object]) -> None:
             write(temporary)
             os.replace(temporary, path)
         except BaseException:
-            with suppress(OSError):  # a library may hold the file open, and so its room on the disk
+            with suppress(OSError):  # free the disk space even if a library holds the file open
                 os.truncate(temporary, 0)
             raise
         finally:
@@ -251,11 +251,11 @@ def replace_file(path: Path, write: Callable[[Path], object]) -> None:
 
 
 def results_dataset(folder: ResultsFolder, deepest: State) -> xr.Dataset:
-    """Everything that was computed, with units: curves, unloading curves and maps."""
+    """The content of `results.nc`, with units: curve, unloading curves and maps."""
     data = curve_variables(folder.rows)
     if folder.unloading:
         depths, curves = zip(*folder.unloading, strict=True)
-        # Curves of different length end in NaN.
+        # Pad shorter curves with NaN.
         points = np.full((len(curves), max(map(len, curves)), 2), np.nan)
         for k, curve in enumerate(curves):
             points[k, : len(curve)] = curve
@@ -272,7 +272,7 @@ def results_dataset(folder: ResultsFolder, deepest: State) -> xr.Dataset:
     coordinates = {"x": ("x", grid.x, {"units": "m"}), "y": ("y", grid.y, {"units": "m"})}
     maps = {
         "height": (deepest.contact.surface.height, "m", "composite roughness"),
-        "pressure": (deepest.pressure, "Pa", "contact pressure at the deepest point"),
+        "pressure": (deepest.pressure, "Pa", "contact pressure at the deepest indentation"),
         "plastic_displacement": (
             deepest.plastic_displacement,
             "m",
@@ -295,8 +295,8 @@ def curve_variables(rows: Sequence[Mapping[str, float]]) -> dict[str, Any]:
     return data
 
 
-def written(value: float | str) -> str:
-    """A value as tables have it: true and false, nothing for NaN, all digits."""
+def format_cell(value: float | str) -> str:
+    """The text of a table's cell: true or false, empty for NaN, a number with all digits."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
@@ -311,11 +311,11 @@ def _write_row(file: IO[str], values: list[str]) -> None:
 
 @contextmanager
 def writing(path: Path) -> Iterator[None]:
-    """Turn the system's refusals into one line."""
+    """Convert `OSError` to an `OutputError` that names `path` and the remedy."""
     try:
         yield
     except OSError as error:
         reason = error.strerror or str(error)
         raise OutputError(
-            f"{path}: cannot be written ({reason}); name another folder with -o, or make room"
+            f"{path}: cannot be written ({reason}); name another folder with -o, or free disk space"
         ) from error

@@ -1,1 +1,1 @@
-"""One case, run: on one surface, on many, or on several grids, with its errors."""
+"""Runs of one case: on one surface, on many, or on several grids, with error estimates."""

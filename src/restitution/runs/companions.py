@@ -1,7 +1,7 @@
-"""Curves beside the one of a run, on cells twice as large: what moves its COR, and by how much.
+"""Companion curves of a run: how much COR changes with the grid, the surface and the materials.
 
-They cost a fifth of the run each, and are compared with it at the same loading work, that is, at
-the same impact velocity.
+They are computed on cells twice as large, and each costs a fifth of the run. They are compared with
+the run at equal loading work, that is, at equal impact velocity.
 """
 
 from __future__ import annotations
@@ -26,9 +26,12 @@ from restitution.surfaces.refine import coarsen
 
 Array = NDArray[np.float64]
 
-SURFACES = 7  # other surfaces whose curves show the scatter
-_TOLERANCE = 0.005  # of COR, for the steps of adhesive unloading
-_SHALLOWER, _DEEPER = 0.5, 1.3  # times the depths: other surfaces need them for the same work
+SURFACES = 7  # additional surfaces, for the scatter
+_TOLERANCE = 0.005  # error of COR by the steps of adhesive unloading
+_SHALLOWER, _DEEPER = (
+    0.5,
+    1.3,
+)  # times first and last depth: other surfaces need them for equal work
 
 
 @dataclass(frozen=True)
@@ -39,7 +42,7 @@ class Curve:
     restitution: Array
 
     def at(self, work: Array) -> Array:
-        """COR at other works, by a monotone cubic in ln W; beyond the ends that of the end."""
+        """COR at `work` (J), by a monotone cubic in ln W; constant beyond the ends."""
         from scipy.interpolate import PchipInterpolator
 
         if self.work.size == 0:
@@ -57,10 +60,10 @@ def curve_of(
     method: UnloadingMethod,
     tolerance: float = _TOLERANCE,
 ) -> Curve:
-    """The curve of `contact` over `depths` (m) and one beyond either end.
+    """The curve of `contact` over `depths` (m) and one depth beyond each end.
 
-    `tolerance` is the error of COR that adhesive unloading may have. A depth that fails is left
-    out; the first contact that reaches the edge of the grid ends the curve.
+    `tolerance` is the error allowed for COR in adhesive unloading. A depth that fails is left out;
+    the first contact that reaches the edge of the grid ends the curve.
     """
     works: list[float] = []
     restitutions: list[float] = []
@@ -80,7 +83,7 @@ def curve_of(
 
 @dataclass(frozen=True)
 class Companions:
-    """The curves beside that of `case` (files relative to `folder`) over `depths` (m)."""
+    """The companion curves of `case` (files relative to `folder`) over `depths` (m)."""
 
     case: Case
     folder: Path
@@ -97,10 +100,10 @@ class Companions:
             yield self._curve(self._coarse(self.case.variant(number)))
 
     def materials(self, work: Array) -> list[Array]:
-        """Changes of COR at `work` (J): by elasticity, yield pressure and density of the library.
+        """Changes of COR at `work` (J) due to elasticity, yield model and density of the library.
 
-        Each is the larger of those at the low and the high end of the library's spread, which both
-        bodies have together. Empty where no value is the library's.
+        Each is the larger of the changes at the low and at the high end of the library's spread;
+        both bodies are at the same end. Empty if no value comes from the library.
         """
         coarse = self._coarse(self.case)
         ends = [_spread(self.case, end) for end in ("low", "high")]
@@ -131,7 +134,7 @@ class Companions:
 
 
 def _with_modulus_of(pair: Pair, other: Pair) -> Pair:
-    """`pair` with the elasticity of another: masses and radii stay."""
+    """`pair` with the elasticity of `other`, and its own masses and radii."""
     first, second = (
         replace(body, youngs_modulus=its.youngs_modulus, poissons_ratio=its.poissons_ratio)
         for body, its in ((pair.first, other.first), (pair.second, other.second))
@@ -140,7 +143,7 @@ def _with_modulus_of(pair: Pair, other: Pair) -> Pair:
 
 
 def _yielding(case: Case) -> Yielding:
-    """How `case` yields; by its default model where a body without a yield strength is softer."""
+    """The yield model of `case`; the default one if its own lacks the softer body's strength."""
     try:
         return case.yielding()
     except CaseError:
@@ -150,7 +153,7 @@ def _yielding(case: Case) -> Yielding:
 
 
 def _spread(case: Case, end: str) -> Case:
-    """`case` with the values of its library materials at the `low` or `high` end of spread."""
+    """`case` with its library values at the `low` or `high` end of their spread."""
 
     def moved(body: BodyTable) -> BodyTable:
         found = body.from_library()

@@ -1,14 +1,14 @@
-"""One case on successively finer grids: what is left of each number's dependence on the grid.
+"""Convergence study: one case on successively finer grids, with the discretisation error of COR.
 
-With COR f₁, f₂, f₃ on cells h, h/2, h/4 of one and the same surface,
+With COR f₁, f₂, f₃ on cells h, h/2, h/4 of the same surface,
 
     error of f₃ = max(1.5 |f₃ − f₂|, 0.5 |f₂ − f₁|),   observed order = log₂((f₂ − f₁)/(f₃ − f₂)).
 
-Between grids COR of rough contacts goes up and down more often than it follows a power of h, so
-that Richardson's extrapolation (Roache 1994, J. Fluids Eng. 116, 405–413) would mostly divide by
-chance. The error is what a convergence of first order would leave of either difference, with a
-margin of 1.5 on the last; it held in 95 % of the cases of docs/resolution.md. On two grids it is
-3 |f₂ − f₁|.
+The COR of rough contacts oscillates with h more often than it follows a power of h, so Richardson
+extrapolation (Roache 1994, J. Fluids Eng. 116, 405–413) would mostly divide by random numbers. The
+error is the remainder after first-order convergence with either difference, with a safety factor of
+1.5 on the last one. It covered the true error in 95 % of the cases of docs/resolution.md. On two
+grids it is 3 |f₂ − f₁|.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ from restitution.runs.refinement import later_touches, settled
 from restitution.runs.run import run_case
 
 _Row = dict[str, float]
-_Runs = dict[int, tuple[float, list[_Row]]]  # refine → how much later (m) it touches, its rows
+_Runs = dict[int, tuple[float, list[_Row]]]  # refine → extra approach to first touch (m), rows
 
 
 def run_convergence(
@@ -51,20 +51,20 @@ def run_convergence(
     progress: Say = ignore,
     warn: Say = ignore,
 ) -> dict[str, Any]:
-    """Run `case` on its grid and on ones with cells 2, 4 … times smaller; return the summary.
+    """Run `case` on its grid and on grids with cells 2, 4, … times smaller; return the summary.
 
     With `grid.refine = "auto"` the first grid is the one that the shallowest depth needs.
     Each grid has its run in a folder `refine-<n>` of `out`; the curve of `out` is that of the
-    finest with its `discretisation_error`, and `convergence.csv` has a row for every depth and
-    grid. Depths count from the first touch on the finest grid: between the nodes of a coarser one
-    the highest summit is missed, so it is pressed less deep by that difference. What stops a run
-    stops the rest, and what was done is kept.
+    finest grid with its `discretisation_error`, and `convergence.csv` has a row for every depth and
+    grid. Depths are measured from first touch on the finest grid. The highest summit lies between
+    the nodes of a coarser grid, which therefore touches after a larger approach; its indentations
+    are smaller by this difference. If a run fails, the study ends and keeps the results so far.
     """
     log, runs = RunLog(progress, warn), _Runs()
     unsettled: list[str] = []
 
     def keep() -> dict[str, Any] | None:
-        return _keep(case, folder, out, runs, log, unsettled) if runs else None
+        return _write_results(case, folder, out, runs, log, unsettled) if runs else None
 
     with log.record(out, keep):
         case = settled(case, folder, log.warn)
@@ -73,7 +73,7 @@ def run_convergence(
         for factor, later in _levels(case, folder, grids).items():
             part, refined = out.part(f"refine-{factor}"), _pressed_less(case, later)
             if not refined.depths():
-                warn(f"refine = {factor}: misses the contact at every depth")
+                warn(f"refine = {factor}: this grid has no contact at any depth and is left out")
                 part.discard()
                 continue
             try:
@@ -91,7 +91,7 @@ def run_convergence(
                     runs[factor] = later, part.rows
         if case.total_error and runs:
             _add_errors(case, folder, runs, progress)
-    assert log.summary is not None  # the finest grid does not miss the contact
+    assert log.summary is not None  # the finest grid has contact at every depth
     return log.summary
 
 
@@ -101,7 +101,7 @@ def _add_errors(
     runs: _Runs,
     progress: Say,
 ) -> None:
-    """Put the errors of surface and materials into the finest rows, from the coarsest grid."""
+    """Add the errors of surface and materials to the finest rows, from the coarsest grid."""
     coarsest, finest = case.refined(min(runs)), runs[max(runs)][1]
     alone = [dict(row) for row in finest]
     add_errors(coarsest, folder, coarsest.surface(folder), alone, progress)
@@ -110,12 +110,12 @@ def _add_errors(
 
 
 def _levels(case: Case, folder: Path, grids: int) -> dict[int, float]:
-    """Factors of refinement, and how much later (m) first touch is met than on the finest."""
+    """Refinement factors, with the extra approach (m) to first touch compared with the finest."""
     if grids < 2:
-        raise CaseError(f"grids: {grids} do not show a convergence; give 2 or more")
+        raise CaseError(f"grids: {grids} cannot show convergence; give 2 or more")
     if case.realisations > 1:
         raise CaseError(
-            "roughness.realisations: convergence is of one surface; leave it out, or give 1"
+            "roughness.realisations: a convergence study uses one surface; remove it, or give 1"
         )
     coarsest = case.grid.factor if case.grid else 1
     factors = [coarsest * 2**k for k in range(grids)]
@@ -123,22 +123,22 @@ def _levels(case: Case, folder: Path, grids: int) -> dict[int, float]:
     nx, ny = own.nodes if own else case.refined(1).surface(folder).grid.nodes
     if nx * ny * factors[-1] ** 2 > MOST_NODES:
         raise CaseError(
-            f"grids: the last of them, {nx * factors[-1]} x {ny * factors[-1]} nodes, would be "
-            f"larger than a grid may be ({MOST_NODES} nodes); give fewer, or a coarser first grid"
+            f"grids: the finest grid would have {nx * factors[-1]} x {ny * factors[-1]} nodes, "
+            f"and at most {MOST_NODES} are allowed; give fewer grids, or a coarser first grid"
         )
     return later_touches(case, folder, factors)
 
 
 def _pressed_less(case: Case, later: float) -> Case:
-    """`case` with its depths less `later` (m), without those that do not make contact then."""
+    """`case` with indentations reduced by `later` (m), without those that lose contact."""
     if case.indentation is None:
-        return case  # a load or a velocity is the same on every grid
+        return case  # loads and velocities are the same on every grid
     depths = [depth - later for depth in case.depths() if depth > later]
     table = case.indentation.model_construct(values=depths)
     return case.model_copy(update={"indentation": table})
 
 
-def _keep(
+def _write_results(
     case: Case,
     folder: Path,
     out: ResultsFolder,
@@ -146,7 +146,7 @@ def _keep(
     log: RunLog,
     unsettled: list[str],
 ) -> dict[str, Any]:
-    """Write the curve of the finest grid, the table of all, and the summary, which is returned."""
+    """Write the curve of the finest grid, the table of all grids, and the summary; return it."""
     depths = _by_depth(case, runs)
     finest = [rows[max(runs)] for rows in depths if max(runs) in rows]
     lacking = _with_grid_errors(case, folder, finest) if case.total_error else 0
@@ -181,12 +181,12 @@ def _keep(
     if lacking:
         summary["warnings"].append(
             f"{lacking} of {len(finest)} depths are not resolved: even the finest grid leaves out "
-            "waves of the scan that move COR; give more grids, or a smaller grid.spacing"
+            "waves of the scan that change COR; give more grids, or a smaller grid.spacing"
         )
     if len(known) < len(errors):
         summary["warnings"].append(
             f"{len(errors) - len(known)} of {len(errors)} depths have no discretisation_error: "
-            "coarser grids miss the contact there; begin deeper, or with a finer grid (grid.refine)"
+            "coarser grids have no contact there; begin deeper, or with a finer grid (grid.refine)"
         )
     dataset = one.dataset.assign(curve_variables(out.rows))
     coarser = sorted(runs)[:-1]
@@ -211,10 +211,10 @@ def _keep(
 
 
 def _with_grid_errors(case: Case, folder: Path, rows: list[_Row]) -> int:
-    """Widen the discretisation error of the finest rows by what differences do not show.
+    """Add to the discretisation error of the finest rows what differences of COR cannot show.
 
-    That is what contacts of so few nodes are off by, so that no difference is zero by chance, and
-    the waves that the finest grid leaves out of a scan. Returns how many rows these leave
+    The additions are a floor, because differences may vanish by chance, and the effect of the waves
+    that the finest grid leaves out of a scan. Returns the number of rows that these waves leave
     unresolved.
     """
     octaves = Band.of(case.refined(int(max(row["refine"] for row in rows))).surface(folder)).octaves
@@ -231,11 +231,11 @@ def _with_grid_errors(case: Case, folder: Path, rows: list[_Row]) -> int:
 
 
 def _by_depth(case: Case, runs: _Runs) -> list[dict[int, _Row]]:
-    """For each depth its row on every grid that reached it, with error and order."""
+    """For each depth, the rows of all grids that reached it, with error and observed order."""
     asked = case.depths()
     found: list[dict[int, _Row]] = [{} for _ in asked]
     for factor, (later, rows) in sorted(runs.items()):
-        # A coarse grid misses the shallowest depths; a run that was stopped, the deepest.
+        # A coarse grid lacks the shallowest depths, an interrupted run the deepest.
         missed = sum(depth <= later for depth in asked) if case.indentation else 0
         for number, row in enumerate(rows, missed):
             values = [other["restitution"] for other in found[number].values()]
@@ -253,10 +253,10 @@ def _by_depth(case: Case, runs: _Runs) -> list[dict[int, _Row]]:
 
 
 def discretisation(values: Sequence[float]) -> tuple[float, float]:
-    """Error of the last of `values`, each on cells half as large as before, and observed order.
+    """Error of the last of `values` of COR, whose cells halve from one to the next, and order.
 
-    See the head of this module. NaN where there are too few values, and for the order where they
-    do not approach a limit from one side.
+    See the module docstring. Both are NaN for too few values; the observed order is also NaN if the
+    last three values are not monotone.
     """
     if len(values) < 2:
         return math.nan, math.nan
@@ -269,10 +269,9 @@ def discretisation(values: Sequence[float]) -> tuple[float, float]:
 
 
 def observed_order(depths: Sequence[dict[int, _Row]]) -> float:
-    """log₂ of how much closer the last two of three grids are than the first two, or NaN.
+    """Observed order of the last three grids, from the rms differences of COR over depths; or NaN.
 
-    Closeness is the root mean square difference of COR over the depths that the finest grid
-    resolves and all three reach: single depths cross and scatter.
+    The depths are those that the finest grid resolves and all three reach; single depths scatter.
     """
     factors = sorted({factor for rows in depths for factor in rows})[-3:]
     steps = np.array(

@@ -1,4 +1,4 @@
-"""One case on several surfaces of the same statistics: mean, spread and confidence of its curve."""
+"""One case on several surfaces of the same statistics: mean curve and confidence interval."""
 
 from __future__ import annotations
 
@@ -42,12 +42,12 @@ def run_realisations(
     progress: Say = ignore,
     warn: Say = ignore,
 ) -> dict[str, Any]:
-    """Run `case` on each of its surfaces, as `run_case` does on one, and return the summary.
+    """Run `case` on each of its surfaces, and return the summary.
 
-    With one surface it is `run_case`. With more, each has its run in a folder `realisation-<n>`
-    (n from 1; n − 1 is added to the seed), and the curve of `out` holds their means (`mean_rows`).
-    A surface that fails is recorded, and the others go on; when all fail, the first failure is
-    raised. `grid.refine = "auto"` is settled first (`refinement`), for all alike.
+    One surface is run by `run_case` alone. Of several, each has its run in a folder
+    `realisation-<n>` (n from 1; n − 1 is added to the seed), and the curve of `out` holds their
+    means (`mean_rows`). A surface that fails is recorded, and the others continue; if all fail, the
+    first error is raised. `refinement` selects one grid for all if `grid.refine = "auto"`.
     """
     if case.realisations == 1:
         return run_case(case, text, folder, out, progress, warn)
@@ -60,7 +60,7 @@ def run_realisations(
 
 
 class _Ensemble:
-    """What an ensemble has come to."""
+    """The results of an ensemble so far."""
 
     def __init__(
         self, case: Case, text: str, folder: Path, out: ResultsFolder, log: RunLog
@@ -73,7 +73,7 @@ class _Ensemble:
         self.band_errors: list[float] = []
 
     def compute(self) -> None:
-        """Run every surface, and find the errors of their mean."""
+        """Run every surface, and estimate the errors of their mean."""
         self.case = settled(self.case, self.folder, self.log.warn)
         for number in range(self.case.realisations):
             self._run(number)
@@ -86,7 +86,7 @@ class _Ensemble:
         part = self.out.part(f"realisation-{number + 1}")
         reason = ""
         try:
-            # What is foreseen of the first is foreseen of most.
+            # The surfaces have mostly the same input warnings: pass on those of the first.
             run_case(
                 case.model_copy(update={"title": title}),
                 self.text,
@@ -110,9 +110,9 @@ class _Ensemble:
             self.ended.append({"realisation": number + 1, "depths": depths, "reason": reason})
 
     def _add_errors(self) -> None:
-        """Find the errors of grid and materials, on the surface that has reached most depths.
+        """Estimate the errors of grid and materials on the surface that has reached most depths.
 
-        The scatter between surfaces is known from the ensemble itself.
+        The ensemble itself gives the scatter between surfaces.
         """
         if not self.curves or not self.case.total_error:
             return
@@ -129,7 +129,7 @@ class _Ensemble:
                 scattered=False,
             )
         except RestitutionError as error:
-            self.log.warnings.append(f"total_error is not known: {error}")
+            self.log.warnings.append(f"total_error is unknown: {error}")
         self.errors = alone
 
     def keep(self) -> dict[str, Any] | None:
@@ -161,7 +161,8 @@ class _Ensemble:
         if lacking:
             warnings.append(
                 f"{lacking} of {len(self.band_errors)} depths are not resolved: the grid leaves "
-                "out waves of the scan that move COR; use a smaller grid.spacing or grid.refine"
+                "out waves of the scan that change COR; use a smaller grid.spacing or a larger "
+                "grid.refine"
             )
         return {
             "title": self.case.title,
@@ -195,25 +196,25 @@ class _Ensemble:
         }
 
     def _unlike(self) -> str | None:
-        """One line on depths that not all surfaces have reached, or None."""
+        """A warning about depths that not all surfaces have reached, or None."""
         numbers = [row["realisations"] for row in self.out.rows]
         if not numbers or min(numbers) == self.case.realisations:
             return None
         return (
             f"some depths are means of only {min(numbers):.0f} of {self.case.realisations} "
-            "surfaces (column realisations of curve.csv): the others ended before"
+            "surfaces (column realisations of curve.csv): the others ended earlier"
         )
 
 
 def mean_rows(curves: Sequence[Sequence[_Row]], errors: Sequence[_Row] = ()) -> list[_Row]:
     """The curve of an ensemble: a row for each depth, over the surfaces that have reached it.
 
-    Columns are means, but for the largest residual, the smallest median patch, the sum of the
-    convolutions, and flags, which are true where all are. Besides: the number of surfaces, the
-    standard deviation s of COR (of the sample), and the ends of the 95 % confidence interval of its
-    mean, mean ± t s/√n with Student's t (NaN for one surface); COR being bounded, they are cut at
-    0 and 1. `errors` are rows of one of the surfaces with the errors of grid and materials, which
-    are those of the mean, too; `surface_scatter` is half of the interval.
+    Columns are means, except the largest residual and model_error, the smallest median patch, the
+    sum of the convolutions, and flags, which are true if all are. Additional columns are the number
+    of surfaces, the sample standard deviation s of COR, and the ends of the 95 % confidence
+    interval of its mean, mean ± t s/√n with Student's t, clipped to [0, 1] (NaN for one surface).
+    `errors` are the rows of one surface with the errors of grid and materials, which are used for
+    the mean, too; `surface_scatter` is half of the interval.
     """
     from scipy.stats import t
 

@@ -1,18 +1,18 @@
-"""The total error of every COR of a run: solver, grid, surface, materials, and what is not in it.
+"""The total error of every COR of a run, due to solver, grid, surface and materials.
 
     total² = restitution_error² + discretisation_error² + surface_scatter² + material_error²
 
-It is that of the COR of the pair at the impact velocity of the row: the mean over surfaces of the
-same kind, on a grid that carries all waves of the surface. With ΔCOR the difference of the run from
-itself on cells twice as large, without its shortest octave of waves (`companions`),
+The exact value is the COR of the pair at the impact velocity of the row: the mean over surfaces of
+the same kind, on a grid that resolves all waves of the surface. ΔCOR is the change of COR on cells
+twice as large, without the shortest octave of waves (`companions`):
 
     discretisation_error² = ΔCOR² [1 + (1.5 n)²] + (s f)²,   n = ln(S/S_h)/ln(S_h/S_2h).
 
-S is the rms slope of the scan, S_h and S_2h what cells of h and 2h carry of it: COR changes with
-the logarithm of the rms slope about as much beyond the grid as in its last octave. Of generated
-surfaces, whose shortest wave belongs to their definition, n = 0. f is the error that contacts of so
-many nodes in the median patch had on finer grids (docs/resolution.md), and s a small share of it
-that keeps chance from making the error zero, a large one where the contact is not resolved.
+S is the rms slope of the scan, and S_h and S_2h are the rms slopes on cells of h and 2h. The
+formula assumes that COR changes with ln S beyond the grid as in the last octave that the grid
+resolves. For generated surfaces n = 0, because the shortest wave belongs to their definition. f is
+the error found for contacts with as many nodes in the median patch (docs/resolution.md). s is small
+if the contact is resolved, so that the error does not vanish by chance, and large if it is not.
 
 The constants were chosen on some 260 random cases, 30 of them adhesive, and checked on others
 (docs/error.md).
@@ -38,18 +38,18 @@ from restitution.surfaces.refine import coarsen
 Array = NDArray[np.float64]
 Row = dict[str, float]
 
-_BAND = 1.5  # of the change of COR expected from the waves that the grid does not carry
+_BAND = 1.5  # safety factor on the change of COR expected from waves that the grid leaves out
 _SHARE_RESOLVED = 0.03
 _FEW_NODES, _SHARE_UNRESOLVED = (3, 7), (0.6, 0.1)
-# About 90 % of contacts with so many nodes in the median patch were within this COR of a finer
-# grid's. A single node yields late and all at once, so its COR may be off by nearly all of it.
+# For about 90 % of the contacts with so many nodes in the median patch, COR differed from a finer
+# grid by less. A single node yields late and all at once, so its COR may have almost any error.
 _PATCH_NODES = (1, 3, 7, 14, 30, 100, 400)
 _PATCH_ERROR = (0.9, 0.4, 0.15, 0.08, 0.05, 0.024, 0.008)
-_SCATTER = 1.5  # standard deviations of COR between surfaces: about 88 % with eight of them
-# ln W over which neighbouring rows tell about a row: single differences may be zero by chance.
+_SCATTER = 1.5  # standard deviations of COR between surfaces: covers about 88 % with eight surfaces
+# Smoothing lengths in ln W, because single differences may vanish by chance.
 _NEAR_GRID, _NEAR_SURFACE = 2.0, 1.0
 MOST_AFFORDABLE = 2**24  # nodes: minutes and some 2 GB
-MISSING_BAND = 0.03  # of COR: from there on a row is not resolved for the waves it lacks
+MISSING_BAND = 0.03  # error of COR due to omitted waves above which a row is not resolved
 
 NOT_INCLUDED = (
     "the model (of plasticity: model_error; half-space; no range of attraction), values that the "
@@ -59,10 +59,10 @@ NOT_INCLUDED = (
 
 @dataclass(frozen=True)
 class Band:
-    """What a grid leaves out of a scan: shares of its rms slope, and the spacing that carries all.
+    """The waves that a grid leaves out of a scan.
 
-    `octaves` is how much more of the slope there is, in units of the last octave that the grid
-    carries (n above); 0 where nothing is left out.
+    `octaves` is n in the formula above, 0 if nothing is left out; `removed_slope` is their share of
+    the rms slope; `pixel` is the spacing (m) that resolves them.
     """
 
     octaves: float
@@ -71,7 +71,7 @@ class Band:
 
     @classmethod
     def of(cls, surface: Surface) -> Band:
-        """The band that `surface` has lost on its way to the grid."""
+        """The waves that `surface` lost when it was placed on the grid."""
         provenance = surface.provenance
         removed = float(provenance.get("removed_slope", 0.0))
         pixel = max(float(provenance.get(f"pixel_{axis}_m", 0.0)) for axis in "xy")
@@ -86,9 +86,9 @@ class Band:
 def grid_error(
     change: Array, work: Array, rows: Sequence[Row], octaves: float
 ) -> tuple[Array, Array]:
-    """Discretisation error of COR of `rows`, and the part of it by waves that the grid leaves out.
+    """Discretisation error of COR of `rows`, and its part due to waves that the grid leaves out.
 
-    `change` is the difference of COR from that on cells twice as large, at `work` (J).
+    `change` is the difference of COR from the value on cells twice as large, at `work` (J).
     """
     near = np.sqrt(_smoothed(change**2, work, _NEAR_GRID))
     band = _BAND * octaves * near
@@ -98,16 +98,16 @@ def grid_error(
 def widened_error(
     error: float, last_change: float, row: Row, octaves: float
 ) -> tuple[float, float]:
-    """Discretisation error found on several grids with what these do not show, and its band part.
+    """`error` of several grids with the floor and omitted waves added, and the part of the waves.
 
-    `last_change` is the difference of COR on the last two of them.
+    `last_change` is the difference of COR between the last two grids.
     """
     band = _BAND * octaves * last_change
     return math.hypot(error, band, _floor(row)), band
 
 
 def scatter(restitution: Array, work: Array) -> Array:
-    """Scatter of COR between surfaces, NaN where fewer than two of them have a curve.
+    """Scatter of COR between surfaces; NaN if fewer than two of them have a curve.
 
     `restitution` has a row for each surface.
     """
@@ -127,12 +127,12 @@ def add_errors(
     *,
     scattered: bool = True,
 ) -> list[float]:
-    """Put the errors of grid, surface and materials, and their total, into the rows of a run.
+    """Add the errors of grid, surface and materials, and their total, to the rows of a run.
 
     `surface` is that of the deepest depth; without `scattered` the scatter between surfaces is left
-    out. A row without a positive loading work, which no impact reaches, gets no error; nor
-    does one of which a part is not known. Returns the part of the error by waves that the grid
-    leaves out.
+    out. A row without a positive loading work, which no impact reaches, gets no errors; a row with
+    an unknown part gets no total. Returns the part of the errors due to waves that the grid leaves
+    out.
     """
     band: list[float] = []
     for factor in dict.fromkeys(int(row["refine"]) for row in rows):
@@ -178,27 +178,30 @@ def _add_errors(
 
 
 def band_warning(surface: Surface, band_errors: Sequence[float]) -> str | None:
-    """One line on what the grid leaves out of a scan, where that moves COR, or None.
+    """A warning about waves that the grid leaves out of a scan, if they change COR, or None.
 
-    It says how fine a grid would have to be, and whether that can be had.
+    It names the grid that would resolve them, and tells if it would be too large.
     """
     band = Band.of(surface)
     lacking = [error for error in band_errors if error > MISSING_BAND]
     if not lacking:
         return None
     nodes = [math.ceil(edge / band.pixel) for edge in surface.grid.size]
-    needed = f"cells of {1e6 * band.pixel:.3g} um ({nodes[0]} x {nodes[1]} nodes) carry them"
+    needed = (
+        f"cells of {1e6 * band.pixel:.3g} um ({nodes[0]} x {nodes[1]} nodes) would resolve them"
+    )
+    remedy = "use a smaller grid.spacing or a larger grid.refine"
     if nodes[0] * nodes[1] > MOST_AFFORDABLE:
-        needed += ", more than can be computed here; take a smaller grid, or trust larger depths"
+        remedy = "this is too large, so use a smaller grid, or only the larger depths"
     return (
         f"the grid leaves out waves of the scan with {band.removed_slope:.0%} of its rms slope, "
-        f"and {len(lacking)} of {len(band_errors)} depths are not resolved for that (COR may be "
-        f"off by {max(lacking):.2g}): {needed}; use a smaller grid.spacing or grid.refine"
+        f"and {len(lacking)} of {len(band_errors)} depths are not resolved because of this (COR "
+        f"may be off by {max(lacking):.2g}): {needed}; {remedy}"
     )
 
 
 def total_error_summary(case: Case, rows: Sequence[Row]) -> dict[str, object]:
-    """What `summary.json` says of the total error of `rows`: the largest, what it includes."""
+    """The entries of `summary.json` about the total error of `rows`."""
     known = [row["total_error"] for row in rows if not math.isnan(row["total_error"])]
     return {
         "largest_total_error": max(known, default=None),
@@ -209,7 +212,7 @@ def total_error_summary(case: Case, rows: Sequence[Row]) -> dict[str, object]:
 
 
 def included(case: Case) -> list[str]:
-    """What the total error of a curve of `case` consists of, in words."""
+    """The parts of the total error of a curve of `case`, in words."""
     words = ["solver", "grid"]
     if any(part.kind == "measured" for part in case.roughness):
         words.append("waves of the scan that the grid leaves out")
@@ -226,7 +229,7 @@ def included(case: Case) -> list[str]:
 
 
 def steps(case: Case) -> int:
-    """How many times the errors of a run or ensemble of `case` report progress."""
+    """Number of calls of `progress` while the errors of a run or ensemble of `case` are found."""
     if not case.total_error:
         return 0
     surfaces = SURFACES if case.roughness and case.realisations == 1 else 0
@@ -234,14 +237,14 @@ def steps(case: Case) -> int:
 
 
 def total(row: Mapping[str, float]) -> float:
-    """All errors of a row that are known, in quadrature; at most what COR can be off, in [0, 1]."""
+    """The known errors of a row in quadrature; at most the largest possible one, as COR ≤ 1."""
     parts = ("restitution_error", "discretisation_error", "surface_scatter", "material_error")
     known = [error for name in parts if not math.isnan(error := row.get(name, math.nan))]
     return min(math.hypot(*known), max(row["restitution"], 1 - row["restitution"]))
 
 
 def _floor(row: Row) -> float:
-    """The least discretisation error of a row, whatever differences between grids say."""
+    """The least discretisation error of a row, whatever the differences between grids."""
     nodes = max(row["median_patch_nodes"], 1.0)
     expected = math.exp(np.interp(math.log(nodes), np.log(_PATCH_NODES), np.log(_PATCH_ERROR)))
     if resolves(nodes) and row["adhesion_resolved"]:

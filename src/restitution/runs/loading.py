@@ -1,4 +1,4 @@
-"""The contact of a case, solved at one of the depths that the case asks for."""
+"""Solve the contact of a case at one of its depths."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a run goes and ends: its progress, its warnings, its status and the reason of it."""
+"""The log of a run: progress, warnings, and the status at its end with the reason."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Say = Callable[[str], None]
 
 
 def ignore(_: str) -> None:
-    """Say nothing."""
+    """Ignore a message."""
 
 
 @dataclass
@@ -24,24 +24,24 @@ class RunLog:
     """The log of one run, or of several of one case.
 
     `progress` is called with a few words after every step, `tell` with every warning. `warnings`
-    are those that belong to the results and need not be told at the end.
+    are told already, and are stored with the results.
     """
 
     progress: Say = ignore
     tell: Say = ignore
     warnings: list[str] = field(default_factory=list)
     status: str = "failed"
-    reason: str = "stopped by an unforeseen error"
+    reason: str = "stopped by an unexpected error"
     began: float = field(default_factory=time.perf_counter)
     summary: dict[str, Any] | None = None
 
     @property
     def seconds(self) -> float:
-        """Since it began."""
+        """Time since the start (s)."""
         return round(time.perf_counter() - self.began, 3)
 
     def warn(self, warning: str) -> None:
-        """Tell a warning, which belongs to the results."""
+        """Tell a warning, and store it with the results."""
         self.warnings.append(warning)
         self.tell(warning)
 
@@ -50,9 +50,9 @@ class RunLog:
         return lambda words: self.progress(f"{name}, {words}")
 
     def warnings_of(self, part: ResultsFolder) -> Say:
-        """The warnings of one of several runs: what is foreseen of it.
+        """A `warn` for one of several runs, which passes on warnings given before its first row.
 
-        What its results show is for the whole of the runs to say.
+        It drops warnings about the results of a single run: the summary of all runs replaces them.
         """
 
         def say(warning: str) -> None:
@@ -65,10 +65,10 @@ class RunLog:
     def record(
         self, out: ResultsFolder, keep: Callable[[], dict[str, Any] | None]
     ) -> Iterator[None]:
-        """Note how the body of a `with` ends, let `keep` write what there is, tell its warnings.
+        """Record how the `with` body ends, let `keep` write the results, and tell new warnings.
 
-        `keep` returns the summary, which is `summary` from then on, or None where nothing was
-        computed: then the folder is taken back. Whatever stops the body is raised again.
+        `keep` returns the summary, which becomes `summary`, or None if nothing was computed: then
+        the folder is removed. Errors of the body are raised again.
         """
         try:
             yield
@@ -83,7 +83,7 @@ class RunLog:
             self.reason = one_line(f"{self.reason}: {type(error).__name__} {error}".strip())
             raise
         finally:
-            with hold_signals():  # what was computed is not lost to an interruption just now
+            with hold_signals():  # do not lose results if Ctrl-C arrives while writing
                 self.summary = keep()
                 if self.summary is None:
                     out.discard()

@@ -1,4 +1,4 @@
-"""What the findings of `contact.checks` are in words, with the keys of the case file."""
+"""Messages for the findings of `contact.checks`, in terms of the keys of the case file."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ _KEYS = {"force": "load", "velocity": "impact"}  # by arguments of the solvers
 
 
 def require_possible(contact: Contact, indentation: float) -> None:
-    """Raise `CaseError` or `SurfaceError` where loading to `indentation` (m) has no meaning."""
+    """Raise `CaseError` or `SurfaceError` if loading to `indentation` (m) is meaningless."""
     found = impossible(contact, indentation)
     if found is not None:
         raise _ERRORS[found.code](message(found))
 
 
 def input_warnings(contact: Contact, indentation: float) -> list[str]:
-    """One line for each thing that speaks against loading `contact` to `indentation` (m)."""
+    """One warning for each doubtful property of `contact` when loaded to `indentation` (m)."""
     return [message(found) for found in doubtful(contact, indentation)]
 
 
@@ -57,7 +57,7 @@ def naming_keys() -> Iterator[None]:
 
 
 def message(found: Finding) -> str:
-    """`found` as one sentence, with its remedy."""
+    """`found` as one line, with the remedy."""
     match found.code:
         case "roughness-above-radius":
             return (
@@ -67,7 +67,7 @@ def message(found: Finding) -> str:
             )
         case "contact-beyond-radius":
             return (
-                f"the contact is foreseen to reach {1e6 * found['radius']:.4g} um from the centre "
+                f"the contact is predicted to reach {1e6 * found['radius']:.4g} um from the centre "
                 f"at an indentation of {_nm(found['indentation'])}, beyond R* = "
                 f"{1e6 * found['reduced_radius']:.4g} um: stop earlier, or check the units of the "
                 "depths and of the radius"
@@ -76,7 +76,7 @@ def message(found: Finding) -> str:
             return (
                 f"{found['file']}: one pixel ({_um(found['pixel'])}) is larger than the contact "
                 f"radius at the deepest indentation ({_um(found['radius'])} at "
-                f"{_nm(found['indentation'])}), so the scan says nothing about this contact; use a "
+                f"{_nm(found['indentation'])}), so the scan does not resolve this contact; use a "
                 "finer scan, a larger particle or a deeper contact"
             )
         case "edge-reached":
@@ -87,14 +87,14 @@ def message(found: Finding) -> str:
             )
         case "edge-predicted":
             return (
-                f"the contact is foreseen to reach the edge of the grid: the gap there is "
+                f"the contact is predicted to reach the edge of the grid: the gap there is "
                 f"{_nm(found['gap'])} at first touch, and the deepest indentation is "
                 f"{_nm(found['indentation'])}; {_edge_advice(found)}"
             )
         case "contact-beyond-grid":
             larger = "a larger scan, roughness.extend" if found["whole_scan"] else "more nodes"
             return (
-                f"the contact is foreseen to reach {_um(found['radius'])} from the centre at an "
+                f"the contact is predicted to reach {_um(found['radius'])} from the centre at an "
                 f"indentation of {_nm(found['indentation'])}, but the grid ends at "
                 f"{_um(found['half_width'])}: use {larger} or stop earlier"
             )
@@ -114,7 +114,7 @@ def message(found: Finding) -> str:
         case "finer-than-scan":
             return (
                 f"the grid spacing {_um(found['spacing'])} is finer than the scan's pixel "
-                f"{_um(found['pixel'])}: roughness below the pixel is missing, not smooth"
+                f"{_um(found['pixel'])}: roughness below the pixel is missing; use a finer scan"
             )
         case "tilted-scan":
             return (
@@ -129,8 +129,8 @@ def message(found: Finding) -> str:
             )
         case "unusual-yield-pressure":
             return (
-                f"the yield pressure is {found['ratio']:.2g} of the contact modulus E*, where "
-                f"materials have {found['low']:g} to {found['high']:g}: check the units of "
+                f"the yield pressure is {found['ratio']:.2g} of the contact modulus E*, and "
+                f"usual values are {found['low']:g} to {found['high']:g}: check the units of "
                 "yield_pressure and youngs_modulus"
             )
         case "oblong-pixels":
@@ -144,8 +144,8 @@ def message(found: Finding) -> str:
             return (
                 f"the grid spacing {_um(spacing)} is coarser than the scan's pixel "
                 f"{_um(found['pixel'])} along {found['axis']}: waves shorter than "
-                f"{_um(2 * spacing)} are taken out of it; make cells smaller (grid.refine), down "
-                "to the pixel, to keep them"
+                f"{_um(2 * spacing)} are left out; to keep them, make cells as small as the pixel "
+                "(grid.refine)"
             )
         case "surface-notice":
             return str(found["notice"])
@@ -153,8 +153,8 @@ def message(found: Finding) -> str:
             return (
                 f"{found['few']} of {found['depths']} depths (up to {_nm(found['deepest'])}) are "
                 "not resolved (resolved is false): half of their contact is in patches of fewer "
-                f"than {NODES_PER_PATCH} nodes, and their numbers belong to the grid, not to the "
-                "surface; refine the grid (grid.refine)"
+                f"than {NODES_PER_PATCH} nodes, and their results depend on the grid; refine the "
+                "grid (grid.refine)"
             )
         case "adhesion-unresolved":
             return (

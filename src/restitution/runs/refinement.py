@@ -1,4 +1,4 @@
-"""The grid that each depth needs: `grid.refine = "auto"`."""
+"""The grid of each depth for `grid.refine = "auto"`: the coarsest that resolves its contact."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from restitution.errors import DomainError, NotConvergedError
 from restitution.runs.loading import load_to
 from restitution.runs.log import Say, ignore
 
-# Nodes of the finest grid that is tried unasked: a few minutes and about 2 GiB.
+# Nodes of the finest grid that "auto" tries: a few minutes and about 2 GiB.
 MOST_NODES = 2**24
-# Other surfaces of an ensemble have smaller patches than the first, which is the one probed.
+# Times the nodes that a patch needs: other surfaces of an ensemble may have smaller patches.
 _MARGIN = 1.5
 
 
@@ -50,8 +50,8 @@ def settled(case: Case, folder: Path, warn: Say = ignore) -> Case:
         unit, scale = ("nm", 1e9) if case.indentation else ("N", 1) if case.load else ("m/s", 1)
         below = f" up to {scale * depths[unresolved - 1]:.4g} {unit}" if unresolved > 1 else ""
         warn(
-            f'grid.refine = "auto" ends at {finest} ({why}) with the contact at '
-            f"{scale * depths[0]:.4g} {unit}{below} not resolved: half of it is in patches of "
+            f'grid.refine = "auto" ends at {finest} ({why}), and the contact at '
+            f"{scale * depths[0]:.4g} {unit}{below} is not resolved: half of it is in patches of "
             f"fewer than {_MARGIN * NODES_PER_PATCH:.0f} nodes; begin deeper, or leave out short "
             "waves (roughness.shortest)"
         )

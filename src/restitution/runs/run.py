@@ -1,4 +1,4 @@
-"""Run one case: every depth loaded, some unloaded, everything kept."""
+"""Run one case: load to every depth, unload from some, and write the results."""
 
 from __future__ import annotations
 
@@ -47,14 +47,15 @@ FULL_PRESSURE = (
     "begin to yield at about 1.6 times the yield strength"
 )
 
-_VELOCITY = 1e-3  # difference of an impact velocity from that asked for that is worth a warning
-_IMPRECISE = 0.02  # numerical error of COR that is worth a warning
-_BALANCE = 0.01  # difference of unloading work and stored energy that is worth a warning
+# Limits above which there is a warning
+_VELOCITY = 1e-3  # relative error of a prescribed impact velocity
+_IMPRECISE = 0.02  # numerical error of COR
+_BALANCE = 0.01  # relative difference of unloading work and stored energy
 
 
 @dataclass
 class _Run(RunLog):
-    """A run, with what bears on how far it can be trusted."""
+    """The log of a run, with the values for its diagnostics."""
 
     deepest: State | None = None
     loading_work_errors: list[float] = field(default_factory=list)
@@ -75,24 +76,23 @@ def run_case(
     *,
     errors: bool = True,
 ) -> dict[str, Any]:
-    """Run `case` (whose text was `text`, with files relative to `folder`) and return the summary.
+    """Run `case` (with the text `text`, and files relative to `folder`) and return the summary.
 
-    With `errors` (and unless the case says total_error = false) every row gets its total error
-    (`error_budget`). With `errors` a depth that does not converge is left out, and the others go
-    on; without, as one of several runs whose rows are compared by their number, it ends the curve.
-    So does contact at the edge of the grid. Either makes the run a failed one in the end.
+    With `errors` (and unless the case has total_error = false) every row gets its total error
+    (`error_budget`), and a depth that does not converge is left out. Without `errors` it ends the
+    curve, because the rows of several runs are compared by their number. Contact at the edge of the
+    grid always ends the curve. In each of these cases the run fails after its last depth.
 
-    It is of one surface (see `ensemble`). `grid.refine = "auto"` is settled first (`refinement`);
-    depths then count from the first touch of the finest of the grids.
-    `progress` is called with a few words after every depth, `warn` with every warning: what is
-    foreseen before the first solve, what the results show at the end, whichever end it is.
-    Whatever stops the run is raised again once everything computed until then, and the reason, are
-    in the folder; when nothing was, the folder is taken back.
+    The case has one surface (see `ensemble`). `refinement` replaces `grid.refine = "auto"` first;
+    depths are measured from first touch on the finest grid. `progress` is called with a few words
+    after every depth, `warn` with every warning: about the input before the first solve, about the
+    results at the end, even after an error. Errors are raised again after the results so far and
+    the reason are written; the folder is removed if there are no results.
     """
     run = _Run(progress, warn)
 
     def keep() -> dict[str, Any] | None:
-        return None if run.deepest is None else _keep(case, text, out, run, run.deepest)
+        return None if run.deepest is None else _write_results(case, text, out, run, run.deepest)
 
     with run.record(out, keep):
         case = settled(case, folder, run.warn)
@@ -107,16 +107,18 @@ def run_case(
             _add_errors(case, folder, contact.surface, out, run)
         if failure is not None:
             raise failure
-    assert run.summary is not None  # where no depth is computed, an error is raised
+    assert run.summary is not None  # without any depth an error was raised
     return run.summary
 
 
-def _keep(case: Case, text: str, out: ResultsFolder, run: _Run, deepest: State) -> dict[str, Any]:
-    """Write what the run has come to, and return its summary."""
+def _write_results(
+    case: Case, text: str, out: ResultsFolder, run: _Run, deepest: State
+) -> dict[str, Any]:
+    """Write the results of the run, and return its summary."""
     summary = _summarise(case, deepest.contact, out, run)
     summary["seconds"] = run.seconds
     dataset = results_dataset(out, deepest)
-    with suppress(RestitutionError):  # a reference that fails is no reason to fail
+    with suppress(RestitutionError):  # the smooth curve is optional
         dataset = dataset.assign(smooth_curve(deepest.contact, out.rows))
     dataset.attrs = _attributes(summary, text)
     out.write(dataset, summary)
@@ -161,9 +163,9 @@ def _load_and_unload(
     *,
     go_on: bool,
 ) -> RestitutionError | None:
-    """Every depth, one after the other; what stopped the first of those that failed."""
+    """Compute the depths one after the other; return the error of the first that failed."""
     depths, curves = case.depths(), case.unloading.curves
-    # Evenly apart in number, the deepest among them.
+    # Evenly spaced by number, with the deepest.
     unloaded = {len(depths) - 1 - (k * len(depths)) // curves for k in range(curves)}
     began = time.perf_counter()
     before: State | None = None
@@ -189,7 +191,7 @@ def _load_and_unload(
             with naming_keys():
                 back = list(unloading_path(state, steps=steps, tolerance=tolerance))
         collision = collide(state, back if followed else None, method=case.unloading.method)
-        with hold_signals():  # an interruption leaves no row without what belongs to it
+        with hold_signals():  # an interruption leaves a complete row or none
             run.asked.append(depth)
             run.adhesive_nodes.append(adhesive_nodes(state))
             run.loading_work_errors.append(state.work_error / max(abs(state.loading_work), 1e-300))
@@ -211,16 +213,16 @@ def _add_errors(
     out: ResultsFolder,
     run: _Run,
 ) -> None:
-    """Put the total error into the rows, and warn of what the grid leaves out of the surface."""
+    """Add the total error to the rows; keep its part due to waves that the grid leaves out."""
     try:
         run.band_errors = add_errors(case, folder, surface, out.rows, run.progress)
     except RestitutionError as error:
-        run.warnings.append(f"total_error is not known: {error}")
+        run.warnings.append(f"total_error is unknown: {error}")
     out.put_curve(out.rows)
 
 
 def _check(state: State, back: list[State], collision: Collision) -> dict[str, float]:
-    """The work of an unloading curve beside what energies say it should be."""
+    """The work of an unloading curve, compared with the stored energy."""
     work = -integrate_curve([s.indentation for s in back], [s.force for s in back])
     estimate = collide(state, method="energy-estimate")
     return {
@@ -236,7 +238,7 @@ def _check(state: State, back: list[State], collision: Collision) -> dict[str, f
 def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> dict[str, Any]:
     patches = [row["median_patch_nodes"] for row in out.rows]
     depths = [row["max_indentation_m"] for row in out.rows]
-    nodes = run.adhesive_nodes[: len(depths)]  # interrupted, there may be one more
+    nodes = run.adhesive_nodes[: len(depths)]  # one more if the last row could not be written
     unresolved = unresolved_patches(depths, patches) + unresolved_adhesion(depths, nodes)
     found = [*map(message, unresolved), band_warning(contact.surface, run.band_errors)]
     found += [_imprecise(out, case), _velocities_missed(out, case, run.asked)]
@@ -282,7 +284,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> d
 
 
 def _materials(case: Case) -> dict[str, Any]:
-    """The values of the bodies that are the library's, with their spread and source."""
+    """The values of the bodies that come from the library, with their spread and source."""
     bodies = {"first": case.first, "second": case.second or case.first}
     return {
         name: {
@@ -295,13 +297,13 @@ def _materials(case: Case) -> dict[str, Any]:
 
 
 def _imprecise(out: ResultsFolder, case: Case) -> str | None:
-    """One line on depths whose restitution is not as precise as asked for, or None."""
+    """A warning about depths whose COR is less precise than requested, or None."""
     asked = max(_IMPRECISE, case.unloading.restitution_error)
     missed = [row for row in out.rows if row["restitution_error"] > asked]
     if not missed:
         return None
     worst = max(missed, key=lambda row: row["restitution_error"])
-    why = "contact comes and goes in jumps there; use a finer grid"
+    why = "contact forms and breaks in jumps there; use a finer grid"
     if case.unloading.method == "energy-estimate":
         why = 'unloading is an estimate; set unloading.method = "path"'
     depth = 1e9 * worst["max_indentation_m"]
@@ -312,7 +314,7 @@ def _imprecise(out: ResultsFolder, case: Case) -> str | None:
 
 
 def _velocities_missed(out: ResultsFolder, case: Case, computed: list[float]) -> str | None:
-    """One line on impact velocities that are not those asked for, or None."""
+    """A warning about impact velocities that differ from the prescribed ones, or None."""
     if case.impact is None:
         return None
     pairs = zip((row["impact_velocity_m_per_s"] for row in out.rows), computed, strict=False)
@@ -322,8 +324,8 @@ def _velocities_missed(out: ResultsFolder, case: Case, computed: list[float]) ->
         return None
     worst = max(missed, key=lambda asked: off[asked])
     return (
-        f"{len(missed)} of {len(off)} impact velocities are met only within the error of the work, "
-        f"at worst {worst:g} m/s within {off[worst]:.1%}: curve.csv has those that were met"
+        f"{len(missed)} of {len(off)} impact velocities are reached only within the error of the "
+        f"work, at worst {worst:g} m/s within {off[worst]:.1%}: use those in curve.csv"
     )
 
 
@@ -339,20 +341,20 @@ def _adhesion_of(contact: Contact, case: Case) -> dict[str, Any]:
 
 
 def _unbalanced(checks: list[dict[str, float]]) -> str | None:
-    """One line on unloading curves whose work is not the stored energy, or None."""
+    """A warning about unloading curves whose work differs from the stored energy, or None."""
     off = [check for check in checks if not abs(check["relative_to_stored_energy"]) <= _BALANCE]
     if not off:
         return None
     worst = max(off, key=lambda check: abs(check["relative_to_stored_energy"]))
     return (
-        f"{len(off)} of {len(checks)} unloading curves return another work than was stored, at "
-        f"worst {worst['relative_to_stored_energy']:+.1%} from "
+        f"the work of {len(off)} of {len(checks)} unloading curves differs from the stored energy, "
+        f"at worst by {worst['relative_to_stored_energy']:+.1%} from "
         f"{1e9 * worst['max_indentation_m']:.4g} nm: raise unloading.steps, or refine the grid"
     )
 
 
 def _attributes(summary: dict[str, Any], text: str) -> dict[str, str]:
-    """Attributes of results.nc: flat texts."""
+    """Attributes of results.nc, all texts."""
     groups = ("model", "conventions", "derived", "surface", "surface_statistics", "versions")
     return {
         "title": summary["title"],

@@ -1,4 +1,4 @@
-"""The smooth bodies of a case under its own model: what the surface is to be compared with."""
+"""The smooth bodies of a case with its own model, for comparison with its rough surface."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from restitution.contact.loading import solve
 from restitution.numerics.grid import Grid
 from restitution.theory import FirstYield, Hertz
 
-# The error of restitution is below 0.3 % from eight nodes over the contact radius.
+# The error of COR is below 0.3 % with eight nodes or more over the contact radius.
 _NODES = 80
 _WIDTH = 2.5  # of each grid, in predicted contact radii
 _DEPTHS = 20

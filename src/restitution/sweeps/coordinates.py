@@ -19,11 +19,11 @@ _UNITS = {
     "rad": "rad",
 }
 AS_WRITTEN = "as_written"
-"""The attribute that holds the values as they stand in the study, a JSON list of texts."""
+"""The attribute that holds the values as written in the study file, a JSON list of texts."""
 
 
 def as_text(value: Any) -> str:
-    """A swept value as it stands in the study: "0.1 um", 3, true, [1, 2]."""
+    """A swept value as written in the study file: "0.1 um", 3, true, [1, 2]."""
     if isinstance(value, str):
         return value
     return json.dumps(value, ensure_ascii=False, default=str)
@@ -33,7 +33,7 @@ def coordinate(values: Sequence[Any]) -> tuple[list[Any], dict[str, str]]:
     """The values of a swept key and their attributes.
 
     Quantities of one kind ("0.1 um") are numbers with the attribute `units`, numbers stay numbers,
-    and everything else is text as in the study.
+    and all other values are text as in the study file.
     """
     texts = [as_text(value) for value in values]
     attributes = {AS_WRITTEN: json.dumps(texts, ensure_ascii=False)}

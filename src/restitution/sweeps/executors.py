@@ -1,7 +1,7 @@
 """Processes that compute cases: on this machine, or those of a Dask cluster.
 
 Both are a `concurrent.futures.Executor` with a number of places and a channel for progress, so that
-`scheduler` does not tell them apart.
+`scheduler` treats them alike.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ from restitution.errors import OutputError
 from restitution.results.interruption import hold_signals
 from restitution.sweeps.task import Channel
 
-PATIENCE = "15s"  # with a scheduler that does not answer
+PATIENCE = "15s"  # timeout of the connection to a Dask scheduler
 
 
 @dataclass(frozen=True)
 class Workers:
-    """`places` cases are computed at a time, each with `threads` threads.
+    """An executor that computes `places` cases at a time, each with `threads` threads.
 
-    `renewed` makes another executor after one of its processes has died; `heard` is what has come
-    through `channel` since it was last called.
+    `renewed` makes a new executor of a given size after a process has died; `heard` returns the
+    messages that arrived through `channel` since its last call.
     """
 
     executor: Executor
@@ -43,11 +43,11 @@ class Workers:
 
 @contextmanager
 def local_workers(count: int | None) -> Iterator[Workers]:
-    """`count` processes on this machine (one for each core it may use), its cores shared out."""
+    """`count` processes on this machine, which share its cores; None: one for each usable core."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     places = count or cores or 1
     threads = max(1, (cores or 1) // places)
-    # Processes are begun afresh: a fork would copy threads' locks in whatever state they are.
+    # A fork would copy locks that other threads hold, so spawn.
     context = multiprocessing.get_context("spawn")
     started: list[ProcessPoolExecutor] = []
 
@@ -75,14 +75,14 @@ def local_workers(count: int | None) -> Iterator[Workers]:
         finally:
             with hold_signals():
                 for pool in started:
-                    # Cases in flight are given up: their results would not be kept.
+                    # Stop running cases, because their results would not be kept.
                     for process in list((pool._processes or {}).values()):
                         process.terminate()
                     pool.shutdown(cancel_futures=True)
 
 
 class _Pool(ProcessPoolExecutor):
-    """Begins its processes, as tasks are submitted, without Ctrl-C."""
+    """A pool that blocks Ctrl-C in its processes; they start when tasks are submitted."""
 
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         with _without_interrupts():
@@ -91,9 +91,9 @@ class _Pool(ProcessPoolExecutor):
 
 @contextmanager
 def _without_interrupts() -> Iterator[None]:
-    """Block SIGINT for the processes that are begun here, until they ignore it (`_serve`).
+    """Block SIGINT in processes that start here, until they ignore it (`_serve`).
 
-    Ctrl-C reaches all processes of a terminal, and before that would end them with a traceback.
+    Ctrl-C reaches all processes of a terminal; before `_serve` it would end them with a traceback.
     """
     if not hasattr(signal, "pthread_sigmask"):  # Windows
         yield
@@ -102,8 +102,8 @@ def _without_interrupts() -> Iterator[None]:
 
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGHUP})
     try:
-        # It would be begun with the first process, and unblock SIGINT. It keeps SIGHUP blocked:
-        # where a terminal closes, it has to outlive this process.
+        # Start the tracker now: if started with the first process, it would unblock SIGINT. It
+        # keeps SIGHUP blocked, because it must outlive this process when the terminal closes.
         resource_tracker.ensure_running()
         signal.pthread_sigmask(signal.SIG_SETMASK, before | {signal.SIGINT})
         yield
@@ -112,7 +112,7 @@ def _without_interrupts() -> Iterator[None]:
 
 
 def _serve() -> None:
-    """Leave it to the process that keeps the results when to end, and end when it is gone."""
+    """Ignore SIGINT, and end when the parent process has ended."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent = multiprocessing.parent_process()
 
@@ -128,7 +128,7 @@ def _serve() -> None:
 def cluster_workers(address: str) -> Iterator[Workers]:
     """The workers of the Dask cluster whose scheduler is at `address`.
 
-    Raises `OutputError` when there is no such cluster, or Dask is not installed.
+    Raises `OutputError` if there is no such cluster, or if Dask is not installed.
     """
     try:
         from distributed import Client, Queue
@@ -155,6 +155,6 @@ def cluster_workers(address: str) -> Iterator[Workers]:
             messages: list[tuple[int, int]] = queue.get(batch=True)
             return [(number, done) for number, done in messages]
 
-        # The cluster replaces a dead worker's tasks by itself, up to its own number of times.
+        # The cluster itself repeats the tasks of dead workers, a limited number of times.
         executor = client.get_executor(pure=False)
         yield Workers(executor, places, 1, queue, heard, lambda _: executor)

@@ -1,4 +1,4 @@
-"""All cases of a study, on as many processes as there are, each kept as soon as it is done."""
+"""Compute the cases of a study in parallel, and store each as soon as it is done."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from restitution.sweeps.study_folder import StudyFolder
 from restitution.sweeps.sweep import Study, SweptCase
 from restitution.sweeps.task import Outcome, compute
 
-_POLL = 0.2  # s between looks at the progress
-_DEATHS = 3  # of its worker, before a case is held to be the cause
+_POLL = 0.2  # s between updates of the progress
+_DEATHS = 3  # deaths of its worker after which a case has failed
 
 
 @dataclass
 class Tally:
-    """How a study stands: cases done, failed and in flight with the depths they have done."""
+    """Progress of a study: cases done and failed, and depths done of each running case."""
 
     cases: int
     done: int = 0
@@ -40,9 +40,9 @@ def run_study(
 ) -> Tally:
     """Compute every case of `study` that `out` does not hold yet, and write its tables.
 
-    Measured surfaces are relative to `folder`. A case that fails is kept with its reason and is
-    not computed again without `retry_failed`. Whatever ends the study, the cases done are kept.
-    A case whose worker dies is computed again, by itself: three deaths are its failure.
+    Files of measured surfaces are relative to `folder`. A failed case is stored with its reason,
+    and computed again only with `retry_failed`. Completed cases are kept, whatever ends the study.
+    A case whose worker dies is computed again, alone, and fails after three deaths.
     """
     out.clear()
     known = {case.number: out.reason(case) for case in study.cases}
@@ -75,7 +75,7 @@ def _compute_all(
     running: dict[Future[Outcome], SweptCase] = {}
     broken = False
     while waiting or suspects or running:
-        # Cases whose worker has died go alone, so that only the one to blame dies again.
+        # Cases whose worker has died run alone, so that a faulty case harms no other case.
         places = 1 if suspects else workers.places
         if broken or (places != size and not running):
             executor, size, broken = workers.renewed(places), places, False
@@ -86,7 +86,7 @@ def _compute_all(
                 future = executor.submit(
                     compute, case.text, str(folder), case.number, workers.threads, workers.channel
                 )
-            except BrokenExecutor:  # a worker has died since the last look
+            except BrokenExecutor:  # a worker has died since the last check
                 broken = True
                 break
             running[future] = source.popleft()
@@ -104,15 +104,15 @@ def _compute_all(
                     suspects.append(case)
                     continue
                 outcome = Outcome({}, f"its worker died {_DEATHS} times: killed, or out of memory")
-            except OutputError:  # no room for any case
+            except OutputError:  # the disk is full, which concerns all cases
                 raise
-            except Exception as error:  # a bug, or a cluster's own: this case fails, others go on
+            except Exception as error:  # a bug, or an error of the cluster: only this case fails
                 outcome = Outcome({}, one_line(f"{type(error).__name__}: {error}"))
             out.put(case, outcome)
             tally.done += 1
             tally.failed += bool(outcome.reason)
         if broken:
-            # All that ran on it have ended with it.
+            # All running cases ended with the executor.
             for case in running.values():
                 suspects.append(case)
                 tally.in_flight.pop(case.number, None)

@@ -1,7 +1,7 @@
 """The folder of a study: one folder for each case, and tables over all of them.
 
-A case is written to a folder of another name, which is then renamed: it is there whole, or not at
-all. The tables follow from the cases and are written anew, each into a temporary file first.
+A case is written to a temporary folder, which is then renamed: the case exists completely or not at
+all. The tables are made from the cases and replaced as a whole.
 """
 
 from __future__ import annotations
@@ -37,33 +37,33 @@ FAILED = "failed.json"
 
 
 class StudyFolder:
-    """OUT: `study.toml`, `cases/case-00001/` and so on, `table.csv` and `study.nc`."""
+    """The folder OUT: `study.toml`, `cases/case-00001/` etc., `table.csv` and `study.nc`."""
 
     def __init__(self, path: Path, study: Study, *, resume: bool) -> None:
-        """Take the folder for `study`.
+        """Prepare the folder for `study`.
 
-        Raises `OutputError` when it holds something else (or, without `resume`, anything), when
-        there is nothing to resume, and when it cannot be written.
+        Raises `OutputError` if the folder holds another study (without `resume`: anything), has no
+        study to resume, or cannot be written.
         """
         self.path, self.study = path, study
         self._cases = path / "cases"
         held = path / "study.toml"
         if resume:
             if not held.is_file():
-                raise OutputError(f"{path}: holds no study; leave out --resume to begin one")
+                raise OutputError(f"{path}: holds no study; leave out --resume to start one")
             if read_text(held) != study.text:
                 raise OutputError(
                     f"{path}: holds another study (its study.toml differs); name another folder "
-                    "with -o, or the file it was begun with"
+                    "with -o, or the study file that it was started with"
                 )
         else:
-            make_folder(path, "go on with --resume" if held.is_file() else "move it away")
+            make_folder(path, "continue with --resume" if held.is_file() else "move it away")
         with writing(path):
             self._cases.mkdir(parents=True, exist_ok=True)
         replace_file(held, lambda to: to.write_text(study.text, encoding="utf-8"))
 
     def locked(self) -> AbstractContextManager[None]:
-        """Keep other processes out. Raises `OutputError` while one is at work here."""
+        """Lock the folder. Raises `OutputError` if another process holds the lock."""
         return locked(self.path)
 
     def folder_of(self, case: SweptCase) -> Path:
@@ -71,12 +71,12 @@ class StudyFolder:
         return self._cases / case.name
 
     def clear(self) -> None:
-        """Remove what a process that was killed has left half written."""
+        """Remove incomplete cases that a killed process has left."""
         for left in self._cases.glob(".*"):
             shutil.rmtree(left, ignore_errors=True)
 
     def put(self, case: SweptCase, outcome: Outcome) -> None:
-        """Keep what has come of a case. Raises `OutputError` when it cannot be written."""
+        """Store the outcome of a case. Raises `OutputError` if it cannot be written."""
         part, whole = self._cases / f".{case.name}", self._cases / case.name
         with hold_signals(), writing(self.path):
             shutil.rmtree(part, ignore_errors=True)
@@ -93,10 +93,10 @@ class StudyFolder:
             part.rename(whole)
 
     def reason(self, case: SweptCase) -> str | None:
-        """Why a case failed, "" when it is complete, None when it is missing or damaged.
+        """The reason why a case failed; "" if it is complete, None if it is missing or damaged.
 
-        A case is complete when its files are as they were written (`reader`); one whose text
-        differs is another case.
+        A case is complete if its files pass the checks of `reader`. A stored case with another text
+        counts as missing.
         """
         folder = self._cases / case.name
         try:
@@ -111,7 +111,7 @@ class StudyFolder:
         return "" if run.curve.rows and run.summary["status"] == "complete" else None
 
     def write_tables(self) -> None:
-        """Write `table.csv` and `study.nc` from the cases there are."""
+        """Write `table.csv` and `study.nc` from the stored cases."""
         known = {case.number: self.reason(case) for case in self.study.cases}
         curves = {
             case.number: RunResults(self._cases / case.name).curve
@@ -141,7 +141,7 @@ class StudyFolder:
     def _dataset(
         self, known: dict[int, str | None], curves: dict[int, list[dict[str, float]]]
     ) -> xr.Dataset:
-        """All curves, their dimensions named by the swept quantities, and by depth."""
+        """All curves; the dimensions are the swept keys (or the cases) and the depth."""
         study = self.study
         depths = max((len(rows) for rows in curves.values()), default=0)
         if study.mode == "paired":

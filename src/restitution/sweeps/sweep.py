@@ -1,4 +1,4 @@
-"""The study file: a case and a table [sweep] of what varies in it, turned into cases."""
+"""The study file: a case with a table [sweep] of the keys that vary, expanded into cases."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _MODES = ("grid", "paired")
 
 @dataclass(frozen=True)
 class SweptCase:
-    """One case of a study: its number from 1, what it has of the swept values, and its text."""
+    """One case of a study: its number (from 1), its swept values, and its text."""
 
     number: int
     values: Mapping[str, Any]
@@ -28,15 +28,15 @@ class SweptCase:
 
     @property
     def name(self) -> str:
-        """Of its folder."""
+        """The name of its folder."""
         return f"case-{self.number:05d}"
 
 
 @dataclass(frozen=True)
 class Study:
-    """A study file, checked: every case of it is a valid one.
+    """A study file with only valid cases.
 
-    `swept` maps each path of a key ("roughness.rms") to its values as they stand in the file.
+    `swept` maps each dotted key ("roughness.rms") to its values as written in the file.
     """
 
     title: str
@@ -47,7 +47,7 @@ class Study:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Numbers of values along the swept quantities; (cases,) when they are paired."""
+        """The number of values of each swept key; (cases,) if they are paired."""
         if self.mode == "paired":
             return (len(self.cases),)
         return tuple(len(values) for values in self.swept.values())
@@ -67,7 +67,7 @@ def parse_study(text: str) -> Study:
     content = parse_toml(text)
     sweep = content.pop("sweep", None)
     if not isinstance(sweep, dict):
-        raise CaseError("the table [sweep] is missing; it names what varies")
+        raise CaseError("the table [sweep] is missing; give the keys that vary, with their values")
     mode = sweep.pop("mode", "grid")
     if mode not in _MODES:
         raise CaseError(f'sweep.mode: {shown(mode)} should be "grid" or "paired"')
@@ -89,7 +89,7 @@ def parse_study(text: str) -> Study:
 
 
 def _paths(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, list[Any]]]:
-    """Dotted paths and values: `"roughness.rms" = …` and `roughness.rms = …` are the same."""
+    """Dotted keys and values: `"roughness.rms" = …` and `roughness.rms = …` are equivalent."""
     for key, value in table.items():
         if isinstance(value, dict):
             yield from _paths(value, f"{before}{key}.")
@@ -100,7 +100,7 @@ def _paths(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, li
 def _check_values(swept: Mapping[str, Any], mode: str) -> None:
     if not swept:
         raise CaseError(
-            'sweep: is empty; name what varies, such as "roughness.rms" = ["0.1 um", "0.2 um"]'
+            'sweep: is empty; give a key that varies: "roughness.rms" = ["0.1 um", "0.2 um"]'
         )
     count = 1
     for key, values in swept.items():
@@ -111,9 +111,11 @@ def _check_values(swept: Mapping[str, Any], mode: str) -> None:
     if mode == "paired":
         if len(set(lengths.values())) > 1:
             each = ", ".join(f"{key} {n}" for key, n in lengths.items())
-            raise CaseError(f'sweep: mode = "paired" needs lists of one length; there are {each}')
+            raise CaseError(
+                f'sweep: mode = "paired" needs lists of equal length; the lengths are {each}'
+            )
     elif count > MOST_CASES:
-        raise CaseError(f"sweep: makes {count} cases; give at most {MOST_CASES}")
+        raise CaseError(f"sweep: gives {count} cases; reduce them to at most {MOST_CASES}")
 
 
 def _combinations(swept: Mapping[str, list[Any]], mode: str) -> Iterator[dict[str, Any]]:
@@ -128,14 +130,14 @@ def _combinations(swept: Mapping[str, list[Any]], mode: str) -> Iterator[dict[st
 
 
 def _put(case: dict[str, Any], path: str, value: Any) -> None:
-    """Set the key at `path`; of several [[roughness]] tables by their number, from 1."""
+    """Set the key at `path`, in which a number (from 1) selects one of several tables."""
     table: Any = case
     *way, last = path.split(".")
     for step in way:
         if isinstance(table, list):
             if not (step.isdigit() and 1 <= int(step) <= len(table)):
                 raise CaseError(
-                    f"sweep.{path}: {shown(step)} is not the number of one of {len(table)} tables"
+                    f"sweep.{path}: {shown(step)} is not the number of a table (1 to {len(table)})"
                 )
             table = table[int(step) - 1]
         else:
@@ -143,5 +145,7 @@ def _put(case: dict[str, Any], path: str, value: Any) -> None:
         if not isinstance(table, (dict, list)):
             raise CaseError(f"sweep.{path}: {shown(step)} is a value, not a table")
     if isinstance(table, list):
-        raise CaseError(f"sweep.{path}: there are {len(table)} tables; say which, such as 1.{last}")
+        raise CaseError(
+            f"sweep.{path}: there are {len(table)} tables; give the number of one, as in 1.{last}"
+        )
     table[last] = value

@@ -1,4 +1,4 @@
-"""One case of a study, computed by whatever process is given it."""
+"""Compute one case of a study, in any process."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from restitution.errors import OutputError, RestitutionError, one_line
 
 
 class Channel(Protocol):
-    """Where a worker puts what it has to say of its progress."""
+    """Takes a worker's messages about its progress."""
 
     def put(self, message: tuple[int, int], /) -> object:
         """Take (number of the case, depths done)."""
@@ -20,9 +20,9 @@ class Channel(Protocol):
 
 @dataclass(frozen=True)
 class Outcome:
-    """What has come of a case: the files of its results folder, or why there are none.
+    """The outcome of a case: the files of its results folder, and the reason if it failed.
 
-    `reason` is empty when it is complete. Files of a case that failed half way are there, too.
+    `reason` is empty if the case is complete. A failed case has the files written until then.
     """
 
     files: dict[str, bytes]
@@ -32,10 +32,10 @@ class Outcome:
 def compute(text: str, folder: str, number: int, threads: int, channel: Channel | None) -> Outcome:
     """Run the case of `text`, with files relative to `folder`, in this process.
 
-    Nothing of the study's folder is touched: results travel back, so that workers need not share a
-    disk with it, and so that one process alone writes.
+    Results are returned instead of written to the study's folder: workers need no shared disk, and
+    only one process writes there.
     """
-    # Read once, before the first transform of a process.
+    # A process reads this once, before its first transform.
     os.environ.setdefault("DUCC0_NUM_THREADS", str(threads))
     from restitution.case.case_file import parse_case
     from restitution.results.writer import ResultsFolder

@@ -1,4 +1,4 @@
-"""EDEM: tables of interactions and materials, to be typed into its panels. EDEM was not run.
+"""EDEM: tables of interactions and materials, to be typed into its panels; not tested with EDEM.
 
 EDEM's Hertz–Mindlin model has Tsuji's damping with the coefficient of Antypov & Elliott (Altair's
 documentation). Its hysteretic spring model is that of Walton & Braun with K1 = 5 R* min(Y1, Y2) and
@@ -25,17 +25,17 @@ from restitution.results.writer import table_text
 CODE = "EDEM"
 INTERACTIONS, MATERIALS = "restitution_edem.csv", "restitution_edem_materials.csv"
 _ENDS = (
-    "in Hertz-Mindlin, by its formulas the overlap is back to zero (whether EDEM cuts off the pull "
-    "of the damping before is not documented); in the hysteretic spring model the force is back to "
-    "zero."
+    "in Hertz-Mindlin the overlap is back to zero, according to its formulas (it is not documented "
+    "whether EDEM cuts off the tensile damping force before); in the hysteretic spring model the "
+    "force is back to zero."
 )
 _NOTES = [
     "",
     "Tables to be typed into EDEM (not run here): Interactions, and Bulk Material.",
     PLACEHOLDER + " So is rolling friction 0.",
     "hysteretic_*: the hysteretic spring model fitted to the law, K2 at this velocity;",
-    "    its restitution is (K1/K2)^(1/2), and its yield strength K1/(5 R*) what EDEM makes K1 of.",
-    "    Empty where there is no such fit, or the velocity is outside of those it was fitted to.",
+    "    its restitution is (K1/K2)^(1/2); EDEM computes K1 from the yield strength K1/(5 R*).",
+    "    Empty if there is no such fit, or if the velocity is outside its fitted range.",
 ]
 
 

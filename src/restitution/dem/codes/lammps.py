@@ -27,8 +27,8 @@ FRAGMENT, COLLISION, PACKING = "restitution.lmp", "collision.in", "packing.in"
 _GRAINS = 500  # of the packing
 _FILLED = 0.12  # of the volume in which they are placed
 _ENDS = (
-    "the overlap is back to zero. The damping pulls shortly before; do not add limit_damping, "
-    "which cuts that off and raises e (0.808 for 0.8)."
+    "the overlap is back to zero. The force is tensile shortly before, due to damping; do not add "
+    "limit_damping, which cuts off the tension and raises e (0.808 for 0.8)."
 )
 
 

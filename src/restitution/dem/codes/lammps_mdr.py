@@ -32,12 +32,12 @@ def _obstacle(pairs: list[Pair], pair: Pair, velocity: float) -> str:
     if not pair.wall and len(spheres) > 1:
         return (
             "LAMMPS takes one mdr model in a pair_style, with the same values for all\n"
-            "pairs of types, and no other normal model beside it; here are several types"
+            "pairs of types, and no other normal model; this export has several types"
         )
     if pair.wall and spheres and any(_obstacle(spheres, other, velocity) for other in spheres):
         return (
-            "LAMMPS takes mdr at a wall only where pair_style granular has mdr, too,\n"
-            "and the pairs of spheres above have none"
+            "LAMMPS takes mdr at a wall only if pair_style granular has mdr, too,\n"
+            "and the pairs of spheres above do not"
         )
     return _unfit(pair, velocity)
 
@@ -53,5 +53,5 @@ def _unfit(pair: Pair, velocity: float) -> str:
         return f"the fitted mdr is off by up to {fit.worst:.2g} in e"
     if not pair.law.fits_hold_at(velocity):
         low, high = pair.law.fitted_range or (math.nan, math.nan)
-        return f"it is fitted from {low:.4g} to {high:.4g} m/s, which leaves out {velocity:.4g} m/s"
+        return f"it is fitted from {low:.4g} to {high:.4g} m/s, and {velocity:.4g} m/s is outside"
     return ""

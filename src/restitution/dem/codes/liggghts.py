@@ -15,10 +15,10 @@ CODE = "LIGGGHTS"
 LOWEST = 0.0501  # "0.05 < coefficientRestitution <= 1 required"
 FRAGMENT, COLLISION = "restitution.liggghts", "collision.in.liggghts"
 _ENDS = (
-    "the overlap is back to zero. The damping pulls shortly before; do not add `limitForce on`, "
-    "which cuts that off and raises e (0.397 for 0.3)."
+    "the overlap is back to zero. The force is tensile shortly before, due to damping; do not add "
+    "`limitForce on`, which cuts off the tension and raises e (0.397 for 0.3)."
 )
-_HARD, _SOFT = 1e9, 5e6  # Pa; LIGGGHTS refuses E outside without a command
+_HARD, _SOFT = 1e9, 5e6  # Pa; LIGGGHTS needs a command to accept E outside
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
@@ -52,7 +52,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
 
 
 def _hardness(table: PairTable) -> str:
-    """The command with which LIGGGHTS accepts these E; empty where it needs none."""
+    """The command with which LIGGGHTS accepts these E; empty if it needs none."""
     E = [body.youngs_modulus for body in table.particles]
     if max(E) > _HARD:
         return "hard_particles yes"

@@ -12,7 +12,7 @@ from restitution.dem.pair_table import PairTable
 
 CODE = "MercuryDPM"
 FILE = "restitution_mercury.h"
-_ENDS = "the overlap is back to zero. The damping pulls shortly before."
+_ENDS = "the overlap is back to zero. The force is tensile shortly before, due to damping."
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:

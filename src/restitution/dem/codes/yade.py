@@ -34,9 +34,9 @@ CODE = "YADE"
 LOWEST = 0.01  # lowest e of the fit
 FRAGMENT, COLLISION = "restitution_yade.py", "collision_yade.py"
 _ENDS = (
-    "the force is back to zero, before the overlap is: the damping does not pull. e is given as "
-    "betan, not as en, of which YADE 2023.02a makes 0.979 for 0.99. On a wall YADE takes R*/2 for "
-    "R*: the contact is softer by sqrt(2), with the same e."
+    "the force is back to zero, which is before the overlap is zero: the force is never tensile. e "
+    "is given as betan, not as en, because en = 0.99 gives e = 0.979 in YADE 2023.02a. On a wall "
+    "YADE takes R*/2 for R*: the contact is softer by sqrt(2), with the same e."
 )
 _STEPS = 2000
 _WALL_DENSITY = 1000.0  # kg/m³, of a wall without a density: YADE needs one
