@@ -165,7 +165,7 @@ def message(found: Finding) -> str:
 
 
 def _edge_advice(found: Finding) -> str:
-    """What to change so that the contact stays inside the grid, as the end of a sentence."""
+    """Advice that keeps the contact inside the grid, as the end of a sentence."""
     x, y = found["first_touch"]
     where = (
         f"the bodies touch first at x = {1e6 * x:.3g} um, y = {1e6 * y:.3g} um, off the centre; "
