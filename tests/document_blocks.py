@@ -7,7 +7,7 @@ Blocks of a page run from top to bottom in one folder, which holds a copy of `ex
 - `sh` runs in Bash and stops at the first command that fails;
 - `python` runs in one process: names stay known further down the page;
 - `text` is what the block above it printed. `…` stands for anything, alone on a line for any
-  lines. Numbers may differ by one in the last digit shown.
+  lines. Numbers may differ by one in the last digit shown, times and memory at will.
 
 A block below the comment `<!-- not run: REASON -->` is left out.
 `python tests/document_blocks.py PAGE…` writes into `text` blocks what was printed.
@@ -36,6 +36,8 @@ _FENCE = re.compile(
     r"(?P<options>(?::[a-z-]+:[^\n]*\n)*)\n?(?P<body>.*?)^```$",
     re.MULTILINE | re.DOTALL,
 )
+# Differ from machine to machine.
+_VARIES = re.compile(r"\d+ convolutions, [\d.]+ s; largest residual \S+|\d+ MB of [\d.]+ [GT]B")
 _NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
 
 
@@ -78,7 +80,8 @@ def same_text(shown: str, printed: str) -> bool:
 
 
 def _lines(text: str) -> list[str]:
-    return [line for raw in text.splitlines() if (line := " ".join(raw.split()))]
+    text = "\n".join(" ".join(line.split()) for line in text.splitlines())
+    return [line for line in _VARIES.sub("(varies)", text).splitlines() if line]
 
 
 def _match(shown: list[str], printed: list[str]) -> bool:
@@ -117,7 +120,10 @@ class Page:
         self.names: dict[str, object] = {"__name__": "__main__"}
         shutil.copytree(ROOT / "examples", folder / "examples")
         self.environment = os.environ | {
-            "PATH": f"{_program(folder)}{os.pathsep}{os.environ['PATH']}",
+            "PATH": os.pathsep.join(
+                [str(_programs(folder)), str(Path(sys.executable).parent), os.environ["PATH"]]
+            ),
+            "LD_LIBRARY_PATH": str(Path(sys.prefix) / "lib"),  # LAMMPS finds MPI there
             "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
             "COLUMNS": "100",
             "TERM": "dumb",
@@ -155,7 +161,7 @@ class Page:
         return printed.getvalue()
 
 
-def _program(folder: Path) -> Path:
+def _programs(folder: Path) -> Path:
     """A folder with `restitution`, run by this Python."""
     programs = folder / ".programs"
     programs.mkdir()
