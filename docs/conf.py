@@ -1,6 +1,7 @@
 """Settings of the documentation site: `make docs` builds it into docs/_build/html."""
 
 import os
+import re
 import tomllib
 from pathlib import Path
 
@@ -39,9 +40,9 @@ python_use_unqualified_type_names = True
 napoleon_custom_sections = [("Source", "params_style"), "Shapes"]
 napoleon_use_ivar = True
 autosummary_generate = False
-# References within this package must resolve; NumPy's and Python's pages are not looked up, so that
-# the site builds without internet.
-nitpick_ignore_regex = [("py:.*", r"(?!restitution\b|rs\b).*")]
+# Public names must resolve. Internal modules have no page here, and the pages of NumPy and Python are
+# not looked up, so that the site builds without internet.
+nitpick_ignore_regex = [("py:.*", r"(?!restitution\.(theory\.)?\w+$).*")]
 
 html_theme = "furo"
 html_title = f"{project} {release}"
@@ -72,3 +73,14 @@ sphinx_gallery_conf = {
     "show_signature": False,
     "copyfile_regex": "",
 }
+
+
+def _escape_bars(app, what, name, value, options, lines):  # the signature is Sphinx'
+    """Let |z| in a docstring be an absolute value, not a substitution."""
+    for i, line in enumerate(lines):
+        lines[i] = re.sub(r"(`[^`]*`)|\|", lambda found: found[1] or r"\|", line)
+
+
+def setup(app):
+    """Called by Sphinx."""
+    app.connect("autodoc-process-docstring", _escape_bars)
