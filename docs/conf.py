@@ -40,7 +40,7 @@ python_use_unqualified_type_names = True
 napoleon_custom_sections = [("Source", "params_style"), "Shapes"]
 napoleon_use_ivar = True
 autosummary_generate = False
-# Public names must resolve. Internal modules have no page here, and the pages of NumPy and Python are
+# Public names must resolve. Internal modules have no page here, and pages of NumPy and Python are
 # not looked up, so that the site builds without internet.
 nitpick_ignore_regex = [("py:.*", r"(?!restitution\.(theory\.)?\w+$).*")]
 
