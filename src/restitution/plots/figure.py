@@ -25,7 +25,7 @@ DASH_DOTTED: Dash = (6, 2, 1, 2)
 
 # Okabe and Ito (2008), without yellow and black: distinct for the colour-blind, on light and dark.
 PALETTE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
-# Series that share a colour differ in the symbol, and in print without colours all do.
+# Symbols distinguish series that share a colour, and all series in print without colours.
 SYMBOLS: tuple[Symbol, ...] = ("circle", "square", "diamond", "triangle-up", "triangle-down")
 BLUE, ORANGE = PALETTE[:2]
 GREY = "#7d858e"  # of references: legible on light and dark pages

@@ -141,11 +141,13 @@ def _traces(each: Band | Line | Points, chart: Chart) -> list[dict[str, Any]]:
             "thickness": 1,
             "width": 3,
         }
-    if has_open(each):
+    if has_open(each) and not hollow.all():
         # The legend shows the marker of the first point, which may be open.
         closed = {"symbol": each.symbol, "size": 7, "color": each.color}
         traces.insert(0, _legend_only(each.label, closed, mode=trace["mode"], line=trace["line"]))
-        traces.append(_legend_only(each.open_label, closed | {"symbol": f"{each.symbol}-open"}))
+    if has_open(each):
+        hollow_marker = {"symbol": f"{each.symbol}-open", "size": 7, "color": each.color}
+        traces.append(_legend_only(each.open_label, hollow_marker))
     if has_error(each):
         bar = {"symbol": "line-ns-open", "size": 12, "color": each.color}
         traces.append(_legend_only(each.error_label, bar))

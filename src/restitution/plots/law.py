@@ -21,7 +21,7 @@ from restitution.plots.figure import (
     Series,
 )
 
-# Colour, dashes and width of each law; those that often run along e = 1 are drawn on one another.
+# Colour, dashes and width of each law; laws that often run along e = 1 differ in width.
 LAW_LINES: dict[str, tuple[str, Dash, float]] = {
     "hertz": ("#bfbfbf", SOLID, 5.0),
     "sticking": ("#e69f00", SOLID, 3.2),

@@ -41,11 +41,11 @@ Format = Literal["png", "svg", "pdf"]
 _CHART, _MAP, _SECOND = (6.4, 4.0), (5.6, 4.6), 4.6
 _ROW, _SIDE = 0.2, 2.4
 _MOST_BELOW = 8  # entries of a legend below the axes; a longer legend stands at the side
-# Labels of a logarithmic axis: most decades for which these digits are labelled, too.
+# Digits that a logarithmic axis labels, for up to so many decades.
 _DIGITS: tuple[tuple[float, tuple[int, ...]], ...] = ((1.0, (1, 2, 3, 5, 7)), (3.0, (1, 2, 5)))
 _TICKS = 6  # labels of a linear axis, at most one more
-_LINEAR = 0.5  # decades of a logarithmic axis below which its ticks are those of a linear one
-_PLAIN = (0.9e-3, 1e4)  # values that are written without powers of ten
+_LINEAR = 0.5  # decades below which a logarithmic axis has linear ticks
+_PLAIN = (0.9e-3, 1e4)  # range of an axis whose labels need no powers of ten
 _MARKERS = {
     "circle": "o",
     "square": "s",
@@ -200,7 +200,10 @@ def _draw_points(axes: Axes, points: Points, handles: dict[str, Any]) -> None:
     marker = _MARKERS[points.symbol]
     style: dict[str, Any] = {"ls": "none", "marker": marker, "ms": 4.5, "color": color, "zorder": 3}
     axes.plot(x[~hollow], y[~hollow], **style)
-    entry = Line2D([], [], **{**style, "ls": "-" if points.joined else "none", "lw": 1})
+    face = "white" if hollow.all() else color
+    entry = Line2D(
+        [], [], **{**style, "ls": "-" if points.joined else "none", "lw": 1, "mfc": face}
+    )
     handles.setdefault(points.label, entry)
     if has_open(points):
         (empty,) = axes.plot(x[hollow], y[hollow], mfc="white", **style)
@@ -213,7 +216,7 @@ def _draw_mark(axes: Axes, mark: Mark) -> None:
     sign = 1 if mark.side == "right" else -1
     if mark.axis == "x":
         axes.axvline(mark.value, **style)
-        # Below the upper end, beside its line.
+        # Near the lower end, beside the line.
         where, shift, align = (mark.value, 0.03), (4 * sign, 0), "bottom"
         transform = axes.get_xaxis_transform()
         horizontal = "left" if sign > 0 else "right"
@@ -260,10 +263,10 @@ def _dashes(dash: Dash) -> Any:
 
 
 def _plain(text: str) -> str:
-    """A text as a title: at most two lines."""
+    """`text` as a title of at most two lines."""
     return _escaped("\n".join(textwrap.wrap(text, 55, max_lines=2, placeholder=" …")))
 
 
 def _escaped(text: str) -> str:
-    """A text that is not read as mathematics."""
+    """`text` with the sign of mathematics escaped."""
     return text.replace("$", r"\$")
