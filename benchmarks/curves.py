@@ -38,7 +38,7 @@ from restitution import (
 from restitution.case.case_file import read_case
 
 ROOT = Path(__file__).parents[1]
-EXAMPLE = ROOT / "examples" / "steel.toml"
+EXAMPLE = ROOT / "benchmarks" / "steel.toml"
 OUT = ROOT / "docs" / "benchmarks" / "curves.md"
 FIG_10 = files("restitution.reproduce") / "studies" / "roughness.toml"
 NODES = 512
@@ -141,7 +141,7 @@ def main() -> None:
     rough = adhesive(0.1e-6)
     figure = [adhesive(rms) for rms in ROUGHNESS]
     work = {
-        "24 depths of `examples/steel.toml`, 2 nm to 5 µm, rough, no adhesion": (
+        "24 depths of `benchmarks/steel.toml`, 2 nm to 5 µm, rough, no adhesion": (
             lambda: curve([example], case.depths()),
             options.repeats,
         ),

@@ -7,12 +7,22 @@ docs/studies/adhesion_figures.csv. Takes some minutes: `python docs/studies/adhe
 from __future__ import annotations
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
-from shared import IMAGES, PAIR, write_table
+from shared import PAIR, write_image, write_table
 
 from restitution import Contact, Grid, collide, generate_surface, loading_path, smooth
 from restitution.contact.checks.resolution import ADHESIVE_NODES, adhesive_nodes
+from restitution.plots.cor import cor_axis
+from restitution.plots.figure import (
+    DASHED,
+    PALETTE,
+    SOLID,
+    SYMBOLS,
+    Axis,
+    Chart,
+    Figure,
+    Line,
+    Points,
+)
 
 ENERGIES = (0.01, 0.03, 0.09)
 SMOOTH_DEPTHS = np.geomspace(1e-9, 220e-9, 11)
@@ -60,54 +70,40 @@ def rows_of(surface, contact, depths):
 
 def draw(rows, name, title):
     """COR against indentation, a line for each work of adhesion and yield pressure."""
-    figure = Figure(figsize=(6.4, 4.4), layout="constrained")
-    axes = figure.add_subplot(
-        xlabel="maximum indentation (nm)", ylabel="coefficient of restitution", title=title
-    )
     keys = sorted({(r["yield_pressure_Pa"], r["work_of_adhesion_J_per_m2"]) for r in rows})
+    series = []
     for p_y, w in keys:
         some = [
             r for r in rows if (r["yield_pressure_Pa"], r["work_of_adhesion_J_per_m2"]) == (p_y, w)
         ]
-        colour = {0.01: "C0", 0.03: "C2", 0.09: "C1"}[w]
-        x = [1e9 * r["indentation_m"] for r in some]
-        y = [r["restitution"] for r in some]
-        axes.plot(
-            x,
-            y,
-            "-" if p_y < 1e9 else "--",
-            color=colour,
-            label=f"w = {w:g} J/m², p_y = {p_y / 1e6:.0f} MPa",
-        )
-        for filled in (True, False):
-            points = [
-                (a, b)
-                for a, b, r in zip(x, y, some, strict=True)
-                if r["adhesion_resolved"] == filled
-            ]
-            if points:
-                axes.plot(
-                    *zip(*points, strict=True),
-                    "o",
-                    ms=4.5,
-                    color=colour,
-                    mfc=colour if filled else "white",
-                )
-    axes.set_xscale("log")
-    axes.set_ylim(-0.03, 1.03)
-    axes.legend(frameon=False, fontsize="small")
-    FigureCanvasAgg(figure)
-    figure.savefig(IMAGES / name, dpi=150)
+        number = ENERGIES.index(w)
+        x = 1e9 * np.array([r["indentation_m"] for r in some])
+        y = np.array([r["restitution"] for r in some])
+        color, symbol = PALETTE[number], SYMBOLS[number]
+        dash = SOLID if p_y < 1e9 else DASHED
+        series += [
+            Line(x, y, f"p_y = {p_y / 1e6:.0f} MPa", color=color, dash=dash),
+            Points(
+                x,
+                y,
+                f"w = {w:g} J/m²",
+                color=color,
+                symbol=symbol,
+                open=np.array([not r["adhesion_resolved"] for r in some]),
+            ),
+        ]
+    chart = Chart(Axis("maximum indentation", "nm", "log"), cor_axis(series), series)
+    write_image(name, Figure(title, [chart]))
 
 
 def main():
     """Compute, store and draw."""
     rows = [*smooth_rows(), *rough_rows()]
     write_table("adhesion_figures.csv", rows)
-    draw([r for r in rows if r["surface"] == "smooth"], "adhesion-smooth.png", "Smooth spheres")
+    draw([r for r in rows if r["surface"] == "smooth"], "adhesion-smooth", "Smooth spheres")
     draw(
         [r for r in rows if r["surface"] == "rough"],
-        "adhesion-rough.png",
+        "adhesion-rough",
         "Rough, Rq 0.1 µm; open: adhesion not resolved",
     )
 

@@ -7,12 +7,21 @@ Writes docs/studies/critical_indentation.csv and docs/images/critical-indentatio
 from __future__ import annotations
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
 from scipy.stats import linregress, t
-from shared import IMAGES, PAIR, STEEL, write_table
+from shared import PAIR, STEEL, write_image, write_table
 
 from restitution import Contact, Grid, collide, generate_surface, smooth, solve
+from restitution.plots.figure import (
+    DASHED,
+    PALETTE,
+    SOLID,
+    SYMBOLS,
+    Axis,
+    Chart,
+    Figure,
+    Line,
+    Points,
+)
 
 GRID = Grid((960, 960), (0.25e-6, 0.25e-6))
 ROUGHNESS = (0.1e-6, 0.2e-6, 0.5e-6, 1e-6)
@@ -78,32 +87,33 @@ def main():
                     }
                 )
     write_table("critical_indentation.csv", table)
-    figure = Figure(figsize=(6.4, 4.4), layout="constrained")
-    FigureCanvasAgg(figure)
-    axes = figure.add_subplot(
-        xlabel="Rq/R (10⁻³)",
-        ylabel="i_cr,max (µm)",
-        title="Depth from which on a rough sphere bounces as a smooth one",
-    )
+    draw(table)
+
+
+def draw(table):
+    """i_cr,max against Rq/R, with a straight line for each correlation length."""
+    series = []
     for number, length in enumerate(LENGTHS):
         these = [row for row in table if row["correlation_length_m"] == length]
         x = np.array([row["rms_m"] for row in these]) / STEEL.radius
         y = np.array([row["critical_m"] for row in these])
         line = fit(length, x, y)
         ends = np.array([0, x.max()])
-        axes.plot(
-            1e3 * x,
-            1e6 * y,
-            "o",
-            ms=4,
-            alpha=0.7,
-            color=f"C{number}",
-            label=f"β = {1e6 * length:g} µm",
-        )
-        axes.plot(1e3 * ends, 1e6 * (line.intercept + line.slope * ends), "-", color=f"C{number}")
-    axes.grid(alpha=0.3)
-    axes.legend()
-    figure.savefig(IMAGES / "critical-indentation.png", dpi=150)
+        style = {"label": f"β = {1e6 * length:g} µm", "color": PALETTE[number]}
+        series += [
+            Points(
+                1e3 * x, 1e6 * y, symbol=SYMBOLS[number], open=np.full(x.size, number > 0), **style
+            ),
+            Line(
+                1e3 * ends,
+                1e6 * (line.intercept + line.slope * ends),
+                dash=(SOLID, DASHED)[number],
+                **style,
+            ),
+        ]
+    chart = Chart(Axis("Rq/R", "10⁻³"), Axis("i_cr,max", "µm"), series)
+    title = "Depth beyond which roughness no longer changes COR"
+    write_image("critical-indentation", Figure(title, [chart]))
 
 
 if __name__ == "__main__":

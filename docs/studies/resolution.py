@@ -10,12 +10,11 @@ compared is the contact and not where its first touch lies between the nodes.
 from __future__ import annotations
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
-from shared import IMAGES, PAIR, write_table
+from shared import PAIR, write_image, write_table
 
 from restitution import Contact, Grid, collide, generate_surface, refine, solve
 from restitution.contact.checks.resolution import NODES_PER_PATCH, median_patch
+from restitution.plots.figure import GREY, Axis, Band, Chart, Figure, Mark, Points
 from restitution.runs.convergence import discretisation
 
 GRID = Grid((256, 256), (0.25e-6, 0.25e-6))
@@ -115,19 +114,20 @@ def main():
     monotone = np.isfinite(usual)
     held = np.mean((true <= usual)[monotone])
     print(f"Richardson's in {held:.1%} of the {np.count_nonzero(monotone)} that are monotone")
-    figure = Figure(figsize=(6.4, 4.4), layout="constrained")
-    FigureCanvasAgg(figure)
-    axes = figure.add_subplot(
-        xscale="log",
-        xlabel="nodes in the patch of the median node",
-        ylabel="COR over that of the finest grid − 1 (%)",
-        title="One surface on four grids: restitution against resolution",
-    )
-    axes.plot(median, 100 * off, "o", markersize=3, alpha=0.6)
-    axes.axhspan(-2, 2, color="0.9", zorder=0)
-    axes.axvline(NODES_PER_PATCH, color="0.3", linewidth=1, linestyle="--")
-    axes.grid(alpha=0.3)
-    figure.savefig(IMAGES / "resolution.png", dpi=150)
+    draw(median, off)
+
+
+def draw(median, off):
+    """The error of COR against the nodes in the median patch."""
+    ends = np.array([median.min(), median.max()])
+    series = [
+        Band(ends, np.full(2, -2.0), np.full(2, 2.0), "± 2 %", color=GREY),
+        Points(median, 100 * off, "one contact on one grid"),
+        Mark("x", NODES_PER_PATCH, f"{NODES_PER_PATCH} nodes: resolved from here on"),
+    ]
+    x = Axis("nodes in the patch of the median node", "", "log")
+    y = Axis("COR over that of the finest grid − 1", "%")
+    write_image("resolution", Figure("One surface on four grids", [Chart(x, y, series)]))
 
 
 if __name__ == "__main__":

@@ -7,12 +7,12 @@ Writes docs/studies/shallow.csv and docs/images/shallow.png. Half a minute:
 from __future__ import annotations
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
-from shared import IMAGES, PAIR, write_table
+from shared import PAIR, write_image, write_table
 
 from restitution import Contact, Grid, collide, generate_surface, refine, solve
 from restitution.contact.checks.resolution import median_patch, resolves
+from restitution.plots.cor import cor_axis
+from restitution.plots.figure import PALETTE, SYMBOLS, Axis, Chart, Figure, Mark, Points
 
 GRID = Grid((256, 256), (0.25e-6, 0.25e-6))
 ROUGHNESS = (0.1e-6, 0.2e-6, 0.5e-6, 1e-6)
@@ -47,31 +47,30 @@ def rows():
 
 def draw(table):
     """COR against depth, a panel for each grid."""
-    figure = Figure(figsize=(9, 4.2), layout="constrained")
-    FigureCanvasAgg(figure)
-    panels = figure.subplots(1, 2, sharey=True)
-    for axes, k in zip(panels, FACTORS, strict=True):
+    panels = {}
+    for k in FACTORS:
+        panels[k] = series = [Mark("x", depth, f"{depth} nm") for depth in (8, 50)]
         for number, rms in enumerate(ROUGHNESS):
             for seed in SEEDS:
                 these = [r for r in table if (r["rms_m"], r["seed"], r["refine"]) == (rms, seed, k)]
                 x, y = (np.array([r[key] for r in these]) for key in ("depth_m", "restitution"))
-                good = np.array([r["resolved"] for r in these])
-                label = f"Rq = {1e6 * rms:g} µm" if seed == SEEDS[0] else None
-                axes.plot(1e9 * x, y, "-", lw=0.8, color=f"C{number}", label=label)
-                for mask, face in ((good, f"C{number}"), (~good, "white")):
-                    axes.plot(1e9 * x[mask], y[mask], "o", ms=3.5, mfc=face, color=f"C{number}")
-        axes.set(
-            xscale="log",
-            xlabel="maximum indentation (nm)",
-            ylim=(0, 1),
-            title=f"spacing {250 / k:g} nm (open: not resolved)",
-        )
-        for depth in (8, 50):
-            axes.axvline(depth, color="0.6", lw=0.8, ls="--")
-        axes.grid(alpha=0.3)
-    panels[0].set_ylabel("coefficient of restitution")
-    panels[0].legend(fontsize=8)
-    figure.savefig(IMAGES / "shallow.png", dpi=150)
+                series.append(
+                    Points(
+                        1e9 * x,
+                        y,
+                        f"Rq = {1e6 * rms:g} µm",
+                        color=PALETTE[number],
+                        symbol=SYMBOLS[number],
+                        joined=True,
+                        open=np.array([not r["resolved"] for r in these]),
+                    )
+                )
+    x, y = Axis("maximum indentation", "nm", "log"), cor_axis([*panels[1], *panels[8]])
+    charts = [
+        Chart(x, y, series, f"spacing {250 / k:g} nm (open: not resolved)")
+        for k, series in panels.items()
+    ]
+    write_image("shallow", Figure("", charts))
 
 
 def main():

@@ -6,6 +6,8 @@ import csv
 from pathlib import Path
 
 from restitution import Body, Pair
+from restitution.plots.figure import Figure
+from restitution.plots.static import write_figure
 
 HERE = Path(__file__).parent
 IMAGES = HERE.parent / "images"
@@ -19,3 +21,8 @@ def write_table(name: str, rows: list[dict]) -> None:
         writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
+
+
+def write_image(name: str, figure: Figure) -> None:
+    """Write `figure` as `name`.png among the images of the documentation."""
+    write_figure(IMAGES / name, figure)

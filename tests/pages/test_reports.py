@@ -31,7 +31,7 @@ def test_a_run(reported, opened):
     page = reported("run")
     drawn, console = opened(page)
     assert console == []
-    assert 'data-drawn="6"' in drawn
+    assert 'data-drawn="5"' in drawn
     text = own(page)
     for words in (
         "Restitution against maximum indentation",
@@ -44,7 +44,7 @@ def test_a_run(reported, opened):
         assert words in text
     assert "<script>document" not in text
     plots = re.findall(r'<div class="plot[^>]*>', text)
-    assert len(plots) == 6
+    assert len(plots) == 5
     assert all(re.search(r'role="img" aria-label="[^"]{20,}"', plot) for plot in plots)
 
 

@@ -4,6 +4,7 @@ import numpy as np
 
 from restitution.plots.figure import Axis, Band, Chart, Figure, Line, Map, Mark, Points
 from restitution.plots.interactive import draw, shown_step
+from tolerance import approx
 
 X = np.array([1.0, 2.0, 3.0])
 
@@ -34,6 +35,22 @@ def test_limits_of_logarithmic_axes_are_exponents_and_may_be_one():
     plot = plot_of(Line(X, X, right=True), right=Axis("share", "%", low=0.0))
     assert plot.layout.yaxis2.autorangeoptions.minallowed == 0
     assert plot.data[0].yaxis == "y2"
+
+
+def test_the_legend_shows_a_closed_marker_although_the_first_point_is_open():
+    points = Points(X, X, "points", symbol="square", joined=True, open=X < 2, open_label="open")
+    plot = plot_of(points)
+    shown = {trace.name: trace for trace in plot.data if trace.showlegend}
+    assert shown["points"].marker.symbol == "square"
+    assert shown["points"].mode == "lines+markers"
+    assert shown["open"].marker.symbol == "square-open"
+    assert plot.data[1].marker.symbol == ("square-open", "square", "square")
+
+
+def test_bars_may_differ_below_and_above():
+    plot = plot_of(Points(X, X, "points", error=np.array([0.1 * X, 0.2 * X]), error_label="error"))
+    assert plot.data[0].error_y.array == approx(0.2 * X)
+    assert plot.data[0].error_y.arrayminus == approx(0.1 * X)
 
 
 def test_large_maps_are_thinned():

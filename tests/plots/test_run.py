@@ -1,12 +1,15 @@
 """Figures of a run: what is described, and what both libraries draw of it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
 
 from restitution import Grid
 from restitution.plots import interactive
-from restitution.plots.figure import ORANGE, legend_entries
+from restitution.plots.cor import cor_axis
+from restitution.plots.figure import ORANGE, Line, Mark, Points, legend_entries
 from restitution.plots.run import run_figures
 from restitution.plots.static import draw, write_figure
 from restitution.plots.surface import surface_map
@@ -44,7 +47,7 @@ def test_figures_show_the_stored_numbers(results):
     assert loading.get_xdata()[1:] == approx(1e6 * results["indentation"].values)
     assert loading.get_ydata()[1:] == approx(results["force"].values)
     image = drawn["pressure"].axes[0].images[0].get_array()
-    assert np.nanmax(image) == approx(1e-6 * float(results["pressure"].max()))
+    assert np.nanmax(image) == approx(1e9 * float(results["plastic_displacement"].max()))
     for figure in drawn.values():
         assert figure.axes[0].get_xlabel()
         assert figure.axes[0].get_ylabel()
@@ -83,8 +86,9 @@ def test_unloading_from_shallow_depths_is_seen_on_logarithmic_axes(results):
     unloading = [line for line in axes.lines if line.get_color() == ORANGE]
     assert len(unloading) == results.sizes["unloading"]
     for line in unloading:
-        assert min(line.get_ydata()) > 0
-        assert axes.get_xlim()[0] < min(line.get_xdata())
+        x, y = line.get_data()
+        assert min(y) > 0
+        assert axes.get_xlim()[0] < min(x[y > axes.get_ylim()[0]])
 
 
 def test_a_long_title_in_any_script_is_two_lines(results, tmp_path):
@@ -114,13 +118,51 @@ def test_a_map_has_x_to_the_right_and_y_up_or_down_as_the_file_has_it():
 
 
 def test_beside_the_pressure_is_the_plastic_displacement_where_there_is_any(results):
+    results["pressure"][:] = results["pressure"] * (results["x"] > 0)  # no longer uniform
     pressure, depth = dict(run_figures(results))["pressure"].panels
-    assert depth.quantity.title == "plastic displacement (µm)"
-    assert np.nanmax(depth.values) == approx(1e6 * float(results["plastic_displacement"].max()))
+    assert pressure.quantity.title == "pressure (MPa)"
+    assert np.nanmax(pressure.values) == approx(1e-6 * float(results["pressure"].max()))
+    assert depth.quantity.title == "plastic displacement (nm)"
+    assert np.nanmax(depth.values) == approx(1e9 * float(results["plastic_displacement"].max()))
     assert depth.values.shape == pressure.values.shape == (depth.x.size, depth.y.size)
     results["plastic_displacement"][:] = 0
     (pressure,) = dict(run_figures(results))["pressure"].panels
     assert pressure.quantity.title == "pressure (MPa)"
+
+
+def test_a_pressure_that_is_the_same_everywhere_is_not_drawn_but_stated(results):
+    (depth,) = dict(run_figures(results))["pressure"].panels
+    assert depth.quantity.label == "plastic displacement"
+    assert "97.4 % of the contact at the yield pressure, 750 MPa" in depth.title
+    pressure = results["pressure"].values
+    assert np.mean(pressure[pressure != 0] > 742.5e6) == approx(0.974, abs=5e-4)
+    touched = (pressure != 0) | (results["plastic_displacement"].values != 0)
+    assert np.count_nonzero(np.isfinite(depth.values)) == np.count_nonzero(touched)
+
+
+def test_bars_end_at_the_limits_of_restitution_and_within_the_axes(results):
+    results["total_error"][:] = [2.0, 0.01, 0.02, 0.0]
+    (chart,) = dict(run_figures(results))["restitution-velocity"].panels
+    points = next(each for each in chart.series if isinstance(each, Points))
+    assert points.error_label == "total error (cut at 0 and 1)"
+    below, above = points.error
+    assert (points.y - below)[0] == approx(0.0)
+    assert (points.y + above)[0] == approx(1.0)
+    assert below[1:] == approx([0.01, 0.02, 0.0])
+    axes = figures(results)["restitution-velocity"].axes[0]
+    low, high = axes.get_ylim()
+    assert low <= (points.y - below).min()
+    assert high >= (points.y + above).max()
+
+
+def test_the_axis_of_restitution_holds_the_data_and_little_else():
+    line = Line(np.array([1.0, 2.0]), np.array([0.73, 0.87]))
+    axis = cor_axis([line])
+    assert (axis.low, axis.high) == (approx(0.7), approx(0.9))
+    axis = cor_axis([replace(line, y=np.array([0.0, 1.0])), Mark("x", 1.0)])
+    assert axis.low < 0
+    assert axis.high > 1
+    assert cor_axis([replace(line, y=np.full(2, np.nan))]).high > 1
 
 
 def test_both_libraries_draw_the_same_points_and_legend_entries(results):

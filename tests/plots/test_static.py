@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from restitution.plots.figure import (
+    SYMBOLS,
     Axis,
     Band,
     Chart,
@@ -55,6 +56,35 @@ def test_series_with_one_label_share_an_entry_of_the_legend():
     assert {text.get_text() for text in left.texts} == {"$V_y$", r"\$5"}
     assert right.get_ylabel() == "share (%)"
     assert right.get_ylim()[0] == 0
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "expected"),
+    [
+        (0.02, 5.0, ["0.02", "0.05", "0.1", "0.2", "0.5", "1", "2", "5"]),
+        (1.0, 9.0, ["1", "2", "3", "5", "7"]),
+        (10.0, 20.0, ["10", "12", "14", "16", "18", "20"]),
+        (1e-9, 1.2e-8, [r"$10^{-9}$", r"$2\times10^{-9}$", r"$5\times10^{-9}$", r"$10^{-8}$"]),
+        (1e-3, 1e3, ["0.001", "0.01", "0.1", "1", "10", "100", "1000"]),
+    ],
+)
+def test_logarithmic_axes_have_labels_at_any_length(low, high, expected):
+    line = Line(np.array([low, high]), X[:2])
+    drawing = draw(Figure("", [Chart(Axis("x", "", "log", low, high), Axis("y"), [line])]))
+    drawing.canvas.draw()
+    (axes,) = drawing.axes
+    ticks = zip(axes.get_xticks(), axes.get_xticklabels(), strict=True)
+    inside = [text.get_text() for at, text in ticks if low * 0.999 <= at <= high * 1.001]
+    assert inside == expected
+    assert not any(text.get_text() for text in axes.get_xticklabels(minor=True))
+
+
+def test_series_are_told_apart_without_colours():
+    points = [Points(X, X + k, f"{k}", symbol=SYMBOLS[k]) for k in (0, 1)]
+    drawing = draw(Figure("", [Chart(Axis("x"), Axis("y"), points)]))
+    assert [line.get_marker() for line in drawing.axes[0].lines] == ["o", "s"]
+    (legend,) = drawing.legends
+    assert [line.get_marker() for line in legend.get_lines()] == ["o", "s"]
 
 
 def test_a_long_legend_stands_at_the_side():

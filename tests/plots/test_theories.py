@@ -6,6 +6,7 @@ from restitution.case.case_file import parse_case
 from restitution.laws import theories as room
 from restitution.laws.closed_forms import FORMS
 from restitution.plots import theories as plotted
+from restitution.plots.law import LAW_LINES
 from restitution.plots.static import draw
 
 CASE = """
@@ -62,5 +63,5 @@ def test_every_theory_has_a_line_of_its_own(points):
         *FORMS,
         *(each.name for each in room.theories(case_of(), points.column("velocity"), points)),
     }
-    lines = [plotted._LINES[name] for name in names - {"computed"}]
+    lines = [LAW_LINES[name] for name in names - {"computed"}]
     assert len(set(lines)) == len(lines)

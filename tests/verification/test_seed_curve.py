@@ -11,7 +11,7 @@ import pytest
 
 from tolerance import approx
 
-EXAMPLE = Path(__file__).parents[2] / "examples" / "steel.toml"
+CASE = Path(__file__).parents[2] / "benchmarks" / "steel.toml"
 
 # Linux counts the size of a parent as its child's until the child runs its own program, and a
 # process of these tests may be large: so a small one starts the run.
@@ -26,7 +26,7 @@ print(json.dumps([os.waitstatus_to_exitcode(status), usage.ru_maxrss * 1024]))
 @pytest.fixture(scope="module")
 def curve(tmp_path_factory):
     out = tmp_path_factory.mktemp("seed") / "out"
-    run = [sys.executable, "-m", "restitution", "run", EXAMPLE, "-o", out]
+    run = [sys.executable, "-m", "restitution", "run", CASE, "-o", out]
     measured = subprocess.run(
         [sys.executable, "-c", MEASURED, *run],
         env={**os.environ, "NO_COLOR": "1"},

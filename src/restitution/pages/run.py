@@ -123,8 +123,8 @@ def _pressure(results: xr.Dataset) -> Drawing:
     figure = pressure_map(results)
     pressed = [1e-6 * values[values != 0] for values in (results["pressure"].values,)]
     quantities, yields = ["pressure (MPa)"], ""
-    if len(figure.panels) > 1:
-        depth = results["plastic_displacement"].values
+    depth = results["plastic_displacement"].values if "plastic_displacement" in results else None
+    if depth is not None and depth.any():
         pressed.append(1e6 * depth[depth != 0])
         quantities.append("plastic displacement (µm)")
         yields = " The plastic displacement is by how much yielding has lowered the surface."

@@ -1,7 +1,7 @@
-"""What a figure shows, as data: one description for files (`static`) and pages (`interactive`).
+"""The content of a figure, as data: one description for files (`static`) and pages (`interactive`).
 
-Texts are plain texts; whoever draws them escapes what the drawing library would read as markup.
-Numbers are in the units that the axes name. Colours are names that CSS and matplotlib share.
+Texts are plain; the module that draws them escapes markup. Numbers are in the units of the axes.
+Colours are names that both CSS and matplotlib know.
 """
 
 from __future__ import annotations
@@ -15,32 +15,25 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Colours = Literal["viridis", "cividis", "magma"]  # of maps, from low to high
-Dash = tuple[float, ...]  # lengths of dashes and gaps by turns, in line widths
+Dash = tuple[float, ...]  # alternate lengths of dashes and gaps, in line widths
+Symbol = Literal["circle", "square", "diamond", "triangle-up", "triangle-down"]
 
 SOLID: Dash = ()
 DASHED: Dash = (4, 2)
 DOTTED: Dash = (1, 2)
 DASH_DOTTED: Dash = (6, 2, 1, 2)
 
-PALETTE = (
-    "#1f77b4",
-    "#ff7f0e",
-    "#2ca02c",
-    "#d62728",
-    "#9467bd",
-    "#8c564b",
-    "#e377c2",
-    "#7f7f7f",
-    "#bcbd22",
-    "#17becf",
-)
+# Okabe and Ito (2008), without yellow and black: distinct for the colour-blind, on light and dark.
+PALETTE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
+# Symbols distinguish series that share a colour, and all series in print without colours.
+SYMBOLS: tuple[Symbol, ...] = ("circle", "square", "diamond", "triangle-up", "triangle-down")
 BLUE, ORANGE = PALETTE[:2]
-GREY = "#7d858e"  # of references: can be read on light and dark paper
+GREY = "#7d858e"  # of references: legible on light and dark pages
 
 
 @dataclass(frozen=True)
 class Axis:
-    """An axis: what it shows, in which unit, and from where to where (None: as the data ask)."""
+    """An axis: its quantity, unit, scale and ends (None: chosen from the data)."""
 
     label: str
     unit: str = ""
@@ -58,9 +51,9 @@ class Axis:
 class Line:
     """A line through `y` at `x`; NaN interrupts it.
 
-    Series of one figure with the same `label` share one entry of the legend; without a label there
-    is none. `name` tells them apart where a page shows the value under the pointer. `step` draws
-    one level for each `x`; `right` takes the scale of the right axis.
+    Series of one figure with the same `label` share one entry of the legend; a series without a
+    label has no entry. A page shows `name` beside the value under the pointer. `step` draws one
+    level for each `x`; `right` uses the right axis.
     """
 
     x: Array
@@ -76,9 +69,10 @@ class Line:
 
 @dataclass(frozen=True, eq=False)
 class Points:
-    """Markers at `x` and `y`, `joined` by a line, with bars of ± `error`.
+    """Markers at `x` and `y`, `joined` by a line, with error bars.
 
-    Markers are open where `open` is true; `open_label` and `error_label` are entries of the legend.
+    `error` has shape (n,) for symmetric bars, or (2, n) for the lengths below and above. Markers
+    are open where `open` is true; `open_label` and `error_label` are entries of the legend.
     """
 
     x: Array
@@ -86,6 +80,7 @@ class Points:
     label: str = ""
     name: str = ""
     color: str = BLUE
+    symbol: Symbol = "circle"
     joined: bool = False
     error: Array | None = None
     error_label: str = ""
@@ -106,7 +101,7 @@ class Band:
 
 @dataclass(frozen=True)
 class Mark:
-    """A dotted line across the figure where `axis` has `value`, with a text beside it."""
+    """A dotted line across the chart at `value` on `axis`, with a text beside it."""
 
     axis: Literal["x", "y"]
     value: float
@@ -120,7 +115,7 @@ Series = Line | Points | Band | Mark
 
 @dataclass(frozen=True)
 class Chart:
-    """Series on two axes, or three: lines with `right` take the one on the right."""
+    """Series on two axes, and a third on the right for lines with `right`."""
 
     x: Axis
     y: Axis
@@ -131,9 +126,9 @@ class Chart:
 
 @dataclass(frozen=True, eq=False)
 class Map:
-    """Values (nx, ny) on nodes at `x` and `y` (µm) as colours; NaN is left blank.
+    """Values, shape (nx, ny), on nodes at `x` and `y` (µm) as colours; NaN is left blank.
 
-    `downwards`: y increases towards the foot of the map.
+    With `downwards` y increases towards the bottom of the map.
     """
 
     x: Array
@@ -155,7 +150,7 @@ class Figure:
 
 
 def legend_entries(panel: Chart | Map) -> list[str]:
-    """The texts of the legend of one panel, in the order of the series, each once."""
+    """The legend texts of one panel, in the order of the series, without repetition."""
     if isinstance(panel, Map):
         return []
     found: dict[str, None] = {}

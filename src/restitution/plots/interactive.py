@@ -1,4 +1,4 @@
-"""Panels of figures for pages, drawn by Plotly: they can be zoomed and read out."""
+"""Panels of figures for pages, drawn by Plotly, which lets readers zoom and read values."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ from restitution.plots.figure import (
     legend_entries,
 )
 
-_MOST_PIXELS = 320  # of a map, along either axis: more are skipped
-_LAYERS = (Band, Line, Points)  # from below
+_MOST_PIXELS = 320  # of a map along either axis; a larger map is thinned
+_LAYERS = (Band, Line, Points)  # from bottom to top
 
 
 def draw(panel: Chart | Map, figure: Figure) -> Plot:
-    """One panel of `figure`, without titles: those of a page are outside of it."""
+    """One panel of `figure`, without its titles, which the page shows."""
     plot = Plot()
     plot.update_layout(
         template="none",
@@ -54,7 +54,7 @@ def draw(panel: Chart | Map, figure: Figure) -> Plot:
 
 
 def shown_step(panel: Map) -> int:
-    """One node in so many along x and y is drawn."""
+    """The step along x and y between nodes that are drawn."""
     return math.ceil(max(panel.x.size, panel.y.size) / _MOST_PIXELS)
 
 
@@ -67,7 +67,7 @@ def _draw_chart(plot: Plot, chart: Chart) -> None:
             "side": "right",
             "showgrid": False,
             "tickmode": "auto",
-        }  # not at the ticks of the left one
+        }  # ticks of its own, not those of the left axis
         plot.update_layout(yaxis2=right, margin_r=70)
     ranks = {label: rank for rank, label in enumerate(legend_entries(chart), 1)}
     seen: set[str] = set()
@@ -92,7 +92,7 @@ def _draw_chart(plot: Plot, chart: Chart) -> None:
 
 
 def _traces(each: Band | Line | Points, chart: Chart) -> list[dict[str, Any]]:
-    """The traces of one series; `entry` is the text of the legend that each belongs to."""
+    """The traces of one series, each with its legend text `entry`."""
     if isinstance(each, Band):
         edge = {"x": each.x, "mode": "lines", "line": {"width": 0}, "hoverinfo": "skip"}
         return [
@@ -126,39 +126,51 @@ def _traces(each: Band | Line | Points, chart: Chart) -> list[dict[str, Any]]:
         "mode": "lines+markers" if each.joined else "markers",
         "line": {"color": each.color, "width": 1.5},
         "marker": {
-            "symbol": ["circle-open" if h else "circle" for h in hollow],
+            "symbol": [f"{each.symbol}-open" if h else each.symbol for h in hollow],
             "size": 7,
             "color": each.color,
         },
     }
     traces = [trace]
+    if each.error is not None and has_error(each):
+        below, above = np.broadcast_to(each.error, (2, np.size(each.y)))
+        trace["error_y"] = {
+            "array": above,
+            "arrayminus": below,
+            "symmetric": False,
+            "thickness": 1,
+            "width": 3,
+        }
+    if has_open(each) and not hollow.all():
+        # The legend shows the marker of the first point, which may be open.
+        closed = {"symbol": each.symbol, "size": 7, "color": each.color}
+        traces.insert(0, _legend_only(each.label, closed, mode=trace["mode"], line=trace["line"]))
+    if has_open(each):
+        hollow_marker = {"symbol": f"{each.symbol}-open", "size": 7, "color": each.color}
+        traces.append(_legend_only(each.open_label, hollow_marker))
     if has_error(each):
-        trace["error_y"] = {"array": each.error, "thickness": 1, "width": 3}
-    if has_open(each) and each.open_label:
-        marker = {"symbol": "circle-open", "size": 7, "color": each.color}
-        traces.append(
-            {
-                "x": [None],
-                "y": [None],
-                "mode": "markers",
-                "marker": marker,
-                "name": _escaped(each.open_label),
-                "entry": each.open_label,
-            }
-        )
-    if has_error(each) and each.error_label:
-        marker = {"symbol": "line-ns-open", "size": 12, "color": each.color}
-        traces.append(
-            {
-                "x": [None],
-                "y": [None],
-                "mode": "markers",
-                "marker": marker,
-                "name": _escaped(each.error_label),
-                "entry": each.error_label,
-            }
-        )
+        bar = {"symbol": "line-ns-open", "size": 12, "color": each.color}
+        traces.append(_legend_only(each.error_label, bar))
     return traces
+
+
+def _legend_only(
+    label: str,
+    marker: dict[str, Any],
+    *,
+    mode: str = "markers",
+    line: dict[str, Any] | None = None,
+) -> dict[str, Any]:
+    """A trace without points, for the legend."""
+    return {
+        "x": [None],
+        "y": [None],
+        "mode": mode,
+        "line": line or {},
+        "marker": marker,
+        "name": _escaped(label),
+        "entry": label,
+    }
 
 
 def _draw_mark(plot: Plot, mark: Mark) -> None:
@@ -196,16 +208,16 @@ def _axis(axis: Axis) -> dict[str, Any]:
         "type": axis.scale,
         "showline": True,
         "ticks": "outside",
+        "automargin": True,
+        "exponentformat": "power",
     }
-    if axis.scale == "log":
-        found["exponentformat"] = "power"
     ends = [
         math.log10(end) if end is not None and axis.scale == "log" else end
         for end in (axis.low, axis.high)
     ]
     if None not in ends:
         found["range"] = ends
-    elif ends != [None, None]:  # a range with one end does not outlast a change of size
+    elif ends != [None, None]:  # a range with one end is lost when the page changes its size
         found["autorangeoptions"] = dict(zip(("minallowed", "maxallowed"), ends, strict=True))
     return found
 
@@ -221,5 +233,5 @@ def _faint(color: str) -> str:
 
 
 def _escaped(text: str) -> str:
-    """A text in which Plotly finds no markup."""
+    """`text` with the characters of markup escaped."""
     return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")

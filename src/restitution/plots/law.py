@@ -7,18 +7,35 @@ import math
 import numpy as np
 
 from restitution.laws.law import Law
+from restitution.plots.cor import bars, cor_axis
 from restitution.plots.figure import (
     BLUE,
     DASHED,
-    PALETTE,
+    SOLID,
     Axis,
     Chart,
+    Dash,
     Figure,
     Line,
     Points,
     Series,
 )
-from restitution.plots.run import COR
+
+# Colour, dashes and width of each law; laws that often run along e = 1 differ in width.
+LAW_LINES: dict[str, tuple[str, Dash, float]] = {
+    "hertz": ("#bfbfbf", SOLID, 5.0),
+    "sticking": ("#e69f00", SOLID, 3.2),
+    "thornton-ning": ("#000000", SOLID, 1.4),
+    "thornton-ning-force": ("#009e73", (8, 2), 1.4),
+    "johnson": ("#cc79a7", (10, 1.5), 1.6),
+    "mdr": ("#000080", (5, 1, 1, 1), 1.4),
+    "lammps-mdr": ("#000080", (5, 1, 1, 1), 1.4),
+    "constant": ("#e3d5ae", SOLID, 3.2),
+    "walton-braun": ("#8c564b", DASHED, 1.2),
+    "luding": ("#56b4e9", (3, 1, 1, 1, 1, 1), 1.6),
+    "eepa": ("#808000", (2, 3), 1.4),
+    "brilliantov": ("#d55e00", (7, 1, 2, 1), 1.2),
+}
 
 _FINE = 400  # points of a fitted line
 
@@ -31,22 +48,25 @@ def law_figure(law: Law) -> Figure:
         fine = np.geomspace(law.fit.lowest, law.fit.highest, _FINE)
         label = f"compact fit (within {law.fit.worst:.1g})"
         series.append(Line(fine, law.fit.restitution(fine), label, color=BLUE))
-    for k, other in enumerate(law.laws, 1):
+    for other in law.laws:
         values = np.array([math.nan if value is None else value for value in other.restitution])
         label = f"{other.name} ({other.worst:.2g})"
-        series.append(Line(V, values, label, color=PALETTE[k % len(PALETTE)], dash=DASHED))
-    chart = Chart(Axis("impact velocity", "m/s", "log"), COR, series)
+        color, dash, width = LAW_LINES[other.name]
+        series.append(Line(V, values, label, color=color, dash=dash, width=width))
+    chart = Chart(Axis("impact velocity", "m/s", "log"), cor_axis(series), series)
     return Figure(law.title, [chart], "largest difference in brackets")
 
 
 def computed_points(law: Law, label: str, open_label: str) -> Points:
     """The points of `law` with their error, open where they are not resolved."""
+    cor = law.column("restitution")
+    error, error_label = bars(cor, law.column("error"))
     return Points(
         law.column("velocity"),
-        law.column("restitution"),
+        cor,
         label,
-        error=law.column("error"),
-        error_label="total error",
+        error=error,
+        error_label=error_label,
         open=~law.column("resolved").astype(bool),
         open_label=open_label,
     )

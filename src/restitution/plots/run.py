@@ -11,10 +11,10 @@ from restitution.contact.checks.resolution import NODES_PER_PATCH
 from restitution.laws.references import (
     Reference,
     force_references,
-    least_indentation,
     restitution_references_by_indentation,
     restitution_references_by_velocity,
 )
+from restitution.plots.cor import bars, cor_axis
 from restitution.plots.figure import (
     DASH_DOTTED,
     DASHED,
@@ -35,17 +35,18 @@ from restitution.plots.figure import (
     Series,
 )
 
-COR = Axis("coefficient of restitution", low=0.0, high=1.05)
 UNRESOLVED = f"open: not resolved (patches below {NODES_PER_PATCH} nodes)"
 
-_MARGIN = 1.2  # of a logarithmic axis beyond the first and the last point
+_MARGIN = 1.2  # factor by which a logarithmic axis extends beyond the first and the last point
 _RIM = 4  # nodes around a contact in its map
+_UNIFORM = 0.01  # pressures this close to the largest count as equal to it …
+_SATURATED = 0.95  # … and a map with so large a share of them shows nothing
 _SMOOTH = "smooth, same model"
-_DASHES = (DOTTED, DASH_DOTTED, DASHED, SOLID)  # of coarser grids, the coarsest first
+_DASHES = (DOTTED, DASH_DOTTED, DASHED, SOLID)  # of coarser grids, coarsest first
 
 
 def run_figures(results: xr.Dataset) -> Iterator[tuple[str, Figure]]:
-    """The name and the content of every figure that `results` supports, one after another."""
+    """Yield the name and the content of every figure that `results` supports."""
     if results.sizes["indentation_max"] == 0:
         return
     yield "load-displacement", load_displacement(results)
@@ -57,12 +58,12 @@ def run_figures(results: xr.Dataset) -> Iterator[tuple[str, Figure]]:
 
 
 def has_map(results: xr.Dataset) -> bool:
-    """Whether there is a contact to map: a mean of surfaces has none."""
+    """Whether `results` hold a contact map: a mean over surfaces has none."""
     return "pressure" in results and bool(results["pressure"].any())
 
 
 def load_displacement(results: xr.Dataset) -> Figure:
-    """Force against indentation, loading and unloading; again on logarithmic axes."""
+    """Force against indentation in loading and unloading, on linear and on logarithmic axes."""
     depth, force = 1e6 * results["indentation"].values, results["force"].values
     beside = _references(force_references(results), 1e6)
     if "smooth_force" in results and results.attrs["derived_yield_pressure_Pa"] != "None":
@@ -78,8 +79,9 @@ def load_displacement(results: xr.Dataset) -> Figure:
     )
     carrying = force[force > 0]
     ends = (0.3 * carrying.min(), 2 * carrying.max()) if carrying.size else (None, None)
+    shown = [depth, *(each.x[(each.x > 0) & (each.y >= (ends[0] or 0))] for each in back)]
     logarithmic = Chart(
-        Axis("indentation", "µm", "log", 0.7e6 * least_indentation(results), 1.3 * depth.max()),
+        Axis("indentation", "µm", "log", 0.8 * np.concatenate(shown).min(), 1.3 * depth.max()),
         Axis("normal force", "N", "log", *ends),
         [
             Points(depth, force, "loading", joined=True),
@@ -89,7 +91,7 @@ def load_displacement(results: xr.Dataset) -> Figure:
             ),
             *beside,
         ],
-        title="the same, logarithmic",
+        title="on logarithmic axes",
     )
     return Figure(results.attrs.get("title", ""), [linear, logarithmic])
 
@@ -117,34 +119,38 @@ def restitution_against_velocity(results: xr.Dataset) -> Figure:
 
 
 def pressure_map(results: xr.Dataset) -> Figure:
-    """Contact pressure at the deepest point, and the plastic displacement where there is any.
+    """Contact pressure and plastic displacement at the deepest point.
 
-    Where all that touches yields at one bound, the pressure is the same everywhere.
+    A map is left out if it shows nothing: the plastic displacement of an elastic contact, and the
+    pressure where (nearly) the whole contact yields at one bound.
     """
-    quantities: dict[str, tuple[Axis, float, Colours]] = {
-        "pressure": (Axis("pressure", "MPa"), 1e-6, "viridis"),
-        "plastic_displacement": (Axis("plastic displacement", "µm"), 1e6, "magma"),
-    }
-    maps = {name: results[name].values for name in quantities if name in results}
-    touched = np.argwhere(np.any([values != 0 for values in maps.values()], axis=0))
-    low, high = np.maximum(touched.min(axis=0) - _RIM, 0), touched.max(axis=0) + _RIM + 1
+    pressure = 1e-6 * results["pressure"].values
+    none = np.zeros_like(pressure)
+    depth = results["plastic_displacement"].values if "plastic_displacement" in results else none
+    touched, yields = (pressure != 0) | (depth != 0), bool(depth.any())
+    where = f"at an indentation of {1e6 * float(results['indentation'].max()):.3g} µm"
+    share = float(np.mean(pressure[touched] > (1 - _UNIFORM) * pressure.max()))
+    saturated = yields and share >= _SATURATED
+    maps: list[tuple[Axis, Array, Colours, str]] = []
+    if not saturated:
+        axis = Axis("pressure", "MPa")
+        maps.append((axis, np.where(touched, pressure, np.nan), "viridis", f"pressure {where}"))
+    if yields:
+        scale, unit = (1e6, "µm") if depth.max() >= 1e-6 else (1e9, "nm")
+        title = f"plastic displacement {where}"
+        if saturated:
+            title += f"; {100 * share:.3g} % of the contact at the yield pressure, "
+            title += f"{pressure.max():.4g} MPa"
+        axis = Axis("plastic displacement", unit)
+        maps.append((axis, np.where(touched, scale * depth, np.nan), "magma", title))
+    nodes = np.argwhere(touched)
+    low, high = np.maximum(nodes.min(axis=0) - _RIM, 0), nodes.max(axis=0) + _RIM + 1
     x, y = (slice(*ends) for ends in zip(low, high, strict=True))
-    deepest = 1e6 * float(results["indentation"].max())
-    panels = []
-    for name, values in maps.items():
-        axis, scale, colours = quantities[name]
-        if values.any():
-            panels.append(
-                Map(
-                    1e6 * results["x"].values[x],
-                    1e6 * results["y"].values[y],
-                    np.where(values == 0, np.nan, scale * values)[x, y],
-                    axis,
-                    colours,
-                    f"{axis.label} at an indentation of {deepest:.3g} µm",
-                    results.attrs.get("surface_y_axis") == "down",
-                )
-            )
+    down = results.attrs.get("surface_y_axis") == "down"
+    X, Y = 1e6 * results["x"].values[x], 1e6 * results["y"].values[y]
+    panels = [
+        Map(X, Y, values[x, y], axis, colours, title, down) for axis, values, colours, title in maps
+    ]
     return Figure(results.attrs.get("title", ""), panels)
 
 
@@ -170,14 +176,15 @@ def _restitution(
         series.append(
             Line(x, coarser.values, f"refine = {int(coarser['refine'])}", color=ORANGE, dash=dash)
         )
+    error, error_label = bars(cor, results["total_error"].values)
     series.append(
         Points(
             x,
             cor,
             label,
             joined=True,
-            error=results["total_error"].values,
-            error_label="total error",
+            error=error,
+            error_label=error_label,
             open=~results["resolved"].values.astype(bool),
             open_label=UNRESOLVED,
         )
@@ -189,7 +196,7 @@ def _restitution(
     inside = x[x > 0]
     ends = (inside.min() / _MARGIN, inside.max() * _MARGIN)
     axis = Axis(axis.label, axis.unit, axis.scale, *ends)
-    return Figure(results.attrs.get("title", ""), [Chart(axis, COR, series)])
+    return Figure(results.attrs.get("title", ""), [Chart(axis, cor_axis(series), series)])
 
 
 def _references(found: list[Reference], scale: float) -> list[Series]:
@@ -200,7 +207,7 @@ def _references(found: list[Reference], scale: float) -> list[Series]:
 
 
 def _unloading(results: xr.Dataset) -> list[Line]:
-    """The unloading curves, each without the NaN at its end."""
+    """The unloading curves, without the NaN that fill their ends."""
     found = []
     for k in range(results.sizes.get("unloading", 0)):
         x, y = (results[f"unloading_{name}"][k].values for name in ("indentation", "force"))
@@ -211,9 +218,9 @@ def _unloading(results: xr.Dataset) -> list[Line]:
 
 
 def _span(series: list[Points | Line], name: str) -> tuple[float, float | None]:
-    """The ends of an axis: the least and the largest value, and a margin where they are not zero.
+    """The ends of an axis: the smallest and largest value with a margin, or zero.
 
-    The upper end is None where there is nothing but zeros.
+    The upper end is None if all values are zero.
     """
     values: Array = np.concatenate([getattr(each, name) for each in series])
     low, high = float(values.min()), float(values.max())

@@ -12,9 +12,11 @@ from typing import Any, Literal
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure as Drawing
-from matplotlib.ticker import NullFormatter
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, ScalarFormatter
 
 from restitution.plots.figure import (
     Array,
@@ -35,11 +37,22 @@ from restitution.results.writer import replace_file
 
 Format = Literal["png", "svg", "pdf"]
 
-# Inches: one chart, one map, what a second panel adds, a row of the legend, a legend at the side.
+# Inches: a chart, a map, the width of another panel, a row of the legend, a legend at the side.
 _CHART, _MAP, _SECOND = (6.4, 4.0), (5.6, 4.6), 4.6
 _ROW, _SIDE = 0.2, 2.4
-_FEW_DECADES = 30.0  # ratio of the ends of a logarithmic axis below which powers of ten are few
-_MOST_BELOW = 8  # entries of a legend below the axes: more stand at the side
+_MOST_BELOW = 8  # entries of a legend below the axes; a longer legend stands at the side
+# Digits that a logarithmic axis labels, for up to so many decades.
+_DIGITS: tuple[tuple[float, tuple[int, ...]], ...] = ((1.0, (1, 2, 3, 5, 7)), (3.0, (1, 2, 5)))
+_TICKS = 6  # labels of a linear axis, at most one more
+_LINEAR = 0.5  # decades below which a logarithmic axis has linear ticks
+_PLAIN = (0.9e-3, 1e4)  # range of an axis whose labels need no powers of ten
+_MARKERS = {
+    "circle": "o",
+    "square": "s",
+    "diamond": "D",
+    "triangle-up": "^",
+    "triangle-down": "v",
+}
 _DATELESS: dict[Format, dict[str, Any]] = {
     "png": {},
     "svg": {"Date": None},
@@ -55,13 +68,14 @@ def write_figures(
 
 
 def write_figure(path: Path, figure: Figure, file_format: Format = "png") -> Path:
-    """Write `figure` as `path` with the suffix of its format, all of it or nothing; return it.
+    """Write `figure` to `path` with the suffix of its format, atomically, and return the file.
 
-    The same figure makes the same file. Raises `OutputError`.
+    The same figure gives the same bytes. Raises `OutputError`.
     """
     drawing, to_write = draw(figure), path.with_name(f"{path.name}.{file_format}")
     with warnings.catch_warnings(), matplotlib.rc_context({"svg.hashsalt": path.name}):
-        # A title may be in a script that the font does not have: boxes are all it can get.
+        matplotlib.rcParams["pdf.fonttype"] = 42  # TrueType, as journals require
+        # The font may lack the script of a title; it draws boxes then.
         warnings.filterwarnings("ignore", message="Glyph .* missing from font")
         replace_file(
             to_write,
@@ -119,20 +133,37 @@ def _draw_chart(axes: Axes, chart: Chart, handles: dict[str, Any]) -> None:
     axes.set_xlim(chart.x.low, chart.x.high)
     axes.set_ylim(chart.y.low, chart.y.high)
     for axis, described in ((axes.xaxis, chart.x), (axes.yaxis, chart.y)):
-        low, high = axis.get_view_interval()
         if described.scale == "log":
-            few = low > 0 and high < _FEW_DECADES * low
-            axis.set_minor_formatter(_between_powers if few else NullFormatter())
+            _set_log_ticks(axis)
+        else:
+            formatter = ScalarFormatter(useMathText=True)
+            formatter.set_powerlimits((-3, 4))
+            axis.set_major_locator(MaxNLocator(_TICKS, steps=(1, 2, 5, 10)))
+            axis.set_major_formatter(formatter)
     if chart.right is not None:
         right.set(ylabel=_escaped(chart.right.title), yscale=chart.right.scale)
         right.set_ylim(chart.right.low, chart.right.high)
 
 
-def _between_powers(value: float, _: object) -> str:
-    """The tick labels 2 and 5 between powers of ten: all would lie over one another."""
+def _set_log_ticks(axis: Axis) -> None:
+    """Label the powers of ten, and digits between them where there are few powers."""
+    low, high = axis.get_view_interval()
+    decades = math.log10(high / low) if low > 0 else math.inf
+    axis.set_minor_formatter(NullFormatter())
+    if decades < _LINEAR:
+        axis.set_major_locator(MaxNLocator(_TICKS, steps=(1, 2, 5, 10)))
+    elif digits := next((digits for most, digits in _DIGITS if decades <= most), None):
+        axis.set_major_locator(LogLocator(subs=digits, numticks=100))
+    plain = _PLAIN[0] <= low and high <= _PLAIN[1]
+    axis.set_major_formatter(FuncFormatter(lambda value, _: _number(value, plain=plain)))
+
+
+def _number(value: float, *, plain: bool) -> str:
+    if plain or value <= 0:
+        return f"{value:g}"
     exponent = math.floor(math.log10(value) + 1e-9)
-    leading = round(value / 10**exponent)
-    return rf"${leading}\times10^{{{exponent}}}$" if leading in (2, 5) else ""
+    digits = f"{value / 10**exponent:.3g}"
+    return rf"$10^{{{exponent}}}$" if digits == "1" else rf"${digits}\times10^{{{exponent}}}$"
 
 
 def _draw_series(axes: Axes, each: Series, handles: dict[str, Any]) -> None:
@@ -166,9 +197,14 @@ def _draw_points(axes: Axes, points: Points, handles: dict[str, Any]) -> None:
     if points.joined:
         axes.plot(x, y, "-", color=color, lw=1)
     hollow = np.zeros(x.shape, bool) if points.open is None else points.open
-    style: dict[str, Any] = {"ls": "none", "marker": "o", "ms": 4.5, "color": color, "zorder": 3}
-    (full,) = axes.plot(x[~hollow], y[~hollow], **style)
-    handles.setdefault(points.label, full)
+    marker = _MARKERS[points.symbol]
+    style: dict[str, Any] = {"ls": "none", "marker": marker, "ms": 4.5, "color": color, "zorder": 3}
+    axes.plot(x[~hollow], y[~hollow], **style)
+    face = "white" if hollow.all() else color
+    entry = Line2D(
+        [], [], **{**style, "ls": "-" if points.joined else "none", "lw": 1, "mfc": face}
+    )
+    handles.setdefault(points.label, entry)
     if has_open(points):
         (empty,) = axes.plot(x[hollow], y[hollow], mfc="white", **style)
         handles.setdefault(points.open_label, empty)
@@ -180,7 +216,7 @@ def _draw_mark(axes: Axes, mark: Mark) -> None:
     sign = 1 if mark.side == "right" else -1
     if mark.axis == "x":
         axes.axvline(mark.value, **style)
-        # Below the upper end, beside its line.
+        # Near the lower end, beside the line.
         where, shift, align = (mark.value, 0.03), (4 * sign, 0), "bottom"
         transform = axes.get_xaxis_transform()
         horizontal = "left" if sign > 0 else "right"
@@ -214,7 +250,8 @@ def _draw_map(drawing: Drawing, axes: Axes, part: Map) -> None:
     axes.set(xlabel="x (µm)", ylabel="y (µm)")
     if part.downwards:
         axes.invert_yaxis()
-    drawing.colorbar(image, ax=axes, label=_escaped(part.quantity.title))
+    beside = axes.inset_axes((1.03, 0.0, 0.05, 1.0))  # as high as the map
+    drawing.colorbar(image, cax=beside, label=_escaped(part.quantity.title))
 
 
 def _cell(centres: Array) -> float:
@@ -226,10 +263,10 @@ def _dashes(dash: Dash) -> Any:
 
 
 def _plain(text: str) -> str:
-    """A text as a title: at most two lines."""
+    """`text` as a title of at most two lines."""
     return _escaped("\n".join(textwrap.wrap(text, 55, max_lines=2, placeholder=" …")))
 
 
 def _escaped(text: str) -> str:
-    """A text that is not read as mathematics."""
+    """`text` with the sign of mathematics escaped."""
     return text.replace("$", r"\$")

@@ -1,4 +1,4 @@
-"""The figures of a study: a line for each case."""
+"""The figures of a study: one line for each case."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from restitution.plots.figure import PALETTE, Axis, Chart, Figure, Points
-from restitution.plots.run import COR
+from restitution.plots.cor import cor_axis
+from restitution.plots.figure import PALETTE, SYMBOLS, Axis, Chart, Figure, Points
 from restitution.results.reader import StoredCase
 
-MOST_LINES = 60  # in one figure: more cannot be told apart
+MOST_LINES = 60  # in one figure; more cannot be distinguished
 
 
 class Abscissa(NamedTuple):
-    """What COR is drawn against: a column of the table, and its `scale` to the unit of `axis`."""
+    """The x axis of COR: a column of the table, and its `scale` to the unit of `axis`."""
 
     column: str
     scale: float
@@ -33,13 +33,13 @@ def rows_with(case: StoredCase, abscissa: Abscissa) -> list[dict[str, float]]:
 
 
 def study_figure(cases: Sequence[StoredCase], abscissa: Abscissa) -> Figure:
-    """COR of the first complete `cases` (`MOST_LINES` of them) against `abscissa`."""
+    """COR of the first `MOST_LINES` complete `cases` against `abscissa`."""
     series = []
     for number, case in enumerate(cases[:MOST_LINES]):
         rows = rows_with(case, abscissa)
         if not rows:
             continue
-        # Of what was swept, the last part of its key tells enough.
+        # The last part of each swept key is enough as a label.
         label = ", ".join(f"{key.rsplit('.', 1)[-1]} {value}" for key, value in case.swept.items())
         series.append(
             Points(
@@ -47,8 +47,9 @@ def study_figure(cases: Sequence[StoredCase], abscissa: Abscissa) -> Figure:
                 np.array([row["restitution"] for row in rows]),
                 label,
                 color=PALETTE[number % len(PALETTE)],
+                symbol=SYMBOLS[number % len(SYMBOLS)],
                 joined=True,
                 open=np.array([not row["resolved"] for row in rows]),
             )
         )
-    return Figure("", [Chart(abscissa.axis, COR, series)])
+    return Figure("", [Chart(abscissa.axis, cor_axis(series), series)])

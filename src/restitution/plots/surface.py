@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from restitution.plots.figure import (
+    DASH_DOTTED,
     DASHED,
     DOTTED,
     PALETTE,
@@ -21,6 +22,8 @@ from restitution.surfaces import Surface
 from restitution.surfaces.psd import DirectedSpectrum
 from restitution.surfaces.texture import Autocorrelation, HeightDensity, MaterialRatio
 
+_ROUNDING = 1e-15  # part of the largest spectral density below which there is only rounding
+
 
 def surface_map(surface: Surface, title: str = "") -> Figure:
     """Heights (nm) above their mean."""
@@ -31,7 +34,7 @@ def surface_map(surface: Surface, title: str = "") -> Figure:
 
 
 def height_distribution(density: HeightDensity, curve: MaterialRatio) -> Figure:
-    """Density of heights beside the normal one, and the material ratio on the right axis."""
+    """Probability density of heights beside the normal one, and the material ratio (right axis)."""
     x = 1e9 * density.height
     return Figure(
         "",
@@ -49,6 +52,7 @@ def height_distribution(density: HeightDensity, curve: MaterialRatio) -> Figure:
                         100 * curve.ratio,
                         "material ratio (right)",
                         color=PALETTE[2],
+                        dash=DASH_DOTTED,
                         right=True,
                     ),
                 ],
@@ -63,7 +67,7 @@ def autocorrelation_figure(R: Autocorrelation) -> Figure:
     i, j = (n // 2 for n in R.values.shape)
     series: list[Series] = [
         Line(1e6 * R.x[i:], R.values[i:, j], "along x", color=PALETTE[0]),
-        Line(1e6 * R.y[j:], R.values[i, j:], "along y", color=PALETTE[1]),
+        Line(1e6 * R.y[j:], R.values[i, j:], "along y", color=PALETTE[1], dash=DASHED),
         Mark("y", 0.2, "0.2 (Sal)"),
         Mark("y", 0.1, "0.1 (Hu and Tonder)"),
     ]
@@ -71,18 +75,22 @@ def autocorrelation_figure(R: Autocorrelation) -> Figure:
 
 
 def spectrum_figure(spectra: list[DirectedSpectrum]) -> Figure:
-    """Power spectral density against wave number, averaged over all directions and some."""
-    series: list[Series] = []
+    """Power spectral density against wave number, averaged over all and over some directions."""
+    series: list[Line] = []
+    largest = 0.0
     for each, color, dash in zip(spectra, PALETTE, (SOLID, DOTTED, DASHED), strict=False):
         q, C = 1e-6 * each.spectrum.wave_number, 1e24 * each.spectrum.density
-        # Zero has no place on a logarithmic axis.
+        largest = max(largest, C.max(initial=0.0))
+        # A logarithmic axis has no zero.
         series.append(Line(q, np.where(C > 0, C, np.nan), each.directions, color=color, dash=dash))
+    drawn = np.concatenate([each.y[each.y > _ROUNDING * largest] for each in series])
+    low, high = (0.3 * drawn.min(), 3 * drawn.max()) if drawn.size else (None, None)
     return Figure(
         "",
         [
             Chart(
                 Axis("wave number q", "1/µm", "log"),
-                Axis("power spectral density C", "µm⁴", "log"),
+                Axis("power spectral density C", "µm⁴", "log", low, high),
                 series,
             )
         ],

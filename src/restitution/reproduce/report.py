@@ -15,6 +15,7 @@ from restitution.plots.figure import (
     DASHED,
     GREY,
     PALETTE,
+    SYMBOLS,
     Axis,
     Chart,
     Figure,
@@ -193,7 +194,15 @@ def _lines(
         label = "smooth" if curve.label == SMOOTH else curve.label
         color = PALETTE[number % len(PALETTE)]
         series.append(
-            Points(1e9 * curve.depth, values, label, color=color, joined=True, open=~curve.resolved)
+            Points(
+                1e9 * curve.depth,
+                values,
+                label,
+                color=color,
+                symbol=SYMBOLS[number % len(SYMBOLS)],
+                joined=True,
+                open=~curve.resolved,
+            )
         )
         rows += [
             [label, 1e9 * float(d), float(v), "yes" if good else "no"]

@@ -41,7 +41,9 @@ def smooth_curve(contact: Contact, rows: list[dict[str, float]]) -> dict[str, An
     first_yield = contact.first_yield_pressure
     elastic = math.isinf(first_yield)
     onset = math.inf if elastic else float(FirstYield(R, E_star, first_yield).indentation)
-    depths = np.unique(np.append(first, np.geomspace(min(max(first, onset), last), last, _DEPTHS)))
+    between = min(max(first, onset), last)
+    ranges = ((first, between), (between, last))
+    depths = np.unique([np.geomspace(*ends, _DEPTHS) for ends in ranges])
     force, cor, velocity = (np.empty(depths.size) for _ in range(3))
     for k, depth in enumerate(depths):
         if depth <= onset:

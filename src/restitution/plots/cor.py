@@ -1,0 +1,47 @@
+"""What all figures of COR share: the axis, and points with the total error."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from restitution.plots.figure import Array, Axis, Band, Mark, Points, Series, has_error
+
+_STEP = 0.1  # of the ends of the axis
+_MARGIN = 0.02
+
+
+def cor_axis(series: Sequence[Series]) -> Axis:
+    """The axis of COR that holds `series` and their bars, with its ends at multiples of 0.1."""
+    shown: Array = np.concatenate([np.ravel(part) for each in series for part in _values(each)])
+    values = shown[np.isfinite(shown)] if np.isfinite(shown).any() else np.array([0.0, 1.0])
+    low = max(_STEP * np.floor((values.min() - _MARGIN) / _STEP), 0.0)
+    high = _STEP * np.ceil((values.max() + _MARGIN) / _STEP)
+    # A law that sticks runs along zero, and an elastic contact along one.
+    return Axis(
+        "coefficient of restitution",
+        low=-_MARGIN if values.min() <= 0 else float(low),
+        high=float(high) if high < 1 else 1.05,
+    )
+
+
+def bars(cor: Array, error: Array) -> tuple[Array, str]:
+    """Bars of the total error below and above `cor`, shape (2, n), and their label.
+
+    COR lies between 0 and 1, so that the bars are cut there.
+    """
+    lengths = np.clip([np.minimum(error, cor), np.minimum(error, 1 - cor)], 0, None)
+    cut = bool((error > lengths + 1e-12).any())
+    return lengths, "total error (cut at 0 and 1)" if cut else "total error"
+
+
+def _values(each: Series) -> Iterable[Array]:
+    if isinstance(each, Band):
+        return each.low, each.high
+    if isinstance(each, Mark):
+        return ()
+    if isinstance(each, Points) and each.error is not None and has_error(each):
+        below, above = np.broadcast_to(each.error, (2, np.size(each.y)))
+        return each.y, each.y - below, each.y + above
+    return (each.y,)
