@@ -82,6 +82,7 @@ def test_momentum_is_kept_and_a_wall_stays():
 
 
 CASE = """
+total_error = false
 [first]
 radius = "500 um"
 youngs_modulus = "210 GPa"
