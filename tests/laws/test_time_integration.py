@@ -94,7 +94,7 @@ yield_pressure = "750 MPa"
 [roughness]
 kind = "gaussian"
 rms = "{rms}"
-correlation_length = "3 um"
+correlation_length = "{length}"
 seed = 3
 [grid]
 nodes = {nodes}
@@ -106,8 +106,14 @@ steps = {steps}
 [unloading]
 curves = {steps}
 """
-ROUGH = {"rms": "20 nm", "nodes": 96, "spacing": "0.6 um", "first": "50 nm", "last": "1 um"}
-ADHESIVE = {"rms": "1 nm", "nodes": 64, "spacing": "0.12 um", "first": "10 nm", "last": "40 nm"}
+ROUGH = {
+    **{"rms": "20 nm", "length": "3 um", "nodes": 96, "spacing": "0.6 um"},
+    **{"first": "50 nm", "last": "1 um"},
+}
+ADHESIVE = {
+    **{"rms": "1 nm", "length": "3 um", "nodes": 40, "spacing": "0.192 um"},
+    **{"first": "10 nm", "last": "40 nm"},
+}
 
 
 @pytest.fixture(scope="module")
