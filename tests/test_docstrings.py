@@ -46,7 +46,9 @@ PUBLIC = {
 OURS = {
     name: value
     for name, value in PUBLIC.items()
-    if inspect.isclass(value) or inspect.isfunction(value) or isinstance(value, property | cached_property)
+    if inspect.isclass(value)
+    or inspect.isfunction(value)
+    or isinstance(value, property | cached_property)
 }
 
 

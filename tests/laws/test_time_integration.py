@@ -106,14 +106,10 @@ steps = {steps}
 [unloading]
 curves = {steps}
 """
-ROUGH = {
-    **{"rms": "20 nm", "length": "3 um", "nodes": 96, "spacing": "0.6 um"},
-    **{"first": "50 nm", "last": "1 um"},
-}
-ADHESIVE = {
-    **{"rms": "1 nm", "length": "3 um", "nodes": 40, "spacing": "0.192 um"},
-    **{"first": "10 nm", "last": "40 nm"},
-}
+ROUGH = {"rms": "20 nm", "length": "3 um", "nodes": 96, "spacing": "0.6 um"}
+ROUGH |= {"first": "50 nm", "last": "1 um"}
+ADHESIVE = {"rms": "1 nm", "length": "3 um", "nodes": 40, "spacing": "0.192 um"}
+ADHESIVE |= {"first": "10 nm", "last": "40 nm"}
 
 
 @pytest.fixture(scope="module")
