@@ -23,7 +23,10 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parents[1]
 ROOMS = {
-    "contact": ("tests/contact tests/test_collision.py", "src/restitution/contact"),
+    "contact": (
+        "tests/contact tests/test_collision.py tests/runs/test_messages.py",
+        "src/restitution/contact",
+    ),
     "numerics": (
         "tests/numerics tests/contact/test_equilibrium.py tests/contact/test_threads.py",
         "src/restitution/numerics",
