@@ -24,14 +24,15 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parents[1]
 ROOMS = {
     "contact": (
-        "tests/contact tests/test_collision.py tests/runs/test_messages.py",
+        "tests/contact tests/test_collision.py tests/runs/test_messages.py tests/test_house.py",
         "src/restitution/contact",
     ),
     "numerics": (
-        "tests/numerics tests/contact/test_equilibrium.py tests/contact/test_threads.py",
+        "tests/numerics tests/contact/test_equilibrium.py tests/contact/test_threads.py "
+        "tests/test_house.py",
         "src/restitution/numerics",
     ),
-    "laws": ("tests/laws", "src/restitution/laws"),
+    "laws": ("tests/laws tests/test_house.py", "src/restitution/laws"),
 }
 BITS = ("BitOr", "BitAnd", "BitXor", "LShift", "RShift")
 CONFIG = """
