@@ -38,7 +38,7 @@ BITS = ("BitOr", "BitAnd", "BitXor", "LShift", "RShift")
 CONFIG = """
 [cosmic-ray]
 module-path = "{module}"
-timeout = 300.0
+timeout = 3600.0
 excluded-modules = []
 test-command = "{command}"
 [cosmic-ray.distributor]
@@ -67,7 +67,6 @@ def main() -> None:
             "PYTHONPATH": os.pathsep.join([str(copy / "src"), str(copy / "mutation")]),
             "MUTATION_TIMES": str(Path(folder) / "times.json"),
             "DUCC0_NUM_THREADS": "1",
-            "PYTHONDONTWRITEBYTECODE": "1",
         }
 
         def run(*arguments: str) -> None:
