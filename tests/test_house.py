@@ -1,4 +1,4 @@
-"""The size of the source: short files, short functions, few parameters."""
+"""The shape of the source: short files and functions, few parameters, frozen data."""
 
 import ast
 from pathlib import Path
@@ -45,6 +45,23 @@ def test_no_function_has_more_than_8_parameters():
         for each in functions(source)
     }
     assert {name: count for name, count in found.items() if count > 8} == {}
+
+
+def changeable(source):
+    """The dataclasses in `source` that are not frozen."""
+    return [
+        node.name
+        for node in ast.walk(ast.parse(source))
+        if isinstance(node, ast.ClassDef)
+        for each in map(ast.unparse, node.decorator_list)
+        if each.startswith("dataclass") and "frozen=True" not in each
+    ]
+
+
+def test_dataclasses_are_frozen():
+    """All but those that hold how far a run or a study has come."""
+    found = {name for source in SOURCES.values() for name in changeable(source)}
+    assert found == {"Tally", "RunLog", "_Run"}
 
 
 @pytest.mark.parametrize(

@@ -6,11 +6,12 @@ CHANGELOG then says which moved and why.
 
 import csv
 import json
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from unittest import mock
 
+from restitution.cli import main
 from tolerance import approx
 
 FILE = Path(__file__).with_name("numbers.json")
@@ -50,11 +51,14 @@ COLUMNS = {
 
 
 def command(*arguments):
-    subprocess.run(
-        [sys.executable, "-m", "restitution", *map(str, arguments)],
-        check=True,
-        capture_output=True,
-    )
+    """Call the command line in this process, and expect success."""
+    with mock.patch.object(sys, "argv", ["restitution", *map(str, arguments)]):
+        status = 0
+        try:
+            main()
+        except SystemExit as end:
+            status = end.code
+    assert not status, arguments
 
 
 def table(file):
@@ -67,7 +71,9 @@ def compute(folder):
     found = {}
     for name, (interface, kind) in RUNS.items():
         case, out = folder / f"{name}.toml", folder / name
-        case.write_text(CASE.format(interface=interface, kind=kind))
+        # The total error takes most of a run; one of the runs has it.
+        total = "" if name == "constant" else "total_error = false\n"
+        case.write_text(total + CASE.format(interface=interface, kind=kind))
         command("run", case, "-o", out)
         rows = table(out / "curve.csv")
         for column in COLUMNS[name]:

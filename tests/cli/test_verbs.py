@@ -21,14 +21,22 @@ discretisation_error surface_scatter material_error total_error model_error refi
 """.split()  # noqa: SIM905
 
 
+@pytest.fixture(scope="module")
+def kept(tmp_path_factory):
+    """A folder for the one run of `done`, and what the run said once it is done."""
+    return tmp_path_factory.mktemp("done"), []
+
+
 @pytest.fixture
-def done(cli, case_text, tmp_path):
-    case = tmp_path / "case.toml"
-    case.write_text(case_text)
-    out = tmp_path / "out"
-    status, said, _ = cli("run", case, "-o", out)
-    assert status == 0
-    return out, said
+def done(cli, case_text, kept):
+    """The folder of a run and what it said; the tests only read it."""
+    folder, said = kept
+    if not said:
+        (folder / "case.toml").write_text(case_text)
+        status, words, _ = cli("run", folder / "case.toml", "-o", folder / "out")
+        assert status == 0
+        said.append(words)
+    return folder / "out", said[0]
 
 
 def rows_of(path):
@@ -118,7 +126,7 @@ def test_summary_says_what_made_the_numbers_and_how_far_to_trust_them(done):
 
 
 def test_the_same_case_gives_the_same_numbers(cli, done, tmp_path):
-    assert cli("run", tmp_path / "case.toml", "-o", tmp_path / "again")[0] == 0
+    assert cli("run", done[0].parent / "case.toml", "-o", tmp_path / "again")[0] == 0
     for name in ("curve.csv", "unloading.csv"):
         assert (tmp_path / "again" / name).read_text() == (done[0] / name).read_text()
 

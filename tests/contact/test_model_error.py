@@ -4,6 +4,7 @@ import csv
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from restitution import Body, Contact, Grid, Pair, generate_surface, smooth, solve
@@ -44,9 +45,13 @@ def test_adhesion_leaves_the_energy_that_plasticity_may_miss(yields):
     assert model_error(state, 0.01) <= 0.99
 
 
-@pytest.mark.skipif(not TABLE.is_file(), reason="validation/ is not beside the package")
-def test_it_covers_the_references():
-    """Every COR of the validation is within the error (plus 0.002 for rounding and interpolation).
+needs_references = pytest.mark.skipif(
+    not TABLE.is_file(), reason="validation/ is not beside the package"
+)
+
+
+def references():
+    """Of every collision of the validation: model, COR, that of the reference, and the bound.
 
     The constant bounds are compared with materials without hardening.
     """
@@ -57,17 +62,47 @@ def test_it_covers_the_references():
         grows = row["model"] == "expanding-cavity"
         if "hardening" in row["case"] and not grows:
             continue
-        yields = {"yield_strength": 1e9} if grows else {"yield_pressure": 2.8e9}
-        slope = float(row["rms_slope"])
-        pressed = SimpleNamespace(
-            contact=SimpleNamespace(
-                grows=grows, plasticity=row["model"], slope=slope, pair=PAIR, **yields
-            )
-        )
         strength = float(row["yield_strength_over_contact_modulus"])
-        pressed.contact.slope *= yields.get("yield_strength", 0) / PAIR.contact_modulus / strength
-        e, reference = float(row["restitution"]), float(row["restitution_reference"])
-        assert abs(e - reference) <= largest_difference(pressed, e) * e + 2e-3, row
+        slope = float(row["rms_slope"]) * 1e9 / PAIR.contact_modulus / strength
+        e = float(row["restitution"])
+        bound = largest_difference(deformed(grows, row["model"], slope), e)
+        yield row["model"], e, float(row["restitution_reference"]), bound
+
+
+def deformed(grows, model, slope):
+    """What the bound looks at in a state, of bodies with a yield strength of 1 GPa."""
+    yields = {"yield_strength": 1e9} if grows else {"yield_pressure": 2.8e9}
+    return SimpleNamespace(
+        contact=SimpleNamespace(grows=grows, plasticity=model, slope=slope, pair=PAIR, **yields)
+    )
+
+
+@needs_references
+def test_it_covers_the_references():
+    """Every COR of the validation is within it (0.002 for what is rounded and interpolated)."""
+    for model, e, reference, bound in references():
+        assert abs(e - reference) <= bound * e + 2e-3, (model, e)
+
+
+@needs_references
+@pytest.mark.parametrize("model", ["equilibrium", "truncated", "expanding-cavity"])
+def test_it_is_no_wider_than_the_references_need(model):
+    """The worst of the references near any COR takes more than 0.4 of the bound."""
+    found = np.array(sorted(row[1:] for row in references() if row[0] == model))
+    for e, reference, bound in (part.T for part in np.array_split(found, 8)):
+        used = np.abs(e - reference) / (e * bound)
+        assert used.max() > 0.4, (e.min(), e.max())
+
+
+@pytest.mark.parametrize(("psi", "largest"), [(0, 0.03), (4, 0.035), (6, 0.045), (26, 0.05)])
+def test_the_growing_bound_is_better_near_one(psi, largest):
+    """Its error falls to a half at COR = 0.98 and a fifth at 1, whatever the slope."""
+    state = deformed(True, "expanding-cavity", psi * 1e9 / PAIR.contact_modulus)
+    shares = {0.3: 1, 0.94: 1, 0.96: 0.75, 0.98: 0.5, 0.99: 0.35, 1.0: 0.2}
+    for e, share in shares.items():
+        assert largest_difference(state, e) == approx(share * largest, rel=1e-6)
+    steeper = deformed(True, "expanding-cavity", 40e9 / PAIR.contact_modulus)
+    assert largest_difference(steeper, 0.5) == 0.05
 
 
 def test_steeper_asperities_have_a_larger_error():

@@ -10,7 +10,10 @@ from restitution.contact.checks.finding import Finding
 from restitution.contact.checks.resolution import (
     ADHESIVE_NODES,
     NODES_PER_PATCH,
+    adhesive_nodes,
     coarse_scan,
+    expected_pull_off_error,
+    grid_of_a_scan,
     median_patch,
     predicted_radius,
     resolution_findings,
@@ -19,6 +22,7 @@ from restitution.contact.checks.resolution import (
     unresolved_patches,
 )
 from restitution.contact.contact import Contact, smooth
+from restitution.contact.loading import solve
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface
 from tolerance import approx
@@ -150,3 +154,68 @@ def test_depths_and_nodes_come_in_pairs(check):
 def test_a_smooth_surface_has_no_pixel(pair):
     grid = Grid((64, 64), (0.25e-6, 0.25e-6))
     assert resolution_findings(Contact(pair, smooth(grid)), (5e-6) ** 2 / R) == []
+
+
+@pytest.mark.parametrize(
+    ("size", "whole"), [((16, 20), True), ((17, 22), True), ((18, 20), False), ((16, 22.5), False)]
+)
+def test_nine_tenths_of_both_edges_are_the_whole_scan(contact, size, whole):
+    """The grid is 16 by 20 um."""
+    wide, long = (1e-6 * edge for edge in size)
+    scan = {"size_x_m": wide, "size_y_m": long}
+    assert grid_of_a_scan(contact(source="measured", **scan)) is whole
+    assert not grid_of_a_scan(contact(source="generated", **scan))
+
+
+def adhesive(pair, curvatures, nodes=(40, 44)):
+    """A paraboloid with these curvatures (1/m) besides those of the bodies, and w = 0.5 J/m2."""
+    grid = Grid(nodes, (0.12e-6, 0.1e-6))
+    x, y = grid.x[:, None], grid.y[None, :]
+    height = -0.5 * (curvatures[0] * x**2 + curvatures[1] * y**2)
+    return Contact(pair, Surface(height, grid), work_of_adhesion=0.5)
+
+
+@pytest.mark.parametrize(
+    ("curvatures", "mean"),
+    [((0.0, 0.0), 1 / R), ((6e4, 2e4), 4e4 + 1 / R), ((-3e3, -3e3), 1 / R)],
+)
+def test_an_asperity_pulls_off_at_the_radius_of_its_mean_curvature(pair, curvatures, mean):
+    """a_c = (9πw/(8E*κ²))^⅓ with κ at least that of the bodies; nodes of the coarser spacing."""
+    depth = 1e-9 if mean > 1e4 else 1e-10
+    grid = (40, 44) if mean > 1e4 else (64, 72)
+    state = solve(adhesive(pair, curvatures, grid), depth)
+    a_c = (9 * math.pi * 0.5 / (8 * pair.contact_modulus * mean**2)) ** (1 / 3)
+    assert adhesive_nodes(state) == approx(a_c / 0.12e-6, rel=1e-6)
+
+
+def test_curvature_is_known_up_to_the_edge_of_the_grid(pair):
+    """The contact ends a node before the edge of the smallest grid that holds it."""
+    wide = solve(adhesive(pair, (6e4, 2e4)), 1e-9)
+    nodes = []
+    for state in (wide, solve(adhesive(pair, (6e4, 2e4), tight(wide)), 1e-9)):
+        assert state.contact_nodes == wide.contact_nodes
+        nodes.append(adhesive_nodes(state))
+    assert any(part.start == 0 for part in state.box)
+    assert nodes[1] == approx(nodes[0], rel=1e-6)
+
+
+def tight(state):
+    """Nodes of the smallest grid with a free node on each side of the contact."""
+    i, j = np.nonzero(state.pressure)
+    centre = [n // 2 for n in state.contact.grid.nodes]
+    reach = [int(np.abs(k - c).max()) for k, c in zip((i, j), centre, strict=True)]
+    return tuple(2 * r + 3 for r in reach)
+
+
+def test_adhesion_is_needed_for_a_pull_off_radius(contact):
+    assert adhesive_nodes(solve(contact(), 1e-8)) == math.inf
+
+
+@pytest.mark.parametrize(("detachment", "share"), [("crack-closure", 0.25), ("pohrt-popov", 1.5)])
+def test_the_error_of_pull_off_is_a_share_of_a_node(pair, detachment, share):
+    a_c = (9 * math.pi * 0.1 * R**2 / (8 * pair.contact_modulus)) ** (1 / 3)
+    for spacing in ((1e-7, 5e-8), (1e-8, 2e-8)):
+        surface = smooth(Grid((8, 8), spacing))
+        coarse = Contact(pair, surface, work_of_adhesion=0.1, detachment=detachment)
+        expected = share * max(spacing) / a_c
+        assert expected_pull_off_error(coarse) == approx(expected, rel=1e-9)

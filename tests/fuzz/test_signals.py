@@ -72,7 +72,7 @@ main()
 def cases(tiny_case, tmp_path_factory):
     """A case, an ensemble, a study, and a run."""
     at = tmp_path_factory.mktemp("cases")
-    text = tiny_case
+    text = "total_error = false\n" + tiny_case
     (at / "case.toml").write_text(text)
     (at / "ensemble.toml").write_text(text.replace("seed = 1", "seed = 1\nrealisations = 2"))
     (at / "study.toml").write_text(f'{text}[sweep]\n"roughness.seed" = [1, 2]\n')

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from restitution.laws.compact_fit import compact_fit
+from restitution.laws.law import CompactFit
 from restitution.laws.law_files import law_rows
 from restitution.theory import ThorntonNing
 from tolerance import approx
@@ -112,3 +113,89 @@ def test_the_fit_has_no_value_outside_of_the_resolved_points(with_ratios):
     assert np.isnan(fit.restitution([0.999 * V[3], 1.001 * V[12]])).all()
     rows = law_rows(law.model_copy(update={"fit": fit}))
     assert [math.isnan(row["compact_fit"]) for row in rows] == [True] * 3 + [False] * 10 + [True]
+
+
+def form(**changes):
+    """e² = 0.5 + 0.2 L − 0.04/V², with L = ln(V/2)/3, from 0.5 to 20 m/s."""
+    values = {
+        "coefficients": (0.5, 0.2),
+        "centre": 2.0,
+        "width": 3.0,
+        "adhesion": 0.04,
+        "sticks_below": None,
+        "elastic_below": None,
+        "adhesive_below": 2.0,
+        "lowest": 0.5,
+        "highest": 20.0,
+        "worst": 0.0,
+        "between": 0.0,
+    }
+    return CompactFit(**values | changes)
+
+
+def test_the_formula():
+    V = np.array([0.5, 1.0, 2.0, 20.0])
+    expected = np.sqrt(0.5 + 0.2 * np.log(V / 2) / 3 - 0.04 / V**2)
+    assert form().restitution(V) == approx(expected, rel=1e-12)
+    assert form().restitution(2.0) == approx(0.7, rel=1e-12)
+
+
+def test_at_and_below_its_limits_it_is_zero_or_one():
+    V = [0.5, 1.0, 1.001, 3.0]
+    free = form().restitution(V)
+    assert form(sticks_below=1.0).restitution(V).tolist() == [0.0, 0.0, *free[2:]]
+    assert form(elastic_below=1.0).restitution(V).tolist() == [1.0, 1.0, *free[2:]]
+
+
+def test_its_ends_belong_to_it_up_to_rounding():
+    fit = form()
+    inside = fit.restitution([0.5 * (1 - 5e-10), 20 * (1 + 5e-10)])
+    assert np.isfinite(inside).all()
+    assert np.isnan(fit.restitution([0.5 * (1 - 2e-9), 20 * (1 + 2e-9)])).all()
+
+
+def test_a_polynomial_of_a_low_degree_is_found(with_ratios):
+    V = np.geomspace(0.2, 20, 14)
+    L = np.log(V / 2) / (0.5 * math.log(100))
+    fit = compact_fit(with_ratios(V, 0.6 - 0.25 * L + 0.1 * L**2))
+    assert fit.coefficients == approx((0.6, -0.25, 0.1), rel=1e-9)
+    assert (fit.centre, fit.width) == (approx(2), approx(0.5 * math.log(100)))
+    assert (fit.adhesion, fit.adhesive_below, fit.elastic_below) == (0.0, None, None)
+    assert max(fit.worst, fit.between) < 1e-9
+
+
+def test_four_resolved_points_are_enough_and_three_are_not(with_ratios):
+    V = np.geomspace(1, 8, 4)
+    assert compact_fit(with_ratios(V, [0.8, 0.7, 0.6, 0.5])) is not None
+    assert compact_fit(with_ratios(V[:3], [0.8, 0.7, 0.6])) is None
+
+
+def test_one_sticking_and_one_lossless_point_anchor_the_fit(with_ratios):
+    """Points further away on that side take no part: here they would spoil it."""
+    V = np.geomspace(0.1, 10, 12)
+    ratio = 0.5 + 0.2 * np.log(V / V[4])
+    ratio[:4] = 1.0
+    lossless = compact_fit(with_ratios(V, ratio))
+    assert lossless.elastic_below == V[3]
+    assert lossless.centre == approx(math.sqrt(V[3] * V[-1]))
+    ratio[:4] = -1.0
+    sticky = compact_fit(
+        with_ratios(V, ratio, work_of_adhesion=0.1, sticks_below=float(0.99 * V[4]))
+    )
+    assert sticky.centre == approx(math.sqrt(V[3] * V[-1]))
+    assert sticky.elastic_below is None
+    assert sticky.restitution(V[:4]).tolist() == [0.0] * 4
+
+
+def test_with_adhesion_no_point_is_lossless(with_ratios):
+    V = np.geomspace(0.1, 10, 12)
+    ratio = np.concatenate([np.ones(4), np.linspace(0.9, 0.4, 8)])
+    assert compact_fit(with_ratios(V, ratio)).elastic_below == V[3]
+    assert compact_fit(with_ratios(V, ratio, work_of_adhesion=0.1)).elastic_below is None
+
+
+def test_the_loss_that_counts_for_lossless_is_a_thousandth(with_ratios):
+    V = np.geomspace(0.1, 10, 12)
+    for loss, last in ((0.9e-3, 3), (1.1e-3, 2)):
+        ratio = np.concatenate([np.ones(3), [1 - loss], np.linspace(0.9, 0.4, 8)])
+        assert compact_fit(with_ratios(V, ratio)).elastic_below == V[last]

@@ -199,6 +199,18 @@ def test_an_elastic_case_has_hertz_and_with_adhesion_sticking():
     assert set(room.marks(sticky)) == {"V_s"}
 
 
+@pytest.mark.parametrize(
+    ("interface", "marked"),
+    [
+        (ELASTIC, set()),
+        (PLASTIC, {"V_y"}),
+        (PLASTIC + 'work_of_adhesion = "0.1 J/m^2"\n', {"V_y", "V_s"}),
+    ],
+)
+def test_velocities_that_do_not_exist_are_not_marked(interface, marked):
+    assert set(room.marks(case_of(interface=interface))) == marked
+
+
 def test_no_theory_rests_on_constants_that_nobody_could_look_up():
     """The constants of Wu, Li and Thornton have no source, and finite elements contradict them."""
     assert not [name for name in room.FORMS if name.startswith("wu")]

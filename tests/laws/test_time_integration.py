@@ -81,7 +81,50 @@ def test_momentum_is_kept_and_a_wall_stays():
     assert wall.rebound_second == 0
 
 
+def shaped(depths, powers, *, end=0.25):
+    """A law that unloads from each depth with a power of the part that is left."""
+    s = np.linspace(0, 1, 400)
+    return StoredForce(
+        pair=Pair(STEEL, STEEL),
+        deepest=depths[-1],
+        highest=1.0,
+        loading=lambda x: 3e6 * x,
+        separation=lambda x: end * x,
+        unloading_from=np.array(depths),
+        unloading=tuple(
+            (d * (end + (1 - end) * s), 3e6 * d * s**power)
+            for d, power in zip(depths, powers, strict=True)
+        ),
+    )
+
+
+def test_between_two_depths_the_curves_are_mixed_by_the_logarithm_of_the_depth():
+    law = shaped([1e-7, 4e-7, 6e-7], [1.0, 3.0, 2.0])
+    for deepest, upper in ((1e-7, 0.0), (1.5e-7, math.log(1.5) / math.log(4)), (4e-7, 1.0)):
+        force, separated, blended = law.branch(deepest)
+        assert separated == 0.25 * deepest
+        assert blended == (0 < upper < 1)
+        for s in (0.1, 0.5, 0.8):
+            expected = 3e6 * deepest * ((1 - upper) * s + upper * s**3)
+            assert force(deepest * (0.25 + 0.75 * s)) == approx(expected, rel=1e-4)
+    force, *_ = law.branch(5e-7)
+    upper = math.log(5 / 4) / math.log(6 / 4)
+    expected = 3e6 * 5e-7 * ((1 - upper) * 0.5**3 + upper * 0.5**2)
+    assert force(5e-7 * 0.625) == approx(expected, rel=1e-4)
+
+
+def test_a_stored_curve_serves_depths_that_differ_by_rounding():
+    law = shaped([1e-7, 4e-7], [1.0, 3.0])
+    for deepest in (1e-7 * (1 - 5e-6), 1e-7 * (1 + 5e-6), 4e-7 * (1 + 5e-6)):
+        _, _, blended = law.branch(deepest)
+        assert not blended
+    for deepest in (1e-7 * (1 - 2e-5), 4e-7 * (1 + 2e-5)):
+        with pytest.raises(DomainError, match="unloading curves were stored from 100 to 400 nm"):
+            law.branch(deepest)
+
+
 CASE = """
+total_error = false
 [first]
 radius = "500 um"
 youngs_modulus = "210 GPa"
@@ -93,7 +136,7 @@ yield_pressure = "750 MPa"
 [roughness]
 kind = "gaussian"
 rms = "{rms}"
-correlation_length = "3 um"
+correlation_length = "{length}"
 seed = 3
 [grid]
 nodes = {nodes}
@@ -105,8 +148,10 @@ steps = {steps}
 [unloading]
 curves = {steps}
 """
-ROUGH = {"rms": "20 nm", "nodes": 96, "spacing": "0.6 um", "first": "50 nm", "last": "1 um"}
-ADHESIVE = {"rms": "1 nm", "nodes": 64, "spacing": "0.12 um", "first": "10 nm", "last": "40 nm"}
+ROUGH = {"rms": "20 nm", "length": "3 um", "nodes": 96, "spacing": "0.6 um"}
+ROUGH |= {"first": "50 nm", "last": "1 um"}
+ADHESIVE = {"rms": "1 nm", "length": "3 um", "nodes": 40, "spacing": "0.192 um"}
+ADHESIVE |= {"first": "10 nm", "last": "40 nm"}
 
 
 @pytest.fixture(scope="module")

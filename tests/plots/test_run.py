@@ -7,23 +7,32 @@ import pytest
 import xarray as xr
 
 from restitution import Grid
+from restitution.case.case_file import parse_case
 from restitution.plots import interactive
 from restitution.plots.cor import cor_axis
 from restitution.plots.figure import ORANGE, Line, Mark, Points, legend_entries
 from restitution.plots.run import run_figures
 from restitution.plots.static import draw, write_figure
 from restitution.plots.surface import surface_map
+from restitution.results.writer import ResultsFolder
+from restitution.runs.ensemble import run_realisations
 from restitution.surfaces import Surface
 from tolerance import approx
 
 
-@pytest.fixture
-def results(cli, case_text, tmp_path):
+@pytest.fixture(scope="module")
+def stored(case_text, tmp_path_factory):
     text = case_text.replace("A small rough contact", "costs $5 & $\\\\alpha_{ <b>")
-    (tmp_path / "case.toml").write_text(text.replace('"20 nm"', '"1 nm"'))
-    assert cli("run", tmp_path / "case.toml", "-o", tmp_path / "out")[0] == 0
-    with xr.open_dataset(tmp_path / "out" / "results.nc") as stored:
-        return stored.load()
+    text = text.replace('"20 nm"', '"1 nm"')
+    out = tmp_path_factory.mktemp("run") / "out"
+    run_realisations(parse_case(text), text, out.parent, ResultsFolder(out))
+    with xr.open_dataset(out / "results.nc") as dataset:
+        return dataset.load()
+
+
+@pytest.fixture
+def results(stored):
+    return stored.copy(deep=True)
 
 
 def figures(results):

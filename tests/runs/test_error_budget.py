@@ -191,7 +191,7 @@ seed = 1
 nodes = [96, 96]
 spacing = "0.25 um"
 [impact]
-velocity = ["0.003 m/s", "0.01 m/s", "0.03 m/s"]
+velocity = ["0.003 m/s", "0.03 m/s"]
 """
 
 

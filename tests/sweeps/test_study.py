@@ -51,7 +51,8 @@ def run(text, folder, *, resume=False, **more):
 
 @pytest.fixture(scope="module")
 def text(case_text):
-    return case_text.replace("steps = 4", "steps = 2").replace("curves = 2", "curves = 1") + SWEEP
+    short = case_text.replace("steps = 4", "steps = 2").replace("curves = 2", "curves = 1")
+    return "total_error = false\n" + short + SWEEP
 
 
 @pytest.fixture(scope="module")
@@ -238,17 +239,17 @@ def begin(folder, *more):
 
 
 def test_kill_9_at_any_moment_loses_the_cases_in_flight_at_most(text, tmp_path):
-    text = text.replace("[1, 2, 3]", "[1, 2, 3, 4, 5, 6]")
+    text = text.replace("[1, 2, 3]", "[1, 2, 3, 4]")
     (tmp_path / "whole").mkdir()
     _, unstopped = run(text, tmp_path / "whole")
     (tmp_path / "study.toml").write_text(text)
     cases, pick = tmp_path / "out" / "cases", random.Random(7)
     begun: dict[str, int] = {}
     resume, seen = (), []
-    for kill in range(10):
+    for kill in range(6):
         process = begin(tmp_path, *resume)
-        # At moments from before the first case to after the last, also while cases are written.
-        while len(list(cases.glob("case-*"))) < (12 * kill) // 9 and process.poll() is None:
+        # From before the first case to after the last, and while cases are written.
+        while len(list(cases.glob("case-*"))) < (8 * kill) // 5 and process.poll() is None:
             time.sleep(0.01)
         time.sleep(pick.uniform(0, 0.1))  # less than a case takes
         process.send_signal(signal.SIGKILL)
@@ -258,7 +259,7 @@ def test_kill_9_at_any_moment_loses_the_cases_in_flight_at_most(text, tmp_path):
             assert begun.setdefault(case.name, stamp) == stamp, "computed twice"
         seen.append(len(begun))
         resume = ("--resume",) if (tmp_path / "out" / "study.toml").exists() else ()
-    assert len(set(seen)) > 5
+    assert len(set(seen)) > 3
     process = begin(tmp_path, *resume)
     _, said = process.communicate(timeout=300)
     assert process.returncode == 0, said
@@ -332,9 +333,7 @@ def test_interruption_says_how_to_go_on(whole, text, tmp_path):
     assert "--resume" in said.splitlines()[-1]
     assert "Traceback" not in said
     assert (tmp_path / "out" / "table.csv").exists()
-    process = begin(tmp_path, "--resume")
-    process.communicate(timeout=300)
-    assert process.returncode == 0
+    run(text, tmp_path, resume=True)
     assert table(tmp_path / "out") == table(whole)
 
 

@@ -1,0 +1,201 @@
+"""Fits of force laws: points that a force law has made give its parameters back."""
+
+import numpy as np
+import pytest
+
+from restitution.laws import force_law_fits
+from restitution.laws.force_law_fits import NAMES, fitted_laws
+from restitution.laws.law import Particle
+from restitution.theory import EEPA, JKR, MDR, Luding, ThorntonNing, WaltonBraun
+from tolerance import approx
+
+V = np.geomspace(0.02, 4, 12)
+WALL = Particle(name="wall", radius=None, youngs_modulus=70e9, poissons_ratio=0.25, density=None)
+SMALL = Particle(
+    name="small", radius=2e-4, youngs_modulus=70e9, poissons_ratio=0.25, density=2500.0
+)
+
+
+@pytest.fixture
+def made(law):
+    """A law of two glass spheres with these COR and largest forces (N) at V."""
+
+    def make(e, force, *, resolved=None, **values):
+        some = law(**values)
+        seen = np.ones(V.size, dtype=bool) if resolved is None else resolved
+        numbers = zip(V, np.broadcast_to(e, V.shape), force, seen, strict=True)
+        points = tuple(
+            some.points[0].model_copy(
+                update={
+                    "velocity": float(v),
+                    "restitution": float(c),
+                    "ratio": float(c) ** 2,
+                    "loading_work": 0.5 * some.mass * float(v) ** 2,
+                    "force": float(F),
+                    "resolved": bool(known),
+                }
+            )
+            for v, c, F, known in numbers
+        )
+        return some.model_copy(update={"points": points})
+
+    return make
+
+
+@pytest.fixture
+def mass(law):
+    return law().mass
+
+
+def fit_of(law, name):
+    """One fit of `fitted_laws`, without the others."""
+    found = getattr(force_law_fits, f"_{name.removeprefix('lammps-').replace('-', '_')}")(law)
+    assert found.name == name
+    return found
+
+
+def spring_force(stiffness, mass, exponent=1.0):
+    """The largest force (N) of F = kδⁿ in the impacts at V: F δ/(n + 1) = ½ m V²."""
+    depth = ((exponent + 1) * 0.5 * mass * V**2 / stiffness) ** (1 / (exponent + 1))
+    return stiffness * depth**exponent
+
+
+def test_walton_and_braun(made, mass):
+    springs = 2e6, 2.6e6, 3e5
+    law = made(WaltonBraun(*springs).restitution(V, mass), spring_force(springs[0], mass))
+    found = fit_of(law, "walton-braun")
+    assert list(found.parameters.values()) == approx(springs, rel=1e-4)
+    assert found.worst < 1e-6
+
+
+@pytest.mark.parametrize("adhesive", [0.0, 2e5])
+def test_luding(made, law, mass, adhesive):
+    springs = 1e6, 4e6, adhesive, 0.004
+    e = Luding(law().radius, *springs).restitution(V, mass)
+    assert np.ptp(e) > 0.05
+    w = 0.1 if adhesive else 0.0
+    found = fit_of(made(e, spring_force(1e6, mass), work_of_adhesion=w), "luding")
+    assert found.worst < 2e-3
+    assert found.parameters["loading_stiffness_N_per_m"] == approx(1e6)
+    assert found.parameters["limit_stiffness_N_per_m"] == approx(4e6, rel=0.01)
+    assert found.parameters["adhesive_stiffness_N_per_m"] == approx(adhesive, rel=0.02)
+    assert found.parameters["plasticity_depth"] == approx(0.004, rel=0.01)
+    ends = "indentation zero" if adhesive else "separation, where the force is back to zero"
+    assert found.ends == ends
+
+
+def test_eepa_without_adhesion(made, mass):
+    springs = 3e9, 8e9, 0.0, 0.0, 1.5
+    e = EEPA(*springs).restitution(V, mass)
+    found = fit_of(made(e, spring_force(3e9, mass, 1.5)), "eepa")
+    assert list(found.parameters.values()) == approx(springs, rel=1e-4)
+    assert "the same at every velocity" in found.note
+    assert found.ends == "separation, where the force is back to zero"
+
+
+def test_eepa_with_adhesion(made, mass):
+    """COR alone hardly tells its three parameters apart; those found give COR back."""
+    force = spring_force(3e9, mass, 1.5)
+    e = EEPA(3e9, 8e9, 2e9, -0.2 * float(force.min()), 1.5).restitution(V, mass)
+    assert np.ptp(e) > 0.05
+    found = fit_of(made(e, force, work_of_adhesion=0.1), "eepa")
+    k1, _, adhesive, constant, n = found.parameters.values()
+    assert (k1, n) == (approx(3e9), 1.5)
+    assert adhesive > 0 > constant > -float(force.min())
+    again = EEPA(*found.parameters.values()).restitution(V, mass)
+    assert list(found.restitution) == approx(again, rel=1e-12)
+    assert np.abs(again - e).max() < 2e-3
+    assert (found.note, found.ends) == ("", "indentation zero")
+
+
+def test_mdr_on_a_wall(made, law):
+    mass = law(second=WALL).mass
+    E = law(second=WALL).contact_modulus * (1 - 0.25**2)
+    e = MDR(1e-3, E, 0.25, 3e8).restitution(V, mass)
+    found = fit_of(made(e, spring_force(1e6, mass), second=WALL), "lammps-mdr")
+    assert list(found.parameters.values()) == approx([3e8, E, 0.25], rel=1e-4)
+    swapped = law(first=WALL, second=law().first, points=law().points)
+    assert fit_of(swapped, "lammps-mdr").parameters["youngs_modulus_Pa"] == approx(E)
+
+
+def test_mdr_of_two_equal_spheres_is_two_contacts_at_half_the_velocity(made, mass):
+    e = MDR(1e-3, 70e9, 0.25, 3e8).restitution(V / 2, 2 * mass)
+    found = fit_of(made(e, spring_force(1e6, mass)), "lammps-mdr")
+    assert list(found.parameters.values()) == approx([3e8, 70e9, 0.25], rel=1e-4)
+
+
+def test_mdr_knows_no_unlike_spheres(made, law):
+    unlike = made(0.5, spring_force(1e6, 1e-6), second=SMALL)
+    assert [each.name for each in fitted_laws(unlike)] == list(NAMES[:-1])
+
+
+@pytest.mark.parametrize("V_s", [None, 0.01])
+def test_thornton_and_ning(made, law, mass, V_s):
+    """From the forces and from COR; a sticking velocity is known beforehand or found."""
+    smooth = ThorntonNing(law().radius, law().contact_modulus, 4e8)
+    force = smooth.loading_force(smooth.indentation_from_velocity(V, mass))
+    e = np.sqrt(smooth.restitution(V, mass) ** 2 - ((V_s or 0.0) / V) ** 2)
+    w = 0.0 if V_s is None else 0.2
+    found = made(e, force, yield_pressure=1e9, work_of_adhesion=w, sticks_below=V_s)
+    for each in force_law_fits._thornton_ning(found):
+        assert each.worst < 1e-6
+        assert each.parameters["yield_pressure_Pa"] == approx(4e8, rel=1e-4)
+        if V_s is None:
+            assert list(each.parameters) == ["yield_pressure_Pa"]
+            continue
+        assert each.parameters["sticking_velocity_m_per_s"] == approx(V_s, rel=1e-3)
+        work = each.parameters["work_of_adhesion_J_per_m2"]
+        same = JKR(law().radius, law().contact_modulus, work).sticking_velocity(mass)
+        assert same == approx(V_s, rel=1e-3)
+
+
+def test_the_best_of_the_fits_with_a_sticking_velocity_need_not_be_the_one_known(made, law, mass):
+    """The known one is of smooth bodies; COR is fitted with another."""
+    smooth = ThorntonNing(law().radius, law().contact_modulus, 4e8)
+    e = np.sqrt(smooth.restitution(V, mass) ** 2 - (0.012 / V) ** 2)
+    force = smooth.loading_force(smooth.indentation_from_velocity(V, mass))
+    found = made(e, force, work_of_adhesion=0.2, sticking_velocity=0.004)
+    by_force, by_restitution = (each.parameters for each in force_law_fits._thornton_ning(found))
+    assert by_force["sticking_velocity_m_per_s"] == 0.004
+    assert by_restitution["sticking_velocity_m_per_s"] == approx(0.012, rel=1e-3)
+
+
+def test_a_constant_is_the_mean(made):
+    e = np.linspace(0.9, 0.3, V.size)
+    found = fit_of(made(e, spring_force(1e6, 1e-6)), "constant")
+    assert found.parameters == {"restitution": approx(e.mean())}
+    assert found.rms == approx(e.std())
+    assert found.worst == approx(0.3)
+
+
+def test_only_resolved_points_are_fitted(made, mass):
+    springs = 2e6, 2.6e6, 3e5
+    e, force = WaltonBraun(*springs).restitution(V, mass), spring_force(springs[0], mass)
+    resolved = np.ones(V.size, dtype=bool)
+    resolved[[0, 5, -1]] = False
+    e[~resolved], force[~resolved] = 0.05, 1e3
+    found = fit_of(made(e, force, resolved=resolved), "walton-braun")
+    assert list(found.parameters.values()) == approx(springs, rel=1e-4)
+    assert found.worst < 1e-6
+    empty = [value is None for value in found.restitution]
+    assert empty == [k in (0, V.size - 1) for k in range(V.size)]
+
+
+def test_what_sticks_or_only_pulls_has_a_constant_alone(made):
+    stuck = made(0.0, spring_force(1e6, 1e-6), work_of_adhesion=0.1)
+    assert [each.name for each in fitted_laws(stuck)] == ["constant"]
+    pulled = made(0.5, -spring_force(1e6, 1e-6), work_of_adhesion=0.1)
+    assert [each.name for each in fitted_laws(pulled)] == ["constant"]
+
+
+def test_what_loses_nothing_has_no_fit(made):
+    assert fitted_laws(made(0.9995, spring_force(1e6, 1e-6))) == ()
+    assert fitted_laws(made(0.9985, spring_force(1e6, 1e-6)))
+    nothing = np.zeros(V.size, dtype=bool)
+    assert fitted_laws(made(0.5, spring_force(1e6, 1e-6), resolved=nothing)) == ()
+
+
+def test_each_fit_is_announced_before_it_begins(made):
+    said = []
+    fitted_laws(made(0.5, spring_force(1e6, 1e-6)), lambda *begun: said.append(begun))
+    assert said == [(name, k + 1, len(NAMES)) for k, name in enumerate(NAMES)]
