@@ -1,4 +1,4 @@
-"""What all figures of COR share: the axis, and points with the total error."""
+"""Parts of all figures of COR: the axis, and the bars of the total error."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from restitution.plots.figure import Array, Axis, Band, Mark, Points, Series, has_error
 
-_STEP = 0.1  # of the ends of the axis
+_STEP = 0.1  # the ends of the axis are its multiples
 _MARGIN = 0.02
 
 
@@ -18,7 +18,7 @@ def cor_axis(series: Sequence[Series]) -> Axis:
     values = shown[np.isfinite(shown)] if np.isfinite(shown).any() else np.array([0.0, 1.0])
     low = max(_STEP * np.floor((values.min() - _MARGIN) / _STEP), 0.0)
     high = _STEP * np.ceil((values.max() + _MARGIN) / _STEP)
-    # A law that sticks runs along zero, and an elastic contact along one.
+    # A margin shows lines that run along 0 (sticking) or 1 (elastic).
     return Axis(
         "coefficient of restitution",
         low=-_MARGIN if values.min() <= 0 else float(low),

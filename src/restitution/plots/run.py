@@ -39,8 +39,8 @@ UNRESOLVED = f"open: not resolved (patches below {NODES_PER_PATCH} nodes)"
 
 _MARGIN = 1.2  # factor by which a logarithmic axis extends beyond the first and the last point
 _RIM = 4  # nodes around a contact in its map
-_UNIFORM = 0.01  # pressures this close to the largest count as equal to it …
-_SATURATED = 0.95  # … and a map with so large a share of them shows nothing
+_UNIFORM = 0.01  # relative difference below which a pressure equals the largest
+_SATURATED = 0.95  # share of such pressures from which the pressure map is left out
 _SMOOTH = "smooth, same model"
 _DASHES = (DOTTED, DASH_DOTTED, DASHED, SOLID)  # of coarser grids, coarsest first
 
@@ -207,7 +207,7 @@ def _references(found: list[Reference], scale: float) -> list[Series]:
 
 
 def _unloading(results: xr.Dataset) -> list[Line]:
-    """The unloading curves, without the NaN that fill their ends."""
+    """The unloading curves, without the NaN at their ends."""
     found = []
     for k in range(results.sizes.get("unloading", 0)):
         x, y = (results[f"unloading_{name}"][k].values for name in ("indentation", "force"))
