@@ -11,6 +11,7 @@ ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "src" / "restitution"
 ROOMS = (
     "errors",
+    "display",
     "theory",
     "numerics",
     "surfaces",
@@ -22,6 +23,7 @@ ROOMS = (
     "sweeps",
     "laws",
     "dem",
+    "api",
     "plots",
     "pages",
     "reproduce",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Annotated
 
 import typer
@@ -30,7 +31,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_enable=False,
 )
-_VERBS = {
+_VERBS: dict[str, tuple[Callable[..., None], ...]] = {
     "Prepare": (new.new, materials.materials, check.check, surface.surface),
     "Compute": (run.run, converge.converge, study.study, reproduce.reproduce),
     "Use results": (

@@ -9,6 +9,7 @@ from __future__ import annotations
 import csv
 import json
 import math
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -23,6 +24,7 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, NonNegativeInt, 
 
 from restitution.case.case import Case
 from restitution.case.case_file import parse_case
+from restitution.display import counted, quantity, summary_html, summary_text
 from restitution.errors import CaseError, OutputError, one_line
 from restitution.results.checksums import check_file
 from restitution.results.interruption import hold_signals
@@ -182,6 +184,23 @@ class RunResults:
                 f"computed {computed}; a file is damaged: run the case again"
             )
 
+    def _summary(self) -> list[str]:
+        try:
+            rows, summary = self.curve.rows, self.summary
+        except OutputError as error:
+            return [str(error)]
+        depths = [row["max_indentation_m"] for row in rows]
+        e = [row["restitution"] for row in rows]
+        span = f" to {quantity(max(depths), 'm')}, COR {min(e):.4f} to {max(e):.4f}" if e else ""
+        warned = counted(len(summary["warnings"]), "warning")
+        return [
+            f'"{summary["title"]}", {summary["status"]}, {warned}; {self.folder}',
+            f"{len(rows)} of {counted(summary['depths_asked'], 'depth')}{span}",
+        ]
+
+    __repr__ = summary_text
+    _repr_html_ = summary_html
+
 
 @dataclass(frozen=True)
 class EnsembleResults(RunResults):
@@ -191,6 +210,8 @@ class EnsembleResults(RunResults):
     def surfaces(self) -> int:
         """How many surfaces were computed, failed ones included."""
         return len(self.summary["realisations"])
+
+    __repr__ = summary_text
 
 
 @dataclass(frozen=True)
@@ -249,6 +270,20 @@ class StudyResults:
     def run(self, name: str) -> RunResults:
         """The results of the case of that name."""
         return RunResults(self.folder / "cases" / name)
+
+    def _summary(self) -> list[str]:
+        try:
+            cases = self.cases
+        except OutputError as error:
+            return [str(error)]
+        ended = Counter(case.status for case in cases)
+        count = ", ".join(f"{number} {status}" for status, number in ended.items())
+        swept = {key: len({case.swept[key] for case in cases}) for key in cases[0].swept}
+        keys = ", ".join(f"{key} ({counted(n, 'value')})" for key, n in swept.items())
+        return [f"{counted(len(cases), 'case')}, {count}; {self.folder}", f"swept: {keys}"]
+
+    __repr__ = summary_text
+    _repr_html_ = summary_html
 
 
 def read_run(folder: Path) -> RunResults:
