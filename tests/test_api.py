@@ -1,5 +1,6 @@
 """Whole tasks in Python: run a case, open its results, make a law, export it."""
 
+import re
 import tomllib
 from importlib import metadata
 from pathlib import Path
@@ -36,6 +37,8 @@ def test_a_run_gives_a_table_with_units(results):
     assert results.summary["status"] == "complete"
     assert 'RunResults: "A small rough contact", complete, 0 warnings' in repr(results)
     assert "4 of 4 depths to 300 nm, COR 0." in results._repr_html_()
+    assert repr(results.curve) == "Curve: 4 rows: max_indentation_m, force_N, contact_area_m2, …"
+    assert re.fullmatch(r"UnloadingCurve: \d+ points from 300 nm", repr(results.unloading[-1]))
 
 
 def test_a_case_file_and_its_tables_give_the_same(results, case_text, tmp_path):

@@ -9,7 +9,6 @@ from __future__ import annotations
 import csv
 import json
 import math
-from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -29,6 +28,7 @@ from restitution.errors import CaseError, OutputError, one_line
 from restitution.results.checksums import check_file
 from restitution.results.interruption import hold_signals
 from restitution.results.schema import ALL_COLUMNS, COLUMNS, SPREAD_COLUMNS, STATUS, Column
+from restitution.results.summaries import curve_lines, run_lines, study_lines
 
 Array = NDArray[np.float64]
 
@@ -39,6 +39,12 @@ class Curve:
 
     rows: list[dict[str, float]]
     cells: list[dict[str, str]]
+
+    def _summary(self) -> list[str]:
+        return curve_lines(self.rows)
+
+    __repr__ = summary_text
+    _repr_html_ = summary_html
 
 
 class _Model(BaseModel):
@@ -79,6 +85,12 @@ class UnloadingCurve:
     start: float
     indentation: Array
     force: Array
+
+    def _summary(self) -> list[str]:
+        return [f"{counted(self.force.size, 'point')} from {quantity(self.start, 'm')}"]
+
+    __repr__ = summary_text
+    _repr_html_ = summary_html
 
 
 @dataclass(frozen=True)
@@ -186,17 +198,9 @@ class RunResults:
 
     def _summary(self) -> list[str]:
         try:
-            rows, summary = self.curve.rows, self.summary
+            return run_lines(self.folder, self.curve.rows, self.summary)
         except OutputError as error:
             return [str(error)]
-        depths = [row["max_indentation_m"] for row in rows]
-        e = [row["restitution"] for row in rows]
-        span = f" to {quantity(max(depths), 'm')}, COR {min(e):.4f} to {max(e):.4f}" if e else ""
-        warned = counted(len(summary["warnings"]), "warning")
-        return [
-            f'"{summary["title"]}", {summary["status"]}, {warned}; {self.folder}',
-            f"{len(rows)} of {counted(summary['depths_asked'], 'depth')}{span}",
-        ]
 
     __repr__ = summary_text
     _repr_html_ = summary_html
@@ -274,13 +278,9 @@ class StudyResults:
     def _summary(self) -> list[str]:
         try:
             cases = self.cases
+            return study_lines(self.folder, [c.status for c in cases], [c.swept for c in cases])
         except OutputError as error:
             return [str(error)]
-        ended = Counter(case.status for case in cases)
-        count = ", ".join(f"{number} {status}" for status, number in ended.items())
-        swept = {key: len({case.swept[key] for case in cases}) for key in cases[0].swept}
-        keys = ", ".join(f"{key} ({counted(n, 'value')})" for key, n in swept.items())
-        return [f"{counted(len(cases), 'case')}, {count}; {self.folder}", f"swept: {keys}"]
 
     __repr__ = summary_text
     _repr_html_ = summary_html
