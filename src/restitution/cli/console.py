@@ -63,9 +63,10 @@ def command(verb: str, *arguments: object) -> str:
     return shlex.join(["restitution", verb, *map(str, arguments)])
 
 
-def say_written(folder: Path, names: Iterable[str]) -> None:
-    """List the files that a verb has written into `folder`."""
-    say(f"In {folder}: {', '.join(names)}")
+def say_written(path: Path, names: Iterable[str] = ()) -> None:
+    """Name the file that a verb has written, or list the `names` of files in a folder."""
+    inside = ", ".join(names)
+    say(f"In {path}: {inside}" if inside else f"Written: {path}")
 
 
 def say_next(line: str) -> None:

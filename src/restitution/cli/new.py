@@ -43,5 +43,5 @@ def new(
     text = (files("restitution.cli") / "templates" / f"{kind}.toml").read_text("utf-8")
     with writing(file.parent):
         file.write_text(text, encoding="utf-8")
-    say_written(file.parent, [file.name])
+    say_written(file)
     say_next(command("check", file))

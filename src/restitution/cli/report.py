@@ -22,4 +22,4 @@ def report(
     from restitution.pages.report import write_report
 
     page = write_report(results)
-    say_written(page.parent, [page.name])
+    say_written(page)

@@ -63,4 +63,4 @@ def reproduce(
     for finding in findings:
         table.add_row(finding.figure, finding.claim, finding.verdict)
     answers.print(table)
-    say_written(page.parent, [page.name])
+    say_written(page)

@@ -84,4 +84,4 @@ def simulate(
             "More curves (unloading.curves) bring COR in time closer to COR by energies."
         )
     if out is not None:
-        say_written(out.parent, [out.name])
+        say_written(out)
