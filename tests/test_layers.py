@@ -11,6 +11,7 @@ ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "src" / "restitution"
 ROOMS = (
     "errors",
+    "display",
     "theory",
     "numerics",
     "surfaces",
@@ -23,6 +24,7 @@ ROOMS = (
     "laws",
     "mixtures",
     "dem",
+    "api",
     "plots",
     "pages",
     "reproduce",

@@ -3,6 +3,9 @@
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    import restitution.theory as theory
+    from restitution.api import export, law_of, open_results, run
+    from restitution.case.materials import material, materials
     from restitution.collision import Collision, collide
     from restitution.contact.bodies import Body, Pair
     from restitution.contact.contact import Contact, smooth
@@ -29,6 +32,8 @@ if TYPE_CHECKING:
         remove_outliers,
     )
 
+    __version__: str
+
 __all__ = [
     "Body",
     "Collision",
@@ -42,27 +47,36 @@ __all__ = [
     "composite",
     "crop",
     "describe",
+    "export",
     "extend",
     "generate_surface",
+    "law_of",
     "level",
     "loading_path",
+    "material",
+    "materials",
     "on_device",
+    "open_results",
     "operator_cache",
     "place_on_grid",
     "read_surface",
     "refine",
     "remove_outliers",
+    "run",
     "smooth",
     "solve",
     "solve_at_force",
     "solve_at_velocity",
     "step",
+    "theory",
     "unloading_path",
 ]
 
 # The module of each name above. Names are imported on first use, so that the command line, which is
 # in the same package, can answer (and be interrupted) before NumPy is loaded.
-_HOMES = {
+_MODULES = {
+    "api": ("export", "law_of", "open_results", "run"),
+    "case.materials": ("material", "materials"),
     "collision": ("Collision", "collide"),
     "contact.bodies": ("Body", "Pair"),
     "contact.contact": ("Contact", "smooth"),
@@ -93,12 +107,16 @@ _HOMES = {
 if not TYPE_CHECKING:
 
     def __getattr__(name):
-        from importlib import import_module
+        from importlib import import_module, metadata
 
-        for home, names in _HOMES.items():
+        if name == "__version__":
+            return metadata.version(__name__)
+        if name == "theory":
+            return import_module(f"{__name__}.theory")
+        for module, names in _MODULES.items():
             if name in names:
-                return getattr(import_module(f"{__name__}.{home}"), name)
+                return getattr(import_module(f"{__name__}.{module}"), name)
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
     def __dir__():
-        return sorted({*globals(), *__all__})
+        return sorted({*globals(), *__all__, "__version__"})

@@ -15,6 +15,7 @@ from typing import Literal
 
 from restitution.contact.separation import RESTITUTION_ERROR, separate, separation_of
 from restitution.contact.state import State
+from restitution.display import quantity, summary_html, summary_text
 
 UnloadingMethod = Literal["path", "energy-estimate"]
 # Error of the detachment criterion on a grid, as a fraction of w times the area; refining the steps
@@ -81,6 +82,23 @@ class Collision:
         if self.mass is None or self.loading_work < 0:
             return None
         return math.sqrt(2 * self.loading_work / self.mass)
+
+    def _summary(self) -> list[str]:
+        velocity = self.impact_velocity
+        at = "" if velocity is None else f" at {quantity(velocity, 'm/s')}"
+        cor = "sticks, COR 0" if self.sticks else f"COR {self.restitution:.4f}"
+        error = f" ± {self.restitution_error:.1g}" if self.restitution_error else ""
+        lines = [
+            f"{cor}{error}{at}",
+            f"work of loading {quantity(self.loading_work, 'J')}, "
+            f"of unloading {quantity(self.unloading_work, 'J')}",
+        ]
+        if self.pull_off_force:
+            lines.append(f"pull-off force {quantity(self.pull_off_force, 'N')}")
+        return lines
+
+    __repr__ = summary_text
+    _repr_html_ = summary_html
 
 
 def collide(

@@ -1,6 +1,7 @@
 """`--help` of every verb says what its source says."""
 
 import re
+from typing import get_type_hints
 
 import pytest
 
@@ -23,7 +24,7 @@ def test_no_word_of_help_is_swallowed_as_markup(cli, verb):
     assert status == 0
     said = flowing(said)
     texts = [VERBS[verb].__doc__.strip().splitlines()[0]]
-    for annotation in VERBS[verb].__annotations__.values():
+    for annotation in get_type_hints(VERBS[verb], include_extras=True).values():
         texts += [each.help for each in getattr(annotation, "__metadata__", ()) if each.help]
     assert len(texts) > 1
     for text in texts:

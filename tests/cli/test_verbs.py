@@ -2,7 +2,6 @@ import csv
 import json
 import re
 import sys
-import time
 from importlib.metadata import version
 
 import numpy as np
@@ -325,30 +324,6 @@ def test_velocities_instead_of_depths(cli, case_text, tmp_path, also):
         _, rows = rows_of(tmp_path / "out" / part / "curve.csv")
         velocities = [row["impact_velocity_m_per_s"] for row in rows]
         assert velocities == approx([0.002, 0.01], rel=1e-4 if also else 1e-6)
-
-
-def test_a_wait_shows_a_spinner_after_a_while(monkeypatch):
-    from restitution.cli import console
-
-    shown = []
-
-    class Status:
-        def start(self):
-            shown.append("start")
-
-        def stop(self):
-            shown.append("stop")
-
-    monkeypatch.setattr(console.errors, "status", lambda words: shown.append(words) or Status())
-    monkeypatch.setattr(console, "_PATIENCE", 0.01)
-    with console.waiting("making the surface"):
-        time.sleep(0.1)
-    assert shown == ["making the surface", "start", "stop"]
-    shown.clear()
-    monkeypatch.setattr(console, "_PATIENCE", 10.0)
-    with console.waiting("short"):
-        pass
-    assert shown == ["short", "stop"]
 
 
 @pytest.mark.parametrize("verb", ["check", "surface"])

@@ -13,6 +13,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from restitution.case.quantities import Density, Pressure
 from restitution.case.schema import Table
+from restitution.display import quantity, summary_html, summary_text
 from restitution.errors import CaseError, shown
 
 Quantity = TypeVar("Quantity", bound=float)
@@ -57,11 +58,30 @@ class Material(Table):
     yield_strength: Property[Pressure] | None = None
     hardness: Property[Pressure] | None = None
 
+    def _summary(self) -> list[str]:
+        strengths = {"Y": self.yield_strength, "H": self.hardness}
+        known = "".join(f", {k} {quantity(p.value, 'Pa')}" for k, p in strengths.items() if p)
+        E, nu = quantity(self.youngs_modulus.value, "Pa"), self.poissons_ratio.value
+        return [
+            f"{self.key}: {self.name}",
+            f"E {E}, ν {nu:.4g}, ρ {self.density.value:.4g} kg/m³{known}",
+        ]
+
+    __repr__ = __str__ = summary_text
+    _repr_html_ = summary_html
+
 
 def material(name: str) -> Material:
-    """The material with this name or alias, in upper or lower case.
+    """Look up a material of the library.
 
-    Raises `CaseError` if there is none.
+    Args:
+        name: Key or alias, in upper or lower case.
+
+    Returns:
+        The material, its values in SI units with spread and source.
+
+    Raises:
+        CaseError: The library has no material of this name.
     """
     known = {
         _plain(each): found
@@ -80,7 +100,11 @@ def material(name: str) -> Material:
 
 @cache
 def materials() -> dict[str, Material]:
-    """All materials by key."""
+    """List the materials of the library.
+
+    Returns:
+        Materials by key: `materials()["steel"].youngs_modulus.value` (Pa).
+    """
     text = (files("restitution.case") / "materials.toml").read_text("utf-8")
     return {
         key: Material.model_validate({"key": key, **content})

@@ -1,13 +1,13 @@
-"""The command line: one verb a file, heavy imports inside the verb."""
+"""The command line: one module for each verb, which imports heavy modules when it is called."""
 
 import errno
 import sys
 
-# Reasons of the system why a terminal, pipe or file takes no more output.
-_NO_ROOM = {errno.ENOSPC, errno.EFBIG, errno.EIO, getattr(errno, "EDQUOT", errno.ENOSPC)}
+# No more output can be written: the disk is full, a quota is used up, the device fails.
+_OUTPUT_FAILS = {errno.ENOSPC, errno.EFBIG, errno.EIO, getattr(errno, "EDQUOT", errno.ENOSPC)}
 
-# Its reasons why a file or folder cannot be used.
-_NO_ACCESS = {
+# A file or folder cannot be used under this name, or by this user.
+_ACCESS_DENIED = {
     errno.EACCES,
     errno.EPERM,
     errno.EROFS,
@@ -19,7 +19,7 @@ _NO_ACCESS = {
 
 
 def main() -> None:
-    """Run the command line; a user's error is one red line and status 1."""
+    """Run the command line; an error that the user can fix is one red line and status 1."""
     try:
         for stream in (sys.stdout, sys.stderr):
             # A terminal without Greek letters shows a question mark instead.
@@ -40,7 +40,7 @@ def _run() -> int:
         with stoppable():
             try:
                 prepare(sys.argv[1:])
-                app()
+                app(prog_name="restitution")
             except BaseException:
                 if received:
                     raise Stopped(received[-1]) from None
@@ -50,16 +50,16 @@ def _run() -> int:
     except MemoryError:
         print_error("the memory is too small for this case; use fewer grid.nodes")
     except OSError as error:
-        if error.filename is not None and error.errno in _NO_ROOM | _NO_ACCESS:
+        if error.filename is not None and error.errno in _OUTPUT_FAILS | _ACCESS_DENIED:
             print_error(
                 f"{error.filename}: cannot be read or written ({error.strerror}); change its "
-                "permissions, make room, or name another"
+                "permissions, free disk space, or name another file or folder"
             )
             return 1
-        if error.errno not in _NO_ROOM:
+        if error.errno not in _OUTPUT_FAILS:
             raise
-        print_error(f"standard output: cannot be written ({error.strerror}); send it elsewhere")
-        # What is left in its buffer would fail again when Python ends.
+        print_error(f"standard output: cannot be written ({error.strerror}); redirect it elsewhere")
+        # Python would try to write the rest of its buffer at exit, and fail again.
         sys.stdout = None
     except Stopped as stop:
         return stop.status

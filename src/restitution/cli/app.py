@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Annotated
 
 import typer
@@ -13,7 +14,9 @@ from restitution.cli import (
     converge,
     export,
     fit_law,
+    materials,
     mixture,
+    new,
     report,
     reproduce,
     run,
@@ -24,24 +27,26 @@ from restitution.cli import (
 
 app = typer.Typer(
     name="restitution",
-    help="Coefficient of restitution of rough elastic-plastic particles from their surface.",
+    help="Coefficient of restitution (COR) of rough elastic-plastic particles from their surface.",
     no_args_is_help=True,
-    add_completion=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_enable=False,
 )
-app.command()(run.run)
-app.command()(converge.converge)
-app.command()(study.study)
-app.command()(mixture.mixture)
-app.command()(report.report)
-app.command()(compare.compare)
-app.command()(reproduce.reproduce)
-app.command()(fit_law.fit_law)
-app.command()(export.export)
-app.command()(compare_theory.compare_theory)
-app.command()(simulate.simulate)
-app.command()(check.check)
-app.command()(surface.surface)
+_VERBS: dict[str, tuple[Callable[..., None], ...]] = {
+    "Prepare": (new.new, materials.materials, check.check, surface.surface),
+    "Compute": (run.run, converge.converge, study.study, mixture.mixture, reproduce.reproduce),
+    "Use results": (
+        report.report,
+        compare.compare,
+        compare_theory.compare_theory,
+        simulate.simulate,
+        fit_law.fit_law,
+        export.export,
+    ),
+}
+for panel, verbs in _VERBS.items():
+    for verb in verbs:
+        app.command(rich_help_panel=panel)(verb)
 
 
 def _print_version(wanted: bool) -> None:
@@ -65,7 +70,7 @@ def _options(
             "--version",
             callback=_print_version,
             is_eager=True,
-            help="Print the version, and which compiled kernels run.",
+            help="Print the version, and the compiled kernels in use.",
         ),
     ] = False,
 ) -> None:

@@ -1,72 +1,63 @@
-"""`restitution check`: validate a case and say what follows from it, nothing solved."""
+"""`restitution check`: validate a case or study and print derived quantities; solve nothing."""
+
+from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from restitution.case.case import Case
+    from restitution.contact.contact import Contact
+
+# Quantity → label, factor from SI, unit.
+_LABELS = {
+    "reduced_radius_m": ("reduced radius R*", 1e6, "um"),
+    "contact_modulus_Pa": ("contact modulus E*", 1e-9, "GPa"),
+    "reduced_mass_kg": ("reduced mass m*", 1, "kg"),
+    "yield_strength_Pa": ("yield strength Y", 1e-6, "MPa"),
+    "yield_pressure_Pa": ("yield pressure p_y (hardness, ~2.8 Y)", 1e-6, "MPa"),
+    "yield_indentation_m": ("yield indentation δ_y, smooth", 1e9, "nm"),
+    "yield_force_N": ("yield force F_y, smooth", 1, "N"),
+    "yield_velocity_m_per_s": ("yield velocity V_y, smooth", 1, "m/s"),
+    "work_of_adhesion_J_per_m2": ("work of adhesion w", 1, "J/m^2"),
+    "pull_off_force_smooth_N": ("pull-off force F_c, smooth", 1, "N"),
+    "pull_off_radius_m": ("pull-off radius a_c, smooth", 1e6, "um"),
+    "nodes_over_pull_off_radius": ("nodes over the pull-off radius, a_c/h", 1, ""),
+    "expected_pull_off_error": ("expected error of pull-off on this grid", 100, "%"),
+    "tabor_parameter": ("Tabor parameter (JKR holds well above 1)", 1, ""),
+    "sticking_velocity_m_per_s": ("sticking velocity V_s, smooth elastic", 1, "m/s"),
+    "deepest_indentation_m": ("deepest indentation", 1e9, "nm"),
+    "predicted_contact_radius_m": ("contact radius there, smooth", 1e6, "um"),
+    "domain_half_width_m": ("half width of the grid", 1e6, "um"),
+    "nodes_over_contact_radius": ("nodes over the contact radius", 1, ""),
+}
 
 
 def check(
     case: Annotated[
-        Path, typer.Argument(help="Case file (TOML).", show_default=False, readable=False)
+        Path,
+        typer.Argument(
+            metavar="CASE",
+            help="Case file or study file (TOML).",
+            show_default=False,
+            readable=False,
+        ),
     ],
 ) -> None:
     """Validate CASE and print R*, E*, m*, yield and contact size; solve nothing."""
-    from rich.table import Table
-
-    from restitution.case.case_file import naming, read_case
-    from restitution.case.derived import deepest_indentation, derived_quantities
-    from restitution.cli.console import answers, say, waiting, warn
-    from restitution.numerics.memory import available, in_words
+    from restitution.case.case_file import naming
+    from restitution.case.derived import deepest_indentation
+    from restitution.cli.console import answers, command, say, say_next, waiting, warn
     from restitution.runs.messages import input_warnings, require_possible
-    from restitution.surfaces import describe
 
-    read, _ = read_case(case)
+    read, cases = _read(case)
     with naming(case), waiting("making the surface"):
         contact = read.contact(case.parent)
-        rms = describe(contact.surface)["Sq_m"] or 0.0
-    quantities = derived_quantities(read, contact)
-    labels = {
-        "reduced_radius_m": ("reduced radius R*", 1e6, "um"),
-        "contact_modulus_Pa": ("contact modulus E*", 1e-9, "GPa"),
-        "reduced_mass_kg": ("reduced mass m*", 1, "kg"),
-        "yield_strength_Pa": ("yield strength Y", 1e-6, "MPa"),
-        "yield_pressure_Pa": ("yield pressure p_y (hardness, ~2.8 Y)", 1e-6, "MPa"),
-        "yield_indentation_m": ("yield indentation δ_y, smooth", 1e9, "nm"),
-        "yield_force_N": ("yield force F_y, smooth", 1, "N"),
-        "yield_velocity_m_per_s": ("yield velocity V_y, smooth", 1, "m/s"),
-        "work_of_adhesion_J_per_m2": ("work of adhesion w", 1, "J/m^2"),
-        "pull_off_force_smooth_N": ("pull-off force F_c, smooth", 1, "N"),
-        "pull_off_radius_m": ("pull-off radius a_c, smooth", 1e6, "um"),
-        "nodes_over_pull_off_radius": ("nodes over the pull-off radius, a_c/h", 1, ""),
-        "expected_pull_off_error": ("expected error of pull-off on this grid", 100, "%"),
-        "tabor_parameter": ("Tabor parameter (JKR holds well above 1)", 1, ""),
-        "sticking_velocity_m_per_s": ("sticking velocity V_s, smooth elastic", 1, "m/s"),
-        "deepest_indentation_m": ("deepest indentation", 1e9, "nm"),
-        "predicted_contact_radius_m": ("contact radius there, smooth", 1e6, "um"),
-        "domain_half_width_m": ("half width of the grid", 1e6, "um"),
-        "nodes_over_contact_radius": ("nodes over the contact radius", 1, ""),
-    }
-    table = Table(box=None, show_header=False)
-    table.add_column(justify="left")
-    table.add_column(justify="right")
-    table.add_column(justify="left")
-    nx, ny = contact.grid.nodes
-    hx, hy = contact.grid.spacing
-    auto = ", before refine" if read.grid is not None and read.grid.refine == "auto" else ""
-    table.add_row("grid", f"{nx} x {ny}", f"nodes of {1e6 * hx:.4g} um x {1e6 * hy:.4g} um{auto}")
-    provenance = contact.surface.provenance
-    kind = provenance.get("kind") or provenance["source"]
-    table.add_row("surface", f"{1e6 * rms:.4g}", f"um Sq, {kind}")
-    if read.realisations > 1:
-        table.add_row("realisations", str(read.realisations), "surfaces; the first is described")
-    for key, (label, scale, unit) in labels.items():
-        if key not in quantities or (key == "yield_strength_Pa" and quantities[key] is None):
-            continue
-        value = quantities[key]
-        table.add_row(label, "-" if value is None else f"{scale * value:.5g}", unit)
-    needed = in_words(read.run_bytes(contact.grid))
-    table.add_row("memory of a run, at most", needed, f"of {in_words(available())}{auto}")
+        table = _table(read, contact)
     answers.print(table)
     if (from_where := read.yielding().source) not in ("given", "elastic"):
         say(f"The contact yields at: {from_where}.")
@@ -76,4 +67,54 @@ def check(
         warnings = input_warnings(contact, deepest)
     for warning in warnings:
         warn(warning)
-    answers.print("The case is valid." if not warnings else "The case is valid, with warnings.")
+    ending = ", with warnings." if warnings else "."
+    if cases:
+        say(f"The study of {cases} cases is valid{ending} The table describes its first case.")
+    else:
+        say(f"The case is valid{ending}")
+    say_next(command("study" if cases else "run", case, "-o", "OUT"))
+
+
+def _read(path: Path) -> tuple[Case, int]:
+    """The case in the file `path`, or the first one of a study; number of cases of a study or 0."""
+    from restitution.case.case_file import naming, parse_case, parse_toml, read_text
+    from restitution.sweeps.sweep import parse_study
+
+    text = read_text(path)
+    with naming(path):
+        if "sweep" not in parse_toml(text):
+            return parse_case(text), 0
+        study = parse_study(text)
+        return parse_case(study.cases[0].text), len(study.cases)
+
+
+def _table(case: Case, contact: Contact) -> Table:
+    from rich.table import Table
+
+    from restitution.case.derived import derived_quantities
+    from restitution.numerics.memory import available, in_words
+    from restitution.surfaces import describe
+
+    table = Table(box=None, show_header=False)
+    table.add_column(justify="left")
+    table.add_column(justify="right")
+    table.add_column(justify="left")
+    nx, ny = contact.grid.nodes
+    hx, hy = contact.grid.spacing
+    auto = ", before refine" if case.grid is not None and case.grid.refine == "auto" else ""
+    table.add_row("grid", f"{nx} x {ny}", f"nodes of {1e6 * hx:.4g} um x {1e6 * hy:.4g} um{auto}")
+    provenance = contact.surface.provenance
+    kind = provenance.get("kind") or provenance["source"]
+    rms = describe(contact.surface)["Sq_m"] or 0.0
+    table.add_row("surface", f"{1e6 * rms:.4g}", f"um Sq, {kind}")
+    if case.realisations > 1:
+        table.add_row("realisations", str(case.realisations), "surfaces; the first is described")
+    quantities = derived_quantities(case, contact)
+    for key, (label, scale, unit) in _LABELS.items():
+        if key not in quantities or (key == "yield_strength_Pa" and quantities[key] is None):
+            continue
+        value = quantities[key]
+        table.add_row(label, "-" if value is None else f"{scale * value:.5g}", unit)
+    needed = in_words(case.run_bytes(contact.grid))
+    table.add_row("memory of a run, at most", needed, f"of {in_words(available())}{auto}")
+    return table

@@ -1,4 +1,4 @@
-"""`restitution compare`: two results side by side."""
+"""`restitution compare`: differences between two results."""
 
 from pathlib import Path
 from typing import Annotated
@@ -11,13 +11,17 @@ def compare(
         Path, typer.Argument(help="Results folder of a run or study.", metavar="A", readable=False)
     ],
     b: Annotated[
-        Path, typer.Argument(help="Another of the same kind.", metavar="B", readable=False)
+        Path, typer.Argument(help="Results folder of the same kind.", metavar="B", readable=False)
     ],
     out: Annotated[
-        Path | None, typer.Option("-o", "--out", help="CSV file for the rows; new.", readable=False)
+        Path | None,
+        typer.Option(
+            "-o", "--out", metavar="FILE", help="New CSV file for the table.", readable=False
+        ),
     ] = None,
 ) -> None:
-    """Print what differs between the results in A and B, with the errors of the differences."""
+    """Print the differences between the results in A and B, with their errors."""
+    from rich.markup import escape
     from rich.table import Table
 
     from restitution.cli.console import answers, say
@@ -33,19 +37,19 @@ def compare(
         for name in ("input", "A", "B"):
             inputs.add_column(name, overflow="fold")
         for differing in found.inputs:
-            inputs.add_row(*(_plain(cell) for cell in differing))
+            inputs.add_row(*(escape(cell) for cell in differing))
         answers.print(inputs)
         answers.print()
     swept = [key for key in (found.rows[0] if found.rows else {}) if "." in key or key == "title"]
     table = Table(box=None, header_style="bold")
     for name in swept:
-        table.add_column(_plain(name))
+        table.add_column(escape(name))
     for name in ("indentation (nm)", "COR A", "COR B", "difference", "error", "force B/A", ""):
         table.add_column(name, justify="right")
     for row in found.rows:
         marks = ("" if row["significant"] else "within error") if row["resolved"] else "unresolved"
         table.add_row(
-            *(_plain(row[key]) for key in swept),
+            *(escape(row[key]) for key in swept),
             f"{1e9 * row['max_indentation_m']:.4g}",
             f"{row['restitution_a']:.4f}",
             f"{row['restitution_b']:.4f}",
@@ -59,13 +63,6 @@ def compare(
         worst = max(found.rows, key=lambda row: abs(row["difference"]))
         answers.print(f"largest difference of COR {worst['difference']:+.4f}")
     else:
-        answers.print("no depth in common")
+        answers.print("The results have no depth in common.")
     for note in found.notes:
         say(f"Note: {note}")
-
-
-def _plain(text: str) -> str:
-    """A text of the user's where rich would read markup in it."""
-    from rich.markup import escape
-
-    return escape(text)

@@ -1,4 +1,4 @@
-"""`restitution compare-theory`: what published closed forms say of the smooth bodies of a case."""
+"""`restitution compare-theory`: COR of the smooth bodies of a case by published closed forms."""
 
 import math
 import textwrap
@@ -8,21 +8,20 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from restitution.cli.running import FigureFormat, Figures
+from restitution.cli.parameters import CaseFile, FigureFormat, Figures
 
 if TYPE_CHECKING:
     from restitution.laws.theories import Theory
 
 
 def compare_theory(
-    case: Annotated[
-        Path, typer.Argument(help="Case file (TOML).", show_default=False, readable=False)
-    ],
+    case: CaseFile,
     out: Annotated[
         Path | None,
         typer.Option(
             "-o",
             "--out",
+            metavar="OUT",
             help="Folder for theory.csv and a figure, theory.png; new or empty.",
             readable=False,
         ),
@@ -31,16 +30,17 @@ def compare_theory(
         Path | None,
         typer.Option(
             "--law",
-            help="Folder of `restitution fit-law` for the same pair: its points.",
+            metavar="LAW",
+            help="Folder of `restitution fit-law` for the same pair, to list its points as well.",
             readable=False,
         ),
     ] = None,
     figures: Figures = FigureFormat.png,
 ) -> None:
-    """Print COR against velocity of every published closed form for the smooth bodies of CASE."""
+    """Print COR of the smooth bodies of CASE against velocity, by published closed forms."""
     from restitution.case.case_file import naming, read_case
-    from restitution.cli.console import answers, say
-    from restitution.laws import theories as room
+    from restitution.cli.console import answers, command, say, say_next, say_written
+    from restitution.laws import theories
     from restitution.laws.law_files import read_law, write_theories
     from restitution.plots.static import write_figure
     from restitution.plots.theories import theory_figure
@@ -49,18 +49,18 @@ def compare_theory(
     points = None if law is None else read_law(law)
     with naming(case):
         if points is not None:
-            room.check_same_pair(read, points)
-        velocities = room.velocities_of(read, points)
-        found = room.theories(read, velocities, points)
-        missing = room.left_out(read, points)
+            theories.check_same_pair(read, points)
+        velocities = theories.velocities_of(read, points)
+        found = theories.theories(read, velocities, points)
+        missing = theories.left_out(read, points)
     written = []
     if out is not None:
         written.append(write_theories(velocities, found, out))
-        lines = room.theory_lines(read, velocities, found)
-        figure = theory_figure(read.title, lines, room.marks(read), points)
+        lines = theories.theory_lines(read, velocities, found)
+        figure = theory_figure(read.title, lines, theories.marks(read), points)
         written.append(write_figure(out / "theory", figure, figures.value))
 
-    say("COR of the smooth bodies by impact velocity (m/s); - is outside of a theory's range")
+    say("COR of the smooth bodies at impact velocities (m/s); - is outside the range of a theory")
     for table in _tables(velocities.tolist(), found, answers.width):
         answers.print(table)
     for each in found:
@@ -73,21 +73,21 @@ def compare_theory(
         names = ", ".join(name for name, why in missing.items() if why == reason)
         say(f"left out: {names}: {reason}")
     if {"sticking", "thornton-ning"} <= missing.keys():
-        say("Elastic and without adhesion: only Hertz applies, and he says that nothing is lost.")
-    if written:
-        say(f"In {out}: {', '.join(path.name for path in written)}")
+        say("The bodies are elastic and do not adhere: only Hertz applies, COR = 1.")
+    if out is not None:
+        say_written(out, [path.name for path in written])
     if law is None:
-        say("Next: --law LAW, a folder of `restitution fit-law`, puts computed points beside these")
+        say_next(command("compare-theory", case, "--law", "LAW") + " (adds computed points)")
 
 
 def _tables(velocities: list[float], found: "list[Theory]", width: int) -> Iterator[object]:
-    """One column a theory, in as many tables as the width of the terminal asks for."""
+    """A column for each theory, in as many tables as the width of the terminal needs."""
     from rich.table import Table
 
     heads = ["\n".join(textwrap.wrap(each.name, 9, break_long_words=False)) for each in found]
     start = 0
     while start < len(found):
-        end, left = start, width - 11  # of the velocities
+        end, left = start, width - 11  # 11 for the column of velocities
         while end < len(found) and (end == start or left >= _width(heads[end])):
             left -= _width(heads[end])
             end += 1

@@ -1,9 +1,9 @@
-"""The two consoles: answers on standard output, everything about the run on standard error."""
+"""The two consoles: answers on standard output, progress and warnings on standard error."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+import shlex
+from collections.abc import Iterable
 from functools import cache
-from threading import Timer
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rich.console import Console
@@ -11,21 +11,20 @@ from rich.console import Console
 from restitution.errors import one_line
 
 if TYPE_CHECKING:
+    from rich.status import Status
     from rich.table import Table
-
-_PATIENCE = 2.0  # s without a sign of life
 
 answers = Console(highlight=False)
 errors = Console(stderr=True, highlight=False)
 
 
 def say(text: str, console: Console = answers, style: str | None = None) -> None:
-    """Print one line as it is, without markup and not wrapped."""
+    """Print one line verbatim: without markup, and not wrapped."""
     console.print(text, style=style, markup=False, soft_wrap=True)
 
 
 def table_of_numbers(*columns: str) -> "Table":
-    """An empty table with columns of those names."""
+    """An empty table with right-aligned columns."""
     from rich.table import Table
 
     table = Table(box=None, header_style="bold")
@@ -46,7 +45,7 @@ def print_error(message: str) -> None:
 
 @cache
 def hint_at_kernels() -> None:
-    """Say on standard error, once, where solves are slow for want of compiled kernels."""
+    """Say on standard error, once, if solves are slow because compiled kernels are missing."""
     from restitution.numerics.convolution.device import CPU, current
     from restitution.numerics.kernels import missing
 
@@ -54,16 +53,22 @@ def hint_at_kernels() -> None:
         say(f"Hint: {why}", errors)
 
 
-@contextmanager
-def waiting(words: str) -> Iterator[None]:
-    """Show a spinner with `words` on standard error where the block takes more than two seconds."""
-    status = errors.status(words)
-    later = Timer(_PATIENCE, status.start)
-    later.daemon = True
-    later.start()
-    try:
-        yield
-    finally:
-        later.cancel()
-        later.join()  # it may be starting the spinner right now
-        status.stop()
+def waiting(words: str) -> "Status":
+    """A context manager that shows a spinner with `words` on the standard error of a terminal."""
+    return errors.status(words)
+
+
+def command(verb: str, *arguments: object) -> str:
+    """A command line that calls `verb`, quoted for a shell."""
+    return shlex.join(["restitution", verb, *map(str, arguments)])
+
+
+def say_written(path: Path, names: Iterable[str] = ()) -> None:
+    """Name the file that a verb has written, or list the `names` of files in a folder."""
+    inside = ", ".join(names)
+    say(f"In {path}: {inside}" if inside else f"Written: {path}")
+
+
+def say_next(line: str) -> None:
+    """Name the command that usually follows."""
+    say(f"Next: {line}")

@@ -5,15 +5,15 @@ from typing import Annotated
 
 import typer
 
-from restitution.cli.running import (
+from restitution.cli.parameters import (
     CaseFile,
     Device,
     FigureFormat,
     Figures,
     OnDevice,
     OutFolder,
-    carry_out,
 )
+from restitution.cli.running import run_with_progress
 
 
 def converge(
@@ -21,7 +21,8 @@ def converge(
     case: CaseFile,
     out: OutFolder,
     grids: Annotated[
-        int, typer.Option(min=2, max=5, help="How many, each with cells half as large.")
+        int,
+        typer.Option(min=2, max=5, metavar="N", help="Number of grids; each halves the spacing."),
     ] = 3,
     device: OnDevice = Device.cpu,
     figures: Figures = FigureFormat.png,
@@ -30,7 +31,7 @@ def converge(
     from restitution.cli.console import answers
     from restitution.runs.convergence import run_convergence
 
-    summary = carry_out(
+    summary = run_with_progress(
         context, case, out, device, lambda _: grids, partial(run_convergence, grids=grids), figures
     )
     order = summary["observed_order"]

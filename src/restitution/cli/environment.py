@@ -1,4 +1,4 @@
-"""What the environment of a process may hold that would end a command in the middle."""
+"""Check settings of the environment that would make a command fail halfway."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ from collections.abc import Sequence
 
 from restitution.errors import CaseError, shown
 
-_THREADS = ("DUCC0_NUM_THREADS", "OMP_NUM_THREADS")  # the first that is set counts
+_THREADS = ("DUCC0_NUM_THREADS", "OMP_NUM_THREADS")  # the first that is set is used
 
 
 def prepare(arguments: Sequence[str]) -> None:
     """Check the arguments of the command line and the variables that libraries read.
 
-    Raises `CaseError` for a number of threads that is none, and for a path that is not UTF-8: the
-    netCDF library takes no other.
+    Raises `CaseError` for an invalid number of threads, and for a path that is not UTF-8, which the
+    netCDF library requires.
     """
-    # Figures are drawn into files, whatever windows the user's other programs open.
+    # Figures are only drawn into files, even if the user has set an interactive backend.
     os.environ["MPLBACKEND"] = "agg"
     _check_threads()
     for path in (*arguments, _current_folder()):
@@ -24,7 +24,7 @@ def prepare(arguments: Sequence[str]) -> None:
             path.encode()
         except UnicodeEncodeError:
             raise CaseError(
-                f"{shown(path, 200)}: is not UTF-8, and netCDF files need a path that is; rename it"
+                f"{shown(path, 200)}: is not UTF-8, which netCDF requires of paths; rename it"
             ) from None
 
 
@@ -43,7 +43,7 @@ def _check_threads() -> None:
     if not text.strip():
         del os.environ[name]
         return
-    # OpenMP takes a list, whose first number is that of the outermost level.
+    # OpenMP accepts a list; its first number is for the outermost level.
     first = text.split(",")[0].strip() if name == "OMP_NUM_THREADS" else text.strip()
     if not (first.isascii() and first.isdigit() and len(first) < 10):
         raise CaseError(

@@ -1,4 +1,4 @@
-"""`restitution export`: laws as the input of a DEM code."""
+"""`restitution export`: write laws as the input of a DEM code."""
 
 from enum import StrEnum
 from pathlib import Path
@@ -8,7 +8,7 @@ import typer
 
 
 class Code(StrEnum):
-    """What laws can be exported to."""
+    """DEM codes and formats that laws can be exported to."""
 
     lammps = "lammps"
     liggghts = "liggghts"
@@ -18,26 +18,35 @@ class Code(StrEnum):
     csv = "csv"
 
 
+_CODES = f"DEM code: {', '.join(Code)}."
+
+
 def export(
     laws: Annotated[
         list[Path],
         typer.Argument(
-            metavar="LAW...",
+            metavar="LAW",
             help="Folders of `restitution fit-law`, one for every pair of particles, or of "
             "`restitution mixture`.",
             show_default=False,
             readable=False,
         ),
     ],
-    to: Annotated[Code, typer.Option(help="DEM code.", show_default=False)],
-    out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the files.", readable=False)],
+    to: Annotated[Code, typer.Option(metavar="CODE", help=_CODES, show_default=False)],
+    out: Annotated[
+        Path,
+        typer.Option("-o", "--out", metavar="OUT", help="Folder for the files.", readable=False),
+    ],
     velocity: Annotated[
         str | None,
-        typer.Option(help='Impact velocity, such as "1 m/s"; not needed for csv.'),
+        typer.Option(
+            metavar="VELOCITY", help='Impact velocity, such as "1 m/s"; not needed for csv.'
+        ),
     ] = None,
 ) -> None:
-    """Write input for a DEM code: the restitution of every pair, with what it holds for."""
-    from restitution.cli.console import say, warn
+    """Write the input of a DEM code to OUT: COR of every pair, with the conditions it holds for."""
+    from restitution.cli.console import say, say_written
+    from restitution.cli.warn_once import warn_once
     from restitution.dem.export import export as exported
     from restitution.dem.export import write_export
     from restitution.laws.law import velocity_of
@@ -46,15 +55,15 @@ def export(
     read = read_laws(laws)
     at = None if velocity is None else velocity_of(velocity)
     texts = exported(read, to.value, at)
-    for law in read:
-        for warning in law.warnings:
-            warn(f"{law.pair}: {warning}")
-        if at is not None and not law.at(at).resolved:
-            warn(f"{law.pair}: not resolved by the grid at {at:g} m/s; the files say so, too")
+    with warn_once() as warn:
+        for law in read:
+            for warning in law.warnings:
+                warn(warning, law.pair)
+            if at is not None and not law.at(at).resolved:
+                warn(f"COR at {at:g} m/s is not resolved by the grid; the files say so", law.pair)
     written = write_export(texts, out)
     if at is not None:
         for law in read:
             found = law.at(at)
             say(f"{law.pair}: COR {found.restitution:.4f} ± {found.error:.2g} at {at:g} m/s")
-    names = ", ".join(path.name for path in written)
-    say(f"In {out}: {names}")
+    say_written(out, [path.name for path in written])

@@ -1,11 +1,11 @@
-"""`restitution fit-law`: restitution against impact velocity, in the form that DEM codes take."""
+"""`restitution fit-law`: COR against impact velocity, and the force laws fitted to it."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from restitution.cli.running import FigureFormat, Figures
+from restitution.cli.parameters import FigureFormat, Figures
 
 if TYPE_CHECKING:
     from restitution.laws.law import FittedLaw, Law
@@ -15,21 +15,32 @@ def fit_law(
     results: Annotated[
         Path,
         typer.Argument(
-            metavar="OUT",
+            metavar="RESULTS",
             help="Results folder of a run, ensemble or convergence study.",
             show_default=False,
             readable=False,
         ),
     ],
     out: Annotated[
-        Path, typer.Option("-o", "--out", help="Folder for the law; new or empty.", readable=False)
+        Path,
+        typer.Option(
+            "-o", "--out", metavar="OUT", help="Folder for the law; new or empty.", readable=False
+        ),
     ],
     figures: Figures = FigureFormat.png,
 ) -> None:
-    """Write the restitution law of the results in OUT: table, compact fit, simpler laws."""
+    """Write the restitution law of RESULTS to OUT: table, compact fit and fitted force laws."""
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-    from restitution.cli.console import answers, errors, say, warn
+    from restitution.cli.console import (
+        answers,
+        command,
+        errors,
+        say,
+        say_next,
+        say_written,
+        warn,
+    )
 
     columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
     with Progress(*columns, console=errors, transient=True) as bar:
@@ -57,13 +68,12 @@ def fit_law(
         say(line)
     if found.laws:
         answers.print(_table(found.laws))
-    names = ", ".join(path.name for path in written)
-    say(f"In {out}: {names}")
-    say(f"Its error is: {found.conventions.restitution_error}.")
+    say(f"The error of COR includes {found.conventions.restitution_error}.")
+    say_written(out, [path.name for path in written])
     if found.sticks_everywhere:
         return
     speed = f"{_middle(found):.2g} m/s"
-    say(f'Next: restitution export {out} --to lammps --velocity "{speed}" -o INPUT')
+    say_next(command("export", out, "--to", "lammps", "--velocity", speed, "-o", "OUT"))
 
 
 def _in_words(law: "Law") -> list[str]:
@@ -73,7 +83,7 @@ def _in_words(law: "Law") -> list[str]:
     if law.sticks_below is not None:
         lines.append(f"sticks below {law.sticks_below:.4g} m/s")
     if law.fit is None and law.column("restitution").min() > 1 - LOSS:
-        lines.append("nothing is lost at any of these velocities, and nothing is fitted")
+        lines.append("COR is 1 at all of these velocities: there is nothing to fit")
     elif law.fit is None:
         lines.append("no compact fit: too few resolved velocities (four or more are needed)")
     else:

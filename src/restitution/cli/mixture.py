@@ -5,11 +5,11 @@ from typing import Annotated
 
 import typer
 
-from restitution.cli.running import FigureFormat, Figures, OutFolder
+from restitution.cli.parameters import FigureFormat, Figures, OutFolder, Scheduler, Workers
 
 
 def mixture(
-    file: Annotated[
+    mixture: Annotated[
         Path,
         typer.Argument(
             help="Mixture file (TOML): materials, sizes, walls and velocities.",
@@ -19,46 +19,38 @@ def mixture(
         ),
     ],
     out: OutFolder,
-    workers: Annotated[
-        int | None,
-        typer.Option(min=1, help="Processes on this machine.", show_default="all cores"),
-    ] = None,
-    scheduler: Annotated[
-        str | None, typer.Option(help="Address of a Dask scheduler, tcp://…, to compute on.")
-    ] = None,
+    workers: Workers = None,
+    scheduler: Scheduler = None,
     resume: Annotated[
-        bool, typer.Option("--resume", help="Finish what is missing in OUT.")
+        bool, typer.Option("--resume", help="Compute the curves that OUT does not hold yet.")
     ] = False,
     figures: Figures = FigureFormat.png,
 ) -> None:
-    """Compute the restitution law of every pair in MIXTURE and write all of them to OUT."""
+    """Compute the restitution law of every pair in MIXTURE; write all laws to OUT."""
     import time
 
-    from restitution.cli.console import say, warn
-    from restitution.cli.many import many_cases
-    from restitution.errors import CaseError
+    from restitution.cli.cases_progress import cases_progress
+    from restitution.cli.console import command, say, say_next, say_written, warn
     from restitution.mixtures.mixture import run_mixture
     from restitution.mixtures.mixture_file import read_mixture
     from restitution.mixtures.mixture_folder import open_mixture_folder, write_mixture
     from restitution.plots.mixture import mixture_figure
     from restitution.plots.static import write_figure
-    from restitution.sweeps.executors import cluster_workers, local_workers
+    from restitution.sweeps.executors import chosen_workers
     from restitution.sweeps.scheduler import Tally
 
-    if scheduler is not None and workers is not None:
-        raise CaseError("workers: belongs to this machine, and --scheduler to another; give one")
-    read = read_mixture(file)
+    where = chosen_workers(workers, scheduler)
+    read = read_mixture(mixture)
     folder = open_mixture_folder(out, read, resume=resume)
-    again = f"restitution mixture {file} -o {out} --resume"
+    again = command("mixture", mixture, "-o", out, "--resume")
     began = time.perf_counter()
-    where = cluster_workers(scheduler) if scheduler else local_workers(workers)
-    with many_cases(None, out, again) as bar, folder.locked(), where as there:
+    with cases_progress(None, out, again) as bar, folder.locked(), where as there:
         task = bar.add_task("curves", total=None)
 
         def show(tally: Tally) -> None:
             bar.update(task, total=tally.cases, completed=tally.done)
 
-        pairs = run_mixture(read, file.parent.resolve(), folder, there, show)
+        pairs = run_mixture(read, mixture.parent.resolve(), folder, there, show)
         runs = len(folder.study.cases)
         names = write_mixture(out, read, pairs, runs, time.perf_counter() - began)
     picture = mixture_figure(read.title, [pair.law for pair in pairs])
@@ -71,6 +63,6 @@ def mixture(
         f"{len(pairs)} pairs from {runs} computed curves; interpolation between sizes adds at most "
         f"{worst:.2g} to the error of COR"
     )
-    say(f"In {out}: {', '.join(sorted(names))}")
-    speed = (read.velocities[0] * read.velocities[-1]) ** 0.5
-    say(f'Next: restitution export {out} --to lammps --velocity "{speed:.2g} m/s" -o INPUT')
+    say_written(out, sorted(names))
+    speed = f"{(read.velocities[0] * read.velocities[-1]) ** 0.5:.2g} m/s"
+    say_next(command("export", out, "--to", "lammps", "--velocity", speed, "-o", "INPUT"))

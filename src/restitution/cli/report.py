@@ -1,4 +1,4 @@
-"""`restitution report`: a page of what a folder holds."""
+"""`restitution report`: an HTML page of stored results."""
 
 from pathlib import Path
 from typing import Annotated
@@ -7,16 +7,19 @@ import typer
 
 
 def report(
-    out: Annotated[
+    results: Annotated[
         Path,
         typer.Argument(
-            help="Results folder of a run, study or surface.", show_default=False, readable=False
+            metavar="RESULTS",
+            help="Results folder of a run, study or surface.",
+            show_default=False,
+            readable=False,
         ),
     ],
 ) -> None:
-    """Write a self-contained HTML page of the results in OUT."""
-    from restitution.cli.console import say
+    """Write a self-contained HTML page of RESULTS into its folder."""
+    from restitution.cli.console import say_written
     from restitution.pages.report import write_report
 
-    page = write_report(out)
-    say(f"Written: {page}")
+    page = write_report(results)
+    say_written(page)

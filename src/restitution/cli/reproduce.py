@@ -1,30 +1,31 @@
-"""`restitution reproduce`: the figures of the paper the program grew from."""
+"""`restitution reproduce`: the figures of Ghanbarzadeh et al. (2019), and its claims."""
 
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from restitution.cli.parameters import OutFolder, Workers
+
 
 def reproduce(
-    out: Annotated[
-        Path, typer.Option("-o", "--out", help="Folder for studies and report.", readable=False)
-    ],
-    quick: Annotated[bool, typer.Option("--quick", help="Smaller: about three minutes.")] = False,
-    refined: Annotated[
-        bool, typer.Option("--refined", help="Rough contacts on a grid twice as fine.")
+    out: OutFolder,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Smaller grids and fewer cases: about three minutes.")
     ] = False,
-    workers: Annotated[
-        int | None,
-        typer.Option(min=1, help="Processes on this machine.", show_default="all cores"),
-    ] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Finish what is missing.")] = False,
+    refined: Annotated[
+        bool, typer.Option("--refined", help="Halve the grid spacing of rough contacts.")
+    ] = False,
+    workers: Workers = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Compute the cases that OUT does not hold yet.")
+    ] = False,
 ) -> None:
-    """Compute Figures 5 to 14 of Ghanbarzadeh et al. (2019) and judge its claims."""
+    """Compute Figures 5 to 14 of Ghanbarzadeh et al. (2019) and check the claims of the paper."""
     from rich.table import Table
 
-    from restitution.cli.console import answers, say
-    from restitution.cli.many import many_cases
+    from restitution.cli.cases_progress import cases_progress
+    from restitution.cli.console import answers, command, say_written
     from restitution.errors import CaseError
     from restitution.reproduce.report import write_reproduction
     from restitution.reproduce.studies import NAMES, Size, bundled
@@ -34,15 +35,16 @@ def reproduce(
     from restitution.sweeps.study_folder import StudyFolder
 
     if quick and refined:
-        raise CaseError("--quick and --refined: are two sizes; give one")
+        raise CaseError("--quick, --refined: choose one of the two sizes")
     size: Size = "quick" if quick else "refined" if refined else "paper"
     if not resume:
         make_folder(out, "go on with --resume")
-    again = f"restitution reproduce -o {out}{' --' + size if size != 'paper' else ''} --resume"
+    option = [] if size == "paper" else [f"--{size}"]
+    again = command("reproduce", "-o", out, *option, "--resume")
     studies = {name: bundled(name, size) for name in NAMES}
     total = sum(len(study.cases) for study in studies.values())
     done = 0
-    with many_cases(total, out, again) as bar, local_workers(workers) as there:
+    with cases_progress(total, out, again) as bar, local_workers(workers) as there:
         task = bar.add_task("starting", total=total)
         for name, study in studies.items():
 
@@ -61,4 +63,4 @@ def reproduce(
     for finding in findings:
         table.add_row(finding.figure, finding.claim, finding.verdict)
     answers.print(table)
-    say(f"Written: {page}")
+    say_written(page)

@@ -1,16 +1,16 @@
-"""`restitution run`: a case from start to figures."""
+"""`restitution run`: compute one case and draw its figures."""
 
 import typer
 
-from restitution.cli.running import (
+from restitution.cli.parameters import (
     CaseFile,
     Device,
     FigureFormat,
     Figures,
     OnDevice,
     OutFolder,
-    carry_out,
 )
+from restitution.cli.running import run_with_progress
 
 
 def run(
@@ -20,7 +20,9 @@ def run(
     device: OnDevice = Device.cpu,
     figures: Figures = FigureFormat.png,
 ) -> None:
-    """Load and unload the contact of CASE and write its curves, restitution and figures to OUT."""
+    """Load and unload the contact of CASE; write curves, restitution and figures to OUT."""
     from restitution.runs.ensemble import run_realisations
 
-    carry_out(context, case, out, device, lambda read: read.realisations, run_realisations, figures)
+    run_with_progress(
+        context, case, out, device, lambda read: read.realisations, run_realisations, figures
+    )

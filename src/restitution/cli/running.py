@@ -1,13 +1,14 @@
-"""What the verbs that solve have in common: progress, warnings, results, and a polite end."""
+"""Verbs that solve one case: progress, warnings, results, and how an interrupted run ends."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import typer
+
+from restitution.cli.parameters import Device, FigureFormat
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -16,36 +17,7 @@ if TYPE_CHECKING:
     from restitution.results.writer import ResultsFolder
 
 
-class Device(StrEnum):
-    """What solves may run on."""
-
-    cpu = "cpu"
-    gpu = "gpu"
-    auto = "auto"
-
-
-class FigureFormat(StrEnum):
-    """What figures may be written as."""
-
-    png = "png"
-    svg = "svg"
-    pdf = "pdf"
-
-
-CaseFile = Annotated[
-    Path, typer.Argument(help="Case file (TOML).", show_default=False, readable=False)
-]
-OutFolder = Annotated[
-    Path, typer.Option("-o", "--out", help="Folder for the results; new or empty.", readable=False)
-]
-OnDevice = Annotated[
-    Device, typer.Option(help="Where to solve; auto uses a GPU if available (needs CuPy).")
-]
-
-Figures = Annotated[FigureFormat, typer.Option("--figures", help="Format of the figures.")]
-
-
-def carry_out(
+def run_with_progress(
     context: typer.Context,
     case: Path,
     out: Path,
@@ -54,10 +26,11 @@ def carry_out(
     start: Callable[..., dict[str, Any]],
     figures: FigureFormat,
 ) -> dict[str, Any]:
-    """Read the file `case`, let `start` compute into `out`, and say what came of it.
+    """Compute the case file `case` into `out` by calling `start`, and print and draw the results.
 
-    `runs(case)` is how many curves will be computed; `start` is called as `run_realisations`, and
-    its summary is returned. However it ends, what was computed is kept and drawn.
+    `start` has the parameters of `run_realisations`; its summary is returned. `runs(case)` is the
+    number of curves, for the progress bar. An interrupted or failed run keeps and draws the depths
+    that were computed.
     """
     from rich.progress import (
         BarColumn,
@@ -68,8 +41,17 @@ def carry_out(
     )
 
     from restitution.case.case_file import naming, read_case
-    from restitution.cli.console import answers, errors, hint_at_kernels, say, warn
+    from restitution.cli.console import (
+        answers,
+        command,
+        errors,
+        hint_at_kernels,
+        say,
+        say_next,
+        say_written,
+    )
     from restitution.cli.signals import Stopped, received
+    from restitution.cli.warn_once import warn_once
     from restitution.numerics.convolution.device import on_device
     from restitution.results.locking import locked
     from restitution.results.schema import LOCK
@@ -90,7 +72,11 @@ def carry_out(
     )
     depths = len(read.depths())
     try:
-        with naming(case), Progress(*columns, console=errors, transient=True) as bar:
+        with (
+            naming(case),
+            warn_once() as warn,
+            Progress(*columns, console=errors, transient=True) as bar,
+        ):
             task = bar.add_task("reading the surface", total=depths * runs(read) + steps(read))
             summary = start(
                 read,
@@ -111,20 +97,21 @@ def carry_out(
         drawn = {path.name for path in _draw(out, figures)}
     except KeyboardInterrupt as stop:
         errors.print("Interrupted.", style="red")
-        _keep(folder, depths, figures)
+        _draw_partial_results(folder, depths, figures)
         raise typer.Exit(stop.status if isinstance(stop, Stopped) else 130) from None
     except BaseException:
         if received:
             errors.print("Interrupted.", style="red")
-        _keep(folder, depths, figures)
+        _draw_partial_results(folder, depths, figures)
         raise
     names = [p.name for p in sorted(out.iterdir()) if p.name not in drawn and p.name != LOCK]
-    say(f"In {out}: {', '.join([*names, *sorted(drawn)])}")
+    say_written(out, [*names, *sorted(drawn)])
+    say_next(command("report", out))
     return summary
 
 
-def _keep(folder: ResultsFolder, depths: int, figures: FigureFormat) -> None:
-    """Say what a run that ended early leaves, and draw it."""
+def _draw_partial_results(folder: ResultsFolder, depths: int, figures: FigureFormat) -> None:
+    """Say how many depths a run had computed when it ended early, and draw them."""
     from contextlib import suppress
 
     from restitution.cli.console import errors, say
@@ -136,7 +123,7 @@ def _keep(folder: ResultsFolder, depths: int, figures: FigureFormat) -> None:
         f"{len(folder.rows)} of {depths} depths were computed{of} and are kept in {folder.path}",
         errors,
     )
-    with suppress(Exception):  # what ended the run is to be said, not that its figures fail, too
+    with suppress(Exception):  # report the error that ended the run, not a failing figure
         _draw(folder.path, figures)
 
 
@@ -170,6 +157,6 @@ def _curve(rows: list[dict[str, float]]) -> Table:
 
 
 def _uncertainty(row: dict[str, float]) -> str:
-    """The total error, where it is known."""
+    """The total error behind a sign ±; empty if it is not known."""
     error = row["total_error"]
     return "" if error != error else f" ± {error:.4f}"

@@ -1,4 +1,4 @@
-"""A polite end when a terminal closes or a scheduler's time is up: as if Ctrl-C had been typed."""
+"""Handle SIGTERM and SIGHUP (a scheduler's time limit, a closed terminal) like Ctrl-C."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 
-_AGAIN = 0.05  # s: by then the callback that swallowed a signal has returned
+_REPEAT_AFTER = 0.05  # s; by then the callback that dropped the exception has returned
 
 
 class Stopped(KeyboardInterrupt):
-    """The signal that asks this process to end; `status` is what the shell expects of it."""
+    """A signal to end this process; `status` is the exit status that shells expect."""
 
     def __init__(self, number: int) -> None:
         super().__init__(number)
         self.status = 128 + number
 
 
-# Compiled code that calls back into Python may turn `Stopped` into an error of its own: what has
-# been received tells such an error from one of the program.
+# Compiled code that calls Python may convert `Stopped` to another exception. The list of received
+# signals distinguishes such an exception from an error.
 received: list[int] = []
 
 
@@ -30,8 +30,8 @@ received: list[int] = []
 def stoppable() -> Iterator[None]:
     """Raise `Stopped` on SIGTERM and SIGHUP, unless the process was started to ignore them.
 
-    Python drops an exception that is raised in a destructor or in the callback of a weak reference.
-    Where that is a signal, or Ctrl-C, it is raised again a moment later.
+    Python drops exceptions that are raised in a destructor or in the callback of a weak reference.
+    A signal or Ctrl-C that is dropped there is raised again a moment later.
     """
 
     def stop(number: int, _: FrameType | None) -> None:
@@ -46,7 +46,7 @@ def stoppable() -> Iterator[None]:
             drop(dropped)
             return
         number = error.args[0] if isinstance(error, Stopped) else signal.SIGINT
-        timer = threading.Timer(_AGAIN, _signal_main_thread, (number,))
+        timer = threading.Timer(_REPEAT_AFTER, _signal_main_thread, (number,))
         timer.daemon = True
         timer.start()
 
@@ -66,7 +66,7 @@ def stoppable() -> Iterator[None]:
 
 
 def _signal_main_thread(number: int) -> None:
-    if hasattr(signal, "pthread_kill"):  # it also ends a sleep, or a call that waits
+    if hasattr(signal, "pthread_kill"):  # also interrupts system calls that wait
         signal.pthread_kill(threading.main_thread().ident or 0, number)
     else:
         _thread.interrupt_main(signal.Signals(number))

@@ -1,4 +1,4 @@
-"""`restitution simulate`: two particles run through the stored force law, in time."""
+"""`restitution simulate`: collisions integrated in time with the stored force curves."""
 
 from pathlib import Path
 from typing import Annotated
@@ -10,23 +10,30 @@ def simulate(
     results: Annotated[
         Path,
         typer.Argument(
-            metavar="OUT", help="Results folder of a run.", show_default=False, readable=False
+            metavar="RESULTS", help="Results folder of a run.", show_default=False, readable=False
         ),
     ],
     velocity: Annotated[
         list[str] | None,
         typer.Option(
+            metavar="VELOCITY",
             help='Impact velocity, such as "0.5 m/s"; may be repeated.',
             show_default="those of the unloading curves",
         ),
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option("-o", "--out", help="CSV file for the courses in time; new.", readable=False),
+        typer.Option(
+            "-o",
+            "--out",
+            metavar="FILE",
+            help="New CSV file for indentation, velocity and force over time.",
+            readable=False,
+        ),
     ] = None,
 ) -> None:
-    """Integrate collisions through the forces in OUT and compare with the energies' COR."""
-    from restitution.cli.console import answers, say, table_of_numbers
+    """Integrate collisions in time with the stored forces of RESULTS; compare COR with energies."""
+    from restitution.cli.console import answers, say_written, table_of_numbers
     from restitution.laws.from_results import bare_law
     from restitution.laws.law import velocity_of
     from restitution.laws.time_integration import collide_in_time, course, stored_force
@@ -34,9 +41,9 @@ def simulate(
 
     require_new_file(out)
     law, force = bare_law(results), stored_force(results)
-    asked = [velocity_of(text) for text in velocity or []]
+    velocities = [velocity_of(text) for text in velocity or []]
     unloaded = force.unloading_from
-    asked = asked or [
+    velocities = velocities or [
         point.velocity
         for point in law.points
         if (abs(unloaded / point.indentation - 1) < 1e-6).any()
@@ -52,9 +59,9 @@ def simulate(
         "depth (nm)",
     )
     courses, blended = [], False
-    for each in asked:
+    for each in velocities:
         found, energies = collide_in_time(force, each), law.at(each)
-        # The stored curves are as exact as their work is that of the energies.
+        # The force curves are as accurate as their work agrees with the stored energies.
         error = max(abs(found.restitution - energies.restitution), energies.error)
         courses += course(found)
         table.add_row(
@@ -73,8 +80,8 @@ def simulate(
     answers.print(table)
     if blended:
         answers.print(
-            "Some turn between two unloading curves, which are blended; with more of them "
-            "(unloading.curves) COR in time comes nearer to that by energies."
+            "Some collisions reverse between two stored unloading curves; forces are interpolated. "
+            "More curves (unloading.curves) bring COR in time closer to COR by energies."
         )
     if out is not None:
-        say(f"Written: {out}")
+        say_written(out)

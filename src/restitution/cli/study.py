@@ -5,11 +5,11 @@ from typing import Annotated
 
 import typer
 
-from restitution.cli.running import OutFolder
+from restitution.cli.parameters import OutFolder, Scheduler, Workers
 
 
 def study(
-    file: Annotated[
+    study: Annotated[
         Path,
         typer.Argument(
             help="Study file (TOML): a case and a table \\[sweep].",
@@ -19,40 +19,31 @@ def study(
         ),
     ],
     out: OutFolder,
-    workers: Annotated[
-        int | None,
-        typer.Option(min=1, help="Processes on this machine.", show_default="all cores"),
-    ] = None,
-    scheduler: Annotated[
-        str | None, typer.Option(help="Address of a Dask scheduler, tcp://…, to compute on.")
-    ] = None,
+    workers: Workers = None,
+    scheduler: Scheduler = None,
     resume: Annotated[
-        bool, typer.Option("--resume", help="Finish what is missing in OUT.")
+        bool, typer.Option("--resume", help="Compute the cases that OUT does not hold yet.")
     ] = False,
     retry_failed: Annotated[
-        bool, typer.Option("--retry-failed", help="With --resume: failed cases again, too.")
+        bool, typer.Option("--retry-failed", help="With --resume: also compute failed cases again.")
     ] = False,
 ) -> None:
-    """Run every case of STUDY and write a table of all of them to OUT."""
-
+    """Run all cases of STUDY; write their results and one table of them to OUT."""
     from restitution.case.case_file import parse_case
-    from restitution.cli.console import say, warn
-    from restitution.cli.many import many_cases
-    from restitution.errors import CaseError
-    from restitution.sweeps.executors import cluster_workers, local_workers
+    from restitution.cli.cases_progress import cases_progress
+    from restitution.cli.console import command, say, say_next, say_written, warn
+    from restitution.sweeps.executors import chosen_workers
     from restitution.sweeps.scheduler import Tally, run_study
     from restitution.sweeps.study_folder import StudyFolder
     from restitution.sweeps.sweep import read_study
 
-    if scheduler is not None and workers is not None:
-        raise CaseError("workers: belongs to this machine, and --scheduler to another; give one")
-    read = read_study(file)
+    where = chosen_workers(workers, scheduler)
+    read = read_study(study)
     folder = StudyFolder(out, read, resume=resume)
-    again = f"restitution study {file} -o {out} --resume"
+    again = command("study", study, "-o", out, "--resume")
     first = parse_case(read.cases[0].text)
     depths = len(first.depths()) * first.realisations
-    where = cluster_workers(scheduler) if scheduler else local_workers(workers)
-    with many_cases(len(read.cases), out, again) as bar, folder.locked(), where as there:
+    with cases_progress(len(read.cases), out, again) as bar, folder.locked(), where as there:
         task = bar.add_task("cases", total=len(read.cases))
 
         def show(tally: Tally) -> None:
@@ -64,13 +55,14 @@ def study(
             bar.update(task, completed=round(tally.done + within, 2), description=words or "cases")
 
         tally = run_study(
-            read, file.parent.resolve(), folder, there, show, retry_failed=retry_failed
+            read, study.parent.resolve(), folder, there, show, retry_failed=retry_failed
         )
     if tally.failed:
         warn(
-            f"{tally.failed} of {tally.cases} cases failed; their reasons are in the column reason "
-            "of table.csv"
+            f"{tally.failed} of {tally.cases} cases failed; the column reason of table.csv says why"
         )
-    say(f"{tally.done} of {tally.cases} cases. In {out}: cases, study.nc, study.toml, table.csv")
+    say(f"{tally.done} of {tally.cases} cases")
+    say_written(out, ["cases", "study.nc", "study.toml", "table.csv"])
     if tally.failed == tally.cases:
         raise typer.Exit(1)
+    say_next(command("report", out))

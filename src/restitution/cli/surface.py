@@ -1,31 +1,23 @@
 """`restitution surface`: make or read the surface of a case and describe it."""
 
-from pathlib import Path
-from typing import Annotated
-
 import typer
 
-from restitution.cli.running import FigureFormat, Figures
+from restitution.cli.parameters import CaseFile, FigureFormat, Figures, OutFolder
 
 
 def surface(
     context: typer.Context,
-    case: Annotated[
-        Path, typer.Argument(help="Case file (TOML).", show_default=False, readable=False)
-    ],
-    out: Annotated[
-        Path,
-        typer.Option("-o", "--out", help="Folder for the results; new or empty.", readable=False),
-    ],
+    case: CaseFile,
+    out: OutFolder,
     figures: Figures = FigureFormat.png,
 ) -> None:
-    """Write the surface of CASE to OUT: heights, ISO 25178 statistics, a picture and a page."""
+    """Write the surface of CASE to OUT: heights, ISO 25178 statistics, a figure and a page."""
     import xarray as xr
     from rich.table import Table
 
     from restitution.case import needs
     from restitution.case.case_file import naming, read_case
-    from restitution.cli.console import answers, say, waiting
+    from restitution.cli.console import answers, command, say_next, say_written, waiting
     from restitution.pages.surface import write_surface_page
     from restitution.plots.static import write_figure
     from restitution.plots.surface import surface_map
@@ -66,4 +58,5 @@ def surface(
     for key, value in statistics.items():
         table.add_row(key, "-" if value is None else f"{value:.5g}")
     answers.print(table)
-    say(f"In {out}: surface.nc, statistics.json, {picture.name}, surface.html")
+    say_written(out, ["surface.nc", "statistics.json", picture.name, "surface.html"])
+    say_next(command("run", case, "-o", "OUT"))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from restitution.display import quantity, summary_html, summary_text
 from restitution.errors import CaseError
 
 
@@ -46,6 +47,15 @@ class Body:
             return None
         return 4 / 3 * math.pi * self.radius**3 * self.density
 
+    def _summary(self) -> list[str]:
+        size = "flat" if math.isinf(self.radius) else f"R {quantity(self.radius, 'm')}"
+        density = "" if self.density is None else f", ρ {self.density:.4g} kg/m³"
+        E = quantity(self.youngs_modulus, "Pa")
+        return [f"{size}, E {E}, ν {self.poissons_ratio:.4g}{density}"]
+
+    __repr__ = summary_text
+    _repr_html_ = summary_html
+
 
 @dataclass(frozen=True)
 class Pair:
@@ -84,3 +94,19 @@ class Pair:
         if self.first.mass is None or self.second.mass is None:
             return None
         return 1 / (1 / self.first.mass + 1 / self.second.mass)
+
+    def _reduced(self) -> str:
+        """R*, E* and m*, as `repr` shows them."""
+        mass = "" if self.mass is None else f", m* {quantity(self.mass, 'kg')}"
+        R, E = quantity(self.radius, "m"), quantity(self.contact_modulus, "Pa")
+        return f"R* {R}, E* {E}{mass}"
+
+    def _summary(self) -> list[str]:
+        bodies = {"first": self.first, "second": self.second}
+        return [
+            self._reduced(),
+            *(f"{name}: {body._summary()[0]}" for name, body in bodies.items()),
+        ]
+
+    __repr__ = summary_text
+    _repr_html_ = summary_html

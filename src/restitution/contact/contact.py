@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from restitution.contact.bodies import Pair
 from restitution.contact.detachment import Detachment
+from restitution.display import quantity, summary_html, summary_text
 from restitution.errors import CaseError
 from restitution.numerics.grid import Grid
 from restitution.numerics.read_only import freeze
@@ -195,6 +196,20 @@ class Contact:
     def grid(self) -> Grid:
         """Grid of the surface, on which the contact is solved."""
         return self.surface.grid
+
+    def _summary(self) -> list[str]:
+        yields = "elastic"
+        if self.grows:
+            yields = f"yield strength {quantity(self.yield_strength, 'Pa')} ({self.plasticity})"
+        elif math.isfinite(self.yield_pressure):
+            yields = f"yield pressure {quantity(self.yield_pressure, 'Pa')} ({self.plasticity})"
+        w = quantity(self.work_of_adhesion, "J/m²")
+        adheres = f", work of adhesion {w}" if self.adhesive else ""
+        roughness, _, grid = self.surface._summary()
+        return [self.pair._reduced(), f"{yields}{adheres}", f"{roughness}; {grid}"]
+
+    __repr__ = summary_text
+    _repr_html_ = summary_html
 
     @property
     def apex(self) -> tuple[float, float]:

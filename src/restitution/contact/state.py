@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.contact.contact import Contact
+from restitution.display import counted, quantity, summary_html, summary_text
 from restitution.numerics.box import Box, reframe
 from restitution.numerics.read_only import read_only
 
@@ -121,6 +122,18 @@ class State:
         # Nodes in contact have a smaller gap than any node outside the box.
         box = self.box if self.contact_nodes else ...
         return float((self.contact.gap[box] + self.plastic_displacement[box]).min())
+
+    def _summary(self) -> list[str]:
+        stored, plastic = quantity(self.stored_energy, "J"), quantity(self.plastic_work, "J")
+        nodes, area = self.contact_nodes, quantity(self.contact_area, "m²")
+        return [
+            f"indentation {quantity(self.indentation, 'm')}, force {quantity(self.force, 'N')}",
+            f"contact area {area} ({counted(nodes, 'node')})",
+            f"stored energy {stored}, plastic work {plastic}",
+        ]
+
+    __repr__ = summary_text
+    _repr_html_ = summary_html
 
     def patch_sizes(self) -> NDArray[np.int64]:
         """Sizes of the contact patches, which are sets of nodes connected by cell edges.

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from restitution.case.quantities import read_positive
+from restitution.display import counted, quantity, summary_html, summary_text
 from restitution.errors import CaseError, DomainError, one_line
 from restitution.laws.interpolation import RatioCurve
 
@@ -266,6 +267,24 @@ class Law(_Stored):
     def pair(self) -> str:
         """The names of the two bodies."""
         return f"{self.first} and {self.second}"
+
+    def _summary(self) -> list[str]:
+        low, high = quantity(self.lowest, "m/s"), quantity(self.highest, "m/s")
+        e = self.column("restitution")
+        sticks = quantity(self.sticks_below, "m/s") if self.sticks_below else None
+        parts = [
+            f"sticks below {sticks}" if sticks else "",
+            f"fits: {', '.join(each.name for each in self.laws)}" if self.laws else "not fitted",
+            counted(len(self.warnings), "warning") if self.warnings else "",
+        ]
+        return [
+            self.pair,
+            f"COR {e.min():.4f} to {e.max():.4f} at {len(e)} velocities, {low} to {high}",
+            "; ".join(filter(None, parts)),
+        ]
+
+    __repr__ = __str__ = summary_text
+    _repr_html_ = summary_html
 
 
 def velocity_of(text: str) -> float:

@@ -18,6 +18,7 @@ from restitution.results.interruption import hold_signals
 from restitution.results.writer import make_folder, replace_file, write_checksums, write_table
 
 LAW_FILE = "law.json"
+LAWS = "laws"  # of a mixture
 
 
 def write_law(law: Law, out: Path) -> list[Path]:
@@ -68,9 +69,14 @@ def read_laws(folders: Sequence[Path]) -> list[Law]:
     """
     found: list[Law] = []
     for folder in folders:
-        inside = sorted((folder / "laws").glob("*/")) if folder.is_dir() else []
-        found += map(read_law, inside or [folder])
+        inside = sorted((folder / LAWS).iterdir()) if is_mixture(folder) else [folder]
+        found += map(read_law, inside)
     return found
+
+
+def is_mixture(folder: Path) -> bool:
+    """Whether `folder` holds the laws of a mixture."""
+    return (folder / LAWS).is_dir()
 
 
 def write_theories(velocities: NDArray[np.float64], found: list[Theory], out: Path) -> Path:

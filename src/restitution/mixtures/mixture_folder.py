@@ -7,14 +7,14 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from restitution.errors import OutputError
-from restitution.laws.law_files import write_law
+from restitution.laws.law_files import LAWS, write_law
 from restitution.mixtures.mixture import PairLaw, empty_study
 from restitution.mixtures.mixture_file import Mixture
 from restitution.results.reader import read_text
 from restitution.results.writer import make_folder, replace_file, write_json, write_table, writing
 from restitution.sweeps.study_folder import StudyFolder
 
-MIXTURE_FILE, RUNS, LAWS, PAIRS = "mixture.toml", "runs", "laws", "pairs.csv"
+MIXTURE_FILE, RUNS, PAIRS = "mixture.toml", "runs", "pairs.csv"
 
 
 def open_mixture_folder(out: Path, mixture: Mixture, *, resume: bool) -> StudyFolder:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.display import quantity, summary_html, summary_text
 from restitution.errors import CaseError, shown
 
 
@@ -67,6 +68,17 @@ class Grid:
     def y(self) -> NDArray[np.float64]:
         """Cell centres along the second axis (m), shape (ny,); zero at index ny // 2."""
         return _centres(self.nodes[1], self.spacing[1])
+
+    def _summary(self) -> list[str]:
+        spacing, size = (_sides(edges) for edges in (self.spacing, self.size))
+        return [f"{self.nodes[0]} × {self.nodes[1]} nodes of {spacing}, {size}"]
+
+    __repr__ = summary_text
+    _repr_html_ = summary_html
+
+
+def _sides(edges: tuple[float, float]) -> str:
+    return " × ".join(quantity(edge, "m") for edge in edges)
 
 
 def _both(name: str, value: Any, wanted: str) -> tuple[Any, Any]:

@@ -1,4 +1,4 @@
-"""What was used to compute, and where it was published: the end of every page."""
+"""Methods of a computation with their sources: the table at the end of every page."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _EQUILIBRIUM = (
 )
 _TRUNCATED = (
     "yield",
-    "elastic pressure cut at p_y",
+    "elastic pressure truncated at p_y",
     "Thornton and Ning (1998), Powder Technol. 99, 154–162",
 )
 _CAVITY = (
@@ -76,7 +76,7 @@ _REFERENCES = (
 
 
 def methods(summary: Mapping[str, Any]) -> Table:
-    """The methods that the run of `summary` (its `summary.json`) has used."""
+    """Table of the methods of the run whose `summary.json` is `summary`."""
     model = summary["model"]
     rows = list(_ALWAYS)
     if model["plasticity"] != "none":
@@ -88,4 +88,4 @@ def methods(summary: Mapping[str, Any]) -> Table:
         rows.append(_ROUGHNESS[source])
     rows += _REFERENCES
     versions = ", ".join(f"{name} {number}" for name, number in summary["versions"].items())
-    return Table("Methods", ["what", "how", "source"], rows, [f"Computed with {versions}."])
+    return Table("Methods", ["quantity", "method", "source"], rows, [f"Computed with {versions}."])

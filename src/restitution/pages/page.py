@@ -1,7 +1,7 @@
-"""A self-contained page: figures that can be read out, the numbers behind them, and tables.
+"""A self-contained HTML page: accessible figures, their numbers, and tables.
 
-No request leaves the file: the drawing library is part of it, and its security policy allows none.
-Texts of users are escaped by the template.
+The page contains the plotting library and makes no requests; its security policy forbids them. The
+template escapes texts of users.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ Cell = str | float | int | None
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of cells under column names, with lines of text before them."""
+    """Rows of cells under column names, after lines of text."""
 
     title: str
     columns: Sequence[str] = ()
@@ -36,7 +36,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Listing:
-    """A text as it stands in a file."""
+    """The verbatim text of a file."""
 
     title: str
     content: str
@@ -44,7 +44,7 @@ class Listing:
 
 @dataclass(frozen=True)
 class Drawing:
-    """A figure: what it shows in words (`alt`), how to read it (`caption`), and its numbers."""
+    """A figure with a text alternative (`alt`), a `caption`, and the table of its numbers."""
 
     title: str
     figure: Figure
@@ -55,7 +55,7 @@ class Drawing:
 
 @dataclass(frozen=True)
 class Page:
-    """A title, lines under it, warnings, and the parts that follow."""
+    """A title, introductory lines, warnings, and parts."""
 
     title: str
     intro: Sequence[str] = ()
@@ -64,7 +64,7 @@ class Page:
 
 
 def write_page(path: Path, page: Page) -> None:
-    """Write `page` as one HTML file, all of it or nothing. Raises `OutputError`."""
+    """Write `page` as one HTML file, atomically. Raises `OutputError`."""
     text = _environment().get_template("page.html").render(page=page, plotly=_plotly())
     replace_file(path, lambda to: to.write_text(text, encoding="utf-8"))
 
@@ -80,7 +80,7 @@ def _environment() -> Environment:
 
 
 def _plots(figure: Figure) -> list[dict[str, Any]]:
-    """What the template needs of every panel: drawing, title, form, and length of the legend."""
+    """Each panel for the template: JSON of Plotly, title, shape, and number of legend entries."""
     return [
         {
             "script": _within_script(interactive.draw(panel, figure).to_json()),
@@ -104,5 +104,5 @@ def _plotly() -> Markup:
 
 
 def _within_script(json: str) -> Markup:
-    """JSON that cannot end the script element it stands in."""
+    """`json`, escaped so that it cannot end the script element that contains it."""
     return Markup(json.replace("<", "\\u003c"))

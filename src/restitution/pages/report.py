@@ -1,4 +1,4 @@
-"""The page that belongs to a results folder, whatever made it."""
+"""Write the page of a results folder of any kind."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from restitution.pages.run import write_run_page
 from restitution.pages.study import write_study_page
 from restitution.pages.surface import write_surface_page
 
-# The file that tells what a folder holds, and what makes its page.
+# A file that identifies the kind of results, and the function that writes their page.
 _PAGES = {
     "study.toml": write_study_page,
     "results.nc": write_run_page,
@@ -18,7 +18,7 @@ _PAGES = {
 
 
 def write_report(out: Path) -> Path:
-    """Write the page of the folder `out` and return its path. Raises `OutputError`."""
+    """Write the page of the results in `out`; return its path. Raises `OutputError`."""
     for name, write in _PAGES.items():
         if (out / name).is_file():
             try:
@@ -31,6 +31,5 @@ def write_report(out: Path) -> Path:
                     f"{one_line(str(error))}); compute them again"
                 ) from error
     raise OutputError(
-        f"{out}: holds no results (none of {', '.join(_PAGES)}); name the folder that was given "
-        "with -o"
+        f"{out}: holds no results (none of {', '.join(_PAGES)}); name the OUT of a command"
     )

@@ -1,4 +1,4 @@
-"""The page of one run, ensemble or convergence, from its stored results."""
+"""The page of a run, ensemble or convergence study."""
 
 from __future__ import annotations
 
@@ -87,8 +87,8 @@ def _restitution(
         figure,
         f"Coefficient of restitution from {np.nanmin(cor):.3f} to {np.nanmax(cor):.3f} against "
         f"{words} from {np.nanmin(x):.3g} to {np.nanmax(x):.3g} {unit}",
-        f"Open markers ({few} of {cor.size}): not resolved, half of the contact is in patches of "
-        f"fewer than {NODES_PER_PATCH} nodes.",
+        f"Open markers ({few} of {cor.size}): not resolved by the grid; half of the contact is in "
+        f"patches of fewer than {NODES_PER_PATCH} nodes.",
         Table(
             "Restitution",
             [f"{words} ({unit})", "COR", "resolved", *errors],
@@ -114,7 +114,7 @@ def _force(results: xr.Dataset) -> Drawing:
         "Load and displacement",
         load_displacement(results),
         f"Normal force against indentation, up to {load.max():.4g} N at {depth.max():.4g} µm",
-        "Loading, and the way back from some of the depths.",
+        "Loading, and unloading from some of the depths.",
         Table("Curves", ["curve", "indentation (µm)", "force (N)"], rows),
     )
 
@@ -127,12 +127,12 @@ def _pressure(results: xr.Dataset) -> Drawing:
     if depth is not None and depth.any():
         pressed.append(1e6 * depth[depth != 0])
         quantities.append("plastic displacement (µm)")
-        yields = " The plastic displacement is by how much yielding has lowered the surface."
+        yields = " Plastic displacement: the depth by which yielding has lowered the surface."
     return Drawing(
         "Contact pressure",
         figure,
-        f"Map of the contact pressure at the deepest point, up to {pressed[0].max():.4g} MPa",
-        f"At the deepest point; where nothing is drawn there is no contact.{yields}",
+        f"Map of the contact pressure at the largest indentation, up to {pressed[0].max():.4g} MPa",
+        f"At the largest indentation; areas without contact are blank.{yields}",
         Table(
             "Distribution over the contact",
             ["percentile", *quantities],
@@ -154,7 +154,7 @@ def _diagnostics(results: xr.Dataset, summary: Mapping[str, Any]) -> Table:
     if summary.get("observed_order") is not None:
         rows.append(["observed order of convergence", summary["observed_order"]])
     rows.append(["convolutions", summary["convolutions"]])
-    return Table("Trust", ["what", "value"], rows)
+    return Table("Diagnostics", ["quantity", "value"], rows)
 
 
 def _groups(summary: Mapping[str, Any]) -> list[Table]:
@@ -162,17 +162,17 @@ def _groups(summary: Mapping[str, Any]) -> list[Table]:
     for key, title in (
         ("derived", "Derived quantities"),
         ("surface_statistics", "Surface"),
-        ("surface", "How the surface was made"),
+        ("surface", "Origin of the surface"),
         ("model", "Model"),
         ("conventions", "Conventions"),
     ):
         if group := summary.get(key):
-            rows = [[name, _shown(value)] for name, value in group.items()]
-            tables.append(Table(title, ["what", "value"], rows))
+            rows = [[name, _cell(value)] for name, value in group.items()]
+            tables.append(Table(title, ["quantity", "value"], rows))
     return tables
 
 
-def _shown(value: Any) -> Cell:
+def _cell(value: Any) -> Cell:
     if isinstance(value, bool) or not isinstance(value, (int, float, type(None))):
         return str(value)
     return value

@@ -1,4 +1,4 @@
-"""The page of a study: restitution of every case, and what became of each."""
+"""The page of a study: restitution and status of every case."""
 
 from __future__ import annotations
 
@@ -58,13 +58,13 @@ def _warnings(cases: list[StoredCase], count: dict[str, int]) -> list[str]:
     if few:
         found.append(
             f"{few} of {len(resolved)} depths are not resolved: "
-            f"half of their contact is in patches of fewer than {NODES_PER_PATCH} nodes, and their "
-            "numbers belong to the grid"
+            f"half of their contact is in patches of fewer than {NODES_PER_PATCH} nodes, so their "
+            "numbers depend on the grid"
         )
     if count["failed"] or count["missing"]:
         found.append(
-            f"{count['failed']} cases failed and {count['missing']} are missing; reasons are in "
-            "the table of cases"
+            f"{count['failed']} cases failed and {count['missing']} are missing; the table of "
+            "cases has the reasons"
         )
     return found
 

@@ -1,4 +1,4 @@
-"""The page of one surface, from what `restitution surface` stored."""
+"""The page of one surface, from the files of `restitution surface`."""
 
 from __future__ import annotations
 
@@ -27,7 +27,8 @@ from restitution.surfaces.texture import autocorrelation, height_density, materi
 
 _LAY = 0.5  # texture aspect ratio below which a surface has a lay
 
-# Parameter → (name, clause of ISO 25178-2:2012, unit in the table, factor, provenance it answers).
+# Parameter → (name, clause of ISO 25178-2:2012, unit in the table, factor from SI, key of the value
+# asked for in the provenance).
 _PARAMETERS: dict[str, tuple[str, str, str, float, str]] = {
     "Sq_m": ("root mean square height Sq", "4.1.1", "nm", 1e9, "rms_m"),
     "Ssk": ("skewness Ssk", "4.1.2", "", 1, "skewness"),
@@ -121,7 +122,7 @@ def _parameters(statistics: Mapping[str, Any], provenance: Mapping[str, Any]) ->
     for key, (name, clause, unit, factor, asked) in _PARAMETERS.items():
         value, wanted = statistics.get(key), provenance.get(asked)
         if key == "lay_deg":
-            # Without a lay the direction is one of chance.
+            # The direction of a surface without a lay is arbitrary.
             value = value if (statistics.get("Str") or 1.0) < _LAY else None
             wanted = None if value is None or wanted is None else math.degrees(float(wanted))
         rows.append(
@@ -141,8 +142,8 @@ def _parameters(statistics: Mapping[str, Any], provenance: Mapping[str, Any]) ->
         columns if of_scan else columns[:-1],
         rows if of_scan else [row[:-1] for row in rows],
         [
-            "On the surface as it is used: after what is listed under “How it was made”, without "
-            "any further filter."
+            "Parameters of the surface that the contact uses: after the steps under “Origin”, "
+            "without further filters."
         ],
     )
 
@@ -160,7 +161,7 @@ def _heights(surface: Surface, statistics: Mapping[str, Any]) -> Drawing:
         f"Histogram of heights with a skewness of {_number(statistics['Ssk'])} and a kurtosis of "
         f"{_number(statistics['Sku'])} beside the normal distribution, and the material ratio",
         "Heights beside the normal distribution of the same Sq, and (right axis) the material "
-        "ratio or Abbott curve: what part of the surface is higher.",
+        "ratio (Abbott curve): the fraction of the surface that is higher.",
         Table(
             "Heights",
             ["height (nm)", "density (1/nm)", "normal (1/nm)"],
@@ -182,7 +183,7 @@ def _autocorrelation(surface: Surface) -> Drawing:
         "Autocorrelation of the heights against the lag along x and y",
         "Along both axes, with the levels that define the autocorrelation length Sal and the "
         "correlation length of the generators; "
-        + ("over the period." if is_periodic(surface) else "over the pairs of pixels there are."),
+        + ("over the period." if is_periodic(surface) else "over all pairs of pixels."),
         Table("Autocorrelation", ["along", "lag (µm)", "autocorrelation"], rows),
     )
 
@@ -211,14 +212,14 @@ def _spectrum(surface: Surface) -> Drawing:
 
 def _made(provenance: Mapping[str, Any]) -> Table:
     rows: list[list[Cell]] = [[k, value] for k, value in provenance.items() if k != "notice"]
-    return Table("How it was made", ["step or source", "value"], rows)
+    return Table("Origin", ["step or source", "value"], rows)
 
 
 def _methods(surface: Surface) -> Table:
     spectrum = "" if is_periodic(surface) else ", sine tapers of Riedel and Sidorenko (1995)"
     return Table(
         "Methods",
-        ["what", "how", "source"],
+        ["quantity", "method", "source"],
         [
             [
                 "height, hybrid parameters",

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from restitution.laws.law import Law
+from restitution.plots.cor import cor_axis
 from restitution.plots.figure import GREY, PALETTE, Axis, Chart, Figure, Line, Series
-from restitution.plots.run import COR
 
 
 def mixture_figure(title: str, laws: Sequence[Law]) -> Figure:
@@ -33,5 +33,7 @@ def mixture_figure(title: str, laws: Sequence[Law]) -> Figure:
                 )
             )
         heading = f"{first} on {second}"
-        charts.append(Chart(Axis("impact velocity", "m/s", "log"), COR, series, heading))
+        charts.append(
+            Chart(Axis("impact velocity", "m/s", "log"), cor_axis(series), series, heading)
+        )
     return Figure(title, charts)

@@ -1,7 +1,7 @@
-"""What the paper says of each figure, and what its study has found.
+"""Claims of the paper on each figure, compared with the results of the bundled studies.
 
-Each function takes the studies by name and returns one `Finding`. Thresholds of agreement stand
-beside the claim they judge.
+Each function takes the studies by name and returns one `Finding`. The threshold for agreement is in
+the function of the claim.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ Array = NDArray[np.float64]
 Studies = Mapping[str, xr.Dataset]
 Verdict = Literal["agrees", "agrees in part", "does not agree", "not decided"]
 
-# Two steel spheres of the paper, R being taken as the radius of a particle.
+# The two steel spheres of the paper; its R is taken as the radius of a particle.
 R, E_STAR, P_Y, RADIUS = 250e-6, 112e9, 750e6, 500e-6
-SMOOTH = "1 pm"  # the roughness that stands for none
+SMOOTH = "1 pm"  # the roughness of cases that represent the smooth sphere
 _VARIABLES = ("indentation", "restitution", "force", "pull_off_force", "resolved")
-_NEAR = 0.05  # of the smooth sphere's COR: within it a rough sphere is a smooth one
+_NEAR = 0.05  # relative difference of COR below which a rough sphere behaves as a smooth one
 
 
 @dataclass(frozen=True)
 class Finding:
-    """A claim, what was found, the number that decides, and how many depths were resolved."""
+    """A claim, the result, the number that decides, and the number of resolved depths."""
 
     figure: str
     claim: str
@@ -44,7 +44,7 @@ class Finding:
 
 @dataclass(frozen=True)
 class Curve:
-    """One case of a study, without the depths that it has not reached."""
+    """One case of a study, with the depths that it reached."""
 
     label: str
     depth: Array
@@ -55,7 +55,7 @@ class Curve:
 
 
 def curves(study: xr.Dataset) -> list[Curve]:
-    """The complete cases of a study, labelled by what is swept."""
+    """The complete cases of a study, labelled by their swept values."""
     dims = [str(dim) for dim in study["restitution"].dims if dim != "depth"]
     stacked = study.stack(_case=dims).transpose("_case", "depth", ...)
     found = []
@@ -72,9 +72,9 @@ def curves(study: xr.Dataset) -> list[Curve]:
 
 
 def _as_written(coordinate: xr.DataArray) -> dict[float | str, str]:
-    """The text in the study of each value of a swept quantity."""
+    """Map each value of a swept quantity to its text in the study file."""
     values = coordinate.values.tolist()
-    written = coordinate.attrs.get(AS_WRITTEN)  # none in studies of earlier versions, all text
+    written = coordinate.attrs.get(AS_WRITTEN)  # earlier versions stored only texts
     return dict(
         zip(values, map(str, values) if written is None else json.loads(written), strict=True)
     )
@@ -110,8 +110,9 @@ def _figure_6(studies: Studies) -> Finding:
     return Finding(
         "6",
         "Loading and unloading with a yield cut-off agree with Thornton and Ning (1998).",
-        f"With the pressure cut at p_y as in their theory, force is within {off['truncated']:.1%}. "
-        "With pressure and surface in equilibrium, which the other figures use, it is up to "
+        "With the pressure truncated at p_y as in their theory, force is within "
+        f"{off['truncated']:.1%}. With pressure and surface in equilibrium, as in the other "
+        "figures, it is up to "
         f"{off['equilibrium']:.0%} larger: a difference of models, not of solutions.",
         off["truncated"],
         "agrees" if off["truncated"] < 0.02 else "does not agree",
@@ -132,8 +133,8 @@ def _figure_7(studies: Studies) -> Finding:
         "7",
         "Adhesive elastic contact agrees with the JKR theory.",
         f"Loading within {loading:.1%} in force; pull-off within {deepest:.1%} of 3/2 π w R* from "
-        f"the deepest point, {off.max():.1%} at worst: where many small steps follow the way back "
-        "from a shallow depth, they meet the largest of the lattice's jumps.",
+        f"the deepest point, {off.max():.1%} at worst: at shallow depths, small unloading steps "
+        "resolve the largest jumps that the grid causes.",
         worst,
         verdict,
         _resolved(curve),
@@ -189,8 +190,8 @@ def _stages(studies: Studies) -> Finding:
         "10",
         "COR of rough spheres has three stages: it falls as asperities yield, rises as the "
         "bulk takes over, and falls as the bulk yields.",
-        f"All three stages within the depths computed for Rq = {names} ({sum(complete)} of "
-        f"{len(complete)}). The rougher the surface, the deeper the last begins.",
+        f"All three stages within the depths computed for Rq = {names} ({sum(complete)} "
+        f"of {len(complete)}). The rougher the surface, the deeper the last begins.",
         sum(complete) / len(complete),
         _share(complete),
         _resolved(*rough),
@@ -199,14 +200,15 @@ def _stages(studies: Studies) -> Finding:
 
 def _shallow_merging(studies: Studies) -> Finding:
     rough, smooth = _rough_and_smooth(studies)
-    # Where the smooth sphere sticks there is nothing to be off by a part of.
+    # Skip depths where the smooth sphere sticks: the relative difference is undefined.
     shallow = (smooth.depth <= 8e-9) & (smooth.cor > 0)
     off = max(float(np.abs(c.cor[shallow] / smooth.cor[shallow] - 1).max()) for c in rough)
     flags = np.concatenate([c.resolved[shallow] for c in rough])
     return Finding(
         "10",
         "Below 8 nm COR merges with the smooth sphere's, for every roughness.",
-        f"Up to 8 nm COR is up to {off:.0%} off the smooth sphere's." + _single_nodes(flags),
+        f"Up to 8 nm COR differs by up to {off:.0%} from the smooth sphere's."
+        + _single_nodes(flags),
         off,
         "agrees" if off < _NEAR else "does not agree",
         f"{np.count_nonzero(flags)} of {flags.size}",
@@ -234,15 +236,15 @@ def _single_nodes(flags: NDArray[np.bool_]) -> str:
     if np.mean(flags) > 0.5:
         return ""
     return (
-        " Most of these contacts are a few nodes, which yield as a cell does, whatever the "
-        "surface: a common trend would belong to the grid (docs/resolution.md)."
+        " Most of these contacts have a few nodes, whose yielding depends on the cell size and not "
+        "on the surface: a common trend would be an effect of the grid (docs/resolution.md)."
     )
 
 
 def critical_indentation(curve: Curve, smooth: Curve) -> float:
-    """Depth (m) from which on COR stays within 5 % of the smooth sphere's; NaN: not reached.
+    """Depth (m) beyond which COR stays within 5 % of the smooth sphere's; NaN if not reached.
 
-    Between the last depth that is off and the next it is interpolated in the logarithm of depth.
+    It is interpolated in the logarithm of depth between the last depth outside and the next one.
     """
     off = np.abs(curve.cor / smooth.cor - 1)
     apart = np.flatnonzero(off > _NEAR)
@@ -270,7 +272,7 @@ def _figure_11(studies: Studies) -> Finding:
     claim = "The critical indentation i_cr,max depends linearly on Rq/R."
     roughnesses = len(set(reached[:, 0])) if len(reached) else 0
     if roughnesses < 3:
-        words = f"Reached by {count}, of {roughnesses} roughnesses: too few for a line. "
+        words = f"Reached by {count} ({roughnesses} roughnesses): too few for a line. "
         if len(reached):
             means = ", ".join(
                 f"{1e6 * reached[reached[:, 0] == ratio, 1].mean():.2g} µm at Rq/R = {ratio:.2g}"
@@ -321,8 +323,8 @@ def _figure_13(studies: Studies) -> Finding:
         "13",
         "Yield stress dramatically affects COR of rough spheres.",
         f"At 150 MPa COR is {beyond:.0%} of that at 750 MPa beyond 50 nm (mean), and "
-        f"{float(np.nanmin(ratio[~deep])):.0%} to {float(np.nanmax(ratio[~deep])):.0%} below: the "
-        "curves differ there, too.",
+        f"{float(np.nanmin(ratio[~deep])):.0%} to {float(np.nanmax(ratio[~deep])):.0%} below: "
+        "the curves also differ there.",
         beyond,
         "agrees" if beyond < 0.8 else "does not agree",
         _resolved(soft, hard),
@@ -332,7 +334,7 @@ def _figure_13(studies: Studies) -> Finding:
 def _figure_14(studies: Studies) -> Finding:
     rough = curves(studies["rough-energy"])
     smooth = curves(studies["smooth-energy"])
-    # Where both are computed, and the smooth sphere does not stick.
+    # Only depths that both studies have.
     depth = rough[0].depth
     depth = depth[(depth >= smooth[0].depth[0]) & (depth <= smooth[0].depth[-1])]
 

@@ -1,4 +1,4 @@
-"""The page of the paper's figures, from the studies that were stored."""
+"""The page of the paper's figures, from the stored studies."""
 
 from __future__ import annotations
 
@@ -45,23 +45,23 @@ PAPER = (
     "doi:10.1016/j.powtec.2018.12.079"
 )
 _OPEN = (
-    ("radius of 500 µm", "of each particle, so that R* = 250 µm", "not said: it may be R*"),
-    ("autocorrelation of the surfaces", "Gaussian", "not said"),
-    ("correlation length", "2 µm (10 %)", "not said"),
+    ("radius of 500 µm", "of each particle, so that R* = 250 µm", "not stated; may be R*"),
+    ("autocorrelation of the surfaces", "Gaussian", "not stated"),
+    ("correlation length", "2 µm (10 %)", "not stated"),
     ("yield stress", "largest contact pressure p_y", "called yield stress and yield pressure"),
     (
         "yielding",
-        "pressure and surface in equilibrium but for Figure 6",
-        "a yield cut-off of the pressure",
+        "pressure and surface in equilibrium, except in Figure 6",
+        "pressure truncated at the yield pressure",
     ),
     ("detachment", "crack closure", "criterion of Pohrt and Popov (2015)"),
-    ("seeds", "1; Figure 11: see its study", "not said"),
+    ("seeds", "1; Figure 11: see its study", "not stated"),
     ("smooth sphere of Figures 10 to 12", f"Rq = {SMOOTH} on the same grid", "smooth"),
 )
 
 
 def write_reproduction(out: Path, size: Size) -> tuple[Path, list[Finding]]:
-    """Write `report.html` from the studies in the folders of `out`; return it and its verdicts."""
+    """Write `report.html` from the studies in `out`; return its path and the findings."""
     stored = {name: StudyResults(out / name) for name in NAMES}
     studies = {name: study.dataset for name, study in stored.items()}
     findings = [claim(studies) for claim in CLAIMS]
@@ -76,7 +76,7 @@ def write_reproduction(out: Path, size: Size) -> tuple[Path, list[Finding]]:
         parts=[
             Table(
                 "Claims",
-                ["figure", "verdict", "claim", "found", "number", "depths resolved"],
+                ["figure", "verdict", "claim", "result", "number", "depths resolved"],
                 [[f.figure, f.verdict, f.claim, f.found, f.number, f.resolved] for f in findings],
             ),
             Table("What the paper leaves open", ["input", "here", "in the paper"], _OPEN),
@@ -91,13 +91,13 @@ def write_reproduction(out: Path, size: Size) -> tuple[Path, list[Finding]]:
 def _warnings(size: Size) -> list[str]:
     if size == "quick":
         return [
-            "Quick size: coarser in depth, fewer surfaces and smaller domains than the paper's; "
-            "for its own size leave out --quick."
+            "Quick size: fewer depths, fewer surfaces and smaller domains than in the paper; leave "
+            "out --quick for the size of the paper."
         ]
     spacing, more = ("0.25 µm", "; --refined halves it") if size == "paper" else ("0.125 µm", "")
     return [
-        f"On a spacing of {spacing}{more} rough contacts below some tens of nanometres are a few "
-        "nodes (open markers): their numbers belong to the grid."
+        f"With a spacing of {spacing}{more}, rough contacts below some tens of nanometres have "
+        "only a few nodes (open markers), and their numbers depend on the grid."
     ]
 
 
@@ -187,7 +187,7 @@ def _lines(
     *,
     log: bool = False,
 ) -> Drawing:
-    """Values of `y` of several curves against indentation, with theoretical laws dashed."""
+    """Drawing of `y` against indentation for several curves; theoretical laws are dashed."""
     rows: list[list[Cell]] = []
     series: list[Series] = []
     for number, (curve, values) in enumerate(lines):
@@ -238,6 +238,6 @@ def _critical(study: xr.Dataset, caption: str) -> Drawing:
         title,
         Figure(title, [chart]),
         f"{title} against roughness over radius for {len(points)} surfaces",
-        caption + " Surfaces that did not come within 5 % of the smooth sphere are not drawn.",
+        caption + " Surfaces whose COR is never within 5 % of the smooth sphere's are not drawn.",
         Table(title, ["Rq, seed", "Rq/R", "i_cr,max (µm)"], [list(p) for p in points]),
     )

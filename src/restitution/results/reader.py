@@ -23,10 +23,12 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, NonNegativeInt, 
 
 from restitution.case.case import Case
 from restitution.case.case_file import parse_case
+from restitution.display import counted, quantity, summary_html, summary_text
 from restitution.errors import CaseError, OutputError, one_line
 from restitution.results.checksums import check_file
 from restitution.results.interruption import hold_signals
 from restitution.results.schema import ALL_COLUMNS, COLUMNS, SPREAD_COLUMNS, STATUS, Column
+from restitution.results.summaries import curve_lines, run_lines, study_lines
 
 Array = NDArray[np.float64]
 
@@ -37,6 +39,12 @@ class Curve:
 
     rows: list[dict[str, float]]
     cells: list[dict[str, str]]
+
+    def _summary(self) -> list[str]:
+        return curve_lines(self.rows)
+
+    __repr__ = summary_text
+    _repr_html_ = summary_html
 
 
 class _Model(BaseModel):
@@ -77,6 +85,12 @@ class UnloadingCurve:
     start: float
     indentation: Array
     force: Array
+
+    def _summary(self) -> list[str]:
+        return [f"{counted(self.force.size, 'point')} from {quantity(self.start, 'm')}"]
+
+    __repr__ = summary_text
+    _repr_html_ = summary_html
 
 
 @dataclass(frozen=True)
@@ -181,6 +195,15 @@ class RunResults:
                 f"computed {computed}; a file is damaged: run the case again"
             )
 
+    def _summary(self) -> list[str]:
+        try:
+            return run_lines(self.folder, self.curve.rows, self.summary)
+        except OutputError as error:
+            return [str(error)]
+
+    __repr__ = summary_text
+    _repr_html_ = summary_html
+
 
 @dataclass(frozen=True)
 class EnsembleResults(RunResults):
@@ -190,6 +213,8 @@ class EnsembleResults(RunResults):
     def surfaces(self) -> int:
         """Number of surfaces, including failed ones."""
         return len(self.summary["realisations"])
+
+    __repr__ = summary_text
 
 
 @dataclass(frozen=True)
@@ -248,6 +273,16 @@ class StudyResults:
     def run(self, name: str) -> RunResults:
         """The results of the case `name`."""
         return RunResults(self.folder / "cases" / name)
+
+    def _summary(self) -> list[str]:
+        try:
+            cases = self.cases
+            return study_lines(self.folder, [c.status for c in cases], [c.swept for c in cases])
+        except OutputError as error:
+            return [str(error)]
+
+    __repr__ = summary_text
+    _repr_html_ = summary_html
 
 
 def read_run(folder: Path) -> RunResults:

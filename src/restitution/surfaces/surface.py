@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.display import quantity, summary_html, summary_text
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.numerics.read_only import read_only
@@ -46,6 +47,16 @@ class Surface:
             )
         object.__setattr__(self, "height", read_only(self.height))
         object.__setattr__(self, "provenance", dict(self.provenance))
+
+    def _summary(self) -> list[str]:
+        source = self.provenance.get("kind") or self.provenance.get("source", "heights")
+        rms, *edges = (self.height.std(), self.height.min(), self.height.max())
+        low, high = (quantity(float(edge), "m") for edge in edges)
+        roughness = f"{source}, Sq {quantity(float(rms), 'm')}"
+        return [roughness, f"heights {low} to {high}", *self.grid._summary()]
+
+    __repr__ = summary_text
+    _repr_html_ = summary_html
 
 
 def is_periodic(surface: Surface) -> bool:

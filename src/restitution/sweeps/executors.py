@@ -12,13 +12,13 @@ import signal
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from multiprocessing.managers import SyncManager
 from queue import Empty
 from typing import Any
 
-from restitution.errors import OutputError
+from restitution.errors import CaseError, OutputError
 from restitution.results.interruption import hold_signals
 from restitution.sweeps.task import Channel
 
@@ -39,6 +39,18 @@ class Workers:
     channel: Channel
     heard: Callable[[], list[tuple[int, int]]]
     renewed: Callable[[int], Executor]
+
+
+def chosen_workers(count: int | None, scheduler: str | None) -> AbstractContextManager[Workers]:
+    """The workers of the Dask cluster at `scheduler`, or `count` processes on this machine.
+
+    Raises `CaseError` if both are given.
+    """
+    if scheduler is not None and count is not None:
+        raise CaseError(
+            "--workers, --scheduler: give one; --workers counts processes on this machine"
+        )
+    return cluster_workers(scheduler) if scheduler else local_workers(count)
 
 
 @contextmanager

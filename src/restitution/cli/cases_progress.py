@@ -1,4 +1,4 @@
-"""What the verbs that compute many cases have in common: a bar over them, and how to go on."""
+"""Progress over many cases, for the verbs that compute them, and how to resume."""
 
 from __future__ import annotations
 
@@ -11,12 +11,11 @@ if TYPE_CHECKING:
 
 
 @contextmanager
-def many_cases(cases: int | None, out: object, again: str) -> Iterator[Progress]:
-    """Say where the results of so many `cases` go and that `again` resumes them; show progress.
+def cases_progress(cases: int | None, out: object, resume: str) -> Iterator[Progress]:
+    """Announce `cases` cases (None: number unknown) with results in `out`, and show their progress.
 
-    `cases` is None where their number is not known before the first are done.
-
-    Interruption ends the program as a shell expects it, with the same advice.
+    The command `resume` continues them; an interruption names it, and exits with the status that
+    shells expect.
     """
     import typer
     from rich.progress import (
@@ -32,7 +31,7 @@ def many_cases(cases: int | None, out: object, again: str) -> Iterator[Progress]
     from restitution.cli.signals import Stopped
 
     number = "" if cases is None else f"{cases} cases. "
-    say(f"{number}Results go to {out}; to resume: {again}", errors)
+    say(f"{number}Results go to {out}; to resume: {resume}", errors)
     hint_at_kernels()
     columns = (
         TextColumn("{task.description}"),
@@ -46,5 +45,5 @@ def many_cases(cases: int | None, out: object, again: str) -> Iterator[Progress]
             yield bar
     except KeyboardInterrupt as stop:
         errors.print("Interrupted.", style="red")
-        say(f"What is done is kept; go on with: {again}", errors)
+        say(f"Cases that are done are kept; to resume: {resume}", errors)
         raise typer.Exit(stop.status if isinstance(stop, Stopped) else 130) from None

@@ -1,0 +1,178 @@
+"""Whole tasks for Python users: run a case, open its results, make a law, export it."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from restitution.errors import CaseError, OutputError
+
+if TYPE_CHECKING:
+    from restitution.case.case import Case
+    from restitution.laws.law import Law
+    from restitution.results.reader import RunResults, StudyResults
+
+Folder = str | os.PathLike[str]
+
+
+def run(
+    case: Folder | Mapping[str, Any],
+    *,
+    out: Folder,
+    progress: Callable[[str], None] | None = None,
+) -> RunResults:
+    """Run a case, as `restitution run` does, and open its results.
+
+    `results.dataset` is an xarray Dataset with units; `results.curve` has the rows of `curve.csv`,
+    `results.summary` the content of `summary.json`. An interrupted or failed run leaves the depths
+    that were computed in `out`. No figures are drawn. Use `on_device` to run on a GPU.
+
+    Args:
+        case: Case file, or its tables: `{"first": {"material": "steel", "radius": "500 um"}, …}`.
+            Files that tables name are relative to the current folder.
+        out: Folder for the results; new or empty.
+        progress: Called with a short text after every step.
+
+    Returns:
+        The stored results. Each of their warnings is also issued as a `UserWarning`.
+
+    Raises:
+        RestitutionError: The case is invalid, `out` is not empty, or the run failed.
+    """
+    from restitution.case.case_file import naming
+    from restitution.results.locking import locked
+    from restitution.results.reader import read_run
+    from restitution.results.writer import ResultsFolder
+    from restitution.runs.ensemble import run_realisations
+    from restitution.runs.log import ignore
+
+    read, text, name = _read(case)
+    target = Path(out)
+    with locked(target), naming(name):
+        run_realisations(read, text, name.parent, ResultsFolder(target), progress or ignore)
+    results = read_run(target)
+    for warning in results.summary["warnings"]:
+        warnings.warn(warning, stacklevel=2)
+    return results
+
+
+def _read(case: Folder | Mapping[str, Any]) -> tuple[Case, str, Path]:
+    """The case, its text, and the name of its file in messages."""
+    from restitution.case.case_file import naming, parse_case, read_case
+
+    if not isinstance(case, Mapping):
+        path = Path(case)
+        return *read_case(path), path
+    import tomli_w
+
+    name = Path("case")
+    with naming(name):
+        try:
+            text = tomli_w.dumps(case)
+        except TypeError as error:
+            raise CaseError(f"{error}; use the types of a case file (docs/case-file.md)") from None
+        return parse_case(text), text, name
+
+
+def open_results(folder: Folder) -> RunResults | StudyResults:
+    """Open the stored results of a run, ensemble, convergence study or study.
+
+    `results.dataset` is an xarray Dataset in SI units, with the attribute `units` on every
+    variable. Its dimension is `indentation_max` for a run. For a study the dimensions are the swept
+    keys and `depth`; swept quantities are numeric coordinates with units, so they can be selected:
+    `open_results("study").dataset.sel({"roughness.rms": 1e-7}, method="nearest")`. Their attribute
+    `as_written` holds the texts of the study file.
+
+    Args:
+        folder: Results folder, the OUT of `restitution run`, `converge` or `study`.
+
+    Returns:
+        `StudyResults` for a study, `EnsembleResults` for several surfaces, or `RunResults`.
+
+    Raises:
+        OutputError: The folder does not hold results, or a file is damaged.
+    """
+    from restitution.results.reader import StudyResults, read_run
+
+    path = Path(folder)
+    if (path / "study.toml").is_file():
+        return StudyResults(path)
+    if not (path / "results.nc").is_file():
+        raise OutputError(
+            f"{path}: does not hold the results of a run or study; name the OUT of one"
+        )
+    results = read_run(path)
+    results.check()
+    return results
+
+
+def law_of(results: Folder | RunResults) -> Law:
+    """Make the restitution law of stored results, with its fits, as `restitution fit-law` does.
+
+    Args:
+        results: Results of a run, ensemble or convergence study, or their folder. A folder that
+            holds a law already gives that law.
+
+    Returns:
+        The law: COR, with its error, at each computed impact velocity.
+
+    Raises:
+        CaseError: The results have no impact velocities.
+        OutputError: The folder does not hold results, or a file is damaged.
+    """
+    from restitution.laws.from_results import law_of as law_from
+    from restitution.laws.law_files import LAW_FILE, read_law
+    from restitution.results.reader import RunResults
+
+    folder = results.folder if isinstance(results, RunResults) else Path(results)
+    return read_law(folder) if (folder / LAW_FILE).is_file() else law_from(folder)
+
+
+def _laws_in(given: Folder | Law) -> list[Law]:
+    """The law that is given, that of a folder, or all laws of a mixture."""
+    from restitution.laws.law import Law
+    from restitution.laws.law_files import is_mixture, read_laws
+
+    if isinstance(given, Law):
+        return [given]
+    folder = Path(given)
+    return read_laws([folder]) if is_mixture(folder) else [law_of(folder)]
+
+
+def export(
+    laws: Folder | Law | Sequence[Folder | Law],
+    *,
+    to: str,
+    out: Folder,
+    velocity: str | float | None = None,
+) -> list[Path]:
+    """Write laws as the input of a DEM code, as `restitution export` does.
+
+    Args:
+        laws: One law for each pair of particles, folders of results or laws (`law_of`), or that of
+            a mixture.
+        to: DEM code: "lammps", "liggghts", "yade", "mercurydpm", "edem", or "csv".
+        out: Folder for the files; existing files are never overwritten.
+        velocity: Impact velocity, such as "1 m/s", or a number (m/s); "csv" does not need it.
+
+    Returns:
+        The files that were written.
+
+    Raises:
+        CaseError: The code is not known, or does not accept the laws.
+        DomainError: The velocity lies outside the computed ones.
+        OutputError: A file exists, or cannot be read or written.
+    """
+    from restitution.dem.export import CODES, write_export
+    from restitution.dem.export import export as export_texts
+    from restitution.laws.law import Law, velocity_of
+
+    if to not in CODES:
+        raise CaseError(f'to: "{to}" is not one of {", ".join(CODES)}')
+    given = [laws] if isinstance(laws, (str, os.PathLike, Law)) else laws
+    read = [law for each in given for law in _laws_in(each)]
+    speed = velocity_of(velocity) if isinstance(velocity, str) else velocity
+    return write_export(export_texts(read, to, speed), Path(out))

@@ -1,0 +1,99 @@
+"""`restitution materials`: the library of materials."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from restitution.case.materials import Material
+
+# Key → name, symbol, factor from SI, unit.
+_QUANTITIES = {
+    "youngs_modulus": ("Young's modulus", "E", 1e-9, "GPa"),
+    "poissons_ratio": ("Poisson's ratio", "ν", 1.0, ""),
+    "density": ("density", "ρ", 1.0, "kg/m^3"),
+    "yield_strength": ("yield strength (tensile)", "Y", 1e-6, "MPa"),
+    "hardness": ("hardness (mean pressure)", "H", 1e-9, "GPa"),
+}
+
+
+def _names(incomplete: str) -> list[str]:
+    """Keys of the library, for the completion of a shell."""
+    from restitution.case.materials import materials
+
+    return [key for key in materials() if key.startswith(incomplete)]
+
+
+def materials(
+    name: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="NAME",
+            help="A material, to show with spread and sources.",
+            show_default=False,
+            autocompletion=_names,
+        ),
+    ] = None,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print JSON, with values in SI units.")
+    ] = False,
+) -> None:
+    """List the materials that a case can name, or show the material NAME with its sources."""
+    from restitution.case.materials import material
+    from restitution.case.materials import materials as library
+    from restitution.cli.console import answers, command, say, say_next
+
+    found = library() if name is None else {(known := material(name)).key: known}
+    if json:
+        answers.print_json(data={key: each.model_dump() for key, each in found.items()})
+    elif name is None:
+        answers.print(_list(found))
+        say_next(command("materials", "NAME") + " (spread and sources)")
+    else:
+        say(f"{known.key}: {known.name}")
+        say(f"also called: {', '.join(known.aliases)}")
+        answers.print(_values(known))
+        say(f"Note: {known.note}")
+
+
+def _list(found: dict[str, Material]) -> Table:
+    from restitution.cli.console import table_of_numbers
+
+    heads = [
+        f"{symbol} ({unit})" if unit else symbol for _, symbol, _, unit in _QUANTITIES.values()
+    ]
+    table = table_of_numbers("name", *heads)
+    table.columns[0].justify = "left"
+    table.add_column("material", overflow="fold")
+    for key, each in found.items():
+        values = []
+        for quantity, (_, _, scale, _) in _QUANTITIES.items():
+            known = getattr(each, quantity)
+            values.append("-" if known is None else f"{scale * known.value:.5g}")
+        table.add_row(key, *values, each.name)
+    return table
+
+
+def _values(material: Material) -> Table:
+    from rich.markup import escape
+    from rich.table import Table
+
+    table = Table(box=None, header_style="bold")
+    for head in ("quantity", "value", "spread", "unit", "source"):
+        numbers = head in ("value", "spread")
+        table.add_column(
+            head,
+            justify="right" if numbers else "left",
+            no_wrap=head != "source",
+            overflow="fold",
+        )
+    for key, (label, _, scale, unit) in _QUANTITIES.items():
+        if (known := getattr(material, key)) is not None:
+            spread = f"{scale * known.low:.5g} to {scale * known.high:.5g}"
+            source = known.source if known.verified else f"not verified: {known.source}"
+            table.add_row(label, f"{scale * known.value:.5g}", spread, unit, escape(source))
+    return table

@@ -1,0 +1,52 @@
+"""Arguments and options that several verbs share.
+
+OUT is always the folder that a verb writes, FILE a single file; inputs are named by their content.
+"""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+class Device(StrEnum):
+    """Devices that solves can run on."""
+
+    cpu = "cpu"
+    gpu = "gpu"
+    auto = "auto"
+
+
+class FigureFormat(StrEnum):
+    """File formats of figures."""
+
+    png = "png"
+    svg = "svg"
+    pdf = "pdf"
+
+
+CaseFile = Annotated[
+    Path,
+    typer.Argument(metavar="CASE", help="Case file (TOML).", show_default=False, readable=False),
+]
+OutFolder = Annotated[
+    Path,
+    typer.Option(
+        "-o", "--out", metavar="OUT", help="Folder for the results; new or empty.", readable=False
+    ),
+]
+OnDevice = Annotated[
+    Device, typer.Option(help="Device to solve on; auto uses a GPU if available (needs CuPy).")
+]
+Figures = Annotated[FigureFormat, typer.Option("--figures", help="Format of the figures.")]
+Scheduler = Annotated[
+    str | None,
+    typer.Option(
+        metavar="ADDRESS", help="Compute on the Dask cluster with this scheduler (tcp://…)."
+    ),
+]
+Workers = Annotated[
+    int | None,
+    typer.Option(min=1, metavar="N", help="Processes on this machine.", show_default="all cores"),
+]

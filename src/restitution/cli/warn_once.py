@@ -1,0 +1,45 @@
+"""Warnings of one command: each text in full once, repetitions counted."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Protocol
+
+_NUMBER = re.compile(r"\d+(\.\d+)?(e[-+]?\d+)?")
+_QUOTED = 60  # characters of a warning that identify it
+
+
+class Warn(Protocol):
+    """Warn of something, which may concern one of several subjects (a case, a law)."""
+
+    def __call__(self, message: str, subject: str = "") -> None:
+        """Print `message`, or count it."""
+
+
+@contextmanager
+def warn_once() -> Iterator[Warn]:
+    """Print each warning once; at the end, say how often it was repeated with other numbers."""
+    from restitution.cli.console import warn
+
+    first: dict[str, str] = {}
+    repeated: dict[str, list[str]] = {}
+
+    def warn_or_count(message: str, subject: str = "") -> None:
+        kind = _NUMBER.sub("#", message)
+        if kind in first:
+            repeated.setdefault(kind, []).append(subject)
+            return
+        first[kind] = message
+        warn(f"{subject}: {message}" if subject else message)
+
+    try:
+        yield warn_or_count
+    finally:
+        for kind, subjects in repeated.items():
+            start = first[kind]
+            start = start if len(start) <= _QUOTED else f"{start[:_QUOTED].rstrip()}…"
+            named = ", ".join(dict.fromkeys(filter(None, subjects)))
+            which = f" ({named})" if named else ""
+            warn(f'the same with other numbers for {len(subjects)} more{which}: "{start}"')

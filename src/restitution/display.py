@@ -1,0 +1,49 @@
+"""Short descriptions of objects: the text of `repr`, and HTML for notebooks.
+
+A class defines `_summary`, at most three lines without arrays, and assigns `summary_text` to
+`__repr__` and `summary_html` to `_repr_html_`.
+"""
+
+from __future__ import annotations
+
+import html
+import math
+from collections.abc import Sequence
+from typing import Protocol
+
+_PREFIXES = {-5: "f", -4: "p", -3: "n", -2: "µ", -1: "m", 0: "", 1: "k", 2: "M", 3: "G", 4: "T"}
+
+
+class _Summarised(Protocol):
+    def _summary(self) -> Sequence[str]: ...
+
+
+def summary_text(self: _Summarised) -> str:
+    """The lines of `_summary` after the name of the class, further ones indented."""
+    return f"{type(self).__name__}: " + "\n  ".join(self._summary())
+
+
+def summary_html(self: _Summarised) -> str:
+    """The lines of `_summary` after the name of the class, as HTML."""
+    lines = "<br>".join(map(html.escape, self._summary()))
+    return f"<div><b>{type(self).__name__}</b>: {lines}</div>"
+
+
+def quantity(value: float | None, unit: str) -> str:
+    """An SI value with four digits and the prefix that fits: 2.5e-4, "m" is "250 µm"."""
+    if value is None or math.isnan(value):
+        return "unknown"
+    if value == 0 or math.isinf(value):
+        return f"{value:g} {unit}".replace("inf", "∞")
+    if unit == "kg":
+        value, unit = 1e3 * value, "g"
+    step = 6 if unit == "m²" else 3  # (µm)² is 1e-12 m²
+    rounded = float(f"{value:.4g}")
+    order = math.floor(math.log10(abs(rounded)) / step + 1e-12)
+    order = max(min(_PREFIXES), min(max(_PREFIXES), order))
+    return f"{value / 10.0 ** (step * order):.4g} {_PREFIXES[order]}{unit}"
+
+
+def counted(number: int, noun: str) -> str:
+    """A number with its noun: "1 warning", "2 warnings"."""
+    return f"{number} {noun}{'' if number == 1 else 's'}"

@@ -1,0 +1,41 @@
+"""`restitution materials`: the library in a terminal and as JSON."""
+
+import json
+
+from restitution.case.materials import materials
+
+
+def test_the_list_has_every_material(cli):
+    status, said, _ = cli("materials")
+    assert status == 0
+    rows = {line.split()[0]: line for line in said.splitlines()[1:-1]}
+    assert list(rows) == list(materials())
+    assert rows["steel"].split()[1:6] == ["203", "0.3", "7830", "2030", "7.9"]
+    assert rows["glass"].split()[4] == "-"
+
+
+def test_one_material_has_its_sources(cli):
+    status, said, _ = cli("materials", "Soda-Lime")
+    assert status == 0
+    flowing = " ".join(said.split())
+    glass = materials()["glass"]
+    assert glass.name in flowing
+    assert glass.note in flowing
+    assert "69 to 74 GPa" in flowing
+    assert "EN 572-1" in flowing
+    assert "yield strength" not in flowing
+
+
+def test_a_value_from_memory_is_marked(cli):
+    assert "not verified: AK Steel" in " ".join(cli("materials", "304")[1].split())
+
+
+def test_json_has_values_in_si(cli):
+    found = json.loads(cli("materials", "glass", "--json")[1])
+    assert found["glass"]["youngs_modulus"]["value"] == 70e9
+    assert found["glass"]["yield_strength"] is None
+    assert list(json.loads(cli("materials", "--json")[1])) == list(materials())
+
+
+def test_a_name_that_is_not_known_is_refused(refused):
+    assert 'did you mean "steel"?' in refused("materials", "stel")

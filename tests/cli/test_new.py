@@ -1,0 +1,85 @@
+"""`restitution new`: starting files that are valid, run, and never replace a file."""
+
+import numpy as np
+import pytest
+
+from restitution.case.case_file import read_case
+from restitution.sweeps.sweep import read_study
+
+
+def small(text):
+    """The case in `text` on a quarter of the nodes, at two depths."""
+    for nodes in ("200", "256"):
+        text = text.replace(f"nodes = {nodes}", "nodes = 64")
+    text = text.replace('spacing = "0.5 um"', 'spacing = "2 um"')
+    text = text.replace("correlation_length = ", "correlation_length = '12 um' # ")
+    return text.replace("steps = 8", "steps = 2").replace("curves = 8", "curves = 2")
+
+
+@pytest.mark.parametrize("option", [[], ["--dem"], ["--study"]], ids=["case", "dem", "study"])
+def test_a_new_file_is_valid_as_it_stands(cli, tmp_path, option):
+    file = tmp_path / "new.toml"
+    status, said, _ = cli("new", *option, "-o", file)
+    assert status == 0
+    assert f"Next: restitution check {file}" in said
+    status, said, warned = cli("check", file)
+    assert status == 0
+    assert "is valid." in said
+    assert not warned
+
+
+@pytest.mark.parametrize("option", [[], ["--dem"]], ids=["case", "dem"])
+def test_a_new_case_runs(cli, tmp_path, option):
+    file = tmp_path / "new.toml"
+    cli("new", *option, "-o", file)
+    file.write_text(small(file.read_text()))
+    status, said, warned = cli("run", file, "-o", tmp_path / "out")
+    assert status == 0, warned
+    assert "2 depths" in said
+    assert read_case(file)[0].depths()[-1] > 0
+
+
+def test_a_new_study_runs(cli, tmp_path):
+    file = tmp_path / "new.toml"
+    cli("new", "--study", "-o", file)
+    text = small(file.read_text()).replace('["0.02 um", "0.05 um", "0.1 um"]', '["0.05 um"]')
+    file.write_text(text)
+    assert len(read_study(file).cases) == 2
+    status, said, _ = cli("study", file, "-o", tmp_path / "out", "--workers", 1)
+    assert status == 0
+    assert "2 of 2 cases" in said
+
+
+def test_a_new_case_with_a_scan_asks_for_the_scan(cli, refused, tmp_path):
+    file = tmp_path / "new.toml"
+    assert cli("new", "--scan", "-o", file)[0] == 0
+    assert "scan.npy: there is no such file" in refused("check", file)
+    assert file.read_text().count("# fill in") == 4
+    x = np.linspace(-50e-6, 50e-6, 100)
+    scan = 20e-9 * np.cos(2e5 * x[:, None]) * np.cos(3e5 * x)
+    np.save(tmp_path / "scan.npy", scan - (x[:, None] ** 2 + x**2) / 1e-3)
+    status, said, _ = cli("check", file)
+    assert status == 0
+    assert "100 x 100" in said
+
+
+def test_a_new_file_has_a_name_of_its_own(cli, refused, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert cli("new")[0] == 0
+    assert cli("new", "--study")[0] == 0
+    assert {path.name for path in tmp_path.iterdir()} == {"case.toml", "study.toml"}
+    (tmp_path / "case.toml").write_text("mine")
+    assert "case.toml: exists, and nothing is overwritten" in refused("new")
+    assert (tmp_path / "case.toml").read_text() == "mine"
+
+
+def test_a_new_file_is_of_one_kind(refused, tmp_path):
+    assert "--dem, --scan: choose one" in refused("new", "--dem", "--scan", "-o", tmp_path / "a")
+    assert not (tmp_path / "a").exists()
+
+
+def test_an_invalid_study_is_refused(cli, refused, tmp_path):
+    file = tmp_path / "new.toml"
+    cli("new", "--study", "-o", file)
+    file.write_text(file.read_text().replace('"0.1 um"]', '"0.1 kg"]'))
+    assert 'roughness.rms = "0.1 kg"' in refused("check", file)
