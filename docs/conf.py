@@ -19,7 +19,6 @@ copyright = author  # Sphinx calls it that
 extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
-    "sphinx.ext.autosummary",
     "sphinx.ext.napoleon",
     "sphinx.ext.mathjax",
     "sphinx_copybutton",
@@ -35,11 +34,12 @@ myst_heading_anchors = 3
 default_role = "literal"
 autodoc_typehints = "signature"
 autodoc_typehints_format = "short"
+autodoc_type_aliases = {name: name for name in ("Array", "ArrayLike", "Values")}
 autodoc_member_order = "bysource"
 python_use_unqualified_type_names = True
-napoleon_custom_sections = [("Source", "params_style"), "Shapes"]
+napoleon_custom_sections = ["Source"]
 napoleon_use_ivar = True
-autosummary_generate = False
+napoleon_attr_annotations = False
 # Public names must resolve. Internal modules have no page here, and pages of NumPy and Python are
 # not looked up, so that the site builds without internet.
 nitpick_ignore_regex = [("py:.*", r"(?!restitution\.(theory\.)?\w+$).*")]

@@ -108,7 +108,8 @@ def test_every_page_is_in_a_table_of_contents():
     listed = {ROOT / "docs" / "index.md"}
     for path in PAGES:
         for entries in re.findall(r"```\{toctree\}\n(.*?)```", path.read_text(), re.DOTALL):
-            listed |= {path.parent / f"{one}.md" for one in entries.splitlines() if one}
+            listed |= {path.parent / one for one in entries.splitlines()}
+            listed |= {path.parent / f"{one}.md" for one in entries.splitlines()}
     assert {path for path in PAGES if "docs" in path.parts} <= listed
 
 
