@@ -21,6 +21,7 @@ ROOMS = (
     "runs",
     "sweeps",
     "laws",
+    "calibration",
     "dem",
     "plots",
     "pages",

@@ -12,6 +12,7 @@ from restitution.cli import (
     compare_theory,
     converge,
     export,
+    fit,
     fit_law,
     report,
     reproduce,
@@ -35,6 +36,7 @@ app.command()(report.report)
 app.command()(compare.compare)
 app.command()(reproduce.reproduce)
 app.command()(fit_law.fit_law)
+app.command()(fit.fit)
 app.command()(export.export)
 app.command()(compare_theory.compare_theory)
 app.command()(simulate.simulate)
