@@ -160,13 +160,7 @@ def _unresolved(found: Fit) -> Iterator[str]:
 
 
 def _unknown(found: Fit) -> Iterator[str]:
-    surfaces = len(found.deviations.surfaces)
-    if found.surfaces_asked and surfaces < 2:
-        yield (
-            "the intervals do not include the scatter between surfaces, because others of the same "
-            "kind could not be solved on this grid"
-        )
-    if not found.grid_known:
+    if found.deviations.grid is None:
         yield (
             "the intervals do not include the error of the grid, because cells twice as large "
             "could not be solved"

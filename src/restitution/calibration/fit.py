@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,18 +19,19 @@ from restitution.calibration.least_squares import (
     search_widely,
 )
 from restitution.calibration.measured import Measured
-from restitution.calibration.model import CaseModel, Mean
+from restitution.calibration.model import CaseModel
 from restitution.calibration.parameters import Parameter, free_parameters
 from restitution.calibration.uncertainty import Deviations, Uncertainty
 from restitution.case.case_file import parse_case, parse_toml
 from restitution.errors import CaseError, RestitutionError
-from restitution.runs.companions import SURFACES
 from restitution.runs.log import Say, ignore
 from restitution.runs.refinement import settled
 
 Array = NDArray[np.float64]
 
 _FINE = 60  # velocities of the fitted curve
+_EQUAL = 0.02  # standard deviation of COR to begin with, if the table has none
+_LEAST_NOISE = 1e-4  # of COR, from residuals: the accuracy of interpolation between velocities
 
 
 @dataclass(frozen=True)
@@ -48,8 +49,7 @@ class Fit:
 
     `x` holds ln(value/first guess) of each parameter. `fitted` and `deviations` are at the
     measured velocities, `weights` the deviations that weighed the points. `minima` are those of all
-    starts, on cells twice as large, the best first. `surfaces_asked` is the number of other surfaces
-    that the uncertainty was to include; `grid_known` says whether the coarser grid could be solved.
+    starts, on cells twice as large, the best first.
     """
 
     model: CaseModel
@@ -62,8 +62,6 @@ class Fit:
     uncertainty: Uncertainty
     minima: Sequence[Minimum]
     curve: FittedCurve
-    surfaces_asked: int
-    grid_known: bool
 
     @property
     def parameters(self) -> Sequence[Parameter]:
@@ -115,14 +113,13 @@ def fit(
     _settle_grid(model, start)
     model.require_possible(start)
     given = measured.deviation
-    data = Data(V, measured.restitution, np.ones_like(V) if given is None else given)
+    data = Data(V, measured.restitution, np.full(V.size, _EQUAL) if given is None else given)
     minima = search_widely(model, data)
     best = _best(model, data, minima)
-    if given is not None:
-        # Points where another surface or grid gives another COR count less.
-        moved = _deviations(model, best.x, data, 0.0)[0]
-        data = Data(V, measured.restitution, np.sqrt(given**2 + _systematic(moved) ** 2))
-        best = search(model, data, best.x)
+    # Points where another surface or grid gives another COR count less.
+    noise = _noise(measured, model.restitution(best.x, V), best.x.size)
+    data = replace(data, deviation=np.hypot(noise, _deviations(model, best.x, V).systematic))
+    best = search(model, data, best.x)
     return _result(model, measured, data, best, minima)
 
 
@@ -163,68 +160,58 @@ def _best(model: CaseModel, data: Data, minima: Sequence[Minimum]) -> Minimum:
     raise failure
 
 
-def _deviations(
-    model: CaseModel, x: Array, data: Data, random: Array | float, freedom: float = math.inf
-) -> tuple[Deviations, bool]:
-    """The deviations at `x`, and whether the curve on cells twice as large is known."""
+def _deviations(model: CaseModel, x: Array, velocity: Array) -> Deviations:
+    """The deviations at `x`; those of the points are the solver's alone."""
     here = model.at(x)
-    V, own = data.velocity, here.restitution(data.velocity)
-    others = []
-    for number in range(1, 1 + (SURFACES if model.case(x).roughness else 0)):
-        try:
-            others.append(model.at(x, surface=number).restitution(V) - own)
-        except RestitutionError:
-            continue
+    own = here.restitution(velocity)
+    each = np.array([curve.restitution(velocity) for curve in here.curves])
     try:
-        grid, known = model.restitution(x, V, "coarser") - own, True
+        grid: Array | None = model.restitution(x, velocity, "coarser") - own
     except RestitutionError:
-        grid, known = np.zeros(V.size), False
-    solver = here.error(V, "solver_error")
-    return (
-        Deviations(
-            np.hypot(random, solver),
-            freedom,
-            np.array(others).reshape(-1, V.size),
-            grid,
-            here.error(V, "model_error"),
-        ),
-        known,
+        grid = None
+    return Deviations(
+        random=here.error(velocity, "solver_error"),
+        freedom=math.inf,
+        surfaces=each - own,
+        grid=grid,
+        model=here.error(velocity, "model_error"),
     )
 
 
-def _systematic(by: Deviations) -> Array:
-    """Standard deviations of COR by surface, grid and solver."""
-    n = max(len(by.surfaces), 1)
-    return np.asarray(np.sqrt((by.surfaces**2).sum(axis=0) / n + by.grid**2 + by.random**2))
+def _noise(measured: Measured, fitted: Array, parameters: int) -> Array:
+    """Standard deviations of the measured points: as given, or those of the residuals."""
+    if measured.deviation is not None:
+        return measured.deviation
+    freedom = fitted.size - parameters
+    squares = float(np.sum((measured.restitution - fitted) ** 2))
+    return np.full(fitted.size, max(math.sqrt(squares / freedom), _LEAST_NOISE))
 
 
 def _result(
     model: CaseModel, measured: Measured, data: Data, best: Minimum, minima: Sequence[Minimum]
 ) -> Fit:
     V, x, freedom = data.velocity, best.x, data.velocity.size - best.x.size
-    here: Mean = model.at(x)
-    reduced = best.squares / max(freedom, 1)
-    if measured.deviation is None:
-        random, known_from = math.sqrt(reduced) * np.ones(V.size), float(freedom)
-        weights = random if reduced > 0 else np.full(V.size, 1e-9)
-    else:
-        random, known_from = measured.deviation * math.sqrt(max(reduced, 1.0)), math.inf
-        weights = data.deviation
-    deviations, grid_known = _deviations(model, x, data, random, known_from)
-    uncertainty = Uncertainty.of(jacobian(model, x, V), weights, deviations)
-    ends = (V[0], V[-1])
-    fine = np.geomspace(*ends, _FINE) if V[0] < V[-1] else V[:1]
+    here = model.at(x)
+    noise = _noise(measured, here.restitution(V), x.size)
+    if measured.deviation is not None and freedom > 0:
+        noise = noise * math.sqrt(max(best.squares / freedom, 1.0))
+    by = _deviations(model, x, V)
+    deviations = replace(
+        by,
+        random=np.hypot(noise, by.random),
+        freedom=float(freedom) if measured.deviation is None else math.inf,
+    )
+    uncertainty = Uncertainty.of(jacobian(model, x, V), data.deviation, deviations)
+    fine = np.geomspace(V[0], V[-1], _FINE) if V[0] < V[-1] else V[:1]
     return Fit(
         model=model,
         measured=measured,
         x=x,
         fitted=here.restitution(V),
         resolved=here.resolved_at(V),
-        weights=weights,
+        weights=data.deviation,
         deviations=deviations,
         uncertainty=uncertainty,
         minima=minima,
         curve=FittedCurve(fine, here.restitution(fine), uncertainty.band(jacobian(model, x, fine))),
-        surfaces_asked=SURFACES if model.case(x).roughness else 0,
-        grid_known=grid_known,
     )

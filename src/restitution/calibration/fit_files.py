@@ -9,7 +9,7 @@ from typing import Any
 
 from restitution.calibration.findings import combination, findings, identifiable
 from restitution.calibration.fit import Fit
-from restitution.calibration.measured import RESTITUTION, VELOCITY
+from restitution.calibration.measured import DEVIATIONS, RESTITUTION, VELOCITY
 from restitution.calibration.model import velocities_to_run
 from restitution.calibration.uncertainty import CONFIDENCE
 from restitution.case.case_file import parse_toml
@@ -22,6 +22,7 @@ from restitution.results.writer import (
     write_table,
 )
 
+_DIGITS = 8  # of fitted values in the case file
 _NAMES = ("fit.json", "fit.csv", "case.toml")
 
 
@@ -43,9 +44,12 @@ def fitted_case(found: Fit, out: Path) -> str:
     """The case file with the fitted values, at the measured velocities, for the folder `out`."""
     import tomli_w
 
-    content = parse_toml(found.model.text(found.x, velocities_to_run(found.measured.velocity)))
+    content = parse_toml(
+        found.model.text(found.x, velocities_to_run(found.measured.velocity), _DIGITS)
+    )
     rough = content.get("roughness", [])
     for part in rough if isinstance(rough, list) else [rough]:
+        part["realisations"] = found.model.surfaces
         if "file" in part:
             file = os.path.relpath(found.model.folder / part["file"], out)
             part["file"] = Path(file).as_posix()
@@ -55,19 +59,18 @@ def fitted_case(found: Fit, out: Path) -> str:
 def fit_rows(found: Fit) -> list[dict[str, float | str]]:
     """A row for each measured point."""
     measured, by = found.measured, found.deviations
-    n = max(len(by.surfaces), 1)
-    scatter = ((by.surfaces**2).sum(axis=0) / n) ** 0.5
+    scatter = (by.by_surface**2).sum(axis=0) ** 0.5
     given = measured.deviation
     return [
         {
             VELOCITY: float(V),
             RESTITUTION: float(measured.restitution[k]),
-            "restitution_std": math.nan if given is None else float(given[k]),
+            **({} if given is None else {DEVIATIONS[0]: float(given[k])}),
             "fitted_restitution": float(found.fitted[k]),
             "residual": float(found.residuals[k]),
             "weight_std": float(found.weights[k]),
             "surface_scatter": float(scatter[k]),
-            "grid_error": abs(float(by.grid[k])) if found.grid_known else math.nan,
+            "grid_error": math.nan if by.grid is None else abs(float(by.grid[k])),
             "model_error": float(by.model[k]),
             "resolved": bool(found.resolved[k]),
         }
@@ -87,12 +90,10 @@ def _summary(found: Fit, text: str) -> dict[str, Any]:
         "degrees_of_freedom": found.freedom,
         "chi_squared": found.chi_squared,
         "rms_residual": float((found.residuals**2).mean() ** 0.5),
-        "weights": (
-            "equal"
-            if found.measured.deviation is None
-            else "measured standard deviation, scatter between surfaces and grid, in quadrature"
-        ),
+        "weights": "noise, scatter between surfaces and error of the grid, in quadrature",
+        "surfaces": found.model.surfaces,
         "intervals_include": _included(found),
+        "measured_values_are": "means over many places of impact (std_if_one_surface: over one)",
         "intervals_do_not_include": "the model of plasticity (by_model_error), values that the "
         "case gives, rate effects, elastic waves",
         "largest_model_error": float(found.deviations.model.max()),
@@ -127,6 +128,7 @@ def _parameter(found: Fit, k: int) -> dict[str, Any]:
             part: _known(found.uncertainty.deviation(part)[k]) for part in found.uncertainty.parts
         },
         "by_model_error": _known(found.uncertainty.by_model[k]),
+        "std_if_one_surface": _known(found.uncertainty.by_one_surface[k]),
     }
 
 
@@ -138,8 +140,8 @@ def _known(value: float) -> float | None:
 def _included(found: Fit) -> str:
     scattered = "standard deviations" if found.measured.deviation is not None else "residuals"
     words = [f"noise (from the {scattered})", "solver"]
-    if len(found.deviations.surfaces) > 1:
-        words.append(f"scatter between {len(found.deviations.surfaces)} other surfaces")
-    if found.grid_known:
+    if found.model.surfaces > 1:
+        words.append(f"mean of {found.model.surfaces} surfaces")
+    if found.deviations.grid is not None:
         words.append("grid")
     return ", ".join(words)

@@ -4,26 +4,29 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.calibration.model import CaseModel, Cells
+from restitution.calibration.model import CaseModel, Cost
 from restitution.errors import CaseError, RestitutionError
 
 Array = NDArray[np.float64]
 
 RANGE = 30.0  # factor that the search may go from the first guess, up and down
-# ln of a parameter, of the central differences. The solver's noise is 1e-8, but single nodes that
+# ln of a parameter, of finite differences. The solver's noise is 1e-8, but single nodes that
 # begin to yield make COR of shallow contacts uneven over changes of about one percent.
 _STEP = 0.03
-_SPREAD = 4.0  # factor between the first guess and the other starts
-_STARTS = 4
+_SCANNED, _STARTS = (
+    15,
+    2,
+)  # points beside the first guess, and how many of them a search starts from
 _FAILED = 1e3  # residual, in standard deviations, where the case cannot be solved
 _EVALUATIONS = 40
-# Relative, of the sum of squares and of x; on coarser cells a start for the next search is enough.
-_TOLERANCE: dict[Cells, float] = {"own": 1e-4, "coarser": 1e-3}
+# Relative, of the sum of squares and of x; a quick search finds a start for the next.
+_TOLERANCE: dict[Cost, float] = {"full": 1e-4, "quick": 1e-3}
 
 
 @dataclass(frozen=True)
@@ -43,32 +46,33 @@ class Minimum:
     squares: float
 
 
-def jacobian(model: CaseModel, x: Array, velocity: Array, cells: Cells = "own") -> Array:
-    """∂COR/∂x at `velocity` (m/s), shape (velocities, parameters), by central differences.
+def jacobian(
+    model: CaseModel, x: Array, velocity: Array, *, cost: Cost = "full", central: bool = True
+) -> Array:
+    """∂COR/∂x at `velocity` (m/s), shape (velocities, parameters), by finite differences.
 
-    Where the case cannot be solved on one side, by the difference to the other.
+    They are `central`, or to one side: to the other where the case cannot be solved there.
     """
+    here = model.restitution(x, velocity, cost)
     columns = []
-    for k in range(x.size):
-        ends = []
-        for sign in (1, -1):
-            beside = x.copy()
-            beside[k] += sign * _STEP
-            try:
-                ends.append((model.restitution(beside, velocity, cells), beside[k]))
-            except RestitutionError:
-                ends.append((model.restitution(x, velocity, cells), x[k]))
-        (above, high), (below, low) = ends
-        columns.append((above - below) / (high - low) if high > low else np.zeros(velocity.size))
+    for axis in np.eye(x.size):
+        slopes: list[Array] = []
+        for step in (_STEP, -_STEP):
+            if slopes and not central:
+                break
+            with suppress(RestitutionError):
+                there = model.restitution(x + step * axis, velocity, cost)
+                slopes.append((there - here) / step)
+        columns.append(np.mean(slopes, axis=0) if slopes else np.zeros(velocity.size))
     return np.array(columns).T
 
 
-def search(model: CaseModel, data: Data, start: Array, cells: Cells = "own") -> Minimum:
+def search(model: CaseModel, data: Data, start: Array, cost: Cost = "full") -> Minimum:
     """The minimum that is found from `start`. Raises `RestitutionError` if it cannot be solved."""
     from scipy.optimize import least_squares
 
     def residuals(x: Array) -> Array:
-        return (model.restitution(x, data.velocity, cells) - data.restitution) / data.deviation
+        return (model.restitution(x, data.velocity, cost) - data.restitution) / data.deviation
 
     def safe(x: Array) -> Array:
         """The residuals, or large ones where the case cannot be solved: the step is refused."""
@@ -81,10 +85,12 @@ def search(model: CaseModel, data: Data, start: Array, cells: Cells = "own") -> 
     found = least_squares(
         safe,
         start,
-        jac=lambda x: jacobian(model, x, data.velocity, cells) / data.deviation[:, None],
+        jac=lambda x: (
+            jacobian(model, x, data.velocity, cost=cost, central=False) / data.deviation[:, None]
+        ),
         bounds=(-math.log(RANGE), math.log(RANGE)),
-        ftol=_TOLERANCE[cells],
-        xtol=_TOLERANCE[cells],
+        ftol=_TOLERANCE[cost],
+        xtol=_TOLERANCE[cost],
         gtol=1e-8,
         max_nfev=_EVALUATIONS,
     )
@@ -92,14 +98,17 @@ def search(model: CaseModel, data: Data, start: Array, cells: Cells = "own") -> 
 
 
 def search_widely(model: CaseModel, data: Data) -> list[Minimum]:
-    """The minima found from several starts on cells twice as large, the best first.
+    """The minima of quick searches from the first guess and from the best of a scan, best first.
 
-    Raises `CaseError` if the case can be solved at none of the starts.
+    Raises `CaseError` if the case can be solved at none of the points.
     """
+    guess, *others = _scan(len(model.parameters))
     found, failure = [], ""
-    for start in _starts(len(model.parameters)):
+    scanned = [(squares(model, data, x), k) for k, x in enumerate(others)]
+    best = [others[k] for value, k in sorted(scanned)[:_STARTS] if math.isfinite(value)]
+    for start in (guess, *best):
         try:
-            found.append(search(model, data, start, "coarser"))
+            found.append(search(model, data, start, "quick"))
         except RestitutionError as error:
             failure = failure or str(error)
     if not found:
@@ -109,17 +118,23 @@ def search_widely(model: CaseModel, data: Data) -> list[Minimum]:
     return sorted(found, key=lambda minimum: minimum.squares)
 
 
+def squares(model: CaseModel, data: Data, x: Array) -> float:
+    """The sum of squared weighted residuals of a quick curve; inf if it cannot be solved."""
+    try:
+        off = model.restitution(x, data.velocity, "quick") - data.restitution
+    except RestitutionError:
+        return math.inf
+    return float(np.sum((off / data.deviation) ** 2))
+
+
 def at_bound(x: float) -> bool:
     """Whether a search ended at an end of its range."""
     return abs(x) > 0.99 * math.log(RANGE)
 
 
-def _starts(parameters: int) -> Sequence[Array]:
-    """The first guess, and points around it whose signs differ between the parameters."""
-    signs: list[tuple[int, ...]] = [(0,) * parameters]
-    for start in range(1, _STARTS):
-        # Rows of a Hadamard matrix.
-        row = tuple((-1) ** (start & k).bit_count() for k in range(1, parameters + 1))
-        if row not in signs:
-            signs.append(row)
-    return [math.log(_SPREAD) * np.array(row, dtype=float) for row in signs]
+def _scan(parameters: int) -> Sequence[Array]:
+    """The first guess, and points spread evenly over the range of the search."""
+    from scipy.stats.qmc import Halton
+
+    even = Halton(parameters, scramble=False).random(_SCANNED + 1)[1:]  # the first is a corner
+    return [np.zeros(parameters), *(math.log(RANGE) * (2 * even - 1))]

@@ -39,9 +39,12 @@ from restitution.runs.log import Say, ignore
 from restitution.runs.messages import naming_keys, require_possible
 
 Array = NDArray[np.float64]
-Cells = Literal["own", "coarser"]
+Cost = Literal["full", "coarser", "quick"]
+"""Own cells and all surfaces; cells twice as large; those with `_FEW` surfaces."""
 
-_RATIO = 1.2  # of a depth to the one before
+_RATIO = 1.3  # of a depth to the one before
+SURFACES = 8  # of a case that names one
+_FEW = 3
 MOST_VELOCITIES = 12  # of the case file that is written
 
 
@@ -135,6 +138,7 @@ def curve_of(contact: Contact, low: float, high: float, unloading: UnloadingTabl
 class CaseModel:
     """The case with tables `content` and free `parameters`, at velocities from `low` to `high`.
 
+    COR is the mean over several surfaces of its kind, because one surface is not the measured one.
     Files are relative to `folder`. A point x holds ln(value/first guess) of each parameter.
     """
 
@@ -147,9 +151,9 @@ class CaseModel:
     evaluations: int = 0
     _known: dict[tuple[Any, ...], Mean] = field(default_factory=dict)
 
-    def text(self, x: Array, velocities: Sequence[float] | None = None) -> str:
+    def text(self, x: Array, velocities: Sequence[float] | None = None, digits: int = 17) -> str:
         """The case file at `x`, with `velocities` (m/s) instead of its depths."""
-        tables = with_factors(self.content, self.parameters, np.exp(x))
+        tables = with_factors(self.content, self.parameters, np.exp(x), digits)
         for name in DEPTHS:
             tables.pop(name, None)
         given = [self.low, self.high] if velocities is None else velocities
@@ -160,25 +164,27 @@ class CaseModel:
         """The case at `x`. Raises `CaseError`."""
         return parse_case(self.text(x))
 
-    def at(self, x: Array, *, cells: Cells = "own", surface: int = 0) -> Mean:
-        """The curve at `x`: the mean over the surfaces of the case; raises as `curve_of`.
-
-        `surface`, if positive, is the number of another surface of the same kind instead. With
-        `cells` "coarser" cells are twice as large, and the shortest waves are left out.
-        """
-        key = (x.tobytes(), cells, surface)
+    def at(self, x: Array, cost: Cost = "full") -> Mean:
+        """The curve at `x`, the mean over surfaces; raises as `curve_of`."""
+        key = (x.tobytes(), cost)
         if key not in self._known:
-            self._known[key] = self._computed(x, cells, surface)
+            self._known[key] = self._computed(x, cost)
         return self._known[key]
 
-    def _computed(self, x: Array, cells: Cells, surface: int) -> Mean:
+    @property
+    def surfaces(self) -> int:
+        """The realisations of the case, or `SURFACES` if it names one; 1 without roughness."""
+        case = self.case(np.zeros(len(self.parameters)))
+        if not case.roughness:
+            return 1
+        return case.realisations if case.realisations > 1 else SURFACES
+
+    def _computed(self, x: Array, cost: Cost) -> Mean:
         case = self.case(x)
-        n = case.realisations
-        numbers = range(n) if surface == 0 else (n - 1 + surface,)
         curves = []
-        for number in numbers:
+        for number in range(min(_FEW, self.surfaces) if cost == "quick" else self.surfaces):
             contact = case.variant(number).contact(self.folder)
-            if cells == "coarser":
+            if cost != "full":
                 contact = coarser_contact(contact)
             curves.append(curve_of(contact, self.low, self.high, case.unloading))
         self.evaluations += len(curves)
@@ -190,9 +196,9 @@ class CaseModel:
         case = self.case(x)
         require_possible(case.contact(self.folder), deepest_indentation(case))
 
-    def restitution(self, x: Array, velocity: Array, cells: Cells = "own") -> Array:
+    def restitution(self, x: Array, velocity: Array, cost: Cost = "full") -> Array:
         """COR at `velocity` (m/s)."""
-        return self.at(x, cells=cells).restitution(velocity)
+        return self.at(x, cost).restitution(velocity)
 
 
 def velocities_to_run(measured: Array) -> list[float]:

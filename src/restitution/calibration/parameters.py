@@ -46,12 +46,15 @@ class Parameter:
 
 
 def with_factors(
-    content: Mapping[str, Any], parameters: Sequence[Parameter], factors: Array
+    content: Mapping[str, Any],
+    parameters: Sequence[Parameter],
+    factors: Array,
+    digits: int = 17,
 ) -> dict[str, Any]:
-    """The tables of a case with each parameter times its factor."""
+    """The tables of a case with each parameter times its factor, to so many digits."""
     case = copy.deepcopy(dict(content))
     for parameter, factor in zip(parameters, factors.tolist(), strict=True):
-        put(case, parameter.key, parameter.scaled(factor))
+        put(case, parameter.key, parameter.scaled(factor, digits))
     return case
 
 

@@ -4,10 +4,12 @@ Parameters are logarithms. A deviation ΔCOR of data or model moves them by P Δ
 P = (AᵀA)⁻¹Aᵀ/σ is the pseudo-inverse of the scaled Jacobian A = J/σ. With deviations that are
 independent between points, those of other surfaces and that of the grid,
 
-    C = P diag(s²) Pᵀ + mean over surfaces of (P Δ)(P Δ)ᵀ + (P Δ_grid)(P Δ_grid)ᵀ.
+    C = P diag(s²) Pᵀ + S/n + (P Δ_grid)(P Δ_grid)ᵀ,  S = Σ (P Δ)(P Δ)ᵀ/(n − 1),
 
-The second term holds the deviations of other surfaces from the one of the fit. Intervals take
-Student's t, with degrees of freedom after Welch and Satterthwaite (Satterthwaite 1946).
+where Δ are the differences of n surfaces from their mean, which was fitted. The second term is the
+variance of that mean: measured values are means over many places of impact. (If all impacts met one
+place, it would be (1 + 1/n) S.) Intervals take Student's t, with degrees of freedom after Welch and
+Satterthwaite (Satterthwaite 1946).
 """
 
 from __future__ import annotations
@@ -32,16 +34,33 @@ class Deviations:
     """What moves COR away from the fitted curve, at the measured velocities.
 
     `random` are standard deviations of the points, shape (points,), known from `freedom` degrees
-    of freedom. `surfaces` are differences of other surfaces' COR, shape (surfaces, points), and
-    `grid` is the difference on cells twice as large. `model` is the error by the model of
-    plasticity, which intervals do not include.
+    of freedom. `surfaces` are differences of each surface from their mean, shape (surfaces,
+    points), and `grid` is the difference on cells twice as large, None if unknown. `model` is the
+    error by the model of plasticity, which intervals do not include.
     """
 
     random: Array
     freedom: float
     surfaces: Array
-    grid: Array
+    grid: Array | None
     model: Array
+
+    @property
+    def by_surface(self) -> Array:
+        """Differences of COR, shape (surfaces, points), with the covariance S/n of their mean."""
+        n = len(self.surfaces)
+        return self.surfaces / math.sqrt(n * max(n - 1, 1))
+
+    @property
+    def by_grid(self) -> Array:
+        """The difference on cells twice as large; zero if unknown."""
+        return np.zeros(self.random.size) if self.grid is None else self.grid
+
+    @property
+    def systematic(self) -> Array:
+        """Standard deviations of COR by surface and grid, and `random`."""
+        squares = self.random**2 + (self.by_surface**2).sum(axis=0) + self.by_grid**2
+        return np.asarray(np.sqrt(squares))
 
 
 @dataclass(frozen=True)
@@ -66,13 +85,11 @@ class Uncertainty:
     def parts(self) -> dict[str, Array]:
         """The covariances by noise, surface and grid."""
         P, by = self.sensitivity, self.deviations
-        surfaces = by.surfaces @ P.T
-        grid = P @ by.grid
-        n = max(len(surfaces), 1)
+        surfaces = by.by_surface @ P.T
         return {
             "noise": self._unknown + (P * by.random**2) @ P.T,
-            "surface": surfaces.T @ surfaces / n,
-            "grid": np.outer(grid, grid),
+            "surface": surfaces.T @ surfaces,
+            "grid": np.outer(P @ by.by_grid, P @ by.by_grid),
         }
 
     @cached_property
@@ -106,7 +123,7 @@ class Uncertainty:
             return 0.0
         freedom = {
             "noise": self.deviations.freedom,
-            "surface": max(len(self.deviations.surfaces), 1),
+            "surface": max(len(self.deviations.surfaces) - 1, 1),
             "grid": math.inf,
         }
         lost = sum((variances[name] / whole) ** 2 / freedom[name] for name in variances)
@@ -129,6 +146,12 @@ class Uncertainty:
         return np.asarray(np.abs(self.sensitivity @ self.deviations.model))
 
     @cached_property
+    def by_one_surface(self) -> Array:
+        """Standard deviation of each logarithm if all impacts met one and the same place."""
+        n = len(self.deviations.surfaces)
+        return np.asarray(math.sqrt(n + 1) * self.deviation("surface"))
+
+    @cached_property
     def best_direction(self) -> Array:
         """The direction of the logarithms that the data determine best, its largest entry 1."""
         _, _, Vt = np.linalg.svd(self.scaled, full_matrices=False)
@@ -143,7 +166,6 @@ class Uncertainty:
         """Half of the 95 % interval of the fitted COR, for ∂COR/∂x `jacobian` at other points."""
         noise = (jacobian @ self.sensitivity * self.deviations.random) ** 2
         whole = noise.sum(axis=1)
-        for each in (*self.deviations.surfaces, self.deviations.grid):
-            n = 1 if each is self.deviations.grid else len(self.deviations.surfaces)
-            whole = whole + (jacobian @ (self.sensitivity @ each)) ** 2 / n
+        for each in (*self.deviations.by_surface, self.deviations.by_grid):
+            whole = whole + (jacobian @ (self.sensitivity @ each)) ** 2
         return np.asarray(1.96 * np.sqrt(whole))

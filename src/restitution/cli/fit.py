@@ -99,15 +99,14 @@ def _table(found: "Fit") -> "Table":
     from restitution.calibration.findings import identifiable, interval_in_words
     from restitution.cli.console import table_of_numbers
 
-    table = table_of_numbers("parameter", "fitted", "95 % interval", "model", "first guess", "")
+    table = table_of_numbers("parameter", "fitted", "95 % interval", "± model", "± one surface")
     table.columns[0].justify = "left"
+    by = found.uncertainty
     for k, parameter in enumerate(found.parameters):
         table.add_row(
             parameter.key,
             parameter.text(found.factors[k]),
-            interval_in_words(found, k),
-            f"± {100 * found.uncertainty.by_model[k]:.2g} %",
-            str(parameter.written),
-            "" if identifiable(found, k) else "not identifiable",
+            interval_in_words(found, k) if identifiable(found, k) else "not identifiable",
+            *(f"{100 * each[k]:.2g} %" for each in (by.by_model, by.by_one_surface)),
         )
     return table
