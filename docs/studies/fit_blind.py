@@ -32,7 +32,7 @@ def draw(seed: int) -> tuple[dict[str, float], str]:
     from restitution.theory import FirstYield
 
     rng = np.random.default_rng(seed)
-    nodes = int(rng.choice([96, 128]))
+    nodes = int(rng.choice([72, 96]))
     key = str(rng.choice(list(MODELS)))
     R, E, nu = 10 ** rng.uniform(-4.3, -2.8), 10 ** rng.uniform(9.5, 11.4), rng.uniform(0.2, 0.4)
     E_star, mass = E / (2 * (1 - nu**2)), 2500 * 4 / 3 * math.pi * R**3 / 2

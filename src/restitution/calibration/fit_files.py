@@ -93,7 +93,8 @@ def _summary(found: Fit, text: str) -> dict[str, Any]:
         "weights": "noise, scatter between surfaces and error of the grid, in quadrature",
         "surfaces": found.model.surfaces,
         "intervals_include": _included(found),
-        "measured_values_are": "means over many places of impact (std_if_one_surface: over one)",
+        "measured_values_are": f"means over {found.model.surfaces} places of impact or more; "
+        "std_if_one_surface: over one",
         "intervals_do_not_include": "the model of plasticity (by_model_error), values that the "
         "case gives, rate effects, elastic waves",
         "largest_model_error": float(found.deviations.model.max()),

@@ -1,12 +1,13 @@
 """The restitution of a case over a span of impact velocities, as a function of its parameters.
 
-One solve meets the lowest velocity, and deeper ones follow at depths that grow by a constant ratio
-until the highest velocity is reached; between them W_u/W_l is interpolated (`RatioCurve`). The
-depths change smoothly with the parameters, and so does the interpolated curve.
+Depths grow by a constant ratio from the lowest velocity to the highest; between them W_u/W_l is
+interpolated (`RatioCurve`). All curves of a surface use the same depths, more or fewer of them, so
+that the interpolated restitution is smooth in the parameters.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -33,6 +34,7 @@ from restitution.contact.contact import Contact
 from restitution.contact.loading import solve
 from restitution.contact.model_error import model_error
 from restitution.contact.prescribed_velocity import solve_at_velocity
+from restitution.contact.state import State
 from restitution.laws.interpolation import RatioCurve
 from restitution.runs.companions import coarser_contact
 from restitution.runs.log import Say, ignore
@@ -102,36 +104,47 @@ class Mean:
         return np.asarray(np.all([each.resolved_at(velocity) for each in self.curves], axis=0))
 
 
-def curve_of(contact: Contact, low: float, high: float, unloading: UnloadingTable) -> Curve:
-    """The curve of `contact` from velocity `low` to `high` (m/s) at least.
+def curve_of(
+    contact: Contact, low: float, high: float, unloading: UnloadingTable, near: float = math.nan
+) -> tuple[Curve, float]:
+    """The curve of `contact` from velocity `low` to `high` (m/s) at least, and its first depth (m).
 
-    Raises as `solve` and `solve_at_velocity`.
+    `near` is a depth to begin from, one of those that this function returns for another contact:
+    depths are then a power of the ratio away from it. Raises as `solve` and `solve_at_velocity`.
     """
-    rows: list[tuple[float, ...]] = []
     with naming_keys():
-        state = solve_at_velocity(contact, low)
-        while True:
-            collision = collide(
-                state, method=unloading.method, tolerance=unloading.restitution_error
-            )
-            velocity = collision.impact_velocity
-            if velocity is not None and (not rows or velocity > rows[-1][0]):
-                fine = adhesive_nodes(state) >= ADHESIVE_NODES
-                rows.append(
-                    (
-                        velocity,
-                        collision.unloading_work / collision.loading_work,
-                        collision.restitution_error,
-                        model_error(state, collision.restitution),
-                        fine and resolves(median_patch(state.patch_sizes())),
-                    )
-                )
-                # The lowest velocity is met within a tolerance.
-                if velocity >= high or low == high:
-                    break
+        if math.isnan(near) or contact.adhesive or low == high:
+            state = solve_at_velocity(contact, low)
+        else:
+            state = solve(contact, near)
+            while (collide(state).impact_velocity or 0.0) > low:
+                state = solve(contact, state.indentation / _RATIO)
+        rows = [_row(state, unloading)]
+        depths = [state.indentation]
+        # The lowest velocity is met within a tolerance.
+        while rows[-1][0] < high and low < high:
             state = solve(contact, _RATIO * state.indentation, start=state)
-    V, ratio, solver, model, resolved = np.array(rows).T
-    return Curve(V, ratio, solver, model, resolved.astype(bool), contact.adhesive)
+            row = _row(state, unloading)
+            if row[0] > rows[-1][0]:
+                rows.append(row)
+                depths.append(state.indentation)
+    first = max(sum(row[0] <= low for row in rows) - 1, 0)
+    V, ratio, solver, model, resolved = np.array(rows[first:]).T
+    curve = Curve(V, ratio, solver, model, resolved.astype(bool), contact.adhesive)
+    return curve, depths[first]
+
+
+def _row(state: State, unloading: UnloadingTable) -> tuple[float, ...]:
+    """Impact velocity (m/s), W_u/W_l, the errors of COR and whether the contact is resolved."""
+    collision = collide(state, method=unloading.method, tolerance=unloading.restitution_error)
+    fine = adhesive_nodes(state) >= ADHESIVE_NODES
+    return (
+        collision.impact_velocity or 0.0,
+        collision.unloading_work / collision.loading_work,
+        collision.restitution_error,
+        model_error(state, collision.restitution),
+        fine and resolves(median_patch(state.patch_sizes())),
+    )
 
 
 @dataclass
@@ -150,6 +163,7 @@ class CaseModel:
     progress: Say = ignore
     evaluations: int = 0
     _known: dict[tuple[Any, ...], Mean] = field(default_factory=dict)
+    _first_depths: dict[tuple[int, Cost], float] = field(default_factory=dict)
 
     def text(self, x: Array, velocities: Sequence[float] | None = None, digits: int = 17) -> str:
         """The case file at `x`, with `velocities` (m/s) instead of its depths."""
@@ -186,7 +200,10 @@ class CaseModel:
             contact = case.variant(number).contact(self.folder)
             if cost != "full":
                 contact = coarser_contact(contact)
-            curves.append(curve_of(contact, self.low, self.high, case.unloading))
+            near = self._first_depths.get((number, cost), math.nan)
+            curve, first = curve_of(contact, self.low, self.high, case.unloading, near)
+            self._first_depths[number, cost] = first
+            curves.append(curve)
         self.evaluations += len(curves)
         self.progress(f"{self.evaluations} curves")
         return Mean(tuple(curves))

@@ -4,12 +4,12 @@ Parameters are logarithms. A deviation ΔCOR of data or model moves them by P Δ
 P = (AᵀA)⁻¹Aᵀ/σ is the pseudo-inverse of the scaled Jacobian A = J/σ. With deviations that are
 independent between points, those of other surfaces and that of the grid,
 
-    C = P diag(s²) Pᵀ + S/n + (P Δ_grid)(P Δ_grid)ᵀ,  S = Σ (P Δ)(P Δ)ᵀ/(n − 1),
+    C = P diag(s²) Pᵀ + 2 S/n + (P Δ_grid)(P Δ_grid)ᵀ,  S = Σ (P Δ)(P Δ)ᵀ/(n − 1),
 
 where Δ are the differences of n surfaces from their mean, which was fitted. The second term is the
-variance of that mean: measured values are means over many places of impact. (If all impacts met one
-place, it would be (1 + 1/n) S.) Intervals take Student's t, with degrees of freedom after Welch and
-Satterthwaite (Satterthwaite 1946).
+variance of the difference between two such means, the fitted one and that over n places of impact.
+If all impacts met one place, it would be (1 + 1/n) S. Intervals take Student's t, with degrees of
+freedom after Welch and Satterthwaite (Satterthwaite 1946).
 """
 
 from __future__ import annotations
@@ -47,9 +47,9 @@ class Deviations:
 
     @property
     def by_surface(self) -> Array:
-        """Differences of COR, shape (surfaces, points), with the covariance S/n of their mean."""
+        """Differences of COR, shape (surfaces, points), with the covariance 2 S/n of two means."""
         n = len(self.surfaces)
-        return self.surfaces / math.sqrt(n * max(n - 1, 1))
+        return self.surfaces * math.sqrt(2 / (n * max(n - 1, 1)))
 
     @property
     def by_grid(self) -> Array:
@@ -149,7 +149,7 @@ class Uncertainty:
     def by_one_surface(self) -> Array:
         """Standard deviation of each logarithm if all impacts met one and the same place."""
         n = len(self.deviations.surfaces)
-        return np.asarray(math.sqrt(n + 1) * self.deviation("surface"))
+        return np.asarray(math.sqrt((n + 1) / 2) * self.deviation("surface"))
 
     @cached_property
     def best_direction(self) -> Array:
