@@ -94,7 +94,7 @@ def _summary(found: Fit, text: str) -> dict[str, Any]:
         "surfaces": found.model.surfaces,
         "intervals_include": _included(found),
         "measured_values_are": f"means over {found.model.surfaces} places of impact or more; "
-        "std_if_one_surface: over one",
+        "std_if_one_place: over one",
         "intervals_do_not_include": "the model of plasticity (by_model_error), values that the "
         "case gives, rate effects, elastic waves",
         "largest_model_error": float(found.deviations.model.max()),
@@ -129,7 +129,7 @@ def _parameter(found: Fit, k: int) -> dict[str, Any]:
             part: _known(found.uncertainty.deviation(part)[k]) for part in found.uncertainty.parts
         },
         "by_model_error": _known(found.uncertainty.by_model[k]),
-        "std_if_one_surface": _known(found.uncertainty.by_one_surface[k]),
+        "std_if_one_place": _known(found.uncertainty.by_one_place[k]),
     }
 
 

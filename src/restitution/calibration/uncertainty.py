@@ -146,7 +146,7 @@ class Uncertainty:
         return np.asarray(np.abs(self.sensitivity @ self.deviations.model))
 
     @cached_property
-    def by_one_surface(self) -> Array:
+    def by_one_place(self) -> Array:
         """Standard deviation of each logarithm if all impacts met one and the same place."""
         n = len(self.deviations.surfaces)
         return np.asarray(math.sqrt((n + 1) / 2) * self.deviation("surface"))

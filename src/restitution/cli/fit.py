@@ -96,17 +96,20 @@ def _fit(text: str, folder: Path, table: "Measured", names: list[str]) -> "Fit":
 
 
 def _table(found: "Fit") -> "Table":
-    from restitution.calibration.findings import identifiable, interval_in_words
-    from restitution.cli.console import table_of_numbers
+    from rich.table import Table
 
-    table = table_of_numbers("parameter", "fitted", "95 % interval", "± model", "± one surface")
-    table.columns[0].justify = "left"
+    from restitution.calibration.findings import identifiable, interval_in_words
+
+    table = Table(box=None, header_style="bold")
+    table.add_column("parameter", overflow="fold")
+    for name in ("fitted", "95 % interval", "± model", "± one place"):
+        table.add_column(name, justify="right", no_wrap=True)
     by = found.uncertainty
     for k, parameter in enumerate(found.parameters):
         table.add_row(
             parameter.key,
             parameter.text(found.factors[k]),
             interval_in_words(found, k) if identifiable(found, k) else "not identifiable",
-            *(f"{100 * each[k]:.2g} %" for each in (by.by_model, by.by_one_surface)),
+            *(f"{100 * each[k]:.2g} %" for each in (by.by_model, by.by_one_place)),
         )
     return table
