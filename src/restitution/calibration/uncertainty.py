@@ -76,8 +76,6 @@ class Uncertainty:
         """The uncertainty for ∂COR/∂x `jacobian` and the deviations σ that weighed the points."""
         scaled = jacobian / weights[:, None]
         U, s, Vt = np.linalg.svd(scaled, full_matrices=False)
-        if s.size < scaled.shape[1]:  # fewer points than parameters
-            raise ValueError("fewer points than parameters")
         P = Vt.T @ np.diag(1 / np.maximum(s, _LEAST)) @ U.T / weights
         return cls(scaled, np.asarray(P), deviations)
 
