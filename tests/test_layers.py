@@ -23,6 +23,7 @@ ROOMS = (
     "sweeps",
     "laws",
     "mixtures",
+    "calibration",
     "dem",
     "api",
     "plots",

@@ -95,6 +95,13 @@ def read_quantity(value: object, unit: str) -> float:
     return result
 
 
+def scaled(value: str, factor: float, digits: int = 17) -> str:
+    """The quantity `value`, such as "500 um", times `factor`, in its own unit."""
+    match = _QUANTITY.fullmatch(value)
+    assert match is not None  # `read_quantity` has read it
+    return f"{float(match[1]) * factor:.{digits}g} {match[2]}"
+
+
 def _other_case(name: str, unit: str) -> str | None:
     """Advice if `name` differs from a usual unit only in upper and lower case ("gpa")."""
     for usual in _USUAL[unit]:

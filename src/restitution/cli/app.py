@@ -13,6 +13,7 @@ from restitution.cli import (
     compare_theory,
     converge,
     export,
+    fit,
     fit_law,
     materials,
     mixture,
@@ -34,7 +35,14 @@ app = typer.Typer(
 )
 _VERBS: dict[str, tuple[Callable[..., None], ...]] = {
     "Prepare": (new.new, materials.materials, check.check, surface.surface),
-    "Compute": (run.run, converge.converge, study.study, mixture.mixture, reproduce.reproduce),
+    "Compute": (
+        run.run,
+        converge.converge,
+        study.study,
+        mixture.mixture,
+        fit.fit,
+        reproduce.reproduce,
+    ),
     "Use results": (
         report.report,
         compare.compare,

@@ -123,14 +123,18 @@ class Companions:
         return changes
 
     def _coarse(self, case: Case) -> Contact:
-        contact = case.contact(self.folder)
-        coarser = coarsen(contact.surface)
-        if contact.surface.provenance.get("source") == "smooth":
-            coarser = smooth(coarser.grid)
-        return replace(contact, surface=coarser)
+        return coarser_contact(case.contact(self.folder))
 
     def _curve(self, contact: Contact) -> Curve:
         return curve_of(contact, self.depths, self.case.unloading.method)
+
+
+def coarser_contact(contact: Contact) -> Contact:
+    """`contact` on cells twice as large, without its shortest waves."""
+    coarser = coarsen(contact.surface)
+    if contact.surface.provenance.get("source") == "smooth":
+        coarser = smooth(coarser.grid)
+    return replace(contact, surface=coarser)
 
 
 def _with_modulus_of(pair: Pair, other: Pair) -> Pair:

@@ -77,7 +77,7 @@ def parse_study(text: str) -> Study:
     for number, values in enumerate(_combinations(swept, mode), 1):
         case = copy.deepcopy(content)
         for key, value in values.items():
-            _put(case, key, value)
+            put(case, key, value)
         case_text = tomli_w.dumps(case)
         try:
             parse_case(case_text)
@@ -129,7 +129,7 @@ def _combinations(swept: Mapping[str, list[Any]], mode: str) -> Iterator[dict[st
         yield dict(zip(swept, row, strict=True))
 
 
-def _put(case: dict[str, Any], path: str, value: Any) -> None:
+def put(case: dict[str, Any], path: str, value: Any) -> None:
     """Set the key at `path`, in which a number (from 1) selects one of several tables."""
     table: Any = case
     *way, last = path.split(".")

@@ -1,0 +1,1 @@
+"""Parameters of a case from measured restitution: the inverse of a run."""

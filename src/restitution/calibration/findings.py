@@ -1,0 +1,167 @@
+"""Whether a fit determines its parameters, and whether it explains the data: in sentences."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.calibration.fit import Fit
+from restitution.calibration.least_squares import RANGE, at_bound
+
+Array = NDArray[np.float64]
+
+WIDEST = 4.0
+"""Ratio of the ends of a 95 % interval above which a parameter is not identifiable."""
+_CORRELATED = 0.99
+_NO_EFFECT = 0.3  # standard deviations by which doubling a parameter moves the residuals
+_AS_GOOD = 4.0  # Δχ² of another minimum that explains the data as well: two standard deviations
+_OTHER = math.log(1.5)  # distance to another minimum
+_SHARE = 0.1  # smallest exponent of a parameter in a combination that is named
+_UNLIKELY = 0.01
+
+
+def identifiable(found: Fit, parameter: int) -> bool:
+    """Whether the 95 % interval of a parameter spans less than a factor `WIDEST`."""
+    return found.uncertainty.halves[parameter] <= 0.5 * math.log(WIDEST)
+
+
+def findings(found: Fit) -> list[str]:
+    """One sentence for each thing that speaks against the fitted values; the worst first."""
+    return [
+        *_not_identifiable(found),
+        *_correlated(found),
+        *_bounds(found),
+        *_other_minima(found),
+        *_unexplained(found),
+        *_unresolved(found),
+        *_unknown(found),
+    ]
+
+
+def interval_in_words(found: Fit, k: int) -> str:
+    """The 95 % interval of a parameter, in the unit of the case file."""
+    half, x, parameter = found.uncertainty.halves[k], float(found.x[k]), found.parameters[k]
+    if math.isinf(half):
+        return "unbounded"
+    return f"{parameter.text(math.exp(x - half))} to {parameter.text(math.exp(x + half))}"
+
+
+def combination(found: Fit) -> tuple[dict[str, float], float] | None:
+    """The combination of parameters that the data determine best: exponents by key, half interval.
+
+    The half interval is of the logarithm of the product. None for a single parameter, and where
+    no combination is identifiable.
+    """
+    direction = found.uncertainty.best_direction
+    half = found.uncertainty.half(direction)
+    if len(found.parameters) < 2 or half > 0.5 * math.log(WIDEST):
+        return None
+    exponents = zip((each.key for each in found.parameters), direction.tolist(), strict=True)
+    return {key: value for key, value in exponents if abs(value) >= _SHARE}, half
+
+
+def _not_identifiable(found: Fit) -> Iterator[str]:
+    lost = [k for k in range(found.x.size) if not identifiable(found, k)]
+    for k in lost:
+        parameter = found.parameters[k]
+        if found.uncertainty.effect(k) < _NO_EFFECT:
+            yield (
+                f"{parameter.key} is not identifiable from these data: restitution at these "
+                f"velocities does not change with it around {parameter.text(found.factors[k])}"
+            )
+            continue
+        half = found.uncertainty.halves[k]
+        spans = "has no end" if math.isinf(half) else f"spans a factor of {math.exp(2 * half):.2g}"
+        yield (
+            f"{parameter.key} is not identifiable from these data: its 95 % interval {spans} "
+            f"({interval_in_words(found, k)})"
+        )
+    known = combination(found) if lost else None
+    if known is not None and len(known[0]) > 1:
+        yield f"the data determine only the combination {product_in_words(*known)}"
+
+
+def product_in_words(exponents: dict[str, float], half: float) -> str:
+    """A product of powers of parameters and its 95 % interval, in percent."""
+    factors = [key if power == 1 else f"{key}^{power:.2f}" for key, power in exponents.items()]
+    percent = 100 * (math.exp(half) - 1)
+    return f"{' * '.join(factors)} (within {percent:.2g} %)"
+
+
+def _correlated(found: Fit) -> Iterator[str]:
+    r = found.uncertainty.correlation
+    for i in range(found.x.size):
+        for j in range(i):
+            both = identifiable(found, i) and identifiable(found, j)
+            if both and abs(r[i, j]) > _CORRELATED:
+                one, other = found.parameters[j].key, found.parameters[i].key
+                yield (
+                    f"{one} and {other} cannot be told apart by these data (correlation "
+                    f"{r[i, j]:.3f}): a change of one makes up for a change of the other"
+                )
+
+
+def _bounds(found: Fit) -> Iterator[str]:
+    for parameter, x in zip(found.parameters, found.x.tolist(), strict=True):
+        if at_bound(x):
+            side = "above" if x > 0 else "below"
+            yield (
+                f"{parameter.key} ended at the limit of the search, a factor of {RANGE:g} {side} "
+                f"its first guess {parameter.written}; write a better first guess"
+            )
+
+
+def _other_minima(found: Fit) -> Iterator[str]:
+    """Other starts that ended elsewhere with a sum of squares about as small."""
+    best = found.minima[0]
+    scale = max(best.squares / max(found.freedom, 1), 1e-300)
+    unit = scale if found.measured.deviation is None else max(scale, 1.0)
+    for other in found.minima[1:]:
+        far = np.abs(other.x - best.x) > np.maximum(np.array(found.uncertainty.halves), _OTHER)
+        if far.any() and other.squares - best.squares < _AS_GOOD * unit:
+            values = ", ".join(
+                f"{parameter.key} = {parameter.text(math.exp(x))}"
+                for parameter, x in zip(found.parameters, other.x.tolist(), strict=True)
+            )
+            yield (
+                f"the fit is not unique: from another start the search found {values}, which "
+                "explains the data as well"
+            )
+            return
+
+
+def _unexplained(found: Fit) -> Iterator[str]:
+    from scipy.stats import chi2
+
+    if found.measured.deviation is None or found.freedom < 1:
+        return
+    weights = np.hypot(found.weights, found.deviations.model)
+    squares = float(np.sum((found.residuals / weights) ** 2))
+    if squares > chi2.ppf(1 - _UNLIKELY, found.freedom):
+        rms = math.sqrt(float(np.mean((found.residuals / weights) ** 2)))
+        yield (
+            f"the case does not explain the data: residuals are {rms:.2g} times their standard "
+            "deviations, those by surface, grid and model included; check what is not free, such "
+            "as elasticity, adhesion and the shape of the roughness"
+        )
+
+
+def _unresolved(found: Fit) -> Iterator[str]:
+    few = int((~found.resolved).sum())
+    if few:
+        yield (
+            f"the grid does not resolve the contact at {few} of {found.resolved.size} measured "
+            "velocities; points there count less by the error of the grid; use grid.refine or a "
+            "smaller grid.spacing"
+        )
+
+
+def _unknown(found: Fit) -> Iterator[str]:
+    if found.deviations.grid is None:
+        yield (
+            "the intervals do not include the error of the grid, because cells twice as large "
+            "could not be solved"
+        )

@@ -1,0 +1,217 @@
+"""Find the parameters of a case that explain measured restitution."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.calibration.least_squares import (
+    Data,
+    Minimum,
+    jacobian,
+    search,
+    search_widely,
+)
+from restitution.calibration.measured import Measured
+from restitution.calibration.model import CaseModel
+from restitution.calibration.parameters import Parameter, free_parameters
+from restitution.calibration.uncertainty import Deviations, Uncertainty
+from restitution.case.case_file import parse_case, parse_toml
+from restitution.errors import CaseError, RestitutionError
+from restitution.runs.log import Say, ignore
+from restitution.runs.refinement import settled
+
+Array = NDArray[np.float64]
+
+_FINE = 60  # velocities of the fitted curve
+_EQUAL = 0.02  # standard deviation of COR to begin with, if the table has none
+_LEAST_NOISE = 1e-4  # of COR, from residuals: the accuracy of interpolation between velocities
+
+
+@dataclass(frozen=True)
+class FittedCurve:
+    """The fitted COR at velocities (m/s) that span the measured ones, with its 95 % band."""
+
+    velocity: Array
+    restitution: Array
+    half_band: Array
+
+
+@dataclass(frozen=True)
+class Fit:
+    """The result of a fit.
+
+    `x` holds ln(value/first guess) of each parameter. `fitted` and `deviations` are at the
+    measured velocities, `weights` the deviations that weighed the points. `minima` are those of all
+    starts, on cells twice as large, the best first.
+    """
+
+    model: CaseModel
+    measured: Measured
+    x: Array
+    fitted: Array
+    resolved: NDArray[np.bool_]
+    weights: Array
+    deviations: Deviations
+    uncertainty: Uncertainty
+    minima: Sequence[Minimum]
+    curve: FittedCurve
+
+    @property
+    def parameters(self) -> Sequence[Parameter]:
+        """The free parameters."""
+        return self.model.parameters
+
+    @property
+    def factors(self) -> list[float]:
+        """The fitted value of each parameter over its first guess."""
+        return [math.exp(each) for each in self.x.tolist()]
+
+    @property
+    def residuals(self) -> Array:
+        """Measured minus fitted COR."""
+        return self.measured.restitution - self.fitted
+
+    @property
+    def chi_squared(self) -> float:
+        """Σ (residual/weight)²."""
+        return float(np.sum((self.residuals / self.weights) ** 2))
+
+    @property
+    def freedom(self) -> int:
+        """Points less parameters."""
+        return self.measured.velocity.size - self.x.size
+
+
+def fit(
+    text: str,
+    folder: Path,
+    measured: Measured,
+    names: Sequence[str],
+    progress: Say = ignore,
+) -> Fit:
+    """Fit the keys `names` of the case file `text` to `measured` restitution.
+
+    Files are relative to `folder`. The impact velocities of the case are those of `measured`, and
+    its values of the free keys are first guesses (`free_parameters`). `progress` is called with a
+    few words after every curve. Raises `CaseError`, and what `solve_at_velocity` raises where the
+    fitted case cannot be solved.
+    """
+    content = parse_toml(text)
+    parse_case(text)
+    parameters = free_parameters(content, names)
+    _check_points(measured, len(parameters))
+    V = measured.velocity
+    model = CaseModel(content, folder, parameters, float(V[0]), float(V[-1]), progress)
+    start = np.zeros(len(parameters))
+    _settle_grid(model, start)
+    model.require_possible(start)
+    given = measured.deviation
+    data = Data(V, measured.restitution, np.full(V.size, _EQUAL) if given is None else given)
+    minima = search_widely(model, data)
+    best = _best(model, data, minima)
+    # Points where another surface or grid gives another COR count less.
+    noise = _noise(measured, model.restitution(best.x, V), best.x.size)
+    data = replace(data, deviation=np.hypot(noise, _deviations(model, best.x, V).systematic))
+    best = search(model, data, best.x)
+    return _result(model, measured, data, best, minima)
+
+
+def _check_points(measured: Measured, parameters: int) -> None:
+    points = measured.velocity.size
+    if points < parameters:
+        raise CaseError(
+            f"--free: {parameters} keys are more than the {points} measured points can determine; "
+            "measure more, or free fewer keys"
+        )
+    if points == parameters and measured.deviation is None:
+        raise CaseError(
+            f"--free: {parameters} keys and as many measured points leave no residuals to estimate "
+            "the noise from; add the column restitution_std, or measure more"
+        )
+
+
+def _settle_grid(model: CaseModel, start: Array) -> None:
+    """Replace `grid.refine = "auto"` in the case by the number for the first guess."""
+    case = model.case(start)
+    if case.grid is not None and case.grid.refine == "auto":
+        factor = settled(case, model.folder).grid
+        assert factor is not None  # it has `refine`
+        content: dict[str, Any] = dict(model.content)
+        content["grid"] = {**content["grid"], "refine": factor.factor}
+        model.content = content
+
+
+def _best(model: CaseModel, data: Data, minima: Sequence[Minimum]) -> Minimum:
+    """The minimum on the case's own grid, from the best on cells twice as large that succeeds."""
+    failure: RestitutionError | None = None
+    for start in minima:
+        try:
+            return search(model, data, start.x)
+        except RestitutionError as error:
+            failure = failure or error
+    assert failure is not None  # `search_widely` returns a minimum
+    raise failure
+
+
+def _deviations(model: CaseModel, x: Array, velocity: Array) -> Deviations:
+    """The deviations at `x`; those of the points are the solver's alone."""
+    here = model.at(x)
+    own = here.restitution(velocity)
+    each = np.array([curve.restitution(velocity) for curve in here.curves])
+    try:
+        grid: Array | None = model.restitution(x, velocity, "coarser") - own
+    except RestitutionError:
+        grid = None
+    return Deviations(
+        random=here.error(velocity, "solver_error"),
+        freedom=math.inf,
+        surfaces=each - own,
+        grid=grid,
+        model=here.error(velocity, "model_error"),
+    )
+
+
+def _noise(measured: Measured, fitted: Array, parameters: int) -> Array:
+    """Standard deviations of the measured points: as given, or those of the residuals."""
+    if measured.deviation is not None:
+        return measured.deviation
+    freedom = fitted.size - parameters
+    squares = float(np.sum((measured.restitution - fitted) ** 2))
+    return np.full(fitted.size, max(math.sqrt(squares / freedom), _LEAST_NOISE))
+
+
+def _result(
+    model: CaseModel, measured: Measured, data: Data, best: Minimum, minima: Sequence[Minimum]
+) -> Fit:
+    V, x, freedom = data.velocity, best.x, data.velocity.size - best.x.size
+    here = model.at(x)
+    noise = _noise(measured, here.restitution(V), x.size)
+    if measured.deviation is not None and freedom > 0:
+        noise = noise * math.sqrt(max(best.squares / freedom, 1.0))
+    by = _deviations(model, x, V)
+    deviations = replace(
+        by,
+        random=np.hypot(noise, by.random),
+        freedom=float(freedom) if measured.deviation is None else math.inf,
+    )
+    uncertainty = Uncertainty.of(jacobian(model, x, V), data.deviation, deviations)
+    fine = np.geomspace(V[0], V[-1], _FINE) if V[0] < V[-1] else V[:1]
+    return Fit(
+        model=model,
+        measured=measured,
+        x=x,
+        fitted=here.restitution(V),
+        resolved=here.resolved_at(V),
+        weights=data.deviation,
+        deviations=deviations,
+        uncertainty=uncertainty,
+        minima=minima,
+        curve=FittedCurve(fine, here.restitution(fine), uncertainty.band(jacobian(model, x, fine))),
+    )

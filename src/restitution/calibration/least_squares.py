@@ -1,0 +1,140 @@
+"""Weighted least squares over the logarithms of parameters, from several first guesses."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.calibration.model import CaseModel, Cost
+from restitution.errors import CaseError, RestitutionError
+
+Array = NDArray[np.float64]
+
+RANGE = 30.0  # factor that the search may go from the first guess, up and down
+# ln of a parameter, of finite differences. The solver's noise is 1e-8, but single nodes that
+# begin to yield make COR of shallow contacts uneven over changes of about one percent.
+_STEP = 0.03
+_SCANNED, _STARTS = (
+    15,
+    2,
+)  # points beside the first guess, and how many of them a search starts from
+_FAILED = 1e3  # residual, in standard deviations, where the case cannot be solved
+_EVALUATIONS = 40
+# Relative, of the sum of squares and of x; a quick search finds a start for the next.
+_TOLERANCE: dict[Cost, float] = {"full": 1e-4, "quick": 1e-3}
+
+
+@dataclass(frozen=True)
+class Data:
+    """Restitution at impact velocities (m/s) with the deviations that weigh them."""
+
+    velocity: Array
+    restitution: Array
+    deviation: Array
+
+
+@dataclass(frozen=True)
+class Minimum:
+    """The end of a search: x = ln(value/first guess), and the sum of squared weighted residuals."""
+
+    x: Array
+    squares: float
+
+
+def jacobian(
+    model: CaseModel, x: Array, velocity: Array, *, cost: Cost = "full", central: bool = True
+) -> Array:
+    """∂COR/∂x at `velocity` (m/s), shape (velocities, parameters), by finite differences.
+
+    They are `central`, or to one side: to the other where the case cannot be solved there.
+    """
+    here = model.restitution(x, velocity, cost)
+    columns = []
+    for axis in np.eye(x.size):
+        slopes: list[Array] = []
+        for step in (_STEP, -_STEP):
+            if slopes and not central:
+                break
+            with suppress(RestitutionError):
+                there = model.restitution(x + step * axis, velocity, cost)
+                slopes.append((there - here) / step)
+        columns.append(np.mean(slopes, axis=0) if slopes else np.zeros(velocity.size))
+    return np.array(columns).T
+
+
+def search(model: CaseModel, data: Data, start: Array, cost: Cost = "full") -> Minimum:
+    """The minimum that is found from `start`. Raises `RestitutionError` if it cannot be solved."""
+    from scipy.optimize import least_squares
+
+    def residuals(x: Array) -> Array:
+        return (model.restitution(x, data.velocity, cost) - data.restitution) / data.deviation
+
+    def safe(x: Array) -> Array:
+        """The residuals, or large ones where the case cannot be solved: the step is refused."""
+        try:
+            return residuals(x)
+        except RestitutionError:
+            return np.full(data.velocity.size, _FAILED)
+
+    residuals(start)
+    found = least_squares(
+        safe,
+        start,
+        jac=lambda x: (
+            jacobian(model, x, data.velocity, cost=cost, central=False) / data.deviation[:, None]
+        ),
+        bounds=(-math.log(RANGE), math.log(RANGE)),
+        ftol=_TOLERANCE[cost],
+        xtol=_TOLERANCE[cost],
+        gtol=1e-8,
+        max_nfev=_EVALUATIONS,
+    )
+    return Minimum(np.asarray(found.x), 2 * float(found.cost))
+
+
+def search_widely(model: CaseModel, data: Data) -> list[Minimum]:
+    """The minima of quick searches from the first guess and from the best of a scan, best first.
+
+    Raises `CaseError` if the case can be solved at none of the points.
+    """
+    guess, *others = _scan(len(model.parameters))
+    found, failure = [], ""
+    scanned = [(squares(model, data, x), k) for k, x in enumerate(others)]
+    best = [others[k] for value, k in sorted(scanned)[:_STARTS] if math.isfinite(value)]
+    for start in (guess, *best):
+        try:
+            found.append(search(model, data, start, "quick"))
+        except RestitutionError as error:
+            failure = failure or str(error)
+    if not found:
+        raise CaseError(
+            f"the case cannot be solved at the first guess of the parameters: {failure}"
+        )
+    return sorted(found, key=lambda minimum: minimum.squares)
+
+
+def squares(model: CaseModel, data: Data, x: Array) -> float:
+    """The sum of squared weighted residuals of a quick curve; inf if it cannot be solved."""
+    try:
+        off = model.restitution(x, data.velocity, "quick") - data.restitution
+    except RestitutionError:
+        return math.inf
+    return float(np.sum((off / data.deviation) ** 2))
+
+
+def at_bound(x: float) -> bool:
+    """Whether a search ended at an end of its range."""
+    return abs(x) > 0.99 * math.log(RANGE)
+
+
+def _scan(parameters: int) -> Sequence[Array]:
+    """The first guess, and points spread evenly over the range of the search."""
+    from scipy.stats.qmc import Halton
+
+    even = Halton(parameters, scramble=False).random(_SCANNED + 1)[1:]  # the first is a corner
+    return [np.zeros(parameters), *(math.log(RANGE) * (2 * even - 1))]

@@ -1,0 +1,227 @@
+"""The restitution of a case over a span of impact velocities, as a function of its parameters.
+
+Depths grow by a constant ratio from the lowest velocity to the highest; between them W_u/W_l is
+interpolated (`RatioCurve`). All curves of a surface use the same depths, more or fewer of them, so
+that the interpolated restitution is smooth in the parameters.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+import tomli_w
+from numpy.typing import NDArray
+
+from restitution.calibration.parameters import Parameter, with_factors
+from restitution.case.case import DEPTHS, Case
+from restitution.case.case_file import parse_case
+from restitution.case.derived import deepest_indentation
+from restitution.case.schema import UnloadingTable
+from restitution.collision import collide
+from restitution.contact.checks.resolution import (
+    ADHESIVE_NODES,
+    adhesive_nodes,
+    median_patch,
+    resolves,
+)
+from restitution.contact.contact import Contact
+from restitution.contact.loading import solve
+from restitution.contact.model_error import model_error
+from restitution.contact.prescribed_velocity import solve_at_velocity
+from restitution.contact.state import State
+from restitution.laws.interpolation import RatioCurve
+from restitution.runs.companions import coarser_contact
+from restitution.runs.log import Say, ignore
+from restitution.runs.messages import naming_keys, require_possible
+
+Array = NDArray[np.float64]
+Cost = Literal["full", "coarser", "quick"]
+"""Own cells and all surfaces; cells twice as large; those with `_FEW` surfaces."""
+
+_RATIO = 1.3  # of a depth to the one before
+SURFACES = 8  # of a case that names one
+_FEW = 3
+MOST_VELOCITIES = 12  # of the case file that is written
+
+
+@dataclass(frozen=True)
+class Curve:
+    """COR of one surface at increasing impact velocities (m/s), shape (depths,).
+
+    `ratio` is W_u/W_l. `solver_error` and `model_error` are errors of COR.
+    """
+
+    velocity: Array
+    ratio: Array
+    solver_error: Array
+    model_error: Array
+    resolved: NDArray[np.bool_]
+    adhesive: bool
+
+    @cached_property
+    def _between(self) -> RatioCurve:
+        return RatioCurve(self.velocity, self.ratio, adhesive=self.adhesive)
+
+    def restitution(self, velocity: Array) -> Array:
+        """COR at `velocity` (m/s), by interpolation."""
+        inside = np.clip(velocity, self.velocity[0], self.velocity[-1])
+        ratios = np.array([self._between.at(V) for V in inside.tolist()])
+        return np.asarray(np.sqrt(np.clip(ratios, 0.0, 1.0)))
+
+    def error(self, velocity: Array, name: Literal["solver_error", "model_error"]) -> Array:
+        """An error of COR at `velocity` (m/s)."""
+        known = getattr(self, name)
+        return np.asarray(np.interp(np.log(velocity), np.log(self.velocity), known))
+
+    def resolved_at(self, velocity: Array) -> NDArray[np.bool_]:
+        """Whether the grid resolves the contacts on both sides of `velocity` (m/s)."""
+        known = self.resolved.astype(float)
+        return np.asarray(np.interp(np.log(velocity), np.log(self.velocity), known) > 1 - 1e-9)
+
+
+@dataclass(frozen=True)
+class Mean:
+    """The mean of the curves of several surfaces."""
+
+    curves: tuple[Curve, ...]
+
+    def restitution(self, velocity: Array) -> Array:
+        """Mean COR at `velocity` (m/s)."""
+        return np.asarray(np.mean([each.restitution(velocity) for each in self.curves], axis=0))
+
+    def error(self, velocity: Array, name: Literal["solver_error", "model_error"]) -> Array:
+        """The largest error of COR of any surface at `velocity` (m/s)."""
+        return np.asarray(np.max([each.error(velocity, name) for each in self.curves], axis=0))
+
+    def resolved_at(self, velocity: Array) -> NDArray[np.bool_]:
+        """Whether the contact of every surface is resolved at `velocity` (m/s)."""
+        return np.asarray(np.all([each.resolved_at(velocity) for each in self.curves], axis=0))
+
+
+def curve_of(
+    contact: Contact, low: float, high: float, unloading: UnloadingTable, near: float = math.nan
+) -> tuple[Curve, float]:
+    """The curve of `contact` from velocity `low` to `high` (m/s) at least, and its first depth (m).
+
+    `near` is a depth to begin from, one of those that this function returns for another contact:
+    depths are then a power of the ratio away from it. Raises as `solve` and `solve_at_velocity`.
+    """
+    with naming_keys():
+        if math.isnan(near) or contact.adhesive or low == high:
+            state = solve_at_velocity(contact, low)
+        else:
+            state = solve(contact, near)
+            while (collide(state).impact_velocity or 0.0) > low:
+                state = solve(contact, state.indentation / _RATIO)
+        rows = [_row(state, unloading)]
+        depths = [state.indentation]
+        # The lowest velocity is met within a tolerance.
+        while rows[-1][0] < high and low < high:
+            state = solve(contact, _RATIO * state.indentation, start=state)
+            row = _row(state, unloading)
+            if row[0] > rows[-1][0]:
+                rows.append(row)
+                depths.append(state.indentation)
+    first = max(sum(row[0] <= low for row in rows) - 1, 0)
+    V, ratio, solver, model, resolved = np.array(rows[first:]).T
+    curve = Curve(V, ratio, solver, model, resolved.astype(bool), contact.adhesive)
+    return curve, depths[first]
+
+
+def _row(state: State, unloading: UnloadingTable) -> tuple[float, ...]:
+    """Impact velocity (m/s), W_u/W_l, the errors of COR and whether the contact is resolved."""
+    collision = collide(state, method=unloading.method, tolerance=unloading.restitution_error)
+    fine = adhesive_nodes(state) >= ADHESIVE_NODES
+    return (
+        collision.impact_velocity or 0.0,
+        collision.unloading_work / collision.loading_work,
+        collision.restitution_error,
+        model_error(state, collision.restitution),
+        fine and resolves(median_patch(state.patch_sizes())),
+    )
+
+
+@dataclass
+class CaseModel:
+    """The case with tables `content` and free `parameters`, at velocities from `low` to `high`.
+
+    COR is the mean over several surfaces of its kind, because one surface is not the measured one.
+    Files are relative to `folder`. A point x holds ln(value/first guess) of each parameter.
+    """
+
+    content: Mapping[str, Any]
+    folder: Path
+    parameters: Sequence[Parameter]
+    low: float
+    high: float
+    progress: Say = ignore
+    evaluations: int = 0
+    _known: dict[tuple[Any, ...], Mean] = field(default_factory=dict)
+    _first_depths: dict[tuple[int, Cost], float] = field(default_factory=dict)
+
+    def text(self, x: Array, velocities: Sequence[float] | None = None, digits: int = 17) -> str:
+        """The case file at `x`, with `velocities` (m/s) instead of its depths."""
+        tables = with_factors(self.content, self.parameters, np.exp(x), digits)
+        for name in DEPTHS:
+            tables.pop(name, None)
+        given = [self.low, self.high] if velocities is None else velocities
+        tables["impact"] = {"velocity": [f"{V!r} m/s" for V in sorted(set(given))]}
+        return tomli_w.dumps(tables)
+
+    def case(self, x: Array) -> Case:
+        """The case at `x`. Raises `CaseError`."""
+        return parse_case(self.text(x))
+
+    def at(self, x: Array, cost: Cost = "full") -> Mean:
+        """The curve at `x`, the mean over surfaces; raises as `curve_of`."""
+        key = (x.tobytes(), cost)
+        if key not in self._known:
+            self._known[key] = self._computed(x, cost)
+        return self._known[key]
+
+    @property
+    def surfaces(self) -> int:
+        """The realisations of the case, or `SURFACES` if it names one; 1 without roughness."""
+        case = self.case(np.zeros(len(self.parameters)))
+        if not case.roughness:
+            return 1
+        return case.realisations if case.realisations > 1 else SURFACES
+
+    def _computed(self, x: Array, cost: Cost) -> Mean:
+        case = self.case(x)
+        curves = []
+        for number in range(min(_FEW, self.surfaces) if cost == "quick" else self.surfaces):
+            contact = case.variant(number).contact(self.folder)
+            if cost != "full":
+                contact = coarser_contact(contact)
+            near = self._first_depths.get((number, cost), math.nan)
+            curve, first = curve_of(contact, self.low, self.high, case.unloading, near)
+            self._first_depths[number, cost] = first
+            curves.append(curve)
+        self.evaluations += len(curves)
+        self.progress(f"{self.evaluations} curves")
+        return Mean(tuple(curves))
+
+    def require_possible(self, x: Array) -> None:
+        """Raise `CaseError` or `SurfaceError` where the case at `x` has no meaning."""
+        case = self.case(x)
+        require_possible(case.contact(self.folder), deepest_indentation(case))
+
+    def restitution(self, x: Array, velocity: Array, cost: Cost = "full") -> Array:
+        """COR at `velocity` (m/s)."""
+        return self.at(x, cost).restitution(velocity)
+
+
+def velocities_to_run(measured: Array) -> list[float]:
+    """Velocities (m/s) of the fitted case: the measured ones, or `MOST_VELOCITIES` over them."""
+    own = np.unique(measured)
+    if own.size <= MOST_VELOCITIES:
+        return [float(V) for V in own]
+    spread = np.geomspace(own[0], own[-1], MOST_VELOCITIES)
+    return [float(f"{V:.6g}") for V in spread]

@@ -1,0 +1,127 @@
+"""The free parameters of a fit: keys of a case file whose values are scaled."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.case.quantities import scaled
+from restitution.errors import CaseError, shown
+from restitution.sweeps.coordinates import coordinate
+from restitution.sweeps.sweep import put
+
+Array = NDArray[np.float64]
+
+_TABLES = ("first", "second", "interface", "roughness")
+_CHOICES = {"seed", "realisations", "place", "channel", "crop", "outliers"}  # no physical values
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A free key of a case file, such as "roughness.rms".
+
+    `written` is its first guess as the file has it ("0.1 um"), and `value` the same in the SI
+    `unit` ("1" for a number).
+    """
+
+    key: str
+    written: str | float
+    value: float
+    unit: str
+
+    def scaled(self, factor: float, digits: int = 17) -> str | float:
+        """The first guess times `factor`, as a case file has it."""
+        if isinstance(self.written, str):
+            return scaled(self.written, factor, digits)
+        return float(f"{self.written * factor:.{digits}g}")
+
+    def text(self, factor: float) -> str:
+        """The first guess times `factor`, to four digits, for messages."""
+        return str(self.scaled(factor, 4))
+
+
+def with_factors(
+    content: Mapping[str, Any],
+    parameters: Sequence[Parameter],
+    factors: Array,
+    digits: int = 17,
+) -> dict[str, Any]:
+    """The tables of a case with each parameter times its factor, to so many digits."""
+    case = copy.deepcopy(dict(content))
+    for parameter, factor in zip(parameters, factors.tolist(), strict=True):
+        put(case, parameter.key, parameter.scaled(factor, digits))
+    return case
+
+
+def free_parameters(content: Mapping[str, Any], names: Sequence[str]) -> tuple[Parameter, ...]:
+    """The parameters that `names` mean: whole keys, or the last part of a key if only one has it.
+
+    Raises `CaseError` for a name that is not the key of a positive value in the case.
+    """
+    values = dict(_values(content))
+    keys = [_key(name, values) for name in names]
+    if not keys:
+        raise CaseError("--free: names no key; give one or more, such as yield_strength,rms")
+    for key in keys:
+        if keys.count(key) > 1:
+            raise CaseError(f"--free: {key} is named twice; name it once")
+    return tuple(_parameter(key, values[key]) for key in keys)
+
+
+def _values(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
+    """Keys and values; of several [[roughness]] tables by their number, from 1."""
+    for name, value in table.items():
+        if isinstance(value, dict):
+            yield from _values(value, f"{before}{name}.")
+        elif isinstance(value, list) and value and all(isinstance(part, dict) for part in value):
+            for number, part in enumerate(value, 1):
+                yield from _values(part, f"{before}{name}.{number}.")
+        else:
+            yield before + name, value
+
+
+def _key(name: str, values: Mapping[str, Any]) -> str:
+    """The key of the case that `name` means."""
+    found = [key for key in values if name in (key, key.rpartition(".")[2])]
+    if len(found) > 1:
+        raise CaseError(f"--free: {name} may be {' or '.join(found)}; name the whole key")
+    if found:
+        return found[0]
+    last = name.rpartition(".")[2]
+    if last == "rms" and values.get("roughness.kind") == "measured":
+        raise CaseError(
+            f"--free: {name}: the roughness of this case is a scan, whose heights are known; "
+            "leave it out, or give a generated roughness"
+        )
+    positive = [key for key, value in values.items() if _reason(key, value) is None]
+    raise CaseError(
+        f"--free: {shown(name)[1:-1]} is not a key of the case; write it there with a first guess, "
+        f"or free one of {', '.join(positive)}"
+    )
+
+
+def _parameter(key: str, written: Any) -> Parameter:
+    if (reason := _reason(key, written)) is not None:
+        raise CaseError(f"--free: {key} {reason}")
+    (value,), attributes = coordinate([written])
+    return Parameter(key, written, float(value), attributes.get("units", "1"))
+
+
+def _reason(key: str, written: Any) -> str | None:
+    """Why the value of `key` cannot be free; None where it can."""
+    table, _, last = key.partition(".")
+    if table not in _TABLES or _CHOICES & set(last.split(".")):
+        return f"cannot be free; only values of {', '.join(f'[{name}]' for name in _TABLES)} can"
+    if isinstance(written, list):
+        return f"= {shown(written)} is a list; write one value for both axes to free it"
+    (value,), _ = coordinate([written])
+    if isinstance(value, str) or isinstance(written, bool):
+        return f"= {shown(written)} is not a number or quantity; write one as the first guess"
+    if not value > 0:
+        return f"= {shown(written)} is not positive; write a positive first guess"
+    return None

@@ -1,0 +1,117 @@
+"""`restitution fit`: its files, what it prints, and what it refuses."""
+
+import csv
+import json
+
+import pytest
+
+from restitution.calibration.measured import read_measured
+from restitution.case.case_file import read_case
+from tolerance import approx
+
+CASE = """
+[first]
+radius = "500 um"
+youngs_modulus = "210 GPa"
+poissons_ratio = 0.25
+density = "7850 kg/m^3"
+[interface]
+yield_pressure = "1500 MPa"
+[grid]
+nodes = 48
+spacing = "0.8 um"
+[indentation]
+values = ["50 nm"]
+[unloading]
+curves = 0
+"""
+# Of smooth spheres that yield at 900 MPa (`restitution run`), rounded.
+MEASURED = "velocity_m_per_s,restitution\n0.02,0.8\n0.05,0.7\n0.1,0.63\n0.05,0.71\n"
+
+
+@pytest.fixture
+def files(tmp_path):
+    """The case and the table, in files."""
+    (tmp_path / "case.toml").write_text(CASE)
+    (tmp_path / "m.csv").write_text(MEASURED)
+    return tmp_path
+
+
+def call(cli, folder, free="yield_pressure", **changes):
+    given = {"case": folder / "case.toml", "out": folder / "out", **changes}
+    table = folder / "m.csv"
+    return cli("fit", table, "--case", given["case"], "--free", free, "-o", given["out"])
+
+
+def test_files_belong_together_and_the_fitted_case_runs(cli, files):
+    status, said, _ = call(cli, files)
+    out = files / "out"
+    assert status == 0
+    assert {path.name for path in out.iterdir()} == {
+        "fit.json",
+        "fit.csv",
+        "fit.png",
+        "case.toml",
+        "SHA256SUMS",
+    }
+    found = json.loads((out / "fit.json").read_text())
+    (parameter,) = found["parameters"]
+    assert parameter["key"] == "interface.yield_pressure"
+    assert parameter["low"] < parameter["value"] < parameter["high"]
+    assert parameter["written"] in said
+    assert found["case"] == CASE
+    case, _ = read_case(out / "case.toml")
+    assert case.interface.yield_pressure == approx(parameter["value"])
+    assert case.depths() == [0.02, 0.05, 0.1]
+    # The table of the fit is one of measured values, too.
+    again = read_measured(out / "fit.csv")
+    assert again.velocity == approx([0.02, 0.05, 0.05, 0.1])
+    status, said, _ = cli("run", out / "case.toml", "-o", files / "run")
+    assert status == 0
+    fitted, computed = (
+        [float(row[column]) for row in csv.DictReader(path.read_text().splitlines())]
+        for path, column in (
+            (out / "fit.csv", "fitted_restitution"),
+            (files / "run" / "curve.csv", "restitution"),
+        )
+    )
+    assert computed == approx([fitted[0], fitted[1], fitted[3]], rel=0.005)
+
+
+@pytest.mark.parametrize(
+    ("free", "table", "words"),
+    [
+        ("xyz", MEASURED, "--free: xyz is not a key of the case"),
+        (",", MEASURED, "--free: names no key"),
+        ("yield_pressure", "velocity,restitution\n1,0.5\n", "column velocity_m_per_s"),
+        ("yield_pressure", MEASURED.replace("0.8", "1.8"), "is outside 0 to 1"),
+        ("yield_pressure", MEASURED[:38], "leave no residuals to estimate the noise from"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line(refused, files, free, table, words):
+    (files / "m.csv").write_text(table)
+    case, out = files / "case.toml", files / "out"
+    assert words in refused("fit", files / "m.csv", "--case", case, "--free", free, "-o", out)
+    assert not out.exists()
+
+
+def test_a_case_without_density_is_refused(refused, files):
+    (files / "case.toml").write_text(CASE.replace('density = "7850 kg/m^3"', ""))
+    said = refused(
+        "fit", files / "m.csv", "--case", files / "case.toml", "--free", "rms", "-o", files / "out"
+    )
+    assert "rms is not a key" in said
+    said = refused(
+        *("fit", files / "m.csv", "--case", files / "case.toml"),
+        *("--free", "yield_pressure", "-o", files / "out"),
+    )
+    assert "first.density: is missing" in said
+
+
+def test_nothing_is_overwritten(refused, files):
+    out = files / "out"
+    out.mkdir()
+    (out / "mine").write_text("")
+    arguments = ("--case", files / "case.toml", "--free", "yield_pressure", "-o", out)
+    assert "is not empty" in refused("fit", files / "m.csv", *arguments)
+    assert (out / "mine").exists()
