@@ -15,6 +15,8 @@ class Code(StrEnum):
     yade = "yade"
     mercurydpm = "mercurydpm"
     edem = "edem"
+    mujoco = "mujoco"
+    drake = "drake"
     csv = "csv"
 
 
@@ -38,7 +40,7 @@ def export(
     """Write input for a DEM code: the restitution of every pair, with what it holds for."""
     from restitution.cli.console import say, warn
     from restitution.dem.export import export as exported
-    from restitution.dem.export import write_export
+    from restitution.dem.export import limit, write_export
     from restitution.laws.law import velocity_of
     from restitution.laws.law_files import read_law
 
@@ -55,5 +57,7 @@ def export(
         for law in read:
             found = law.at(at)
             say(f"{law.pair}: COR {found.restitution:.4f} ± {found.error:.2g} at {at:g} m/s")
+    if note := limit(to.value):
+        say(note)
     names = ", ".join(path.name for path in written)
     say(f"In {out}: {names}")

@@ -12,7 +12,7 @@ from restitution.laws.law import Law
 from restitution.laws.law_files import law_rows
 from restitution.results.writer import replace_file, table_text, writing
 
-CODES = ("lammps", "liggghts", "yade", "mercurydpm", "edem", "csv")
+CODES = ("lammps", "liggghts", "yade", "mercurydpm", "edem", "mujoco", "drake", "csv")
 TABLE = "restitution.csv"
 # Quantities of the whole law.
 _WHOLE = (
@@ -48,6 +48,13 @@ def export(laws: Sequence[Law], code: str, velocity: float | None) -> dict[str, 
         )
     texts: dict[str, str] = import_module(f"restitution.dem.codes.{code}").write(table, velocity)
     return texts
+
+
+def limit(code: str) -> str:
+    """What a user of the export to `code` must know to get its e; empty if nothing."""
+    if code == "csv":
+        return ""
+    return str(getattr(import_module(f"restitution.dem.codes.{code}"), "NOTE", ""))
 
 
 def write_export(texts: dict[str, str], out: Path) -> list[Path]:

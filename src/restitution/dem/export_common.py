@@ -112,10 +112,20 @@ def identifier(particle: Particle, number: int) -> str:
 
 
 def header(
-    table: PairTable, pairs: Sequence[Pair], velocity: float, *, code: str, ends: str
+    table: PairTable,
+    pairs: Sequence[Pair],
+    velocity: float,
+    *,
+    code: str,
+    ends: str,
+    constant: bool = True,
 ) -> list[str]:
-    """Comment lines above the export for `code`; `ends` says where it ends a contact."""
-    lines = _origin(velocity, code, ends)
+    """Comment lines above the export for `code`.
+
+    `ends` says where `code` ends a contact, `constant` whether its e has one value at every
+    velocity.
+    """
+    lines = _origin(velocity, code, ends, constant)
     lines += ["", "Types:"]
     lines += [f"  {k}: {particle}" for k, particle in enumerate(table.particles, 1)]
     for pair in pairs:
@@ -124,10 +134,16 @@ def header(
 
 
 def summary(
-    pairs: Sequence[Pair], velocity: float, *, code: str, ends: str, fragment: str
+    pairs: Sequence[Pair],
+    velocity: float,
+    *,
+    code: str,
+    ends: str,
+    fragment: str,
+    constant: bool = True,
 ) -> list[str]:
     """The shorter comments above a collision that uses `fragment`; all warnings are kept."""
-    lines = [*_origin(velocity, code, ends), f"Where e comes from is told in {fragment}."]
+    lines = [*_origin(velocity, code, ends, constant), f"Where e comes from is told in {fragment}."]
     for pair in pairs:
         lines += _warnings(pair, velocity)
     return _wrapped(lines)
@@ -136,6 +152,12 @@ def summary(
 def commented(lines: Iterable[str], sign: str) -> str:
     """`lines` as comments, which begin with `sign`."""
     return "\n".join(f"{sign} {line}".rstrip() for line in lines)
+
+
+def xml_comment(lines: Iterable[str]) -> str:
+    """`lines` as one XML comment, which must not contain two hyphens in a row."""
+    safe = (re.sub("-(?=-)", "- ", line).rstrip() for line in lines)
+    return "\n".join(["<!--", *safe, "-->"])
 
 
 def render(name: str, **values: object) -> str:
@@ -187,11 +209,14 @@ def _environment() -> Environment:
     return environment
 
 
-def _origin(velocity: float, code: str, ends: str) -> list[str]:
+def _origin(velocity: float, code: str, ends: str, constant: bool) -> list[str]:
+    reason = f"{code} keeps e constant, the pairs do not."
+    if not constant:
+        reason = f"at other velocities {code} has an e of its own, not that of the pairs."
     return [
         f"Coefficients of restitution for {code}, written by restitution {program_version()}.",
-        f"They hold at the impact velocity {velocity:.6g} m/s only: {code} keeps e constant, the "
-        "pairs do not. Export again for another velocity.",
+        f"They hold at the impact velocity {velocity:.6g} m/s only: {reason} Export again for "
+        "another velocity.",
         f"End of a contact in {code}: {ends}",
         "SI units.",
     ]
