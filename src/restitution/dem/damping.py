@@ -87,7 +87,9 @@ def hertz_restitution(damping: float) -> float:
         return y[0] if t > 0 else 1.0
 
     parted.terminal, parted.direction = True, -1  # type: ignore[attr-defined]
-    path = solve_ivp(slope, (0, 100), [0.0, 1.0], rtol=1e-9, atol=1e-12, events=parted)
+    path = solve_ivp(
+        slope, (0, 100), [0.0, 1.0], "DOP853", rtol=1e-9, atol=1e-12, events=parted
+    )
     return float(-path.y[1, -1]) if path.status == 1 else 0.0
 
 
@@ -104,7 +106,7 @@ def hertz_restitution_at(law: Law, damping: float, velocity: float) -> float:
 
 def _length(law: Law, velocity: float) -> float:
     stiffness = 4 / 3 * law.contact_modulus * math.sqrt(law.radius)
-    return (law.mass * velocity**2 / stiffness) ** 0.4
+    return float((law.mass * velocity**2 / stiffness) ** 0.4)
 
 
 def _root(restitution_of: Callable[[float], float], restitution: float, largest: float) -> float:

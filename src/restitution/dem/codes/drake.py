@@ -1,11 +1,12 @@
 """Drake: `point_contact_stiffness` and `hunt_crossley_dissipation` of a pair of geometries.
 
 Drake's compliant point contact is F = kx (1 + d x′), never attractive (Drake documentation,
-Compliant point contact and Hydroelastic contact: Hunt & Crossley). Geometries a and b give k = k_a
-k_b/(k_a + k_b) and d = (k_b d_a + k_a d_b)/(k_a + k_b): with 2k and d on both, the contact has k and
-d. e depends on dV alone (`damping.hunt_crossley_dissipation`), not on k or the mass, and decreases
-with the velocity V. k gives a contact as long as Hertz's. The relation holds for any force times 1 +
-d x′, so also for a hydroelastic contact whose surfaces approach at one velocity (not run).
+Compliant point contact and Hydroelastic contact: Hunt & Crossley). Geometries a and b give
+k = k_a k_b/(k_a + k_b) and d = (k_b d_a + k_a d_b)/(k_a + k_b): with 2k and d on both, the contact
+has k and d. e depends on dV alone (`damping.hunt_crossley_dissipation`), not on k or the mass, and
+decreases with the velocity V. k gives a contact as long as Hertz's. The relation holds for any
+force times 1 + d x′, so also for a hydroelastic contact whose surfaces approach at one velocity
+(not run).
 
 A geometry has one k and one d, so the pairs of three types cannot be set in one scene.
 

@@ -9,6 +9,7 @@ and raise e. `damping tsuji` has an error of √2 in released versions.
 
 from __future__ import annotations
 
+from restitution.dem.codes.lammps_kokkos import linear_spring, velocity_damping
 from restitution.dem.codes.lammps_mdr import mdr_offers
 from restitution.dem.export_common import STEPS, commented, header, pairs_at, render, summary
 from restitution.dem.pair_table import PairTable
@@ -16,6 +17,7 @@ from restitution.dem.pair_table import PairTable
 CODE = "LAMMPS"
 LOWEST = 0.001  # reproduced within 0.5 % with `STEPS` steps a contact
 FRAGMENT, COLLISION = "restitution.lmp", "collision.in"
+KOKKOS = "restitution_kokkos.lmp"
 _ENDS = (
     "the overlap is back to zero. The damping pulls shortly before; do not add limit_damping, "
     "which cuts that off and raises e (0.808 for 0.8)."
@@ -23,7 +25,7 @@ _ENDS = (
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """The fragment to include and a test collision that prints its e: file names and texts.
+    """The fragment to include, one for KOKKOS, and a test collision: file names and texts.
 
     Raises `CaseError`, `DomainError`.
     """
@@ -40,6 +42,14 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
             spheres=[pair for pair in pairs if not pair.wall],
             walls=[pair for pair in pairs if pair.wall],
             mdr=mdr_offers(pairs, velocity),
+        ),
+        KOKKOS: render(
+            KOKKOS,
+            comments=commented(short, "#"),
+            spheres=[pair for pair in pairs if not pair.wall],
+            damping=velocity_damping(pairs, velocity),
+            spring=linear_spring(pairs, velocity),
+            velocity=velocity,
         ),
         COLLISION: render(
             COLLISION,
