@@ -87,9 +87,7 @@ def hertz_restitution(damping: float) -> float:
         return y[0] if t > 0 else 1.0
 
     parted.terminal, parted.direction = True, -1  # type: ignore[attr-defined]
-    path = solve_ivp(
-        slope, (0, 100), [0.0, 1.0], "DOP853", rtol=1e-9, atol=1e-12, events=parted
-    )
+    path = solve_ivp(slope, (0, 100), [0.0, 1.0], "DOP853", rtol=1e-9, atol=1e-12, events=parted)
     return float(-path.y[1, -1]) if path.status == 1 else 0.0
 
 

@@ -13,11 +13,13 @@ from restitution.dem.codes.lammps_kokkos import linear_spring, velocity_damping
 from restitution.dem.codes.lammps_mdr import mdr_offers
 from restitution.dem.export_common import STEPS, commented, header, pairs_at, render, summary
 from restitution.dem.pair_table import PairTable
+from restitution.dem.velocity_matching import SCRIPT, Target, matching_script
 
 CODE = "LAMMPS"
 LOWEST = 0.001  # reproduced within 0.5 % with `STEPS` steps a contact
 FRAGMENT, COLLISION = "restitution.lmp", "collision.in"
 KOKKOS = "restitution_kokkos.lmp"
+_MATCHED = Target(CODE, "lmp -in my.in", FRAGMENT, "matched.lmp", LOWEST)
 _ENDS = (
     "the overlap is back to zero. The damping pulls shortly before; do not add limit_damping, "
     "which cuts that off and raises e (0.808 for 0.8)."
@@ -51,6 +53,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
             spring=linear_spring(pairs, velocity),
             velocity=velocity,
         ),
+        SCRIPT: matching_script(_MATCHED, pairs, commented(short, "#")),
         COLLISION: render(
             COLLISION,
             comments=commented(short, "#"),
