@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
 
+from restitution.dem.adhesion import pull_off_force
 from restitution.dem.pair_table import PairTable, pair_table
 from restitution.errors import CaseError, OutputError
 from restitution.laws.law import Law
@@ -90,6 +91,7 @@ def _table(table: PairTable, velocity: float | None) -> str:
             "restitution": estimate.restitution,
             "restitution_error": estimate.error,
             "resolved": estimate.resolved,
+            "pull_off_force_N": pull_off_force(law, velocity),
         }
         rows.append({**pair, **values, **{key: law_rows(law)[0][key] for key in _WHOLE}})
     return table_text(rows)

@@ -18,6 +18,7 @@ from importlib.metadata import PackageNotFoundError, version
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
+from restitution.dem.adhesion import adhesion_lines
 from restitution.dem.pair_table import PairTable
 from restitution.errors import CaseError, one_line
 from restitution.laws.law import Law, Particle
@@ -129,7 +130,7 @@ def header(
     lines += ["", "Types:"]
     lines += [f"  {k}: {particle}" for k, particle in enumerate(table.particles, 1)]
     for pair in pairs:
-        lines += ["", *_about(pair, velocity)]
+        lines += ["", *_about(pair, velocity, code)]
     return _wrapped(lines)
 
 
@@ -222,7 +223,7 @@ def _origin(velocity: float, code: str, ends: str, constant: bool) -> list[str]:
     ]
 
 
-def _about(pair: Pair, velocity: float) -> list[str]:
+def _about(pair: Pair, velocity: float, code: str) -> list[str]:
     law, at = pair.law, pair.law.at(velocity)
     p_y = "none (elastic)" if law.yield_pressure is None else f"{law.yield_pressure:.6g} Pa"
     lines = [
@@ -238,11 +239,7 @@ def _about(pair: Pair, velocity: float) -> list[str]:
         "of it keeps e within 1 % in LAMMPS",
         f"  computed from {law.lowest:.4g} to {law.highest:.4g} m/s; nothing is extrapolated",
     ]
-    if law.work_of_adhesion > 0:
-        lines.append(
-            f"  adhesion {law.work_of_adhesion:.4g} J/m^2: e includes what it dissipates; the "
-            "pull-off force is not modelled below"
-        )
+    lines += adhesion_lines(law, velocity, code)
     return lines + _warnings(pair, velocity)
 
 

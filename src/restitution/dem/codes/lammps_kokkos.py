@@ -1,8 +1,8 @@
 """Damping that KOKKOS has, as a second fragment of the export to LAMMPS.
 
-LAMMPS 22Jul2025 has no KOKKOS variant of pair_style granular. The one of pull request 5187 has hooke
-and hertz normal forces with velocity-based damping, linear and Mindlin tangential forces, and needs
-newton off. gran/hooke/history/kk is older; it has one set of values for all pairs of types.
+LAMMPS 22Jul2025 has no KOKKOS variant of pair_style granular. The one of pull request 5187 has
+hooke and hertz normal forces with velocity-based damping, linear and Mindlin tangential forces, and
+needs newton off. gran/hooke/history/kk is older; it has one set of values for all pairs of types.
 
 For each pair: Hertz with a constant damping coefficient (`damping velocity`,
 `damping.hertz_damping`), whose e increases with the velocity as g ∝ V^{−⅕} decreases. For a single

@@ -8,7 +8,7 @@ would cut the tension off.
 
 from __future__ import annotations
 
-from restitution.dem.export_common import STEPS, Pair, commented, header, pairs_at, render, summary
+from restitution.dem.export_common import STEPS, commented, header, pairs_at, render, summary
 from restitution.dem.pair_table import PairTable
 from restitution.dem.velocity_matching import SCRIPT, Target, matching_script
 
