@@ -1,8 +1,12 @@
 """Pair tables of artificial laws, and the DEM programs that run the exports."""
 
+import importlib.util
+import os
 import re
 import shutil
 import subprocess
+import sys
+from collections.abc import Callable
 
 import pytest
 
@@ -138,3 +142,15 @@ def yade(tmp_path_factory) -> Program:
     """YADE as packaged in Debian; it needs a writable home folder."""
     home = {"HOME": str(tmp_path_factory.mktemp("home"))}
     return Program("yade", ["-n", "-x", "-j1"], CLEAN | home)
+
+
+@pytest.fixture(scope="session")
+def python_with() -> Callable[[str, str], Program]:
+    """Python that runs a script with a module of the extra `robotics`; skips where missing."""
+
+    def make(module, script):
+        if importlib.util.find_spec(module) is None:
+            pytest.skip(f"{module} is not installed: pip install restitution[robotics]")
+        return Program(sys.executable, [script], dict(os.environ))
+
+    return make

@@ -106,11 +106,8 @@ def test_the_verb(cli, refused, mixture_text, tmp_path):
     export = ("export", out, "--to", "lammps", "-o", tmp_path / "input")
     assert "is outside what was computed" in refused(*export, "--velocity", "2 m/s")
     assert cli(*export, "--velocity", "0.3 m/s")[0] == 0
-    assert {path.name for path in (tmp_path / "input").iterdir()} == {
-        "restitution.lmp",
-        "collision.in",
-        "packing.in",
-    }
+    written = {path.name for path in (tmp_path / "input").iterdir()}
+    assert written >= {"restitution.lmp", "collision.in", "packing.in"}
 
 
 def test_the_stored_blind_check_holds():

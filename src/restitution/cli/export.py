@@ -15,6 +15,8 @@ class Code(StrEnum):
     yade = "yade"
     mercurydpm = "mercurydpm"
     edem = "edem"
+    mujoco = "mujoco"
+    drake = "drake"
     csv = "csv"
 
 
@@ -48,7 +50,7 @@ def export(
     from restitution.cli.console import say, say_written
     from restitution.cli.warn_once import warn_once
     from restitution.dem.export import export as exported
-    from restitution.dem.export import write_export
+    from restitution.dem.export import limit, write_export
     from restitution.laws.law import velocity_of
     from restitution.laws.law_files import read_laws
 
@@ -66,4 +68,6 @@ def export(
         for law in read:
             found = law.at(at)
             say(f"{law.pair}: COR {found.restitution:.4f} ± {found.error:.2g} at {at:g} m/s")
+    if note := limit(to.value):
+        say(note)
     say_written(out, [path.name for path in written])

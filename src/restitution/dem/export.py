@@ -6,13 +6,14 @@ from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
 
+from restitution.dem.adhesion import pull_off_force
 from restitution.dem.pair_table import PairTable, pair_table
 from restitution.errors import CaseError, OutputError
 from restitution.laws.law import Law
 from restitution.laws.law_files import law_rows
 from restitution.results.writer import replace_file, table_text, writing
 
-CODES = ("lammps", "liggghts", "yade", "mercurydpm", "edem", "csv")
+CODES = ("lammps", "liggghts", "yade", "mercurydpm", "edem", "mujoco", "drake", "csv")
 TABLE = "restitution.csv"
 # Columns that have the same value at every velocity of a law.
 _WHOLE = (
@@ -50,6 +51,13 @@ def export(laws: Sequence[Law], code: str, velocity: float | None) -> dict[str, 
     return texts
 
 
+def limit(code: str) -> str:
+    """What a user of the export to `code` must know to get its e; empty if nothing."""
+    if code == "csv":
+        return ""
+    return str(getattr(import_module(f"restitution.dem.codes.{code}"), "NOTE", ""))
+
+
 def write_export(texts: dict[str, str], out: Path) -> list[Path]:
     """Write the files into `out`; existing files are never overwritten. Raises `OutputError`."""
     with writing(out):
@@ -83,6 +91,7 @@ def _table(table: PairTable, velocity: float | None) -> str:
             "restitution": estimate.restitution,
             "restitution_error": estimate.error,
             "resolved": estimate.resolved,
+            "pull_off_force_N": pull_off_force(law, velocity),
         }
         rows.append({**pair, **values, **{key: law_rows(law)[0][key] for key in _WHOLE}})
     return table_text(rows)

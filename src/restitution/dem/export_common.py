@@ -18,6 +18,7 @@ from importlib.metadata import PackageNotFoundError, version
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
+from restitution.dem.adhesion import adhesion_lines
 from restitution.dem.pair_table import PairTable
 from restitution.errors import CaseError, one_line
 from restitution.laws.law import Law, Particle
@@ -119,22 +120,41 @@ def identifier(particle: Particle, number: int) -> str:
 
 
 def header(
-    table: PairTable, pairs: Sequence[Pair], velocity: float, *, code: str, ends: str
+    table: PairTable,
+    pairs: Sequence[Pair],
+    velocity: float,
+    *,
+    code: str,
+    ends: str,
+    constant: bool = True,
 ) -> list[str]:
-    """Comment lines above the export for `code`; `ends` tells when `code` ends a contact."""
-    lines = _origin(velocity, code, ends)
+    """Comment lines above the export for `code`.
+
+    `ends` says where `code` ends a contact, `constant` whether its e has one value at every
+    velocity.
+    """
+    lines = _origin(velocity, code, ends, constant)
     lines += ["", "Types:"]
     lines += [f"  {k}: {particle}" for k, particle in enumerate(table.particles, 1)]
     for pair in pairs:
-        lines += ["", *_about(pair, velocity)]
+        lines += ["", *_about(pair, velocity, code)]
     return _wrapped(lines)
 
 
 def summary(
-    pairs: Sequence[Pair], velocity: float, *, code: str, ends: str, fragment: str
+    pairs: Sequence[Pair],
+    velocity: float,
+    *,
+    code: str,
+    ends: str,
+    fragment: str,
+    constant: bool = True,
 ) -> list[str]:
     """The shorter comments above a collision that uses `fragment`; all warnings are kept."""
-    lines = [*_origin(velocity, code, ends), f"The comments in {fragment} give the origin of e."]
+    lines = [
+        *_origin(velocity, code, ends, constant),
+        f"The comments in {fragment} give the origin of e.",
+    ]
     for pair in pairs:
         lines += _warnings(pair, velocity)
     return _wrapped(lines)
@@ -143,6 +163,12 @@ def summary(
 def commented(lines: Iterable[str], sign: str) -> str:
     """`lines` as comments, which begin with `sign`."""
     return "\n".join(f"{sign} {line}".rstrip() for line in lines)
+
+
+def xml_comment(lines: Iterable[str]) -> str:
+    """`lines` as one XML comment, which must not contain two hyphens in a row."""
+    safe = (re.sub("-(?=-)", "- ", line).rstrip() for line in lines)
+    return "\n".join(["<!--", *safe, "-->"])
 
 
 def render(name: str, **values: object) -> str:
@@ -194,17 +220,20 @@ def _environment() -> Environment:
     return environment
 
 
-def _origin(velocity: float, code: str, ends: str) -> list[str]:
+def _origin(velocity: float, code: str, ends: str, constant: bool) -> list[str]:
+    reason = f"{code} keeps e constant, the pairs do not."
+    if not constant:
+        reason = f"at other velocities {code} has an e of its own, not that of the pairs."
     return [
         f"Coefficients of restitution for {code}, written by restitution {program_version()}.",
-        f"They hold at the impact velocity {velocity:.6g} m/s only: {code} keeps e constant, but e "
-        "of the pairs depends on the velocity. Export again for another velocity.",
+        f"They hold at the impact velocity {velocity:.6g} m/s only: {reason} Export again for "
+        "another velocity.",
         f"End of a contact in {code}: {ends}",
         "SI units.",
     ]
 
 
-def _about(pair: Pair, velocity: float) -> list[str]:
+def _about(pair: Pair, velocity: float, code: str) -> list[str]:
     law, at = pair.law, pair.law.at(velocity)
     p_y = "none (elastic)" if law.yield_pressure is None else f"{law.yield_pressure:.6g} Pa"
     lines = [
@@ -220,11 +249,7 @@ def _about(pair: Pair, velocity: float) -> list[str]:
         "of it keeps e within 1 % in LAMMPS",
         f"  computed from {law.lowest:.4g} to {law.highest:.4g} m/s; nothing is extrapolated",
     ]
-    if law.work_of_adhesion > 0:
-        lines.append(
-            f"  adhesion {law.work_of_adhesion:.4g} J/m^2: e includes what it dissipates; the "
-            "pull-off force is not modelled below"
-        )
+    lines += adhesion_lines(law, velocity, code)
     return lines + _warnings(pair, velocity)
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 
+from restitution.dem.adhesion import pull_off_force
 from restitution.dem.export_common import (
     FRICTION,
     PLACEHOLDER,
@@ -52,11 +53,13 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
 
 def _interaction(pair: Pair, velocity: float) -> dict[str, str]:
     springs = _springs(pair, velocity)
+    force = pull_off_force(pair.law, velocity)
     return {
         "material_1": identifier(pair.first, pair.i),
         "material_2": identifier(pair.second, pair.j),
         "coefficient_of_restitution": number(pair.restitution),
         "restitution_error": f"{pair.law.at(velocity).error:.2g}",
+        "pull_off_force_N": "" if math.isnan(force) else number(force),
         "coefficient_of_static_friction": str(FRICTION),
         "coefficient_of_rolling_friction": "0",
         "hysteretic_K1_N_per_m": number(springs[0]) if springs else "",

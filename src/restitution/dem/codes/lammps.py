@@ -9,6 +9,7 @@ and raise e. `damping tsuji` has an error of √2 in released versions.
 
 from __future__ import annotations
 
+from restitution.dem.codes.lammps_kokkos import linear_spring, velocity_damping
 from restitution.dem.codes.lammps_mdr import mdr_offers
 from restitution.dem.export_common import (
     STEPS,
@@ -20,12 +21,15 @@ from restitution.dem.export_common import (
     summary,
 )
 from restitution.dem.pair_table import PairTable
+from restitution.dem.velocity_matching import SCRIPT, Target, matching_script
 
 CODE = "LAMMPS"
 LOWEST = 0.001  # reproduced within 0.5 % with `STEPS` steps a contact
 FRAGMENT, COLLISION, PACKING = "restitution.lmp", "collision.in", "packing.in"
 _GRAINS = 500  # of the packing
 _FILLED = 0.12  # of the volume in which they are placed
+KOKKOS = "restitution_kokkos.lmp"
+_MATCHED = Target(CODE, "lmp -in my.in", FRAGMENT, "matched.lmp", LOWEST)
 _ENDS = (
     "the overlap is back to zero. The force is tensile shortly before, due to damping; do not add "
     "limit_damping, which cuts off the tension and raises e (0.808 for 0.8)."
@@ -33,7 +37,7 @@ _ENDS = (
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """The fragment to include, a test collision that prints its e, and a packing where possible.
+    """The fragment to include, one for KOKKOS, a test collision, and a packing where possible.
 
     The packing drops spheres of all types on the first wall that has a law with each of them.
     Returns file names and texts. Raises `CaseError`, `DomainError`.
@@ -52,6 +56,15 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
             walls=[pair for pair in pairs if pair.wall],
             mdr=mdr_offers(pairs, velocity),
         ),
+        KOKKOS: render(
+            KOKKOS,
+            comments=commented(short, "#"),
+            spheres=[pair for pair in pairs if not pair.wall],
+            damping=velocity_damping(pairs, velocity),
+            spring=linear_spring(pairs, velocity),
+            velocity=velocity,
+        ),
+        SCRIPT: matching_script(_MATCHED, pairs, commented(short, "#")),
         COLLISION: render(
             COLLISION,
             comments=commented(short, "#"),

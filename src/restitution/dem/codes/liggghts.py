@@ -8,12 +8,14 @@ would cut the tension off.
 
 from __future__ import annotations
 
-from restitution.dem.export_common import STEPS, Pair, commented, header, pairs_at, render, summary
+from restitution.dem.export_common import STEPS, commented, header, pairs_at, render, summary
 from restitution.dem.pair_table import PairTable
+from restitution.dem.velocity_matching import SCRIPT, Target, matching_script
 
 CODE = "LIGGGHTS"
 LOWEST = 0.0501  # "0.05 < coefficientRestitution <= 1 required"
 FRAGMENT, COLLISION = "restitution.liggghts", "collision.in.liggghts"
+_MATCHED = Target(CODE, "liggghts -in my.in", FRAGMENT, "matched.liggghts", LOWEST)
 _ENDS = (
     "the overlap is back to zero. The force is tensile shortly before, due to damping; do not add "
     "`limitForce on`, which cuts off the tension and raises e (0.397 for 0.3)."
@@ -36,8 +38,10 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
             comments=commented(head, "#"),
             table=table,
             hardness=_hardness(table),
-            restitution=_restitution(table, pairs),
+            pairs=pairs,
+            restitution=_restitution(table),
         ),
+        SCRIPT: matching_script(_MATCHED, pairs, commented(short, "#")),
         COLLISION: render(
             COLLISION,
             comments=commented(short, "#"),
@@ -59,8 +63,12 @@ def _hardness(table: PairTable) -> str:
     return "soft_particles yes" if min(E) < _SOFT else ""
 
 
-def _restitution(table: PairTable, pairs: list[Pair]) -> list[list[float]]:
-    """The symmetric matrix of e by types; 1 between walls, which never meet."""
-    e = {(p.i, p.j): p.restitution for p in pairs}
+def _restitution(table: PairTable) -> list[list[str]]:
+    """The symmetric matrix of e by types, as variables; 1 between walls, which never meet."""
     numbers = range(1, len(table.particles) + 1)
-    return [[e.get((min(i, j), max(i, j)), 1.0) for j in numbers] for i in numbers]
+
+    def entry(i: int, j: int) -> str:
+        pair = min(i, j), max(i, j)
+        return f"${{e_{pair[0]}_{pair[1]}}}" if pair in table.laws else "1"
+
+    return [[entry(i, j) for j in numbers] for i in numbers]

@@ -15,8 +15,6 @@ follow the law: `betan` is set at first touch, from the velocity there.
 
 from __future__ import annotations
 
-import numpy as np
-
 from restitution.dem.export_common import (
     Pair,
     commented,
@@ -28,6 +26,7 @@ from restitution.dem.export_common import (
     summary,
 )
 from restitution.dem.pair_table import PairTable
+from restitution.dem.velocity_matching import law_points
 from restitution.laws.law import Law, Particle
 
 CODE = "YADE"
@@ -40,7 +39,6 @@ _ENDS = (
 )
 _STEPS = 2000
 _WALL_DENSITY = 1000.0  # kg/m³, of a wall without a density: YADE needs one
-_SAMPLES = 4  # intervals of the table between two computed velocities
 
 _FIT = (-1.23589, 0.202669, 0.0108748, 0.000410051, -3.09169e-5, -1.19887e-6)
 
@@ -84,12 +82,8 @@ def _density(body: Particle) -> float:
 
 
 def _points(law: Law) -> list[tuple[float, float]]:
-    """V (m/s) and e (at least `LOWEST`) of `law`, dense enough for linear interpolation."""
-    V = law.column("velocity")
-    fine = np.interp(
-        np.arange((V.size - 1) * _SAMPLES + 1) / _SAMPLES, np.arange(V.size), np.log(V)
-    )
-    return [(v, max(law.at(v).restitution, LOWEST)) for v in np.exp(fine).tolist()]
+    """V (m/s) and e of `law`, for linear interpolation."""
+    return law_points(law, LOWEST)
 
 
 def _contact_time(pair: Pair) -> float:

@@ -1,0 +1,47 @@
+"""The pull-off force of an adhesive pair, and why the exported contact models leave it out."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from restitution.laws.law import Law
+from restitution.theory.jkr import JKR
+
+_LEFT_OUT = (
+    "the pull-off force is not modelled below, because the damping alone has the e of this pair: "
+    "an adhesive contact model would lose energy besides and lower e"
+)
+_OBSTACLES = {
+    "LAMMPS": "jkr and dmt refuse coeff_restitution",
+    "LIGGGHTS": "cohesion sjkr takes an energy density instead of w",
+    "MuJoCo": "contact forces do not pull",
+    "Drake": "contact forces do not pull",
+}
+
+
+def pull_off_force(law: Law, velocity: float) -> float:
+    """The pull-off force (N) after an impact at `velocity` (m/s).
+
+    Linear in ln V between the computed points; NaN where a point beside it has none.
+    """
+    forces = [math.nan if p.pull_off_force is None else p.pull_off_force for p in law.points]
+    V = law.column("velocity")
+    return float(np.interp(math.log(velocity), np.log(V), forces))
+
+
+def adhesion_lines(law: Law, velocity: float, code: str) -> list[str]:
+    """Comments about the adhesion of `law` in the export to `code`; none where it has none."""
+    if law.work_of_adhesion == 0:
+        return []
+    force = pull_off_force(law, velocity)
+    said = "not known (it needs unloading curves)" if math.isnan(force) else f"{force:.4g} N"
+    jkr = JKR(law.radius, law.contact_modulus, law.work_of_adhesion)
+    obstacle = f"; {_OBSTACLES[code]}" if code in _OBSTACLES else ""
+    return [
+        f"  adhesion {law.work_of_adhesion:.4g} J/m^2: e includes what it dissipates",
+        f"  pull-off force after an impact at {velocity:.6g} m/s: {said}; JKR of the smooth "
+        f"bodies: {float(jkr.pull_off_force):.4g} N",
+        f"  {_LEFT_OUT}{obstacle}",
+    ]

@@ -1,0 +1,113 @@
+"""Damping parameters of simple contact laws that return a given coefficient of restitution e.
+
+Linear spring and dashpot without tension, x″ = −max(ω²x + 2ζωx′, 0): the contact ends when the
+force is zero, after the phase 2 arccos ζ. For ζ > 1, arccosh and ζ² − 1 replace arccos and 1 − ζ².
+
+    e = exp(−2ζ arccos ζ/(1 − ζ²)^½)
+
+Source: T. Schwager, T. Pöschel, Granular Matter 9 (2007) 465, where the force must not attract.
+
+Hunt and Crossley, F = f(x)(1 + d x′) with any f: dividing m x′ dx′ by 1 + d x′ and integrating over
+the contact gives, with c = dV,
+
+    c (1 + e) = ln((1 + c)/(1 − ec))
+
+Source: K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440; the solution in the phase plane
+is that of D. W. Marhefka, D. E. Orin, IEEE Trans. Syst. Man Cybern. A 29 (1999) 566.
+
+Hertz with a constant damping coefficient, m x″ = −(4/3)E* R*^½ x^{3/2} − γx′ until x = 0. In units
+of the length L = (mV²/((4/3)E* R*^½))^⅖ and the time L/V, x″ = −x^{3/2} − g x′ with g = γL/(mV): e
+depends on g alone, and g on V^{−⅕} (integrated numerically).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+from restitution.laws.law import Law
+
+_NEARLY_ELASTIC = 1e-4  # 1 − e below which the leading terms are exact within rounding
+_TOLERANCE = 1e-12
+_LARGEST_DAMPING = 20.0  # ζ, whose e is below 0.001; g reaches that much sooner
+
+
+def dashpot_restitution(ratio: float) -> float:
+    """The e of the damping ratio ζ (1) of a linear spring and dashpot without tension."""
+    if ratio == 1:
+        return math.exp(-2)
+    root = math.sqrt(abs(1 - ratio**2))
+    phase = math.acos(ratio) if ratio < 1 else math.acosh(ratio)
+    return math.exp(-2 * ratio * phase / root)
+
+
+def dashpot_ratio(restitution: float) -> float:
+    """The damping ratio ζ (1) of a linear spring and dashpot without tension that returns e."""
+    return _root(dashpot_restitution, restitution, _LARGEST_DAMPING)
+
+
+def hunt_crossley_dissipation(restitution: float) -> float:
+    """The product dV (1) of dissipation and impact velocity that returns e > 0."""
+    e = restitution
+    if 1 - e < _NEARLY_ELASTIC:
+        return 1.5 * (1 - e**2) / (1 + e**3)
+
+    # ec = 1 − exp(−u) is within rounding of 1 for small e; its logarithm −u is not lost.
+    def excess(u: float) -> float:
+        c = -math.expm1(-u) / e
+        return c * (1 + e) - math.log1p(c) - u
+
+    u = float(brentq(excess, 0.5 * e * (1 - e), 1 + 1 / e, xtol=_TOLERANCE * e, rtol=_TOLERANCE))
+    return -math.expm1(-u) / e
+
+
+def hunt_crossley_restitution(dissipation: float) -> float:
+    """The e of the product dV (1) of dissipation and impact velocity."""
+    c = dissipation
+    if c == 0:
+        return 1.0
+
+    def excess(u: float) -> float:
+        return c - math.expm1(-u) - math.log1p(c) - u
+
+    u: float = brentq(excess, 0.0, 1 + c, xtol=_TOLERANCE * c, rtol=_TOLERANCE)
+    return -math.expm1(-u) / c
+
+
+def hertz_restitution(damping: float) -> float:
+    """The e of a Hertz contact with the dimensionless damping g; 0 where it does not rebound."""
+
+    def slope(_: float, y: tuple[float, float]) -> list[float]:
+        return [y[1], -(max(y[0], 0.0) ** 1.5) - damping * y[1]]
+
+    def parted(t: float, y: tuple[float, float]) -> float:
+        return y[0] if t > 0 else 1.0
+
+    parted.terminal, parted.direction = True, -1  # type: ignore[attr-defined]
+    path = solve_ivp(slope, (0, 100), [0.0, 1.0], "DOP853", rtol=1e-9, atol=1e-12, events=parted)
+    return float(-path.y[1, -1]) if path.status == 1 else 0.0
+
+
+def hertz_damping(law: Law, velocity: float, restitution: float) -> float:
+    """The damping coefficient γ (kg/s) of a Hertz contact that returns e at `velocity` (m/s)."""
+    g = _root(hertz_restitution, restitution, 2.0)
+    return g * law.mass * velocity / _length(law, velocity)
+
+
+def hertz_restitution_at(law: Law, damping: float, velocity: float) -> float:
+    """The e of a Hertz contact with the damping coefficient γ (kg/s) at `velocity` (m/s)."""
+    return hertz_restitution(damping * _length(law, velocity) / (law.mass * velocity))
+
+
+def _length(law: Law, velocity: float) -> float:
+    stiffness = 4 / 3 * law.contact_modulus * math.sqrt(law.radius)
+    return float((law.mass * velocity**2 / stiffness) ** 0.4)
+
+
+def _root(restitution_of: Callable[[float], float], restitution: float, largest: float) -> float:
+    if restitution >= 1:
+        return 0.0
+    return float(brentq(lambda x: restitution_of(x) - restitution, 0.0, largest, xtol=_TOLERANCE))
