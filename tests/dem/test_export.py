@@ -128,6 +128,15 @@ def test_refusals(stored, law, refused, cli, tmp_path):
     assert "nothing is overwritten" in refused("export", one, "--to", "csv", "-o", tmp_path / "y")
 
 
+@pytest.mark.parametrize(("code", "note"), [("drake", "time_step=0"), ("mujoco", "1/200")])
+def test_the_limit_of_a_code_is_printed(stored, cli, tmp_path, code, note):
+    _, said, _ = cli(
+        "export", stored("a"), "--to", code, "--velocity", "1 m/s", "-o", tmp_path / "x"
+    )
+    assert note in said
+    assert f"restitution_{code}" in said
+
+
 def test_an_unresolved_velocity_is_warned_of(stored, law, cli, tmp_path):
     points = tuple(point.model_copy(update={"resolved": False}) for point in law().points)
     folder = stored("coarse", points=points)

@@ -2,6 +2,7 @@
 
 import csv
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -216,6 +217,17 @@ def test_the_verb(run, cli, refused, tmp_path):
     assert "has no unit" in refused("simulate", out, "--velocity", "1")
     assert "nothing" in refused("simulate", out, "--velocity", "1e-6 m/s")
     assert "holds no results" in refused("simulate", tmp_path)
+
+
+def test_a_restitution_above_one_is_printed_with_an_error_that_reaches_one(run, cli):
+    out = run(CASE.replace("750 MPa", "750 GPa"), **ROUGH, adhesion="", steps=3)
+    _, said, _ = cli("simulate", out)
+    rows = re.findall(r"(\d\.\d+) +± (\d\.\d+) +(\d\.\d+)", said)
+    assert len(rows) == 3
+    for restitution, error, energies in np.array(rows, dtype=float):
+        assert energies <= 1
+        assert restitution - error <= 1 + 1e-9
+        assert restitution == approx(1, abs=1e-3)
 
 
 def test_a_pair_that_sticks_is_held(run):

@@ -35,6 +35,8 @@ _ENDS = (
     "limit_damping, which cuts off the tension and raises e (0.808 for 0.8)."
 )
 
+_KOKKOS_ENDS = "the overlap is back to zero. The damping pulls before; do not add limit_damping."
+
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
     """The fragment to include, one for KOKKOS, a test collision, and a packing where possible.
@@ -48,6 +50,9 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
     pairs = pairs_at(table, velocity, CODE, LOWEST)
     head = header(table, pairs, velocity, code=CODE, ends=_ENDS)
     short = summary(pairs, velocity, code=CODE, ends=_ENDS, fragment=FRAGMENT)
+    kokkos = summary(
+        pairs, velocity, code=CODE, ends=_KOKKOS_ENDS, fragment=FRAGMENT, constant=False
+    )
     files = {
         FRAGMENT: render(
             FRAGMENT,
@@ -58,7 +63,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
         ),
         KOKKOS: render(
             KOKKOS,
-            comments=commented(short, "#"),
+            comments=commented(kokkos, "#"),
             spheres=[pair for pair in pairs if not pair.wall],
             damping=velocity_damping(pairs, velocity),
             spring=linear_spring(pairs, velocity),
