@@ -10,19 +10,18 @@ particle, and for most materials it is far below the velocities of a DEM simulat
 
 import matplotlib.pyplot as plt
 
-from restitution import Body, Pair
-from restitution.case.materials import material
+import restitution as rs
 from restitution.theory import FirstYield, yield_coefficient
 
 names = ["polystyrene", "pmma", "aluminium", "stainless-steel", "steel"]
 velocities = []
 for name in names:
-    found = material(name)
+    found = rs.material(name)
     E, nu, rho = (
         quantity.value for quantity in (found.youngs_modulus, found.poissons_ratio, found.density)
     )
-    body = Body(radius=1e-3, youngs_modulus=E, poissons_ratio=nu, density=rho)
-    pair = Pair(body, body)
+    body = rs.Body(radius=1e-3, youngs_modulus=E, poissons_ratio=nu, density=rho)
+    pair = rs.Pair(body, body)
     pressure = yield_coefficient(nu) * found.yield_strength.value
     velocities.append(FirstYield(pair.radius, pair.contact_modulus, pressure).velocity(pair.mass))
 
