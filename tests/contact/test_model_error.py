@@ -9,7 +9,14 @@ import pytest
 
 from restitution import Body, Contact, Grid, Pair, generate_surface, smooth, solve
 from restitution.collision import collide
-from restitution.contact.model_error import largest_difference, model_error
+from restitution.contact.model_error import (
+    _CONSTANT,
+    _GROWING,
+    _NEAR_ONE,
+    _STEEPNESS,
+    largest_difference,
+    model_error,
+)
 from tolerance import approx
 
 TABLE = Path(__file__).parents[2] / "validation" / "models.csv"
@@ -92,6 +99,15 @@ def test_it_is_no_wider_than_the_references_need(model):
     for e, reference, bound in (part.T for part in np.array_split(found, 8)):
         used = np.abs(e - reference) / (e * bound)
         assert used.max() > 0.4, (e.min(), e.max())
+
+
+def test_its_tables_increase():
+    """Otherwise the interpolation between their entries means nothing."""
+    tables = [*_CONSTANT.values(), (_STEEPNESS, _GROWING), _NEAR_ONE]
+    for known, errors in tables:
+        assert len(known) == len(errors)
+        assert list(known) == sorted(set(known))
+        assert all(0 < error <= 1 for error in errors)
 
 
 @pytest.mark.parametrize(("psi", "largest"), [(0, 0.03), (4, 0.035), (6, 0.045), (26, 0.05)])

@@ -139,6 +139,14 @@ def test_sticking_ends_where_rounding_hides_the_sign():
     assert curve.begins() == V[3]
 
 
+def test_sticking_ends_at_the_point_below_where_rounding_makes_it_rebound(monkeypatch):
+    curve = RatioCurve(np.array([1.0, 2.0, 4.0]), np.array([-1e-17, 0.5, 0.9]), adhesive=False)
+    exact = curve.at
+    monkeypatch.setattr(curve, "at", lambda v: exact(v) + 2e-17)
+    assert curve.at(1.0) > 0
+    assert curve.begins() == 1.0
+
+
 @pytest.mark.parametrize(
     ("ratios", "begins"),
     [([0.1, 0.5, 0.9], None), ([-0.5, -0.2, -0.1], None), ([0.0, 0.5, 0.9], 1.0)],

@@ -153,6 +153,14 @@ def test_the_yield_strength_is_the_softer_bodys_where_both_give_one():
     assert one["johnson"].parameters["yield_strength_Pa"] == approx(200e6)
 
 
+def test_spheres_are_equal_only_if_their_yield_strengths_are():
+    sphere = SPHERE + LIGHT + 'yield_strength = "{} MPa"\n'
+    equal = case_of(first=sphere.format(150), second=sphere.format(150.0))
+    assert by_name(equal)["mdr"].parameters["yield_strength_Pa"] == approx(150e6)
+    unlike = case_of(first=sphere.format(150), second=sphere.format(160))
+    assert "two equal ones only" in room.left_out(unlike)["mdr"]
+
+
 @pytest.mark.parametrize("wall_first", [False, True])
 def test_the_order_of_the_bodies_does_not_matter(wall_first):
     strong, weak = SPHERE + LIGHT + 'yield_strength = "400 MPa"\n', WALL
