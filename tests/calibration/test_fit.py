@@ -119,10 +119,10 @@ def test_an_unknown_error_of_the_grid_is_said(recovered):
 
 
 def test_the_grid_is_refined_once_for_all_values(smooth_case):
-    text = smooth_case("900 MPa").replace("nodes = 48", 'nodes = 24\nrefine = "auto"')
+    text = smooth_case("900 MPa").replace("nodes = 48", 'nodes = 12\nrefine = "auto"')
     measured = Measured(np.array([0.05, 0.1]), np.array([0.8, 0.7]), np.array([0.01, 0.01]))
-    found = fit(text.replace("0.8 um", "1.6 um"), Path(), measured, ["yield_pressure"])
-    assert found.model.case(found.x).grid.refine == 2
+    found = fit(text.replace("0.8 um", "3.2 um"), Path(), measured, ["yield_pressure"])
+    assert found.model.case(found.x).grid.refine in {2, 4}
 
 
 def test_fewer_points_than_parameters_are_refused(rough_case):

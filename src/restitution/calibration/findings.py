@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.calibration.fit import Fit
-from restitution.calibration.least_squares import RANGE, at_bound
+from restitution.calibration.least_squares import DISTANCE, RANGE, at_bound
 
 Array = NDArray[np.float64]
 
@@ -18,7 +18,6 @@ WIDEST = 4.0
 _CORRELATED = 0.99
 _NO_EFFECT = 0.3  # standard deviations by which doubling a parameter moves the residuals
 _AS_GOOD = 4.0  # Δχ² of another minimum that explains the data as well: two standard deviations
-_OTHER = math.log(1.5)  # distance to another minimum
 _SHARE = 0.1  # smallest exponent of a parameter in a combination that is named
 _UNLIKELY = 0.01
 
@@ -117,10 +116,9 @@ def _bounds(found: Fit) -> Iterator[str]:
 def _other_minima(found: Fit) -> Iterator[str]:
     """Other starts that ended elsewhere with a sum of squares about as small."""
     best = found.minima[0]
-    scale = max(best.squares / max(found.freedom, 1), 1e-300)
-    unit = scale if found.measured.deviation is None else max(scale, 1.0)
+    unit = max(best.squares / max(found.freedom, 1), 1.0)
     for other in found.minima[1:]:
-        far = np.abs(other.x - best.x) > np.maximum(np.array(found.uncertainty.halves), _OTHER)
+        far = np.abs(other.x - best.x) > np.maximum(np.array(found.uncertainty.halves), DISTANCE)
         if far.any() and other.squares - best.squares < _AS_GOOD * unit:
             values = ", ".join(
                 f"{parameter.key} = {parameter.text(math.exp(x))}"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 from restitution.calibration.least_squares import (
     Data,
     Minimum,
+    distinct,
     jacobian,
     search,
     search_widely,
@@ -48,8 +50,8 @@ class Fit:
     """The result of a fit.
 
     `x` holds ln(value/first guess) of each parameter. `fitted` and `deviations` are at the
-    measured velocities, `weights` the deviations that weighed the points. `minima` are those of all
-    starts, on cells twice as large, the best first.
+    measured velocities, `weights` the deviations that weighed the points. `minima` are the ends of
+    searches from starts far apart, the best first.
     """
 
     model: CaseModel
@@ -119,8 +121,11 @@ def fit(
     # Points where another surface or grid gives another COR count less.
     noise = _noise(measured, model.restitution(best.x, V), best.x.size)
     data = replace(data, deviation=np.hypot(noise, _deviations(model, best.x, V).systematic))
-    best = search(model, data, best.x)
-    return _result(model, measured, data, best, minima)
+    ends = [search(model, data, best.x)]
+    for other in distinct([best, *minima])[1:]:
+        with suppress(RestitutionError):
+            ends.append(search(model, data, other.x))
+    return _result(model, measured, data, sorted(ends, key=lambda end: end.squares))
 
 
 def _check_points(measured: Measured, parameters: int) -> None:
@@ -187,9 +192,8 @@ def _noise(measured: Measured, fitted: Array, parameters: int) -> Array:
     return np.full(fitted.size, max(math.sqrt(squares / freedom), _LEAST_NOISE))
 
 
-def _result(
-    model: CaseModel, measured: Measured, data: Data, best: Minimum, minima: Sequence[Minimum]
-) -> Fit:
+def _result(model: CaseModel, measured: Measured, data: Data, minima: Sequence[Minimum]) -> Fit:
+    best = minima[0]
     V, x, freedom = data.velocity, best.x, data.velocity.size - best.x.size
     here = model.at(x)
     noise = _noise(measured, here.restitution(V), x.size)

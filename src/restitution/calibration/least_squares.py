@@ -23,6 +23,8 @@ _SCANNED, _STARTS = (
     15,
     2,
 )  # points beside the first guess, and how many of them a search starts from
+DISTANCE = math.log(1.5)  # of a parameter between two minima that are not the same
+_WORTH = 3.0  # times the least sum of squares of quick searches
 _FAILED = 1e3  # residual, in standard deviations, where the case cannot be solved
 _EVALUATIONS = 40
 # Relative, of the sum of squares and of x; a quick search finds a start for the next.
@@ -116,6 +118,18 @@ def search_widely(model: CaseModel, data: Data) -> list[Minimum]:
             f"the case cannot be solved at the first guess of the parameters: {failure}"
         )
     return sorted(found, key=lambda minimum: minimum.squares)
+
+
+def distinct(minima: Sequence[Minimum]) -> list[Minimum]:
+    """The `minima` that are far from those before, and not much worse than the best of the rest."""
+    first, *others = minima
+    least = min((other.squares for other in others), default=0.0)
+    kept = [first]
+    for each in others:
+        far = all(np.abs(each.x - other.x).max() > DISTANCE for other in kept)
+        if far and each.squares <= _WORTH * least:
+            kept.append(each)
+    return kept
 
 
 def squares(model: CaseModel, data: Data, x: Array) -> float:
