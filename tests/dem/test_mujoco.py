@@ -79,5 +79,5 @@ def test_names_and_titles_stay_in_their_comments(hostile, mujoco, law, texts):
 
 
 def test_pairs_that_stick_are_refused(law, constant):
-    with pytest.raises(CaseError, match=r"sticks \(e = 0\) at every velocity.*MuJoCo"):
+    with pytest.raises(CaseError, match=r"sticks \(e = 0\) at every computed velocity.*MuJoCo"):
         write(pair_table([constant(law(), 0.0)]), 1.0)

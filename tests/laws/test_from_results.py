@@ -158,7 +158,7 @@ def test_a_summary_of_another_pair_is_refused(run, tmp_path, name):
     factor = 1 + 1e-10
     assert bare_law(edited(run, tmp_path / "close", change)).points
     factor = 1 + 1e-8
-    with pytest.raises(OutputError, match=f"{name} of summary.json is not that of the case in"):
+    with pytest.raises(OutputError, match=f"{name} in summary.json differs from the case in"):
         bare_law(edited(run, tmp_path / "other", change))
 
 

@@ -104,7 +104,7 @@ def test_the_verb(cli, refused, mixture_text, tmp_path):
     file.write_text(mixture_text(("80 um", "81 um")))
     assert "holds another mixture" in refused("mixture", file, "-o", out, "--resume")
     export = ("export", out, "--to", "lammps", "-o", tmp_path / "input")
-    assert "is outside what was computed" in refused(*export, "--velocity", "2 m/s")
+    assert "is outside the computed velocities" in refused(*export, "--velocity", "2 m/s")
     assert cli(*export, "--velocity", "0.3 m/s")[0] == 0
     written = {path.name for path in (tmp_path / "input").iterdir()}
     assert written >= {"restitution.lmp", "collision.in", "packing.in"}
