@@ -179,7 +179,7 @@ def check_fragment(text: str) -> None:
     tables = tomllib.loads(text)
     case = tomllib.loads((ROOT / "examples" / "steel.toml").read_text(encoding="utf-8"))
     if {"indentation", "load", "impact"} & set(tables):
-        del case["indentation"]
+        del case["impact"]
     whole = tomli_w.dumps(case | tables)
     parse_study(whole) if "sweep" in tables else parse_case(whole)
 

@@ -106,7 +106,12 @@ def test_a_law_is_made_and_exported(results, cli, tmp_path):
     speed = 0.5 * (law.lowest + law.highest)
     for name, given in (("a", law), ("b", [tmp_path / "law"]), ("c", results.folder)):
         files = rs.export(given, to="lammps", velocity=f"{speed!r} m/s", out=tmp_path / name)
-        assert [path.name for path in files] == ["restitution.lmp", "collision.in"]
+        assert [path.name for path in files] == [
+            "restitution.lmp",
+            "restitution_kokkos.lmp",
+            "match_velocity.py",
+            "collision.in",
+        ]
         assert files[0].read_text() == (tmp_path / "a" / "restitution.lmp").read_text()
     rs.export(law, to="yade", velocity=speed, out=tmp_path / "d")
     assert rs.export(law, to="csv", out=tmp_path / "e") == [tmp_path / "e" / "restitution.csv"]

@@ -11,8 +11,9 @@ from scipy.integrate import quad
 from restitution import Body, Contact, Grid, Pair, Surface, generate_surface, smooth
 from restitution.collision import collide
 from restitution.contact.cavity import GROWTH, LARGEST, bound_of, yield_bound
-from restitution.contact.loading import _plastic_work, solve, step
+from restitution.contact.loading import solve, step
 from restitution.contact.path import loading_path, unloading_path
+from restitution.contact.plastic_work import plastic_work
 from restitution.contact.prescribed_force import solve_at_force
 from restitution.contact.prescribed_velocity import solve_at_velocity
 from restitution.errors import CaseError
@@ -332,7 +333,7 @@ def test_the_work_of_a_step_is_that_of_a_bound_that_follows_the_logarithm_of_the
         return 1e9 + 0.5e9 * math.log(depth / 1e-7) / math.log(ratio)
 
     mean = quad(bound, 1e-7, ratio * 1e-7)[0] / ((ratio - 1) * 1e-7)
-    work, error = _plastic_work(before, after)
+    work, error = plastic_work(before, after)
     assert work == approx(3e-9 * mean * nodes * area, rel=1e-9)
     assert error == approx(0.1 * 3e-9 * 0.5e9 * nodes * area, rel=1e-9)
 
@@ -344,10 +345,10 @@ def test_a_node_that_begins_to_yield_does_so_near_its_last_bound():
     before = yielded(state, 2e-7, np.zeros(shape), np.full(shape, 1e9))
     after = yielded(state, 3e-7, np.full(shape, 2e-9), np.full(shape, 1.5e9))
     nodes = after.box_pressure.size
-    work, error = _plastic_work(before, after)
+    work, error = plastic_work(before, after)
     assert work == approx(2e-9 * 1.4e9 * nodes * area, rel=1e-9)
     assert error == approx(0.25 * 2e-9 * 0.5e9 * nodes * area, rel=1e-9)
-    first, its_error = _plastic_work(None, after)
+    first, its_error = plastic_work(None, after)
     onset = state.contact.first_yield_pressure
     assert first == approx(2e-9 * (onset + 0.8 * (1.5e9 - onset)) * nodes * area, rel=1e-9)
     assert its_error == approx(0.25 * 2e-9 * abs(1.5e9 - onset) * nodes * area, rel=1e-9)

@@ -158,7 +158,7 @@ def test_spheres_are_equal_only_if_their_yield_strengths_are():
     equal = case_of(first=sphere.format(150), second=sphere.format(150.0))
     assert by_name(equal)["mdr"].parameters["yield_strength_Pa"] == approx(150e6)
     unlike = case_of(first=sphere.format(150), second=sphere.format(160))
-    assert "two equal ones only" in room.left_out(unlike)["mdr"]
+    assert "it needs equal spheres" in room.left_out(unlike)["mdr"]
 
 
 @pytest.mark.parametrize("wall_first", [False, True])
