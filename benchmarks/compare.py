@@ -43,8 +43,8 @@ REPORT = """\
 {date}, {machine}.
 {versions}.
 
-Ratios are times over those of this program, in the same run. Written by `make bench-peers`; all
-columns are in [peers.csv](peers.csv).
+Each ratio is the time of the program divided by the time of restitution in the same run.
+`make bench-peers` writes this page; all columns are in [peers.csv](peers.csv).
 
 {table}
 

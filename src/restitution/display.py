@@ -19,12 +19,12 @@ class _Summarised(Protocol):
 
 
 def summary_text(self: _Summarised) -> str:
-    """The lines of `_summary` after the name of the class, further ones indented."""
+    """The name of the class and the lines of `_summary`; all lines after the first are indented."""
     return f"{type(self).__name__}: " + "\n  ".join(self._summary())
 
 
 def summary_html(self: _Summarised) -> str:
-    """The lines of `_summary` after the name of the class, as HTML."""
+    """The name of the class and the lines of `_summary`, as HTML."""
     lines = "<br>".join(map(html.escape, self._summary()))
     return f"<div><b>{type(self).__name__}</b>: {lines}</div>"
 

@@ -105,7 +105,7 @@ def refused_case(refused, case_text, tmp_path):
         ('"2 um"', '"200 um"', "roughness.correlation_length", "above half of the domain"),
         ('rms = "0.05 um"', "", "roughness.rms", "is missing"),
         ("steps = 4", "", "indentation", "give from, to and steps"),
-        ('to = "300 nm"', 'to = "3 nm"', "indentation", "from must be smaller than to"),
+        ('to = "300 nm"', 'to = "3 nm"', "indentation", "`from` must be smaller than `to`"),
         ("steps = 4", 'scale = "cubic"', "indentation.scale", "'log' or 'linear'"),
         (
             "[unloading]",

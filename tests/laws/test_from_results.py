@@ -170,7 +170,7 @@ def test_a_summary_without_its_entries_is_refused(run, tmp_path):
 
 def test_a_folder_without_its_curve_or_its_end(run, tmp_path):
     (tmp_path / "empty").mkdir()
-    with pytest.raises(OutputError, match="holds no results of a run; name the folder of -o"):
+    with pytest.raises(OutputError, match="holds no results of a run; give the folder"):
         bare_law(tmp_path / "empty")
     shutil.copytree(run, tmp_path / "cut")
     (tmp_path / "cut" / "summary.json").unlink()

@@ -70,7 +70,7 @@ def test_a_pair_may_have_an_interface_of_its_own(mixture_text):
         ('material = "steel"', 'material = "steel"\nradius = "1 mm"', "a wall is flat"),
         ("[walls.drum]", "[walls.alu]", "walls.alu: is the name of a material, too"),
         ("[impact]", "[impacts]", "impacts: unknown key"),
-        ('from = "0.1 m/s"', 'from = "2 m/s"', "from must be smaller than to"),
+        ('from = "0.1 m/s"', 'from = "2 m/s"', "`from` must be smaller than `to`"),
         ('rms = "0.05 um"', 'rms = "0.05"', "alu+alu"),
     ],
 )

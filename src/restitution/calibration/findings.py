@@ -1,4 +1,4 @@
-"""Whether a fit determines its parameters, and whether it explains the data: in sentences."""
+"""State in sentences whether a fit determines its parameters and whether it explains the data."""
 
 from __future__ import annotations
 

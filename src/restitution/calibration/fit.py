@@ -118,7 +118,7 @@ def fit(
     data = Data(V, measured.restitution, np.full(V.size, _EQUAL) if given is None else given)
     minima = search_widely(model, data)
     best = _best(model, data, minima)
-    # Points where another surface or grid gives another COR count less.
+    # Give less weight to points whose COR differs between surfaces or grids.
     noise = _noise(measured, model.restitution(best.x, V), best.x.size)
     data = replace(data, deviation=np.hypot(noise, _deviations(model, best.x, V).systematic))
     ends = [search(model, data, best.x)]

@@ -27,7 +27,7 @@ _NAMES = ("fit.json", "fit.csv", "case.toml")
 
 
 def write_fit(found: Fit, text: str, out: Path) -> list[Path]:
-    """Write the files of a fit of the case file `text` into the folder `out`.
+    """Write the output files of a fit into `out`; `text` is the content of the fitted case file.
 
     Raises `OutputError`.
     """

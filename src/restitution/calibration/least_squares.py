@@ -15,9 +15,9 @@ from restitution.errors import CaseError, RestitutionError
 
 Array = NDArray[np.float64]
 
-RANGE = 30.0  # factor that the search may go from the first guess, up and down
-# ln of a parameter, of finite differences. The solver's noise is 1e-8, but single nodes that
-# begin to yield make COR of shallow contacts uneven over changes of about one percent.
+RANGE = 30.0  # largest factor between the first guess and a searched value, up and down
+# Step of finite differences in ln of a parameter. The solver's noise is 1e-8, but COR of shallow
+# contacts is not smooth over changes of about 1 %, because nodes begin to yield one at a time.
 _STEP = 0.03
 _SCANNED, _STARTS = (
     15,
@@ -27,7 +27,7 @@ DISTANCE = math.log(1.5)  # of a parameter between two minima that are not the s
 _WORTH = 3.0  # times the least sum of squares of quick searches
 _FAILED = 1e3  # residual, in standard deviations, where the case cannot be solved
 _EVALUATIONS = 40
-# Relative, of the sum of squares and of x; a quick search finds a start for the next.
+# Relative tolerances of the sum of squares and of x. A quick search finds a start for a full one.
 _TOLERANCE: dict[Cost, float] = {"full": 1e-4, "quick": 1e-3}
 
 

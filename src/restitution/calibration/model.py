@@ -151,7 +151,8 @@ def _row(state: State, unloading: UnloadingTable) -> tuple[float, ...]:
 class CaseModel:
     """The case with tables `content` and free `parameters`, at velocities from `low` to `high`.
 
-    COR is the mean over several surfaces of its kind, because one surface is not the measured one.
+    COR is the mean over several random surfaces with the statistics of the case, because a single
+    random surface does not reproduce the measured surface.
     Files are relative to `folder`. A point x holds ln(value/first guess) of each parameter.
     """
 

@@ -96,7 +96,7 @@ def _key(name: str, values: Mapping[str, Any]) -> str:
     if last == "rms" and values.get("roughness.kind") == "measured":
         raise CaseError(
             f"--free: {name}: the roughness of this case is a scan, whose heights are known; "
-            "leave it out, or give a generated roughness"
+            "remove this key from --free, or use a generated roughness"
         )
     positive = [key for key, value in values.items() if _reason(key, value) is None]
     raise CaseError(

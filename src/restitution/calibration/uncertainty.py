@@ -47,7 +47,11 @@ class Deviations:
 
     @property
     def by_surface(self) -> Array:
-        """Differences of COR, shape (surfaces, points), with the covariance 2 S/n of two means."""
+        """Deviations of COR with covariance 2 S/n, shape (surfaces, points).
+
+        This is the covariance of the difference between two means over n surfaces; S is the
+        covariance of COR between single surfaces.
+        """
         n = len(self.surfaces)
         return self.surfaces * math.sqrt(2 / (n * max(n - 1, 1)))
 

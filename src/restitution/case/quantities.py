@@ -111,7 +111,7 @@ def _other_case(name: str, unit: str) -> str | None:
 
 
 def read_positive(value: Any, unit: str, *, or_zero: bool = False) -> float:
-    """Convert as `read_quantity`, and require a positive value (or zero) that is plausible."""
+    """Convert like `read_quantity`; require a plausible positive value, or zero if `or_zero`."""
     result = read_quantity(value, unit)
     if or_zero and result == 0:
         return 0.0

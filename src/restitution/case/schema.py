@@ -127,7 +127,7 @@ class Series(Table, Generic[Quantity]):
                 f"from and to are equal; for a single value use {self.list_key} = [...]"
             )
         elif not cast(float, self.from_) < cast(float, self.to):
-            raise ValueError("from must be smaller than to")
+            raise ValueError("`from` must be smaller than `to`")
         elif self.steps == 1:
             raise ValueError(
                 "steps = 1 does not span from and to; give at least 2, or for a single value use "

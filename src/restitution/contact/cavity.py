@@ -55,8 +55,8 @@ GROWTH, LARGEST = 0.65, 3.5  # c₁, c₂
 # Relative increase of c₀, c₁ and c₂ on a ridge.
 _RIDGE_ONSET, _RIDGE_GROWTH, _RIDGE_LARGEST = 0.11, 1.0, 0.25
 _DEPTH_FACTOR = 2.0  # the elastic pressure is taken at this multiple of the indentation
-_RESIDUAL_FACTOR = 1e3  # tolerance of the elastic solve over that of the solve under the bound
-_TABOR = 0.2  # representative strain over a/R
+_RESIDUAL_FACTOR = 1e3  # tolerance of the elastic solve divided by that of the bounded solve
+_TABOR = 0.2  # ratio of the representative strain to a/R
 
 
 def yield_bound(contact: Contact, indentation: float, residual: float) -> tuple[Array, int]:

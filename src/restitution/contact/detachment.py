@@ -43,9 +43,9 @@ Detachment = Literal["crack-closure", "pohrt-popov"]
 
 _FACES = np.array([(1, 0), (-1, 0), (0, 1), (0, -1)])
 _AROUND = np.array([(-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1), (0, 0)])
-_SMOOTHING_STEPS = 32  # variance ⅔ cell² along the edge per step: about five cells in all
-_RELEASE_RADIUS = 3  # no second node within this many cells of a released one before the next solve
-_TIE = 1e-3  # of the largest tension; smaller differences are within the error of a solve
+_SMOOTHING_STEPS = 32  # each adds a variance of ⅔ cell² along the edge: about five cells in all
+_RELEASE_RADIUS = 3  # cells; after a solve one edge node within this distance is released
+_TIE = 1e-3  # of the largest tension; smaller differences may be errors of the solve
 _TINY = float(np.finfo(float).tiny)
 
 

@@ -37,14 +37,15 @@ Array = NDArray[np.float64]
 PULL_INCREMENT = 1e-10  # m: the pull after each loading increment (Ghanbarzadeh et al. 2019, §2.2)
 _TRUNCATION_TOLERANCE = 3e-5  # of the quadrature, relative to force times indentation
 _TRUNCATION_MARGIN = 10.0  # tolerances added to the error of this quadrature
-_TRUNCATION_PANELS = 4  # the integrand is zero up to first yield, which must not hide the rest
+_TRUNCATION_PANELS = 4  # sample beyond first yield, up to which the integrand is zero
 # The force of an adhesive contact jumps as asperities attach, which limits the accuracy. 1.5e-3 of
 # the work is at most 0.00075 in restitution.
 _ADHESIVE_TOLERANCE = 1.5e-3
 _ADHESIVE_HALVINGS = 5
-# Nodes attach one after the other, and the set of them depends on the steps. Relative to w times
-# the area, the work differed from that of 240 steps from first touch by up to these values: in 93 %
-# of 29 validation contacts with `equilibrium`, and in all 11 with `pull-increments`.
+# Nodes attach one after the other, and the steps determine which nodes attach. These values are
+# bounds on the difference of the work from a reference with 240 steps from first touch, divided by
+# w times the area. They held in 93 % of 29 validation contacts with `equilibrium`, and in all 11
+# with `pull-increments`.
 _PINNING = {"equilibrium": 0.02, "pull-increments": 0.006, "hertzian": 0.0}
 # The plastic work is summed over depths that start at _SHALLOW times the indentation and grow by at
 # most the factor _RATIO, for which the errors of `plastic_work` hold.

@@ -12,9 +12,9 @@ from restitution.numerics.box import Box
 
 Array = NDArray[np.float64]
 
-# Errors are fractions of the contribution of the growth of the bound: _RULE_ERROR for nodes that
-# had yielded before the step, _NEW_ERROR for nodes that begin to yield (from a comparison with 11
-# times as many depths). _NEW weights this contribution for the latter.
+# Errors are fractions of the plastic work due to the growth of the bound: _RULE_ERROR for nodes
+# that had yielded before the step, _NEW_ERROR for nodes that begin to yield in the step (from a
+# comparison with 11 times as many depths). _NEW is the weight of this work for the new nodes.
 _RULE_ERROR, _NEW, _NEW_ERROR = 0.1, 0.8, 0.25
 
 

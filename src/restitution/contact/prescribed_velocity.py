@@ -14,7 +14,7 @@ from restitution.errors import CaseError, NotConvergedError
 from restitution.theory import Hertz
 
 VELOCITY_TOLERANCE = 1e-6
-# For works that are integrated, whose relative errors are some 1e-3.
+# Used where the loading work is integrated, with a relative error of about 1e-3.
 _INTEGRATED_TOLERANCE = 1e-4
 _MAX_GROWTH = 3.0  # of the depth, per step towards the upper end of the bracket
 

@@ -128,7 +128,7 @@ def _read(out: Path) -> RunResults:
         )
     if not (out / "curve.csv").is_file() and not (out / "results.nc").is_file():
         raise OutputError(
-            f"{out}: holds no results of a run; name the folder of -o of `restitution run`"
+            f"{out}: holds no results of a run; give the folder that `restitution run` wrote"
         )
     run = read_run(out)
     run.check()

@@ -1,4 +1,7 @@
-"""Laws as files (`law.json` is complete; `table.csv`, `laws.csv`), and theories as a table."""
+"""Read and write laws as files, and write theories as a table.
+
+`law.json` holds a whole law, `table.csv` and `laws.csv` parts of it.
+"""
 
 from __future__ import annotations
 
@@ -47,7 +50,7 @@ def read_law(folder: Path) -> Law:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError):
         raise OutputError(
-            f"{folder}: holds no law ({LAW_FILE}); name the folder of -o of `restitution fit-law`"
+            f"{folder}: holds no law ({LAW_FILE}); give the folder that `restitution fit-law` wrote"
         ) from None
     check_file(path)
     try:

@@ -84,7 +84,7 @@ class StoredForce:
 
     def __post_init__(self) -> None:
         if self.pair.mass is None:
-            raise CaseError("density: is missing; a collision in time needs the masses")
+            raise CaseError("density: is missing; integrating a collision in time needs the masses")
 
     def branch(self, deepest: float) -> tuple[Force, float, bool]:
         """The unloading force from `deepest` (m), its separation (m), and whether it is blended.
@@ -119,7 +119,7 @@ def stored_force(out: Path) -> StoredForce:
     """Read the force law of the run in the folder `out`. Raises `OutputError`, `CaseError`."""
     if not (out / "results.nc").exists():
         raise OutputError(
-            f"{out}: holds no results of a run; name the folder of -o of `restitution run`"
+            f"{out}: holds no results of a run; give the folder that `restitution run` wrote"
         )
     run = RunResults(out)
     if not run.unloading:
@@ -291,7 +291,7 @@ def _loading(depth: Array, force: Array, work: Array) -> Force:
             return math.exp(value) / x * its_slope
 
         return pushing
-    # Adhesion: a force linear in depth up to the first depth, with the stored work there.
+    # With adhesion the force is linear up to the first depth, and its integral is the work there.
     jump_in = 2 * work[0] / depth[0] - force[0]
     curve = _hermite(np.append(0.0, depth), np.append(0.0, work), np.append(jump_in, force))
     return lambda x: curve(max(x, 0.0))[1]

@@ -141,7 +141,7 @@ class Computed:
 
 
 def _of(law: Law, V: float, meeting: Meeting) -> float:
-    """The velocity (m/s) of `law` at which W/R*³ is that of the pair at V."""
+    """The velocity (m/s) at which `law` has the W/R*³ that the pair has at V."""
     velocity = V * math.sqrt(meeting.kappa / (law.mass / law.radius**3))
     return min(max(velocity, law.lowest), law.highest) if _near(velocity, law) else velocity
 
@@ -171,7 +171,7 @@ def _error_of(curve: RatioCurve, radius: float, near: list[RatioCurve]) -> float
 
 
 def _column_at(law: Law, name: str, velocity: float) -> float:
-    """The field `name` of the points at `velocity` (m/s), between them a power of V."""
+    """The field `name` at `velocity` (m/s), interpolated between points by a power of V."""
     L, values = np.log(law.column("velocity")), law.column(name)
     if (values <= 0).any():
         return float(np.interp(math.log(velocity), L, values))

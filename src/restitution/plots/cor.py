@@ -8,7 +8,7 @@ import numpy as np
 
 from restitution.plots.figure import Array, Axis, Band, Mark, Points, Series, has_error
 
-_STEP = 0.1  # the ends of the axis are its multiples
+_STEP = 0.1  # the ends of the axis are multiples of this value
 _MARGIN = 0.02
 
 

@@ -40,8 +40,8 @@ Format = Literal["png", "svg", "pdf"]
 # Inches: a chart, a map, the width of another panel, a row of the legend, a legend at the side.
 _CHART, _MAP, _SECOND = (6.4, 4.0), (5.6, 4.6), 4.6
 _ROW, _SIDE = 0.2, 2.4
-_MOST_BELOW = 8  # entries of a legend below the axes; a longer legend stands at the side
-# Digits that a logarithmic axis labels, for up to so many decades.
+_MOST_BELOW = 8  # entries of a legend below the axes; a longer legend is placed at the side
+# Digits labelled on a logarithmic axis that spans at most this number of decades.
 _DIGITS: tuple[tuple[float, tuple[int, ...]], ...] = ((1.0, (1, 2, 3, 5, 7)), (3.0, (1, 2, 5)))
 _TICKS = 6  # labels of a linear axis, at most one more
 _LINEAR = 0.5  # decades below which a logarithmic axis has linear ticks

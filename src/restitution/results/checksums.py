@@ -29,8 +29,8 @@ def check_file(path: Path) -> None:
         raise OutputError(f"{path}: cannot be read ({error.strerror})") from None
     if damaged:
         raise OutputError(
-            f"{path}: is damaged, or was edited (its checksum differs from {CHECKSUMS}); compute "
-            "it again"
+            f"{path}: is damaged, or was edited (its checksum differs from {CHECKSUMS}); run "
+            "the computation again"
         )
 
 

@@ -49,7 +49,7 @@ def _kind(folder: Path) -> str:
         return "study"
     if (folder / "curve.csv").is_file():
         return "run"
-    raise OutputError(f"{folder}: holds no results of a run or study; name the folder of -o")
+    raise OutputError(f"{folder}: holds no results of a run or study; give the folder of a run")
 
 
 def _studies(a: Path, b: Path) -> Comparison:

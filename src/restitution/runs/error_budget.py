@@ -253,7 +253,7 @@ def _floor(row: Row) -> float:
 
 
 def _smoothed(values: Array, work: Array, near: float) -> Array:
-    """Mean of `values` weighted by exp(−|Δ ln W|/near); NaN where one is undefined."""
+    """Mean of `values` weighted by exp(−|Δ ln W|/near); all NaN if any value is NaN."""
     L = np.log(work)
     weights = np.exp(-np.abs(L[:, None] - L) / near)
     smoothed: Array = weights @ values / weights.sum(axis=1)

@@ -44,7 +44,7 @@ def input_warnings(contact: Contact, indentation: float) -> list[str]:
 
 @contextmanager
 def naming_keys() -> Iterator[None]:
-    """Make the errors of a solve name keys of the case file instead of arguments."""
+    """Reword errors of a solve so that they refer to keys of the case file, not to arguments."""
     try:
         yield
     except EdgeReachedError as error:

@@ -28,7 +28,7 @@ def wave_phases(seed: int, numbers: NDArray[np.int64], count: int) -> NDArray[np
     """
     phases = np.empty((numbers.size, count))
     for row, m in enumerate(numbers.tolist()):
-        # One stream for each m; the raw stream of Philox never changes either.
+        # One random stream for each m. The raw stream of Philox is the same in all NumPy versions.
         key = np.array([seed, m % 2**64], dtype=np.uint64)
         raw = np.random.Philox(key=key).random_raw(count)
         phases[row] = (raw >> np.uint64(12)).astype(np.float64)

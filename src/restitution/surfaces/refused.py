@@ -17,7 +17,7 @@ Code = Literal[
 
 
 class RefusedSurfaceError(SurfaceError):
-    """A surface that cannot be made: a `fact` with its `code`, and a `remedy` for callers."""
+    """The surface cannot be made: `fact` says why, with its `code`; `remedy` is for callers."""
 
     def __init__(self, code: Code, fact: str, remedy: str) -> None:
         super().__init__(code, fact, remedy)

@@ -103,7 +103,7 @@ def left_out(surface: Surface, kept: Array, spacing: tuple[float, float]) -> dic
         "pixel_y_m": pixel[1],
         "shortest_carried_m": 2 * max(*spacing, *pixel),
         "removed_rms_m": math.hypot(had_rms, rms),
-        # Earlier removals have left the fraction 1 − had² of the mean square slope.
+        # The waves removed before have left the fraction 1 − had_slope² of the mean square slope.
         "removed_slope": math.sqrt(had_slope**2 + max(1 - had_slope**2, 0.0) * slope**2),
     }
 

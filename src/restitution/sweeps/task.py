@@ -1,4 +1,4 @@
-"""Compute one case of a study, in any process."""
+"""Compute one case of a study, in the main process or in a worker process."""
 
 from __future__ import annotations
 

@@ -92,7 +92,9 @@ def violates_bounds(p: Array, d: Array, step: float, bounds: Bounds) -> bool:
 def take_step(
     p: Array, g: Array, d: Array, Kd: Array, step: float, bounds: Bounds, out: Array
 ) -> float:
-    """Move p to p + `step` d and g to g + `step` Kd; `out`, result: see `projected_gradient`.
+    """Update p to p + `step` d and g to g + `step` Kd.
+
+    `out` and the return value are those of `projected_gradient`.
 
     If the step is full (1), nodes truncated at a bound end exactly on it, without rounding error.
     """
@@ -106,7 +108,7 @@ def take_step(
 
 
 def _free(p: Array, g: Array, bounds: Bounds) -> NDArray[np.bool_]:
-    """Nodes that can move downhill: between the bounds, or on one and moving away from it."""
+    """Free nodes: p is between the bounds, or at a bound and −g points away from this bound."""
     lower, upper = bounds
     free = p > lower
     free |= g < 0
