@@ -103,6 +103,10 @@ def test_the_verb(cli, refused, mixture_text, tmp_path):
     assert "is not empty" in refused("mixture", file, "-o", out)
     file.write_text(mixture_text(("80 um", "81 um")))
     assert "holds another mixture" in refused("mixture", file, "-o", out, "--resume")
+    assert cli("report", out)[0] == 0
+    page = (out / "report.html").read_text()
+    assert "alu on pmma" in page
+    assert "14 pairs of particles and walls" in page
     export = ("export", out, "--to", "lammps", "-o", tmp_path / "input")
     assert "is outside the computed velocities" in refused(*export, "--velocity", "2 m/s")
     assert cli(*export, "--velocity", "0.3 m/s")[0] == 0

@@ -5,12 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 
 from restitution.errors import OutputError, RestitutionError, one_line
+from restitution.pages.mixture import write_mixture_page
 from restitution.pages.run import write_run_page
 from restitution.pages.study import write_study_page
 from restitution.pages.surface import write_surface_page
 
 # A file that identifies the kind of results, and the function that writes their page.
 _PAGES = {
+    "mixture.toml": write_mixture_page,
     "study.toml": write_study_page,
     "results.nc": write_run_page,
     "surface.nc": write_surface_page,

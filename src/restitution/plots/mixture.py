@@ -14,11 +14,8 @@ def mixture_figure(title: str, laws: Sequence[Law]) -> Figure:
 
     Lines are labelled by R*, of more than five pairs about five of them.
     """
-    families: dict[tuple[str, str], list[Law]] = {}
-    for law in laws:
-        families.setdefault((law.first.name, law.second.name), []).append(law)
     charts = []
-    for (first, second), members in families.items():
+    for (first, second), members in families_of(laws).items():
         ordered = sorted(members, key=lambda law: law.radius)
         shown = ordered[:: max(1, -(-len(ordered) // 5))]
         series: list[Series] = []
@@ -37,3 +34,11 @@ def mixture_figure(title: str, laws: Sequence[Law]) -> Figure:
             Chart(Axis("impact velocity", "m/s", "log"), cor_axis(series), series, heading)
         )
     return Figure(title, charts)
+
+
+def families_of(laws: Sequence[Law]) -> dict[tuple[str, str], list[Law]]:
+    """The laws of each two materials, by the names of these."""
+    found: dict[tuple[str, str], list[Law]] = {}
+    for law in laws:
+        found.setdefault((law.first.name, law.second.name), []).append(law)
+    return found
