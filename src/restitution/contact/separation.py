@@ -166,7 +166,7 @@ def _plan(state: State, tolerance: float) -> tuple[float, float]:
     if state.force > 0:
         recovery = min(recovery, 2.2 * stored / state.force)
     recovery = max(recovery, _tension_reach(state))
-    # Pairs that stick or nearly do get the steps of COR = 0.05, not ever finer ones.
+    # Steps would shrink to zero with COR: pairs that stick or nearly stick use those of COR = 0.05.
     work = max(state.loading_work, 0.05 * stored)
     restitution = math.sqrt(max(stored - adhesion, 0.0) / work)
     # dCOR = dW/(2 W_l COR); half of the tolerance is left for the error of the loading work.

@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 # No kurtosis is below skewness² + 1, and distributions near this limit are nearly two-valued.
 LEAST_KURTOSIS = 1.1
 _ABSCISSAE, _WEIGHTS = np.polynomial.hermite_e.hermegauss(201)
-_EXACT, _CLOSE = 1e-6, 2e-3  # misfits; on the lognormal line both forms are only close
+_EXACT, _CLOSE = 1e-6, 2e-3  # misfits; the looser one is for the lognormal line
 _STARTS = ((0.0, 0.0), (0.5, 0.3), (1.5, 0.5), (3.0, 0.8), (0.5, -0.7), (1.2, -1.2), (2.5, -1.5))
 
 

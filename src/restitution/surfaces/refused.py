@@ -1,4 +1,4 @@
-"""Errors whose remedy names arguments, so that a caller can name its own input instead."""
+"""Errors that keep the remedy apart, so that the case layer can word it with keys of the file."""
 
 from __future__ import annotations
 

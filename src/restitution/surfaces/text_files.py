@@ -84,8 +84,8 @@ def _decode(path: Path) -> str:
 def _parse_rows(path: Path, data: list[tuple[int, str]], *, plain: bool) -> list[list[float]]:
     """The values of all lines. Raises `NotAMatrixError` for text, `SurfaceError` for damaged lines.
 
-    Text among scan lines is a damaged line, which other readers would skip. So is text before them,
-    if the comments show that the file is a `plain` matrix.
+    Text between scan lines counts as a damaged line; other readers would skip that line. Text above
+    the scan lines counts as damaged, too, if the comments show that the file is a `plain` matrix.
     """
     rows: list[list[float] | None] = []
     first: NotAMatrixError | None = None
