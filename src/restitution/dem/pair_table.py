@@ -43,7 +43,7 @@ class PairTable:
         self._require(code, combinations_with_replacement(numbers, 2), "pair of particle types")
 
     def require_all(self, code: str) -> None:
-        """Raise `CaseError` unless every pair of spheres, and every sphere on every wall, has a law."""
+        """Raise `CaseError` unless every two spheres, and every sphere and wall, have a law."""
         self.require_spheres(code)
         spheres, last = len(self.spheres), len(self.particles)
         pairs = product(range(1, spheres + 1), range(spheres + 1, last + 1))

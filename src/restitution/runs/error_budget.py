@@ -41,8 +41,9 @@ Row = dict[str, float]
 _BAND = 1.5  # safety factor on the change of COR expected from waves that the grid leaves out
 _SHARE_RESOLVED = 0.03
 _FEW_NODES, _SHARE_UNRESOLVED = (3, 7), (0.6, 0.1)
-# Errors of COR, by the number of nodes in the median patch: about 90 % of the contacts differed from
-# the solution on a finer grid by less. A single node yields late and all at once, so its COR may have almost any error.
+# Errors of COR by the number of nodes in the median patch: about 90 % of the contacts differed from
+# the solution on a finer grid by less. A single node yields late and all at once, so that its COR
+# may have almost any error.
 _PATCH_NODES = (1, 3, 7, 14, 30, 100, 400)
 _PATCH_ERROR = (0.9, 0.4, 0.15, 0.08, 0.05, 0.024, 0.008)
 _SCATTER = 1.5  # standard deviations of COR between surfaces: covers about 88 % with eight surfaces
