@@ -2,6 +2,7 @@
 
 import pytest
 
+from restitution.case.case_file import parse_case
 from restitution.errors import CaseError
 from restitution.mixtures.family import families
 from restitution.mixtures.mixture_file import parse_mixture
@@ -71,7 +72,9 @@ def test_a_pair_may_have_an_interface_of_its_own(mixture_text):
         ("[walls.drum]", "[walls.alu]", "walls.alu: is the name of a material, too"),
         ("[impact]", "[impacts]", "impacts: unknown key"),
         ('from = "0.1 m/s"', 'from = "2 m/s"', "`from` must be smaller than `to`"),
-        ('rms = "0.05 um"', 'rms = "0.05"', "alu+alu"),
+        ('rms = "0.05 um"', 'rms = "0.05"', "materials.alu.roughness.rms"),
+        ("seed = 1", 'seed = "one"', "materials.alu.roughness.seed"),
+        ('radius = "100 um"', 'radius = "100 um"\nroughness = "fine"', "materials.pmma.roughness"),
     ],
 )
 def test_what_is_refused(mixture_text, old, new, words):
@@ -79,3 +82,15 @@ def test_what_is_refused(mixture_text, old, new, words):
         families(parse_mixture(mixture_text((old, new))))
     assert words in str(refused.value)
     assert "\n" not in str(refused.value)
+
+
+def test_no_two_surfaces_of_a_pair_have_the_same_seed(mixture_text):
+    """Surfaces of one seed have the same phases: their waves would add up."""
+    other = 'radius = "100 um"\nroughness = { kind = "gaussian", rms = "0.1 um", '
+    other += 'correlation_length = "4 um", seed = 0 }'
+    mixture = parse_mixture(mixture_text(('radius = "100 um"', other)))
+    for family in families(mixture):
+        parts = parse_case(family.case(family.radii[0])).roughness
+        assert len({part.seed for part in parts}) == len(parts)
+    cases = {family.name: family.case(family.radii[0]) for family in families(mixture)}
+    assert len(parse_case(cases["alu+pmma"]).roughness) == 2

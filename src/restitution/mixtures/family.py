@@ -123,7 +123,9 @@ class Family:
             "first": {**self.first.body, "radius": own},
             "second": {**self.second.body, "radius": "flat" if flat else own},
         }
-        rough = [*self.first.roughness, *map(_another, self.second.roughness)]
+        rough = [*self.first.roughness]
+        for table in self.second.roughness:
+            rough.append(_another(table, rough))
         return {
             "title": f"{self.name}, R* = {1e6 * radius:.6g} um",
             **bodies,
@@ -166,14 +168,17 @@ def _steps(start: float, end: float, step: float) -> list[float]:
     return [start * (end / start) ** (k / count) for k in range(1, count + 1)]
 
 
-def _another(table: dict[str, Any]) -> dict[str, Any]:
-    """Another surface of the same kind, for the second body: the same one would double each wave.
+def _another(table: dict[str, Any], others: list[dict[str, Any]]) -> dict[str, Any]:
+    """Another surface of the same kind as `table`, for the second body.
 
-    `table` is one of `[[roughness]]`.
+    Its seed, or its place in the scan, is none of `others`: surfaces of one seed have the same
+    phases, so that their waves would add up instead of being independent.
     """
-    if table.get("kind") != "measured" or table.get("extend") == "twin":
-        return {**table, "seed": table.get("seed", 0) + 1}
-    return {**table, "place": table.get("place", 0) + 1}
+    random = table.get("kind") != "measured" or table.get("extend") == "twin"
+    key = "seed" if random else "place"
+    taken = {other.get(key, 0) for other in others}
+    free = (n for n in itertools.count(table.get(key, 0) + 1) if n not in taken)
+    return {**table, key: next(free)}
 
 
 def _values(component: Component) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from pydantic import Field, ValidationError, model_validator
 from restitution.case.bodies import BodyTable, InterfaceTable
 from restitution.case.case_file import in_words, parse_toml, read_text
 from restitution.case.quantities import Length
+from restitution.case.roughness import Roughness
 from restitution.case.schema import GridTable, ImpactTable, PairOf, Table
 from restitution.errors import CaseError
 
@@ -183,6 +184,10 @@ def _component(key: str, name: str, table: Any) -> Component:
     body = dict(table)
     rough = body.pop("roughness", [])
     rough = rough if isinstance(rough, list) else [rough]
+    try:
+        _Rough.model_validate({"roughness": rough})
+    except ValidationError as error:
+        raise CaseError(in_words(error, _Rough, key)) from None
     sizes = body.pop("radius", None)
     radii: tuple[float, ...] = ()
     if key.startswith("walls."):
@@ -199,6 +204,12 @@ def _component(key: str, name: str, table: Any) -> Component:
     if radii and checked.density is None:
         raise CaseError(f"{key}.density: is missing; an impact velocity needs the mass")
     return Component(name, body, rough, radii)
+
+
+class _Rough(Table):
+    """The roughness of a component, to be checked."""
+
+    roughness: list[Roughness]
 
 
 class _Radii(Table):

@@ -47,11 +47,11 @@ class Computed:
         That is where the error by interpolation in R* is at no velocity above the limit of the
         mixture, or above a quarter of the error of the computed laws (but at most `_MOST`).
         """
-        law, errors = self.law(meeting), self.interpolation_errors(meeting)
+        points, errors = self._points(meeting), self.interpolation_errors(meeting)
         limit = self.family.mixture.interpolation_error
         return all(
             error <= max(limit, min(_SHARE * (point.error - error), _MOST))
-            for point, error in zip(law.points, errors, strict=True)
+            for point, error in zip(points, errors, strict=True)
         )
 
     def interpolation_errors(self, meeting: Meeting) -> list[float]:
@@ -67,13 +67,7 @@ class Computed:
         The error of a point is the sum of the error of the computed laws and that of the
         interpolation.
         """
-        velocities = self.family.mixture.velocities
         nearest = self.laws[int(np.abs(np.log(self.radii / meeting.radius)).argmin())]
-        curves, errors = self._curves(meeting), self.interpolation_errors(meeting)
-        points = [
-            self._point(meeting, V, curve, error)
-            for V, curve, error in zip(velocities, curves, errors, strict=True)
-        ]
         kappa = nearest.mass / nearest.radius**3
         how = "computed" if self.has(meeting.radius) else "interpolated in R* at equal W/R*^3"
         law = nearest.model_copy(
@@ -90,13 +84,21 @@ class Computed:
                     (meeting.radius / nearest.radius) ** (2 / 3)
                     * math.sqrt(nearest.mass / meeting.mass),
                 ),
-                "points": tuple(points),
+                "points": self._points(meeting),
                 "fit": None,
                 "laws": (),
             }
         )
         law = law.model_copy(update={"sticks_below": law.curve().begins()})
         return law.model_copy(update={"fit": compact_fit(law)})
+
+    def _points(self, meeting: Meeting) -> tuple[Point, ...]:
+        velocities, curves = self.family.mixture.velocities, self._curves(meeting)
+        errors = self.interpolation_errors(meeting)
+        return tuple(
+            self._point(meeting, V, curve, error)
+            for V, curve, error in zip(velocities, curves, errors, strict=True)
+        )
 
     def _curves(self, meeting: Meeting) -> list[RatioCurve]:
         """The ratio against R* at each velocity of the mixture, from all computed laws."""
