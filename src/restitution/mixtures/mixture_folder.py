@@ -6,13 +6,11 @@ import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
-from restitution.errors import OutputError
 from restitution.laws.law_files import LAWS, write_law
 from restitution.mixtures.mixture import PairLaw, empty_study
 from restitution.mixtures.mixture_file import Mixture
-from restitution.results.reader import read_text
-from restitution.results.writer import make_folder, replace_file, write_json, write_table, writing
-from restitution.sweeps.study_folder import StudyFolder
+from restitution.results.writer import write_json, write_table, writing
+from restitution.sweeps.study_folder import STUDY_FILE, StudyFolder, prepare_folder
 
 MIXTURE_FILE, RUNS, PAIRS = "mixture.toml", "runs", "pairs.csv"
 
@@ -23,19 +21,8 @@ def open_mixture_folder(out: Path, mixture: Mixture, *, resume: bool) -> StudyFo
     Raises `OutputError` if `out` holds something else, if there is nothing to resume, and if it
     cannot be written.
     """
-    held = out / MIXTURE_FILE
-    if resume:
-        if not held.is_file():
-            raise OutputError(f"{out}: holds no mixture; leave out --resume to begin one")
-        if read_text(held) != mixture.text:
-            raise OutputError(
-                f"{out}: holds another mixture (its {MIXTURE_FILE} differs); name another folder "
-                "with -o, or the file that it was begun with"
-            )
-    else:
-        make_folder(out, "go on with --resume" if held.is_file() else "move it away")
-        replace_file(held, lambda to: to.write_text(mixture.text, encoding="utf-8"))
-    begun = (out / RUNS / "study.toml").is_file()
+    prepare_folder(out, MIXTURE_FILE, mixture.text, resume=resume, what="mixture")
+    begun = (out / RUNS / STUDY_FILE).is_file()
     return StudyFolder(out / RUNS, empty_study(mixture), resume=begun)
 
 

@@ -33,7 +33,26 @@ from restitution.sweeps.coordinates import as_text, coordinate
 from restitution.sweeps.sweep import Study, SweptCase
 from restitution.sweeps.task import Outcome
 
-FAILED = "failed.json"
+FAILED, STUDY_FILE = "failed.json", "study.toml"
+
+
+def prepare_folder(path: Path, name: str, text: str, *, resume: bool, what: str) -> None:
+    """Prepare the folder `path` for a study or mixture (`what`), and write its `text` to `name`.
+
+    Raises `OutputError` if the folder holds another one (without `resume`: anything), has none to
+    resume, or cannot be written.
+    """
+    held = path / name
+    if not resume:
+        make_folder(path, "continue with --resume" if held.is_file() else "move it away")
+        replace_file(held, lambda to: to.write_text(text, encoding="utf-8"))
+    elif not held.is_file():
+        raise OutputError(f"{path}: holds no {what}; leave out --resume to start one")
+    elif read_text(held) != text:
+        raise OutputError(
+            f"{path}: holds another {what} (its {name} differs); name another folder with -o, or "
+            "the file that it was started with"
+        )
 
 
 class StudyFolder:
@@ -47,20 +66,9 @@ class StudyFolder:
         """
         self.path, self.study = path, study
         self._cases = path / "cases"
-        held = path / "study.toml"
-        if resume:
-            if not held.is_file():
-                raise OutputError(f"{path}: holds no study; leave out --resume to start one")
-            if read_text(held) != study.text:
-                raise OutputError(
-                    f"{path}: holds another study (its study.toml differs); name another folder "
-                    "with -o, or the study file that it was started with"
-                )
-        else:
-            make_folder(path, "continue with --resume" if held.is_file() else "move it away")
+        prepare_folder(path, STUDY_FILE, study.text, resume=resume, what="study")
         with writing(path):
             self._cases.mkdir(parents=True, exist_ok=True)
-        replace_file(held, lambda to: to.write_text(study.text, encoding="utf-8"))
 
     def locked(self) -> AbstractContextManager[None]:
         """Lock the folder. Raises `OutputError` if another process holds the lock."""
