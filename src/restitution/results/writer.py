@@ -124,7 +124,7 @@ class ResultsFolder:
         self.rows = rows
         write_table(self.path / "curve.csv", rows)
 
-    def add_unloading(self, path: list[State], touch: float = 0.0) -> None:
+    def add_unloading(self, path: Sequence[State], touch: float = 0.0) -> None:
         """Append one unloading curve, from its deepest state to separation, to `unloading.csv`.
 
         `touch` (m) is the indentation at the first touch on the grid of `path`.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -20,19 +20,18 @@ from restitution.contact.checks.resolution import (
     unresolved_patches,
 )
 from restitution.contact.contact import FULL_CONSTRAINT, Contact
-from restitution.contact.path import unloading_path
 from restitution.contact.state import State
-from restitution.errors import DomainError, NotConvergedError, RestitutionError
+from restitution.errors import DomainError, RestitutionError
 from restitution.numerics.convolution.device import current
 from restitution.numerics.kernels import instruction_set
 from restitution.numerics.quadrature import integrate_curve
 from restitution.results.interruption import hold_signals
 from restitution.results.writer import ResultsFolder, results_dataset, versions
+from restitution.runs.depths import Depth, collision_at, loaded_depths
 from restitution.runs.error_budget import add_errors, band_warning, total_error_summary
-from restitution.runs.loading import load_to
 from restitution.runs.log import RunLog, Say, ignore
-from restitution.runs.messages import input_warnings, message, naming_keys, require_possible
-from restitution.runs.refinement import later_touches, settled
+from restitution.runs.messages import input_warnings, message, require_possible
+from restitution.runs.refinement import settled
 from restitution.runs.smooth import smooth_curve
 from restitution.surfaces import Surface, describe
 
@@ -102,7 +101,9 @@ def run_case(
         for warning in omissions(case) + input_warnings(contact, deepest):
             run.warn(warning)
         with out.tables():
-            failure = _load_and_unload(_levels(case, folder, contact), case, out, run, go_on=errors)
+            failure = _load_and_unload(
+                loaded_depths(case, folder, contact), case, out, run, go_on=errors
+            )
         if errors and case.total_error and out.rows:
             _add_errors(case, folder, contact.surface, out, run)
         if failure is not None:
@@ -125,38 +126,8 @@ def _write_results(
     return summary
 
 
-@dataclass(frozen=True)
-class _Level:
-    """The contact on one grid, the depths (m, N or m/s) that it is for, and where it touches.
-
-    `touch` (m) is the indentation at which this grid touches first; it counts from the first touch
-    of the finest grid.
-    """
-
-    contact: Contact
-    refine: int
-    depths: list[float]
-    touch: float
-
-    def load_to(self, case: Case, depth: float, start: State | None) -> State:
-        own = depth - self.touch if case.indentation else depth
-        return load_to(case, self.contact, own, start)
-
-
-def _levels(case: Case, folder: Path, deepest: Contact) -> Iterator[_Level]:
-    """The grids of a run, from that of the shallowest depth to the one of the contact `deepest`."""
-    factors, depths = case.factors(), case.depths()
-    # Loads and velocities are the same on every grid, but their indentations are not.
-    touches = later_touches(case, folder, set(factors)) if len(set(factors)) > 1 else {}
-    for factor in sorted(set(factors), reverse=True):
-        own = [depth for depth, its in zip(depths, factors, strict=True) if its == factor]
-        last = factor == factors[-1]
-        contact = deepest if last else case.refined(factor).contact(folder)
-        yield _Level(contact, factor, own, touches.get(factor, 0.0))
-
-
 def _load_and_unload(
-    levels: Iterable[_Level],
+    depths: Iterable[Depth],
     case: Case,
     out: ResultsFolder,
     run: _Run,
@@ -164,46 +135,39 @@ def _load_and_unload(
     go_on: bool,
 ) -> RestitutionError | None:
     """Compute the depths one after the other; return the error of the first that failed."""
-    depths, curves = case.depths(), case.unloading.curves
+    count, curves = len(case.depths()), case.unloading.curves
     # Evenly spaced by number, with the deepest.
-    unloaded = {len(depths) - 1 - (k * len(depths)) // curves for k in range(curves)}
+    unloaded = {count - 1 - (k * count) // curves for k in range(curves)}
     began = time.perf_counter()
-    before: State | None = None
     failure: RestitutionError | None = None
-    places = ((level, depth) for level in levels for depth in level.depths)
-    for number, (level, depth) in enumerate(places):
-        contact = level.contact
-        if before is not None and before.contact.grid != contact.grid:
-            before = None
-        try:
-            state = level.load_to(case, depth, before)
-        except (NotConvergedError, DomainError) as error:
-            failure = failure or error
-            if not go_on or isinstance(error, DomainError):  # deeper ones reach the edge, too
+    for number, depth in enumerate(depths):
+        if depth.state is None:
+            failure = failure or depth.error
+            # Deeper ones reach the edge, too.
+            if not go_on or isinstance(depth.error, DomainError):
                 break
-            run.progress(f"{number + 1} of {len(depths)} depths")
-            continue
-        before = state
-        followed = contact.adhesive and case.unloading.method == "path"
-        back: list[State] = []
-        if followed or number in unloaded:
-            steps, tolerance = case.unloading.steps, case.unloading.restitution_error
-            with naming_keys():
-                back = list(unloading_path(state, steps=steps, tolerance=tolerance))
-        collision = collide(state, back if followed else None, method=case.unloading.method)
-        with hold_signals():  # an interruption leaves a complete row or none
-            run.asked.append(depth)
-            run.adhesive_nodes.append(adhesive_nodes(state))
-            run.loading_work_errors.append(state.work_error / max(abs(state.loading_work), 1e-300))
-            out.add(state, collision, level.refine, level.touch)
-            run.deepest = state
-        if number in unloaded and state.contact_nodes:
-            out.add_unloading(back, level.touch)
-            run.unloading_checks.append(_check(state, back, collision))
-        run.depth_seconds.append(round(time.perf_counter() - began, 4))
-        began = time.perf_counter()
-        run.progress(f"{number + 1} of {len(depths)} depths")
+        else:
+            _keep(depth, depth.state, case, out, run, number in unloaded)
+            run.depth_seconds.append(round(time.perf_counter() - began, 4))
+            began = time.perf_counter()
+        run.progress(f"{number + 1} of {count} depths")
     return failure
+
+
+def _keep(
+    depth: Depth, state: State, case: Case, out: ResultsFolder, run: _Run, unload: bool
+) -> None:
+    """Unload from a depth, and keep its row."""
+    collision, back = collision_at(case, state, unload=unload)
+    with hold_signals():  # an interruption leaves a complete row or none
+        run.asked.append(depth.asked)
+        run.adhesive_nodes.append(adhesive_nodes(state))
+        run.loading_work_errors.append(state.work_error / max(abs(state.loading_work), 1e-300))
+        out.add(state, collision, depth.refine, depth.touch)
+        run.deepest = state
+    if unload and state.contact_nodes:
+        out.add_unloading(back, depth.touch)
+        run.unloading_checks.append(_check(state, back, collision))
 
 
 def _add_errors(
@@ -221,7 +185,7 @@ def _add_errors(
     out.put_curve(out.rows)
 
 
-def _check(state: State, back: list[State], collision: Collision) -> dict[str, float]:
+def _check(state: State, back: Sequence[State], collision: Collision) -> dict[str, float]:
     """The work of an unloading curve, compared with the stored energy."""
     work = -integrate_curve([s.indentation for s in back], [s.force for s in back])
     estimate = collide(state, method="energy-estimate")
