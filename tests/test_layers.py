@@ -28,6 +28,7 @@ ROOMS = (
     "api",
     "plots",
     "pages",
+    "live",
     "reproduce",
     "cli",
     "__main__",

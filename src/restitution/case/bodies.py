@@ -25,7 +25,7 @@ from restitution.contact.detachment import Detachment
 from restitution.errors import CaseError, shown
 
 # Values that a library material supplies to a body, with their units.
-_FROM_LIBRARY = {
+FROM_LIBRARY = {
     "youngs_modulus": "Pa",
     "poissons_ratio": "",
     "density": "kg/m^3",
@@ -60,7 +60,7 @@ class BodyTable(Table):
         known = material(table["material"])
         taken = {
             key: found.value if not unit else f"{found.value!r} {unit}"
-            for key, unit in _FROM_LIBRARY.items()
+            for key, unit in FROM_LIBRARY.items()
             if (found := getattr(known, key)) is not None
         }
         return {**taken, **table, "material": known.key}
@@ -75,7 +75,7 @@ class BodyTable(Table):
         if self.material is None:
             return {}
         known = material(self.material)
-        found = {key: getattr(known, key) for key in _FROM_LIBRARY}
+        found = {key: getattr(known, key) for key in FROM_LIBRARY}
         return {
             key: each for key, each in found.items() if each and each.value == getattr(self, key)
         }

@@ -167,14 +167,17 @@ class Case(Table):
 
         Raises `CaseError` if a run needs more memory than is available.
         """
-        pair = self.pair()
+        self.pair()
         if grid := self._own_grid():
             fine = divided(grid, self.grid.factor if self.grid else 1)
             needs.require(self.run_bytes(fine), fine)
-        surface = self.surface(folder)
+        return self.contact_on(self.surface(folder))
+
+    def contact_on(self, surface: Surface) -> Contact:
+        """The contact on `surface`, which `self.surface` returned. Raises as `contact`."""
         needs.require(self.run_bytes(surface.grid), surface.grid)
         return Contact(
-            pair,
+            self.pair(),
             surface,
             **self.yielding().arguments(),
             work_of_adhesion=self.interface.adhesion,

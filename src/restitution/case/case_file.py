@@ -118,6 +118,26 @@ def parse_case(text: str) -> Case:
         raise CaseError(in_words(error)) from None
 
 
+def problems_of(content: dict[str, Any]) -> dict[str, str]:
+    """What is wrong with the tables `content` of a case file: messages by key.
+
+    A message about the whole file has the key "". Empty if `content` is a case.
+    """
+    try:
+        Case.model_validate(content)
+    except ValidationError as error:
+        problems = error.errors(include_url=False)
+        return {_key_of(each): _without_key(each) for each in reversed(problems)}
+    except CaseError as error:
+        return {"": str(error)}
+    return {}
+
+
+def _without_key(problem: Any) -> str:
+    """One line for a pydantic error, without the key that it starts with."""
+    return _in_words(problem, Case).removeprefix(f"{_key_of(problem)}: ")
+
+
 def in_words(error: ValidationError, root: type[Table] = Case, before: str = "") -> str:
     """One line for the problems of a file: the first, and the keys of others.
 

@@ -67,6 +67,13 @@ def _registry() -> pint.UnitRegistry[float]:
     return pint.UnitRegistry(cache_folder=None)
 
 
+def unit_factors() -> dict[str, dict[str, float]]:
+    """The usual units of each SI unit, with their factors: unit_factors()["m"]["um"] is 1e-6."""
+    return {
+        si: {name: read_quantity(f"1 {name}", si) for name in names} for si, names in _USUAL.items()
+    }
+
+
 def read_quantity(value: object, unit: str) -> float:
     """Convert `value`, such as "500 um", to the SI `unit`. Raises `ValueError`."""
     example = f"write for example {_EXAMPLES[unit]}"

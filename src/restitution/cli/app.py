@@ -15,6 +15,7 @@ from restitution.cli import (
     export,
     fit,
     fit_law,
+    live,
     materials,
     mixture,
     new,
@@ -36,6 +37,7 @@ app = typer.Typer(
 _VERBS: dict[str, tuple[Callable[..., None], ...]] = {
     "Prepare": (new.new, materials.materials, check.check, surface.surface),
     "Compute": (
+        live.app,
         run.run,
         converge.converge,
         study.study,

@@ -1,0 +1,75 @@
+"""The case that a page edits: the tables of a case file, with one shape for each table."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path, PurePath
+from typing import Any
+
+import tomli_w
+
+from restitution.case.case import Case
+from restitution.case.case_file import parse_case, parse_toml, problems_of
+from restitution.errors import CaseError
+
+Content = dict[str, Any]
+
+
+def content_of(text: str) -> Content:
+    """The tables of the case file `text`; a wall is a table, and `roughness` is a list of tables.
+
+    Raises `CaseError` if `text` is not TOML.
+    """
+    content = parse_toml(text)
+    for name in ("first", "second"):
+        if isinstance(content.get(name), str):
+            content[name] = {"material": content[name], "radius": "flat"}
+    if isinstance(content.get("roughness"), dict):
+        content["roughness"] = [content["roughness"]]
+    return content
+
+
+def text_of(content: Content) -> str:
+    """The case file of the tables `content`. Raises `CaseError` if TOML has no such value."""
+    tables = dict(content)
+    parts = tables.get("roughness")
+    if isinstance(parts, list):
+        tables["roughness"] = parts[0] if len(parts) == 1 else parts
+        if not parts:
+            del tables["roughness"]
+    try:
+        return tomli_w.dumps(tables)
+    except (TypeError, ValueError) as error:
+        raise CaseError(f"{error}; a case file has texts, numbers, lists and tables") from None
+
+
+def problems_in(text: str, folder: Path) -> dict[str, str]:
+    """What is wrong with the case file `text`: messages by key; scans must lie in `folder`."""
+    try:
+        content = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        return {"": f"not valid TOML: {error}"}
+    return problems_of(content) or _foreign_files(content, folder)
+
+
+def case_of(text: str) -> Case:
+    """The case of a file that `problems_in` has checked."""
+    return parse_case(text)
+
+
+def scans_of(content: Content) -> list[str]:
+    """The names of the scans that the tables `content` read."""
+    parts = content.get("roughness", [])
+    tables = parts if isinstance(parts, list) else [parts]
+    return [table["file"] for table in tables if isinstance(table, dict) and "file" in table]
+
+
+def _foreign_files(content: Content, folder: Path) -> dict[str, str]:
+    """Refuse scans outside `folder`: a page reads only what its reader has given it."""
+    for name in scans_of(content):
+        if PurePath(name).name != name or not (folder / name).is_file():
+            return {
+                "roughness.file": f'"{name}" is not a scan of this page; drop the file onto the '
+                "page, or start restitution app with the case file that names it"
+            }
+    return {}

@@ -1,0 +1,125 @@
+"""The curve that the page redraws while a slider moves: one surface, without the total error."""
+
+from __future__ import annotations
+
+import hashlib
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+from restitution.case.case import Case
+from restitution.case.derived import deepest_indentation
+from restitution.case.omissions import omissions
+from restitution.contact.contact import Contact
+from restitution.errors import DomainError, RestitutionError
+from restitution.live.content import case_of
+from restitution.live.figures import ContactMaps, as_json, curve_figures, live_dataset, surface_line
+from restitution.results.writer import curve_row
+from restitution.runs.depths import collision_at, loaded_depths
+from restitution.runs.messages import input_warnings, require_possible
+from restitution.runs.refinement import settled
+from restitution.runs.smooth import smooth_curve
+from restitution.surfaces import Surface
+
+_PARTIAL = 0.7  # s between drawings of a curve that is not complete
+
+
+class LiveCurves:
+    """The curves of the pages that are open, one for each tab of the browser."""
+
+    def __init__(self) -> None:
+        self.maps: dict[str, ContactMaps] = {}
+        self._surface: tuple[str, Surface] | None = None
+
+    def lines(
+        self, tab: str, text: str, folder: Path, shown: str, check: Callable[[], None]
+    ) -> Iterator[str]:
+        """Compute the curve of the case `text`; yield lines of JSON for the page.
+
+        `shown` identifies the surface that the page shows already; `check` raises if the curve is
+        not wanted any more. Depths that were computed are drawn even if others fail.
+        """
+        case = settled(case_of(text).realisation(0), folder)
+        contact = self._contact(case, folder)
+        deepest = deepest_indentation(case)
+        require_possible(contact, deepest)
+        warnings = omissions(case) + input_warnings(contact, deepest)
+        curve = _Curve(case, contact, warnings)
+        yield from curve.compute(folder, check)
+        self.maps = {**self.maps, tab: curve.maps}
+        while len(self.maps) > 4:
+            del self.maps[next(iter(self.maps))]
+        key = hashlib.blake2b(contact.surface.height.tobytes(), digest_size=16).hexdigest()
+        if key != shown:
+            check()
+            yield as_json({"surface_key": key})
+            yield surface_line(contact.surface)
+        check()
+        yield from curve.with_smooth()
+
+    def _contact(self, case: Case, folder: Path) -> Contact:
+        """The contact of `case`; the last surface is kept, since most sliders do not change it."""
+        key = repr((case.roughness, case.grid, _stamps(case, folder)))
+        if self._surface is None or self._surface[0] != key:
+            self._surface = key, case.contact(folder).surface
+        return case.contact_on(self._surface[1])
+
+
+class _Curve:
+    """One curve while it is computed."""
+
+    def __init__(self, case: Case, contact: Contact, warnings: list[str]) -> None:
+        self.case, self.contact, self.warnings = case, contact, warnings
+        self.rows: list[dict[str, float]] = []
+        self.maps = ContactMaps()
+        self.failure: RestitutionError | None = None
+
+    def compute(self, folder: Path, check: Callable[[], None]) -> Iterator[str]:
+        began = drawn = time.perf_counter()
+        count = len(self.case.depths())
+        for number, depth in enumerate(loaded_depths(self.case, folder, self.contact), 1):
+            check()
+            if depth.state is None:
+                self.failure = self.failure or depth.error
+                if isinstance(depth.error, DomainError):
+                    break
+                continue
+            collision, _ = collision_at(self.case, depth.state)
+            row = curve_row(depth.state, collision, depth.refine, depth.touch)
+            self.rows.append(row)
+            self.maps.add(depth.state, row["max_indentation_m"])
+            if time.perf_counter() - drawn > _PARTIAL and number < count:
+                yield self.line(f"{number} of {count} depths")
+                drawn = time.perf_counter()
+        if self.failure is not None and not self.rows:
+            raise self.failure
+        yield self.line("", seconds=time.perf_counter() - began)
+
+    def line(self, progress: str, **more: Any) -> str:
+        results = live_dataset(self.case, self.contact, self.rows)
+        return as_json(
+            {
+                "curve": self.rows,
+                "figures": curve_figures(results),
+                "progress": progress,
+                "warnings": self.warnings,
+                "failure": "" if self.failure is None else str(self.failure),
+                **more,
+            }
+        )
+
+    def with_smooth(self) -> Iterator[str]:
+        try:
+            smooth = smooth_curve(self.contact, self.rows)
+        except RestitutionError:  # the smooth curve is optional
+            return
+        if smooth:
+            results = live_dataset(self.case, self.contact, self.rows).assign(smooth)
+            yield as_json({"figures": curve_figures(results)})
+
+
+def _stamps(case: Case, folder: Path) -> list[tuple[int, int]]:
+    """Time and size of the scans of `case`, which change when a file is dropped again."""
+    found = [folder / part.file for part in case.roughness if part.kind == "measured"]
+    return [(each.stat().st_mtime_ns, each.stat().st_size) for each in found]

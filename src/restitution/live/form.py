@@ -1,0 +1,303 @@
+"""The fields of the form: the keys of a case file, with labels, units and the ends of sliders."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+from typing import Any, get_args
+
+from restitution.case.bodies import FROM_LIBRARY
+from restitution.case.materials import Material, materials
+from restitution.case.quantities import unit_factors
+from restitution.collision import UnloadingMethod
+from restitution.contact.contact import Approach, Plasticity
+from restitution.contact.detachment import Detachment
+from restitution.display import quantity
+from restitution.surfaces.extend import Extension
+from restitution.surfaces.generate import RoughnessKind
+
+Choice = tuple[str, str]  # the value in the file, and its label
+
+_GENERATED = get_args(RoughnessKind)
+
+
+@dataclass(frozen=True)
+class Field:
+    """One key of the case file.
+
+    `unit` is the SI unit of a quantity. `low` and `high` are the ends of the slider, in this unit
+    or as numbers; without them the field has none. The field is shown while the key `when[0]` has
+    one of the values after it; "" is a key that is left out. `initial` is filled in when the field
+    appears.
+    """
+
+    key: str
+    label: str
+    unit: str = ""
+    low: float | None = None
+    high: float | None = None
+    logarithmic: bool = True
+    whole: bool = False
+    choices: tuple[Choice, ...] = ()
+    when: tuple[str, ...] = ()
+    initial: str | float | None = None
+    hint: str = ""
+
+
+@dataclass(frozen=True)
+class Group:
+    """Fields under one heading."""
+
+    title: str
+    fields: tuple[Field, ...] = field(default_factory=tuple)
+    closed: bool = False
+
+
+def form() -> dict[str, Any]:
+    """The form as JSON: groups of fields, units with their factors, and the library's values."""
+    return {
+        "groups": [asdict(group) for group in _groups()],
+        "units": unit_factors(),
+        "library": {key: _library_values(each) for key, each in materials().items()},
+    }
+
+
+def _library_values(material: Material) -> dict[str, str]:
+    """The values that a body has from the library, as texts."""
+    found = ((key, unit, getattr(material, key)) for key, unit in FROM_LIBRARY.items())
+    return {
+        key: quantity(each.value, unit).replace("µ", "u") if unit else f"{each.value:g}"
+        for key, unit, each in found
+        if each is not None
+    }
+
+
+def _named(values: tuple[str, ...], without: str = "") -> tuple[Choice, ...]:
+    first = (("", without),) if without else ()
+    return (*first, *((value, value) for value in values))
+
+
+def _groups() -> list[Group]:
+    return [
+        Group("First particle", _body("first")),
+        Group(
+            "Second particle",
+            (
+                Field("second", "Second particle", choices=_SECOND),
+                *_body("second", when=("second", "own")),
+            ),
+        ),
+        Group("Interface", _INTERFACE),
+        Group("Surface", _SURFACE),
+        Group("Grid", _GRID),
+        Group("Range", _RANGE),
+        Group("Unloading and title", _REST, closed=True),
+    ]
+
+
+_SECOND: tuple[Choice, ...] = (("", "the same as the first"), ("own", "its own values"))
+
+
+def _body(name: str, when: tuple[str, ...] = ()) -> tuple[Field, ...]:
+    library = tuple((key, each.name) for key, each in materials().items())
+    flat = 'a length, or "flat" for a wall'
+    E, H = (1e6, 1e12), (1e6, 1e11)
+    return (
+        Field(f"{name}.material", "Material", choices=(("", "own values"), *library), when=when),
+        Field(f"{name}.radius", "Radius", "m", 1e-6, 1e-2, when=when, initial="flat", hint=flat),
+        Field(f"{name}.youngs_modulus", "Young's modulus E", "Pa", *E, when=when),
+        Field(
+            f"{name}.poissons_ratio",
+            "Poisson's ratio ν",
+            "",
+            0.0,
+            0.5,
+            logarithmic=False,
+            when=when,
+        ),
+        Field(f"{name}.density", "Density", "kg/m^3", 100, 2e4, when=when),
+        Field(f"{name}.yield_strength", "Yield strength Y", "Pa", *H, when=when),
+        Field(f"{name}.hardness", "Hardness H", "Pa", *H, when=when),
+    )
+
+
+_INTERFACE = (
+    Field(
+        "interface.yield_strength",
+        "Yield strength Y",
+        "Pa",
+        1e6,
+        1e11,
+        hint="of a tensile test; left out: of the softer body",
+    ),
+    Field(
+        "interface.yield_pressure",
+        "Constant yield pressure",
+        "Pa",
+        1e6,
+        1e11,
+        hint='a hardness in place of Y, "2.8 Y", "hardness" or "elastic"',
+    ),
+    Field("interface.tangent_modulus", "Tangent modulus", "Pa", 1e6, 1e11, hint="of hardening"),
+    Field(
+        "interface.plasticity",
+        "Plasticity",
+        choices=_named(get_args(Plasticity), "by the values above"),
+    ),
+    Field(
+        "interface.work_of_adhesion",
+        "Work of adhesion w",
+        "J/m^2",
+        1e-4,
+        1.0,
+        hint="left out: no adhesion",
+    ),
+    Field("interface.approach", "Approach", choices=_named(get_args(Approach), "equilibrium")),
+    Field(
+        "interface.detachment", "Detachment", choices=_named(get_args(Detachment), "crack-closure")
+    ),
+)
+
+_MADE = ("roughness.kind", *_GENERATED)
+_READ = ("roughness.kind", "measured")
+_ROUGH = ("roughness.kind", *_GENERATED, "measured")
+_SURFACE = (
+    Field(
+        "roughness.kind",
+        "Roughness",
+        choices=(("", "smooth"), *_named(_GENERATED), ("measured", "measured: a scan")),
+    ),
+    Field("roughness.file", "Scan", when=_READ, hint="drop a file onto the page"),
+    Field("roughness.rms", "Rq", "m", 1e-9, 1e-5, when=_MADE, initial="0.1 um"),
+    Field(
+        "roughness.correlation_length",
+        "Correlation length",
+        "m",
+        1e-8,
+        1e-4,
+        when=("roughness.kind", "exponential", "gaussian"),
+        initial="2 um",
+    ),
+    Field(
+        "roughness.hurst",
+        "Hurst exponent",
+        "",
+        0.05,
+        0.99,
+        logarithmic=False,
+        when=("roughness.kind", "self-affine"),
+        initial=0.8,
+    ),
+    Field(
+        "roughness.rolloff",
+        "Roll-off wavelength",
+        "m",
+        1e-8,
+        1e-4,
+        when=("roughness.kind", "self-affine"),
+        initial="10 um",
+    ),
+    Field("roughness.shortest", "Shortest wavelength", "m", 1e-9, 1e-5, when=_MADE),
+    Field("roughness.seed", "Seed", "", 0, 100, False, True, when=_MADE, initial=1),
+    Field("roughness.channel", "Channel of the file", whole=True, when=_READ),
+    Field("roughness.size", "Edge lengths", "m", when=_READ, hint="if the file has none"),
+    Field(
+        "roughness.detrend",
+        "Subtract",
+        choices=_named(("center", "tilt", "curvature"), "nothing"),
+        when=_READ,
+        initial="curvature",
+    ),
+    Field(
+        "roughness.undefined",
+        "Missing pixels",
+        choices=_named(("interpolate",), "refuse"),
+        when=_READ,
+    ),
+    Field("roughness.outliers", "Outlier threshold", "", 3, 30, when=_READ, hint="in deviations"),
+    Field(
+        "roughness.extend",
+        "Extend the scan",
+        choices=_named(get_args(Extension), "no"),
+        when=_READ,
+    ),
+    Field(
+        "roughness.seed",
+        "Seed of the twin",
+        "",
+        0,
+        100,
+        False,
+        True,
+        when=("roughness.extend", "twin"),
+        initial=1,
+    ),
+    Field(
+        "roughness.realisations",
+        "Surfaces",
+        "",
+        1,
+        16,
+        False,
+        True,
+        when=_ROUGH,
+        hint="the curve is their mean; while a slider moves, that of the first",
+    ),
+)
+
+_GRID = (
+    Field("grid.nodes", "Nodes", "", 64, 1024, True, True, hint="along each edge"),
+    Field("grid.spacing", "Spacing", "m", 1e-9, 1e-5),
+    Field("grid.refine", "Refine", hint='1, 2, 4, …, or "auto"'),
+)
+
+
+def _span(
+    table: str, words: str, unit: str, ends: tuple[float, float], initial: tuple[str, str]
+) -> tuple[Field, ...]:
+    when = ("depths", table)
+    listed = "velocity" if table == "impact" else "values"
+    return (
+        Field(f"{table}.from", f"{words} from", unit, *ends, when=when, initial=initial[0]),
+        Field(f"{table}.to", f"{words} to", unit, *ends, when=when, initial=initial[1]),
+        Field(f"{table}.steps", "Steps", "", 2, 48, False, True, when=when, initial=24),
+        Field(
+            f"{table}.scale",
+            "Spacing of the steps",
+            choices=_named(("linear",), "logarithmic"),
+            when=when,
+        ),
+        Field(
+            f"{table}.{listed}",
+            "Values",
+            unit,
+            when=when,
+            hint="a list, separated by commas, in place of the span",
+        ),
+    )
+
+
+_RANGE = (
+    Field(
+        "depths",
+        "Depths are",
+        choices=(
+            ("indentation", "indentations (fastest)"),
+            ("impact", "impact velocities"),
+            ("load", "loads"),
+        ),
+    ),
+    *_span("indentation", "Indentation", "m", (1e-10, 1e-4), ("20 nm", "2 um")),
+    *_span("impact", "Velocity", "m/s", (1e-4, 10.0), ("10 mm/s", "1 m/s")),
+    *_span("load", "Load", "N", (1e-9, 1e2), ("1 mN", "10 N")),
+)
+
+_REST = (
+    Field("title", "Title"),
+    Field("unloading.curves", "Unloading curves", "", 0, 24, False, True),
+    Field("unloading.steps", "Steps of each", "", 4, 64, False, True),
+    Field(
+        "unloading.method",
+        "Unloading with adhesion",
+        choices=_named(get_args(UnloadingMethod), "path"),
+    ),
+)

@@ -1,0 +1,125 @@
+"""A worker process and its requests, as the server sees them.
+
+The process starts with the first request. It is started anew after it has ended, and it is ended if
+a request that nobody wants any more does not stop by itself.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import itertools
+import multiprocessing
+import threading
+from collections.abc import AsyncGenerator
+from contextlib import suppress
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any
+
+from restitution.live.figures import as_json
+from restitution.live.worker import Request, serve
+
+_PATIENCE = 1.5  # s that a request may take to stop
+_LOST = as_json(
+    {
+        "error": "the process that computes has ended unexpectedly (the system may have been short "
+        "of memory); it is started anew with the next change",
+        "lost": True,
+    }
+)
+_Lines = asyncio.Queue[str | None]
+
+
+class Process:
+    """One worker process: `ask` sends a request, and yields the lines of its answer."""
+
+    def __init__(self, scans: Path, room: Path) -> None:
+        self._folders = scans, room
+        self._numbers = itertools.count(1)
+        self._running: _Running | None = None
+
+    async def ask(self, tab: str, kind: str, **values: Any) -> AsyncGenerator[str]:
+        """The lines of JSON that answer a request. A request that is left alone is given up."""
+        running = self._started()
+        number, lines = next(self._numbers), _Lines()
+        running.waiting[number] = lines
+        try:
+            running.send(Request(number, tab, kind, values))
+            while (line := await lines.get()) is not None:
+                yield line
+            number = 0
+        finally:
+            if number:
+                running.give_up(number, lines)
+
+    def stop(self) -> None:
+        """End the process."""
+        if self._running is not None:
+            self._running.end()
+
+    @property
+    def pid(self) -> int | None:
+        """The number of the process in the system; None before the first request."""
+        return None if self._running is None else self._running.process.pid
+
+    def _started(self) -> _Running:
+        if self._running is None or not self._running.process.is_alive():
+            self._running = _Running(*self._folders)
+        return self._running
+
+
+class _Running:
+    """A process that is alive, and the requests that wait for it."""
+
+    def __init__(self, scans: Path, room: Path) -> None:
+        context = multiprocessing.get_context("spawn")
+        self._connection, theirs = context.Pipe()
+        self.process = context.Process(target=serve, args=(theirs, scans, room), daemon=True)
+        self.process.start()
+        theirs.close()  # so that the end of the process closes the connection
+        self.waiting: dict[int, _Lines] = {}
+        self._loop = asyncio.get_running_loop()
+        threading.Thread(target=self._receive, args=(self._connection,), daemon=True).start()
+
+    def send(self, message: Request | int) -> None:
+        with suppress(OSError):  # the process has ended: the thread that receives tells
+            self._connection.send(message)
+
+    def give_up(self, number: int, lines: _Lines) -> None:
+        """Tell the process that nobody waits for a request; end it if it does not stop."""
+        self.send(number)
+
+        async def watch() -> None:
+            with suppress(TimeoutError):
+                async with asyncio.timeout(_PATIENCE):
+                    while await lines.get() is not None:
+                        pass
+                return
+            self.end()
+
+        self._watching = self._loop.create_task(watch())
+
+    def end(self) -> None:
+        self.process.terminate()
+
+    def _receive(self, connection: Connection) -> None:
+        """Hand the answers to the requests that wait; at the end of the process tell them all."""
+        with suppress(EOFError, OSError, RuntimeError):  # RuntimeError: the loop is closed
+            while True:
+                number, line = connection.recv()
+                self._loop.call_soon_threadsafe(self._put, number, line)
+        with suppress(RuntimeError):
+            self._loop.call_soon_threadsafe(self._lose)
+
+    def _put(self, number: int, line: str | None) -> None:
+        if number in self.waiting:
+            self.waiting[number].put_nowait(line)
+            if line is None:
+                del self.waiting[number]
+
+    def _lose(self) -> None:
+        self.process.join(timeout=0)
+        for lines in self.waiting.values():
+            lines.put_nowait(_LOST)
+            lines.put_nowait(None)
+        self.waiting.clear()

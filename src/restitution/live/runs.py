@@ -1,0 +1,72 @@
+"""Whole runs for the page, in folders of their own: the same as `restitution run` writes."""
+
+from __future__ import annotations
+
+import hashlib
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from tempfile import mkdtemp
+from typing import Any
+
+from restitution.errors import RestitutionError
+from restitution.live.content import case_of
+from restitution.live.figures import as_json, curve_figures
+from restitution.results.reader import read_run
+from restitution.results.writer import ResultsFolder
+from restitution.runs.convergence import run_convergence
+from restitution.runs.ensemble import run_realisations
+
+_KEPT = 4  # results folders
+Check = Callable[[str], None]  # is told the progress; raises if the run is not wanted any more
+
+
+class Runs:
+    """The runs of the page: each case is computed once, into a folder inside `room`."""
+
+    def __init__(self, room: Path) -> None:
+        self._room = room
+        self._folders: dict[str, Path] = {}
+
+    def folder(self, text: str, folder: Path, check: Check, grids: int = 1) -> Path:
+        """The results folder of the case `text`, or of its convergence on several `grids`."""
+        key = hashlib.blake2b(f"{grids}\n{text}".encode()).hexdigest()
+        if key not in self._folders:
+            self._folders[key] = self._compute(text, folder, check, grids)
+            while len(self._folders) > _KEPT:
+                shutil.rmtree(self._folders.pop(next(iter(self._folders))), ignore_errors=True)
+        return self._folders[key]
+
+    def _compute(self, text: str, folder: Path, check: Check, grids: int) -> Path:
+        out = Path(mkdtemp(dir=self._room, prefix="results-"))
+        case = case_of(text)
+        try:
+            if grids == 1:
+                run_realisations(case, text, folder, ResultsFolder(out), check)
+            else:
+                run_convergence(case, text, folder, ResultsFolder(out), grids, check)
+        except RestitutionError:
+            if not (out / "results.nc").is_file():  # nothing was computed
+                shutil.rmtree(out, ignore_errors=True)
+                raise
+        except BaseException:
+            shutil.rmtree(out, ignore_errors=True)
+            raise
+        return out
+
+
+def results_line(out: Path) -> Iterator[str]:
+    """The figures, rows and warnings of the results in `out`, as a line of JSON."""
+    run = read_run(out)
+    summary: dict[str, Any] = run.summary
+    yield as_json(
+        {
+            "results": run.curve.rows,
+            "figures": curve_figures(run.dataset),
+            "warnings": summary["warnings"],
+            "failure": "" if summary["status"] == "complete" else summary["reason"],
+            "seconds": summary["seconds"],
+            "grids": summary.get("grids", []),
+            "includes": summary["diagnostics"].get("total_error_includes", ""),
+        }
+    )

@@ -1,0 +1,304 @@
+"""The server of the page: static files, and requests as JSON that only this page can make.
+
+A request is a POST with the token of the address and, from a browser, the Origin of this page. The
+Host must be this machine's, so that no other site can reach the server through a name of its own.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import hmac
+import json
+import secrets
+from collections.abc import AsyncGenerator, AsyncIterator, Awaitable, Callable
+from contextlib import asynccontextmanager
+from functools import cache
+from importlib.resources import files
+from typing import Any
+from urllib.parse import unquote
+
+from plotly.offline import get_plotlyjs
+from starlette.applications import Starlette
+from starlette.exceptions import HTTPException
+from starlette.requests import ClientDisconnect, Request
+from starlette.responses import FileResponse, JSONResponse, Response, StreamingResponse
+from starlette.routing import Route
+from starlette.types import ASGIApp, Receive, Scope, Send
+
+from restitution.errors import CaseError
+from restitution.live.content import content_of, text_of
+from restitution.live.form import form
+from restitution.live.process import Process
+from restitution.live.session import LARGEST_SCAN, Session
+
+_LARGEST_BODY = 2**22  # bytes of a JSON request
+_HEADERS = {
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "X-Frame-Options": "DENY",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cache-Control": "no-store",
+}
+_STATIC = {"app.js": "text/javascript", "app.css": "text/css"}
+Handler = Callable[[Request], Awaitable[Response]]
+
+
+class Server:
+    """The requests of the page, each of which a worker process answers.
+
+    Live curves, whole runs and finer runs have a process each, so that none waits for another.
+    """
+
+    def __init__(self, session: Session, port: int) -> None:
+        self._session, self._port = session, port
+        self._live, self._runs, self._finer = (
+            Process(session.scans, session.room) for _ in range(3)
+        )
+        self.app = Starlette(
+            routes=[
+                *(
+                    Route(f"/api/{name}", self._guarded(handler), methods=["POST"])
+                    for name, handler in self._handlers().items()
+                ),
+                Route("/", self._page),
+                Route("/{name}", self._static),
+            ],
+            lifespan=self._lifespan,
+        )
+
+    @property
+    def hosts(self) -> tuple[str, ...]:
+        """The values of Host that this machine's own browser sends."""
+        return tuple(f"{name}:{self._port}" for name in ("127.0.0.1", "localhost"))
+
+    @asynccontextmanager
+    async def _lifespan(self, _: Starlette) -> AsyncIterator[None]:
+        try:
+            yield
+        finally:
+            for process in (self._live, self._runs, self._finer):
+                process.stop()
+
+    def _handlers(self) -> dict[str, Handler]:
+        return {
+            "start": self._start,
+            "content": self._content,
+            "text": self._text,
+            "curve": self._curve,
+            "maps": self._maps,
+            "run": self._run,
+            "take": self._take,
+            "upload": self._upload,
+        }
+
+    def _guarded(self, handler: Handler) -> Handler:
+        """`handler` for requests with the token and the right kind of content."""
+
+        async def answer(request: Request) -> Response:
+            token = request.headers.get("x-token", "")
+            if not hmac.compare_digest(token.encode(), self._session.token.encode()):
+                raise HTTPException(403, "open the address that the terminal shows")
+            kind = request.headers.get("content-type", "").split(";")[0].strip().lower()
+            wanted = "application/octet-stream" if handler == self._upload else "application/json"
+            if kind != wanted:
+                raise HTTPException(415, f"the content must be {wanted}")
+            return await handler(request)
+
+        return answer
+
+    async def _page(self, _: Request) -> Response:
+        """The page, whose policy allows its own scripts and styles only."""
+        nonce = secrets.token_urlsafe(16)
+        policy = (
+            "default-src 'none'; script-src 'self'; connect-src 'self'; "
+            "img-src 'self' data: blob:; "
+            f"style-src 'self' 'nonce-{nonce}'; style-src-attr 'unsafe-inline'; form-action 'none'; base-uri 'none'; "
+            "frame-ancestors 'none'"
+        )
+        text = _file("page.html").replace("{{ nonce }}", nonce)
+        headers = {"Content-Security-Policy": policy}
+        return Response(text, media_type="text/html", headers=headers)
+
+    async def _static(self, request: Request) -> Response:
+        name = request.path_params["name"]
+        if name == "plotly.js":
+            return Response(_plotly(), media_type="text/javascript")
+        if name not in _STATIC:
+            raise HTTPException(404, "there is no such page")
+        return Response(_file(name), media_type=_STATIC[name])
+
+    async def _start(self, _: Request) -> Response:
+        return JSONResponse({"form": form(), "content": self._session.content})
+
+    async def _content(self, request: Request) -> Response:
+        """The tables of a case file that a reader has edited as text."""
+        values = await _values(request, {"text": str})
+        try:
+            return JSONResponse({"content": content_of(values["text"])})
+        except CaseError as error:
+            return JSONResponse({"error": str(error)})
+
+    async def _text(self, request: Request) -> Response:
+        """The case file of tables."""
+        values = await _values(request, {"content": dict})
+        return JSONResponse({"text": _text(values["content"])})
+
+    async def _curve(self, request: Request) -> Response:
+        values = await _values(request, {"tab": str, "content": dict, "shown": str})
+        text = _text(values["content"])
+        return _streamed(
+            request, self._live.ask(values["tab"], "curve", text=text, shown=values["shown"])
+        )
+
+    async def _maps(self, request: Request) -> Response:
+        values = await _values(request, {"tab": str, "depth": int})
+        return _streamed(request, self._live.ask(values["tab"], "maps", depth=values["depth"]))
+
+    async def _run(self, request: Request) -> Response:
+        values = await _values(request, {"tab": str, "content": dict, "grids": int})
+        text, grids = _text(values["content"]), values["grids"]
+        process = self._runs if grids == 1 else self._finer
+        return _streamed(request, process.ask(values["tab"], "run", text=text, grids=grids))
+
+    async def _take(self, request: Request) -> Response:
+        kinds = {"tab": str, "content": dict, "what": str, "code": str, "velocity": str}
+        values = await _values(request, {**kinds, "grids": int})
+        text = _text(values.pop("content"))
+        process = self._runs if values["grids"] == 1 else self._finer
+        error = "there is no file"
+        async for line in process.ask(values.pop("tab"), "take", text=text, **values):
+            found = json.loads(line)
+            if "file" in found:
+                file = self._session.room / found["file"]
+                return FileResponse(file, filename=file.name)
+            problems = found.get("problems", {})
+            error = found.get("error") or next(
+                (f"{key}: {words}" for key, words in problems.items()), error
+            )
+        return JSONResponse({"error": error})
+
+    async def _upload(self, request: Request) -> Response:
+        """Keep a scan that was dropped, if the readers of scans can read it."""
+        name = self._session.free_name(unquote(request.headers.get("x-file-name", "")))
+        file = self._session.scans / name
+        try:
+            await _store(request, file)
+        except BaseException:
+            file.unlink(missing_ok=True)
+            raise
+        tab = request.headers.get("x-tab", "")
+        found: dict[str, Any] = {}
+        async for line in self._live.ask(tab, "read", file=name):
+            found.update(json.loads(line))
+        if "nodes" not in found and not found.get("needs_size"):
+            file.unlink(missing_ok=True)
+        return JSONResponse({"name": name, **found})
+
+
+class OwnHostOnly:
+    """Refuse requests that another site, or a page of another site, makes."""
+
+    def __init__(self, app: ASGIApp, hosts: tuple[str, ...]) -> None:
+        self._app, self._hosts = app, hosts
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass on a request for this machine, from its own page or from no page."""
+        if scope["type"] == "http" and (why := self._refused(dict(scope["headers"]))):
+            await JSONResponse({"error": why}, 403, headers=_HEADERS)(scope, receive, send)
+            return
+
+        async def with_headers(message: Any) -> None:
+            if message["type"] == "http.response.start":
+                own = [(k.lower().encode(), v.encode()) for k, v in _HEADERS.items()]
+                message["headers"] = [*message["headers"], *own]
+            await send(message)
+
+        await self._app(scope, receive, with_headers)
+
+    def _refused(self, headers: dict[bytes, bytes]) -> str:
+        host, origin = (headers.get(name, b"").decode("latin-1") for name in (b"host", b"origin"))
+        if host not in self._hosts:
+            return "this server answers to this machine only"
+        if origin and origin not in [f"http://{each}" for each in self._hosts]:
+            return "this server answers to its own page only"
+        return ""
+
+
+def _streamed(request: Request, lines: AsyncGenerator[str]) -> Response:
+    """Lines of JSON, each sent as soon as it is there, until the page goes away."""
+
+    async def body() -> AsyncIterator[str]:
+        gone = asyncio.ensure_future(_gone(request))
+        try:
+            while True:
+                line = asyncio.ensure_future(anext(lines, None))
+                await asyncio.wait({line, gone}, return_when=asyncio.FIRST_COMPLETED)
+                if not line.done():
+                    line.cancel()  # which gives the request up
+                    return
+                if (text := line.result()) is None:
+                    return
+                yield text + "\n"
+        finally:
+            gone.cancel()
+
+    return StreamingResponse(body(), media_type="application/x-ndjson")
+
+
+async def _gone(request: Request) -> None:
+    """Return when the page has closed the connection."""
+    while (await request.receive())["type"] != "http.disconnect":
+        pass
+
+
+async def _values(request: Request, kinds: dict[str, type]) -> dict[str, Any]:
+    """The values of a JSON request. Raises `HTTPException` if one lacks or has another type."""
+    body = b""
+    async for part in request.stream():
+        body += part
+        if len(body) > _LARGEST_BODY:
+            raise HTTPException(413, f"a request may have at most {_LARGEST_BODY} bytes")
+    try:
+        content = json.loads(body)
+    except (ValueError, RecursionError):
+        raise HTTPException(400, "the content is not JSON") from None
+    if not isinstance(content, dict) or set(content) != set(kinds):
+        raise HTTPException(400, f"the content must be an object with {', '.join(kinds)}")
+    for name, kind in kinds.items():
+        if type(content[name]) is not kind:
+            raise HTTPException(400, f"{name} must be a {kind.__name__}")
+    return content
+
+
+def _text(content: dict[str, Any]) -> str:
+    try:
+        return text_of(content)
+    except (CaseError, RecursionError) as error:
+        raise HTTPException(400, str(error)) from None
+
+
+async def _store(request: Request, file: Any) -> None:
+    """Write the body of `request` to `file`. Raises `HTTPException` if it is too large."""
+    size = 0
+    try:
+        with file.open("xb") as out:
+            async for part in request.stream():
+                size += len(part)
+                if size > LARGEST_SCAN:
+                    raise HTTPException(
+                        413, f"a scan may have at most {LARGEST_SCAN >> 20} MiB here; crop it"
+                    )
+                await asyncio.to_thread(out.write, part)
+    except ClientDisconnect:
+        raise HTTPException(400, "the file did not arrive whole") from None
+
+
+@cache
+def _file(name: str) -> str:
+    return (files("restitution.live") / "static" / name).read_text("utf-8")
+
+
+@cache
+def _plotly() -> str:
+    return str(get_plotlyjs())

@@ -1,0 +1,52 @@
+"""Serve the page on this machine until Ctrl-C."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Callable
+from typing import Any
+
+import uvicorn
+
+from restitution.errors import CaseError
+from restitution.live.server import OwnHostOnly, Server
+from restitution.live.session import Session
+
+
+class _Uvicorn(uvicorn.Server):
+    """A server that tells when it accepts requests."""
+
+    def __init__(self, config: uvicorn.Config, ready: Callable[[], None]) -> None:
+        super().__init__(config)
+        self._ready = ready
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Start, and tell."""
+        await super().startup(sockets)
+        self._ready()
+
+
+def serve_page(session: Session, port: int, ready: Callable[[str], Any]) -> None:
+    """Serve the page of `session` at `port` (0: a free one) of this machine until Ctrl-C.
+
+    `ready` is called with the address, which holds the token, as soon as the page can be opened.
+    Raises `CaseError` if the port is taken.
+    """
+    listening = socket.socket()
+    listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        listening.bind(("127.0.0.1", port))
+    except OSError as error:
+        listening.close()
+        raise CaseError(f"--port: {port} cannot be used ({error.strerror}); give another") from None
+    with listening:
+        port = listening.getsockname()[1]
+        server = Server(session, port)
+        config = uvicorn.Config(
+            OwnHostOnly(server.app, server.hosts),
+            log_level="error",
+            server_header=False,
+            timeout_graceful_shutdown=1,
+        )
+        address = f"http://127.0.0.1:{port}/#{session.token}"
+        _Uvicorn(config, lambda: ready(address)).run(sockets=[listening])

@@ -1,0 +1,73 @@
+"""The temporary folder of one page: the scans that were dropped, and the results."""
+
+from __future__ import annotations
+
+import re
+import secrets
+import shutil
+from pathlib import Path
+from tempfile import mkdtemp
+
+from restitution.case.case_file import read_text
+from restitution.errors import CaseError
+from restitution.live.content import Content, content_of, scans_of
+
+LARGEST_SCAN = 2**28  # bytes
+_ODD = re.compile(r"[^\w.()+-]+")  # characters of a file name that are replaced
+
+
+class Session:
+    """The folders, the token and the first case of a page.
+
+    Everything is removed by `close`.
+    """
+
+    def __init__(self, content: Content, folder: Path | None = None) -> None:
+        """Make the folders. Scans that `content` reads from `folder` are linked into them."""
+        self.token = secrets.token_urlsafe(24)
+        self.room = Path(mkdtemp(prefix="restitution-app-"))
+        self.scans = self.room / "scans"
+        self.scans.mkdir()
+        self.content = content
+        if folder is not None:
+            _bring_scans(content, folder, self.scans)
+
+    def free_name(self, wanted: str) -> str:
+        """A name for a file in `scans`: that of the reader's file without folders and odd signs."""
+        name = _ODD.sub("_", wanted.replace("\\", "/").rsplit("/", 1)[-1]).lstrip(".")[-80:]
+        stem, dot, kind = (name or "scan").partition(".")
+        numbers = ("", *(f"-{k}" for k in range(2, 1000)))
+        free = (f"{stem}{k}{dot}{kind}" for k in numbers)
+        return next(each for each in free if not (self.scans / each).exists())
+
+    def close(self) -> None:
+        """Remove the folders with everything in them."""
+        shutil.rmtree(self.room, ignore_errors=True)
+
+
+def first_content(case: Path | None) -> Content:
+    """The tables of the file `case`, or of a first case of the program's own."""
+    if case is None:
+        from importlib.resources import files
+
+        text = (files("restitution.live") / "first.toml").read_text("utf-8")
+    else:
+        text = read_text(case)
+    try:
+        return content_of(text)
+    except CaseError as error:
+        raise CaseError(f"{case}: {error}") from None
+
+
+def _bring_scans(content: Content, folder: Path, scans: Path) -> None:
+    """Link the scans of `content` into `scans`, and name them by their names alone."""
+    for name in scans_of(content):
+        source = (folder / name).resolve()
+        if not source.is_file():
+            raise CaseError(f"roughness.file: {folder / name} is not a file; name a scan")
+        link = scans / source.name
+        if not link.exists():
+            link.symlink_to(source)
+    for table in content.get("roughness", []):
+        if isinstance(table, dict) and "file" in table:
+            table["file"] = (folder / table["file"]).resolve().name

@@ -1,0 +1,677 @@
+"use strict";
+// The page of `restitution app`. The case is a tree of tables, as in a case file; fields of the form
+// show its keys. Each change asks for a new curve; when the values rest, for the whole run.
+
+const token = location.hash.slice(1);
+const tab = crypto.randomUUID();
+const $ = (id) => document.getElementById(id);
+const REST = 600; // ms without a change before the whole run is computed
+const DASHES = ["dash", "dot", "dashdot", "longdash", "solid"];
+const PIN_COLOURS = ["#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
+const CODES = ["lammps", "liggghts", "yade", "mercurydpm", "edem", "mujoco", "drake", "csv"];
+// Units that a slider writes, smallest first.
+const SLIDER_UNITS = {
+  "m": ["pm", "nm", "um", "mm", "m"], "Pa": ["Pa", "kPa", "MPa", "GPa"], "kg/m^3": ["kg/m^3"],
+  "N": ["nN", "uN", "mN", "N"], "J/m^2": ["mJ/m^2", "J/m^2"], "m/s": ["um/s", "mm/s", "m/s"],
+};
+
+let form = null;
+let content = {};
+let curve = { rows: [], figures: {}, errors: false };
+let cursor = null; // number of the depth under the cursor; null: the deepest
+let pins = [];
+let surfaceKey = "";
+let finerContent = null;
+
+// ---- requests ---------------------------------------------------------------------------------
+
+async function post(name, values, signal) {
+  const response = await fetch(`api/${name}`, {
+    method: "POST", signal, body: JSON.stringify(values),
+    headers: { "Content-Type": "application/json", "X-Token": token },
+  });
+  if (!response.ok) throw new Error((await response.text()) || `request refused (${response.status})`);
+  return response;
+}
+
+async function stream(name, values, signal, each) {
+  const response = await post(name, values, signal);
+  const reader = response.body.pipeThrough(new TextDecoderStream()).getReader();
+  for (let rest = ""; ;) {
+    const { value, done } = await reader.read();
+    if (done) return;
+    const lines = (rest + value).split("\n");
+    rest = lines.pop();
+    for (const line of lines) each(JSON.parse(line));
+  }
+}
+
+function say(words) { $("status").textContent = words; }
+
+// ---- the tree of tables -----------------------------------------------------------------------
+
+const TABLES = ["indentation", "impact", "load"];
+
+function table(name, make) {
+  if (name === "roughness") {
+    if (make && !(content.roughness || []).length) content.roughness = [{}];
+    return (content.roughness || [])[0];
+  }
+  if (make && content[name] === undefined) content[name] = {};
+  return content[name];
+}
+
+function get(key) {
+  if (key === "depths") return TABLES.find((name) => content[name] !== undefined) || "";
+  if (key === "second") return content.second === undefined ? "" : "own";
+  const [name, inner] = key.split(".");
+  const found = inner === undefined ? content[name] : (table(name) || {})[inner];
+  return found === undefined ? "" : found;
+}
+
+function set(key, value) {
+  if (key === "depths") {
+    for (const name of TABLES) if (name !== value) delete content[name];
+    table(value, true);
+  } else if (key === "second") {
+    if (value) table("second", true); else delete content.second;
+  } else if (key === "roughness.kind" && value === "") {
+    delete content.roughness;
+  } else {
+    const [name, inner] = key.split(".");
+    const of = inner === undefined ? content : table(name, value !== "");
+    if (of === undefined) return;
+    if (value === "") delete of[inner === undefined ? name : inner];
+    else of[inner === undefined ? name : inner] = value;
+    if (inner !== undefined && !Object.keys(of).length && name !== "first") delete content[name];
+  }
+}
+
+const fields = () => form.groups.flatMap((group) => group.fields);
+const shown = (field) => !field.when.length || field.when.slice(1).includes(get(field.when[0]));
+
+// After a choice: keys of fields that vanish are left out, and those that appear get their first value.
+function settle(before) {
+  const now = new Set(fields().filter(shown).map((field) => field.key));
+  for (const field of before) if (!now.has(field.key) && !TABLES.includes(field.key.split(".")[0])) set(field.key, "");
+  const old = new Set(before.map((field) => field.key));
+  const listed = ["impact.velocity", "indentation.values", "load.values"].some((key) => get(key) !== "");
+  for (const field of fields().filter(shown)) {
+    const spans = TABLES.includes(field.key.split(".")[0]) && listed;
+    if (!old.has(field.key) && field.initial !== null && get(field.key) === "" && !spans) set(field.key, field.initial);
+  }
+}
+
+// ---- texts and values of fields ---------------------------------------------------------------
+
+function asText(value) { return Array.isArray(value) ? value.join(", ") : String(value); }
+
+function asValue(field, text) {
+  const trimmed = text.trim();
+  if (trimmed === "") return "";
+  const listed = /\.(values|velocity)$/.test(field.key);
+  if (trimmed.includes(",") || listed) return trimmed.split(",").map((part) => single(field, part.trim())).filter((part) => part !== "");
+  return single(field, trimmed);
+}
+
+function single(field, text) {
+  const isNumber = field.unit === "" && /^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$/i.test(text);
+  return isNumber && field.key !== "title" && field.key !== "roughness.file" ? Number(text) : text;
+}
+
+// The value that the library has for a key that is left out.
+function libraryValue(field) {
+  const [name, inner] = field.key.split(".");
+  const material = inner && form.library[get(`${name}.material`)];
+  return (material && material[inner]) || "";
+}
+
+// The value of a field in its SI unit, or null if it is no single number.
+function siValue(field) {
+  let value = get(field.key);
+  if (value === "") value = libraryValue(field);
+  if (field.unit === "" && value !== "" && !isNaN(value)) return Number(value);
+  if (typeof value === "number") return field.unit === "" ? value : null;
+  const match = /^\s*([-+]?[\d.]+(?:e[-+]?\d+)?)\s*(\S.*?)\s*$/i.exec(String(value));
+  const factor = match && (form.units[field.unit] || {})[match[2]];
+  return factor ? Number(match[1]) * factor : null;
+}
+
+function fromSlider(field, position) {
+  const share = position / 1000;
+  let value = field.low + share * (field.high - field.low);
+  if (field.logarithmic) value = field.low * (field.high / field.low) ** share;
+  if (field.whole) return field.key === "grid.nodes" ? Math.max(8, 8 * Math.round(value / 8)) : Math.round(value);
+  if (field.unit === "") return Number(value.toPrecision(3));
+  const units = SLIDER_UNITS[field.unit];
+  const unit = units.findLast((each) => value >= 0.9995 * form.units[field.unit][each]) || units[0];
+  return `${Number((value / form.units[field.unit][unit]).toPrecision(3))} ${unit}`;
+}
+
+function toSlider(field) {
+  const value = siValue(field);
+  if (value === null) return null;
+  const share = field.logarithmic ? Math.log(value / field.low) / Math.log(field.high / field.low) : (value - field.low) / (field.high - field.low);
+  return Math.round(1000 * Math.min(1, Math.max(0, share)));
+}
+
+// ---- the form ---------------------------------------------------------------------------------
+
+function element(name, attributes = {}, ...children) {
+  const made = document.createElement(name);
+  for (const [key, value] of Object.entries(attributes)) {
+    if (value === true) made.setAttribute(key, "");
+    else if (value !== null && value !== false) made.setAttribute(key, value);
+  }
+  made.append(...children);
+  return made;
+}
+
+const idOf = (field) => `field-${field.key.replace(".", "-")}`;
+
+function drawForm() {
+  const focused = document.activeElement && document.activeElement.id;
+  $("groups").replaceChildren(...form.groups.map(drawGroup).filter(Boolean));
+  if (focused && $(focused)) $(focused).focus();
+}
+
+function drawGroup(group) {
+  const visible = group.fields.filter(shown);
+  if (!visible.length) return null;
+  const parts = visible.map(drawField);
+  if (group.title === "Surface") parts.push(drawUpload());
+  if (!group.closed) return element("fieldset", {}, element("legend", {}, group.title), ...parts);
+  const inner = element("details", {}, element("summary", {}, group.title), ...parts);
+  return element("fieldset", {}, inner);
+}
+
+function drawField(field) {
+  const id = idOf(field);
+  const row = element("div", { class: field.choices.length ? "field wide" : "field", id: `${id}-row` }, element("label", { for: id }, field.label));
+  const box = field.choices.length ? drawChoice(field, id) : drawText(field, id);
+  row.append(box);
+  const described = [`${id}-problem`];
+  if (field.hint) described.push(`${id}-hint`);
+  box.setAttribute("aria-describedby", described.join(" "));
+  if (field.low !== null && !field.choices.length) row.append(drawSlider(field, id));
+  if (field.hint) row.append(element("p", { class: "hint", id: `${id}-hint` }, field.hint));
+  row.append(element("p", { class: "problem", id: `${id}-problem`, role: "alert", hidden: true }));
+  return row;
+}
+
+function drawChoice(field, id) {
+  const options = field.choices.map(([value, label]) => element("option", { value }, label));
+  const select = element("select", { id }, ...options);
+  select.value = String(get(field.key));
+  if (select.selectedIndex < 0) { // a value that the form does not know, which stays in the case
+    select.append(element("option", { value: asText(get(field.key)) }, asText(get(field.key))));
+    select.value = asText(get(field.key));
+  }
+  select.addEventListener("change", () => {
+    const before = fields().filter(shown);
+    set(field.key, select.value);
+    settle(before);
+    drawForm();
+    changed();
+  });
+  return select;
+}
+
+function drawText(field, id) {
+  const input = element("input", { id, type: "text", spellcheck: "false" });
+  input.value = asText(get(field.key));
+  input.placeholder = libraryValue(field);
+  input.addEventListener("input", () => {
+    set(field.key, asValue(field, input.value));
+    const slider = $(`${id}-slider`);
+    if (slider) placeSlider(field, slider);
+    changed();
+  });
+  return input;
+}
+
+function drawSlider(field, id) {
+  const slider = element("input", { id: `${id}-slider`, type: "range", min: 0, max: 1000, step: 1, "aria-label": `${field.label}, slider` });
+  placeSlider(field, slider);
+  slider.addEventListener("input", () => {
+    const value = fromSlider(field, Number(slider.value));
+    set(field.key, value);
+    $(id).value = asText(value);
+    slider.setAttribute("aria-valuetext", asText(value));
+    changed();
+  });
+  return slider;
+}
+
+function placeSlider(field, slider) {
+  const position = toSlider(field);
+  slider.value = position === null ? 500 : position;
+  slider.setAttribute("aria-valuetext", asText(get(field.key)) || libraryValue(field) || "left out");
+}
+
+function showProblems(problems) {
+  for (const box of document.querySelectorAll("#groups .problem")) box.hidden = true;
+  for (const box of document.querySelectorAll("#groups [aria-invalid]")) box.removeAttribute("aria-invalid");
+  const rest = [];
+  for (const [key, words] of Object.entries(problems)) {
+    const field = fields().find((each) => each.key === key && shown(each));
+    const box = field && $(`${idOf(field)}-problem`);
+    if (!box) { rest.push(key ? `${key}: ${words}` : words); continue; }
+    box.textContent = words;
+    box.hidden = false;
+    $(idOf(field)).setAttribute("aria-invalid", "true");
+    const closed = box.closest("details");
+    if (closed) closed.open = true;
+  }
+  $("general").textContent = rest.join("; ");
+  $("general").hidden = !rest.length;
+}
+
+// A message of the solver starts with the key that it is about, if there is one.
+function showError(message) {
+  const match = /^([a-z_]+(?:\.[a-z_]+)?): (.*)$/s.exec(message);
+  const known = match && fields().some((field) => field.key === match[1] && shown(field));
+  showProblems(known ? { [match[1]]: match[2] } : { "": message });
+}
+
+// ---- the curve while values change ------------------------------------------------------------
+
+let asking = null; // the request under way: { abort, since, drawn }
+let waiting = null; // timer of a change that waits for the request under way
+let last = 300; // ms that the last curve took
+let resting = null;
+let running = null;
+
+function changed() {
+  clearTimeout(resting);
+  if (running) running.abort();
+  if (waiting) return;
+  // A curve under way is drawn if it is quick; a slow one gives way to the newest values.
+  const patience = asking && !asking.drawn ? Math.min(2000, Math.max(500, 2 * last)) - (performance.now() - asking.since) : 0;
+  if (patience > 0) waiting = setTimeout(ask, patience);
+  else ask();
+}
+
+// Curves that belong to other values than those of the form are faint.
+function mark(stale) {
+  for (const id of ["cor", "force", "pressure", "plastic"]) $(id).classList.toggle("stale", stale);
+}
+
+async function ask() {
+  clearTimeout(waiting);
+  waiting = null;
+  if (asking) asking.abort.abort();
+  const mine = { abort: new AbortController(), since: performance.now(), drawn: false };
+  asking = mine;
+  say("computing…");
+  let failed = false;
+  const asked = structuredClone(content);
+  try {
+    await stream("curve", { tab, content: asked, shown: surfaceKey }, mine.abort.signal, (line) => {
+      if (asking !== mine) return;
+      if (line.problems) { failed = true; mark(true); showProblems(line.problems); say("not computed: correct the value that is marked"); }
+      else if (line.error) { failed = true; mark(true); showError(line.error); say(line.lost ? "stopped" : "not computed"); }
+      else if (line.curve) {
+        takeCurve(line, asked);
+        if (line.progress) { say(line.progress); return; }
+        mine.drawn = true;
+        last = performance.now() - mine.since;
+        record(mine.since, line.seconds);
+        if (waiting) ask();
+      } else if (line.surface_key) surfaceKey = line.surface_key;
+      else if (line.surface) drawSurface(line);
+      else if (line.figures) { curve.figures = line.figures; drawCurves(); }
+    });
+  } catch (error) {
+    if (error.name !== "AbortError") { failed = true; say(lostServer(error)); }
+  }
+  if (asking !== mine) return;
+  asking = null;
+  updateText();
+  if (!failed && mine.drawn && !waiting) resting = setTimeout(runWhole, Math.max(0, REST - (performance.now() - mine.since)));
+}
+
+// Times of the last curves, for the benchmark: until the answer has come, of the solve alone, until drawn.
+function record(since, solve) {
+  const drawn = performance.now();
+  document.dispatchEvent(new CustomEvent("curve", { detail: { since, drawn, solve: 1000 * solve } }));
+}
+
+function takeCurve(line, asked) {
+  showProblems(line.failure ? problemsOf(line.failure) : {});
+  curve = { rows: line.curve, figures: line.figures, errors: false, content: asked };
+  mark(false);
+  showWarnings(line.warnings);
+  drawCurves();
+  drawNumbers();
+  if (!line.progress) { say(`${line.curve.length} depths in ${line.seconds.toFixed(2)} s`); askMaps(); }
+}
+
+const problemsOf = (failure) => ({ "": `Some depths are missing. ${failure}` });
+
+async function runWhole() {
+  const mine = new AbortController();
+  running = mine;
+  const asked = structuredClone(content);
+  say("computing the errors…");
+  try {
+    await stream("run", { tab, content: asked, grids: 1 }, mine.signal, (line) => {
+      if (running !== mine || asking) return;
+      if (line.progress) say(`computing the errors: ${line.progress}`);
+      else if (line.problems) showProblems(line.problems);
+      else if (line.error) { showError(line.error); say("the errors are unknown"); }
+      else if (line.results) {
+        curve = { rows: line.results, figures: line.figures, errors: true, content: asked, includes: line.includes };
+        if (line.failure) showProblems(problemsOf(line.failure));
+        showWarnings(line.warnings);
+        drawCurves();
+        drawNumbers();
+        say(`complete in ${line.seconds.toFixed(1)} s${line.includes ? `; the total error includes ${line.includes}` : ""}`);
+      }
+    });
+  } catch (error) {
+    if (error.name !== "AbortError") say(lostServer(error));
+  }
+  if (running === mine) running = null;
+}
+
+const lostServer = (error) => (error instanceof TypeError ? "the program does not answer: start restitution app again" : error.message);
+
+// ---- drawing ----------------------------------------------------------------------------------
+
+const dark = matchMedia("(prefers-color-scheme: dark)");
+const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+const view = () => document.querySelector("input[name=view]:checked").value;
+
+function themed(layout) {
+  const ink = css("--ink"), line = css("--line");
+  layout.font = { ...layout.font, color: ink };
+  for (const axis of ["xaxis", "yaxis", "yaxis2"]) if (layout[axis]) Object.assign(layout[axis], { gridcolor: line, linecolor: line, zerolinecolor: line });
+  return layout;
+}
+
+function draw(id, spec, traces = [], shapes = []) {
+  if (!spec) { Plotly.purge($(id)); $(id).dataset.drawn = ""; return; }
+  const layout = themed(structuredClone(spec.layout));
+  layout.shapes = [...(layout.shapes || []), ...shapes];
+  $(id).dataset.drawn = "yes";
+  return Plotly.react($(id), [...spec.data, ...traces], layout, { responsive: true, displaylogo: false });
+}
+
+const depthNow = () => Math.min(cursor === null ? Infinity : cursor, curve.rows.length - 1);
+const KEYS = { velocity: "impact_velocity_m_per_s", indentation: "max_indentation_m" };
+
+function drawCurves() {
+  const what = view() === "velocity" && curve.figures.velocity ? "velocity" : "indentation";
+  const scale = what === "velocity" ? 1 : 1e6;
+  const at = curve.rows[depthNow()];
+  const line = (x) => ({ type: "line", yref: "paper", y0: 0, y1: 1, x0: x, x1: x, line: { color: css("--soft"), width: 1 } });
+  const shapes = at && at[KEYS[what]] > 0 ? [line(scale * at[KEYS[what]])] : [];
+  draw("cor", curve.figures[what], pins.map((pin) => pinTrace(pin, KEYS[what], scale, "restitution")), shapes);
+  draw("force", curve.figures.force, pins.map((pin) => pinTrace(pin, "max_indentation_m", 1e6, "force_N")), at ? [line(1e6 * at.max_indentation_m)] : []);
+  const cors = curve.rows.map((row) => row.restitution);
+  $("cor").setAttribute("aria-label", cors.length
+    ? `Coefficient of restitution from ${Math.min(...cors).toFixed(3)} to ${Math.max(...cors).toFixed(3)} against ${what === "velocity" ? "impact velocity" : "indentation"}; the numbers are in a table below`
+    : "Coefficient of restitution: nothing computed");
+  $("cursor").max = Math.max(0, curve.rows.length - 1);
+  $("cursor").value = depthNow();
+  showCursor();
+}
+
+function pinTrace(pin, key, scale, quantity) {
+  const rows = pin.rows.filter((row) => row[key] > 0);
+  return {
+    type: "scatter", mode: "lines", name: pin.name, x: rows.map((row) => scale * row[key]), y: rows.map((row) => row[quantity]),
+    line: { color: pin.colour, dash: pin.dash, width: 2 }, hovertemplate: `%{x:.4g}<br>%{y:.4g}<extra>${escaped(pin.name)}</extra>`,
+  };
+}
+
+const escaped = (text) => text.replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/>/g, "&gt;");
+const digits = (value, n = 4) => (value === null || value === undefined ? "–" : typeof value === "boolean" ? (value ? "yes" : "no") : Number(value.toPrecision(n)).toString());
+
+function showCursor() {
+  const row = curve.rows[depthNow()];
+  if (!row) { $("cursor-text").textContent = ""; return; }
+  const velocity = row.impact_velocity_m_per_s === null ? "" : `${digits(row.impact_velocity_m_per_s)} m/s, `;
+  const total = curve.errors && row.total_error !== null ? ` ± ${digits(row.total_error, 2)}` : "";
+  const words = `${velocity}${digits(1e9 * row.max_indentation_m)} nm, ${digits(row.force_N)} N: COR ${row.restitution.toFixed(4)}${total} (model ± ${digits(row.model_error, 2)})${row.resolved ? "" : ", not resolved"}`;
+  $("cursor-text").textContent = words;
+  $("cursor").setAttribute("aria-valuetext", words);
+}
+
+let mapping = false, mapAgain = false;
+
+async function askMaps() {
+  if (mapping) { mapAgain = true; return; }
+  mapping = true;
+  try {
+    await stream("maps", { tab, depth: Math.max(0, depthNow()) }, undefined, (line) => {
+      if (!line.pressure) return;
+      draw("pressure", line.pressure);
+      draw("plastic", line.plastic);
+      const yields = line.plastic ? `, plastic displacement up to ${digits(line.largest.plastic_nm)} nm` : ", no plastic displacement";
+      $("maps-text").textContent = `At an indentation of ${digits(1e9 * line.indentation_m)} nm: pressure up to ${digits(line.largest.pressure_MPa)} MPa${yields}`;
+    });
+  } catch (error) {
+    say(lostServer(error));
+  }
+  mapping = false;
+  if (mapAgain) { mapAgain = false; askMaps(); }
+}
+
+function drawSurface(line) {
+  draw("surface", line.surface);
+  fill("statistics", ["parameter", "value"], line.statistics);
+}
+
+function fill(id, names, rows) {
+  const head = element("thead", {}, element("tr", {}, ...names.map((name) => element("th", { scope: "col" }, name))));
+  const body = element("tbody", {}, ...rows.map((row) => element("tr", {}, ...row.map((cell) =>
+    cell instanceof Node ? element("td", {}, cell) : element("td", /^[-\d.e+]+$/.test(cell) ? { class: "number" } : {}, cell)))));
+  $(id).replaceChildren(head, body);
+}
+
+const SHOWN = { impact_velocity_m_per_s: "velocity (m/s)", max_indentation_m: "indentation (m)", force_N: "force (N)", restitution: "COR", restitution_error: "numerical error", total_error: "total error", model_error: "model error", resolved: "resolved" };
+
+function drawNumbers() {
+  const keys = Object.keys(SHOWN);
+  fill("numbers", Object.values(SHOWN), curve.rows.map((row) => keys.map((key) => digits(row[key], key.endsWith("error") ? 2 : 6))));
+}
+
+function showWarnings(warnings) {
+  $("warnings").replaceChildren(...warnings.map((words) => element("p", { class: "warning", role: "note" }, words)));
+}
+
+// ---- pins -------------------------------------------------------------------------------------
+
+function pin() {
+  if (!curve.rows.length || !curve.content) return;
+  const number = pins.length ? Math.max(...pins.map((each) => each.number)) + 1 : 1;
+  const before = pins.length ? pins[pins.length - 1].content : null;
+  pins.push({
+    number, name: `pin ${number}`, rows: curve.rows, content: structuredClone(curve.content),
+    words: before ? differences(before, curve.content) : "the first one",
+    colour: PIN_COLOURS[(number - 1) % PIN_COLOURS.length], dash: DASHES[(number - 1) % DASHES.length],
+  });
+  drawPins();
+  drawCurves();
+}
+
+function flat(tables) {
+  const found = {};
+  for (const [name, value] of Object.entries(tables)) {
+    const inner = name === "roughness" ? (value[0] || {}) : value;
+    if (inner !== null && typeof inner === "object" && !Array.isArray(inner)) for (const [key, each] of Object.entries(inner)) found[`${name}.${key}`] = asText(each);
+    else found[name] = asText(inner);
+  }
+  return found;
+}
+
+function differences(before, after) {
+  const a = flat(before), b = flat(after);
+  const keys = [...new Set([...Object.keys(a), ...Object.keys(b)])].filter((key) => a[key] !== b[key]);
+  return keys.map((key) => `${key} = ${b[key] === undefined ? "left out" : b[key]}`).join(", ") || "the same case";
+}
+
+function drawPins() {
+  $("no-pins").hidden = pins.length > 0;
+  if (!pins.length) { $("pins").replaceChildren(); return; }
+  fill("pins", ["curve", "what differs from the pin before", "COR, first to last", ""], pins.map((each) => {
+    const swatch = element("span", { class: "swatch" });
+    swatch.style.background = each.colour;
+    const back = element("button", { type: "button" }, "Go back to it");
+    back.addEventListener("click", () => { content = structuredClone(each.content); drawForm(); changed(); });
+    const remove = element("button", { type: "button", "aria-label": `Remove ${each.name}` }, "Remove");
+    remove.addEventListener("click", () => { pins = pins.filter((other) => other !== each); drawPins(); drawCurves(); });
+    const first = each.rows[0].restitution, end = each.rows[each.rows.length - 1].restitution;
+    return [element("span", {}, swatch, each.name), each.words, `${first.toFixed(4)} to ${end.toFixed(4)}`, element("span", {}, back, " ", remove)];
+  }));
+}
+
+// ---- scans ------------------------------------------------------------------------------------
+
+function drawUpload() {
+  const input = element("input", { type: "file", id: "scan", "aria-label": "Scan from a file" });
+  input.addEventListener("change", () => { if (input.files[0]) upload(input.files[0]); });
+  return element("div", { class: "field wide" }, element("label", { for: "scan" }, "Read a scan, or drop it onto the page"), input);
+}
+
+async function upload(file) {
+  say(`reading ${file.name}…`);
+  let found;
+  try {
+    const response = await fetch("api/upload", {
+      method: "POST", body: file,
+      headers: { "Content-Type": "application/octet-stream", "X-Token": token, "X-Tab": tab, "X-File-Name": encodeURIComponent(file.name) },
+    });
+    if (!response.ok) throw new Error(await response.text());
+    found = await response.json();
+  } catch (error) {
+    showProblems({ "roughness.file": error.message, "": get("roughness.kind") === "measured" ? "" : error.message });
+    say("the scan was not read");
+    return;
+  }
+  if (found.error) { showProblems({ "": `${file.name}: ${found.error}` }); say("the scan was not read"); return; }
+  const before = fields().filter(shown);
+  const seeds = { ...(table("roughness") || {}) };
+  content.roughness = [{ kind: "measured", file: found.name }];
+  if (seeds.detrend) content.roughness[0].detrend = seeds.detrend;
+  settle(before);
+  if (found.nodes && found.nodes[0] * found.nodes[1] <= 1.1e6) delete content.grid; // its own pixels
+  else if (found.nodes) content.grid = { nodes: 512, spacing: `${Number((1e9 * Math.max(...found.spacing_m)).toPrecision(4))} nm` };
+  drawForm();
+  if (found.needs_size) showProblems({ "roughness.size": `${found.needs_size}; give its edge lengths, such as 10 um, 10 um` });
+  changed();
+}
+
+// ---- the case as a file, finer runs, files to take away ---------------------------------------
+
+async function updateText() {
+  if (!$("case-file").open || document.activeElement === $("case-text")) return;
+  try {
+    $("case-text").value = (await (await post("text", { content })).json()).text;
+  } catch (error) { $("text-problem").textContent = error.message; }
+}
+
+async function useText() {
+  const found = await (await post("content", { text: $("case-text").value })).json();
+  $("text-problem").hidden = !found.error;
+  $("text-problem").textContent = found.error || "";
+  if (found.error) return;
+  content = found.content;
+  drawForm();
+  changed();
+}
+
+let finer = null;
+
+async function runFiner() {
+  if (finer) return;
+  const mine = new AbortController();
+  finer = mine;
+  $("cancel").hidden = false;
+  $("finer").disabled = true;
+  const tell = (words) => { $("finer-status").textContent = words; };
+  tell("starting…");
+  const asked = { tab, content: structuredClone(content), grids: Number($("grids").value) };
+  try {
+    await stream("run", asked, mine.signal, (line) => {
+      if (line.progress) tell(line.progress);
+      else if (line.replaced) tell("cancelled");
+      else if (line.error) tell(line.error);
+      else if (line.problems) tell(Object.entries(line.problems).map(([key, words]) => `${key}: ${words}`).join("; "));
+      else if (line.results) {
+        finerContent = asked;
+        finerFigures = line.figures;
+        $("finer-cor").hidden = false;
+        drawFiner();
+        const worst = Math.max(...line.results.map((row) => row.discretisation_error || 0));
+        tell(`complete in ${line.seconds.toFixed(1)} s on grids refined ${line.grids.join(", ")} times; discretisation error of COR at most ${digits(worst, 2)}${line.failure ? `; ${line.failure}` : ""}`);
+        $("take-of").options[1].disabled = false;
+      }
+    });
+  } catch (error) {
+    tell(error.name === "AbortError" ? "cancelled" : lostServer(error));
+  }
+  finer = null;
+  $("cancel").hidden = true;
+  $("finer").disabled = false;
+}
+
+let finerFigures = null;
+function drawFiner() { if (finerFigures) draw("finer-cor", finerFigures.velocity || finerFigures.indentation); }
+
+async function take(what) {
+  const of = $("take-of").value === "finer" && finerContent ? finerContent : { content, grids: 1 };
+  const values = { tab, content: of.content, grids: of.grids, what, code: $("code").value, velocity: what === "export" ? $("code-velocity").value : "" };
+  $("take-status").textContent = "preparing the file…";
+  try {
+    const response = await post("take", values);
+    const named = /filename="?([^";]+)/.exec(response.headers.get("Content-Disposition") || "");
+    if (!named) { $("take-status").textContent = (await response.json()).error; return; }
+    const link = element("a", { href: URL.createObjectURL(await response.blob()), download: named[1] });
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+    $("take-status").textContent = `${named[1]} is among your downloads`;
+  } catch (error) {
+    $("take-status").textContent = lostServer(error);
+  }
+}
+
+// ---- start ------------------------------------------------------------------------------------
+
+function listen() {
+  for (const radio of document.querySelectorAll("input[name=view]")) radio.addEventListener("change", drawCurves);
+  $("cursor").addEventListener("input", () => { cursor = Number($("cursor").value); drawCurves(); askMaps(); });
+  $("pin").addEventListener("click", pin);
+  $("form").addEventListener("submit", (event) => event.preventDefault());
+  $("case-file").addEventListener("toggle", updateText);
+  $("use-text").addEventListener("click", useText);
+  $("finer").addEventListener("click", runFiner);
+  $("cancel").addEventListener("click", () => finer && finer.abort());
+  for (const button of document.querySelectorAll("[data-take]")) button.addEventListener("click", () => take(button.dataset.take));
+  $("code").append(...CODES.map((code) => element("option", {}, code)));
+  const holdsFile = (event) => [...event.dataTransfer.types].includes("Files");
+  document.addEventListener("dragover", (event) => { if (holdsFile(event)) { event.preventDefault(); $("drop").hidden = false; } });
+  document.addEventListener("dragleave", (event) => { if (!event.relatedTarget) $("drop").hidden = true; });
+  document.addEventListener("drop", (event) => {
+    event.preventDefault();
+    $("drop").hidden = true;
+    if (event.dataTransfer.files[0]) upload(event.dataTransfer.files[0]);
+  });
+  dark.addEventListener("change", () => { drawCurves(); askMaps(); drawFiner(); surfaceKey = ""; changed(); });
+}
+
+async function start() {
+  if (!token) { say("open the address that the terminal shows: it ends with a key"); return; }
+  try {
+    const found = await (await post("start", {})).json();
+    form = found.form;
+    content = found.content;
+  } catch (error) { say(lostServer(error)); return; }
+  listen();
+  drawForm();
+  changed();
+}
+
+start();

@@ -1,0 +1,115 @@
+"""Files that a reader takes from the page: case, figures, results, law, DEM export, report."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from zipfile import ZIP_DEFLATED, ZipFile
+
+from restitution.api import export, law_of
+from restitution.errors import CaseError
+from restitution.laws.law_files import write_law
+from restitution.live.content import content_of, scans_of
+from restitution.pages.report import write_report
+from restitution.plots.law import law_figure
+from restitution.plots.run import run_figures
+from restitution.plots.static import Format, write_figure, write_figures
+from restitution.results.reader import read_run
+
+FIGURE_FORMATS: tuple[Format, ...] = ("svg", "png", "pdf")
+CASE_FILE = "case.toml"
+
+
+def case_file(text: str, scans: Path, out: Path) -> Path:
+    """The case file, in a zip archive with its scans if it has any; written into `out`."""
+    names = scans_of(content_of(text))
+    if not names:
+        (out / CASE_FILE).write_text(text, encoding="utf-8")
+        return out / CASE_FILE
+    archive = out / "case.zip"
+    with ZipFile(archive, "w", ZIP_DEFLATED) as into:
+        into.writestr(CASE_FILE, text)
+        for name in dict.fromkeys(names):
+            into.write(scans / name, name)
+    return archive
+
+
+def figure_files(results: Path, out: Path) -> Path:
+    """Every figure in all formats, and the numbers as CSV, in a zip archive."""
+
+    def fill(folder: Path) -> None:
+        run = read_run(results)
+        for kind in FIGURE_FORMATS:
+            write_figures(folder, run_figures(run.dataset), kind)
+        for table in results.glob("*.csv"):
+            shutil.copy(table, folder)
+
+    return _zipped(out / "figures.zip", fill)
+
+
+def results_files(results: Path, out: Path) -> Path:
+    """The whole results folder in a zip archive."""
+    return _zipped(out / "results.zip", lambda to: _copy(results, to))
+
+
+def law_files(results: Path, out: Path) -> Path:
+    """The restitution law with its fits and figure, in a zip archive."""
+
+    def fill(folder: Path) -> None:
+        law = law_of(results)
+        write_law(law, folder / "law")
+        write_figure(folder / "law" / "law", law_figure(law), "svg")
+
+    return _zipped(out / "law.zip", fill)
+
+
+def export_files(results: Path, out: Path, code: str, velocity: str) -> Path:
+    """The input of a DEM code at an impact velocity, in a zip archive."""
+
+    def fill(folder: Path) -> None:
+        export(results, to=code, out=folder / "export", velocity=velocity or None)
+
+    return _zipped(out / f"{code}.zip", fill)
+
+
+def report_page(results: Path, out: Path) -> Path:
+    """The report page, `report.html`."""
+    shutil.copy(write_report(results), out / "report.html")
+    return out / "report.html"
+
+
+OF_RESULTS: dict[str, Callable[[Path, Path], Path]] = {
+    "figures": figure_files,
+    "results": results_files,
+    "law": law_files,
+    "report": report_page,
+}
+
+
+def take(what: str, results: Path, out: Path, code: str, velocity: str) -> Path:
+    """Write what the reader asked for, from a results folder, into `out`; return the file.
+
+    Raises `CaseError` if there is no such thing to take.
+    """
+    if what == "export":
+        return export_files(results, out, code, velocity)
+    if what not in OF_RESULTS:
+        raise CaseError(f'"{what}" is not one of case, export, {", ".join(OF_RESULTS)}')
+    return OF_RESULTS[what](results, out)
+
+
+def _zipped(archive: Path, fill: Callable[[Path], None]) -> Path:
+    """An archive of the files that `fill` writes into a folder."""
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        fill(folder)
+        with ZipFile(archive, "w", ZIP_DEFLATED) as into:
+            for file in sorted(path for path in folder.rglob("*") if path.is_file()):
+                into.write(file, file.relative_to(folder).as_posix())
+    return archive
+
+
+def _copy(results: Path, folder: Path) -> None:
+    shutil.copytree(results, folder, dirs_exist_ok=True, ignore=shutil.ignore_patterns(".*"))

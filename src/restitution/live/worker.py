@@ -1,0 +1,201 @@
+"""The process that computes for the page: it answers one request after the other.
+
+A request is a `Request`; an answer is a series of lines of JSON, then None. Requests of the same
+kind from the same tab of the browser replace each other: the newest wins, and the one that is being
+computed stops at its next depth.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass, field
+from multiprocessing.connection import Connection
+from pathlib import Path
+from tempfile import mkdtemp
+from typing import Any
+
+from restitution.errors import RestitutionError, one_line
+from restitution.live.content import problems_in
+from restitution.live.curve import LiveCurves
+from restitution.live.figures import as_json
+from restitution.live.runs import Runs, results_line
+
+REPLACED = as_json({"replaced": True})
+
+
+@dataclass(frozen=True)
+class Request:
+    """A request of one tab: its number, its kind (a method of `Worker`), and its values."""
+
+    number: int
+    tab: str
+    kind: str
+    values: dict[str, Any] = field(default_factory=dict)
+
+
+class NotWanted(KeyboardInterrupt):
+    """A newer request has replaced this one, or the page has gone away."""
+
+
+class Wire:
+    """The connection to the parent, for answers from several threads."""
+
+    def __init__(self, connection: Connection) -> None:
+        self._connection, self._lock = connection, threading.Lock()
+
+    def send(self, number: int, line: str | None) -> None:
+        """Send a line of the answer to request `number`, or None at its end."""
+        with self._lock:
+            self._connection.send((number, line))
+
+    def receive(self) -> Any:
+        """The next message of the parent."""
+        return self._connection.recv()
+
+
+class Inbox:
+    """The requests that wait, of which a newer one replaces an older one of its tab and kind."""
+
+    def __init__(self, wire: Wire) -> None:
+        self._wire = wire
+        self._waiting: dict[tuple[str, str], Request] = {}
+        self._now: Request | None = None
+        self._given_up: set[int] = set()
+        self._changed = threading.Condition()
+        threading.Thread(target=self._listen, daemon=True).start()
+
+    def next(self) -> Request:
+        """The request that has waited longest."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._waiting)
+            key = next(iter(self._waiting))
+            self._now = self._waiting.pop(key)
+            return self._now
+
+    def check(self) -> None:
+        """Raise `NotWanted` if the request that was returned last is not wanted any more."""
+        with self._changed:
+            now = self._now
+            assert now is not None
+            if now.number in self._given_up or (now.tab, now.kind) in self._waiting:
+                raise NotWanted
+
+    def _listen(self) -> None:
+        """Receive requests, and numbers of those that are given up, until the parent is gone."""
+        while True:
+            try:
+                message = self._wire.receive()
+            except (EOFError, OSError):
+                os._exit(0)  # nobody waits for the solve that may be under way
+            with self._changed:
+                if isinstance(message, Request):
+                    replaced = self._waiting.pop((message.tab, message.kind), None)
+                    if replaced is not None:
+                        self._wire.send(replaced.number, REPLACED)
+                        self._wire.send(replaced.number, None)
+                    self._waiting[message.tab, message.kind] = message
+                else:
+                    self._given_up.add(message)
+                self._changed.notify_all()
+
+
+class Worker:
+    """What a request can ask for. Scans lie in `scans`, and files are written into `room`."""
+
+    def __init__(self, scans: Path, room: Path, check: Callable[[], None]) -> None:
+        self._scans, self._room, self._check = scans, room, check
+        self._curves, self._runs = LiveCurves(), Runs(room)
+        self._send: Callable[[str], None] = lambda _: None
+
+    def answer(self, request: Request, send: Callable[[str], None]) -> None:
+        """Send the answer to `request`, line by line."""
+        self._send = send
+        text = request.values.get("text")
+        problems = problems_in(text, self._scans) if isinstance(text, str) else {}
+        if problems:
+            send(as_json({"problems": problems}))
+            return
+        for line in getattr(self, request.kind)(request.tab, **request.values):
+            send(line)
+
+    def curve(self, tab: str, text: str, shown: str) -> Iterator[str]:
+        """The live curve."""
+        return self._curves.lines(tab, text, self._scans, shown, self._check)
+
+    def maps(self, tab: str, depth: int) -> Iterator[str]:
+        """The contact maps at one depth of the last live curve."""
+        maps = self._curves.maps.get(tab)
+        if maps is not None and len(maps):
+            yield maps.line(min(max(depth, 0), len(maps) - 1))
+
+    def run(self, tab: str, text: str, grids: int) -> Iterator[str]:
+        """The whole run of the case, or its convergence on several grids."""
+        yield from results_line(self._folder(text, grids))
+
+    def take(
+        self, tab: str, text: str, what: str, code: str, velocity: str, grids: int
+    ) -> Iterator[str]:
+        """A file to take away."""
+        from restitution.live import take_away
+
+        out = Path(mkdtemp(dir=self._room, prefix="take-"))
+        if what == "case":
+            file = take_away.case_file(text, self._scans, out)
+        else:
+            file = take_away.take(what, self._folder(text, grids), out, code, velocity)
+        yield as_json({"file": str(file.relative_to(self._room))})
+
+    def read(self, tab: str, file: str) -> Iterator[str]:
+        """What a scan holds, so that a file that cannot be read is refused at once."""
+        from restitution.surfaces import read_surface
+        from restitution.surfaces.refused import RefusedSurfaceError
+
+        try:
+            surface = read_surface(self._scans / file, undefined="interpolate")
+        except RefusedSurfaceError as error:
+            if error.code != "size-unknown":
+                raise
+            yield as_json({"needs_size": error.fact})
+            return
+        yield as_json({"nodes": surface.grid.nodes, "spacing_m": surface.grid.spacing})
+
+    def _folder(self, text: str, grids: int) -> Path:
+        def told(words: str) -> None:
+            self._check()
+            self._send(as_json({"progress": words}))
+
+        return self._runs.folder(text, self._scans, told, grids)
+
+
+def serve(connection: Connection, scans: Path, room: Path) -> None:
+    """Answer requests until the parent closes the connection or ends."""
+    # Ctrl-C reaches every process of the terminal: the parent ends this one.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    os.environ["MPLBACKEND"] = "agg"
+    wire = Wire(connection)
+    inbox = Inbox(wire)
+    worker = Worker(scans, room, inbox.check)
+    wire.send(0, None)  # ready
+    while True:
+        request = inbox.next()
+
+        def send(line: str, number: int = request.number) -> None:
+            wire.send(number, line)
+
+        try:
+            worker.answer(request, send)
+        except NotWanted:
+            send(REPLACED)
+        except RestitutionError as error:
+            send(as_json({"error": str(error)}))
+        except MemoryError:
+            send(as_json({"error": "the memory is too small for this case; use fewer grid.nodes"}))
+        except Exception as error:
+            words = one_line(f"{type(error).__name__}: {error}")
+            send(as_json({"error": f"stopped by an unexpected error, {words}"}))
+        with suppress(BrokenPipeError):
+            wire.send(request.number, None)
