@@ -14,7 +14,13 @@ from restitution.case.omissions import omissions
 from restitution.contact.contact import Contact
 from restitution.errors import DomainError, RestitutionError
 from restitution.live.content import case_of
-from restitution.live.figures import ContactMaps, as_json, curve_figures, live_dataset, surface_line
+from restitution.live.figures import (
+    ContactMaps,
+    as_json,
+    curve_figures,
+    live_dataset,
+    surface_content,
+)
 from restitution.results.writer import curve_row
 from restitution.runs.depths import collision_at, loaded_depths
 from restitution.runs.messages import input_warnings, require_possible
@@ -23,40 +29,45 @@ from restitution.runs.smooth import smooth_curve
 from restitution.surfaces import Surface
 
 _PARTIAL = 0.7  # s between drawings of a curve that is not complete
+_TABS = 4  # whose last curves are kept
 
 
 class LiveCurves:
-    """The curves of the pages that are open, one for each tab of the browser."""
+    """The last curve of each page that is open: of each tab of the browser."""
 
     def __init__(self) -> None:
-        self.maps: dict[str, ContactMaps] = {}
+        self._curves: dict[str, _Curve] = {}
         self._surface: tuple[str, Surface] | None = None
 
-    def lines(
-        self, tab: str, text: str, folder: Path, shown: str, check: Callable[[], None]
-    ) -> Iterator[str]:
+    def lines(self, tab: str, text: str, folder: Path, check: Callable[[], None]) -> Iterator[str]:
         """Compute the curve of the case `text`; yield lines of JSON for the page.
 
-        `shown` identifies the surface that the page shows already; `check` raises if the curve is
-        not wanted any more. Depths that were computed are drawn even if others fail.
+        `check` raises if the curve is not wanted any more. Depths that were computed are drawn even
+        if others fail.
         """
         case = settled(case_of(text).realisation(0), folder)
         contact = self._contact(case, folder)
         deepest = deepest_indentation(case)
         require_possible(contact, deepest)
-        warnings = omissions(case) + input_warnings(contact, deepest)
-        curve = _Curve(case, contact, warnings)
+        curve = _Curve(case, contact, omissions(case) + input_warnings(contact, deepest))
+        self._curves.pop(tab, None)
+        self._curves[tab] = curve
+        while len(self._curves) > _TABS:
+            del self._curves[next(iter(self._curves))]
         yield from curve.compute(folder, check)
-        self.maps = {**self.maps, tab: curve.maps}
-        while len(self.maps) > 4:
-            del self.maps[next(iter(self.maps))]
-        key = hashlib.blake2b(contact.surface.height.tobytes(), digest_size=16).hexdigest()
-        if key != shown:
-            check()
-            yield as_json({"surface_key": key})
-            yield surface_line(contact.surface)
-        check()
-        yield from curve.with_smooth()
+
+    def maps(self, tab: str, depth: int) -> Iterator[str]:
+        """The contact maps at one depth of the last curve."""
+        curve = self._curves.get(tab)
+        if curve is not None and len(curve.maps):
+            yield curve.maps.line(min(max(depth, 0), len(curve.maps) - 1))
+
+    def beside(self, tab: str, shown: str, check: Callable[[], None]) -> Iterator[str]:
+        """The surface of the last curve, unless it is `shown` already, and its smooth curve."""
+        curve = self._curves.get(tab)
+        if curve is not None:
+            yield from curve.with_smooth(check)
+            yield from curve.with_surface(shown, check)
 
     def _contact(self, case: Case, folder: Path) -> Contact:
         """The contact of `case`; the last surface is kept, since most sliders do not change it."""
@@ -109,14 +120,21 @@ class _Curve:
             }
         )
 
-    def with_smooth(self) -> Iterator[str]:
+    def with_smooth(self, check: Callable[[], None]) -> Iterator[str]:
         try:
-            smooth = smooth_curve(self.contact, self.rows)
+            smooth = smooth_curve(self.contact, self.rows, check)
         except RestitutionError:  # the smooth curve is optional
             return
         if smooth:
             results = live_dataset(self.case, self.contact, self.rows).assign(smooth)
             yield as_json({"figures": curve_figures(results)})
+
+    def with_surface(self, shown: str, check: Callable[[], None]) -> Iterator[str]:
+        surface = self.contact.surface
+        key = hashlib.blake2b(surface.height.tobytes(), digest_size=16).hexdigest()
+        if key != shown:
+            check()
+            yield as_json({"surface_key": key, **surface_content(surface)})
 
 
 def _stamps(case: Case, folder: Path) -> list[tuple[int, int]]:

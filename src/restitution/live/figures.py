@@ -82,8 +82,8 @@ def drawing(figure: Figure, panel: int = 0) -> Raw:
     return Raw(interactive.draw(figure.panels[panel], figure).to_json())
 
 
-def surface_line(surface: Surface) -> str:
-    """The map of `surface` and its statistics, as a line of JSON."""
+def surface_content(surface: Surface) -> dict[str, Any]:
+    """The map of `surface` and its statistics, for `as_json`."""
     nodes, spacing = surface.grid.nodes, surface.grid.spacing
     rows = [
         ["nodes", " × ".join(map(str, nodes))],
@@ -96,7 +96,7 @@ def surface_line(surface: Surface) -> str:
                 words, unit = words.removesuffix(f" {ending}"), ending.replace("per m", "1/m")
         shown = "–" if value is None else quantity(value, unit) if unit else f"{value:.4g}"
         rows.append([words, shown])
-    return as_json({"surface": drawing(surface_map(_thinned(surface))), "statistics": rows})
+    return {"surface": drawing(surface_map(_thinned(surface))), "statistics": rows}
 
 
 def _thinned(surface: Surface) -> Surface:

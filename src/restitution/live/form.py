@@ -65,7 +65,7 @@ def _library_values(material: Material) -> dict[str, str]:
     """The values that a body has from the library, as texts."""
     found = ((key, unit, getattr(material, key)) for key, unit in FROM_LIBRARY.items())
     return {
-        key: quantity(each.value, unit).replace("µ", "u") if unit else f"{each.value:g}"
+        key: quantity(each.value, unit) if unit == "Pa" else f"{each.value:g} {unit}".strip()
         for key, unit, each in found
         if each is not None
     }

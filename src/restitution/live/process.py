@@ -78,6 +78,7 @@ class _Running:
         self.process.start()
         theirs.close()  # so that the end of the process closes the connection
         self.waiting: dict[int, _Lines] = {}
+        self._watching: set[asyncio.Task[None]] = set()
         self._loop = asyncio.get_running_loop()
         threading.Thread(target=self._receive, args=(self._connection,), daemon=True).start()
 
@@ -95,12 +96,16 @@ class _Running:
                     while await lines.get() is not None:
                         pass
                 return
-            self.end()
+            self.process.terminate()
 
-        self._watching = self._loop.create_task(watch())
+        task = self._loop.create_task(watch())
+        self._watching.add(task)
+        task.add_done_callback(self._watching.discard)
 
     def end(self) -> None:
         self.process.terminate()
+        for task in self._watching:
+            task.cancel()
 
     def _receive(self, connection: Connection) -> None:
         """Hand the answers to the requests that wait; at the end of the process tell them all."""

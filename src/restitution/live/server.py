@@ -86,6 +86,7 @@ class Server:
             "content": self._content,
             "text": self._text,
             "curve": self._curve,
+            "beside": self._beside,
             "maps": self._maps,
             "run": self._run,
             "take": self._take,
@@ -113,8 +114,9 @@ class Server:
         policy = (
             "default-src 'none'; script-src 'self'; connect-src 'self'; "
             "img-src 'self' data: blob:; "
-            f"style-src 'self' 'nonce-{nonce}'; style-src-attr 'unsafe-inline'; form-action 'none'; base-uri 'none'; "
-            "frame-ancestors 'none'"
+            # The plotting library sets attributes of elements that it parses.
+            f"style-src 'self' 'nonce-{nonce}'; style-src-attr 'unsafe-inline'; "
+            "form-action 'none'; base-uri 'none'; frame-ancestors 'none'"
         )
         text = _file("page.html").replace("{{ nonce }}", nonce)
         headers = {"Content-Security-Policy": policy}
@@ -145,11 +147,13 @@ class Server:
         return JSONResponse({"text": _text(values["content"])})
 
     async def _curve(self, request: Request) -> Response:
-        values = await _values(request, {"tab": str, "content": dict, "shown": str})
+        values = await _values(request, {"tab": str, "content": dict})
         text = _text(values["content"])
-        return _streamed(
-            request, self._live.ask(values["tab"], "curve", text=text, shown=values["shown"])
-        )
+        return _streamed(request, self._live.ask(values["tab"], "curve", text=text))
+
+    async def _beside(self, request: Request) -> Response:
+        values = await _values(request, {"tab": str, "shown": str})
+        return _streamed(request, self._live.ask(**values, kind="beside"))
 
     async def _maps(self, request: Request) -> Response:
         values = await _values(request, {"tab": str, "depth": int})

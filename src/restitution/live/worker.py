@@ -81,7 +81,8 @@ class Inbox:
         with self._changed:
             now = self._now
             assert now is not None
-            if now.number in self._given_up or (now.tab, now.kind) in self._waiting:
+            newer = {(now.tab, now.kind), (now.tab, "curve")}
+            if now.number in self._given_up or newer & self._waiting.keys():
                 raise NotWanted
 
     def _listen(self) -> None:
@@ -122,15 +123,17 @@ class Worker:
         for line in getattr(self, request.kind)(request.tab, **request.values):
             send(line)
 
-    def curve(self, tab: str, text: str, shown: str) -> Iterator[str]:
+    def curve(self, tab: str, text: str) -> Iterator[str]:
         """The live curve."""
-        return self._curves.lines(tab, text, self._scans, shown, self._check)
+        return self._curves.lines(tab, text, self._scans, self._check)
+
+    def beside(self, tab: str, shown: str) -> Iterator[str]:
+        """What is drawn beside the live curve."""
+        return self._curves.beside(tab, shown, self._check)
 
     def maps(self, tab: str, depth: int) -> Iterator[str]:
         """The contact maps at one depth of the last live curve."""
-        maps = self._curves.maps.get(tab)
-        if maps is not None and len(maps):
-            yield maps.line(min(max(depth, 0), len(maps) - 1))
+        return self._curves.maps(tab, depth)
 
     def run(self, tab: str, text: str, grids: int) -> Iterator[str]:
         """The whole run of the case, or its convergence on several grids."""

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 from plotly.graph_objects import Figure as Plot
-from plotly.graph_objects import Heatmap, Scatter
 
 from restitution.plots.figure import (
     Axis,
@@ -30,26 +29,28 @@ _LAYERS = (Band, Line, Points)  # from bottom to top
 
 def draw(panel: Chart | Map, figure: Figure) -> Plot:
     """One panel of `figure`, without its titles, which the page shows."""
-    plot = Plot()
-    plot.update_layout(
-        template="none",
-        paper_bgcolor="rgba(0,0,0,0)",
-        plot_bgcolor="rgba(0,0,0,0)",
-        margin={"l": 70, "r": 20, "t": 28, "b": 60},
-        legend={
+    layout: dict[str, Any] = {
+        "template": "none",
+        "paper_bgcolor": "rgba(0,0,0,0)",
+        "plot_bgcolor": "rgba(0,0,0,0)",
+        "margin": {"l": 70, "r": 20, "t": 28, "b": 60},
+        "legend": {
             "orientation": "h",
             "y": -0.28,
             "yanchor": "top",
             "title": {"text": _escaped(figure.legend_title), "side": "top"},
         },
-        font={"family": "system-ui, sans-serif", "size": 13},
-        hovermode="closest",
-        modebar={"bgcolor": "rgba(0,0,0,0)", "color": "#8c959f", "activecolor": "#57606a"},
-    )
+        "font": {"family": "system-ui, sans-serif", "size": 13},
+        "hovermode": "closest",
+        "modebar": {"bgcolor": "rgba(0,0,0,0)", "color": "#8c959f", "activecolor": "#57606a"},
+    }
     if isinstance(panel, Map):
-        _draw_map(plot, panel)
-    else:
-        _draw_chart(plot, panel)
+        return Plot([_heatmap(panel)], layout | _map_axes(panel))
+    # One call for all: each change of a plot is checked anew, which takes longer than drawing it.
+    plot = Plot(_all_traces(panel), layout | _chart_axes(panel))
+    for each in panel.series:
+        if isinstance(each, Mark):
+            _draw_mark(plot, each)
     return plot
 
 
@@ -58,37 +59,35 @@ def shown_step(panel: Map) -> int:
     return math.ceil(max(panel.x.size, panel.y.size) / _MOST_PIXELS)
 
 
-def _draw_chart(plot: Plot, chart: Chart) -> None:
-    plot.update_layout(xaxis=_axis(chart.x), yaxis=_axis(chart.y))
-    if chart.right is not None:
-        right = {
-            **_axis(chart.right),
-            "overlaying": "y",
-            "side": "right",
-            "showgrid": False,
-            "tickmode": "auto",
-        }  # ticks of its own, not those of the left axis
-        plot.update_layout(yaxis2=right, margin_r=70)
+def _chart_axes(chart: Chart) -> dict[str, Any]:
+    """The axes of a chart, and a wider margin for one on the right."""
+    axes = {"xaxis": _axis(chart.x), "yaxis": _axis(chart.y)}
+    if chart.right is None:
+        return axes
+    right = {
+        **_axis(chart.right),
+        "overlaying": "y",
+        "side": "right",
+        "showgrid": False,
+        "tickmode": "auto",
+    }  # ticks of its own, not those of the left axis
+    return axes | {"yaxis2": right, "margin": {"l": 70, "r": 70, "t": 28, "b": 60}}
+
+
+def _all_traces(chart: Chart) -> list[dict[str, Any]]:
+    """The traces of all series, from bottom to top; each text has one entry in the legend."""
     ranks = {label: rank for rank, label in enumerate(legend_entries(chart), 1)}
     seen: set[str] = set()
+    found = []
     for layer in _LAYERS:
         for each in chart.series:
-            if not isinstance(each, layer):
-                continue
-            for trace in _traces(each, chart):
+            for trace in _traces(each, chart) if isinstance(each, layer) else ():
                 entry = trace.pop("entry")
-                plot.add_trace(
-                    Scatter(
-                        **trace,
-                        legendgroup=_escaped(entry),
-                        legendrank=ranks.get(entry, 0),
-                        showlegend=bool(entry) and entry not in seen,
-                    )
-                )
+                trace |= {"type": "scatter", "legendgroup": _escaped(entry)}
+                trace |= {"legendrank": ranks.get(entry, 0)}
+                found.append(trace | {"showlegend": bool(entry) and entry not in seen})
                 seen.add(entry)
-    for each in chart.series:
-        if isinstance(each, Mark):
-            _draw_mark(plot, each)
+    return found
 
 
 def _traces(each: Band | Line | Points, chart: Chart) -> list[dict[str, Any]]:
@@ -181,30 +180,32 @@ def _draw_mark(plot: Plot, mark: Mark) -> None:
     line(mark.value, line_dash="dot", line_width=1, line_color="#8c959f", **more)
 
 
-def _draw_map(plot: Plot, part: Map) -> None:
+def _heatmap(part: Map) -> dict[str, Any]:
     step, unit = shown_step(part), _escaped(part.quantity.unit)
     label = f"{_escaped(part.quantity.label)} {{}} {unit}"
-    plot.add_trace(
-        Heatmap(
-            x=part.x[::step].astype(np.float32),
-            y=part.y[::step].astype(np.float32),
-            z=part.values[::step, ::step].T.astype(np.float32),
-            colorscale=part.colours,
-            colorbar={"title": unit, "thickness": 18},
-            hovertemplate="x %{x:.4g} µm, y %{y:.4g} µm<br>"
-            f"{label.format('%{z:.4g}')}<extra></extra>",
-        )
-    )
-    plot.update_layout(xaxis=_axis(Axis("x", "µm")), yaxis=_axis(Axis("y", "µm")))
-    plot.update_yaxes(scaleanchor="x", constrain="domain")
-    plot.update_xaxes(constrain="domain")
+    return {
+        "type": "heatmap",
+        "x": part.x[::step].astype(np.float32),
+        "y": part.y[::step].astype(np.float32),
+        "z": part.values[::step, ::step].T.astype(np.float32),
+        "colorscale": part.colours,
+        "colorbar": {"title": {"text": unit}, "thickness": 18},
+        "hovertemplate": "x %{x:.4g} µm, y %{y:.4g} µm<br>"
+        f"{label.format('%{z:.4g}')}<extra></extra>",
+    }
+
+
+def _map_axes(part: Map) -> dict[str, Any]:
+    x = _axis(Axis("x", "µm")) | {"constrain": "domain"}
+    y = _axis(Axis("y", "µm")) | {"scaleanchor": "x", "constrain": "domain"}
     if part.downwards:
-        plot.update_yaxes(autorange="reversed")
+        y["autorange"] = "reversed"
+    return {"xaxis": x, "yaxis": y}
 
 
 def _axis(axis: Axis) -> dict[str, Any]:
     found: dict[str, Any] = {
-        "title": _escaped(axis.title),
+        "title": {"text": _escaped(axis.title)},
         "type": axis.scale,
         "showline": True,
         "ticks": "outside",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -21,12 +22,15 @@ _WIDTH = 2.5  # of each grid, in predicted contact radii
 _DEPTHS = 20
 
 
-def smooth_curve(contact: Contact, rows: list[dict[str, float]]) -> dict[str, Any]:
+def smooth_curve(
+    contact: Contact, rows: list[dict[str, float]], check: Callable[[], None] = lambda: None
+) -> dict[str, Any]:
     """Variables of results.nc: force, restitution and velocity of the smooth bodies of `contact`.
 
     They span the depths and velocities of `rows`. Each depth beyond yield is solved on a small grid
     of its own; up to yield Hertz holds. Empty in the `truncated` model, whose smooth contact is
-    Thornton and Ning's, and with adhesion, which small grids do not resolve. Raises as `solve`.
+    Thornton and Ning's, and with adhesion, which small grids do not resolve. `check` is called
+    before every solve, and may raise to end the curve. Raises as `solve`.
     """
     pair, p_y = contact.pair, contact.hardness
     R, E_star = pair.radius, pair.contact_modulus
@@ -46,6 +50,7 @@ def smooth_curve(contact: Contact, rows: list[dict[str, float]]) -> dict[str, An
     depths = np.unique([np.geomspace(*ends, _DEPTHS) for ends in ranges])
     force, cor, velocity = (np.empty(depths.size) for _ in range(3))
     for k, depth in enumerate(depths):
+        check()
         if depth <= onset:
             work = float(hertz.stored_energy(depth))
             force[k], collision = hertz.force(depth), Collision(work, work, pair.mass)

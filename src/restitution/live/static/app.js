@@ -5,7 +5,9 @@
 const token = location.hash.slice(1);
 const tab = crypto.randomUUID();
 const $ = (id) => document.getElementById(id);
-const REST = 600; // ms without a change before the whole run is computed
+// ms without a change before what is beside the curve is drawn, and the whole run is computed
+const SHORT_REST = 100;
+const REST = 600;
 const DASHES = ["dash", "dot", "dashdot", "longdash", "solid"];
 const PIN_COLOURS = ["#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
 const CODES = ["lammps", "liggghts", "yade", "mercurydpm", "edem", "mujoco", "drake", "csv"];
@@ -280,11 +282,12 @@ let asking = null; // the request under way: { abort, since, drawn }
 let waiting = null; // timer of a change that waits for the request under way
 let last = 300; // ms that the last curve took
 let resting = null;
-let running = null;
+let running = null; // the request beside a curve, or of the whole run
 
 function changed() {
   clearTimeout(resting);
   if (running) running.abort();
+  running = null;
   if (waiting) return;
   // A curve under way is drawn if it is quick; a slow one gives way to the newest values.
   const patience = asking && !asking.drawn ? Math.min(2000, Math.max(500, 2 * last)) - (performance.now() - asking.since) : 0;
@@ -307,20 +310,19 @@ async function ask() {
   let failed = false;
   const asked = structuredClone(content);
   try {
-    await stream("curve", { tab, content: asked, shown: surfaceKey }, mine.abort.signal, (line) => {
+    await stream("curve", { tab, content: asked }, mine.abort.signal, (line) => {
       if (asking !== mine) return;
       if (line.problems) { failed = true; mark(true); showProblems(line.problems); say("not computed: correct the value that is marked"); }
       else if (line.error) { failed = true; mark(true); showError(line.error); say(line.lost ? "stopped" : "not computed"); }
       else if (line.curve) {
+        const received = performance.now();
         takeCurve(line, asked);
         if (line.progress) { say(line.progress); return; }
         mine.drawn = true;
         last = performance.now() - mine.since;
-        record(mine.since, line.seconds);
+        record(mine.since, line.seconds, received);
         if (waiting) ask();
-      } else if (line.surface_key) surfaceKey = line.surface_key;
-      else if (line.surface) drawSurface(line);
-      else if (line.figures) { curve.figures = line.figures; drawCurves(); }
+      }
     });
   } catch (error) {
     if (error.name !== "AbortError") { failed = true; say(lostServer(error)); }
@@ -328,13 +330,13 @@ async function ask() {
   if (asking !== mine) return;
   asking = null;
   updateText();
-  if (!failed && mine.drawn && !waiting) resting = setTimeout(runWhole, Math.max(0, REST - (performance.now() - mine.since)));
+  if (!failed && mine.drawn && !waiting) resting = setTimeout(drawBeside, SHORT_REST);
 }
 
-// Times of the last curves, for the benchmark: until the answer has come, of the solve alone, until drawn.
-function record(since, solve) {
-  const drawn = performance.now();
-  document.dispatchEvent(new CustomEvent("curve", { detail: { since, drawn, solve: 1000 * solve } }));
+// Times (ms) of a curve, for the benchmark: asked, its solve, received, drawn.
+function record(asked, seconds, received) {
+  const detail = { asked, solve: 1000 * seconds, received, drawn: performance.now() };
+  document.dispatchEvent(new CustomEvent("curve", { detail }));
 }
 
 function takeCurve(line, asked) {
@@ -344,10 +346,26 @@ function takeCurve(line, asked) {
   showWarnings(line.warnings);
   drawCurves();
   drawNumbers();
-  if (!line.progress) { say(`${line.curve.length} depths in ${line.seconds.toFixed(2)} s`); askMaps(); }
+  if (!line.progress) { say(`${line.curve.length} depths in ${line.seconds.toFixed(2)} s`); }
 }
 
 const problemsOf = (failure) => ({ "": `Some depths are missing. ${failure}` });
+
+async function drawBeside() {
+  askMaps();
+  const mine = new AbortController();
+  running = mine;
+  try {
+    await stream("beside", { tab, shown: surfaceKey }, mine.signal, (line) => {
+      if (running !== mine || asking) return;
+      if (line.figures) { curve.figures = line.figures; drawCurves(); }
+      else if (line.surface) { surfaceKey = line.surface_key; drawSurface(line); }
+    });
+  } catch (error) {
+    if (error.name !== "AbortError") say(lostServer(error));
+  }
+  if (running === mine) resting = setTimeout(runWhole, REST - SHORT_REST);
+}
 
 async function runWhole() {
   const mine = new AbortController();
