@@ -11,6 +11,7 @@ import contextlib
 import io
 import re
 import warnings
+import zipfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,7 @@ from restitution.surfaces.scan import Y_DOWN, Scan, in_metres
 # Earlier versions misread the sample files without an error (1.25.0: .tmd a thousand times too
 # small along all axes, undefined pixels of .sur as heights).
 _OLDEST_VERSION = (1, 27)
+_LARGEST_UNPACKED = 2**31  # bytes of all files in an archive
 INSTALL_READERS = (
     'install the readers with `pip install "SurfaceTopography>=1.27"` (the extra "measured")'
 )
@@ -42,6 +44,7 @@ def read_instrument(path: Path, channel: int | None) -> Scan:
     Raises `NoReadersError`, `UnrecognisedError` if no reader can open the file, and `SurfaceError`
     if the channel does not exist or is not a height map in a unit of length.
     """
+    _check_archive(path)
     with _quiet():
         open_topography = _import_readers(path)
         try:
@@ -61,6 +64,22 @@ def read_instrument(path: Path, channel: int | None) -> Scan:
                 f"{path}: its heights cannot be read ({_first_line(error)}); export it again, or "
                 "as a text matrix of heights"
             ) from error
+
+
+def _check_archive(path: Path) -> None:
+    """Refuse an archive (such as X3P) whose content would fill the memory when it is unpacked."""
+    if not zipfile.is_zipfile(path):
+        return
+    try:
+        with zipfile.ZipFile(path) as archive:
+            size = sum(each.file_size for each in archive.infolist())
+    except (zipfile.BadZipFile, ValueError, NotImplementedError):
+        return  # the reader says what is wrong
+    if size > _LARGEST_UNPACKED:
+        raise SurfaceError(
+            f"{path}: unpacks to {size} bytes, more than the {_LARGEST_UNPACKED} a scan may have; "
+            "save fewer pixels"
+        )
 
 
 def _import_readers(path: Path) -> Callable[[str], Any]:
