@@ -27,7 +27,7 @@ class Field:
     `unit` is the SI unit of a quantity. `low` and `high` are the ends of the slider, in this unit
     or as numbers; without them the field has none. The field is shown while the key `when[0]` has
     one of the values after it; "" is a key that is left out. `initial` is filled in when the field
-    appears.
+    appears. Fields with `more` are behind "More" while they are empty.
     """
 
     key: str
@@ -41,6 +41,7 @@ class Field:
     when: tuple[str, ...] = ()
     initial: str | float | None = None
     hint: str = ""
+    more: bool = False
 
 
 @dataclass(frozen=True)
@@ -104,7 +105,7 @@ def _body(name: str, when: tuple[str, ...] = ()) -> tuple[Field, ...]:
     return (
         Field(f"{name}.material", "Material", choices=(("", "own values"), *library), when=when),
         Field(f"{name}.radius", "Radius", "m", 1e-6, 1e-2, when=when, initial="flat", hint=flat),
-        Field(f"{name}.youngs_modulus", "Young's modulus E", "Pa", *E, when=when),
+        Field(f"{name}.youngs_modulus", "Young's modulus E", "Pa", *E, when=when, more=True),
         Field(
             f"{name}.poissons_ratio",
             "Poisson's ratio ν",
@@ -113,10 +114,11 @@ def _body(name: str, when: tuple[str, ...] = ()) -> tuple[Field, ...]:
             0.5,
             logarithmic=False,
             when=when,
+            more=True,
         ),
-        Field(f"{name}.density", "Density", "kg/m^3", 100, 2e4, when=when),
-        Field(f"{name}.yield_strength", "Yield strength Y", "Pa", *H, when=when),
-        Field(f"{name}.hardness", "Hardness H", "Pa", *H, when=when),
+        Field(f"{name}.density", "Density", "kg/m^3", 100, 2e4, when=when, more=True),
+        Field(f"{name}.yield_strength", "Yield strength Y", "Pa", *H, when=when, more=True),
+        Field(f"{name}.hardness", "Hardness H", "Pa", *H, when=when, more=True),
     )
 
 
@@ -137,11 +139,20 @@ _INTERFACE = (
         1e11,
         hint='a hardness in place of Y, "2.8 Y", "hardness" or "elastic"',
     ),
-    Field("interface.tangent_modulus", "Tangent modulus", "Pa", 1e6, 1e11, hint="of hardening"),
+    Field(
+        "interface.tangent_modulus",
+        "Tangent modulus",
+        "Pa",
+        1e6,
+        1e11,
+        hint="of hardening",
+        more=True,
+    ),
     Field(
         "interface.plasticity",
         "Plasticity",
         choices=_named(get_args(Plasticity), "by the values above"),
+        more=True,
     ),
     Field(
         "interface.work_of_adhesion",
@@ -151,9 +162,17 @@ _INTERFACE = (
         1.0,
         hint="left out: no adhesion",
     ),
-    Field("interface.approach", "Approach", choices=_named(get_args(Approach), "equilibrium")),
     Field(
-        "interface.detachment", "Detachment", choices=_named(get_args(Detachment), "crack-closure")
+        "interface.approach",
+        "Approach",
+        choices=_named(get_args(Approach), "equilibrium"),
+        more=True,
+    ),
+    Field(
+        "interface.detachment",
+        "Detachment",
+        choices=_named(get_args(Detachment), "crack-closure"),
+        more=True,
     ),
 )
 
@@ -196,10 +215,12 @@ _SURFACE = (
         when=("roughness.kind", "self-affine"),
         initial="10 um",
     ),
-    Field("roughness.shortest", "Shortest wavelength", "m", 1e-9, 1e-5, when=_MADE),
+    Field("roughness.shortest", "Shortest wavelength", "m", 1e-9, 1e-5, when=_MADE, more=True),
     Field("roughness.seed", "Seed", "", 0, 100, False, True, when=_MADE, initial=1),
-    Field("roughness.channel", "Channel of the file", whole=True, when=_READ),
-    Field("roughness.size", "Edge lengths", "m", when=_READ, hint="if the file has none"),
+    Field("roughness.channel", "Channel of the file", whole=True, when=_READ, more=True),
+    Field(
+        "roughness.size", "Edge lengths", "m", when=_READ, hint="if the file has none", more=True
+    ),
     Field(
         "roughness.detrend",
         "Subtract",
@@ -212,13 +233,24 @@ _SURFACE = (
         "Missing pixels",
         choices=_named(("interpolate",), "refuse"),
         when=_READ,
+        more=True,
     ),
-    Field("roughness.outliers", "Outlier threshold", "", 3, 30, when=_READ, hint="in deviations"),
+    Field(
+        "roughness.outliers",
+        "Outlier threshold",
+        "",
+        3,
+        30,
+        when=_READ,
+        hint="in deviations",
+        more=True,
+    ),
     Field(
         "roughness.extend",
         "Extend the scan",
         choices=_named(get_args(Extension), "no"),
         when=_READ,
+        more=True,
     ),
     Field(
         "roughness.seed",
@@ -265,6 +297,7 @@ def _span(
             "Spacing of the steps",
             choices=_named(("linear",), "logarithmic"),
             when=when,
+            more=True,
         ),
         Field(
             f"{table}.{listed}",
@@ -272,6 +305,7 @@ def _span(
             unit,
             when=when,
             hint="a list, separated by commas, in place of the span",
+            more=True,
         ),
     )
 

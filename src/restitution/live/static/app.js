@@ -9,7 +9,7 @@ const $ = (id) => document.getElementById(id);
 const SHORT_REST = 100;
 const REST = 600;
 const DASHES = ["dash", "dot", "dashdot", "longdash", "solid"];
-const PIN_COLOURS = ["#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
+const PIN_COLOURS = ["#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#d55e00"];
 const CODES = ["lammps", "liggghts", "yade", "mercurydpm", "edem", "mujoco", "drake", "csv"];
 // Units that a slider writes, smallest first.
 const SLIDER_UNITS = {
@@ -177,10 +177,19 @@ function drawForm() {
   if (focused && $(focused)) $(focused).focus();
 }
 
+const opened = new Set(); // titles of groups whose rare fields are shown
+
 function drawGroup(group) {
   const visible = group.fields.filter(shown);
   if (!visible.length) return null;
-  const parts = visible.map(drawField);
+  const parts = visible.filter((field) => !field.more).map(drawField);
+  const rare = visible.filter((field) => field.more);
+  if (rare.length) {
+    const open = opened.has(group.title) || rare.some((field) => get(field.key) !== "");
+    const more = element("details", { open }, element("summary", {}, "More"), ...rare.map(drawField));
+    more.addEventListener("toggle", () => (more.open ? opened.add(group.title) : opened.delete(group.title)));
+    parts.push(more);
+  }
   if (group.title === "Surface") parts.push(drawUpload());
   if (!group.closed) return element("fieldset", {}, element("legend", {}, group.title), ...parts);
   const inner = element("details", {}, element("summary", {}, group.title), ...parts);
@@ -412,6 +421,10 @@ function draw(id, spec, traces = [], shapes = []) {
   if (!spec) { Plotly.purge($(id)); $(id).dataset.drawn = ""; return; }
   const layout = themed(structuredClone(spec.layout));
   layout.shapes = [...(layout.shapes || []), ...shapes];
+  if (innerWidth < 600 || $(id).clientHeight < 300) { // the legend would take the place of the plot
+    layout.showlegend = false;
+    layout.margin = { l: 55, r: 10, t: 15, b: 45 };
+  }
   $(id).dataset.drawn = "yes";
   return Plotly.react($(id), [...spec.data, ...traces], layout, { responsive: true, displaylogo: false });
 }
