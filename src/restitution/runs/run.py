@@ -47,7 +47,7 @@ FULL_PRESSURE = (
     "begin to yield at about 1.6 times the yield strength"
 )
 
-# Limits above which there is a warning
+# Limits above which a warning is issued.
 _VELOCITY = 1e-3  # relative error of a prescribed impact velocity
 _IMPRECISE = 0.02  # numerical error of COR
 _BALANCE = 0.01  # relative difference of unloading work and stored energy
@@ -78,16 +78,18 @@ def run_case(
 ) -> dict[str, Any]:
     """Run `case` (with the text `text`, and files relative to `folder`) and return the summary.
 
-    With `errors` (and unless the case has total_error = false) every row gets its total error
-    (`error_budget`), and a depth that does not converge is left out. Without `errors` it ends the
-    curve, because the rows of several runs are compared by their number. Contact at the edge of the
-    grid always ends the curve. In each of these cases the run fails after its last depth.
+    With `errors` (and unless the case has total_error = false), every row gets its total error
+    (`error_budget`), and a depth that does not converge is left out. Without `errors`, a depth that
+    does not converge ends the curve, because rows of several runs are compared by their number.
+    Contact at the edge of the grid always ends the curve. In each of these cases the run fails
+    after its last depth.
 
-    The case has one surface (see `ensemble`). `refinement` replaces `grid.refine = "auto"` first;
-    depths are measured from first touch on the finest grid. `progress` is called with a few words
-    after every depth, `warn` with every warning: about the input before the first solve, about the
-    results at the end, even after an error. Errors are raised again after the results so far and
-    the reason are written; the folder is removed if there are no results.
+    The case has one surface (see `ensemble`). `grid.refine = "auto"` is replaced first
+    (`refinement`). Depths are measured from first touch on the finest grid. `progress` is called
+    with a few words after every depth. `warn` is called with every warning: about the input before
+    the first solve, and about the results at the end, even after an error. An error is raised again
+    after the results so far and the reason are written. If there are no results, the folder is
+    removed.
     """
     run = _Run(progress, warn)
 
@@ -107,7 +109,7 @@ def run_case(
             _add_errors(case, folder, contact.surface, out, run)
         if failure is not None:
             raise failure
-    assert run.summary is not None  # without any depth an error was raised
+    assert run.summary is not None  # if there is no depth, an error was raised above
     return run.summary
 
 
@@ -127,10 +129,10 @@ def _write_results(
 
 @dataclass(frozen=True)
 class _Level:
-    """The contact on one grid, the depths (m, N or m/s) that it is for, and where it touches.
+    """The contact on one grid, and the depths (m, N or m/s) that are computed on this grid.
 
-    `touch` (m) is the indentation at which this grid touches first; it counts from the first touch
-    of the finest grid.
+    `touch` (m) is the indentation of first touch on this grid, measured from first touch on the
+    finest grid.
     """
 
     contact: Contact
@@ -144,7 +146,7 @@ class _Level:
 
 
 def _levels(case: Case, folder: Path, deepest: Contact) -> Iterator[_Level]:
-    """The grids of a run, from that of the shallowest depth to the one of the contact `deepest`."""
+    """Yield the grids of a run, from the shallowest depth to the grid of the contact `deepest`."""
     factors, depths = case.factors(), case.depths()
     # Loads and velocities are the same on every grid, but their indentations are not.
     touches = later_touches(case, folder, set(factors)) if len(set(factors)) > 1 else {}
@@ -163,9 +165,9 @@ def _load_and_unload(
     *,
     go_on: bool,
 ) -> RestitutionError | None:
-    """Compute the depths one after the other; return the error of the first that failed."""
+    """Compute the depths one after the other; return the error of the first depth that failed."""
     depths, curves = case.depths(), case.unloading.curves
-    # Evenly spaced by number, with the deepest.
+    # Numbers of the depths that are unloaded: evenly spaced, with the deepest depth.
     unloaded = {len(depths) - 1 - (k * len(depths)) // curves for k in range(curves)}
     began = time.perf_counter()
     before: State | None = None
@@ -179,7 +181,7 @@ def _load_and_unload(
             state = level.load_to(case, depth, before)
         except (NotConvergedError, DomainError) as error:
             failure = failure or error
-            if not go_on or isinstance(error, DomainError):  # deeper ones reach the edge, too
+            if not go_on or isinstance(error, DomainError):  # deeper contacts reach the edge, too
                 break
             run.progress(f"{number + 1} of {len(depths)} depths")
             continue
@@ -191,7 +193,7 @@ def _load_and_unload(
             with naming_keys():
                 back = list(unloading_path(state, steps=steps, tolerance=tolerance))
         collision = collide(state, back if followed else None, method=case.unloading.method)
-        with hold_signals():  # an interruption leaves a complete row or none
+        with hold_signals():  # an interruption leaves a complete row or no row
             run.asked.append(depth)
             run.adhesive_nodes.append(adhesive_nodes(state))
             run.loading_work_errors.append(state.work_error / max(abs(state.loading_work), 1e-300))
@@ -213,7 +215,7 @@ def _add_errors(
     out: ResultsFolder,
     run: _Run,
 ) -> None:
-    """Add the total error to the rows; keep its part due to waves that the grid leaves out."""
+    """Add the total error to the rows; store its part due to omitted waves in `run`."""
     try:
         run.band_errors = add_errors(case, folder, surface, out.rows, run.progress)
     except RestitutionError as error:
@@ -222,7 +224,7 @@ def _add_errors(
 
 
 def _check(state: State, back: list[State], collision: Collision) -> dict[str, float]:
-    """The work of an unloading curve, compared with the stored energy."""
+    """Compare the work of an unloading curve with the stored energy."""
     work = -integrate_curve([s.indentation for s in back], [s.force for s in back])
     estimate = collide(state, method="energy-estimate")
     return {
@@ -238,7 +240,9 @@ def _check(state: State, back: list[State], collision: Collision) -> dict[str, f
 def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> dict[str, Any]:
     patches = [row["median_patch_nodes"] for row in out.rows]
     depths = [row["max_indentation_m"] for row in out.rows]
-    nodes = run.adhesive_nodes[: len(depths)]  # one more if the last row could not be written
+    nodes = run.adhesive_nodes[
+        : len(depths)
+    ]  # has one value more if the last row could not be written
     unresolved = unresolved_patches(depths, patches) + unresolved_adhesion(depths, nodes)
     found = [*map(message, unresolved), band_warning(contact.surface, run.band_errors)]
     found += [_imprecise(out, case), _velocities_missed(out, case, run.asked)]
@@ -297,7 +301,7 @@ def _materials(case: Case) -> dict[str, Any]:
 
 
 def _imprecise(out: ResultsFolder, case: Case) -> str | None:
-    """A warning about depths whose COR is less precise than requested, or None."""
+    """Make a warning if the COR of some depths is less precise than requested; otherwise None."""
     asked = max(_IMPRECISE, case.unloading.restitution_error)
     missed = [row for row in out.rows if row["restitution_error"] > asked]
     if not missed:
@@ -314,7 +318,7 @@ def _imprecise(out: ResultsFolder, case: Case) -> str | None:
 
 
 def _velocities_missed(out: ResultsFolder, case: Case, computed: list[float]) -> str | None:
-    """A warning about impact velocities that differ from the prescribed ones, or None."""
+    """Make a warning if impact velocities differ from the prescribed values; otherwise None."""
     if case.impact is None:
         return None
     pairs = zip((row["impact_velocity_m_per_s"] for row in out.rows), computed, strict=False)
@@ -341,7 +345,7 @@ def _adhesion_of(contact: Contact, case: Case) -> dict[str, Any]:
 
 
 def _unbalanced(checks: list[dict[str, float]]) -> str | None:
-    """A warning about unloading curves whose work differs from the stored energy, or None."""
+    """Make a warning if the work of unloading curves differs from the stored energy, or None."""
     off = [check for check in checks if not abs(check["relative_to_stored_energy"]) <= _BALANCE]
     if not off:
         return None
