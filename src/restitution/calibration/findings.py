@@ -145,8 +145,8 @@ def _unexplained(found: Fit) -> Iterator[str]:
         rms = math.sqrt(float(np.mean((found.residuals / weights) ** 2)))
         yield (
             f"the case does not explain the data: residuals are {rms:.2g} times their standard "
-            "deviations, those by surface, grid and model included; check what is not free, such "
-            "as elasticity, adhesion and the shape of the roughness"
+            "deviations, which include those due to surface, grid and model; check the values that "
+            "are not free, such as elasticity, adhesion and the shape of the roughness"
         )
 
 

@@ -70,10 +70,10 @@ def _rows(path: Path) -> list[tuple[int, dict[str, str]]]:
     try:
         kind = path.stat()
         if stat.S_ISDIR(kind.st_mode):
-            raise CaseError(f"{path}: is a folder; name a CSV file, such as table.csv of a law")
+            raise CaseError(f"{path}: is a folder; give a CSV file, such as table.csv of a law")
         if not stat.S_ISREG(kind.st_mode) or kind.st_size > _LARGEST:
             raise CaseError(
-                f"{path}: is not a file of at most {_LARGEST} bytes; name a CSV file with a row "
+                f"{path}: is not a file of at most {_LARGEST} bytes; give a CSV file with a row "
                 "for each impact velocity"
             )
         with open(path, newline="", encoding="utf-8-sig") as file:

@@ -149,9 +149,9 @@ class InterfaceTable(Table):
             for key in ("yield_strength", "tangent_modulus"):
                 if getattr(self, key) is not None:
                     raise ValueError(
-                        f"yield_pressure, {key}: give one of them; yield_pressure bounds the "
-                        "pressure by a constant, yield_strength (of a tensile test) by a value "
-                        "that grows with deformation"
+                        f"yield_pressure, {key}: give only one of them; with yield_pressure the "
+                        "pressure bound is constant, with yield_strength (of a tensile test) the "
+                        "bound grows with deformation"
                     )
             if grows:
                 raise ValueError(

@@ -66,7 +66,7 @@ class Case(Table):
             self._check_factors(self.grid.refine)
         if len({part.realisations for part in self.roughness} - {1}) > 1:
             raise ValueError(
-                "roughness.realisations: differs between the tables; give all the same number"
+                "roughness.realisations: differs between the tables; give the same number in all"
             )
         return self
 

@@ -78,7 +78,7 @@ def _no_shortest_wave(case: Case) -> str | None:
         if part.shortest is None:
             return (
                 f'roughness.shortest is left out: kind = "{part.kind}" has no shortest wave, so '
-                "the grid sets it to two spacings; COR of shallow contacts depends on it, and "
-                "total_error does not include this; give roughness.shortest"
+                "the shortest wave is two grid spacings; COR of shallow contacts depends on the "
+                "shortest wave, and total_error does not include this; give roughness.shortest"
             )
     return None

@@ -147,7 +147,7 @@ class MeasuredRoughness(Table):
     @model_validator(mode="after")
     def _twins(self) -> Self:
         if self.extend == "twin" and self.seed is None:
-            raise ValueError('extend = "twin" draws a random surface and needs a seed; give one')
+            raise ValueError('extend = "twin" makes a random surface and needs a seed; give a seed')
         if self.seed is not None and self.extend != "twin":
             raise ValueError(
                 'seed applies only to extend = "twin"; remove seed, or give place to use another '

@@ -250,7 +250,7 @@ def _mdr(b: Bodies, V: Array) -> Form | str:
     if not b.walls and not b.equal:
         return "it needs equal spheres, or a sphere and a wall"
     if b.yielding_wall:
-        return "the wall is softer than the sphere, and its model has no yielding wall"
+        return "the wall is softer than the sphere, but the model assumes a rigid wall"
     nu = b.sphere_poisson
     if nu < 0:
         return "it does not hold for a negative Poisson's ratio"

@@ -69,8 +69,8 @@ def _law(out: Path, run: RunResults) -> Law:
         )
     if left := len(rows) - len(points):
         warnings.append(
-            f"{left} of {len(rows)} depths are left out: no impact reverses there, because "
-            "adhesion did more work than the approach, or there is no force"
+            f"{left} of {len(rows)} depths are left out: no impact reverses at these depths, "
+            "because adhesion did more work than the approach, or there is no force"
         )
     pair = case.pair()
     for name, value in (
@@ -108,7 +108,7 @@ def _law(out: Path, run: RunResults) -> Law:
     if law.sticks_everywhere:
         warnings.append(
             f"the pair sticks at every computed velocity (up to {law.highest:.4g} m/s); it may "
-            "rebound above"
+            "rebound at higher velocities"
         )
     return law.model_copy(
         update={"sticks_below": law.curve().begins(), "warnings": tuple(warnings)}

@@ -193,7 +193,7 @@ def _of_law(bodies: Bodies, law: Law, V: Array) -> Iterator[Theory]:
             "brilliantov",
             SOURCES["brilliantov"],
             f"{span}, rms {np.sqrt(np.mean(miss**2)):.2g}, worst {np.abs(miss).max():.2g}; ends "
-            "where the force is back to zero; bodies that neither yield nor adhere, a << R*",
+            "where the force returns to zero; for bodies that neither yield nor adhere, a << R*",
             {"dissipation_s_per_m_power_1_5": beta},
             fitted(e),
         )

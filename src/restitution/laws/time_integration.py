@@ -130,7 +130,7 @@ def stored_force(out: Path) -> StoredForce:
     if not run.unloading:
         raise OutputError(
             f"{out}: holds no unloading curves; run the case with unloading.curves of 1 or more "
-            "(for an ensemble, name the folder of one realisation)"
+            "(for an ensemble, give the folder of one realisation)"
         )
     try:
         return _stored_force(run)

@@ -50,8 +50,8 @@ class Sizes(Table):
         for (_, high), (low, _) in itertools.pairwise(ordered):
             if low < high * (1 - 1e-9):
                 raise ValueError(
-                    f"bins: overlap between {low:.6g} m and {high:.6g} m; let each begin where the "
-                    "one before ends"
+                    f"bins: overlap between {low:.6g} m and {high:.6g} m; let each bin begin where "
+                    "the bin before ends"
                 )
         return self
 
@@ -146,7 +146,7 @@ def parse_mixture(text: str) -> Mixture:
     components = [_component(f"materials.{name}", name, table) for name, table in materials.items()]
     for name, table in walls.items():
         if name in materials:
-            raise CaseError(f"walls.{name}: is the name of a material, too; name it differently")
+            raise CaseError(f"walls.{name}: is also the name of a material; rename the wall")
         components.append(_component(f"walls.{name}", name, table))
     names = [component.name for component in components]
     interface = content.get("interface", {})

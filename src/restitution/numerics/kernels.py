@@ -47,7 +47,7 @@ def _load() -> tuple[Any, str]:
     try:
         return import_module("restitution.numerics.loops"), ""
     except ModuleNotFoundError:
-        reason = "they were not compiled when the package was installed"
+        reason = "the kernels were not compiled when the package was installed"
     except ImportError as error:
         reason = one_line(str(error))
     if wanted:

@@ -33,5 +33,5 @@ def write_report(out: Path) -> Path:
                     f"{one_line(str(error))}); compute them again"
                 ) from error
     raise OutputError(
-        f"{out}: holds no results (none of {', '.join(_PAGES)}); name the OUT of a command"
+        f"{out}: holds no results (none of {', '.join(_PAGES)}); give the OUT folder of a command"
     )

@@ -108,8 +108,9 @@ def message(found: Finding) -> str:
         case "no-half-space":
             radius, R = found["radius"], found["reduced_radius"]
             return (
-                f"the contact radius {_um(radius)} is {radius / R:.4g} of R*: the half-space holds "
-                f"up to about {found['limit']} (a tenth of the radius of two equal spheres)"
+                f"the contact radius {_um(radius)} is {radius / R:.4g} of R*: the half-space "
+                f"approximation holds up to about {found['limit']} R* (a tenth of the radius of "
+                "two equal spheres)"
             )
         case "finer-than-scan":
             return (
@@ -136,8 +137,8 @@ def message(found: Finding) -> str:
         case "oblong-pixels":
             return (
                 f"{found['file']}: the pixels are {1e6 * found['x']:.4g} x {1e6 * found['y']:.4g} "
-                "um, not square: if scan lines are missing in the file, it is stretched; check the "
-                "size"
+                "um, not square: if scan lines are missing in the file, the scan is stretched; "
+                "check the size"
             )
         case "coarser-than-scan":
             spacing = found["spacing"]

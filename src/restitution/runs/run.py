@@ -307,7 +307,7 @@ def _imprecise(out: ResultsFolder, case: Case) -> str | None:
     if not missed:
         return None
     worst = max(missed, key=lambda row: row["restitution_error"])
-    why = "contact forms and breaks in jumps there; use a finer grid"
+    why = "contact forms and breaks in jumps at these depths; use a finer grid"
     if case.unloading.method == "energy-estimate":
         why = 'unloading is an estimate; set unloading.method = "path"'
     depth = 1e9 * worst["max_indentation_m"]
@@ -329,7 +329,7 @@ def _velocities_missed(out: ResultsFolder, case: Case, computed: list[float]) ->
     worst = max(missed, key=lambda asked: off[asked])
     return (
         f"{len(missed)} of {len(off)} impact velocities are reached only within the error of the "
-        f"work, at worst {worst:g} m/s within {off[worst]:.1%}: use those in curve.csv"
+        f"work, at worst {worst:g} m/s within {off[worst]:.1%}: use the velocities in curve.csv"
     )
 
 

@@ -106,7 +106,7 @@ def generate_surface(
     if not possible(skewness, kurtosis):
         raise SurfaceError(
             f"kurtosis: no heights have a skewness of {skewness:g} and a kurtosis of "
-            f"{kurtosis:g}; it has to be at least skewness² + {LEAST_KURTOSIS:g} = "
+            f"{kurtosis:g}; kurtosis must be at least skewness² + {LEAST_KURTOSIS:g} = "
             f"{skewness**2 + LEAST_KURTOSIS:g}"
         )
     spectrum.check(grid)

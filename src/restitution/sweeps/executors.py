@@ -156,13 +156,14 @@ def cluster_workers(address: str) -> Iterator[Workers]:
         client = Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
         raise OutputError(
-            f"scheduler: {address} does not answer ({error}); start one with `dask scheduler`"
+            f"scheduler: {address} does not answer ({error}); start a scheduler with "
+            "`dask scheduler`"
         ) from None
     with client:
         places = sum(client.ncores().values())
         if not places:
             raise OutputError(
-                f"scheduler: {address} has no workers; start some with `dask worker {address}`"
+                f"scheduler: {address} has no workers; start workers with `dask worker {address}`"
             )
         queue = Queue(client=client)
 
