@@ -22,7 +22,11 @@ class NotConvergedError(RestitutionError):
 
 
 class DomainError(RestitutionError):
-    """The contact reaches the edge of the grid, so material outside the grid would carry load."""
+    """The contact reaches the edge of the grid, or a value lies outside the computed range.
+
+    Beyond the edge of the grid, material that is not modelled would carry load. Nothing is
+    extrapolated.
+    """
 
 
 class OutputError(RestitutionError):

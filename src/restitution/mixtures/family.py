@@ -29,7 +29,8 @@ from restitution.mixtures.mixture_file import Component, Mixture
 
 _WIDTH = 2.8  # width of the grid over the largest possible radius of the deepest contact
 _PEAKS = 4.0  # height of the highest peaks (rms heights)
-_NODES, _MOST_NODES = 256, 1024  # smallest and largest number of nodes along the edge of the grid
+_NODES = 256  # smallest number of nodes along the edge of the grid
+_MOST_NODES = 1024  # largest number of nodes along the edge of the grid
 _PER_WAVE = 5  # number of nodes in a correlation length, or in the shortest wave
 
 
