@@ -72,8 +72,8 @@ __all__ = [
     "unloading_path",
 ]
 
-# The module of each name above. Names are imported on first use, so that the command line, which is
-# in the same package, can answer (and be interrupted) before NumPy is loaded.
+# Modules and the public names that each defines. A name is imported on first use. The command line
+# is in the same package, so it can answer (and be interrupted) before NumPy is loaded.
 _MODULES = {
     "api": ("export", "law_of", "open_results", "run"),
     "case.materials": ("material", "materials"),

@@ -1,4 +1,4 @@
-"""Whole tasks for Python users: run a case, open its results, make a law, export it."""
+"""Functions for whole tasks in Python: run a case, open its results, make and export a law."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def run(
 
 
 def _read(case: Folder | Mapping[str, Any]) -> tuple[Case, str, Path]:
-    """The case, its text, and the name of its file in messages."""
+    """Read a case; return it with its text and the file name that messages show."""
     from restitution.case.case_file import naming, parse_case, read_case
 
     if not isinstance(case, Mapping):
@@ -102,7 +102,7 @@ def open_results(folder: Folder) -> RunResults | StudyResults:
         return StudyResults(path)
     if not (path / "results.nc").is_file():
         raise OutputError(
-            f"{path}: does not hold the results of a run or study; name the OUT of one"
+            f"{path}: does not hold the results of a run or study; give the OUT folder of one"
         )
     results = read_run(path)
     results.check()
@@ -113,8 +113,8 @@ def law_of(results: Folder | RunResults) -> Law:
     """Make the restitution law of stored results, with its fits, as `restitution fit-law` does.
 
     Args:
-        results: Results of a run, ensemble or convergence study, or their folder. A folder that
-            holds a law already gives that law.
+        results: Results of a run, ensemble or convergence study, or their folder. If the folder
+            already holds a law, this law is returned.
 
     Returns:
         The law: COR, with its error, at each computed impact velocity.
@@ -132,7 +132,7 @@ def law_of(results: Folder | RunResults) -> Law:
 
 
 def _laws_in(given: Folder | Law) -> list[Law]:
-    """The law that is given, that of a folder, or all laws of a mixture."""
+    """Return the given law as a list, or read the law or the laws of a mixture from a folder."""
     from restitution.laws.law import Law
     from restitution.laws.law_files import is_mixture, read_laws
 
@@ -152,8 +152,8 @@ def export(
     """Write laws as the input of a DEM code, as `restitution export` does.
 
     Args:
-        laws: One law for each pair of particles, folders of results or laws (`law_of`), or that of
-            a mixture.
+        laws: One law for each pair of particles, folders of results or laws (`law_of`), or the
+            folder of a mixture.
         to: DEM code: "lammps", "liggghts", "yade", "mercurydpm", "edem", or "csv".
         out: Folder for the files; existing files are never overwritten.
         velocity: Impact velocity, such as "1 m/s", or a number (m/s); "csv" does not need it.

@@ -1,9 +1,9 @@
-"""From energies to a collision: restitution, impact velocity, sticking.
+"""Restitution, impact velocity and sticking of a collision from the works of its contact.
 
 The impact is quasi-static and normal, without waves, friction or rate effects. The contact ends at
-separation: where the force returns to zero or, with adhesion, where the last node detaches. Without
-adhesion, unloading is elastic and reversible, so it returns the stored energy. With adhesion,
-unloading is simulated step by step or estimated.
+separation. Without adhesion, separation is where the force returns to zero. Unloading is then
+elastic and reversible, so it returns the stored energy. With adhesion, separation is where the last
+node detaches, and unloading is simulated step by step or estimated.
 """
 
 from __future__ import annotations
@@ -18,9 +18,10 @@ from restitution.contact.state import State
 from restitution.display import quantity, summary_html, summary_text
 
 UnloadingMethod = Literal["path", "energy-estimate"]
-# Error of the detachment criterion on a grid, as a fraction of w times the area; refining the steps
-# does not reveal it. Crack closure detaches at 0.985 to 0.99 w, the tension limit at 1.0 w (kink in
-# the contact edge) to 1.8 w (straight edge).
+# Error of each detachment criterion on a grid, as a fraction of w times the contact area. Smaller
+# unloading steps do not reduce this error. With crack closure, nodes detach at an energy release
+# rate of 0.985 to 0.99 w; with the tension limit, at 1.0 w (kink in the contact edge) to 1.8 w
+# (straight edge).
 _RELEASE_ERROR = {"crack-closure": 0.015, "pohrt-popov": 0.4}
 
 
@@ -63,7 +64,7 @@ class Collision:
 
     @property
     def restitution_error(self) -> float:
-        """Error of the restitution (1) from the errors of the two works, which are independent."""
+        """Error of the restitution (1), from the independent errors of the two works."""
         here, W_u, W_l = self.restitution, self.unloading_work, self.loading_work
         dW_u, dW_l = self.unloading_work_error, self.loading_work_error
         by_unloading = (_restitution(W_u + dW_u, W_l), _restitution(W_u - dW_u, W_l))
@@ -76,8 +77,8 @@ class Collision:
     def impact_velocity(self) -> float | None:
         """Approach velocity V (m/s) from ½ m* V² = W_l.
 
-        None if a density is missing, and if W_l < 0: adhesion then draws every impact deeper than
-        this.
+        None if a density is missing. Also None if W_l < 0, because adhesion then draws every impact
+        deeper than the deepest state of this collision.
         """
         if self.mass is None or self.loading_work < 0:
             return None
@@ -110,10 +111,11 @@ def collide(
 ) -> Collision:
     """Compute the collision whose deepest point is `state`.
 
-    Without adhesion, the work of unloading is the stored energy. `method="path"` simulates
-    unloading with adhesion. `method="energy-estimate"` uses W_u = E_el − wA with an error of wA and
-    does not compute the pull-off force or the separation (NaN). In every case compared, the energy
-    dissipated at detachment plus the error of the grid in the detachment stayed below wA.
+    Without adhesion, the work of unloading is the stored energy, whatever the method. With
+    adhesion, `method="path"` simulates unloading. `method="energy-estimate"` uses W_u = E_el − wA
+    with an error of wA and does not compute the pull-off force or the separation (NaN). In all
+    cases compared with a simulation, wA exceeded the sum of the energy dissipated at detachment and
+    the grid error of detachment.
 
     Args:
         state: Deepest state of the collision, reached by loading.

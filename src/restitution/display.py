@@ -19,25 +19,25 @@ class _Summarised(Protocol):
 
 
 def summary_text(self: _Summarised) -> str:
-    """The name of the class and the lines of `_summary`; all lines after the first are indented."""
+    """Return the class name and the lines of `_summary`, all but the first of them indented."""
     return f"{type(self).__name__}: " + "\n  ".join(self._summary())
 
 
 def summary_html(self: _Summarised) -> str:
-    """The name of the class and the lines of `_summary`, as HTML."""
+    """Return the class name and the lines of `_summary` as HTML."""
     lines = "<br>".join(map(html.escape, self._summary()))
     return f"<div><b>{type(self).__name__}</b>: {lines}</div>"
 
 
 def quantity(value: float | None, unit: str) -> str:
-    """An SI value with four digits and the prefix that fits: 2.5e-4, "m" is "250 µm"."""
+    """Format an SI value with four digits and a suitable prefix: 2.5e-4, "m" gives "250 µm"."""
     if value is None or math.isnan(value):
         return "unknown"
     if value == 0 or math.isinf(value):
         return f"{value:g} {unit}".replace("inf", "∞")
     if unit == "kg":
         value, unit = 1e3 * value, "g"
-    step = 6 if unit == "m²" else 3  # (µm)² is 1e-12 m²
+    step = 6 if unit == "m²" else 3  # prefixes of areas are squared: 1 µm² = 1e-12 m²
     rounded = float(f"{value:.4g}")
     order = math.floor(math.log10(abs(rounded)) / step + 1e-12)
     order = max(min(_PREFIXES), min(max(_PREFIXES), order))
@@ -45,5 +45,5 @@ def quantity(value: float | None, unit: str) -> str:
 
 
 def counted(number: int, noun: str) -> str:
-    """A number with its noun: "1 warning", "2 warnings"."""
+    """Format a number with its noun, in the singular or plural: "1 warning", "2 warnings"."""
     return f"{number} {noun}{'' if number == 1 else 's'}"

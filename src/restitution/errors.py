@@ -14,19 +14,23 @@ class CaseError(RestitutionError, ValueError):
 
 
 class SurfaceError(RestitutionError, ValueError):
-    """A surface or a topography file that cannot be used for the requested operation."""
+    """The requested operation cannot use a surface or a topography file."""
 
 
 class NotConvergedError(RestitutionError):
-    """A solve whose residual stayed above its tolerance; no result is returned."""
+    """The residual of a solve stayed above its tolerance, so there is no result."""
 
 
 class DomainError(RestitutionError):
-    """The contact reaches the edge of the grid, so material outside it would carry load."""
+    """The contact reaches the edge of the grid, or a value lies outside the computed range.
+
+    Beyond the edge of the grid, material that is not modelled would carry load. Nothing is
+    extrapolated.
+    """
 
 
 class OutputError(RestitutionError):
-    """A results folder that is not writable or must not be overwritten."""
+    """A results folder or file is missing, damaged, not writable, or must not be overwritten."""
 
 
 def one_line(text: str) -> str:
@@ -35,7 +39,7 @@ def one_line(text: str) -> str:
 
 
 def shown(value: object, limit: int = 60) -> str:
-    """Format a value that the user gave for a message: on one line, shortened, text in quotes."""
+    """Format a value from the user's input for a message: one line, shortened, text in quotes."""
     if isinstance(value, bool):
         return str(value).lower()  # as in TOML
     try:

@@ -156,11 +156,11 @@ def test_a_yield_pressure_keeps_the_constant_bound():
     [
         (
             'yield_strength = "1 GPa"\nyield_pressure = "2 GPa"',
-            "yield_pressure, yield_strength: give one of them",
+            "yield_pressure, yield_strength: give only one of them",
         ),
         (
             'tangent_modulus = "1 GPa"\nyield_pressure = "2 GPa"',
-            "yield_pressure, tangent_modulus: give one of them",
+            "yield_pressure, tangent_modulus: give only one of them",
         ),
         (
             'plasticity = "expanding-cavity"\nyield_pressure = "2 GPa"',

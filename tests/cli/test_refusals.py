@@ -306,7 +306,7 @@ def test_results_are_never_overwritten(refused, case_text, tmp_path):
     (tmp_path / "out" / "curve.csv").write_text("mine")
     for verb in ("run", "surface"):
         message = refused(verb, tmp_path / "case.toml", "-o", tmp_path / "out")
-        assert "not empty, and nothing in it is overwritten; name another one with -o" in message
+        assert "not empty, and nothing in it is overwritten; name another folder with -o" in message
     assert [p.name for p in (tmp_path / "out").iterdir()] == ["curve.csv"]
     assert (tmp_path / "out" / "curve.csv").read_text() == "mine"
 

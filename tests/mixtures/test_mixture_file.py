@@ -69,7 +69,7 @@ def test_a_pair_may_have_an_interface_of_its_own(mixture_text):
         ),
         ('material = "pmma"', 'material = "unobtainium"', "materials.pmma"),
         ('material = "steel"', 'material = "steel"\nradius = "1 mm"', "a wall is flat"),
-        ("[walls.drum]", "[walls.alu]", "walls.alu: is the name of a material, too"),
+        ("[walls.drum]", "[walls.alu]", "walls.alu: is also the name of a material"),
         ("[impact]", "[impacts]", "impacts: unknown key"),
         ('from = "0.1 m/s"', 'from = "2 m/s"', "`from` must be smaller than `to`"),
         ('rms = "0.05 um"', 'rms = "0.05"', "materials.alu.roughness.rms"),

@@ -56,7 +56,7 @@ def test_nothing_is_written_over_what_is_there(tmp_path):
     assert not make_folder(tmp_path / "new" / "folder")
     (tmp_path / "new" / "folder" / LOCK).touch()
     assert not make_folder(tmp_path / "new" / "folder")
-    with pytest.raises(OutputError, match=r"not empty.*another one with -o, or go home"):
+    with pytest.raises(OutputError, match=r"not empty.*another folder with -o, or go home"):
         make_folder(tmp_path / "new", "go home")
     require_new_file(None)
     require_new_file(tmp_path / "new.csv")

@@ -96,7 +96,7 @@ def test_a_small_file_of_a_huge_array_is_refused_by_its_header(refusal, tmp_path
             )
             stream.truncate(stream.tell() + 20000**2)  # a sparse file
     said = refusal(path, size=SIZE)
-    assert "20000 x 20000 values, more than the 67108864 pixels a scan may have" in said
+    assert "20000 x 20000 values, more than the 67108864 pixels that a scan may have" in said
 
 
 def test_what_is_no_regular_file_is_refused_at_once(tmp_path):

@@ -137,8 +137,8 @@ def test_grid_that_reaches_beyond_the_scan_is_refused():
     with pytest.raises(SurfaceError) as caught:
         place_on_grid(ROUGH, Grid((10, 64), (0.1e-6, 0.1e-6)))
     assert str(caught.value) == (
-        "grid: its 1 x 6.4 um reach beyond the surface of 4 x 6.2 um; use a smaller grid or a "
-        "larger surface, or continue the surface with extend"
+        "grid: its area of 1 x 6.4 um reaches beyond the surface of 4 x 6.2 um; use a smaller "
+        "grid or a larger surface, or continue the surface with extend"
     )
 
 

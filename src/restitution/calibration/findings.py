@@ -16,10 +16,13 @@ Array = NDArray[np.float64]
 WIDEST = 4.0
 """Ratio of the ends of a 95 % interval above which a parameter is not identifiable."""
 _CORRELATED = 0.99
-_NO_EFFECT = 0.3  # standard deviations by which doubling a parameter moves the residuals
-_AS_GOOD = 4.0  # Δχ² of another minimum that explains the data as well: two standard deviations
-_SHARE = 0.1  # smallest exponent of a parameter in a combination that is named
-_UNLIKELY = 0.01
+# A parameter has no effect if doubling it changes the residuals by fewer standard deviations.
+_NO_EFFECT = 0.3
+# Another minimum explains the data as well if its χ² is larger by at most this value, which is two
+# standard deviations.
+_AS_GOOD = 4.0
+_SHARE = 0.1  # smallest exponent of a parameter that is named in a combination
+_UNLIKELY = 0.01  # probability of the residuals below which the case does not explain the data
 
 
 def identifiable(found: Fit, parameter: int) -> bool:
@@ -28,7 +31,7 @@ def identifiable(found: Fit, parameter: int) -> bool:
 
 
 def findings(found: Fit) -> list[str]:
-    """One sentence for each thing that speaks against the fitted values; the worst first."""
+    """Write one sentence for each objection to the fitted values, the most serious first."""
     return [
         *_not_identifiable(found),
         *_correlated(found),
@@ -41,7 +44,7 @@ def findings(found: Fit) -> list[str]:
 
 
 def interval_in_words(found: Fit, k: int) -> str:
-    """The 95 % interval of a parameter, in the unit of the case file."""
+    """Format the 95 % interval of a parameter in the unit of the case file."""
     half, x, parameter = found.uncertainty.halves[k], float(found.x[k]), found.parameters[k]
     if math.isinf(half):
         return "unbounded"
@@ -49,10 +52,10 @@ def interval_in_words(found: Fit, k: int) -> str:
 
 
 def combination(found: Fit) -> tuple[dict[str, float], float] | None:
-    """The combination of parameters that the data determine best: exponents by key, half interval.
+    """Find the combination of parameters, a product of powers, that the data determine best.
 
-    The half interval is of the logarithm of the product. None for a single parameter, and where
-    no combination is identifiable.
+    Returns the exponents by key and half of the 95 % interval of the logarithm of the product. None
+    for a single parameter, and if no combination is identifiable.
     """
     direction = found.uncertainty.best_direction
     half = found.uncertainty.half(direction)
@@ -84,7 +87,7 @@ def _not_identifiable(found: Fit) -> Iterator[str]:
 
 
 def product_in_words(exponents: dict[str, float], half: float) -> str:
-    """A product of powers of parameters and its 95 % interval, in percent."""
+    """Format a product of powers of parameters with its 95 % interval in percent."""
     factors = [key if power == 1 else f"{key}^{power:.2f}" for key, power in exponents.items()]
     percent = 100 * (math.exp(half) - 1)
     return f"{' * '.join(factors)} (within {percent:.2g} %)"
@@ -114,7 +117,7 @@ def _bounds(found: Fit) -> Iterator[str]:
 
 
 def _other_minima(found: Fit) -> Iterator[str]:
-    """Other starts that ended elsewhere with a sum of squares about as small."""
+    """Report other minima of the search with about the same sum of squares."""
     best = found.minima[0]
     unit = max(best.squares / max(found.freedom, 1), 1.0)
     for other in found.minima[1:]:
@@ -142,8 +145,8 @@ def _unexplained(found: Fit) -> Iterator[str]:
         rms = math.sqrt(float(np.mean((found.residuals / weights) ** 2)))
         yield (
             f"the case does not explain the data: residuals are {rms:.2g} times their standard "
-            "deviations, those by surface, grid and model included; check what is not free, such "
-            "as elasticity, adhesion and the shape of the roughness"
+            "deviations, which include those due to surface, grid and model; check the values that "
+            "are not free, such as elasticity, adhesion and the shape of the roughness"
         )
 
 

@@ -31,9 +31,11 @@ from restitution.runs.refinement import settled
 
 Array = NDArray[np.float64]
 
-_FINE = 60  # velocities of the fitted curve
-_EQUAL = 0.02  # standard deviation of COR to begin with, if the table has none
-_LEAST_NOISE = 1e-4  # of COR, from residuals: the accuracy of interpolation between velocities
+_FINE = 60  # number of velocities of the fitted curve
+_EQUAL = 0.02  # initial standard deviation of COR if the table of measurements has none
+# Smallest standard deviation of COR that is estimated from residuals, the accuracy of interpolation
+# between velocities.
+_LEAST_NOISE = 1e-4
 
 
 @dataclass(frozen=True)
@@ -49,9 +51,9 @@ class FittedCurve:
 class Fit:
     """The result of a fit.
 
-    `x` holds ln(value/first guess) of each parameter. `fitted` and `deviations` are at the
-    measured velocities, `weights` the deviations that weighed the points. `minima` are the ends of
-    searches from starts far apart, the best first.
+    `x` holds ln(value/first guess) of each parameter. `fitted` and `deviations` are values at the
+    measured velocities. `weights` are the standard deviations that weight the points. `minima` are
+    the ends of searches from starts that are far apart, the best minimum first.
     """
 
     model: CaseModel
@@ -72,7 +74,7 @@ class Fit:
 
     @property
     def factors(self) -> list[float]:
-        """The fitted value of each parameter over its first guess."""
+        """Ratio of the fitted value to the first guess of each parameter."""
         return [math.exp(each) for each in self.x.tolist()]
 
     @property
@@ -87,7 +89,7 @@ class Fit:
 
     @property
     def freedom(self) -> int:
-        """Points less parameters."""
+        """Degrees of freedom: the number of points minus the number of parameters."""
         return self.measured.velocity.size - self.x.size
 
 
@@ -100,10 +102,10 @@ def fit(
 ) -> Fit:
     """Fit the keys `names` of the case file `text` to `measured` restitution.
 
-    Files are relative to `folder`. The impact velocities of the case are those of `measured`, and
-    its values of the free keys are first guesses (`free_parameters`). `progress` is called with a
-    few words after every curve. Raises `CaseError`, and what `solve_at_velocity` raises where the
-    fitted case cannot be solved.
+    Files are relative to `folder`. The impact velocities of `measured` replace the depths of the
+    case. The values of the free keys in the case are first guesses (`free_parameters`). `progress`
+    is called with a few words after every curve. Raises `CaseError`, and the errors of
+    `solve_at_velocity` if the fitted case cannot be solved.
     """
     content = parse_toml(text)
     parse_case(text)
@@ -154,7 +156,10 @@ def _settle_grid(model: CaseModel, start: Array) -> None:
 
 
 def _best(model: CaseModel, data: Data, minima: Sequence[Minimum]) -> Minimum:
-    """The minimum on the case's own grid, from the best on cells twice as large that succeeds."""
+    """Search on the grid of the case, starting from the best minimum on cells twice as large.
+
+    If the case cannot be solved from this minimum, the search starts from the next one.
+    """
     failure: RestitutionError | None = None
     for start in minima:
         try:
@@ -166,7 +171,7 @@ def _best(model: CaseModel, data: Data, minima: Sequence[Minimum]) -> Minimum:
 
 
 def _deviations(model: CaseModel, x: Array, velocity: Array) -> Deviations:
-    """The deviations at `x`; those of the points are the solver's alone."""
+    """Compute the deviations at `x`; the deviations of the points include only the solver."""
     here = model.at(x)
     own = here.restitution(velocity)
     each = np.array([curve.restitution(velocity) for curve in here.curves])
@@ -184,7 +189,7 @@ def _deviations(model: CaseModel, x: Array, velocity: Array) -> Deviations:
 
 
 def _noise(measured: Measured, fitted: Array, parameters: int) -> Array:
-    """Standard deviations of the measured points: as given, or those of the residuals."""
+    """Standard deviations of the measured points: as given, or from the residuals."""
     if measured.deviation is not None:
         return measured.deviation
     freedom = fitted.size - parameters

@@ -1,4 +1,4 @@
-"""Fits as files: `fit.json` (all of it), `fit.csv` (point by point) and the fitted `case.toml`."""
+"""Write a fit as files: `fit.json` (all results), `fit.csv` (points) and the fitted `case.toml`."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from restitution.results.writer import (
     write_table,
 )
 
-_DIGITS = 8  # of fitted values in the case file
+_DIGITS = 8  # number of digits of fitted values in the case file
 _NAMES = ("fit.json", "fit.csv", "case.toml")
 
 
@@ -41,7 +41,7 @@ def write_fit(found: Fit, text: str, out: Path) -> list[Path]:
 
 
 def fitted_case(found: Fit, out: Path) -> str:
-    """The case file with the fitted values, at the measured velocities, for the folder `out`."""
+    """Write the case file with the fitted values and the measured velocities, for `out`."""
     import tomli_w
 
     content = parse_toml(
@@ -57,7 +57,7 @@ def fitted_case(found: Fit, out: Path) -> str:
 
 
 def fit_rows(found: Fit) -> list[dict[str, float | str]]:
-    """A row for each measured point."""
+    """Make a row for each measured point."""
     measured, by = found.measured, found.deviations
     scatter = (by.by_surface**2).sum(axis=0) ** 0.5
     given = measured.deviation
@@ -134,7 +134,7 @@ def _parameter(found: Fit, k: int) -> dict[str, Any]:
 
 
 def _known(value: float) -> float | None:
-    """A standard deviation of a logarithm; None where nothing is known of the parameter."""
+    """Return a standard deviation of a logarithm; None if nothing is known of the parameter."""
     return float(value) if value < math.log(1e6) else None
 
 

@@ -15,25 +15,27 @@ from restitution.errors import CaseError, RestitutionError
 
 Array = NDArray[np.float64]
 
-RANGE = 30.0  # largest factor between the first guess and a searched value, up and down
-# Step of finite differences in ln of a parameter. The solver's noise is 1e-8, but COR of shallow
-# contacts is not smooth over changes of about 1 %, because nodes begin to yield one at a time.
+RANGE = 30.0  # largest factor between the first guess and a searched value, in both directions
+# Step of finite differences in the logarithm of a parameter. The noise of the solver is only 1e-8.
+# But the COR of shallow contacts is not smooth over changes of about 1 %, because nodes begin to
+# yield one at a time.
 _STEP = 0.03
 _SCANNED, _STARTS = (
     15,
     2,
-)  # points beside the first guess, and how many of them a search starts from
-DISTANCE = math.log(1.5)  # of a parameter between two minima that are not the same
-_WORTH = 3.0  # times the least sum of squares of quick searches
-_FAILED = 1e3  # residual, in standard deviations, where the case cannot be solved
-_EVALUATIONS = 40
-# Relative tolerances of the sum of squares and of x. A quick search finds a start for a full one.
+)  # number of points scanned besides the first guess, and number of searches from the best of them
+DISTANCE = math.log(1.5)  # smallest distance in a parameter between two different minima
+_WORTH = 3.0  # a minimum is kept if its sum of squares is at most this multiple of the least sum
+_FAILED = 1e3  # residual (standard deviations) that stands for a case that cannot be solved
+_EVALUATIONS = 40  # largest number of function evaluations of a search
+# Relative tolerances of the sum of squares and of x. A quick search provides the start of a full
+# search.
 _TOLERANCE: dict[Cost, float] = {"full": 1e-4, "quick": 1e-3}
 
 
 @dataclass(frozen=True)
 class Data:
-    """Restitution at impact velocities (m/s) with the deviations that weigh them."""
+    """Restitution at impact velocities (m/s), with the standard deviations that weight it."""
 
     velocity: Array
     restitution: Array
@@ -53,7 +55,8 @@ def jacobian(
 ) -> Array:
     """∂COR/∂x at `velocity` (m/s), shape (velocities, parameters), by finite differences.
 
-    They are `central`, or to one side: to the other where the case cannot be solved there.
+    The differences are `central` or one-sided. If the case cannot be solved on one side, the other
+    side is used.
     """
     here = model.restitution(x, velocity, cost)
     columns = []
@@ -70,14 +73,14 @@ def jacobian(
 
 
 def search(model: CaseModel, data: Data, start: Array, cost: Cost = "full") -> Minimum:
-    """The minimum that is found from `start`. Raises `RestitutionError` if it cannot be solved."""
+    """Search a minimum from `start`. Raises `RestitutionError` if the case cannot be solved."""
     from scipy.optimize import least_squares
 
     def residuals(x: Array) -> Array:
         return (model.restitution(x, data.velocity, cost) - data.restitution) / data.deviation
 
     def safe(x: Array) -> Array:
-        """The residuals, or large ones where the case cannot be solved: the step is refused."""
+        """Return the residuals, or large ones if the case cannot be solved, to reject the step."""
         try:
             return residuals(x)
         except RestitutionError:
@@ -100,9 +103,10 @@ def search(model: CaseModel, data: Data, start: Array, cost: Cost = "full") -> M
 
 
 def search_widely(model: CaseModel, data: Data) -> list[Minimum]:
-    """The minima of quick searches from the first guess and from the best of a scan, best first.
+    """Return the minima of quick searches, the best first.
 
-    Raises `CaseError` if the case can be solved at none of the points.
+    The searches start from the first guess and from the best points of a scan. Raises `CaseError`
+    if the case cannot be solved at any of the points.
     """
     guess, *others = _scan(len(model.parameters))
     found, failure = [], ""
@@ -121,7 +125,7 @@ def search_widely(model: CaseModel, data: Data) -> list[Minimum]:
 
 
 def distinct(minima: Sequence[Minimum]) -> list[Minimum]:
-    """The `minima` that are far from those before, and not much worse than the best of the rest."""
+    """Select the `minima` that are far from earlier ones and not much worse than the best."""
     first, *others = minima
     least = min((other.squares for other in others), default=0.0)
     kept = [first]
@@ -133,7 +137,7 @@ def distinct(minima: Sequence[Minimum]) -> list[Minimum]:
 
 
 def squares(model: CaseModel, data: Data, x: Array) -> float:
-    """The sum of squared weighted residuals of a quick curve; inf if it cannot be solved."""
+    """Sum of squared weighted residuals of a quick curve; inf if the case cannot be solved."""
     try:
         off = model.restitution(x, data.velocity, "quick") - data.restitution
     except RestitutionError:
@@ -147,7 +151,7 @@ def at_bound(x: float) -> bool:
 
 
 def _scan(parameters: int) -> Sequence[Array]:
-    """The first guess, and points spread evenly over the range of the search."""
+    """Return the first guess, and points spread evenly over the range of the search."""
     from scipy.stats.qmc import Halton
 
     even = Halton(parameters, scramble=False).random(_SCANNED + 1)[1:]  # the first is a corner

@@ -16,16 +16,16 @@ from restitution.errors import CaseError, shown
 Array = NDArray[np.float64]
 
 VELOCITY, RESTITUTION = "velocity_m_per_s", "restitution"
-DEVIATIONS = ("restitution_std", "restitution_error")  # the first that the file has
-_BOUNDS = 1e-9, 1e4  # m/s, as of a case file
-_LARGEST = 2**24  # bytes
+DEVIATIONS = ("restitution_std", "restitution_error")  # columns; the first in the file is used
+_BOUNDS = 1e-9, 1e4  # range of velocities (m/s), as in a case file
+_LARGEST = 2**24  # largest size of a file (bytes)
 
 
 @dataclass(frozen=True)
 class Measured:
     """Restitution at impact velocities (m/s, increasing), shape (points,).
 
-    `deviation` has the standard deviations of `restitution`; None where the file has none.
+    `deviation` contains the standard deviations of `restitution`, or is None if the file has none.
     """
 
     velocity: Array
@@ -36,7 +36,7 @@ class Measured:
 def read_measured(path: Path) -> Measured:
     """Read a table of measured restitution. Raises `CaseError`, naming the file, line and column.
 
-    Other columns than those of `Measured` are ignored.
+    Columns that `Measured` does not need are ignored.
     """
     rows = _rows(path)
     columns = list(rows[0][1]) if rows else []
@@ -66,14 +66,14 @@ def read_measured(path: Path) -> Measured:
 
 
 def _rows(path: Path) -> list[tuple[int, dict[str, str]]]:
-    """The rows of the file with their line numbers; it has the two columns that are needed."""
+    """Read the rows of the file with their line numbers; check that the needed columns exist."""
     try:
         kind = path.stat()
         if stat.S_ISDIR(kind.st_mode):
-            raise CaseError(f"{path}: is a folder; name a CSV file, such as table.csv of a law")
+            raise CaseError(f"{path}: is a folder; give a CSV file, such as table.csv of a law")
         if not stat.S_ISREG(kind.st_mode) or kind.st_size > _LARGEST:
             raise CaseError(
-                f"{path}: is not a file of at most {_LARGEST} bytes; name a CSV file with a row "
+                f"{path}: is not a file of at most {_LARGEST} bytes; give a CSV file with a row "
                 "for each impact velocity"
             )
         with open(path, newline="", encoding="utf-8-sig") as file:

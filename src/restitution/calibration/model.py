@@ -1,8 +1,9 @@
 """The restitution of a case over a span of impact velocities, as a function of its parameters.
 
-Depths grow by a constant ratio from the lowest velocity to the highest; between them W_u/W_l is
-interpolated (`RatioCurve`). All curves of a surface use the same depths, more or fewer of them, so
-that the interpolated restitution is smooth in the parameters.
+A curve is computed at depths that grow by a constant ratio, from the lowest velocity to the
+highest. Between these depths W_u/W_l is interpolated (`RatioCurve`). All curves of a surface take
+their depths from the same sequence, so that the interpolated restitution is smooth in the
+parameters.
 """
 
 from __future__ import annotations
@@ -42,12 +43,13 @@ from restitution.runs.messages import naming_keys, require_possible
 
 Array = NDArray[np.float64]
 Cost = Literal["full", "coarser", "quick"]
-"""Own cells and all surfaces; cells twice as large; those with `_FEW` surfaces."""
+"""Cost of a curve: "full" uses the grid of the case and all surfaces, "coarser" uses cells twice as
+large, and "quick" uses cells twice as large and only `_FEW` surfaces."""
 
-_RATIO = 1.3  # of a depth to the one before
-SURFACES = 8  # of a case that names one
-_FEW = 3
-MOST_VELOCITIES = 12  # of the case file that is written
+_RATIO = 1.3  # ratio of each depth to the depth before
+SURFACES = 8  # number of surfaces for a case with one realisation
+_FEW = 3  # number of surfaces of a quick curve
+MOST_VELOCITIES = 12  # largest number of velocities in the case file that is written
 
 
 @dataclass(frozen=True)
@@ -75,7 +77,7 @@ class Curve:
         return np.asarray(np.sqrt(np.clip(ratios, 0.0, 1.0)))
 
     def error(self, velocity: Array, name: Literal["solver_error", "model_error"]) -> Array:
-        """An error of COR at `velocity` (m/s)."""
+        """Interpolate an error of COR at `velocity` (m/s)."""
         known = getattr(self, name)
         return np.asarray(np.interp(np.log(velocity), np.log(self.velocity), known))
 
@@ -96,7 +98,7 @@ class Mean:
         return np.asarray(np.mean([each.restitution(velocity) for each in self.curves], axis=0))
 
     def error(self, velocity: Array, name: Literal["solver_error", "model_error"]) -> Array:
-        """The largest error of COR of any surface at `velocity` (m/s)."""
+        """Largest error of COR at `velocity` (m/s) over the surfaces."""
         return np.asarray(np.max([each.error(velocity, name) for each in self.curves], axis=0))
 
     def resolved_at(self, velocity: Array) -> NDArray[np.bool_]:
@@ -107,10 +109,11 @@ class Mean:
 def curve_of(
     contact: Contact, low: float, high: float, unloading: UnloadingTable, near: float = math.nan
 ) -> tuple[Curve, float]:
-    """The curve of `contact` from velocity `low` to `high` (m/s) at least, and its first depth (m).
+    """Compute the curve of `contact` from velocity `low` to at least `high` (m/s).
 
-    `near` is a depth to begin from, one of those that this function returns for another contact:
-    depths are then a power of the ratio away from it. Raises as `solve` and `solve_at_velocity`.
+    Returns the curve and its first depth (m). `near` is the first depth that this function returned
+    for another contact. With `near`, each depth is `near` times a power of the ratio (not for
+    adhesive contacts). Raises the errors of `solve` and `solve_at_velocity`.
     """
     with naming_keys():
         if math.isnan(near) or contact.adhesive or low == high:
@@ -121,7 +124,8 @@ def curve_of(
                 state = solve(contact, state.indentation / _RATIO)
         rows = [_row(state, unloading)]
         depths = [state.indentation]
-        # The lowest velocity is met within a tolerance.
+        # If `low` equals `high`, the first depth is enough. It meets the velocity within a
+        # tolerance.
         while rows[-1][0] < high and low < high:
             state = solve(contact, _RATIO * state.indentation, start=state)
             row = _row(state, unloading)
@@ -152,8 +156,8 @@ class CaseModel:
     """The case with tables `content` and free `parameters`, at velocities from `low` to `high`.
 
     COR is the mean over several random surfaces with the statistics of the case, because a single
-    random surface does not reproduce the measured surface.
-    Files are relative to `folder`. A point x holds ln(value/first guess) of each parameter.
+    random surface does not reproduce the measured surface. Files are relative to `folder`. A point
+    x holds ln(value/first guess) of each parameter.
     """
 
     content: Mapping[str, Any]
@@ -167,7 +171,7 @@ class CaseModel:
     _first_depths: dict[tuple[int, Cost], float] = field(default_factory=dict)
 
     def text(self, x: Array, velocities: Sequence[float] | None = None, digits: int = 17) -> str:
-        """The case file at `x`, with `velocities` (m/s) instead of its depths."""
+        """Write the case file at `x`, with `velocities` (m/s) instead of its depths."""
         tables = with_factors(self.content, self.parameters, np.exp(x), digits)
         for name in DEPTHS:
             tables.pop(name, None)
@@ -176,11 +180,11 @@ class CaseModel:
         return tomli_w.dumps(tables)
 
     def case(self, x: Array) -> Case:
-        """The case at `x`. Raises `CaseError`."""
+        """Make the case at `x`. Raises `CaseError`."""
         return parse_case(self.text(x))
 
     def at(self, x: Array, cost: Cost = "full") -> Mean:
-        """The curve at `x`, the mean over surfaces; raises as `curve_of`."""
+        """Compute the mean curve over the surfaces at `x`. Raises the errors of `curve_of`."""
         key = (x.tobytes(), cost)
         if key not in self._known:
             self._known[key] = self._computed(x, cost)
@@ -188,7 +192,10 @@ class CaseModel:
 
     @property
     def surfaces(self) -> int:
-        """The realisations of the case, or `SURFACES` if it names one; 1 without roughness."""
+        """Number of surfaces: the realisations of the case if several; else `SURFACES`.
+
+        It is 1 without roughness.
+        """
         case = self.case(np.zeros(len(self.parameters)))
         if not case.roughness:
             return 1
@@ -210,7 +217,7 @@ class CaseModel:
         return Mean(tuple(curves))
 
     def require_possible(self, x: Array) -> None:
-        """Raise `CaseError` or `SurfaceError` where the case at `x` has no meaning."""
+        """Raise `CaseError` or `SurfaceError` if the case at `x` is meaningless."""
         case = self.case(x)
         require_possible(case.contact(self.folder), deepest_indentation(case))
 
@@ -220,7 +227,7 @@ class CaseModel:
 
 
 def velocities_to_run(measured: Array) -> list[float]:
-    """Velocities (m/s) of the fitted case: the measured ones, or `MOST_VELOCITIES` over them."""
+    """Velocities (m/s) of the fitted case: all measured, or `MOST_VELOCITIES` in their span."""
     own = np.unique(measured)
     if own.size <= MOST_VELOCITIES:
         return [float(V) for V in own]

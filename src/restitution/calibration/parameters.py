@@ -18,15 +18,16 @@ from restitution.sweeps.sweep import put
 Array = NDArray[np.float64]
 
 _TABLES = ("first", "second", "interface", "roughness")
-_CHOICES = {"seed", "realisations", "place", "channel", "crop", "outliers"}  # no physical values
+# Keys whose values are choices, not physical quantities, so that they cannot be fitted.
+_CHOICES = {"seed", "realisations", "place", "channel", "crop", "outliers"}
 
 
 @dataclass(frozen=True)
 class Parameter:
     """A free key of a case file, such as "roughness.rms".
 
-    `written` is its first guess as the file has it ("0.1 um"), and `value` the same in the SI
-    `unit` ("1" for a number).
+    `written` is the first guess as written in the file ("0.1 um"). `value` is the first guess in
+    the SI `unit` ("1" for a number).
     """
 
     key: str
@@ -35,13 +36,13 @@ class Parameter:
     unit: str
 
     def scaled(self, factor: float, digits: int = 17) -> str | float:
-        """The first guess times `factor`, as a case file has it."""
+        """Multiply the first guess by `factor`, in the notation of a case file."""
         if isinstance(self.written, str):
             return scaled(self.written, factor, digits)
         return float(f"{self.written * factor:.{digits}g}")
 
     def text(self, factor: float) -> str:
-        """The first guess times `factor`, to four digits, for messages."""
+        """Format the first guess times `factor` with four digits, for messages."""
         return str(self.scaled(factor, 4))
 
 
@@ -51,7 +52,7 @@ def with_factors(
     factors: Array,
     digits: int = 17,
 ) -> dict[str, Any]:
-    """The tables of a case with each parameter times its factor, to so many digits."""
+    """Return the tables of a case with each parameter multiplied by its factor."""
     case = copy.deepcopy(dict(content))
     for parameter, factor in zip(parameters, factors.tolist(), strict=True):
         put(case, parameter.key, parameter.scaled(factor, digits))
@@ -59,8 +60,9 @@ def with_factors(
 
 
 def free_parameters(content: Mapping[str, Any], names: Sequence[str]) -> tuple[Parameter, ...]:
-    """The parameters that `names` mean: whole keys, or the last part of a key if only one has it.
+    """Find the parameters with these `names`.
 
+    A name is a whole key, or the last part of a key if no other key of the case ends with it.
     Raises `CaseError` for a name that is not the key of a positive value in the case.
     """
     values = dict(_values(content))
@@ -74,7 +76,7 @@ def free_parameters(content: Mapping[str, Any], names: Sequence[str]) -> tuple[P
 
 
 def _values(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
-    """Keys and values; of several [[roughness]] tables by their number, from 1."""
+    """Yield keys and values; keys of several [[roughness]] tables contain their number, from 1."""
     for name, value in table.items():
         if isinstance(value, dict):
             yield from _values(value, f"{before}{name}.")
@@ -86,7 +88,7 @@ def _values(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, A
 
 
 def _key(name: str, values: Mapping[str, Any]) -> str:
-    """The key of the case that `name` means."""
+    """Find the key of the case for `name`."""
     found = [key for key in values if name in (key, key.rpartition(".")[2])]
     if len(found) > 1:
         raise CaseError(f"--free: {name} may be {' or '.join(found)}; name the whole key")
@@ -113,7 +115,7 @@ def _parameter(key: str, written: Any) -> Parameter:
 
 
 def _reason(key: str, written: Any) -> str | None:
-    """Why the value of `key` cannot be free; None where it can."""
+    """Say why the value of `key` cannot be free; None if it can."""
     table, _, last = key.partition(".")
     if table not in _TABLES or _CHOICES & set(last.split(".")):
         return f"cannot be free; only values of {', '.join(f'[{name}]' for name in _TABLES)} can"

@@ -1,15 +1,18 @@
 """How well measured restitution determines parameters: covariance, intervals, combinations.
 
-Parameters are logarithms. A deviation ΔCOR of data or model moves them by P ΔCOR, where
-P = (AᵀA)⁻¹Aᵀ/σ is the pseudo-inverse of the scaled Jacobian A = J/σ. With deviations that are
-independent between points, those of other surfaces and that of the grid,
+Parameters are logarithms. A deviation ΔCOR of data or model changes the parameters by P ΔCOR, where
+P = (AᵀA)⁻¹Aᵀ/σ is the pseudo-inverse of the scaled Jacobian A = J/σ. Three kinds of deviations
+contribute to the covariance C of the parameters:
 
-    C = P diag(s²) Pᵀ + 2 S/n + (P Δ_grid)(P Δ_grid)ᵀ,  S = Σ (P Δ)(P Δ)ᵀ/(n − 1),
+    C = P diag(s²) Pᵀ + 2 S/n + (P Δ_grid)(P Δ_grid)ᵀ,  S = Σ (P Δ)(P Δ)ᵀ/(n − 1).
 
-where Δ are the differences of n surfaces from their mean, which was fitted. The second term is the
-variance of the difference between two such means, the fitted one and that over n places of impact.
-If all impacts met one place, it would be (1 + 1/n) S. Intervals take Student's t, with degrees of
-freedom after Welch and Satterthwaite (Satterthwaite 1946).
+In the first term, s are deviations that are independent between points. In the second term, Δ are
+the differences of n surfaces from their mean; the mean was fitted. This term is the variance of the
+difference between two means: the fitted mean, and the mean over n places of impact. If all impacts
+met one place, it would be (1 + 1/n) S. In the third term, Δ_grid is the deviation due to the grid.
+
+Intervals use Student's t, with degrees of freedom after Welch and Satterthwaite (Satterthwaite
+1946).
 """
 
 from __future__ import annotations
@@ -24,19 +27,20 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 CONFIDENCE = 0.95
-# Singular values of A count as this at least: such a direction is known within a factor e^1000.
+# Smaller singular values of A are replaced by this value. A direction with this value is known only
+# within a factor of e^1000.
 _LEAST = 1e-3
-_UNBOUNDED = math.log(1e6)  # of a half interval
+_UNBOUNDED = math.log(1e6)  # half intervals of a logarithm above this value count as infinite
 
 
 @dataclass(frozen=True)
 class Deviations:
-    """What moves COR away from the fitted curve, at the measured velocities.
+    """Deviations of COR from the fitted curve at the measured velocities, by their causes.
 
-    `random` are standard deviations of the points, shape (points,), known from `freedom` degrees
-    of freedom. `surfaces` are differences of each surface from their mean, shape (surfaces,
-    points), and `grid` is the difference on cells twice as large, None if unknown. `model` is the
-    error by the model of plasticity, which intervals do not include.
+    `random` are standard deviations of the points, shape (points,), estimated with `freedom`
+    degrees of freedom. `surfaces` are the differences of each surface from the mean over surfaces,
+    shape (surfaces, points). `grid` is the difference on cells twice as large, None if unknown.
+    `model` is the error due to the model of plasticity, which intervals do not include.
     """
 
     random: Array
@@ -49,7 +53,7 @@ class Deviations:
     def by_surface(self) -> Array:
         """Deviations of COR with covariance 2 S/n, shape (surfaces, points).
 
-        This is the covariance of the difference between two means over n surfaces; S is the
+        2 S/n is the covariance of the difference between two means over n surfaces, where S is the
         covariance of COR between single surfaces.
         """
         n = len(self.surfaces)
@@ -62,7 +66,7 @@ class Deviations:
 
     @property
     def systematic(self) -> Array:
-        """Standard deviations of COR by surface and grid, and `random`."""
+        """Standard deviations of COR due to surface, grid and `random` deviations together."""
         squares = self.random**2 + (self.by_surface**2).sum(axis=0) + self.by_grid**2
         return np.asarray(np.sqrt(squares))
 
@@ -77,7 +81,7 @@ class Uncertainty:
 
     @classmethod
     def of(cls, jacobian: Array, weights: Array, deviations: Deviations) -> Uncertainty:
-        """The uncertainty for ∂COR/∂x `jacobian` and the deviations σ that weighed the points."""
+        """Compute it from ∂COR/∂x (`jacobian`) and the deviations σ that weight the points."""
         scaled = jacobian / weights[:, None]
         U, s, Vt = np.linalg.svd(scaled, full_matrices=False)
         P = Vt.T @ np.diag(1 / np.maximum(s, _LEAST)) @ U.T / weights
@@ -85,7 +89,7 @@ class Uncertainty:
 
     @cached_property
     def parts(self) -> dict[str, Array]:
-        """The covariances by noise, surface and grid."""
+        """The parts of the covariance due to noise, surface and grid."""
         P, by = self.sensitivity, self.deviations
         surfaces = by.by_surface @ P.T
         return {
@@ -96,19 +100,19 @@ class Uncertainty:
 
     @cached_property
     def _unknown(self) -> Array:
-        """The covariance along directions that change COR by nothing at all."""
+        """The covariance along directions in which COR does not change at all."""
         _, s, Vt = np.linalg.svd(self.scaled, full_matrices=False)
         lost = Vt[s < _LEAST]
         return np.asarray(lost.T @ lost / _LEAST**2)
 
     @cached_property
     def covariance(self) -> Array:
-        """C, shape (parameters, parameters)."""
+        """Covariance C of the parameters, shape (parameters, parameters)."""
         return np.asarray(sum(self.parts.values()))
 
     @cached_property
     def correlation(self) -> Array:
-        """The correlations of C."""
+        """Correlation matrix of the parameters."""
         deviation = np.sqrt(np.diag(self.covariance))
         safe = np.where(deviation > 0, deviation, 1.0)
         found = self.covariance / np.outer(safe, safe)
@@ -116,7 +120,7 @@ class Uncertainty:
         return np.asarray(found)
 
     def half(self, direction: Array) -> float:
-        """Half of the 95 % interval of the logarithm along `direction`; inf beyond a factor 1e6."""
+        """Half of the 95 % interval along `direction`; inf beyond a factor of 1e6."""
         from scipy.stats import t
 
         variances = {name: float(direction @ C @ direction) for name, C in self.parts.items()}
@@ -139,12 +143,12 @@ class Uncertainty:
         return [self.half(axis) for axis in np.eye(self.scaled.shape[1])]
 
     def deviation(self, part: str) -> Array:
-        """The standard deviation of each logarithm by a part of the covariance."""
+        """Standard deviation of each logarithm due to one part of the covariance."""
         return np.asarray(np.sqrt(np.diag(self.parts[part])))
 
     @cached_property
     def by_model(self) -> Array:
-        """How far each logarithm moves if COR of the model is off by its error at every point."""
+        """Change of each logarithm if COR deviates by the error of the model at every point."""
         return np.asarray(np.abs(self.sensitivity @ self.deviations.model))
 
     @cached_property
@@ -155,17 +159,17 @@ class Uncertainty:
 
     @cached_property
     def best_direction(self) -> Array:
-        """The direction of the logarithms that the data determine best, its largest entry 1."""
+        """Direction in the logarithms that the data determine best, with largest entry 1."""
         _, _, Vt = np.linalg.svd(self.scaled, full_matrices=False)
         direction: Array = Vt[0]
         return np.asarray(direction / direction[np.abs(direction).argmax()])
 
     def effect(self, parameter: int) -> float:
-        """Standard deviations by which the residuals move when a parameter is doubled."""
+        """Change of the residuals, in standard deviations, when a parameter is doubled."""
         return math.log(2) * float(np.linalg.norm(self.scaled[:, parameter]))
 
     def band(self, jacobian: Array) -> Array:
-        """Half of the 95 % interval of the fitted COR, for ∂COR/∂x `jacobian` at other points."""
+        """Half of the 95 % interval of the fitted COR at points with ∂COR/∂x `jacobian`."""
         noise = (jacobian @ self.sensitivity * self.deviations.random) ** 2
         whole = noise.sum(axis=1)
         for each in (*self.deviations.by_surface, self.deviations.by_grid):

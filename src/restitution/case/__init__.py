@@ -1,1 +1,1 @@
-"""The case file: pure data in SI units. Nothing is solved here."""
+"""The case file: reading, checks, and its content as data in SI units. Nothing is solved here."""

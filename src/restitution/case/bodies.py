@@ -40,7 +40,7 @@ def _none_if_flat(value: Any) -> Any:
 
 
 class BodyTable(Table):
-    """`[first]` and `[second]`; a material's name in place of the table means a flat wall."""
+    """The tables `[first]` and `[second]`. A material name instead of a table means a flat wall."""
 
     material: str | None = None
     radius: Annotated[Length | None, BeforeValidator(_none_if_flat)]
@@ -53,7 +53,7 @@ class BodyTable(Table):
     @model_validator(mode="before")
     @classmethod
     def _with_material(cls, value: Any) -> Any:
-        """Fill omitted keys with values of the library."""
+        """Fill in omitted keys with values of the materials library."""
         table = {"material": value, "radius": "flat"} if isinstance(value, str) else value
         if not isinstance(table, dict) or not isinstance(table.get("material"), str):
             return table
@@ -66,7 +66,7 @@ class BodyTable(Table):
         return {**taken, **table, "material": known.key}
 
     def body(self) -> Body:
-        """The body this table describes."""
+        """Make the body that this table describes."""
         radius = math.inf if self.radius is None else self.radius
         return Body(radius, self.youngs_modulus, self.poissons_ratio, self.density)
 
@@ -86,9 +86,10 @@ DEFAULT_RULE: YieldRule = (FULL_CONSTRAINT, "yield_strength")
 
 
 def _pressure_or_rule(value: Any) -> float | YieldRule | None:
-    """A pressure (Pa), infinite for "elastic"; or a rule, a factor and its quantity.
+    """Read a yield pressure: a pressure (Pa; infinite for "elastic") or a rule.
 
-    "2.8 Y" is the rule (2.8, "yield_strength"), "hardness" the rule (1.0, "hardness").
+    A rule is a factor and the quantity that it multiplies: "2.8 Y" gives (2.8, "yield_strength"),
+    and "hardness" gives (1.0, "hardness").
     """
     if value is None:
         return None
@@ -109,7 +110,7 @@ def _pressure_or_rule(value: Any) -> float | YieldRule | None:
 
 @dataclass(frozen=True)
 class Yielding:
-    """The yield model of a contact: arguments of `Contact` (Pa), and their origin in words."""
+    """The yield model of a contact: arguments of `Contact` (Pa), and a text on their origin."""
 
     source: str
     plasticity: Plasticity = "equilibrium"
@@ -130,7 +131,7 @@ class Yielding:
 
 
 class InterfaceTable(Table):
-    """`[interface]`; by default, bodies of known strength yield, and there is no adhesion."""
+    """The table `[interface]`. By default, bodies of known strength yield and do not adhere."""
 
     yield_strength: Pressure | None = None
     tangent_modulus: Pressure | None = None
@@ -148,9 +149,9 @@ class InterfaceTable(Table):
             for key in ("yield_strength", "tangent_modulus"):
                 if getattr(self, key) is not None:
                     raise ValueError(
-                        f"yield_pressure, {key}: give one of them; yield_pressure bounds the "
-                        "pressure by a constant, yield_strength (of a tensile test) by a value "
-                        "that grows with deformation"
+                        f"yield_pressure, {key}: give only one of them; with yield_pressure the "
+                        "pressure bound is constant, with yield_strength (of a tensile test) the "
+                        "bound grows with deformation"
                     )
             if grows:
                 raise ValueError(
@@ -168,15 +169,15 @@ class InterfaceTable(Table):
 
     @property
     def adhesion(self) -> float:
-        """The work of adhesion (J/m²); zero if it is left out."""
+        """The work of adhesion (J/m²); zero if the key is omitted."""
         return self.work_of_adhesion or 0.0
 
     def yielding(self, first: BodyTable, second: BodyTable) -> Yielding:
-        """The yield model of the contact of two bodies, of which the softer one yields.
+        """Choose the yield model of the contact of two bodies, of which the softer body yields.
 
-        By default a body of known yield strength has a pressure bound that grows with deformation;
-        a body without one (glass) yields at its hardness. Raises `CaseError` if a value that the
-        model needs is unknown.
+        By default, a body of known yield strength has a pressure bound that grows with deformation.
+        A body without a yield strength (glass) yields at its hardness. Raises `CaseError` if a
+        value that the model needs is unknown.
         """
         if self.plasticity in ("equilibrium", "truncated"):
             rule = DEFAULT_RULE if self.yield_pressure is None else self.yield_pressure
@@ -217,7 +218,7 @@ class InterfaceTable(Table):
     def _at_a_pressure(
         self, rule: float | YieldRule, first: BodyTable, second: BodyTable
     ) -> Yielding:
-        """Yielding at the pressure that `rule` gives; a body without Y yields at its hardness."""
+        """Make the model for the pressure of `rule`; a body without Y yields at its hardness."""
         model = self.plasticity or "equilibrium"
         if isinstance(rule, float):
             source = "elastic" if math.isinf(rule) else "given"

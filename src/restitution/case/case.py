@@ -1,4 +1,4 @@
-"""The whole case file: all tables, as data in SI units."""
+"""The class `Case`: all tables of a case file, as data in SI units."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from restitution.surfaces.refine import divided
 
 
 def _one_or_more(value: Any) -> Any:
-    """A tuple of one table, or of all tables of a list."""
+    """Put a single table, or all tables of a list, into a tuple."""
     return tuple(value) if isinstance(value, list) else (value,)
 
 
@@ -66,7 +66,7 @@ class Case(Table):
             self._check_factors(self.grid.refine)
         if len({part.realisations for part in self.roughness} - {1}) > 1:
             raise ValueError(
-                "roughness.realisations: differs between the tables; give all the same number"
+                "roughness.realisations: differs between the tables; give the same number in all"
             )
         return self
 
@@ -107,7 +107,7 @@ class Case(Table):
         return max((part.realisations for part in self.roughness), default=1)
 
     def realisation(self, number: int) -> Case:
-        """This case with only surface `number` (from 0), which is added to seeds and places."""
+        """This case with only surface `number` (from 0); `number` is added to seeds and places."""
         parts = tuple(
             part.variant(number).model_copy(update={"realisations": 1})
             if part.realisations > 1
@@ -117,7 +117,7 @@ class Case(Table):
         return self.model_copy(update={"roughness": parts})
 
     def variant(self, number: int) -> Case:
-        """This case with another surface of its kind: `number` is added to seeds and places."""
+        """This case with another surface of its kind; `number` is added to seeds and places."""
         parts = tuple(
             part.variant(number).model_copy(update={"realisations": 1}) for part in self.roughness
         )
@@ -128,12 +128,12 @@ class Case(Table):
         return any(body.from_library() for body in (self.first, self.second) if body is not None)
 
     def refined(self, factor: int) -> Case:
-        """This case with cells `factor` times smaller than those of [grid]; replaces `refine`."""
+        """This case with `refine` = `factor`: cells `factor` times smaller than those of [grid]."""
         grid = (self.grid or GridTable()).model_copy(update={"refine": factor})
         return self.model_copy(update={"grid": grid})
 
     def factors(self) -> list[int]:
-        """`refine` of every depth, from the shallowest to the deepest."""
+        """Refinement factor of every depth, from the shallowest to the deepest."""
         if self.grid is not None and isinstance(self.grid.refine, tuple):
             return list(self.grid.refine)
         return [1 if self.grid is None else self.grid.factor] * len(self.depths())
@@ -153,7 +153,7 @@ class Case(Table):
         return self.interface.yielding(self.first, self.second or self.first)
 
     def surface(self, folder: Path) -> Surface:
-        """The composite roughness on the grid; files are relative to `folder`."""
+        """Make the composite roughness on the grid; files are relative to `folder`."""
         grid, factor = self._own_grid(), 1 if self.grid is None else self.grid.factor
         if grid is None:
             (scan,) = cast(tuple[MeasuredRoughness], self.roughness)  # checked by _whole
@@ -163,7 +163,7 @@ class Case(Table):
         return composite([part.surface(grid, folder, factor) for part in self.roughness])
 
     def contact(self, folder: Path) -> Contact:
-        """The contact before the first solve; files are relative to `folder`.
+        """Make the contact before loading; files are relative to `folder`.
 
         Raises `CaseError` if a run needs more memory than is available.
         """

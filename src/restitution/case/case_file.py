@@ -28,9 +28,9 @@ from restitution.case.schema import (
 from restitution.errors import CaseError, SurfaceError, shown
 from restitution.surfaces.generate import RoughnessKind
 
-_LARGEST = 2**22  # bytes of a case file
-_DEEPEST = 32  # nested tables and lists, and parts of a dotted key
-_NAMED = 3  # further wrong keys that a message names
+_LARGEST = 2**22  # largest size of a case file (bytes)
+_DEEPEST = 32  # deepest nesting of tables and lists, and most parts of a dotted key
+_NAMED = 3  # number of further wrong keys that a message names
 _KINDS = (*get_args(RoughnessKind), "measured")
 
 
@@ -42,23 +42,23 @@ def read_case(path: Path) -> tuple[Case, str]:
 
 
 def read_text(path: Path) -> str:
-    """The text of a case file. Raises `CaseError`, naming the file."""
+    """Read the text of a case file. Raises `CaseError`, naming the file."""
     try:
         kind = path.stat()
         if not (stat.S_ISREG(kind.st_mode) or stat.S_ISDIR(kind.st_mode)):
             raise CaseError(
-                f"{path}: is not a regular file (a device, pipe or socket); name a case file"
+                f"{path}: is not a regular file (a device, pipe or socket); give a case file"
             )
         if kind.st_size > _LARGEST:
             raise CaseError(
                 f"{path}: has {kind.st_size} bytes, and a case file may have at most {_LARGEST}; "
-                "name a case file"
+                "give a case file"
             )
         return path.read_text(encoding="utf-8-sig")  # editors on Windows write a byte order mark
     except UnicodeDecodeError:
         raise CaseError(f"{path}: is not a text file; a case file is TOML in UTF-8") from None
     except OSError as error:
-        raise CaseError(f"{path}: cannot be read ({error.strerror}); name a case file") from None
+        raise CaseError(f"{path}: cannot be read ({error.strerror}); give a case file") from None
 
 
 @contextmanager
@@ -77,7 +77,7 @@ def parse_toml(text: str) -> dict[str, Any]:
         content = tomllib.loads(text)
         _check_depth(content)
         return content
-    except CaseError:  # is also a ValueError
+    except CaseError:  # a CaseError is also a ValueError
         raise
     except RecursionError:
         raise _too_deep() from None
@@ -139,11 +139,11 @@ def _without_key(problem: Any) -> str:
 
 
 def in_words(error: ValidationError, root: type[Table] = Case, before: str = "") -> str:
-    """One line for the problems of a file: the first, and the keys of others.
+    """Describe the problems of a file in one line: the first problem, and the keys of others.
 
     `root` is the table that was checked, and `before` the dotted path of its key in the file.
     """
-    # Report unknown keys first: a misspelt key explains a missing one.
+    # Report unknown keys first, because a misspelt key is the usual reason for a missing key.
     problems = error.errors(include_url=False)
     problems.sort(key=lambda problem: problem["type"] != "extra_forbidden")
     where = f"{before}." if before else ""
@@ -151,7 +151,7 @@ def in_words(error: ValidationError, root: type[Table] = Case, before: str = "")
 
 
 def _others(problems: list[Any]) -> str:
-    """The other wrong keys, up to three by name, as the end of a message."""
+    """List the other wrong keys, up to three by name, for the end of a message."""
     names = list(dict.fromkeys(_key_of(problem) for problem in problems))[1:]
     if not names:
         return ""
@@ -159,7 +159,7 @@ def _others(problems: list[Any]) -> str:
     return f" (also wrong: {', '.join(names[:_NAMED] + more)})"
 
 
-# What each pydantic error type expects.
+# What the value should be, for each type of pydantic error.
 _WORDS = {
     "model_type": "a table",
     "model_attributes_type": "a table",

@@ -11,10 +11,10 @@ from restitution.theory import JKR, FirstYield, Hertz, ThorntonNing
 
 
 def deepest_indentation(case: Case) -> float:
-    """The deepest indentation (m), an estimate unless the case prescribes it.
+    """The deepest indentation (m); an estimate unless the case prescribes it.
 
-    For a load it is that of smooth elastic bodies, for an impact velocity that of smooth bodies
-    which yield as Thornton and Ning's do.
+    For a load, it is the indentation of smooth elastic bodies. For an impact velocity, it is the
+    indentation of smooth bodies that yield according to Thornton and Ning.
     """
     last, pair = case.depths()[-1], case.pair()
     if case.indentation is not None:
@@ -22,14 +22,18 @@ def deepest_indentation(case: Case) -> float:
     if case.load is not None:
         return float(Hertz(pair.radius, pair.contact_modulus).indentation(last))
     assert pair.mass is not None  # Case._check_masses
-    # E* exceeds any contact pressure, so it stands for an infinite yield pressure.
+    # For elastic bodies p_y is infinite, but ThorntonNing needs a finite value. E* exceeds any
+    # contact pressure.
     p_y = min(case.yielding().hardness, pair.contact_modulus)
     smooth = ThorntonNing(pair.radius, pair.contact_modulus, p_y)
     return float(smooth.indentation_from_velocity(last, pair.mass))
 
 
 def derived_quantities(case: Case, contact: Contact) -> dict[str, float | None]:
-    """R*, E*, m*, yield and predicted contact; keys carry SI units; None if not applicable."""
+    """Return R*, E*, m*, yield and predicted contact; None if a quantity does not apply.
+
+    The keys end with the SI units.
+    """
     pair, p_y = contact.pair, contact.hardness
     deepest = deepest_indentation(case)
     radius = predicted_radius(pair, deepest, p_y)

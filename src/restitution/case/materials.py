@@ -1,4 +1,4 @@
-"""A library of materials: elasticity, density, yield strength and hardness, each sourced."""
+"""Library of materials: elasticity, density, yield strength and hardness, with their sources."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Property(Table, Generic[Quantity]):
     """One quantity of a material, in SI units.
 
     `low` and `high` are the spread among sources and grades. `verified` means that `value` was read
-    in the source or a copy of it, or computed from values read there.
+    in the source or in a copy of the source, or computed from values read there.
     """
 
     value: Quantity
@@ -45,7 +45,7 @@ class Material(Table):
     """A material: bulk E and ν, true density (kg/m³), and, if known, Y and H (Pa).
 
     `yield_strength` Y is uniaxial; `hardness` H is a mean contact pressure, force over projected
-    area. `note` holds for every value.
+    area. `note` applies to all values of the material.
     """
 
     key: Text
@@ -113,5 +113,5 @@ def materials() -> dict[str, Material]:
 
 
 def _plain(name: str) -> str:
-    """`name` in the form of the keys: lower case, with hyphens."""
+    """Convert `name` to the form of the keys: lower case, with hyphens."""
     return re.sub(r"[\s_-]+", "-", name.strip().lower())

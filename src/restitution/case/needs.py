@@ -1,8 +1,8 @@
 """Estimates of the memory that a case needs, made before any array is allocated.
 
-The constants are peak resident sizes of whole processes on grids of 512² to 2048² nodes, of which
-up to 90 % were in contact. They are rounded up: an estimate exceeds the true size by a factor of up
-to 1.5.
+The constants were measured as peak resident sizes of whole processes on grids of 512² to 2048²
+nodes, with up to 90 % of the nodes in contact. They are rounded up, so an estimate can be up to 1.5
+times the true size.
 """
 
 from __future__ import annotations
@@ -12,17 +12,20 @@ import math
 from restitution.numerics import memory
 from restitution.numerics.grid import Grid
 
-_PROCESS = 250e6  # bytes: the program, its libraries and figures
-_SURFACE = 75.0  # bytes per node: a generated surface
-_SKEWED = 115.0  # the same with skewness or kurtosis
-_MARGIN = 60.0  # per node of the enlarged grid from which a nonperiodic surface is cut
-_ENLARGED = 4.0  # nodes of the enlarged grid over nodes of the grid, at most
-_SCAN = 60.0  # per pixel of a scan: read, levelled, its spectrum
-_TWIN = 75.0  # per node
+_PROCESS = 250e6  # bytes for the program, its libraries and figures
+# Bytes per node of the grid, unless stated otherwise.
+_SURFACE = 75.0  # a generated surface
+_SKEWED = 115.0  # a generated surface with skewness or kurtosis
+_MARGIN = 60.0  # per node of the enlarged grid from which a non-periodic surface is cut
+_SCAN = 60.0  # per pixel of a scan: reading, levelling and its spectrum
+_TWIN = 75.0  # a statistical twin of a scan
 _BAND = 90.0  # per node of the finest band of a twin whose heights are adjusted
 _DESCRIBED = 150.0  # autocorrelation, spectrum and page of `restitution surface`
+# A run without adhesion, for each model of plasticity; and a run with adhesion.
 _MODELS = {"none": 115.0, "equilibrium": 140.0, "expanding-cavity": 190.0, "truncated": 190.0}
 _ADHESIVE = 150.0
+# Largest ratio of the number of nodes of the enlarged grid to that of the grid.
+_ENLARGED = 4.0
 
 
 def nodes_of(grid: Grid) -> int:

@@ -1,4 +1,4 @@
-"""Warnings about keys that a case leaves out, and the values that are used instead."""
+"""Warnings about keys that a case omits; they state which values are used instead."""
 
 from __future__ import annotations
 
@@ -8,13 +8,15 @@ from restitution.case.case import Case
 from restitution.case.roughness import GeneratedRoughness
 from restitution.theory import JKR, Hertz
 
-TYPICAL_ADHESION = 0.05  # J/m²: within the 0.01 to 0.09 of Ghanbarzadeh et al. (2019)
-# Adhesion lowers e² by (V_s/V)² (Thornton and Ning 1998): at 8.5 V_s, e = 0.7 falls by 0.01.
+# Typical work of adhesion (J/m²), within the range 0.01 to 0.09 of Ghanbarzadeh et al. (2019).
+TYPICAL_ADHESION = 0.05
+# Impact velocity, in sticking velocities V_s, below which adhesion matters. Adhesion lowers e² by
+# (V_s/V)² (Thornton and Ning 1998), so at V = 8.5 V_s it lowers e = 0.7 by 0.01.
 _MATTERS = 8.5
 
 
 def omissions(case: Case) -> list[str]:
-    """One warning for each omitted key for which a default or ideal value is used."""
+    """Make one warning for each omitted key for which a default or ideal value is used."""
     lines = (_default_yield(case), _no_adhesion(case), _no_shortest_wave(case))
     return [line for line in lines if line]
 
@@ -22,8 +24,8 @@ def omissions(case: Case) -> list[str]:
 def adhesion_matters_below(case: Case) -> float | None:
     """Impact velocity (m/s) below which adhesion would change COR by more than about 0.01.
 
-    Computed for smooth bodies, so it is an upper bound for rough ones. None if the case gives a
-    work of adhesion or lacks a density.
+    The velocity is computed for smooth bodies, so it is an upper bound for rough bodies. None if
+    the case gives a work of adhesion or lacks a density.
     """
     pair = case.pair()
     if case.interface.work_of_adhesion is not None or pair.mass is None:
@@ -76,7 +78,7 @@ def _no_shortest_wave(case: Case) -> str | None:
         if part.shortest is None:
             return (
                 f'roughness.shortest is left out: kind = "{part.kind}" has no shortest wave, so '
-                "the grid sets it to two spacings; COR of shallow contacts depends on it, and "
-                "total_error does not include this; give roughness.shortest"
+                "the shortest wave is two grid spacings; COR of shallow contacts depends on the "
+                "shortest wave, and total_error does not include this; give roughness.shortest"
             )
     return None

@@ -1,4 +1,4 @@
-"""Dimensional values in a case file: strings with a number and a unit, converted to SI."""
+"""Physical quantities in a case file: texts with a number and a unit, converted to SI units."""
 
 from __future__ import annotations
 
@@ -12,15 +12,16 @@ from pydantic import BeforeValidator
 
 from restitution.errors import shown
 
-# One number, then one unit expression of names, powers, * and /. Arithmetic on numbers is excluded,
-# so that a case file cannot make the unit parser compute. A digit directly after a name is its
-# power: "g/cm3" is g/cm^3.
+# A quantity is one number followed by one unit expression of names, powers, * and /. Arithmetic
+# with numbers is excluded, so that a case file cannot make the unit parser compute. A digit
+# directly after a name is a power: "g/cm3" is g/cm^3.
 _NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?"
 _UNIT = r"[^\W\d]+(?:\s*(?:\^|\*\*)\s*-?\d|\d)?"
 _POWER = re.compile(r"(?<=[^\W\d])(\d)")
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*((?:{_UNIT})(?:\s*[*/·]\s*{_UNIT})*)\s*", re.UNICODE)
 
-# Characters of a quantity: patterns and the unit parser would take too long for longer texts.
+# Largest length of a quantity (characters). The patterns and the unit parser would take too long
+# for longer texts.
 LONGEST = 100
 
 _EXAMPLES = {
@@ -41,7 +42,7 @@ _NAMES = {
     "rad": "an angle",
     "m/s": "a velocity",
 }
-# Usual units, suggested when one is written in the wrong case.
+# Usual units. They are suggested if a unit is written with wrong upper or lower case.
 _USUAL = {
     "m": ("m", "cm", "mm", "um", "µm", "nm", "pm"),
     "Pa": ("Pa", "kPa", "MPa", "GPa", "N/mm^2", "N/mm2"),
@@ -51,7 +52,8 @@ _USUAL = {
     "rad": ("deg", "rad"),
     "m/s": ("m/s", "cm/s", "mm/s", "um/s", "km/h"),
 }
-# Outside these bounds the unit is almost certainly wrong, and formulas would over- or underflow.
+# Plausible ranges in SI units. A value outside almost certainly has a wrong unit, and formulas
+# would overflow or underflow.
 _BOUNDS = {
     "m": (1e-12, 1e3),
     "Pa": (1.0, 1e15),
@@ -103,7 +105,7 @@ def read_quantity(value: object, unit: str) -> float:
 
 
 def scaled(value: str, factor: float, digits: int = 17) -> str:
-    """The quantity `value`, such as "500 um", times `factor`, in its own unit."""
+    """Multiply the quantity `value`, such as "500 um", by `factor`; keep its unit."""
     match = _QUANTITY.fullmatch(value)
     assert match is not None  # `read_quantity` has read it
     return f"{float(match[1]) * factor:.{digits}g} {match[2]}"

@@ -1,4 +1,4 @@
-"""`[roughness]`: a surface to generate, or a scan to read, and how it is placed on the grid."""
+"""The table `[roughness]`: a surface to generate, or a scan to read and place on the grid."""
 
 from __future__ import annotations
 
@@ -35,15 +35,15 @@ from restitution.surfaces.shift import place_of
 from restitution.surfaces.twin import LEAST_PIXELS
 
 MOST_REALISATIONS = 1000
-MOST_PLACES = 10_000  # of a scan
+MOST_PLACES = 10_000  # largest number of a place of impact on a scan
 
-# Keys of the case file, by arguments of `crop` and `remove_outliers`.
+# Key of the case file for each argument of `crop` and `remove_outliers`.
 _CLEANING_KEYS = {
     "x": "roughness.crop.x",
     "y": "roughness.crop.y",
     "threshold": "roughness.outliers",
 }
-# Remedies in terms of the case file, by `RefusedSurfaceError.code`.
+# Remedy in terms of the case file for each `RefusedSurfaceError.code`.
 _REMEDIES: dict[Code, str] = {
     "cells-above-scan": "use a smaller grid.spacing",
     "flat-scan": 'leave roughness.extend out, or set roughness.extend = "mirror"',
@@ -58,7 +58,7 @@ _REMEDIES: dict[Code, str] = {
 
 
 def _range(value: Any) -> Any:
-    """A tuple of a list of two positions."""
+    """Convert a list of two positions to a tuple."""
     if not isinstance(value, list) or len(value) != 2:
         raise ValueError(f"{shown(value)} should be a list of two positions")
     return tuple(value)
@@ -79,7 +79,7 @@ Seed = Annotated[int, Field(ge=0, lt=2**63)]
 
 @contextmanager
 def _naming(keys: Mapping[str, str]) -> Iterator[None]:
-    """Make errors of surfaces name the case file: `keys` instead of arguments, and its remedies."""
+    """Reword errors of surfaces: name `keys` of the case file, not arguments, also in remedies."""
     try:
         yield
     except RefusedSurfaceError as error:
@@ -90,7 +90,7 @@ def _naming(keys: Mapping[str, str]) -> Iterator[None]:
 
 
 class GeneratedRoughness(Table):
-    """`[roughness]` with `kind` exponential, gaussian or self-affine."""
+    """The table `[roughness]` with `kind` exponential, gaussian or self-affine."""
 
     kind: RoughnessKind
     rms: Length
@@ -106,11 +106,11 @@ class GeneratedRoughness(Table):
     periodic: bool = True
 
     def variant(self, number: int) -> Self:
-        """Another surface of the same statistics; 0 is the surface itself."""
+        """Return the table of another surface with the same statistics; 0 is the surface itself."""
         return self.model_copy(update={"seed": self.seed + number})
 
     def surface(self, grid: Grid, _: Path, factor: int = 1) -> Surface:
-        """The surface generated on `grid`, interpolated to cells `factor` times smaller."""
+        """Generate the surface on `grid` and interpolate it to cells `factor` times smaller."""
         fine = divided(grid, factor)
         normal = (self.skewness, self.kurtosis) == (0.0, 3.0)
         made = needs.generated_bytes(grid, normal=normal, periodic=self.periodic)
@@ -122,14 +122,14 @@ class GeneratedRoughness(Table):
 
 
 class CropTable(Table):
-    """`roughness.crop`: the part of a scan that is used."""
+    """The table `roughness.crop`: the part of a scan that is used."""
 
     x: Range | None = None
     y: Range | None = None
 
 
 class MeasuredRoughness(Table):
-    """`[roughness]` with `kind = "measured"`."""
+    """The table `[roughness]` with `kind = "measured"`."""
 
     kind: Literal["measured"]
     file: Annotated[str, Field(min_length=1)]
@@ -147,7 +147,7 @@ class MeasuredRoughness(Table):
     @model_validator(mode="after")
     def _twins(self) -> Self:
         if self.extend == "twin" and self.seed is None:
-            raise ValueError('extend = "twin" draws a random surface and needs a seed; give one')
+            raise ValueError('extend = "twin" makes a random surface and needs a seed; give a seed')
         if self.seed is not None and self.extend != "twin":
             raise ValueError(
                 'seed applies only to extend = "twin"; remove seed, or give place to use another '
@@ -158,14 +158,14 @@ class MeasuredRoughness(Table):
         return self
 
     def variant(self, number: int) -> Self:
-        """Another twin, or another place of the scan; 0 is the surface itself."""
+        """Return the table of another twin or place of the scan; 0 is the surface itself."""
         if self.extend == "twin":
             assert self.seed is not None  # _twins
             return self.model_copy(update={"seed": self.seed + number})
         return self.model_copy(update={"place": self.place + number})
 
     def scan(self, folder: Path) -> Surface:
-        """The scan, cleaned and levelled; `file` is relative to `folder`."""
+        """Read, clean and level the scan; `file` is relative to `folder`."""
         with _naming({}):
             scan = read_surface(
                 folder / self.file, channel=self.channel, size=self.size, undefined=self.undefined
@@ -175,13 +175,14 @@ class MeasuredRoughness(Table):
                 scan = crop(scan, x=self.crop.x, y=self.crop.y)
             if self.outliers is not None:
                 scan = remove_outliers(scan, self.outliers)
-        # Level the whole scan before a part is cut out, because the form is that of the whole.
+        # Level the whole scan before a part is cut out, because tilt and form belong to the whole.
         return place_of(level(scan, self.detrend), self.place)
 
     def surface(self, grid: Grid | None, folder: Path, factor: int = 1) -> Surface:
-        """The roughness on cells `factor` times smaller than those of `grid` (None: the pixels).
+        """Make the roughness on cells `factor` times smaller than those of `grid`.
 
-        Smaller cells resolve shorter waves of the scan, down to its pixel; finer cells add none.
+        If `grid` is None, its cells are the pixels of the scan. Smaller cells resolve shorter waves
+        of the scan, down to the pixel; cells smaller than the pixel add no waves.
         """
         scan = self.scan(folder)
         grid = grid or scan.grid
@@ -199,9 +200,9 @@ class MeasuredRoughness(Table):
             return kept(asked, lambda: self._placed(scan, grid, factor))
 
     def _placed(self, scan: Surface, grid: Grid, factor: int) -> Surface:
-        """The `scan`, extended if requested, on cells `factor` times smaller than in `grid`."""
+        """Place the scan, extended if requested, on cells `factor` times smaller than in `grid`."""
         if self.extend == "twin":
-            # The waves of a twin do not depend on the grid: evaluate them directly on the fine one.
+            # The waves of a twin do not depend on the grid, so evaluate them on the fine grid.
             placed, steps = extend(scan, divided(grid, factor), "twin", seed=self.seed), factor
         else:
             steps = self._steps_to_pixel(grid, scan.grid, factor)
@@ -216,7 +217,7 @@ class MeasuredRoughness(Table):
         return replace(finer, provenance={**finer.provenance, "refined": factor, "refinement": how})
 
     def _steps_to_pixel(self, grid: Grid, pixels: Grid, factor: int) -> int:
-        """The part of `factor` that makes cells of `grid` no larger than the pixel."""
+        """Return the part of `factor` that makes cells of `grid` no larger than the pixel."""
         steps = 1
         while factor % (2 * steps) == 0 and any(
             h / steps > pixel * (1 + 1e-9)

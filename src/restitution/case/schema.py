@@ -1,4 +1,4 @@
-"""Tables of the case file: their base class, and those of grid, depths and unloading."""
+"""Tables of the case file: the base class, and the tables of grid, depths and unloading."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ from restitution.contact.separation import RESTITUTION_ERROR
 from restitution.errors import shown
 from restitution.numerics.grid import Grid
 
-FACTORS = (1, 2, 4, 8, 16, 32, 64)  # that a cell may be divided into
-MOST_NODES = 2**27  # of a grid: more do not fit into the memory of common machines
-MOST_STEPS = 10_000  # of a curve
+FACTORS = (1, 2, 4, 8, 16, 32, 64)  # allowed numbers of parts of a cell along x and y
+MOST_NODES = 2**27  # limit for a grid; more nodes do not fit into the memory of common machines
+MOST_STEPS = 10_000  # largest number of depths of a curve
 
 
 class Table(BaseModel):
-    """A table that rejects unknown keys and values of a wrong type."""
+    """Base class of tables: rejects unknown keys and values of a wrong type."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, populate_by_name=True)
 
 
 def _two(value: Any) -> Any:
-    """A tuple for both axes, of one value or of a list of two."""
+    """Make a tuple for the two axes from one value or a list of two values."""
     if not isinstance(value, list):
         return value, value
     if len(value) != 2:
@@ -55,7 +55,7 @@ def _few_enough(nodes: tuple[int, int]) -> tuple[int, int]:
 
 
 def _factors(value: Any) -> int | tuple[int, ...] | str:
-    """A factor of refinement, one for each depth, or "auto"."""
+    """Check `refine`: a refinement factor, a list with a factor for each depth, or "auto"."""
     values = value if isinstance(value, list | tuple) else [value]
     known = values and all(type(one) is int and one in FACTORS for one in values)
     if value == "auto" or known:
@@ -68,7 +68,7 @@ def _factors(value: Any) -> int | tuple[int, ...] | str:
 
 
 class GridTable(Table):
-    """`[grid]`; `nodes` and `spacing` may be omitted for a scan, which defines its own."""
+    """The table `[grid]`. `nodes` and `spacing` may be omitted for a scan, which has a grid."""
 
     nodes: Annotated[tuple[Nodes, Nodes], PairOf, AfterValidator(_few_enough)] | None = None
     spacing: Annotated[tuple[Length, Length], PairOf] | None = None
@@ -85,16 +85,13 @@ class GridTable(Table):
 
     @property
     def factor(self) -> int:
-        """Number of parts into which a cell is divided along x and y at the deepest depth.
-
-        1 for "auto".
-        """
+        """Parts into which a cell is divided along x and y at the deepest depth; 1 for "auto"."""
         if isinstance(self.refine, tuple):
             return self.refine[-1]
         return 1 if self.refine == "auto" else self.refine
 
     def grid(self) -> Grid | None:
-        """The grid before refinement, None if the scan defines it."""
+        """The grid before refinement; None if the scan defines the grid."""
         if self.nodes is None or self.spacing is None:
             return None
         return Grid(self.nodes, self.spacing)
@@ -104,7 +101,7 @@ Quantity = TypeVar("Quantity")
 
 
 class Series(Table, Generic[Quantity]):
-    """`[indentation]`, `[load]` and `[impact]`: a span with steps, or a list of values."""
+    """A table of depths (`[indentation]`, `[load]`, `[impact]`): a span with steps, or a list."""
 
     from_: Annotated[Quantity | None, Field(alias="from")] = None
     to: Quantity | None = None
@@ -145,7 +142,7 @@ class Series(Table, Generic[Quantity]):
 
 
 class ImpactTable(Series[Velocity]):
-    """`[impact]`: a span of velocities with steps, or the list `velocity`."""
+    """The table `[impact]`: a span of velocities with steps, or the list `velocity`."""
 
     values: Annotated[
         list[Velocity] | None,
@@ -157,7 +154,7 @@ class ImpactTable(Series[Velocity]):
 
 
 class UnloadingTable(Table):
-    """`[unloading]`: how many curves are written, and how unloading is computed."""
+    """The table `[unloading]`: how many curves are written, and how unloading is computed."""
 
     curves: Annotated[int, Field(ge=0, le=MOST_STEPS)] = 3
     steps: Annotated[int, Field(ge=4, le=MOST_STEPS)] = 16

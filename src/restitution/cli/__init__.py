@@ -1,12 +1,12 @@
-"""The command line: one module for each verb, which imports heavy modules when it is called."""
+"""The command line: one module for each verb. A verb imports large modules only when it runs."""
 
 import errno
 import sys
 
-# No more output can be written: the disk is full, a quota is used up, the device fails.
+# Error numbers of failed output: the disk is full, a quota is used up, or a device fails.
 _OUTPUT_FAILS = {errno.ENOSPC, errno.EFBIG, errno.EIO, getattr(errno, "EDQUOT", errno.ENOSPC)}
 
-# A file or folder cannot be used under this name, or by this user.
+# Error numbers of files and folders that cannot be used under this name or by this user.
 _ACCESS_DENIED = {
     errno.EACCES,
     errno.EPERM,
@@ -19,10 +19,10 @@ _ACCESS_DENIED = {
 
 
 def main() -> None:
-    """Run the command line; an error that the user can fix is one red line and status 1."""
+    """Run the command line. An error that the user can fix gives one red line and exit status 1."""
     try:
         for stream in (sys.stdout, sys.stderr):
-            # A terminal without Greek letters shows a question mark instead.
+            # A terminal whose encoding lacks Greek letters shows question marks instead.
             getattr(stream, "reconfigure", lambda **_: None)(errors="replace")
         sys.exit(_run())
     except KeyboardInterrupt:
@@ -59,7 +59,7 @@ def _run() -> int:
         if error.errno not in _OUTPUT_FAILS:
             raise
         print_error(f"standard output: cannot be written ({error.strerror}); redirect it elsewhere")
-        # Python would try to write the rest of its buffer at exit, and fail again.
+        # Otherwise Python would try to write the rest of its buffer at exit, and fail again.
         sys.stdout = None
     except Stopped as stop:
         return stop.status

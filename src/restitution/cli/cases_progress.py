@@ -1,4 +1,4 @@
-"""Progress over many cases, for the verbs that compute them, and how to resume."""
+"""Progress display for verbs that compute many cases, with advice on how to resume."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 def cases_progress(cases: int | None, out: object, resume: str) -> Iterator[Progress]:
     """Announce `cases` cases (None: number unknown) with results in `out`, and show their progress.
 
-    The command `resume` continues them; an interruption names it, and exits with the status that
-    shells expect.
+    The command `resume` continues the computation. After an interruption, this command is printed,
+    and the process exits with the status that shells expect.
     """
     import typer
     from rich.progress import (

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from restitution.case.case import Case
     from restitution.contact.contact import Contact
 
-# Quantity → label, factor from SI, unit.
+# For each derived quantity: label, factor from SI, unit.
 _LABELS = {
     "reduced_radius_m": ("reduced radius R*", 1e6, "um"),
     "contact_modulus_Pa": ("contact modulus E*", 1e-9, "GPa"),
@@ -76,7 +76,10 @@ def check(
 
 
 def _read(path: Path) -> tuple[Case, int]:
-    """The case in the file `path`, or the first one of a study; number of cases of a study or 0."""
+    """Read the case in `path`, or the first case of a study; return it with the number of cases.
+
+    The number is 0 if the file is not a study.
+    """
     from restitution.case.case_file import naming, parse_case, parse_toml, read_text
     from restitution.sweeps.sweep import parse_study
 

@@ -1,4 +1,4 @@
-"""`restitution compare-theory`: COR of the smooth bodies of a case by published closed forms."""
+"""`restitution compare-theory`: COR of the smooth bodies of a case from published closed forms."""
 
 import math
 import textwrap
@@ -81,13 +81,13 @@ def compare_theory(
 
 
 def _tables(velocities: list[float], found: "list[Theory]", width: int) -> Iterator[object]:
-    """A column for each theory, in as many tables as the width of the terminal needs."""
+    """Make a column for each theory, and as many tables as the width of the terminal requires."""
     from rich.table import Table
 
     heads = ["\n".join(textwrap.wrap(each.name, 9, break_long_words=False)) for each in found]
     start = 0
     while start < len(found):
-        end, left = start, width - 11  # 11 for the column of velocities
+        end, left = start, width - 11  # the column of velocities takes 11 characters
         while end < len(found) and (end == start or left >= _width(heads[end])):
             left -= _width(heads[end])
             end += 1

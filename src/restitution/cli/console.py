@@ -24,7 +24,7 @@ def say(text: str, console: Console = answers, style: str | None = None) -> None
 
 
 def table_of_numbers(*columns: str) -> "Table":
-    """An empty table with right-aligned columns."""
+    """Make an empty table with right-aligned columns."""
     from rich.table import Table
 
     table = Table(box=None, header_style="bold")
@@ -45,7 +45,7 @@ def print_error(message: str) -> None:
 
 @cache
 def hint_at_kernels() -> None:
-    """Say on standard error, once, if solves are slow because compiled kernels are missing."""
+    """Print a hint on standard error if compiled kernels are missing, so that solves are slow."""
     from restitution.numerics.convolution.device import CPU, current
     from restitution.numerics.kernels import missing
 
@@ -54,21 +54,21 @@ def hint_at_kernels() -> None:
 
 
 def waiting(words: str) -> "Status":
-    """A context manager that shows a spinner with `words` on the standard error of a terminal."""
+    """Show a spinner with `words` on the standard error of a terminal during a `with` body."""
     return errors.status(words)
 
 
 def command(verb: str, *arguments: object) -> str:
-    """A command line that calls `verb`, quoted for a shell."""
+    """Format a command line that calls `verb`, quoted for a shell."""
     return shlex.join(["restitution", verb, *map(str, arguments)])
 
 
 def say_written(path: Path, names: Iterable[str] = ()) -> None:
-    """Name the file that a verb has written, or list the `names` of files in a folder."""
+    """Print the name of a written file, or the `names` of written files in a folder."""
     inside = ", ".join(names)
     say(f"In {path}: {inside}" if inside else f"Written: {path}")
 
 
 def say_next(line: str) -> None:
-    """Name the command that usually follows."""
+    """Print the command that usually comes next."""
     say(f"Next: {line}")

@@ -1,4 +1,4 @@
-"""Check settings of the environment that would make a command fail halfway."""
+"""Check settings of the environment in advance, because they would make a command fail halfway."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from restitution.errors import CaseError, shown
 
-_THREADS = ("DUCC0_NUM_THREADS", "OMP_NUM_THREADS")  # the first that is set is used
+_THREADS = ("DUCC0_NUM_THREADS", "OMP_NUM_THREADS")  # the first variable that is set is used
 
 
 def prepare(arguments: Sequence[str]) -> None:
@@ -16,7 +16,7 @@ def prepare(arguments: Sequence[str]) -> None:
     Raises `CaseError` for an invalid number of threads, and for a path that is not UTF-8, which the
     netCDF library requires.
     """
-    # Figures are only drawn into files, even if the user has set an interactive backend.
+    # Select a backend for files, because the user may have set an interactive backend.
     os.environ["MPLBACKEND"] = "agg"
     _check_threads()
     for path in (*arguments, _current_folder()):
@@ -24,7 +24,7 @@ def prepare(arguments: Sequence[str]) -> None:
             path.encode()
         except UnicodeEncodeError:
             raise CaseError(
-                f"{shown(path, 200)}: is not UTF-8, which netCDF requires of paths; rename it"
+                f"{shown(path, 200)}: the name is not UTF-8, which netCDF requires; rename it"
             ) from None
 
 

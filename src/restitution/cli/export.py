@@ -8,7 +8,7 @@ import typer
 
 
 class Code(StrEnum):
-    """DEM codes and formats that laws can be exported to."""
+    """DEM codes and formats to which laws can be exported."""
 
     lammps = "lammps"
     liggghts = "liggghts"

@@ -1,4 +1,4 @@
-"""`restitution fit`: the parameters of a case that explain measured restitution."""
+"""`restitution fit`: find the parameters of a case that explain measured restitution."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated

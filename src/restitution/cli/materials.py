@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from restitution.case.materials import Material
 
-# Key → name, symbol, factor from SI, unit.
+# For each key of the library: name, symbol, factor from SI, unit.
 _QUANTITIES = {
     "youngs_modulus": ("Young's modulus", "E", 1e-9, "GPa"),
     "poissons_ratio": ("Poisson's ratio", "ν", 1.0, ""),
@@ -22,7 +22,7 @@ _QUANTITIES = {
 
 
 def _names(incomplete: str) -> list[str]:
-    """Keys of the library, for the completion of a shell."""
+    """List the keys of the library that begin with `incomplete`, for completion in a shell."""
     from restitution.case.materials import materials
 
     return [key for key in materials() if key.startswith(incomplete)]

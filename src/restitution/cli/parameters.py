@@ -1,6 +1,7 @@
 """Arguments and options that several verbs share.
 
-OUT is always the folder that a verb writes, FILE a single file; inputs are named by their content.
+In the help, OUT is always the folder that a verb writes, and FILE is a single file that it writes.
+Inputs are named by their content.
 """
 
 from enum import StrEnum

@@ -35,7 +35,7 @@ def reproduce(
     from restitution.sweeps.study_folder import StudyFolder
 
     if quick and refined:
-        raise CaseError("--quick, --refined: give one of the two sizes")
+        raise CaseError("--quick, --refined: give only one of them")
     size: Size = "quick" if quick else "refined" if refined else "paper"
     if not resume:
         make_folder(out, "go on with --resume")

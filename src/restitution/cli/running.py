@@ -1,4 +1,4 @@
-"""Verbs that solve one case: progress, warnings, results, and how an interrupted run ends."""
+"""Shared by verbs that solve one case: progress, warnings, results, and the end of a run."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ def run_with_progress(
     start: Callable[..., dict[str, Any]],
     figures: FigureFormat,
 ) -> dict[str, Any]:
-    """Compute the case file `case` into `out` by calling `start`, and print and draw the results.
+    """Compute the case file `case` by calling `start`; store, print and draw the results.
 
-    `start` has the parameters of `run_realisations`; its summary is returned. `runs(case)` is the
-    number of curves, for the progress bar. An interrupted or failed run keeps and draws the depths
-    that were computed.
+    `start` has the parameters of `run_realisations`. It returns the summary, which this function
+    also returns. `runs(case)` is the number of curves, for the progress bar. If a run is
+    interrupted or fails, the depths computed so far are stored and drawn.
     """
     from rich.progress import (
         BarColumn,
@@ -123,7 +123,7 @@ def _draw_partial_results(folder: ResultsFolder, depths: int, figures: FigureFor
         f"{len(folder.rows)} of {depths} depths were computed{of} and are kept in {folder.path}",
         errors,
     )
-    with suppress(Exception):  # report the error that ended the run, not a failing figure
+    with suppress(Exception):  # a failing figure must not hide the error that ended the run
         _draw(folder.path, figures)
 
 

@@ -1,4 +1,4 @@
-"""Handle SIGTERM and SIGHUP (a scheduler's time limit, a closed terminal) like Ctrl-C."""
+"""Handle SIGTERM (time limit of a scheduler) and SIGHUP (closed terminal) like Ctrl-C."""
 
 from __future__ import annotations
 
@@ -10,7 +10,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 
-_REPEAT_AFTER = 0.05  # s; by then the callback that dropped the exception has returned
+# Time (s) after which a dropped signal is repeated. By then the callback that dropped the exception
+# has returned.
+_REPEAT_AFTER = 0.05
 
 
 class Stopped(KeyboardInterrupt):

@@ -1,4 +1,4 @@
-"""Warnings of one command: each text in full once, repetitions counted."""
+"""Warnings of one command: each warning is printed once, and repetitions are counted."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from contextlib import contextmanager
 from typing import Protocol
 
 _NUMBER = re.compile(r"\d+(\.\d+)?(e[-+]?\d+)?")
-_QUOTED = 60  # characters of a warning that identify it
+_QUOTED = 60  # number of characters of a warning that the count of its repetitions quotes
 
 
 class Warn(Protocol):
-    """Warn of something, which may concern one of several subjects (a case, a law)."""
+    """A function that issues a warning about one of several subjects (a case, a law) or none."""
 
     def __call__(self, message: str, subject: str = "") -> None:
-        """Print `message`, or count it."""
+        """Print `message` with its `subject`, or count it if it was printed before."""
 
 
 @contextmanager

@@ -1,1 +1,1 @@
-"""One quasi-static contact: bodies, gap, influence, equilibrium, paths, resolution."""
+"""One quasi-static contact: its bodies and gap, its elastic equilibrium, yield and adhesion."""

@@ -1,4 +1,4 @@
-"""Contact sets of adhesive contacts: which nodes attach or are released at one indentation."""
+"""Contact area of adhesive contacts: which nodes attach or are released at one indentation."""
 
 from __future__ import annotations
 
@@ -52,8 +52,8 @@ def release_nodes(
     rule = criterion(
         contact.detachment, pair.contact_modulus, contact.work_of_adhesion, grid.spacing
     )
-    # Nodes beyond the tension limit are released, so twice the limit never restricts the result.
-    # A finite bound is easier for the solver than an infinite one.
+    # The lower bound of the pressure. Nodes beyond the tension limit are released, so twice this
+    # limit never restricts the result. The solver is faster with a finite than an infinite bound.
     tension = 2 * tension_limit(pair.contact_modulus, contact.work_of_adhesion, grid.spacing)
     before_release: State | None = None
     convolutions = 0
@@ -71,7 +71,7 @@ def release_nodes(
         state = replace(state, convolutions=convolutions)
         before_release = before_release or state
         pressure = state.box_pressure
-        # Nodes that came into compression are held from now on.
+        # From now on, nodes that have come into compression are also held.
         held |= pressure > 0
         released = rule.releases(pressure, state.box_displacement, gap, held)
         if not released.any():
@@ -98,7 +98,7 @@ def grow_contact(
         contact, indentation, box, held, limit=limit, first_guess=first_guess, residual=residual
     )
     convolutions = state.convolutions
-    # At first touch the touching node carries no pressure yet, but its neighbours may attach.
+    # At first touch, the node in contact carries no pressure yet, but its neighbours may attach.
     touching = state.box_pressure != 0 if state.contact_nodes else reframe(held, box, state.box)
     while True:
         wider_box = widen(state.box, 1, contact.grid.nodes)
@@ -124,7 +124,7 @@ def unload_adhesive(
 
     `first_guess` is an array on the box of `state`. The new state stores the force just before the
     first release. While the contact area is fixed, the force is linear in the indentation, so the
-    trapezoidal rule gives the work up to that point exactly.
+    trapezoidal rule gives the work up to the first release exactly.
     """
     before_release, settled = release_nodes(
         state.contact,

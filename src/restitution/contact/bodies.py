@@ -17,7 +17,7 @@ class Body:
         radius: Radius of the sphere (m); inf for a wall.
         youngs_modulus: Young's modulus (Pa), positive.
         poissons_ratio: Poisson's ratio (1), above −1 and at most 0.5.
-        density: Density (kg/m³), positive. Only velocities need it, and a wall never does.
+        density: Density (kg/m³), positive. Only needed for velocities, and never for a wall.
 
     Raises:
         CaseError: A value lies outside its range.

@@ -1,4 +1,4 @@
-"""The yield bound that grows with deformation: from first yield to full plasticity.
+"""The pressure bound of `expanding-cavity`, which grows from first yield to full plasticity.
 
 A contact that has just begun to yield carries a pressure of 1.6 Y, where Y is the yield strength of
 a tensile test. A fully plastic contact carries about 3 Y, because the surrounding material
@@ -7,20 +7,22 @@ an expanding cavity (Johnson 1970, J. Mech. Phys. Solids 18, 115–126; Johnson 
 
     bound = Y · min(c₀ + c₁ ln(m/(c₀ Y)), c₂).
 
-c₀ is the largest pressure over Y at first yield of a sphere (`yield_coefficient` in `theory`). m
-measures the strain: for a sphere it is (2/π) E*a/R, the largest pressure of an elastic contact. On
-a rough surface
+c₀ is the ratio of the largest pressure to Y at first yield of a sphere (`yield_coefficient` in
+`theory`). m measures the strain. For a sphere m is (2/π) E*a/R, the largest pressure of an elastic
+contact. On a rough surface
 
     m = p_e(2δ)/√2,
 
 where p_e(2δ) is the pressure at the same node between *elastic* bodies of this shape at twice the
-indentation. m follows the slope of an asperity while asperities are in separate contact, and the
-slope of the bodies once the asperity contacts have merged. An elastic sphere at 2δ has the contact
-radius of a plastic sphere at δ, and √2 times the largest pressure of an elastic sphere at δ. The
-bound depends only on the indentation, so the state still does not depend on the path.
+indentation. The factors 2 and √2 have this reason: an elastic sphere at 2δ has the contact radius
+of a plastic sphere at δ, and √2 times the largest pressure of an elastic sphere at δ. While
+asperities are in separate contact, m follows the slope of an asperity. Once the asperity contacts
+have merged, m follows the slope of the bodies. The bound depends only on the indentation, so the
+state still does not depend on the path.
 
-A ridge yields in plane strain, which constrains it more than a round asperity. With q between 0 (a
-round asperity, or merged contacts) and 1 (a ridge in separate contact), the coefficients become
+A ridge yields in plane strain. This constrains plastic flow more than at a round asperity. With q
+between 0 (a round asperity, or merged contacts) and 1 (a ridge in separate contact), the
+coefficients become
 
     c₀ (1 + 0.11 q),  c₁ (1 + q),  c₂ (1 + 0.25 q),    q = (1 − κ₂/κ₁)² max(1 − p_H/m, 0).
 
@@ -31,9 +33,9 @@ merged. 1.11 is the ratio of the pressures at first yield of a cylinder and a sp
 
 All other constants were fitted to finite elements (docs/validation.md lists them and their range).
 c₂ is above 3 because it also accounts for pile-up around a deep contact, which the model does not
-resolve; the bound reaches c₂ at the deepest of the finite element results. If the material hardens
-with a tangent modulus, Y is the flow stress at the representative strain 0.2 a/R (Tabor 1951), with
-a/R = π m/(2E*).
+resolve. The bound reaches c₂ at the deepest of the finite element results. If the material hardens
+with a tangent modulus, Y is replaced by the flow stress at the representative strain 0.2 a/R (Tabor
+1951), with a/R = π m/(2E*).
 """
 
 from __future__ import annotations
@@ -51,21 +53,21 @@ from restitution.theory import Hertz
 
 Array = NDArray[np.float64]
 
-GROWTH, LARGEST = 0.65, 3.5  # c₁, c₂
+GROWTH, LARGEST = 0.65, 3.5  # coefficients c₁ and c₂ for round asperities
 # Relative increase of c₀, c₁ and c₂ on a ridge.
 _RIDGE_ONSET, _RIDGE_GROWTH, _RIDGE_LARGEST = 0.11, 1.0, 0.25
-_DEPTH_FACTOR = 2.0  # the elastic pressure is taken at this multiple of the indentation
-_RESIDUAL_FACTOR = 1e3  # tolerance of the elastic solve divided by that of the bounded solve
+_DEPTH_FACTOR = 2.0  # the elastic pressure is computed at this multiple of the indentation
+_RESIDUAL_FACTOR = 1e3  # tolerance of the elastic solve over the tolerance of the bounded solve
 _TABOR = 0.2  # ratio of the representative strain to a/R
 
 
 def yield_bound(contact: Contact, indentation: float, residual: float) -> tuple[Array, int]:
-    """The pressure bound (Pa) of each node at `indentation` (m), and the convolutions it took.
+    """Compute the pressure bound (Pa) of each node at `indentation` (m); count the convolutions.
 
     The array has the shape of the grid and is read-only. `residual` is the tolerance of the solve
-    under this bound. The elastic solve uses a larger tolerance, because the bound depends only on
-    the logarithm of the elastic pressure. The elastic contact may reach the edge of the grid.
-    Raises `NotConvergedError`.
+    under this bound. The elastic solve that gives the bound uses a larger tolerance, because the
+    bound depends only on the logarithm of the elastic pressure. The elastic contact may reach the
+    edge of the grid. Raises `NotConvergedError`.
     """
     bound = np.full(contact.grid.nodes, contact.first_yield_pressure)
     deeper = _DEPTH_FACTOR * indentation

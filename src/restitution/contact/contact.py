@@ -2,7 +2,7 @@
 
 Conventions: a gap above 0 is open, a pressure above 0 is compressive. The indentation (approach of
 the bodies) is 0 at the first touch of the undeformed bodies and grows as they approach. Arrays are
-`[i, j]` ↔ `[x, y]`, with values at cell centres.
+indexed `[i, j]` along x and y and hold values at cell centres.
 """
 
 from __future__ import annotations
@@ -27,7 +27,9 @@ from restitution.theory import JKR, yield_coefficient
 Plasticity = Literal["expanding-cavity", "equilibrium", "truncated"]
 Approach = Literal["equilibrium", "hertzian", "pull-increments"]
 FULL_CONSTRAINT = 2.8  # pressure over yield strength of fully plastic contact (Tabor 1951)
-_OFF_NODE = 0.31, 0.17  # in cells; no symmetry of the grid maps this point onto itself
+# Position of the apex of smooth adhesive bodies relative to a node (cells). No symmetry of the grid
+# maps this point onto itself.
+_OFF_NODE = 0.31, 0.17
 
 
 @dataclass(frozen=True)
@@ -41,8 +43,8 @@ class Contact:
       `contact.cavity`.
     * `equilibrium`: needs a yield pressure. Pressure and surface are in equilibrium under this
       constant bound.
-    * `truncated`: needs a yield pressure. The elastic pressure is truncated at it (Thornton and
-      Ning 1998, Powder Technol. 99, 154–162).
+    * `truncated`: needs a yield pressure. The elastic pressure is truncated at the yield pressure
+      (Thornton and Ning 1998, Powder Technol. 99, 154–162).
 
     Contacts are equal (and have equal hashes) if their values are equal and their surface is the
     same object. `gap` and `elongation` are computed once and are read-only.
@@ -55,17 +57,17 @@ class Contact:
         plasticity: Model of yielding. None selects `expanding-cavity` if a yield strength is given
             and `equilibrium` otherwise.
         work_of_adhesion: Work of adhesion w (J/m²); 0 without adhesion.
-        approach: Where adhesion acts during loading: `equilibrium` finds the adhesive equilibrium
-            at each depth, `pull-increments` retracts the bodies by 0.1 nm from a contact without
-            adhesion, `hertzian` loads without adhesion.
+        approach: How adhesion acts during loading. `equilibrium` finds the adhesive equilibrium at
+            each depth. `pull-increments` loads without adhesion and then retracts the bodies by
+            0.1 nm with adhesion. `hertzian` loads without adhesion.
         detachment: Criterion by which nodes are released, see `contact.detachment`.
         yield_strength: Yield strength of a tensile test (Pa); inf if unused.
         tangent_modulus: Slope of tensile stress over strain after yield (Pa), for
             `expanding-cavity`.
 
     Raises:
-        CaseError: A value is invalid, values exclude each other, or `pair` or `surface` has another
-            type.
+        CaseError: A value is invalid, two values exclude each other, or `pair` or `surface` has a
+            wrong type.
     """
 
     pair: Pair
@@ -97,7 +99,7 @@ class Contact:
             if value not in known:
                 names = ", ".join(filter(None, known))
                 raise CaseError(f'{name}: "{value}" is not one of {names}')
-        # The compiled loops accept double precision only.
+        # Convert numbers of other types, because the compiled loops accept double precision only.
         for name in ("yield_pressure", "work_of_adhesion", "yield_strength", "tangent_modulus"):
             object.__setattr__(self, name, float(getattr(self, name)))
         if not self.yield_pressure > 0:
@@ -174,9 +176,9 @@ class Contact:
 
     @property
     def crack_opening(self) -> float:
-        """Opening of a straight contact edge about to recede, one cell outside it (m).
+        """Opening one cell outside a straight contact edge that is about to recede (m).
 
-        1.86 sqrt(w h/E*); see `contact.detachment`.
+        It is 1.86 sqrt(w h/E*); see `contact.detachment`.
         """
         h = math.sqrt(self.grid.cell_area)
         return 1.86 * math.sqrt(self.work_of_adhesion * h / self.pair.contact_modulus)
@@ -215,9 +217,9 @@ class Contact:
     def apex(self) -> tuple[float, float]:
         """Coordinates x and y of the lowest point of the smooth bodies (m).
 
-        The point is the origin, a node, except for an adhesive contact without roughness
-        (`smooth`), where it lies between nodes. If it were a node, whole rings of nodes would
-        attach and release at once, which doubles the error of restitution.
+        The point is the origin, a node. But in an adhesive contact without roughness (`smooth`) the
+        point lies between nodes. If it were a node, whole rings of nodes would attach and release
+        at once, which doubles the error of restitution.
         """
         if not self.adhesive or self.surface.provenance.get("source") != "smooth":
             return 0.0, 0.0
@@ -238,7 +240,7 @@ class Contact:
         axes = zip((self.grid.x, self.grid.y), self.apex, strict=True)
         x, y = ((along - centre) ** 2 / (2 * self.pair.radius) for along, centre in axes)
         gap: NDArray[np.float64] = np.add.outer(x, y)
-        gap -= self.surface.height  # in place: allocating another array takes as long
+        gap -= self.surface.height  # in place, because allocating another array takes as long
         gap -= gap.min()
         return freeze(gap)
 
@@ -246,9 +248,9 @@ class Contact:
     def elongation(self) -> NDArray[np.float64]:
         """Elongation of asperities at each node, (1 − κ₂/κ₁)² (1), shape `grid.nodes`.
 
-        κ₂ and κ₁ are the smaller and the larger absolute principal curvature of the gap, by second
-        differences: 0 for a round asperity and 1 along a ridge. The outermost nodes of the grid,
-        which a contact must not reach, have 0.
+        The elongation is 0 at a round asperity and 1 along a ridge. κ₂ and κ₁ are the smaller and
+        the larger absolute principal curvature of the gap, from second differences. At the
+        outermost nodes of the grid, which a contact must not reach, the elongation is set to 0.
         """
         gap, inner = self.gap, slice(1, -1)
         hx, hy = self.grid.spacing

@@ -1,26 +1,27 @@
 """Detachment criteria: which nodes of an adhesive contact are released.
 
-Adhesion has no range here (the JKR limit): nodes in contact can carry tension, other nodes do not
-attract. In the continuum the contact edge recedes where the energy release rate G reaches the work
-of adhesion w. On a grid the edge is a staircase of nodes. Two local criteria are available:
+Adhesion has no range here (the JKR limit): nodes in contact can carry tension, and other nodes do
+not attract. In the continuum, the contact edge recedes where the energy release rate G reaches the
+work of adhesion w. On a grid the edge is a staircase of nodes. Two local criteria are available:
 
 `pohrt-popov`: a node is released if its tension exceeds the limit σ_c of a single node on the
 half-space (Pohrt and Popov 2015, Facta Universitatis 13, 3–10). The criterion is simple and
 independent of the order of release. However, nodes on a straight edge hold until G = 1.8 w and
-nodes at a kink until G = 1.0 w, so the pull-off force is overestimated by 1.5 h/a (relative).
+nodes at a kink until G = 1.0 w. The relative error of the pull-off force is therefore +1.5 h/a.
 
-`crack-closure`: the edge is a crack, and G is the work of closing it by one cell (Rybicki and
-Kanninen 1977, Eng. Fract. Mech. 9, 931–938): ½ |p| times the opening, for each face between a node
-in contact and one outside. On a straight edge this gives G to 1e-3; on a staircase its mean over
-the faces does. G is therefore averaged along the edge over about four cells, but never across to
-another patch. The opening is the separation of the surfaces beyond the smooth continuation of their
-contact:
+`crack-closure`: the contact edge is a crack, and G is the work of closing the crack by one cell
+(Rybicki and Kanninen 1977, Eng. Fract. Mech. 9, 931–938). For each face between a node in contact
+and a node outside, this work per area is ½ |p| times the opening. The relative error of G is 1e-3
+on a straight edge; on a staircase, the mean of G over the faces has this accuracy. G is therefore
+averaged along the edge over about four cells, but never across to another patch. The opening is the
+separation of the surfaces beyond the smooth continuation of their contact:
 
     opening = (u₊ − 2u₀ + u₋) + (h₀ − 2h₋ + h₋₋),
 
-where u is the elastic displacement, h the gap before it, 0 the edge node, + the node outside, and −
-and −− the nodes inside. The second bracket continues the curvature of the surfaces in the contact.
-The initial gap outside, where the surfaces never touched, does not count as opening.
+where u is the elastic displacement and h the gap before this displacement. Index 0 is the edge
+node, + the node outside, and − and −− the nodes inside. The second bracket continues the curvature
+of the surfaces in the contact. The initial gap outside, where the surfaces never touched, does not
+count as opening.
 
 For rectangular cells σ_c² = 2πE*w hx hy/I, where I is the double integral of 1/r over the cell; for
 square cells σ_c² = E*w/(κh), κ = (2/3π)[1 − √2 + 3 ln(1 + √2)] = 0.473201.
@@ -43,16 +44,21 @@ Detachment = Literal["crack-closure", "pohrt-popov"]
 
 _FACES = np.array([(1, 0), (-1, 0), (0, 1), (0, -1)])
 _AROUND = np.array([(-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1), (0, 0)])
-_SMOOTHING_STEPS = 32  # each adds a variance of ⅔ cell² along the edge: about five cells in all
-_RELEASE_RADIUS = 3  # cells; after a solve one edge node within this distance is released
-_TIE = 1e-3  # of the largest tension; smaller differences may be errors of the solve
+# Steps of averaging G along the edge. Each step adds a variance of ⅔ cell², so the standard
+# deviation of the weights is about five cells in all.
+_SMOOTHING_STEPS = 32
+# After a solve, at most one of the edge nodes within this distance (cells) is released.
+_RELEASE_RADIUS = 3
+# Tensions that differ by less than this fraction of the largest tension count as equal, because
+# the difference may be an error of the solve.
+_TIE = 1e-3
 _TINY = float(np.finfo(float).tiny)
 
 
 def tension_limit(
     contact_modulus: float, work_of_adhesion: float, spacing: tuple[float, float]
 ) -> float:
-    """Largest tension σ_c of a single node (Pa), beyond which its release lowers the energy."""
+    """Tension σ_c of a single node (Pa) beyond which releasing the node lowers the energy."""
     hx, hy = spacing
     twice = 2 * (hx**2 * hy * math.asinh(hy / hx) + hx * hy**2 * math.asinh(hx / hy)) + 2 / 3 * (
         hx**3 + hy**3 - math.hypot(hx, hy) ** 3
@@ -64,7 +70,7 @@ class Criterion(Protocol):
     """Selects the nodes in contact that are released next."""
 
     def releases(self, p: Array, u: Array, h: Array, touching: Mask) -> Mask:
-        """Nodes to release, from pressure p, displacement u and the gap h before displacement."""
+        """Select nodes from pressure p, displacement u and the gap h before displacement."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +80,7 @@ class TensionLimit:
     limit: float
 
     def releases(self, p: Array, u: Array, h: Array, touching: Mask) -> Mask:
-        """All nodes whose tension exceeds the limit."""
+        """Select all nodes whose tension exceeds the limit."""
         return touching & (p < -self.limit)
 
 
@@ -86,12 +92,12 @@ class CrackClosure:
     limit: float
 
     def releases(self, p: Array, u: Array, h: Array, touching: Mask) -> Mask:
-        """The node of largest tension in each stretch of the edge along which G ≥ w."""
+        """Select the node of largest tension in each part of the edge along which G ≥ w."""
         from scipy.ndimage import minimum_filter
 
         edge, G = energy_release_rate(p, u, h, touching)
-        # The release of a node relieves its neighbours, so releasing several together would
-        # overshoot. Ties are broken by index, so that rounding does not decide.
+        # The release of a node unloads its neighbours, so releasing several neighbours together
+        # would release too many. Ties are broken by index, so that rounding does not decide.
         ready = np.where((self.work_of_adhesion <= G) & (p[edge] < 0), p[edge], 0.0)
         ready = np.round(ready / (_TIE * max(-float(ready.min(initial=0.0)), _TINY)))
         ready = np.where(ready < 0, ready + 0.5 * np.arange(ready.size) / ready.size, 0.0)
@@ -109,7 +115,7 @@ def criterion(
     work_of_adhesion: float,
     spacing: tuple[float, float],
 ) -> Criterion:
-    """The criterion named `detachment`."""
+    """Make the criterion named `detachment`."""
     limit = tension_limit(contact_modulus, work_of_adhesion, spacing)
     if detachment == "pohrt-popov":
         return TensionLimit(limit)
@@ -119,20 +125,20 @@ def criterion(
 def energy_release_rate(
     p: Array, u: Array, h: Array, touching: Mask
 ) -> tuple[tuple[NDArray[np.intp], NDArray[np.intp]], Array]:
-    """Indices of the edge nodes of the contact, and G (J/m²) there, averaged along the edge."""
+    """Return the indices of the edge nodes of the contact and G (J/m²), averaged along the edge."""
     T = np.zeros((touching.shape[0] + 2, touching.shape[1] + 2), dtype=bool)
     T[1:-1, 1:-1] = touching
     surrounded = T[:-2, 1:-1] & T[2:, 1:-1] & T[1:-1, :-2] & T[1:-1, 2:]
     i, j = np.nonzero(touching & ~surrounded)
     side, node = np.nonzero(~T[i + 1 + _FACES[:, :1], j + 1 + _FACES[:, 1:]])
-    # In flat indices a step outwards is one number. An index can leave the array only if the
-    # contact is at the edge of the grid, which raises an error later.
+    # A step outwards adds one number to a flat index. An index can leave the array only if the
+    # contact is at the edge of the grid, and this raises an error later.
     row = touching.shape[1]
     here = i[node] * row + j[node]
     outwards = (_FACES @ np.array([row, 1]))[side]
 
     def values_at(values: Array, cells: int) -> Array:
-        """`values` at `cells` cells outwards from the edge node of each face."""
+        """Return `values` at the node `cells` cells outwards from the edge node of each face."""
         found: Array = np.take(values, here + cells * outwards, mode="clip")
         return found
 
@@ -149,10 +155,10 @@ def energy_release_rate(
 def _diffusion(
     i: NDArray[np.intp], j: NDArray[np.intp], shape: tuple[int, ...]
 ) -> tuple[NDArray[np.intp], Array]:
-    """Neighbours of each edge node and their weights in a diffusion step, shapes (nodes, 9).
+    """Return the neighbours of each edge node and their weights in a diffusion step.
 
-    The step diffuses along the edge and conserves the sum (Metropolis weights). A node takes the
-    place of its missing neighbours.
+    Both arrays have shape (nodes, 9). The step diffuses along the edge and conserves the sum
+    (Metropolis weights). A missing neighbour is replaced by the node itself.
     """
     here = np.arange(i.size)
     number = np.full((shape[0] + 2, shape[1] + 2), -1)

@@ -1,15 +1,17 @@
-"""Pressure and yield at a prescribed indentation: every contact is solved here.
+"""The solve for pressure and yield at a prescribed indentation, which all contacts use.
 
 Let h be the gap before the solve (initial gap plus earlier plastic displacement). The pressure
 minimises
 
     ½ pᵀK p − pᵀ(δ − h),   lower ≤ p ≤ p_y.
 
-The gradient g = K p + h − δ is the deformed gap: open (g ≥ 0) where p = 0 and closed (g = 0)
-between the bounds. Where p = p_y the surface yields by u_p = −g. Without adhesion the lower bound
-is zero, and the contact lies inside {h < δ}, because K p > 0 under every positive pressure; solving
-on the bounding box of that set is therefore exact. With adhesion the lower bound is a tension on
-the nodes held in contact; the box then also contains these nodes and a margin of two cells.
+The gradient g = K p + h − δ is the deformed gap. The gap is open (g ≥ 0) where p = 0 and closed
+(g = 0) between the bounds. Where p = p_y the surface yields by u_p = −g.
+
+Without adhesion the lower bound is zero. The contact then lies inside the set {h < δ}, because
+K p > 0 under every positive pressure. So solving on the bounding box of this set is exact. With
+adhesion the lower bound is a tension on the nodes held in contact. The box then also contains these
+nodes and a margin of two cells.
 """
 
 from __future__ import annotations
@@ -33,16 +35,17 @@ from restitution.numerics.read_only import freeze
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-RESIDUAL = 1e-8  # default tolerance on the violation of the contact conditions, over the overlap
-MAX_ITERATIONS = 1000
+# Default tolerance on the violation of the contact conditions, relative to the overlap δ − min h.
+RESIDUAL = 1e-8
+MAX_ITERATIONS = 1000  # iterations after which a solve counts as not converged
 
 
 @dataclass(frozen=True)
 class HeldNodes:
     """The nodes of a box that are held in contact and can carry tension.
 
-    `mask` marks them, `tension` (Pa) is the largest tension allowed, and `first_guess` (Pa; None is
-    zero) is the initial pressure. `mask` and `first_guess` are arrays on the box.
+    `mask` marks the nodes, `tension` (Pa) is the largest tension allowed, and `first_guess` (Pa;
+    None is zero) is the initial pressure. `mask` and `first_guess` are arrays on the box.
     """
 
     mask: Mask
@@ -52,7 +55,7 @@ class HeldNodes:
 
 @dataclass(frozen=True)
 class Solution:
-    """Result of a solve on a box, as arrays of its shape.
+    """Result of a solve on a box; the arrays have the shape of the box.
 
     `overlap` is δ − h (m), `gap` the deformed gap (m) and `pressure` in Pa. `residual` and the
     number of `convolutions` describe the solve.
@@ -142,7 +145,7 @@ def _scale_of(contact: Contact, indentation: float, b: Array) -> float:
 
 
 def _operators_of(contact: Contact) -> Operators:
-    """A function that makes the half-space operator and its approximate inverse for any level."""
+    """Return a function that makes the operator and its approximate inverse for any level."""
     E_star, (hx, hy) = contact.pair.contact_modulus, contact.grid.spacing
 
     def operators(shape: tuple[int, int], level: int) -> tuple[FreeConvolution, SpectralFilter]:
@@ -161,11 +164,11 @@ def build_state(
     limit: Array | float,
     history: State | None,
 ) -> State:
-    """The state of a `solution` on `box`.
+    """Build the state of a `solution` on `box`.
 
-    Where the pressure is at the limit and the deformed gap is negative, the gap is subtracted from
-    the plastic displacement. The elastic displacement overwrites `solution.gap`. If `limit` is an
-    array, the plastic work stays that of `history`, and `loading` integrates it.
+    Where the pressure is at the limit, a negative deformed gap becomes plastic displacement. The
+    elastic displacement overwrites `solution.gap`. If `limit` is an array, the plastic work is
+    copied from `history`, and the module `loading` adds the work of this step.
     """
     pressure, gap = solution.pressure, solution.gap
     plastic, work, adhesive_work, work_error = _past(contact, history)
@@ -196,14 +199,14 @@ def build_state(
 
 
 def candidate_box(contact: Contact, indentation: float, history: State | None = None) -> Box | None:
-    """The bounding box of the nodes with a gap below `indentation`, or None without such nodes.
+    """Return the bounding box of the nodes with a gap below `indentation`; None without such nodes.
 
-    It contains every contact without adhesion.
+    The box contains every contact without adhesion.
     """
     nodes = contact.grid.nodes
     if history is None:
         return bounding_box(contact.gap < indentation)
-    if indentation <= history.indentation:  # unloading makes no contact outside the former box
+    if indentation <= history.indentation:  # no new contact forms outside the old box
         region = widen(history.box, 2, nodes)
     else:
         region = (slice(0, nodes[0]), slice(0, nodes[1]))
@@ -212,7 +215,7 @@ def candidate_box(contact: Contact, indentation: float, history: State | None = 
 
 
 def separated_state(contact: Contact, indentation: float, history: State | None = None) -> State:
-    """The state of bodies out of contact."""
+    """Build the state of bodies out of contact."""
     nothing = np.zeros((0, 0))
     plastic, work, adhesive_work, work_error = _past(contact, history)
     bound = contact.first_yield_pressure if history is None else history.bound

@@ -1,4 +1,4 @@
-"""Elastic half-space: displacement under a rectangle of uniform pressure.
+"""Elastic half-space: displacement due to uniform pressure on a rectangle.
 
 Pressure and displacement are positive into the body. Both bodies are combined into one half-space
 of contact modulus E*: 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂.
@@ -21,8 +21,8 @@ from restitution.numerics.multipoles import multipoles
 Array = NDArray[np.float64]
 Operator = TypeVar("Operator", FreeConvolution, SpectralFilter)
 
-# Beyond this distance (in cell diagonals) the relative error of the series below is under 2e-12,
-# while Love's formula loses digits to cancellation as (r/h)².
+# Distance (in cell diagonals) beyond which the series of `far_displacement` is used. Its relative
+# error there is under 2e-12. In Love's formula, cancellation makes the error grow as (r/h)².
 _FAR = 32.0
 
 
@@ -46,13 +46,14 @@ def love_displacement(x: Array, y: Array, hx: float, hy: float, contact_modulus:
 
 
 def far_displacement(x: Array, y: Array, hx: float, hy: float, contact_modulus: float) -> Array:
-    """`love_displacement` far from the cell: the point load's Taylor series averaged over the cell.
+    """Displacement as in `love_displacement`, but far from the cell and by a series.
 
-    u πE*/(p hx hy) = [1 + (hx²∂x² + hy²∂y²)/24 + hx⁴∂x⁴/1920 + hx²hy²∂x²∂y²/576 + hy⁴∂y⁴/1920] 1/r;
-    the next term is of relative order (h/r)⁶. `x` and `y` (m) are a column and a row.
+    The Taylor series of the displacement due to a point load is averaged over the cell:
+    u πE*/(p hx hy) = [1 + (hx²∂x² + hy²∂y²)/24 + hx⁴∂x⁴/1920 + hx²hy²∂x²∂y²/576 + hy⁴∂y⁴/1920] 1/r.
+    The next term is of relative order (h/r)⁶. `x` and `y` (m) are a column and a row.
     """
     xx, yy = hx * hx, hy * hy
-    # ∂x² 1/r = (3c − 1)/r³ and so on, with c the squared direction cosine along x.
+    # Polynomials in c, the squared direction cosine along x: ∂x² 1/r = (3c − 1)/r³ and so on.
     second = np.array([2 * yy - xx, 3 * (xx - yy), 0.0]) / 24
     fourth = (
         np.array([9 * xx * xx + 24 * yy * yy, -90 * xx * xx - 120 * yy * yy, 105 * (xx**2 + yy**2)])
@@ -72,8 +73,12 @@ def influence_coefficients(
     contact_modulus: float,
     device: Device = CPU,
 ) -> Array:
-    """Displacement at lag (i, j) cells, i as a column (from 0) and j as a row (from 0), m/Pa."""
-    # u/h depends only on the aspect ratio of the cells and on the lag, so unit cells are enough.
+    """Displacement per unit pressure (m/Pa) at lags of i and j cells.
+
+    `i` is a column and `j` a row; both start at 0.
+    """
+    # u/h depends only on the aspect ratio of the cells and on the lag. So the coefficients are
+    # computed for cells of unit width and scaled.
     hx, hy = spacing
     lags, aspect, scale = (i.size, j.size), hy / hx, hx / contact_modulus
     if i.size * j.size <= _most_coefficients():
@@ -87,9 +92,9 @@ def influence_coefficients(
 def half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
 ) -> FreeConvolution:
-    """The operator p ↦ u on a block of `shape` nodes of the free (non-periodic) half-space.
+    """Make the operator p ↦ u on a block of `shape` nodes of the free (non-periodic) half-space.
 
-    It takes and returns arrays of this shape on the current device.
+    The operator takes and returns arrays of this shape on the current device.
     """
     return _operator(_half_space, shape, spacing, contact_modulus)
 
@@ -97,12 +102,13 @@ def half_space(
 def inverse_half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
 ) -> SpectralFilter:
-    """An approximate inverse, u ↦ |q| E*/2 u: exact on a periodic half-space (Johnson 1985)."""
+    """Make the approximate inverse u ↦ |q| E*/2 u, exact if periodic (Johnson 1985)."""
     return _operator(_inverse_half_space, shape, spacing, contact_modulus)
 
 
-# Largest operator and largest block of coefficients that are cached, as fractions of the cache.
-# Larger operators would fill it as a contact grows; by default 1400² nodes is the limit.
+# Largest operator and largest block of coefficients that are cached, as fractions of the cache. As
+# a contact grows, larger operators would fill the cache. With the default size of the cache, the
+# limit is 1400² nodes.
 _MAX_OPERATOR, _MAX_COEFFICIENTS = 1 / 15, 2 / 3
 
 
@@ -112,7 +118,7 @@ def _operator(
     spacing: tuple[float, float],
     contact_modulus: float,
 ) -> Operator:
-    """The operator, from the cache if possible, with a workspace of its own."""
+    """Take the operator from the cache or build it; give it a separate workspace."""
     key = build, shape, spacing, contact_modulus, current()
     operator: Operator | None = operator_cache.get(key)
     if operator is None:
@@ -126,7 +132,7 @@ def _unit_coefficients(lags: tuple[int, int], aspect: float, device: Device) -> 
     """Coefficients for cells 1 × `aspect` and E* = 1, as a view that callers must not change.
 
     The block size follows the contact and differs between most solves. The cache keeps the largest
-    block so far, and smaller blocks are parts of it.
+    block so far; smaller blocks are parts of the largest block.
     """
     key = _compute_coefficients, aspect, device
     known: Array | None = operator_cache.get(key)
@@ -153,7 +159,8 @@ def _compute_coefficients(
     x: Array = hx * device.arange(lags[0])[:, None]
     y: Array = hy * device.arange(lags[1])[None, :]
     near_i, near_j = (math.ceil(_FAR * math.hypot(hx, hy) / h) for h in spacing)
-    # The origin is always in the near block, which Love's formula overwrites.
+    # The series divides by zero at the origin. The origin is in the near block, which Love's
+    # formula overwrites.
     with np.errstate(divide="ignore", invalid="ignore"):
         u = far_displacement(x, y, hx, hy, 1.0)
     u[:near_i, :near_j] = love_displacement(x[:near_i], y[:, :near_j], hx, hy, 1.0)
@@ -176,8 +183,8 @@ def _inverse_half_space(
 
     def symbol(qx: Array, qy: Array) -> Array:
         q: Array = np.sqrt((qx / spacing[0]) ** 2 + (qy / spacing[1]) ** 2)
-        # The mean has no finite displacement on a periodic half-space, hence no inverse: use half
-        # the wave number of the longest wave.
+        # On a periodic half-space a mean pressure has no finite displacement, so the mean has no
+        # inverse. Use half the wave number of the longest wave for the mean.
         longest = [2 * np.pi / min(spacing)]
         longest += [float(q[1, 0])] if q.shape[0] > 1 else []
         longest += [float(q[0, 1])] if q.shape[1] > 1 else []

@@ -1,9 +1,10 @@
 """Load the undeformed bodies to one indentation, and compute the loading work.
 
-Under the pressure bound the state of monotonic loading does not depend on its path, so one solve
-from the undeformed bodies is enough. Under a constant bound without adhesion the work is
-W = E_el + p_y V_p. With a truncated pressure or with adhesion on approach it is the integral of the
-force; under a growing bound the plastic work is summed over increments.
+The state of monotonic loading under a pressure bound does not depend on the path, so one solve from
+the undeformed bodies is enough. The loading work is computed in one of three ways. Under a constant
+bound without adhesion it is W = E_el + p_y V_p. With a truncated pressure or with adhesion on
+approach, it is the integral of the force over the indentation. Under a growing bound, the plastic
+work is summed over increments of the indentation.
 """
 
 from __future__ import annotations
@@ -34,23 +35,27 @@ from restitution.numerics.read_only import freeze
 
 Array = NDArray[np.float64]
 
-PULL_INCREMENT = 1e-10  # m: the pull after each loading increment (Ghanbarzadeh et al. 2019, §2.2)
-_TRUNCATION_TOLERANCE = 3e-5  # of the quadrature, relative to force times indentation
-_TRUNCATION_MARGIN = 10.0  # tolerances added to the error of this quadrature
-_TRUNCATION_PANELS = 4  # sample beyond first yield, up to which the integrand is zero
-# The force of an adhesive contact jumps as asperities attach, which limits the accuracy. 1.5e-3 of
-# the work is at most 0.00075 in restitution.
+# Retraction after each loading increment (m) (Ghanbarzadeh et al. 2019, §2.2).
+PULL_INCREMENT = 1e-10
+# Quadrature of a truncated force: tolerance relative to force times indentation, margin added to
+# the error (in tolerances), and number of initial intervals. With one interval, the integrand, zero
+# up to first yield, could be zero at all sampled depths.
+_TRUNCATION_TOLERANCE = 3e-5
+_TRUNCATION_MARGIN = 10.0
+_TRUNCATION_PANELS = 4
+# Quadrature of an adhesive force: tolerance relative to the work, and most bisections. The force
+# jumps as asperities attach, which limits the accuracy. An error of 1.5e-3 of the work is an error
+# of at most 0.00075 in restitution.
 _ADHESIVE_TOLERANCE = 1.5e-3
 _ADHESIVE_HALVINGS = 5
-# Nodes attach one after the other, and the steps determine which nodes attach. These values are
-# bounds on the difference of the work from a reference with 240 steps from first touch, divided by
-# w times the area. They held in 93 % of 29 validation contacts with `equilibrium`, and in all 11
-# with `pull-increments`.
+# Error of the work because the loading steps influence which nodes attach, divided by w times the
+# area. The references have 240 steps from first touch. The work was within these bounds in 93 % of
+# 29 validation contacts with `equilibrium`, and in all 11 contacts with `pull-increments`.
 _PINNING = {"equilibrium": 0.02, "pull-increments": 0.006, "hertzian": 0.0}
 # The plastic work is summed over depths that start at _SHALLOW times the indentation and grow by at
 # most the factor _RATIO, for which the errors of `plastic_work` hold.
 _RATIO, _SHALLOW = 1.42, 0.2
-_WORK_RESIDUAL = 1e-6  # of the intermediate solves; their force errors are well below it
+_WORK_RESIDUAL = 1e-6  # tolerance of intermediate solves; the relative force error is far smaller
 
 
 def solve(
@@ -61,9 +66,9 @@ def solve(
     Args:
         contact: Contact to load.
         indentation: Approach of the bodies (m), positive.
-        start: Shallower state of the same contact. If the work is an integral (`expanding-cavity`,
-            `truncated`, or adhesion on approach), it is integrated from this state instead of first
-            touch. With adhesion on approach this state is also the first guess.
+        start: Shallower state of the same contact. If the work is integrated (`expanding-cavity`,
+            `truncated`, or adhesion on approach), the integral starts from this state instead of
+            first touch. With adhesion on approach this state is also the first guess.
         residual: Tolerance on the violation of the contact conditions (1), relative to the overlap
             or, with adhesion, to `Contact.residual_length`.
 
@@ -78,7 +83,7 @@ def solve(
     if not 0 < indentation < math.inf:
         raise CaseError(f"indentation: {indentation} m is not a positive depth")
     if start is not None and start.contact.grid != contact.grid:
-        raise CaseError("start: a state on another grid cannot start this contact")
+        raise CaseError("start: is on another grid; give a state on the grid of this contact")
     state = solve_without_work(contact, indentation, start=start, residual=residual)
     state = with_work(state, start)
     require_inside_grid(state)
@@ -100,8 +105,8 @@ def step(state: State, indentation: float, *, residual: float = RESIDUAL) -> Sta
         State at `indentation`.
 
     Raises:
-        CaseError: The indentation is not finite, or a `truncated` contact would be loaded deeper:
-            this model is not defined for deformed surfaces.
+        CaseError: The indentation is not finite, or a `truncated` contact would be loaded deeper.
+            (This model does not define further loading of deformed surfaces.)
         NotConvergedError: The tolerance was not reached.
         DomainError: The contact reaches the edge of the grid.
     """
@@ -134,7 +139,7 @@ def step(state: State, indentation: float, *, residual: float = RESIDUAL) -> Sta
 def solve_without_work(
     contact: Contact, indentation: float, *, start: State | None, residual: float
 ) -> State:
-    """`solve` without the loading work and without the check for contact at the grid edge."""
+    """Do `solve` without computing the loading work and without checking the grid edge."""
     limit, convolutions = _limit_at(contact, indentation, residual)
     if contact.adhesive and contact.approach == "equilibrium":
         shallower = start if start is not None and start.indentation <= indentation else None
@@ -155,7 +160,7 @@ def solve_without_work(
             residual=residual,
         )
     elif contact.adhesive and contact.approach == "pull-increments":
-        # The pull may release all nodes: the bodies are then out of contact, with zero force.
+        # The retraction may release all nodes. The bodies are then out of contact.
         pressed = solve_nonadhesive(contact, indentation + PULL_INCREMENT, limit, residual)
         state = unload_adhesive(pressed, indentation, residual=residual)
         state = replace(state, adhesive_work=0.0, is_first_loading=True)
@@ -167,9 +172,9 @@ def solve_without_work(
 
 
 def _limit_at(contact: Contact, indentation: float, residual: float) -> tuple[Array | float, int]:
-    """The pressure bound of the solve (Pa), and the convolutions that computing it took.
+    """Return the pressure bound of the solve (Pa) and the convolutions spent on computing it.
 
-    The bound is infinite if the pressure is truncated afterwards.
+    The bound is infinite if the pressure is truncated after the solve.
     """
     if contact.grows:
         return yield_bound(contact, max(indentation, 0.0), residual)
@@ -183,9 +188,9 @@ def solve_nonadhesive(
     residual: float,
     history: State | None = None,
 ) -> State:
-    """The contact without adhesion.
+    """Solve the contact without adhesion.
 
-    An earlier state is never the first guess: the solution on coarser grids is a better one.
+    The first guess is the solution on coarser grids, which is better than an earlier state.
     """
     box = candidate_box(contact, indentation, history)
     if box is None:
@@ -196,11 +201,11 @@ def solve_nonadhesive(
 
 
 def truncate_pressure(elastic: State) -> State:
-    """Truncate the elastic pressure at p_y, without redistributing the pressure removed.
+    """Truncate the elastic pressure at p_y, without redistributing the excess pressure.
 
-    Force and area are then those of Thornton and Ning (1998). The plastic displacement is the
-    interference that remains under the truncated pressure (next to the contact, too), so that
-    unloading starts from the truncated pressure.
+    Force and area are then those of Thornton and Ning (1998). The truncated pressure deforms the
+    bodies less, so they overlap, also next to the contact. This overlap becomes the plastic
+    displacement, so that unloading starts from the truncated pressure.
     """
     contact, indentation, box = elastic.contact, elastic.indentation, elastic.box
     pressure = np.minimum(elastic.box_pressure, contact.yield_pressure)
@@ -219,14 +224,14 @@ def truncate_pressure(elastic: State) -> State:
 
 
 def work_is_integrated(contact: Contact) -> bool:
-    """Whether the loading work of `contact` is integrated numerically, with an error."""
+    """Whether the loading work of `contact` is integrated numerically and so has an error."""
     if contact.truncates or contact.grows:
         return True
     return contact.adhesive and contact.approach != "hertzian"
 
 
 def with_work(state: State, start: State | None) -> State:
-    """A state of `solve_without_work` with its work, integrated from `start` or first touch."""
+    """Add the work to a state of `solve_without_work`, integrated from `start` or first touch."""
     contact, indentation = state.contact, state.indentation
     if not work_is_integrated(contact):
         return state
@@ -241,7 +246,8 @@ def with_work(state: State, start: State | None) -> State:
             return replace(state, work_error=error)
     known = state.stored_energy + state.plastic_work
     if _adhesive_work_is_negligible(state):
-        # Integrated works were between 0.37 and 0.93 of w times the area, most of them above 0.7.
+        # Where the adhesive work was integrated, it was 0.37 to 0.93 of w times the area, in most
+        # cases above 0.7.
         return replace(state, adhesive_work=gain, work_error=0.5 * gain)
     if contact.adhesive and contact.approach != "hertzian":
         work, error, convolutions = _work_by_force(state, start)
@@ -249,7 +255,8 @@ def with_work(state: State, start: State | None) -> State:
         work, error, convolutions = _work_by_truncation(state, start)
     convolutions += state.convolutions
     if contact.plasticity == "truncated":
-        # The plastic work of a truncated pressure has no formula: it is the work less the energy.
+        # There is no formula for the plastic work of a truncated pressure. It is the integrated
+        # work minus the elastic energy.
         return replace(
             state,
             plastic_work=work - state.stored_energy,
@@ -261,7 +268,7 @@ def with_work(state: State, start: State | None) -> State:
 
 
 def _adhesive_work_is_negligible(state: State) -> bool:
-    """Whether the largest possible work of adhesion on approach is within the work's tolerance."""
+    """Whether the largest possible adhesive work on approach is below the tolerance of the work."""
     contact = state.contact
     if not contact.adhesive or contact.approach != "equilibrium":
         return False
@@ -272,7 +279,7 @@ def _adhesive_work_is_negligible(state: State) -> bool:
 
 
 def _work_by_force(state: State, start: State | None) -> tuple[float, float, int]:
-    """Loading work (J) by quadrature of the force, its error (J), and the convolutions it took."""
+    """Integrate the force; return the loading work (J), its error (J) and the convolutions."""
     contact, indentation = state.contact, state.indentation
     guess, convolutions = start, 0
 
@@ -287,7 +294,7 @@ def _work_by_force(state: State, start: State | None) -> tuple[float, float, int
         first, first_force = start.indentation, start.force
         work, error = start.loading_work, start.work_error - _pinning_error(start)
     elif contact.approach == "equilibrium":
-        first_force = force_at(0.0)  # jump-in
+        first_force = force_at(0.0)  # adhesive force right after the jump into contact
     scale = abs(work) + 0.5 * (abs(first_force) + abs(state.force)) * (indentation - first)
     increment, its_error = integrate_adaptively(
         force_at,
@@ -302,7 +309,7 @@ def _work_by_force(state: State, start: State | None) -> tuple[float, float, int
 
 
 def _work_by_increments(state: State, start: State | None) -> tuple[float, float, int]:
-    """Plastic work (J) under a growing bound, its error (J), and the convolutions it took.
+    """Return the plastic work (J) under a growing bound, its error (J) and the convolutions.
 
     The work is summed over increasing depths from `start`, or from `_SHALLOW` times the
     indentation, where little has yielded.
@@ -331,11 +338,12 @@ def _pinning_error(state: State) -> float:
 
 
 def _work_by_truncation(state: State, start: State | None) -> tuple[float, float, int]:
-    """`_work_by_force` for a truncated pressure without adhesion on approach.
+    """Return the results of `_work_by_force` for a truncated pressure without adhesion on approach.
 
-    The force removed by the truncation integrates to the elastic energy less the work. This
-    integral is exact below first yield, and the more accurate one while the force removed is
-    smaller than the force left.
+    There are two ways to the work. One integrates the truncated force. The other integrates the
+    force that truncation removes, and subtracts the integral from the energy of the elastic
+    contact. The second integral is zero below first yield, and it is more accurate as long as the
+    removed force is smaller than the remaining force.
     """
     contact, indentation = state.contact, state.indentation
     p_y, area = contact.yield_pressure, contact.grid.cell_area
@@ -374,8 +382,9 @@ def _work_by_truncation(state: State, start: State | None) -> tuple[float, float
             tolerance,
             panels=_TRUNCATION_PANELS,
         )
-        # Nodes yield one after the other, so the force has many small kinks, and the two rules of
-        # the quadrature can agree by chance: errors reached nine tolerances in validation contacts.
+        # Nodes yield one after the other, so the force has many small kinks. The two rules of the
+        # quadrature can then agree by chance. In validation contacts, errors reached nine times the
+        # tolerance.
         its_error += _TRUNCATION_MARGIN * tolerance
     if by_excess:
         increment = end.stored_energy - energy - increment

@@ -1,10 +1,11 @@
-"""Error of COR due to the plasticity model, from finite elements (docs/validation.md).
+"""Error of COR due to the plasticity model, from a comparison with finite elements.
 
-The largest relative differences of COR found there are tabulated over the COR due to plasticity
-alone, e_p = sqrt(E_el/(E_el + W_p)). e_p decreases monotonically from first yield to full
-plasticity, for smooth bodies and for asperities. The differences of `expanding-cavity` also depend
-on the steepness of the asperities ψ = E* S/Y, where S is the rms slope. Beyond the range of the
-references the last value is used and may be too small.
+docs/validation.md describes the comparison. The largest relative differences of COR found are
+tabulated over the COR due to plasticity alone, e_p = sqrt(E_el/(E_el + W_p)). e_p decreases
+monotonically from first yield to full plasticity, for smooth bodies and for asperities. The
+differences of `expanding-cavity` also depend on the steepness of the asperities ψ = E* S/Y, where S
+is the rms slope. Outside the range of the finite element results, the nearest value is used and may
+be too small.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import numpy as np
 
 from restitution.contact.state import State
 
-# COR without adhesion, and the largest relative difference at this COR.
+# For each model: values of COR without adhesion, and the largest relative difference at each value.
 _CONSTANT = {
     "equilibrium": (
         (0.34, 0.5, 0.56, 0.68, 0.77, 0.86, 0.9999, 1.0),
@@ -26,16 +27,16 @@ _CONSTANT = {
         (0.3, 0.65, 0.65, 0.55, 0.45, 0.37, 0.3, 0.18, 0.17, 0.11, 0.07),
     ),
 }
-# Largest relative difference over ψ, and its reduction factor over COR near COR = 1.
+# Largest relative difference as a function of ψ, and a factor on it as a function of COR near 1.
 _STEEPNESS, _GROWING = (0.0, 4.0, 6.0, 26.0), (0.03, 0.035, 0.045, 0.05)
 _NEAR_ONE = (0.94, 0.98, 1.0), (1.0, 0.5, 0.2)
-_ONSET = 1.6 / 2.8  # pressure at first yield over that of full plasticity, the yield pressure
+_ONSET = 1.6 / 2.8  # pressure at first yield over the yield pressure (full plasticity)
 
 
 def model_error(state: State, restitution: float) -> float:
-    """Error of `restitution`, of an impact up to `state`, due to the plasticity model.
+    """Error of the `restitution` of an impact up to `state` due to the plasticity model.
 
-    It is 0 if no node has reached the pressure of first yield, and for elastic bodies.
+    The error is 0 for elastic bodies, and if no node has reached the pressure of first yield.
     """
     contact = state.contact
     onset = contact.first_yield_pressure * (1.0 if contact.grows else _ONSET)
@@ -44,7 +45,8 @@ def model_error(state: State, restitution: float) -> float:
     stored, lost = state.stored_energy, state.plastic_work
     returned = stored / (stored + lost) if stored + lost > 0 else 0.0
     error = largest_difference(state, math.sqrt(returned))
-    # Adhesion removes the same energy whatever the plastic loss: e² and e_p² change equally.
+    # The adhesive loss of energy does not depend on the plastic loss, so e² and e_p² change by the
+    # same amount.
     high, low = (
         math.sqrt(max(restitution**2 + returned * ((1 + off) ** 2 - 1), 0.0))
         for off in (error, -error)
@@ -53,7 +55,7 @@ def model_error(state: State, restitution: float) -> float:
 
 
 def largest_difference(state: State, restitution: float) -> float:
-    """Largest relative error of COR where plasticity alone gives a COR of `restitution`."""
+    """Largest relative error of COR if plasticity alone would give the COR `restitution`."""
     contact = state.contact
     if not contact.grows:
         return float(np.interp(restitution, *_CONSTANT[str(contact.plasticity)]))

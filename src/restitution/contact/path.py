@@ -1,4 +1,4 @@
-"""Loading and unloading paths, as generators of states that can be streamed and stopped."""
+"""Loading and unloading paths: generators that yield states one by one and can be stopped."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ def loading_path(
 ) -> Iterator[State]:
     """Load the undeformed bodies to each of several depths.
 
-    Give exactly one of `indentations`, `forces` and `velocities`. If the work is an integral, it is
-    integrated from each state to the next.
+    Give exactly one of `indentations`, `forces` and `velocities`. If the work has to be integrated,
+    each integral starts from the previous state.
 
     Args:
         contact: Contact to load.
@@ -67,7 +67,7 @@ def unloading_path(
     tolerance: float = RESTITUTION_ERROR,
     residual: float = RESIDUAL,
 ) -> Iterator[State]:
-    """Unload a contact to separation, where the force is back to zero.
+    """Unload a contact to separation, where the force returns to zero.
 
     Steps become shorter towards separation as (1 − t)², because the force of a Hertzian unloading,
     (δ − δ_s)^1.5, is then a cubic in t.
@@ -75,8 +75,8 @@ def unloading_path(
     Args:
         state: State to unload.
         steps: Number of steps (1) without adhesion.
-        tolerance: Error of the coefficient of restitution (1) that chooses the steps with adhesion,
-            see `contact.separation`.
+        tolerance: Allowed error of the coefficient of restitution (1). It determines the number of
+            steps with adhesion, see `contact.separation`.
         residual: Tolerance on the violation of the contact conditions (1), as in `solve`; only
             without adhesion.
 

@@ -12,19 +12,21 @@ from restitution.numerics.box import Box
 
 Array = NDArray[np.float64]
 
-# Errors are fractions of the plastic work due to the growth of the bound: _RULE_ERROR for nodes
-# that had yielded before the step, _NEW_ERROR for nodes that begin to yield in the step (from a
-# comparison with 11 times as many depths). _NEW is the weight of this work for the new nodes.
+# Errors are fractions of the part of the plastic work that the growth of the bound adds:
+# _RULE_ERROR for nodes that had yielded before the step, and _NEW_ERROR for nodes that begin to
+# yield in the step. Both come from a comparison with 11 times as many depths. _NEW is the weight of
+# the growth of the bound in the work of nodes that begin to yield.
 _RULE_ERROR, _NEW, _NEW_ERROR = 0.1, 0.8, 0.25
 
 
 def plastic_work(before: State | None, after: State) -> tuple[float, float]:
-    """Plastic work (J) between two states, `after` at most 1.42 times as deep, and its error (J).
+    """Plastic work (J) between two states, and its error (J).
 
-    Each node yields by Δu while its bound grows from b₁ to b₂. If u is linear in the indentation δ
-    and b linear in ln δ, its work is Δu [b₁ + (b₂ − b₁) (δ₂/(δ₂ − δ₁) − 1/ln(δ₂/δ₁))]. A node that
-    begins to yield in this step does so under bounds nearer to b₂: its factor of b₂ − b₁ is `_NEW`.
-    The error is the fraction `_RULE_ERROR` or `_NEW_ERROR` of the term with b₂ − b₁.
+    `after` may be at most 1.42 times as deep as `before`. Each node yields by Δu while its bound
+    grows from b₁ to b₂. If u is linear in the indentation δ and b is linear in ln δ, the work per
+    area is Δu [b₁ + (b₂ − b₁) (δ₂/(δ₂ − δ₁) − 1/ln(δ₂/δ₁))]. A node that begins to yield in this
+    step yields under bounds nearer to b₂, so the factor of b₂ − b₁ is then `_NEW`. The error is the
+    fraction `_RULE_ERROR` or `_NEW_ERROR` of the term with b₂ − b₁.
     """
     contact, box = after.contact, after.box
     given, begun = after.plastic_displacement[box], np.asarray(contact.first_yield_pressure)
@@ -44,5 +46,5 @@ def plastic_work(before: State | None, after: State) -> tuple[float, float]:
 
 
 def _on(bound: Array | float, box: Box) -> Array:
-    """`bound`, a number or an array of the shape of the grid, on a box."""
+    """Return `bound`, a number or an array of the shape of the grid, on a box."""
     return np.asarray(bound) if np.ndim(bound) == 0 else np.asarray(bound)[box]

@@ -19,7 +19,7 @@ def solve_at_force(contact: Contact, force: float, *, start: State | None = None
     """Load the undeformed bodies to `force`, within a relative error of 1e-8.
 
     The force increases with the indentation, so a bracketing root finder always converges. With
-    adhesion each of its solves starts from the previous one.
+    adhesion, each solve of the root finder starts from the previous solve.
 
     Args:
         contact: Contact to load.

@@ -1,4 +1,4 @@
-"""Contact at an impact velocity: its deepest point, where the kinetic energy is used up."""
+"""Contact at the deepest point of an impact, where the loading work is the kinetic energy."""
 
 from __future__ import annotations
 
@@ -14,17 +14,18 @@ from restitution.errors import CaseError, NotConvergedError
 from restitution.theory import Hertz
 
 VELOCITY_TOLERANCE = 1e-6
-# Used where the loading work is integrated, with a relative error of about 1e-3.
+# Relative tolerance on the velocity if the loading work is integrated. The relative error of the
+# integral is about 1e-3, so a smaller tolerance would be useless.
 _INTEGRATED_TOLERANCE = 1e-4
-_MAX_GROWTH = 3.0  # of the depth, per step towards the upper end of the bracket
+_MAX_GROWTH = 3.0  # largest factor between two trial depths in the search for an upper bound
 
 
 def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None = None) -> State:
     """Load the undeformed bodies until the loading work is ½ m* V².
 
-    The velocity of the state is V within a relative error of 1e-6 if the work is exact. If it is an
-    integral, the velocity computed from `State.loading_work` is V within 1e-4, and
-    `State.work_error` applies in addition. Where the work is positive it increases with the
+    If the work is known exactly, the relative error of the velocity is at most 1e-6. If the work is
+    integrated, the velocity computed from `State.loading_work` is V within 1e-4, and
+    `State.work_error` is an additional error. Where the work is positive, it increases with the
     indentation, so a bracketing root finder always converges.
 
     Args:
@@ -44,7 +45,7 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
 
     mass = contact.pair.mass
     if mass is None:
-        raise CaseError("density: is missing; give both bodies one, as a velocity needs the masses")
+        raise CaseError("density: is missing; give the density of both bodies, or no velocity")
     if not 0 < velocity < math.inf:
         raise CaseError(f"velocity: {velocity} m/s is not positive")
     work = 0.5 * mass * velocity**2
@@ -52,7 +53,7 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
     found: dict[float, State] = {}
 
     def excess(indentation: float) -> float:
-        """A function with the sign of W − ½ m* V², made nearly linear: W grows as δ^2 to δ^2.5."""
+        """Function with the sign of W − ½ m* V², nearly linear because W grows as δ² to δ^2.5."""
         indentation = float(indentation)  # the root finder passes a NumPy scalar
         if indentation == 0:
             return -1.0
@@ -72,7 +73,7 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
     while above < 0:
         low, high = high, high * min(_MAX_GROWTH, max(1.05, 1.05 / max(1 + above, 1e-9)))
         above = excess(high)
-    # ΔV/V = ½ ΔW/W is between Δδ/δ and 1.25 Δδ/δ.
+    # The tolerance on the depth follows from ΔV/V = ½ ΔW/W, between Δδ/δ and 1.25 Δδ/δ.
     deepest = float(toms748(excess, low, high, xtol=0.3 * tolerance * high, rtol=1e-12, k=1))
     if deepest not in found:
         excess(deepest)

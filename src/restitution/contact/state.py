@@ -23,8 +23,8 @@ Array = NDArray[np.float64]
 class State:
     """A contact in equilibrium at one indentation.
 
-    Arrays that could still be written to elsewhere are copied. States are compared and hashed by
-    identity; compare their fields to compare values.
+    Arrays that other code could still write to are copied. States are compared and hashed by
+    identity; to compare values, compare the fields.
 
     Attributes:
         contact: The contact before loading.
@@ -119,7 +119,7 @@ class State:
     @property
     def separation_indentation(self) -> float:
         """Indentation min(h₀ + u_p) at which bodies without adhesion separate (m)."""
-        # Nodes in contact have a smaller gap than any node outside the box.
+        # The box is enough, because nodes in contact have a smaller gap than nodes outside the box.
         box = self.box if self.contact_nodes else ...
         return float((self.contact.gap[box] + self.plastic_displacement[box]).min())
 

@@ -1,1 +1,1 @@
-"""Exports of laws to DEM codes."""
+"""Exports of laws to codes of the discrete element method (DEM)."""

@@ -22,9 +22,10 @@ _OBSTACLES = {
 
 
 def pull_off_force(law: Law, velocity: float) -> float:
-    """The pull-off force (N) after an impact at `velocity` (m/s).
+    """Pull-off force (N) after an impact at `velocity` (m/s).
 
-    Linear in ln V between the computed points; NaN where a point beside it has none.
+    The force is interpolated linearly in ln V between the computed points. NaN if one of the two
+    neighbouring points has no pull-off force.
     """
     forces = [math.nan if p.pull_off_force is None else p.pull_off_force for p in law.points]
     V = law.column("velocity")
@@ -32,7 +33,7 @@ def pull_off_force(law: Law, velocity: float) -> float:
 
 
 def adhesion_lines(law: Law, velocity: float, code: str) -> list[str]:
-    """Comments about the adhesion of `law` in the export to `code`; none where it has none."""
+    """Write comments on the adhesion of `law` for the export to `code`; none without adhesion."""
     if law.work_of_adhesion == 0:
         return []
     force = pull_off_force(law, velocity)

@@ -17,7 +17,7 @@ is that of D. W. Marhefka, D. E. Orin, IEEE Trans. Syst. Man Cybern. A 29 (1999)
 
 Hertz with a constant damping coefficient, m x″ = −(4/3)E* R*^½ x^{3/2} − γx′ until x = 0. In units
 of the length L = (mV²/((4/3)E* R*^½))^⅖ and the time L/V, x″ = −x^{3/2} − g x′ with g = γL/(mV): e
-depends on g alone, and g on V^{−⅕} (integrated numerically).
+depends on g alone, and g ∝ V^{−⅕}. The equation is integrated numerically.
 """
 
 from __future__ import annotations
@@ -30,13 +30,14 @@ from scipy.optimize import brentq
 
 from restitution.laws.law import Law
 
-_NEARLY_ELASTIC = 1e-4  # 1 − e below which the leading terms are exact within rounding
-_TOLERANCE = 1e-12
-_LARGEST_DAMPING = 20.0  # ζ, whose e is below 0.001; g reaches that much sooner
+_NEARLY_ELASTIC = 1e-4  # if 1 − e is smaller, the leading terms are exact within rounding
+_TOLERANCE = 1e-12  # tolerance of root finding
+# Largest ζ or g that is searched. e is below 0.001 for ζ = 20, and already for a much smaller g.
+_LARGEST_DAMPING = 20.0
 
 
 def dashpot_restitution(ratio: float) -> float:
-    """The e of the damping ratio ζ (1) of a linear spring and dashpot without tension."""
+    """Return e for the damping ratio ζ (1) of a linear spring and dashpot without tension."""
     if ratio == 1:
         return math.exp(-2)
     root = math.sqrt(abs(1 - ratio**2))
@@ -45,17 +46,18 @@ def dashpot_restitution(ratio: float) -> float:
 
 
 def dashpot_ratio(restitution: float) -> float:
-    """The damping ratio ζ (1) of a linear spring and dashpot without tension that returns e."""
+    """Return the damping ratio ζ (1) of a linear spring and dashpot without tension for e."""
     return _root(dashpot_restitution, restitution, _LARGEST_DAMPING)
 
 
 def hunt_crossley_dissipation(restitution: float) -> float:
-    """The product dV (1) of dissipation and impact velocity that returns e > 0."""
+    """Return the product dV (1) of dissipation and impact velocity for e > 0."""
     e = restitution
     if 1 - e < _NEARLY_ELASTIC:
         return 1.5 * (1 - e**2) / (1 + e**3)
 
-    # ec = 1 − exp(−u) is within rounding of 1 for small e; its logarithm −u is not lost.
+    # For small e, ec differs from 1 by rounding only. Solving for u with ec = 1 − exp(−u) keeps
+    # the difference.
     def excess(u: float) -> float:
         c = -math.expm1(-u) / e
         return c * (1 + e) - math.log1p(c) - u
@@ -65,7 +67,7 @@ def hunt_crossley_dissipation(restitution: float) -> float:
 
 
 def hunt_crossley_restitution(dissipation: float) -> float:
-    """The e of the product dV (1) of dissipation and impact velocity."""
+    """Return e for the product dV (1) of dissipation and impact velocity."""
     c = dissipation
     if c == 0:
         return 1.0
@@ -78,7 +80,7 @@ def hunt_crossley_restitution(dissipation: float) -> float:
 
 
 def hertz_restitution(damping: float) -> float:
-    """The e of a Hertz contact with the dimensionless damping g; 0 where it does not rebound."""
+    """Return e of a Hertz contact with the dimensionless damping g; 0 if it does not rebound."""
 
     def slope(_: float, y: tuple[float, float]) -> list[float]:
         return [y[1], -(max(y[0], 0.0) ** 1.5) - damping * y[1]]
@@ -92,13 +94,13 @@ def hertz_restitution(damping: float) -> float:
 
 
 def hertz_damping(law: Law, velocity: float, restitution: float) -> float:
-    """The damping coefficient γ (kg/s) of a Hertz contact that returns e at `velocity` (m/s)."""
+    """Return the damping coefficient γ (kg/s) of a Hertz contact for e at `velocity` (m/s)."""
     g = _root(hertz_restitution, restitution, 2.0)
     return g * law.mass * velocity / _length(law, velocity)
 
 
 def hertz_restitution_at(law: Law, damping: float, velocity: float) -> float:
-    """The e of a Hertz contact with the damping coefficient γ (kg/s) at `velocity` (m/s)."""
+    """Return e of a Hertz contact with the damping coefficient γ (kg/s) at `velocity` (m/s)."""
     return hertz_restitution(damping * _length(law, velocity) / (law.mass * velocity))
 
 

@@ -1,4 +1,4 @@
-"""Laws as the input of a DEM code, or as one table."""
+"""Export laws as the input of a DEM code, or as one table."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ _WHOLE = (
 
 
 def export(laws: Sequence[Law], code: str, velocity: float | None) -> dict[str, str]:
-    """The input of `code` (one of `CODES`) for the pairs of `laws`: file names and their texts.
+    """Make the input of `code` (one of `CODES`) for the pairs of `laws`; return names and texts.
 
     All codes but `csv` take one coefficient of restitution for each pair and need a `velocity`
-    (m/s). Raises `CaseError` without a velocity, for pairs without a law, and for values that the
-    code does not accept; `DomainError` for a velocity outside the computed ones.
+    (m/s). Raises `CaseError` if the velocity is missing, if a pair has no law, or if the code does
+    not accept a value. Raises `DomainError` for a velocity outside the computed velocities.
     """
     table = pair_table(laws)
     if code == "csv":
@@ -52,7 +52,7 @@ def export(laws: Sequence[Law], code: str, velocity: float | None) -> dict[str, 
 
 
 def limit(code: str) -> str:
-    """What a user of the export to `code` must know to get its e; empty if nothing."""
+    """Say what a user must do for `code` to return the exported e; empty if nothing."""
     if code == "csv":
         return ""
     return str(getattr(import_module(f"restitution.dem.codes.{code}"), "NOTE", ""))
@@ -73,7 +73,7 @@ def write_export(texts: dict[str, str], out: Path) -> list[Path]:
 
 
 def _table(table: PairTable, velocity: float | None) -> str:
-    """One CSV text: the points of all pairs, or the estimates at `velocity` (m/s)."""
+    """Write one CSV text: the points of all pairs, or the estimates at `velocity` (m/s)."""
     rows: list[dict[str, float | str]] = []
     for i, j, law in table.pairs():
         pair: dict[str, float | str] = {

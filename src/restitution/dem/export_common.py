@@ -1,9 +1,9 @@
-"""Shared by all exports: the pairs at one velocity, the comments above them, and the templates.
+"""Functions that all exports share: the pairs at one velocity, comments, and templates.
 
-DEM codes take one coefficient of restitution for each pair, so an export holds at one impact
-velocity. Its comments give the origin of e, its error, and its values at other velocities. Comments
-are plain ASCII without quotes, braces and line continuation characters, so that a name or title
-given by the user cannot end its comment.
+DEM codes take one coefficient of restitution e for each pair, so an export is valid at one impact
+velocity. The comments in an export give the origin of e, its error, and its values at other
+velocities. Comments are plain ASCII without quotes, braces and line continuation characters, so
+that a name or title given by the user cannot end a comment.
 """
 
 from __future__ import annotations
@@ -66,9 +66,10 @@ class Pair:
 
     @property
     def twin(self) -> tuple[float, float]:
-        """E (Pa) and ν of one material for both bodies that gives the E* and G* of this pair.
+        """E (Pa) and ν of a material that, used for both bodies, gives E* and G* of this pair.
 
-        From E* = E/2(1 − ν²) and G* = E/4(2 − ν)(1 + ν); ν lies between those of the two bodies.
+        They follow from E* = E/2(1 − ν²) and G* = E/4(2 − ν)(1 + ν). ν lies between the values of
+        the two bodies.
         """
         k = self.shear_modulus / self.law.contact_modulus
         nu = min(max((1 - 4 * k) / (1 - 2 * k), 0.0), 0.5)
@@ -76,9 +77,9 @@ class Pair:
 
 
 def pairs_at(table: PairTable, velocity: float, code: str, lowest: float) -> list[Pair]:
-    """All pairs of `table` with their e at `velocity` (m/s).
+    """Return all pairs of `table` with their e at `velocity` (m/s).
 
-    Raises `CaseError` if e is below `lowest`, the smallest e that `code` reproduces, and
+    Raises `CaseError` if e is below `lowest`, the smallest e that `code` reproduces. Raises
     `DomainError` outside the computed velocities.
     """
     found = []
@@ -108,7 +109,7 @@ def density_of(particle: Particle) -> float:
 
 
 def identifier(particle: Particle, number: int) -> str:
-    """A name for `particle` that every code accepts: letters, digits and `_`, with `number`."""
+    """Make a name for `particle` that every code accepts: letters, digits and `_`, and `number`."""
     word = (
         re.sub(r"[^A-Za-z0-9]+", "_", comment_text(particle.name))
         .strip("_")[:24]
@@ -128,10 +129,10 @@ def header(
     ends: str,
     constant: bool = True,
 ) -> list[str]:
-    """Comment lines above the export for `code`.
+    """Write the comment lines above the export for `code`.
 
-    `ends` says where `code` ends a contact, `constant` whether its e has one value at every
-    velocity.
+    `ends` says where `code` ends a contact. `constant` says whether e in `code` is the same at
+    every velocity.
     """
     lines = _origin(velocity, code, ends, constant)
     lines += ["", "Types:"]
@@ -150,7 +151,7 @@ def summary(
     fragment: str,
     constant: bool = True,
 ) -> list[str]:
-    """The shorter comments above a collision that uses `fragment`; all warnings are kept."""
+    """Write shorter comments, with all warnings, above a collision that uses `fragment`."""
     lines = [
         *_origin(velocity, code, ends, constant),
         f"The comments in {fragment} give the origin of e.",
@@ -161,18 +162,18 @@ def summary(
 
 
 def commented(lines: Iterable[str], sign: str) -> str:
-    """`lines` as comments, which begin with `sign`."""
+    """Make comments of `lines`; each begins with `sign`."""
     return "\n".join(f"{sign} {line}".rstrip() for line in lines)
 
 
 def xml_comment(lines: Iterable[str]) -> str:
-    """`lines` as one XML comment, which must not contain two hyphens in a row."""
+    """Make one XML comment of `lines`; it must not contain two hyphens in a row."""
     safe = (re.sub("-(?=-)", "- ", line).rstrip() for line in lines)
     return "\n".join(["<!--", *safe, "-->"])
 
 
 def render(name: str, **values: object) -> str:
-    """The text of the file `name`, from its template `templates/NAME.j2` with `values`.
+    """Fill in the template `templates/NAME.j2` of the file `name` with `values`.
 
     Templates can also use the names and the filters of `_environment`.
     """
@@ -180,14 +181,14 @@ def render(name: str, **values: object) -> str:
 
 
 def comment_text(text: str) -> str:
-    """`text` as one line of ASCII that cannot end a comment; Greek letters become names."""
+    """Convert `text` to one line of ASCII that cannot end a comment; Greek letters become names."""
     text = unicodedata.normalize("NFKD", one_line(text).translate(_PLAIN)).translate(_PLAIN)
     text = "".join(map(_ascii, text)).translate(_SIGNS)
     return text.replace("*/", "* /").replace("/*", "/ *").replace("??/", "?? /")
 
 
 def number(value: float) -> str:
-    """`value` in a notation that every code reads."""
+    """Format `value` in a notation that every code reads."""
     return f"{value:.9g}"
 
 

@@ -59,13 +59,13 @@ class PairTable:
             more = f" (and {len(missing) - 1} more)" if len(missing) > 1 else ""
             raise CaseError(
                 f"{code} needs a law for every {what}, and there is none for "
-                f"{missing[0]}{more}; another pair's law cannot replace it: compute the law "
+                f"{missing[0]}{more}; the law of another pair cannot replace it: compute this law "
                 "(`restitution run`, `restitution fit-law`) and give it, too"
             )
 
 
 def pair_table(laws: Sequence[Law]) -> PairTable:
-    """The table of `laws`. Bodies with equal values become one type.
+    """Make the table of `laws`. Bodies with equal values become one type.
 
     Raises `CaseError` for two laws of one pair.
     """
@@ -78,7 +78,7 @@ def pair_table(laws: Sequence[Law]) -> PairTable:
         i, j = sorted((number[law.first], number[law.second]))
         if (i, j) in found:
             raise CaseError(
-                f"two laws are given for {law.pair}; give one, or give the particles other names"
+                f"two laws are given for {law.pair}; give one of them, or rename the particles"
             )
         found[i, j] = law
     return PairTable(spheres, walls, found)

@@ -1,4 +1,4 @@
-"""A script for codes with a constant e: match it to the velocities in a simulation."""
+"""Write a script for codes with a constant e that matches e to the velocities in a simulation."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from restitution.laws.law import Law
 
 SCRIPT = "match_velocity.py"
 _ROUNDS = 6
-_TOLERANCE = 0.005  # in e
-_SAMPLES = 4  # intervals of the table between two computed velocities
+_TOLERANCE = 0.005  # change of e below which the script stops
+_SAMPLES = 4  # number of intervals of the table between two computed velocities
 
 
 @dataclass(frozen=True)
 class Target:
-    """The code, the command that runs it, and the files of its export."""
+    """A DEM code, the command that runs it, and the files of its export."""
 
     code: str
     command: str
@@ -27,7 +27,7 @@ class Target:
 
 
 def matching_script(target: Target, pairs: list[Pair], comments: str) -> str:
-    """The text of `match_velocity.py` for the fragment of `target`."""
+    """Make the text of `match_velocity.py` for the fragment of `target`."""
     return render(
         SCRIPT,
         comments=comments,
@@ -44,7 +44,7 @@ def matching_script(target: Target, pairs: list[Pair], comments: str) -> str:
 
 
 def law_points(law: Law, lowest: float) -> list[tuple[float, float]]:
-    """V (m/s) and e (at least `lowest`) of `law`, dense enough for linear interpolation."""
+    """Tabulate V (m/s) and e (at least `lowest`), dense enough for linear interpolation."""
     V = law.column("velocity")
     fine = np.interp(
         np.arange((V.size - 1) * _SAMPLES + 1) / _SAMPLES, np.arange(V.size), np.log(V)

@@ -1,1 +1,1 @@
-"""The restitution law of one pair: from stored results, with fits and closed forms."""
+"""The restitution law of one pair: made from stored results, fitted, compared with closed forms."""

@@ -4,8 +4,8 @@ The modules of `restitution.theory` state the ranges. Outside its range a theory
 even if its formula gives a number. No theory includes roughness.
 
 Two quantities are called yield stress. Hertz, sticking and Thornton–Ning take the contact pressure
-p_y of the case. The others take the yield strength Y of a tensile test: that of the softer body if
-every body has a `yield_strength`, otherwise p_y/2.8.
+p_y of the case. The other theories take the yield strength Y of a tensile test. If every body has a
+`yield_strength`, Y is that of the softer body; otherwise it is p_y/2.8.
 
 All units are SI; arrays of velocities and of e have the same shape.
 """
@@ -27,10 +27,10 @@ from restitution.theory import JKR, MDR, AdhesiveThorntonNing, Hertz, Johnson, T
 Array = NDArray[np.float64]
 
 STRENGTHS = 2.8
-"""p_y/Y for bodies without a yield strength."""
+"""Ratio p_y/Y that is assumed for bodies without a yield strength."""
 
-_SMALL = 0.01  # δ/R* up to which Hertz holds
-_JOHNSON = 0.6  # e below which Johnson's formula holds
+_SMALL = 0.01  # largest δ/R* for which Hertz's theory is used
+_JOHNSON = 0.6  # largest e for which Johnson's formula is used
 
 SOURCES = {
     "hertz": "H. Hertz, J. reine angew. Math. 92 (1882) 156-171",
@@ -65,7 +65,7 @@ class Bodies:
 
     @classmethod
     def of(cls, case: Case) -> Bodies:
-        """The smooth bodies of `case`. Raises `CaseError` if a density is missing."""
+        """Return the smooth bodies of `case`. Raises `CaseError` if a density is missing."""
         pair = case.pair()
         for name, body in (("first", pair.first), ("second", pair.second)):
             if body.mass is None:
@@ -101,7 +101,7 @@ class Bodies:
 
     @property
     def yielding(self) -> ThorntonNing:
-        """The contact that yields, without adhesion."""
+        """The elastic-plastic contact without adhesion."""
         return ThorntonNing(self.R, self.E, self.p_y)
 
     @property
@@ -116,26 +116,26 @@ class Bodies:
 
     @cached_property
     def yield_velocity(self) -> float:
-        """V_y (m/s); infinite if elastic."""
+        """Yield velocity V_y (m/s); infinite if elastic."""
         if self.elastic:
             return math.inf
         return float(self.yielding.first_yield.velocity(self.m))
 
     @cached_property
     def sticking_velocity(self) -> float:
-        """V_s (m/s); zero without adhesion."""
+        """Sticking velocity V_s (m/s); zero without adhesion."""
         if self.w == 0:
             return 0.0
         return float(self.sticking.sticking_velocity(self.m))
 
     @cached_property
     def small_velocity(self) -> float:
-        """V (m/s) up to which a Hertz contact is small compared with the spheres."""
+        """Velocity V (m/s) up to which a Hertz contact is small compared with the spheres."""
         return float(self.hertz.impact_velocity(_SMALL * self.R, self.m))
 
     @property
     def strength(self) -> float:
-        """Y (Pa) of the softer body, or p_y/2.8."""
+        """Yield strength Y (Pa): that of the softer body, or p_y/2.8."""
         return self.p_y / STRENGTHS if self.strengths is None else min(self.strengths)
 
     @property
@@ -250,7 +250,7 @@ def _mdr(b: Bodies, V: Array) -> Form | str:
     if not b.walls and not b.equal:
         return "it needs equal spheres, or a sphere and a wall"
     if b.yielding_wall:
-        return "the wall is softer than the sphere, and its model has no yielding wall"
+        return "the wall is softer than the sphere, but the model assumes a rigid wall"
     nu = b.sphere_poisson
     if nu < 0:
         return "it does not hold for a negative Poisson's ratio"
@@ -293,10 +293,10 @@ def _tabor(b: Bodies) -> str:
 
 
 def within(inside: NDArray[np.bool_], e: Array) -> Array:
-    """`e` where `inside`, NaN elsewhere."""
+    """Return `e` where the mask `inside` is true, and NaN elsewhere."""
     return np.where(inside, e, np.nan)
 
 
 def speed(V: float) -> str:
-    """A velocity in words."""
+    """Format a velocity with its unit."""
     return f"{V:.3g} m/s"

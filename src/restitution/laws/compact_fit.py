@@ -2,11 +2,14 @@
 
     e² = Σ c_k L^k − s/V²,   L = ln(V/V₀)/w in [−1, 1]
 
-The last term is the loss by adhesion, the same energy at every velocity (s = V_s² for an elastic
-pair: Thornton & Ning 1998). The polynomial describes the loss by yielding. Velocities below which
-nothing is lost (e = 1) or the pair sticks (e = 0) are excluded. The fit is linear least squares in
-e². Its degree minimises the larger of the residuals at the points and the leave-one-out residuals
-(as PRESS, Allen 1974, but with their maximum); this maximum is the error between the points.
+The last term is the loss by adhesion, which is the same energy at every velocity (s = V_s² for an
+elastic pair: Thornton & Ning 1998). The polynomial describes the loss by yielding. Low velocities
+at which nothing is lost (e = 1) or the pair sticks (e = 0) are excluded.
+
+The fit is linear least squares in e². The error between the points is the largest residual, where
+both the residuals at the points and the leave-one-out residuals count (as in PRESS, Allen 1974, but
+with the maximum instead of the sum). The degree of the polynomial is the lowest whose error is
+small or near the minimum.
 """
 
 from __future__ import annotations
@@ -21,21 +24,21 @@ from restitution.laws.law import CompactFit, Law
 Array = NDArray[np.float64]
 
 _HIGHEST_DEGREE = 8
-_FEWEST = 4  # points needed for a fit
-_NO_LOSS = 1e-3  # 1 − W_u/W_l below which a point counts as lossless
-_SIMPLER = 1.1  # a lower degree is preferred if its error is at most this much larger
-_GOOD = 1e-3  # a lower degree is always preferred if its error of e is below this
-_COUNTS = 0.01  # loss of e² by adhesion that defines `adhesive_below`
+_FEWEST = 4  # smallest number of points for a fit
+_NO_LOSS = 1e-3  # a point counts as lossless if 1 − W_u/W_l is below this value
+_SIMPLER = 1.1  # a lower degree is preferred if its error is at most this factor larger
+_GOOD = 1e-3  # a lower degree is always preferred if its error of e is below this value
+_COUNTS = 0.01  # loss of e² by adhesion at the velocity `adhesive_below`
 
 
 def compact_fit(law: Law) -> CompactFit | None:
-    """The compact fit of `law`; None if fewer than four resolved points remain."""
+    """Fit `law` in compact form; None if fewer than four resolved points remain."""
     V, ratio = law.column("velocity", resolved=True), law.column("ratio", resolved=True)
     lossless = law.work_of_adhesion == 0
     first = 0
     while lossless and first < V.size and ratio[first] > 1 - _NO_LOSS:
         first += 1
-    # Keep the last lossless (or sticking) point: it anchors the polynomial at that end.
+    # Keep the last lossless (or sticking) point, because it fixes the polynomial at the low end.
     first = max(first - 1, 0)
     sticks = law.sticks_below
     used = slice(first, None)
@@ -67,7 +70,7 @@ def compact_fit(law: Law) -> CompactFit | None:
 
 
 def _best(v: Array, e2: Array, centre: float, width: float, adhesive: bool) -> tuple[int, bool]:
-    """The degree, and whether to use the adhesion term: the smallest error between the points."""
+    """Choose degree and adhesion term (yes or no) with the smallest error between the points."""
     errors = {
         (degree, adhesion): max(
             _left_out(v, e2, centre, width, degree, adhesion),
@@ -95,7 +98,7 @@ def _solve(v: Array, e2: Array, centre: float, width: float, degree: int, adhesi
 
 
 def _misfit(v: Array, e2: Array, centre: float, width: float, degree: int, adhesion: bool) -> float:
-    """The largest residual of e at the points."""
+    """Largest residual of e at the points."""
     fitted = _basis(v, centre, width, degree, adhesion) @ _solve(
         v, e2, centre, width, degree, adhesion
     )
@@ -105,7 +108,7 @@ def _misfit(v: Array, e2: Array, centre: float, width: float, degree: int, adhes
 def _left_out(
     v: Array, e2: Array, centre: float, width: float, degree: int, adhesion: bool
 ) -> float:
-    """The largest leave-one-out residual of e at an inner point."""
+    """Largest leave-one-out residual of e at the inner points."""
     worst = 0.0
     for k in range(1, v.size - 1):
         keep = np.arange(v.size) != k

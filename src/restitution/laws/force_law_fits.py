@@ -1,9 +1,10 @@
 """Force laws of DEM codes, fitted to a computed law.
 
 Each force law is fitted to COR by least squares over the resolved points. COR does not determine
-the loading stiffness of spring models: it is chosen such that the maximum forces agree with the
-computed ones (geometric mean over the points), so that contacts last as long and are as deep as the
-computed ones on average. The COR of the fitted law at every point is stored with its parameters.
+the loading stiffness of spring models. This stiffness is chosen such that the maximum forces agree
+with the computed forces (geometric mean over the points). So the duration and depth of contacts
+agree with the computed contacts on average. The COR of the fitted law at every point is stored with
+its parameters.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ NAMES = (
 )
 """The force laws, in the order in which they are fitted."""
 Begin = Callable[[str, int, int], None]
-"""Called before each fit with its name, its number (from 1) and the number of fits."""
+"""Function called before each fit with its name, its number (from 1) and the number of fits."""
 
 _MOST = 1e6  # largest ratio of unloading to loading stiffness
 # The parameters of each spring model, in the order of the arguments of its theory.
@@ -54,7 +55,7 @@ _AT_FORCE_ZERO = "separation, where the force is back to zero"
 
 
 def fitted_laws(law: Law, begin: Begin | None = None) -> tuple[FittedLaw, ...]:
-    """All force laws that can be fitted to `law`; empty if it is lossless or unresolved."""
+    """Fit all applicable force laws to `law`; empty if `law` is lossless or unresolved."""
     if _seen(law, "restitution").min(initial=1.0) > 1 - LOSS:
         return ()
     fits, found = _all(law), []
@@ -70,7 +71,7 @@ def fitted_laws(law: Law, begin: Begin | None = None) -> tuple[FittedLaw, ...]:
 def _all(law: Law) -> Iterator[FittedLaw]:
     yield _constant(law)
     if _seen(law, "restitution").max() < LOSS or _seen(law, "force").max() <= 0:
-        return  # everything sticks, or only tension acts: no force law fits
+        return  # no force law fits if the pair sticks or only tension acts
     yield from _thornton_ning(law)
     yield _walton_braun(law)
     yield _luding(law)
@@ -92,7 +93,7 @@ def _constant(law: Law) -> FittedLaw:
 
 
 def _thornton_ning(law: Law) -> Iterator[FittedLaw]:
-    """Two fits: p_y from the maximum forces, and p_y from COR."""
+    """Fit p_y in two ways: to the maximum forces, and to COR."""
     smooth = law.radius, law.contact_modulus
     V, force = _seen(law, "velocity"), _seen(law, "force")
 
@@ -154,7 +155,9 @@ def _adhesion_of(law: Law, V_s: float) -> Parameters:
 
 def _walton_braun(law: Law) -> FittedLaw:
     k1 = _stiffness(law, exponent=1.0)
-    scale = math.sqrt(k1 / law.mass) / law.highest  # k2 = 2 k1 at the highest velocity
+    scale = (
+        math.sqrt(k1 / law.mass) / law.highest
+    )  # a hardening of this size gives k2 = 2 k1 at the top
 
     def springs(x: Array) -> tuple[float, float, float]:
         return k1, k1 * math.exp(x[0]), scale * float(x[1]) ** 2
@@ -223,9 +226,9 @@ def _eepa(law: Law) -> FittedLaw:
 
 
 def _mdr(law: Law) -> FittedLaw | None:
-    """LAMMPS' mdr; None for two unlike spheres.
+    """Fit the model mdr of LAMMPS; None for two unlike spheres.
 
-    The model holds for a sphere on a rigid flat. Two equal spheres are two such contacts.
+    The model describes a sphere on a rigid flat. Two equal spheres are two such contacts.
     """
     sphere = law.second if law.first.wall else law.first
     assert sphere.radius is not None  # a pair has at most one wall
@@ -255,7 +258,7 @@ def _mdr(law: Law) -> FittedLaw | None:
 
 
 def _seen(law: Law, name: str) -> Array:
-    """The field `name` of the resolved points."""
+    """Values of the field `name` at the resolved points."""
     return law.column(name, resolved=True)
 
 
@@ -277,7 +280,7 @@ def _fit(
     low: list[float],
     high: list[float] | None = None,
 ) -> Array:
-    """The parameters x within `low` and `high` that fit restitution(V, x) to the points."""
+    """Find parameters x within `low` and `high` for which restitution(V, x) fits the points."""
     V, e = _seen(law, "velocity"), _seen(law, "restitution")
 
     def misfit(x: Array) -> Array:
@@ -292,9 +295,9 @@ def _least_squares(
     low: list[float] | None = None,
     high: list[float] | None = None,
 ) -> Array:
-    """Minimise the sum of squares of `misfit` from several starts, because it has kinks.
+    """Minimise the sum of squares of `misfit` from several starts, because `misfit` has kinks.
 
-    COR is monotone in a single parameter; one start is then enough.
+    With a single parameter, one start is enough, because COR is monotone in this parameter.
     """
     from scipy.optimize import least_squares
 
@@ -324,7 +327,7 @@ def _judged(
     fitted_to: str = "the coefficient of restitution",
     note: str = "",
 ) -> FittedLaw:
-    """The fitted law, with its COR at the points and its differences from the computed COR."""
+    """Make the fitted law, with its COR at the points and differences from the computed COR."""
     V = law.column("velocity")
     found = np.where(law.fits_hold_at(V), restitution(V), np.nan)
     miss = found - law.column("restitution")

@@ -18,25 +18,26 @@ from restitution.results.reader import EnsembleResults, RunResults, read_run
 from restitution.runs.error_budget import total
 
 _Row = Mapping[str, float]
-_SAME = 1e-9  # values are equal within this relative difference
+_SAME = 1e-9  # largest relative difference of values that count as equal
 
 
 def law_of(out: Path, begin: Begin | None = None) -> Law:
-    """The law of the results in the folder `out`, with its fits.
+    """Make the law of the results in the folder `out`, with its fits.
 
-    `begin` is called before each fit (`force_law_fits.Begin`). Raises as `bare_law`.
+    `begin` is called before each fit (`force_law_fits.Begin`). Raises the errors of `bare_law`.
     """
     law = bare_law(out)
     return law.model_copy(update={"fit": compact_fit(law), "laws": fitted_laws(law, begin)})
 
 
 def bare_law(out: Path) -> Law:
-    """The law of the results in the folder `out`, without fits.
+    """Make the law of the results in the folder `out`, without fits.
 
-    An ensemble gives the law of its mean curve, with errors that include the confidence interval
-    of the mean; a convergence study gives errors that include the error of its grid. Depths without
-    an impact velocity (adhesion did more work than the approach) are left out. Raises `OutputError`
-    if the folder holds no run, `CaseError` if no depth has an impact velocity.
+    The law of an ensemble is that of its mean curve, and its errors include the confidence interval
+    of the mean. The errors from a convergence study include the error of the grid. Depths without
+    an impact velocity are left out; at these depths adhesion did more work than the approach.
+    Raises `OutputError` if the folder holds no run, and `CaseError` if no depth has an impact
+    velocity.
     """
     run = _read(out)
     try:
@@ -68,8 +69,8 @@ def _law(out: Path, run: RunResults) -> Law:
         )
     if left := len(rows) - len(points):
         warnings.append(
-            f"{left} of {len(rows)} depths are left out: no impact reverses there, because "
-            "adhesion did more work than the approach, or there is no force"
+            f"{left} of {len(rows)} depths are left out: no impact reverses at these depths, "
+            "because adhesion did more work than the approach, or there is no force"
         )
     pair = case.pair()
     for name, value in (
@@ -107,7 +108,7 @@ def _law(out: Path, run: RunResults) -> Law:
     if law.sticks_everywhere:
         warnings.append(
             f"the pair sticks at every computed velocity (up to {law.highest:.4g} m/s); it may "
-            "rebound above"
+            "rebound at higher velocities"
         )
     return law.model_copy(
         update={"sticks_below": law.curve().begins(), "warnings": tuple(warnings)}
@@ -118,10 +119,10 @@ def _read(out: Path) -> RunResults:
     if (out / "study.toml").is_file():
         raise OutputError(
             f"{out}: is a study of many cases, and a law describes one pair; run one case with "
-            "`restitution run` and name its folder"
+            "`restitution run` and give its folder"
         )
     if (out / LAW_FILE).is_file():
-        raise OutputError(f"{out}: is already a law; name the folder of a run")
+        raise OutputError(f"{out}: is already a law; give the folder of a run")
     if (out / "curve.csv").is_file() and not (out / "summary.json").exists():
         raise OutputError(
             f"{out}: this run has not ended, or was killed; wait for it, or run the case again"
@@ -136,7 +137,7 @@ def _read(out: Path) -> RunResults:
 
 
 def _error_includes(diagnostics: Mapping[str, object]) -> str:
-    """Which errors the error of a point includes, and which it does not, in words."""
+    """Describe which errors the error of a point includes, and which it does not."""
     includes = diagnostics.get("total_error_includes") or "solver"
     excludes = diagnostics.get("total_error_does_not_include") or "anything else"
     model = diagnostics.get("largest_model_error")
@@ -168,16 +169,16 @@ def _points(run: RunResults, asked: bool) -> list[Point]:
 
 
 def _ratio(row: _Row, work: float, *, means: bool) -> float:
-    """W_u/W_l; e² where the columns are `means` over surfaces, and the pair rebounds."""
+    """Ratio W_u/W_l of a row; e² if the columns are `means` over surfaces and the pair rebounds."""
     ratio, e = row["unloading_work_J"] / work, row["restitution"]
     return e * e if means and e > 0 else ratio
 
 
 def _error(row: _Row, *, asked: bool) -> float:
-    """The total error of a row.
+    """Total error of a row.
 
-    If the total error was `asked` for but a part of it is unknown, return the largest possible
-    error of COR. If it was not asked for, return the sum of the known parts.
+    If the case `asked` for the total error but a part of it is unknown, return the largest possible
+    error of COR. If the case did not ask for it, return the sum of the known parts.
     """
     known = row.get("total_error", math.nan)
     if not math.isnan(known):

@@ -2,17 +2,17 @@
 
     W_u/W_l = q(ln V) − s/V²
 
-A monotone cubic (PCHIP) interpolates q. The term s/V² is the loss by adhesion, whose energy is
-about the same at every velocity (s = V_s² for an elastic pair: Thornton & Ning 1998). The two
-lowest velocities give s such that q is nearly constant there, so that the ratio changes sign at the
-velocity above which the pair rebounds. Without adhesion s = 0.
+A monotone cubic (PCHIP) interpolates q. The term s/V² is the loss by adhesion, an energy that is
+about the same at every velocity (s = V_s² for an elastic pair: Thornton & Ning 1998). s is chosen
+such that q is nearly constant between the two lowest velocities. The interpolated ratio then
+changes sign at the velocity above which the pair rebounds. Without adhesion s = 0.
 
 The error estimate at the middle of an interval is 1.5 times the larger leave-one-out residual of
-its two end points. It is at least the difference between the cubic and linear interpolation. With
-two points alone it is the difference between their values. Towards the points the estimate falls to
-zero as 2 (t (1 − t))^½, where t is the fraction of the interval in ln V, like the standard
-deviation of a random walk with both ends fixed. docs/dem.md says how often the error lies within
-the estimate on rough surfaces.
+the two end points, and at least the difference between the cubic and linear interpolation. With
+only two points, it is the difference between their values. Towards the points, the estimate falls
+to zero as 2 (t (1 − t))^½, where t is the fraction of the interval in ln V. The standard deviation
+of a random walk with both ends fixed has the same form. docs/dem.md says how often the error lies
+within the estimate on rough surfaces.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-_SAFETY = 1.5  # times the leave-one-out residual
+_SAFETY = 1.5  # error estimate over the leave-one-out residual
 
 
 class RatioCurve:
-    """W_u/W_l against impact velocity, interpolated.
+    """W_u/W_l as an interpolated function of the impact velocity.
 
     `velocities` (m/s, increasing) and `ratios` have shape (points,).
     """
@@ -44,11 +44,11 @@ class RatioCurve:
         self._q = ratios + self.adhesion / velocities**2
 
     def at(self, velocity: float) -> float:
-        """The ratio at `velocity` (m/s), which must lie within those of the points."""
+        """Interpolate the ratio at `velocity` (m/s), which must lie between those of the points."""
         return _pchip(self._L, self._q, math.log(velocity)) - self.adhesion / velocity**2
 
     def error(self, velocity: float) -> float:
-        """The error estimate of the ratio at `velocity` (m/s): continuous, zero at the points."""
+        """Error estimate of the ratio at `velocity` (m/s), continuous and zero at the points."""
         if self.velocities.size == 1:
             return 0.0
         L = math.log(velocity)
@@ -58,7 +58,7 @@ class RatioCurve:
         return max(middle * 2 * math.sqrt(t * (1 - t)), line)
 
     def interval(self, velocity: float) -> tuple[int, float]:
-        """The index of the point above `velocity`, and t (0 to 1) within the interval below it."""
+        """Index of the point above `velocity`, and t (0 to 1) in the interval below this point."""
         L = math.log(velocity)
         after = min(max(int(np.searchsorted(self._L, L)), 1), self._L.size - 1)
         below, above = self._L[after - 1 : after + 1]
@@ -84,7 +84,7 @@ class RatioCurve:
 
     @cached_property
     def _left_out(self) -> Array:
-        """Leave-one-out residual of each point; the end points take that of their neighbours."""
+        """Leave-one-out residual of each point; an end point has the residual of its neighbour."""
         n = self._L.size
         if n == 2:
             return np.full(2, abs(self._q[1] - self._q[0]) / _SAFETY)

@@ -21,8 +21,8 @@ from restitution.laws.interpolation import RatioCurve
 Array = NDArray[np.float64]
 
 LOSS = 1e-3
-"""A law is not fitted if 1 − e is below this at every velocity, or e itself is."""
-_SAME = 1e-9  # velocities are equal within this relative difference
+"""A law is not fitted if 1 − e is below this value at every velocity, or if e is."""
+_SAME = 1e-9  # largest relative difference of velocities that count as equal
 
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
@@ -79,12 +79,13 @@ class Point(_Stored):
 
 
 class CompactFit(_Stored):
-    """e² = Σ c_k L^k − s/V², L = ln(V/V₀)/w, between `lowest` and `highest` velocity.
+    """Fit e² = Σ c_k L^k − s/V², L = ln(V/V₀)/w, between `lowest` and `highest` velocity.
 
     e = 0 where e² is negative and for V ≤ `sticks_below`; e = 1 for V ≤ `elastic_below`. The fit
-    uses the resolved points; `lowest` and `highest` (m/s) are the first and the last of them, and
-    the fit has no value outside. `worst` is the largest difference in e at these points, `between`
-    the largest one at a point left out of the fit. Velocities are in m/s, `adhesion` s in m²/s².
+    uses the resolved points. `lowest` and `highest` (m/s) are the first and the last resolved
+    point, and the fit has no value outside. `worst` is the largest difference in e at the resolved
+    points; `between` is the largest difference at a point that was left out of the fit. Velocities
+    are in m/s, and `adhesion` is s in m²/s².
     """
 
     coefficients: tuple[float, ...]
@@ -148,7 +149,7 @@ class Conventions(_Stored):
 
 @dataclass(frozen=True)
 class Estimate:
-    """COR at one velocity, its error, and whether the grid resolves the contact there."""
+    """COR at one velocity, its error, and whether the grid resolves the contact."""
 
     restitution: float
     error: float
@@ -208,7 +209,7 @@ class Law(_Stored):
 
     @property
     def fitted_range(self) -> tuple[float, float] | None:
-        """The lowest and the highest resolved velocity (m/s); fits hold between them."""
+        """The lowest and the highest resolved velocity (m/s), between which fits are valid."""
         V = self.column("velocity", resolved=True)
         return (float(V[0]), float(V[-1])) if V.size else None
 
@@ -219,16 +220,16 @@ class Law(_Stored):
         return np.asarray((low * (1 - _SAME) <= V) & (high * (1 + _SAME) >= V))
 
     def column(self, name: str, *, resolved: bool = False) -> Array:
-        """The field `name` of all points, or of the resolved ones; shape (points,)."""
+        """Values of the field `name` at all points or at the resolved points, shape (points,)."""
         points = [point for point in self.points if point.resolved or not resolved]
         return np.array([getattr(point, name) for point in points], dtype=float)
 
     def at(self, velocity: float) -> Estimate:
-        """The estimate at `velocity` (m/s).
+        """Estimate COR at `velocity` (m/s).
 
-        Its error is the sum of the error of the points, interpolated linearly in ln V, and of the
-        interpolation error of W_u/W_l (`RatioCurve.error`). The error is continuous in V. Raises
-        `DomainError` outside the computed velocities.
+        The error of the estimate is the sum of two parts: the error of the points, interpolated
+        linearly in ln V, and the interpolation error of W_u/W_l (`RatioCurve.error`). It is
+        continuous in V. Raises `DomainError` outside the computed velocities.
         """
         if not self.lowest * (1 - _SAME) <= velocity <= self.highest * (1 + _SAME):
             raise DomainError(
@@ -253,7 +254,7 @@ class Law(_Stored):
         )
 
     def curve(self) -> RatioCurve:
-        """W_u/W_l against velocity."""
+        """W_u/W_l as a function of the velocity."""
         return RatioCurve(
             self.column("velocity"), self.column("ratio"), adhesive=self.work_of_adhesion > 0
         )

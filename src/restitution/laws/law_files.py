@@ -1,6 +1,6 @@
 """Read and write laws as files, and write theories as a table.
 
-`law.json` holds a whole law, `table.csv` and `laws.csv` parts of it.
+`law.json` holds a whole law; `table.csv` and `laws.csv` hold parts of it as tables.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from restitution.results.interruption import hold_signals
 from restitution.results.writer import make_folder, replace_file, write_checksums, write_table
 
 LAW_FILE = "law.json"
-LAWS = "laws"  # of a mixture
+LAWS = "laws"  # folder with the laws of a mixture
 
 
 def write_law(law: Law, out: Path) -> list[Path]:
@@ -66,9 +66,9 @@ def read_law(folder: Path) -> Law:
 
 
 def read_laws(folders: Sequence[Path]) -> list[Law]:
-    """The laws in `folders`: one in each folder of `fit-law`, all pairs in that of a mixture.
+    """Read the law in each folder of `fit-law`, and all laws in each folder of a mixture.
 
-    Raises as `read_law`.
+    Raises the errors of `read_law`.
     """
     found: list[Law] = []
     for folder in folders:
@@ -85,7 +85,7 @@ def is_mixture(folder: Path) -> bool:
 def write_theories(velocities: NDArray[np.float64], found: list[Theory], out: Path) -> Path:
     """Write `theory.csv` into `out`, which must be new or empty. Raises `OutputError`.
 
-    `found` has the restitution of each theory at `velocities` (m/s).
+    `found` contains the restitution of each theory at `velocities` (m/s).
     """
     make_folder(out)
     rows = [
@@ -97,7 +97,7 @@ def write_theories(velocities: NDArray[np.float64], found: list[Theory], out: Pa
 
 
 def law_rows(law: Law) -> list[dict[str, float | str]]:
-    """One row for each point; the quantities of the whole law are repeated in every row."""
+    """Make one row for each point; quantities of the whole law are repeated in every row."""
     fit = [math.nan] * len(law.points)
     if law.fit is not None:
         fit = [float(e) for e in law.fit.restitution(law.column("velocity"))]

@@ -1,4 +1,4 @@
-"""Closed forms for the smooth bodies of a stored run, drawn beside its curves."""
+"""Closed forms for the smooth bodies of a stored run, for figures that show both."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ class Reference:
 
 
 def force_references(results: xr.Dataset) -> list[Reference]:
-    """Force (N) against indentation (m): an elastic law, and one that yields if the bodies do.
+    """Force (N) against indentation (m): an elastic law and, if the bodies yield, a plastic law.
 
-    It begins below the smallest indentation that carries a force in loading or unloading.
+    The laws begin below the smallest indentation that carries a force in loading or unloading.
     """
     R, E_star, p_y, w = _parameters(results)
     deepest = float(results["indentation"].max())

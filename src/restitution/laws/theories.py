@@ -1,4 +1,4 @@
-"""COR at the velocities of a case: closed forms, and theories fitted to a computed law."""
+"""COR of a case by closed forms and by theories fitted to a computed law."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ from restitution.theory import Brilliantov
 Array = NDArray[np.float64]
 
 STEPS = 25
-"""Number of velocities from the first to the last."""
+"""Number of velocities in the table of a case that gives a span."""
 COMPUTED = "computed"
 """The name of the computed points among the theories."""
 
-_FINE = 600  # velocities of a line in a figure
-_SAME = 1e-6  # R*, E* and m* are equal within this relative difference
-_FITTED = ("constant", "walton-braun", "luding", "eepa")  # their parameters need a fit
+_FINE = 600  # number of velocities of a line in a figure
+_SAME = 1e-6  # largest relative difference of R*, E* or m* that count as equal
+_FITTED = ("constant", "walton-braun", "luding", "eepa")  # theories whose parameters need a fit
 
 
 @dataclass(frozen=True)
 class Theory:
     """COR of one theory at some velocities.
 
-    `holds` is its range in words; the keys of `parameters` carry the units; `restitution` is NaN
-    outside the range.
+    `holds` describes the range of the theory, and `restitution` is NaN outside this range. The keys
+    of `parameters` end with the units.
     """
 
     name: str
@@ -43,10 +43,11 @@ class Theory:
 
 
 def velocities_of(case: Case, law: Law | None = None) -> Array:
-    """The velocities (m/s) to tabulate: the law's own, or the span of the case.
+    """Velocities (m/s) to tabulate: the velocities of the law, or the span of the case.
 
-    A case with indentations or loads gives the velocities at which smooth bodies reach the first
-    and the last of them, by Thornton and Ning, or by Hertz if elastic. Raises `CaseError`.
+    If the case gives indentations or loads, the span ends where smooth bodies reach the first and
+    the last of them, according to Thornton and Ning or, for elastic bodies, Hertz. Raises
+    `CaseError`.
     """
     if law is not None:
         return law.column("velocity")
@@ -58,10 +59,11 @@ def velocities_of(case: Case, law: Law | None = None) -> Array:
 
 
 def theories(case: Case, velocities: Array, law: Law | None = None) -> list[Theory]:
-    """Every theory that applies to `case`, at `velocities` (m/s); with `law` also fits to it.
+    """Evaluate every theory that applies to `case` at `velocities` (m/s), and fits to `law`.
 
-    The computed COR has values at the points of the law only, the fits only between its resolved
-    points. Raises `CaseError` if a density is missing, or if the law belongs to another pair.
+    The computed COR has values only at the points of the law. The fits have values only between the
+    resolved points. Raises `CaseError` if a density is missing, or if the law belongs to another
+    pair.
     """
     V = np.asarray(velocities, dtype=float)
     found = [answer for answer in _answers(case, V) if isinstance(answer, Theory)]
@@ -74,9 +76,9 @@ def theories(case: Case, velocities: Array, law: Law | None = None) -> list[Theo
 def theory_lines(
     case: Case, velocities: Array, found: list[Theory]
 ) -> list[tuple[str, bool, Array, Array]]:
-    """The lines of a figure: name, whether fitted, velocities (m/s) and COR of each of `found`.
+    """Lines of a figure: name, whether fitted, velocities (m/s) and COR of each theory in `found`.
 
-    Closed forms are evaluated at many velocities from the first to the last, fits stay at
+    Closed forms are evaluated at many velocities from the first to the last. Fits are given at
     `velocities`. The computed points are left out.
     """
     closed: dict[str, Array] = {}
@@ -125,13 +127,13 @@ def check_same_pair(case: Case, law: Law) -> None:
     ]
     if differing:
         raise CaseError(
-            f"the law of {law.pair} is of another pair: its {', its '.join(differing)}; name the "
+            f"the law of {law.pair} is of another pair: its {', its '.join(differing)}; give the "
             "case from which it was computed, or another law"
         )
 
 
 def _answers(case: Case, V: Array) -> Iterator[Theory | tuple[str, str]]:
-    """Each closed form at V (m/s), or its name and the reason why it does not apply."""
+    """Yield each closed form at V (m/s), or its name and the reason why it does not apply."""
     bodies = Bodies.of(case)
     for name, form in FORMS.items():
         answer = form(bodies, V)
@@ -148,7 +150,7 @@ def _answers(case: Case, V: Array) -> Iterator[Theory | tuple[str, str]]:
 
 
 def _of_law(bodies: Bodies, law: Law, V: Array) -> Iterator[Theory]:
-    """The computed points, and the theories whose parameters are fitted to them."""
+    """Yield the computed points, and the theories whose parameters are fitted to these points."""
     own = law.column("velocity")
     equal = np.isclose(V[:, np.newaxis], own, rtol=1e-9, atol=0.0)
     at, here = equal.argmax(axis=1), np.asarray(equal.any(axis=1))
@@ -191,7 +193,7 @@ def _of_law(bodies: Bodies, law: Law, V: Array) -> Iterator[Theory]:
             "brilliantov",
             SOURCES["brilliantov"],
             f"{span}, rms {np.sqrt(np.mean(miss**2)):.2g}, worst {np.abs(miss).max():.2g}; ends "
-            "where the force is back to zero; bodies that neither yield nor adhere, a << R*",
+            "where the force returns to zero; for bodies that neither yield nor adhere, a << R*",
             {"dissipation_s_per_m_power_1_5": beta},
             fitted(e),
         )
@@ -237,7 +239,7 @@ def _cannot_fit(law: Law) -> str:
 
 
 def _dissipation(law: Law) -> float:
-    """β of `brilliantov`, fitted to the COR of the law by least squares."""
+    """Fit β of `brilliantov` to the COR of the law by least squares."""
     from scipy.optimize import minimize_scalar
 
     V, e = (law.column(name, resolved=True) for name in ("velocity", "restitution"))
@@ -245,7 +247,7 @@ def _dissipation(law: Law) -> float:
     def misfit(log_beta: float) -> float:
         return float(np.sum((Brilliantov(math.exp(log_beta)).restitution(V) - e) ** 2))
 
-    # e is nearly 1 at every velocity for the first β, nearly 0 for the last.
+    # At every velocity, e is nearly 1 for the first β and nearly 0 for the last β.
     first, last = math.log(1e-6 / law.highest**0.2), math.log(1e6 / law.lowest**0.2)
     steps = np.linspace(first, last, 200)
     best = int(np.argmin([misfit(step) for step in steps]))

@@ -2,14 +2,17 @@
 
     m₁ x₁'' = −F(δ),  m₂ x₂'' = F(δ),  δ = x₁ − x₂ (0 at first touch),  e = (v₂' − v₁')/(v₁ − v₂)
 
-F follows the loading curve until the particles stop approaching, then the unloading curve from that
-depth. The loading force is the derivative of a cubic Hermite spline through the stored works (ln W
-against ln δ where W resembles a power of δ), whose slopes at the stored depths are the stored
-forces. The maximum indentation therefore agrees with the energies, and e checks the unloading
-forces against the stored energy W_u, and the formula for e from energies against an equation of
-motion. Unloading curves are monotone cubics (PCHIP). They are stored for some depths only: between
-two of them the curves are interpolated as F/F_max against (δ − δ_s)/(δ_max − δ_s), with the
-separation δ_s and the maximum force F_max of the depth itself.
+F follows the loading curve until the particles stop approaching, and then the unloading curve from
+this depth. The resulting e checks two things: the unloading forces against the stored energy W_u,
+and the formula for e from energies against an equation of motion.
+
+The loading force is the derivative of a cubic Hermite spline through the stored works. The slopes
+of the spline at the stored depths are the stored forces, so the maximum indentation agrees with the
+energies. Where W resembles a power of δ, the spline interpolates ln W against ln δ.
+
+Unloading curves are monotone cubics (PCHIP) and are stored for some depths only. Between two of
+these depths, F/F_max is interpolated against (δ − δ_s)/(δ_max − δ_s), with the separation δ_s and
+the maximum force F_max of the intermediate depth.
 """
 
 from __future__ import annotations
@@ -38,14 +41,14 @@ Array = NDArray[np.float64]
 Force = Callable[[float], float]
 
 _RTOL = 1e-10
-_SLACK = 1e-3  # overshoot of the deepest depth allowed for rounding and integration
-_STEEPEST = 6.0  # d ln W/d ln δ above which adhesion has nearly cancelled the work
-_SAME = 1e-5  # depths are equal within this relative difference
+_SLACK = 1e-3  # relative overshoot of the deepest depth allowed for rounding and integration
+_STEEPEST = 6.0  # largest d ln W/d ln δ of a power law; above, adhesion nearly cancels the work
+_SAME = 1e-5  # largest relative difference of depths that count as equal
 
 
 @dataclass(frozen=True)
 class ReferenceCollision:
-    """One collision: its results, and its course in time (arrays of one length), in SI units.
+    """One collision: its results, and its course in time (arrays of equal length), in SI units.
 
     `blended` says whether the unloading force was interpolated between two stored curves.
     """
@@ -68,10 +71,11 @@ class ReferenceCollision:
 class StoredForce:
     """The stored force law of one pair: loading, and unloading from some depths.
 
-    `deepest` is the largest indentation (m) with a stored force, `highest` its impact velocity
-    (m/s). `loading` maps indentation (m) to force (N), `separation` maximum indentation to the
-    indentation at separation (m). `unloading` has the indentations (increasing) and forces of one
-    curve for each depth of `unloading_from` (increasing).
+    `deepest` is the largest indentation (m) with a stored force, and `highest` the impact velocity
+    (m/s) that reaches it. The function `loading` maps indentation (m) to force (N). The function
+    `separation` maps the maximum indentation to the indentation at separation (m). `unloading`
+    contains the indentations (increasing) and forces of one curve for each depth of
+    `unloading_from` (increasing).
     """
 
     pair: Pair
@@ -87,9 +91,10 @@ class StoredForce:
             raise CaseError("density: is missing; integrating a collision in time needs the masses")
 
     def branch(self, deepest: float) -> tuple[Force, float, bool]:
-        """The unloading force from `deepest` (m), its separation (m), and whether it is blended.
+        """Return the unloading force from `deepest` (m), the separation (m), and a flag.
 
-        Raises `DomainError` if the stored unloading curves do not enclose that depth.
+        The flag says whether the force is interpolated between two stored curves. Raises
+        `DomainError` if the stored unloading curves do not enclose this depth.
         """
         depths = self.unloading_from
         near = np.flatnonzero(np.abs(depths / deepest - 1) < _SAME)
@@ -125,7 +130,7 @@ def stored_force(out: Path) -> StoredForce:
     if not run.unloading:
         raise OutputError(
             f"{out}: holds no unloading curves; run the case with unloading.curves of 1 or more "
-            "(for an ensemble, name the folder of one realisation)"
+            "(for an ensemble, give the folder of one realisation)"
         )
     try:
         return _stored_force(run)
@@ -214,7 +219,7 @@ def collide_in_time(law: StoredForce, velocity: float) -> ReferenceCollision:
 
 
 def course(collision: ReferenceCollision) -> list[dict[str, float | str]]:
-    """The course of a collision as rows of a table."""
+    """Convert the course of a collision to rows of a table."""
     columns = zip(
         collision.time,
         collision.indentation,
@@ -272,11 +277,12 @@ def _integrate(
 
 
 def _loading(depth: Array, force: Array, work: Array) -> Force:
-    """The force of first loading, m → N: the derivative of the interpolated stored work."""
+    """Make the function of the loading force (m → N), the slope of the interpolated work."""
     with np.errstate(divide="ignore", invalid="ignore"):
         powers = force * depth / work
     if (work > 0).all() and (powers > 0.5).all() and (powers < _STEEPEST).all():
-        # A power of the depth is a straight line in logarithms; extrapolate it to zero depth.
+        # In logarithms, a power of the depth is a straight line, which is extrapolated to zero
+        # depth.
         L, slope = np.log(depth), powers
         log_work = _hermite(L, np.log(work), slope)
         first = float(L[0])
@@ -291,14 +297,15 @@ def _loading(depth: Array, force: Array, work: Array) -> Force:
             return math.exp(value) / x * its_slope
 
         return pushing
-    # With adhesion the force is linear up to the first depth, and its integral is the work there.
+    # With adhesion, the force is assumed linear up to the first depth. The integral of the force
+    # is the work at this depth.
     jump_in = 2 * work[0] / depth[0] - force[0]
     curve = _hermite(np.append(0.0, depth), np.append(0.0, work), np.append(jump_in, force))
     return lambda x: curve(max(x, 0.0))[1]
 
 
 def _hermite(x: Array, y: Array, slope: Array) -> Callable[[float], tuple[float, float]]:
-    """The cubic Hermite spline and its slope; a straight line beyond the last point."""
+    """Make a function for the cubic Hermite spline and its slope; linear beyond the last point."""
     from scipy.interpolate import CubicHermiteSpline
 
     if x.size == 1:
@@ -331,7 +338,7 @@ def _separation(results: xr.Dataset, depth: Array) -> Callable[[float], float]:
 
 
 def _shape(x: Array, F: Array) -> Force:
-    """F/F_max of one unloading curve against (δ − δ_s)/(δ_max − δ_s)."""
+    """Make the function F/F_max of (δ − δ_s)/(δ_max − δ_s) for one unloading curve."""
     return _pchip((x - x[0]) / (x[-1] - x[0]), F / F[-1])
 
 

@@ -1,1 +1,1 @@
-"""Mixtures: the laws of all pairs of several materials and sizes, from as few runs as needed."""
+"""Mixtures: the laws of all pairs of several materials and sizes, from as few runs as possible."""

@@ -1,10 +1,9 @@
 """Pairs of two components: which particles meet, and the case that is run for one reduced radius.
 
-Smooth spheres without adhesion obey a scaling law: with lengths in units of R*, the contact depends
-on W/R*³ alone, where W is the loading work. Neither the masses nor the two radii enter otherwise.
-All pairs of two components therefore have laws e(W/R*³, R*) of one family. They depend on R* only
-by the roughness and the adhesion, whose lengths do not scale with it. W/R*³ = ½ κ V² with
-κ = m*/R*³.
+Smooth spheres without adhesion obey a scaling law. With lengths in units of R*, the contact depends
+only on W/R*³, where W is the loading work; the masses and the two radii have no other influence.
+Roughness and adhesion have lengths that do not scale with R*. So all pairs of two components have
+laws e(W/R*³, R*) of one family. The velocity V enters as W/R*³ = ½ κ V² with κ = m*/R*³.
 """
 
 from __future__ import annotations
@@ -28,11 +27,11 @@ from restitution.errors import CaseError, RestitutionError
 from restitution.laws.law import Particle
 from restitution.mixtures.mixture_file import Component, Mixture
 
-_WIDTH = 2.8  # of the grid over the radius that the deepest contact may have
-_PEAKS = 4.0  # rms heights of the highest peaks
-_NODES = 256  # along the width of the grid, at least
-_MOST_NODES = 1024
-_PER_WAVE = 5  # nodes in a correlation length, or in the shortest wave
+_WIDTH = 2.8  # width of the grid over the largest possible radius of the deepest contact
+_PEAKS = 4.0  # height of the highest peaks (rms heights)
+_NODES = 256  # smallest number of nodes along the edge of the grid
+_MOST_NODES = 1024  # largest number of nodes along the edge of the grid
+_PER_WAVE = 5  # number of nodes in a correlation length, or in the shortest wave
 
 
 @dataclass(frozen=True)
@@ -60,12 +59,12 @@ class Family:
 
     @property
     def name(self) -> str:
-        """Both names, as in the key of a pair."""
+        """The names of both components, as in the key of a pair."""
         return f"{self.first.name}+{self.second.name}"
 
     @cached_property
     def meetings(self) -> tuple[Meeting, ...]:
-        """Every pair of sizes that can meet, each once."""
+        """All pairs of sizes that can meet, without repetition."""
         return tuple(_meeting(one, two) for one, two in self._sizes())
 
     def _sizes(self) -> Iterable[tuple[Particle, Particle]]:
@@ -77,7 +76,7 @@ class Family:
 
     @cached_property
     def radii(self) -> tuple[float, ...]:
-        """The reduced radii (m) that occur, increasing; equal ones to a relative 1e-9 once."""
+        """The reduced radii (m) that occur, increasing, distinct to a relative 1e-9."""
         found: list[float] = []
         for radius in sorted(meeting.radius for meeting in self.meetings):
             if not found or radius > found[-1] * (1 + 1e-9):
@@ -85,15 +84,15 @@ class Family:
         return tuple(found)
 
     def case(self, radius: float) -> str:
-        """The text of the case for the reduced radius (m).
+        """Write the text of the case for the reduced radius (m).
 
-        It holds the velocities that give W/R*³ of every pair of the family.
+        Its velocities give the W/R*³ of every pair of the family.
         """
         return tomli_w.dumps(self._content(radius, self._grid))
 
     @cached_property
     def _grid(self) -> dict[str, Any]:
-        """The table `[grid]`, the same for all reduced radii: they all have the same surface."""
+        """Make the table `[grid]`, which is the same for all reduced radii, as is the surface."""
         if self.mixture.grid is not None:
             return {"refine": "auto", **self.mixture.grid}
         probe = {"nodes": 64, "spacing": "1 um"}
@@ -137,7 +136,7 @@ class Family:
         }
 
     def _velocities(self, radius: float) -> list[float]:
-        """Those of the mixture, and others beyond its ends that other pairs of R* need."""
+        """Velocities (m/s) of the mixture, and further ones that other pairs of this R* need."""
         asked = self.mixture.velocities
         own = Particle(**_values(self.first), radius=radius if self.second.wall else 2 * radius)
         other = Particle(**_values(self.second), radius=None if self.second.wall else 2 * radius)
@@ -151,7 +150,7 @@ class Family:
 
 
 def families(mixture: Mixture) -> list[Family]:
-    """The families of a mixture, checked: a pair that makes no valid case raises `CaseError`."""
+    """Make the families of a mixture; a pair without a valid case raises `CaseError`."""
     found = [Family(mixture, first, second) for first, second in mixture.families()]
     for family in found:
         for radius in (family.radii[0], family.radii[-1]):
@@ -160,7 +159,7 @@ def families(mixture: Mixture) -> list[Family]:
 
 
 def _steps(start: float, end: float, step: float) -> list[float]:
-    """Velocities beyond `start` in equal steps of ln V, the last of them `end`; none if near."""
+    """Velocities beyond `start` up to `end` in equal steps of ln V; none if `end` is near."""
     distance = math.log(end / start) / math.log(step)
     if distance < 1e-6:
         return []
@@ -169,10 +168,10 @@ def _steps(start: float, end: float, step: float) -> list[float]:
 
 
 def _another(table: dict[str, Any], others: list[dict[str, Any]]) -> dict[str, Any]:
-    """Another surface of the same kind as `table`, for the second body.
+    """Make the table of another surface of the same kind as `table`, for the second body.
 
-    Its seed, or its place in the scan, is none of `others`: surfaces of one seed have the same
-    phases, so that their waves would add up instead of being independent.
+    Its seed, or its place in the scan, differs from those in `others`. Surfaces with the same seed
+    have the same phases, so their waves would add up instead of being independent.
     """
     random = table.get("kind") != "measured" or table.get("extend") == "twin"
     key = "seed" if random else "place"
@@ -206,7 +205,7 @@ def _meeting(first: Particle, second: Particle) -> Meeting:
 
 
 def _half_width(case: Case) -> float:
-    """The radius (m) that the deepest contact may have."""
+    """Largest possible radius (m) of the deepest contact."""
     pair, depth = case.pair(), deepest_indentation(case)
     rms = math.hypot(*(getattr(part, "rms", 0.0) for part in case.roughness))
     rough = math.sqrt(2 * pair.radius * (0.5 * depth + _PEAKS * rms))
@@ -214,7 +213,7 @@ def _half_width(case: Case) -> float:
 
 
 def _spacing(part: Any) -> float:
-    """The largest spacing (m) that carries the waves of a generated roughness."""
+    """Largest spacing (m) that carries the waves of a generated roughness."""
     waves = [getattr(part, name, None) for name in ("correlation_length", "shortest")]
     lengths = [min(wave) if isinstance(wave, tuple) else wave for wave in waves]
     return min((length / _PER_WAVE for length in lengths if length), default=math.inf)

@@ -1,7 +1,8 @@
-"""All laws of a mixture, from as few runs as the error of their interpolation allows.
+"""Compute all laws of a mixture from as few runs as the error of interpolation allows.
 
-Every family starts with its smallest, a middle and its largest reduced radius. A radius is added in
-the middle of each interval in which the error of a pair is above the limit, until none is.
+Every family starts with its smallest, a middle and its largest reduced radius. If the error of a
+pair exceeds the limit, a radius is added in the middle of its interval. This is repeated until no
+error exceeds the limit.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ Progress = Callable[[Tally], None]
 
 @dataclass(frozen=True)
 class PairLaw:
-    """The law of one pair of particles, and its interpolation error (0 where it was computed)."""
+    """The law of one pair of particles, and its interpolation error (0 if it was computed)."""
 
     meeting: Meeting
     law: Law
@@ -37,7 +38,7 @@ class PairLaw:
 
 
 def empty_study(mixture: Mixture) -> Study:
-    """The study of a mixture before its first round: no case is known yet."""
+    """Make the study of a mixture before its first round, when no case is known yet."""
     return Study(mixture.title, mixture.text, {"pair": [], "reduced_radius": []}, "paired", ())
 
 
@@ -50,9 +51,9 @@ def run_mixture(
 ) -> list[PairLaw]:
     """Compute the law of every pair of `mixture`.
 
-    Scans are relative to `folder`. Runs are the cases of a study in `out`, so that an interrupted
-    mixture can be resumed. Raises `OutputError` for a run that fails, because its pairs would have
-    no law.
+    Files of scans are relative to `folder`. Runs are stored as the cases of a study in `out`, so
+    that an interrupted mixture can be resumed. Raises `OutputError` if a run fails, because its
+    pairs would have no law.
     """
     rounds = _Rounds(mixture, folder, out, workers, progress)
     found = families(mixture)
@@ -97,7 +98,7 @@ class _Rounds:
                 )
 
     def computed(self, family: Family) -> Computed:
-        """The laws that are known of `family`."""
+        """Return the laws of `family` that have been computed."""
         radii = sorted(radius for name, radius in self._cases if name == family.name)
         folders = [self._out.folder_of(self._cases[family.name, radius]) for radius in radii]
         return Computed(family, tuple(map(bare_law, folders)))
@@ -110,7 +111,7 @@ def _first_radii(family: Family) -> list[float]:
 
 
 def _more_radii(computed: Computed) -> Iterator[float]:
-    """Radii (m) to be computed next: one for each interval with a pair above the limit."""
+    """Radii (m) to compute next: one for each interval with a pair whose error is too large."""
     family = computed.family
     poor = {meeting.radius for meeting in family.meetings if not computed.is_good(meeting)}
     for low, high in zip(computed.radii[:-1], computed.radii[1:], strict=True):

@@ -1,4 +1,4 @@
-"""The mixture file: materials with their sizes, walls, and what differs between pairs."""
+"""The mixture file: materials with their sizes, walls, and settings of single pairs."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from restitution.case.roughness import Roughness
 from restitution.case.schema import GridTable, ImpactTable, PairOf, Table
 from restitution.errors import CaseError
 
-MOST_SIZES = 50  # of one material
+MOST_SIZES = 50  # largest number of sizes of one material
 
 
 class Sizes(Table):
     """`radius` of a material as a table: bins with edges, or a distribution divided into bins.
 
-    A bin counts as one size, its radius the geometric mean of its edges (of `edges`) or its median
-    (of a distribution, whose bins hold equal numbers of particles).
+    Each bin counts as one size. Its radius is the geometric mean of its edges or, for a
+    distribution, its median. The bins of a distribution hold equal numbers of particles.
     """
 
     edges: Annotated[list[Length] | None, Field(min_length=2, max_length=MOST_SIZES + 1)] = None
@@ -50,8 +50,8 @@ class Sizes(Table):
         for (_, high), (low, _) in itertools.pairwise(ordered):
             if low < high * (1 - 1e-9):
                 raise ValueError(
-                    f"bins: overlap between {low:.6g} m and {high:.6g} m; let each begin where the "
-                    "one before ends"
+                    f"bins: overlap between {low:.6g} m and {high:.6g} m; let each bin begin where "
+                    "the bin before ends"
                 )
         return self
 
@@ -70,8 +70,8 @@ class Sizes(Table):
 class Component:
     """A material with its sizes, or a wall.
 
-    `body` is a table `[first]` of a case without a radius, `roughness` its tables; a wall has no
-    `radii` (m).
+    `body` has the keys of the table `[first]` of a case without `radius`. `roughness` contains the
+    tables of its roughness. A wall has no `radii` (m).
     """
 
     name: str
@@ -86,7 +86,7 @@ class Component:
 
 
 class _File(Table):
-    """The mixture file but for its materials and walls."""
+    """The keys of a mixture file besides its materials and walls."""
 
     title: str = ""
     interpolation_error: Annotated[float, Field(gt=0, lt=1)] = 0.01
@@ -98,7 +98,7 @@ class _File(Table):
 
 @dataclass(frozen=True)
 class Mixture:
-    """A mixture file, checked. `interfaces` and `grid` are tables as they stand in the file."""
+    """A checked mixture file. `interfaces` and `grid` are tables as written in the file."""
 
     title: str
     text: str
@@ -109,7 +109,7 @@ class Mixture:
     interpolation_error: float
 
     def families(self) -> Iterator[tuple[Component, Component]]:
-        """Pairs of components that can meet; a wall is the second of its pair."""
+        """Yield the pairs of components that can meet; a wall is the second in its pair."""
         for first, second in itertools.combinations_with_replacement(self.components, 2):
             if not first.wall:
                 yield first, second
@@ -146,7 +146,7 @@ def parse_mixture(text: str) -> Mixture:
     components = [_component(f"materials.{name}", name, table) for name, table in materials.items()]
     for name, table in walls.items():
         if name in materials:
-            raise CaseError(f"walls.{name}: is the name of a material, too; name it differently")
+            raise CaseError(f"walls.{name}: is also the name of a material; rename the wall")
         components.append(_component(f"walls.{name}", name, table))
     names = [component.name for component in components]
     interface = content.get("interface", {})
@@ -168,7 +168,7 @@ def parse_mixture(text: str) -> Mixture:
 
 
 def _names_of(key: str, names: list[str]) -> tuple[str, str]:
-    """The two components that the key of a pair names."""
+    """Split the key of a pair into the names of its two components."""
     for first, second in itertools.product(names, repeat=2):
         if key == f"{first}+{second}":
             return first, second
@@ -207,13 +207,13 @@ def _component(key: str, name: str, table: Any) -> Component:
 
 
 class _Rough(Table):
-    """The roughness of a component, to be checked."""
+    """The roughness of a component, for checks only."""
 
     roughness: list[Roughness]
 
 
 class _Radii(Table):
-    """Radii as a list, to be checked as lengths."""
+    """Radii as a list of lengths, for checks only."""
 
     radius: Annotated[list[Length], Field(min_length=1, max_length=MOST_SIZES)]
 

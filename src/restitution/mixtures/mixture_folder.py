@@ -16,9 +16,9 @@ MIXTURE_FILE, RUNS, PAIRS = "mixture.toml", "runs", "pairs.csv"
 
 
 def open_mixture_folder(out: Path, mixture: Mixture, *, resume: bool) -> StudyFolder:
-    """The folder of the runs of `mixture` in `out`.
+    """Open the folder of the runs of `mixture` in `out`.
 
-    Raises `OutputError` if `out` holds something else, if there is nothing to resume, and if it
+    Raises `OutputError` if `out` holds something else, if there is nothing to resume, or if `out`
     cannot be written.
     """
     prepare_folder(out, MIXTURE_FILE, mixture.text, resume=resume, what="mixture")
@@ -77,7 +77,7 @@ def write_mixture(
 
 
 def _warnings(pairs: Sequence[PairLaw]) -> list[str]:
-    """Each warning once, with the number of pairs that have it."""
+    """List each warning once, with the number of pairs that have this warning."""
     found: dict[str, int] = {}
     for pair in pairs:
         for warning in pair.law.warnings:

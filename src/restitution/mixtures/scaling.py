@@ -1,8 +1,9 @@
 """Laws of all pairs of a family, from the laws at a few reduced radii.
 
-At equal W/R*³ the ratio W_u/W_l is interpolated in ln R* by a monotone cubic. Its error estimate is
-that of `RatioCurve`: 1.5 times the larger leave-one-out residual of the two neighbouring radii. The
-residual is the largest over neighbouring velocities, because a residual may be zero by chance.
+At equal W/R*³ the ratio W_u/W_l is interpolated in ln R* by a monotone cubic. The error is
+estimated as in `RatioCurve`: 1.5 times the larger leave-one-out residual of the two neighbouring
+radii. Because a single residual may be zero by chance, the largest residual over neighbouring
+velocities is used.
 """
 
 from __future__ import annotations
@@ -21,8 +22,10 @@ from restitution.mixtures.family import Family, Meeting
 
 Array = NDArray[np.float64]
 
-_SHARE, _MOST = 0.25, 0.05  # of the error of computed laws, and of COR: interpolation may add it
-_SAME = 1e-9  # radii are equal within this relative difference
+# Error that interpolation may add: a fraction of the error of the computed laws, and at most this
+# error of COR.
+_SHARE, _MOST = 0.25, 0.05
+_SAME = 1e-9  # largest relative difference of radii that count as equal
 
 
 @dataclass(frozen=True)
@@ -44,8 +47,9 @@ class Computed:
     def is_good(self, meeting: Meeting) -> bool:
         """Whether the law of the pair needs no further radius.
 
-        That is where the error by interpolation in R* is at no velocity above the limit of the
-        mixture, or above a quarter of the error of the computed laws (but at most `_MOST`).
+        At every velocity, the error by interpolation in R* must not exceed the limit of the
+        mixture or a quarter of the error of the computed laws (at most `_MOST`), whichever is
+        larger.
         """
         points, errors = self._points(meeting), self.interpolation_errors(meeting)
         limit = self.family.mixture.interpolation_error
@@ -64,8 +68,8 @@ class Computed:
     def law(self, meeting: Meeting) -> Law:
         """The law of one pair at the velocities of the mixture.
 
-        The error of a point is the sum of the error of the computed laws and that of the
-        interpolation.
+        The error of a point is the sum of the error of the computed laws and the interpolation
+        error.
         """
         nearest = self.laws[int(np.abs(np.log(self.radii / meeting.radius)).argmin())]
         kappa = nearest.mass / nearest.radius**3
@@ -101,7 +105,7 @@ class Computed:
         )
 
     def _curves(self, meeting: Meeting) -> list[RatioCurve]:
-        """The ratio against R* at each velocity of the mixture, from all computed laws."""
+        """W_u/W_l as a function of R* at each velocity of the mixture, from all computed laws."""
         found = []
         for V in self.family.mixture.velocities:
             ratios = np.array(
@@ -119,7 +123,7 @@ class Computed:
         used = [k for k, share in enumerate(shares) if share > _SAME]
 
         def mean(name: str, power: int) -> float:
-            """The scaled quantity `name` of the two laws, times R*^power."""
+            """Interpolate the scaled quantity `name` of the two laws; multiply by R*^power."""
             R = meeting.radius
             return R**power * sum(
                 shares[k]
@@ -143,13 +147,13 @@ class Computed:
 
 
 def _of(law: Law, V: float, meeting: Meeting) -> float:
-    """The velocity (m/s) at which `law` has the W/R*³ that the pair has at V."""
+    """Velocity (m/s) at which `law` has the same W/R*³ as the pair at V."""
     velocity = V * math.sqrt(meeting.kappa / (law.mass / law.radius**3))
     return min(max(velocity, law.lowest), law.highest) if _near(velocity, law) else velocity
 
 
 def _near(velocity: float, law: Law) -> bool:
-    """Whether `velocity` is outside the law by rounding or by the tolerance of velocities only."""
+    """Whether only rounding or the tolerance of velocities puts `velocity` outside the law."""
     return law.lowest * (1 - 1e-3) <= velocity <= law.highest * (1 + 1e-3)
 
 
@@ -160,7 +164,7 @@ def _value(curve: RatioCurve, radius: float) -> float:
 
 
 def _with_near(curves: list[RatioCurve]) -> list[tuple[RatioCurve, list[RatioCurve]]]:
-    """Each curve with those of the velocities below and above it."""
+    """Pair each curve with the curves at the next lower and the next higher velocity."""
     return [(curve, curves[max(k - 1, 0) : k + 2]) for k, curve in enumerate(curves)]
 
 

@@ -1,1 +1,1 @@
-"""Numerical methods on arrays, without any notion of contact."""
+"""Numerical methods on arrays; nothing here is specific to contact mechanics."""

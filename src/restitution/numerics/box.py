@@ -22,7 +22,7 @@ def shape_of(box: Box) -> tuple[int, int]:
 def bounding_box(mask: NDArray[np.bool_], within: Box | None = None) -> Box | None:
     """Return the smallest box that contains every true node of `mask`; None if no node is true.
 
-    `within` is the box that `mask` covers, by default the whole grid.
+    `within` is the box of the grid on which `mask` is given, by default the whole grid.
     """
     rows = np.flatnonzero(mask.any(axis=1))
     if rows.size == 0:

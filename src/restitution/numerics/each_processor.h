@@ -1,6 +1,6 @@
-// Includes the file LOOPS once for each instruction set, in a namespace of its own, with vectors of
-// LANE_BYTES: `plain` for any processor and, if the compiler supports several instruction sets in one
-// file (MANY_PROCESSORS), `avx2` and `avx512`.
+// Includes the file LOOPS once for each instruction set, each time in a separate namespace and with
+// vectors of LANE_BYTES bytes. `plain` works on any processor. `avx2` and `avx512` are added if the
+// compiler supports several instruction sets in one file (MANY_PROCESSORS).
 
 namespace plain {
 #define LANE_BYTES 16

@@ -1,4 +1,7 @@
-"""Uniform rectangular grid. Arrays are indexed `[i, j]` along x and y; values at cell centres."""
+"""Uniform rectangular grid.
+
+Arrays are indexed `[i, j]` along x and y. Their values belong to the cell centres ("nodes").
+"""
 
 from __future__ import annotations
 

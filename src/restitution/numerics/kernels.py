@@ -1,11 +1,13 @@
-"""The compiled kernels: whether this process uses them, and for which instruction set.
+"""Loading of the compiled kernels: whether this process uses them, and for which instruction set.
 
-The hot operations are written twice: as an expression of whole arrays, which works on any device,
-and as a C++ loop that does the same in one pass over memory. Tests compare the two. The loops are
-the module `restitution.numerics.loops`. If it was not compiled or cannot be loaded, NumPy does the
-same work several times more slowly. The environment variable RESTITUTION_KERNELS, read once,
-selects "avx512", "avx2" or "plain" kernels, or "numpy" for none. By default the kernels with the
-widest vectors that the processor supports are used.
+Each time-critical operation is written twice: as an expression of whole arrays, which works on any
+device, and as a C++ loop that does the same in one pass over memory. Tests compare the two. The
+loops form the module `restitution.numerics.loops`. If this module was not compiled or cannot be
+loaded, NumPy does the same work several times more slowly.
+
+The environment variable RESTITUTION_KERNELS, read once, selects "avx512", "avx2" or "plain"
+kernels, or "numpy" for no kernels. By default the process uses the kernels with the widest vectors
+that the processor supports.
 """
 
 from __future__ import annotations
@@ -31,7 +33,7 @@ Result = TypeVar("Result")
 
 
 def _load() -> tuple[Any, str]:
-    """Return the compiled module, or None and the reason with its remedy.
+    """Return the compiled module; or None, the reason why it is not used, and the remedy.
 
     Raises `CaseError` if RESTITUTION_KERNELS names unknown kernels or kernels that cannot be
     loaded.
@@ -45,7 +47,7 @@ def _load() -> tuple[Any, str]:
     try:
         return import_module("restitution.numerics.loops"), ""
     except ModuleNotFoundError:
-        reason = "they were not compiled when the package was installed"
+        reason = "the kernels were not compiled when the package was installed"
     except ImportError as error:
         reason = one_line(str(error))
     if wanted:
@@ -58,14 +60,14 @@ instruction_set: str = INSTRUCTION_SETS[loops.instruction_set] if loops else "no
 
 
 def missing() -> str | None:
-    """Why no compiled kernels are used, with the remedy, in one sentence; None if they are."""
+    """Say in one sentence why no compiled kernels are used, and the remedy; None if they are."""
     if loops is not None:
         return None
     return f"NumPy does the work of compiled kernels, which takes 3 to 6 times as long: {_reason}"
 
 
 def use_loop(expression: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
-    """Decorate `expression` to call its compiled loop if the first array allows it."""
+    """Decorate `expression` to call its compiled loop if `loop_takes` the first argument."""
     if loops is None:
         return expression
     loop = getattr(loops, expression.__name__)

@@ -1,4 +1,4 @@
-// The compiled module: loops and convolutions for the processor it runs on.
+// The compiled module. It selects the loops and convolutions for the processor on which it runs.
 
 #include "thread_team.h"
 #include "rows.h"
@@ -23,8 +23,8 @@ struct Kernels {
     void (*define_convolve)(py::module_&);
 };
 
-// Defines the kernels with the widest vectors that the processor supports, or those that the environment
-// variable names.
+// Defines the kernels that the environment variable RESTITUTION_KERNELS names or, by default, the kernels
+// with the widest vectors that the processor supports.
 PYBIND11_MODULE(loops, module) {
     module.def("use_threads", [](int most) { most_threads = std::max(most, 1); });
     module.def("threads_for", &threads_for);

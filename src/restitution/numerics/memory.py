@@ -8,20 +8,22 @@ from pathlib import Path
 
 from restitution.errors import CaseError
 
-_PAGE = 2**12  # control groups report "no limit" as 2**63 rounded down to pages
+# Size of a memory page (bytes). Control groups report "no limit" as 2**63 rounded down to pages.
+_PAGE = 2**12
 _GROUPS = Path("/sys/fs/cgroup")
 
 
 def available() -> float:
-    """Memory limit (bytes): the smallest of machine, control groups and address space.
+    """Memory limit of this process (bytes); infinite if the system does not report any limit.
 
-    Infinite if the system does not report any limit.
+    It is the smallest of three limits: the memory of the machine, the limits of the control groups,
+    and the address space.
     """
     return min(_of_machine(), _of_control_groups(), _of_address_space())
 
 
 def require(needed: float, what: str, remedy: str) -> None:
-    """Raise `CaseError` if `what` needs more memory in total (`needed`, bytes) than available."""
+    """Raise `CaseError` if `what` needs more memory (`needed`, bytes) than is available."""
     there = available()
     if needed > there:
         raise CaseError(
@@ -78,7 +80,7 @@ def _limit(file: Path) -> float:
 
 
 def _of_address_space() -> float:
-    """Limit of `ulimit -v`, minus addresses that are reserved but not resident."""
+    """Limit set by `ulimit -v`, minus the addresses that are reserved but not resident (bytes)."""
     try:
         import resource
     except ImportError:

@@ -19,8 +19,8 @@ def freeze(values: NDArray[Scalar]) -> NDArray[Scalar]:
 def read_only(values: NDArray[Scalar]) -> NDArray[Scalar]:
     """Return `values` as an array that cannot be written to.
 
-    If `values` and the arrays that it is a view of are already read-only, it is returned itself.
-    Otherwise the result is a copy, and `values` stays writeable for its owner.
+    If `values` and all arrays of which it is a view are already read-only, `values` itself is
+    returned. Otherwise the result is a copy, and `values` stays writeable for its owner.
     """
     owner: object = values
     while isinstance(owner, np.ndarray):

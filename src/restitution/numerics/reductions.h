@@ -1,4 +1,5 @@
-// Maxima and sums over arrays, and partial results over blocks of rows, which `add` combines.
+// Maxima and sums over arrays. Each type holds the partial result of a block of rows; `add` combines the
+// results of two blocks.
 
 // Largest magnitude. `doubt` sums zero times each value, so that the result is NaN if any value is not
 // finite; a maximum alone would skip NaN.

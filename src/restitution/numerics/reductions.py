@@ -20,5 +20,5 @@ def max_magnitude(values: Array) -> float:
 
 def dot(a: Array, b: Array) -> float:
     """Return Σ a b, summed in double precision."""
-    # Not np.vdot: synchronising its threads takes longer than these products.
+    # np.vdot would use threads, whose synchronisation takes longer than the products themselves.
     return float(np.einsum("ij,ij->", a, b, dtype=np.float64))

@@ -1,4 +1,4 @@
-// Two-dimensional arrays with contiguous rows, the arguments of the compiled loops.
+// Rows: two-dimensional arrays with contiguous rows, the arguments of the compiled loops.
 
 #pragma once
 

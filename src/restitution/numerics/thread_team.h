@@ -1,4 +1,4 @@
-// Threads for one operation on large arrays. They start with it and end with it.
+// Threads for one operation on large arrays. They start when the operation starts and end with it.
 
 #pragma once
 
@@ -15,8 +15,8 @@
 // Largest number of threads; `use_threads` sets it.
 inline std::atomic<int> most_threads{1};
 
-// Sizes of the arrays of a loop and of a transform below which threads cost more than they save (bytes,
-// measured on two cores).
+// Sizes of the arrays of a loop and of a transform (bytes, measured on two cores). Below these sizes
+// threads cost more time than they save.
 constexpr Index LOOP_WORTH_THREADS = 8 << 20, BYTES_WORTH_THREADS = 4 * 350 * 350;
 
 template <class T>
@@ -26,9 +26,10 @@ Index bytes_of(const Rows<T>& rows) {
 
 inline int threads_for(Index bytes) { return bytes > BYTES_WORTH_THREADS ? most_threads.load() : 1; }
 
-// How often a waiting thread polls, yielding each time, before it sleeps. On an idle machine this covers
-// the time between the first and the last thread of a step (0.1 ms). On a shared machine a thread may be
-// suspended for milliseconds, and polling for it would take the processor from threads that have work.
+// Number of times that a waiting thread polls, yielding each time, before it sleeps. On an idle machine
+// 200 polls cover the time between the first and the last thread of a step (0.1 ms). On a shared machine
+// a thread may be suspended for milliseconds. More polls would then take the processor from threads that
+// have work.
 constexpr int LOOKS = 200;
 
 // Threads that share the steps of an operation.

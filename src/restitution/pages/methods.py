@@ -1,4 +1,4 @@
-"""Methods of a computation with their sources: the table at the end of every page."""
+"""The table at the end of every page: methods of the computation, with their sources."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ _REFERENCES = (
 
 
 def methods(summary: Mapping[str, Any]) -> Table:
-    """Table of the methods of the run whose `summary.json` is `summary`."""
+    """Make the table of the methods of a run; `summary` is the content of its `summary.json`."""
     model = summary["model"]
     rows = list(_ALWAYS)
     if model["plasticity"] != "none":

@@ -1,7 +1,7 @@
 """A self-contained HTML page: accessible figures, their numbers, and tables.
 
-The page contains the plotting library and makes no requests; its security policy forbids them. The
-template escapes texts of users.
+The page contains the plotting library and makes no requests; its security policy forbids requests.
+The template escapes texts from users.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ def _environment() -> Environment:
 
 
 def _plots(figure: Figure) -> list[dict[str, Any]]:
-    """Each panel for the template: JSON of Plotly, title, shape, and number of legend entries."""
+    """Prepare each panel for the template: Plotly JSON, title, shape, number of legend entries."""
     return [
         {
             "script": _within_script(interactive.draw(panel, figure).to_json()),
@@ -104,5 +104,5 @@ def _plotly() -> Markup:
 
 
 def _within_script(json: str) -> Markup:
-    """`json`, escaped so that it cannot end the script element that contains it."""
+    """Escape `json` so that it cannot end the script element that contains it."""
     return Markup(json.replace("<", "\\u003c"))

@@ -10,7 +10,7 @@ from restitution.pages.run import write_run_page
 from restitution.pages.study import write_study_page
 from restitution.pages.surface import write_surface_page
 
-# A file that identifies the kind of results, and the function that writes their page.
+# For each kind of results, a file that identifies it and the function that writes its page.
 _PAGES = {
     "mixture.toml": write_mixture_page,
     "study.toml": write_study_page,
@@ -20,7 +20,7 @@ _PAGES = {
 
 
 def write_report(out: Path) -> Path:
-    """Write the page of the results in `out`; return its path. Raises `OutputError`."""
+    """Write the page of the results in `out`; return the path of the page. Raises `OutputError`."""
     for name, write in _PAGES.items():
         if (out / name).is_file():
             try:
@@ -33,5 +33,5 @@ def write_report(out: Path) -> Path:
                     f"{one_line(str(error))}); compute them again"
                 ) from error
     raise OutputError(
-        f"{out}: holds no results (none of {', '.join(_PAGES)}); name the OUT of a command"
+        f"{out}: holds no results (none of {', '.join(_PAGES)}); give the OUT folder of a command"
     )

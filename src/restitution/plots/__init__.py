@@ -1,1 +1,1 @@
-"""Figures: described once, drawn by matplotlib or Plotly. Nothing is computed here."""
+"""Figures, described as data and drawn by matplotlib or Plotly. Nothing is computed here."""

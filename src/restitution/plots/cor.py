@@ -9,16 +9,16 @@ import numpy as np
 from restitution.plots.figure import Array, Axis, Band, Mark, Points, Series, has_error
 
 _STEP = 0.1  # the ends of the axis are multiples of this value
-_MARGIN = 0.02
+_MARGIN = 0.02  # margin beyond 0 and 1
 
 
 def cor_axis(series: Sequence[Series]) -> Axis:
-    """The axis of COR that holds `series` and their bars, with its ends at multiples of 0.1."""
+    """Make an axis of COR that holds `series` and their bars, with ends at multiples of 0.1."""
     shown: Array = np.concatenate([np.ravel(part) for each in series for part in _values(each)])
     values = shown[np.isfinite(shown)] if np.isfinite(shown).any() else np.array([0.0, 1.0])
     low = max(_STEP * np.floor((values.min() - _MARGIN) / _STEP), 0.0)
     high = _STEP * np.ceil((values.max() + _MARGIN) / _STEP)
-    # A margin shows lines that run along 0 (sticking) or 1 (elastic).
+    # The margin keeps lines visible that run along 0 (sticking) or 1 (elastic).
     return Axis(
         "coefficient of restitution",
         low=-_MARGIN if values.min() <= 0 else float(low),
@@ -27,9 +27,9 @@ def cor_axis(series: Sequence[Series]) -> Axis:
 
 
 def bars(cor: Array, error: Array) -> tuple[Array, str]:
-    """Bars of the total error below and above `cor`, shape (2, n), and their label.
+    """Make bars of the total error below and above `cor`, shape (2, n), and their label.
 
-    COR lies between 0 and 1, so that the bars are cut there.
+    COR lies between 0 and 1, so the bars are cut at 0 and 1.
     """
     lengths = np.clip([np.minimum(error, cor), np.minimum(error, 1 - cor)], 0, None)
     cut = bool((error > lengths + 1e-12).any())

@@ -1,4 +1,4 @@
-"""The content of a figure, as data: one description for files (`static`) and pages (`interactive`).
+"""The content of a figure as data. `static` draws it in files, `interactive` on pages.
 
 Texts are plain; the module that draws them escapes markup. Numbers are in the units of the axes.
 Colours are names that both CSS and matplotlib know.
@@ -23,17 +23,18 @@ DASHED: Dash = (4, 2)
 DOTTED: Dash = (1, 2)
 DASH_DOTTED: Dash = (6, 2, 1, 2)
 
-# Okabe and Ito (2008), without yellow and black: distinct for the colour-blind, on light and dark.
+# Colours of Okabe and Ito (2008) without yellow and black. Colour-blind readers can distinguish
+# them, on light and on dark backgrounds.
 PALETTE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
 # Symbols distinguish series that share a colour, and all series in print without colours.
 SYMBOLS: tuple[Symbol, ...] = ("circle", "square", "diamond", "triangle-up", "triangle-down")
 BLUE, ORANGE = PALETTE[:2]
-GREY = "#7d858e"  # of references: legible on light and dark pages
+GREY = "#7d858e"  # colour of references, legible on light and dark pages
 
 
 @dataclass(frozen=True)
 class Axis:
-    """An axis: its quantity, unit, scale and ends (None: chosen from the data)."""
+    """An axis: its quantity, unit, scale and ends (None: an end is chosen from the data)."""
 
     label: str
     unit: str = ""

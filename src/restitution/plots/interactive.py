@@ -23,12 +23,12 @@ from restitution.plots.figure import (
     legend_entries,
 )
 
-_MOST_PIXELS = 320  # of a map along either axis; a larger map is thinned
-_LAYERS = (Band, Line, Points)  # from bottom to top
+_MOST_PIXELS = 320  # most pixels of a map along each axis; a larger map is thinned
+_LAYERS = (Band, Line, Points)  # drawing order of the series, from bottom to top
 
 
 def draw(panel: Chart | Map, figure: Figure) -> Plot:
-    """One panel of `figure`, without its titles, which the page shows."""
+    """Draw one panel of `figure` without titles, because the page shows the titles."""
     layout: dict[str, Any] = {
         "template": "none",
         "paper_bgcolor": "rgba(0,0,0,0)",
@@ -70,7 +70,7 @@ def _chart_axes(chart: Chart) -> dict[str, Any]:
         "side": "right",
         "showgrid": False,
         "tickmode": "auto",
-    }  # ticks of its own, not those of the left axis
+    }  # the right axis has its own ticks
     return axes | {"yaxis2": right, "margin": {"l": 70, "r": 70, "t": 28, "b": 60}}
 
 
@@ -91,7 +91,7 @@ def _all_traces(chart: Chart) -> list[dict[str, Any]]:
 
 
 def _traces(each: Band | Line | Points, chart: Chart) -> list[dict[str, Any]]:
-    """The traces of one series, each with its legend text `entry`."""
+    """Make the traces of one series, each with its legend text `entry`."""
     if isinstance(each, Band):
         edge = {"x": each.x, "mode": "lines", "line": {"width": 0}, "hoverinfo": "skip"}
         return [
@@ -160,7 +160,7 @@ def _legend_only(
     mode: str = "markers",
     line: dict[str, Any] | None = None,
 ) -> dict[str, Any]:
-    """A trace without points, for the legend."""
+    """Make a trace without points, which appears only in the legend."""
     return {
         "x": [None],
         "y": [None],

@@ -21,7 +21,8 @@ from restitution.plots.figure import (
     Series,
 )
 
-# Colour, dashes and width of each law; laws that often run along e = 1 differ in width.
+# Colour, dashes and width of the line of each law. Laws that often coincide at e = 1 have lines of
+# different width.
 LAW_LINES: dict[str, tuple[str, Dash, float]] = {
     "hertz": ("#bfbfbf", SOLID, 5.0),
     "sticking": ("#e69f00", SOLID, 3.2),
@@ -37,11 +38,11 @@ LAW_LINES: dict[str, tuple[str, Dash, float]] = {
     "brilliantov": ("#d55e00", (7, 1, 2, 1), 1.2),
 }
 
-_FINE = 400  # points of a fitted line
+_FINE = 400  # number of points of a fitted line
 
 
 def law_figure(law: Law) -> Figure:
-    """Plot the computed COR with its error, and the fits over the velocities they are fitted to."""
+    """Plot the computed COR with its error, and each fit over the velocities of its data."""
     V = law.column("velocity")
     series: list[Series] = [computed_points(law, "computed", "not resolved")]
     if law.fit is not None:
@@ -58,7 +59,7 @@ def law_figure(law: Law) -> Figure:
 
 
 def computed_points(law: Law, label: str, open_label: str) -> Points:
-    """The points of `law` with their error, open where they are not resolved."""
+    """Make markers of the points of `law` with their error, open if they are not resolved."""
     cor = law.column("restitution")
     error, error_label = bars(cor, law.column("error"))
     return Points(

@@ -12,7 +12,7 @@ from restitution.plots.figure import GREY, PALETTE, Axis, Chart, Figure, Line, S
 def mixture_figure(title: str, laws: Sequence[Law]) -> Figure:
     """Plot the COR of all pairs, with a chart for every two materials.
 
-    Lines are labelled by R*, of more than five pairs about five of them.
+    Lines are labelled with R*. If a chart has more than five pairs, about five lines have labels.
     """
     charts = []
     for (first, second), members in families_of(laws).items():
@@ -37,7 +37,7 @@ def mixture_figure(title: str, laws: Sequence[Law]) -> Figure:
 
 
 def families_of(laws: Sequence[Law]) -> dict[tuple[str, str], list[Law]]:
-    """The laws of each two materials, by the names of these."""
+    """Group the laws by their two materials; the keys are the names of the materials."""
     found: dict[tuple[str, str], list[Law]] = {}
     for law in laws:
         found.setdefault((law.first.name, law.second.name), []).append(law)

@@ -38,11 +38,12 @@ from restitution.plots.figure import (
 UNRESOLVED = f"open: not resolved (patches below {NODES_PER_PATCH} nodes)"
 
 _MARGIN = 1.2  # factor by which a logarithmic axis extends beyond the first and the last point
-_RIM = 4  # nodes around a contact in its map
-_UNIFORM = 0.01  # relative difference below which a pressure equals the largest
-_SATURATED = 0.95  # share of such pressures from which the pressure map is left out
+_RIM = 4  # number of nodes around a contact in its map
+_UNIFORM = 0.01  # a pressure counts as the largest if its relative difference is below this value
+# If at least this share of the contact carries the largest pressure, the pressure map is left out.
+_SATURATED = 0.95
 _SMOOTH = "smooth, same model"
-_DASHES = (DOTTED, DASH_DOTTED, DASHED, SOLID)  # of coarser grids, coarsest first
+_DASHES = (DOTTED, DASH_DOTTED, DASHED, SOLID)  # lines of coarser grids, coarsest grid first
 
 
 def run_figures(results: xr.Dataset) -> Iterator[tuple[str, Figure]]:
@@ -58,7 +59,7 @@ def run_figures(results: xr.Dataset) -> Iterator[tuple[str, Figure]]:
 
 
 def has_map(results: xr.Dataset) -> bool:
-    """Whether `results` hold a contact map: a mean over surfaces has none."""
+    """Whether `results` hold a contact map; means over surfaces have no map."""
     return "pressure" in results and bool(results["pressure"].any())
 
 
@@ -218,7 +219,7 @@ def _unloading(results: xr.Dataset) -> list[Line]:
 
 
 def _span(series: list[Points | Line], name: str) -> tuple[float, float | None]:
-    """The ends of an axis: the smallest and largest value with a margin, or zero.
+    """Find the ends of an axis: the smallest and the largest value with a margin, or zero.
 
     The upper end is None if all values are zero.
     """

@@ -37,15 +37,16 @@ from restitution.results.writer import replace_file
 
 Format = Literal["png", "svg", "pdf"]
 
-# Inches: a chart, a map, the width of another panel, a row of the legend, a legend at the side.
+# Sizes in inches: a chart and a map (width, height), the width of each further panel; the height of
+# a row of the legend, and the width of a legend at the side.
 _CHART, _MAP, _SECOND = (6.4, 4.0), (5.6, 4.6), 4.6
 _ROW, _SIDE = 0.2, 2.4
-_MOST_BELOW = 8  # entries of a legend below the axes; a longer legend is placed at the side
-# Digits labelled on a logarithmic axis that spans at most this number of decades.
+_MOST_BELOW = 8  # most entries of a legend below the axes; a longer legend is placed at the side
+# Number of decades of a logarithmic axis, and the digits that are labelled up to this number.
 _DIGITS: tuple[tuple[float, tuple[int, ...]], ...] = ((1.0, (1, 2, 3, 5, 7)), (3.0, (1, 2, 5)))
-_TICKS = 6  # labels of a linear axis, at most one more
-_LINEAR = 0.5  # decades below which a logarithmic axis has linear ticks
-_PLAIN = (0.9e-3, 1e4)  # range of an axis whose labels need no powers of ten
+_TICKS = 6  # approximate number of labels of a linear axis (at most one more)
+_LINEAR = 0.5  # a logarithmic axis of fewer decades has linear ticks
+_PLAIN = (0.9e-3, 1e4)  # values in this range are labelled without powers of ten
 _MARKERS = {
     "circle": "o",
     "square": "s",
@@ -74,8 +75,8 @@ def write_figure(path: Path, figure: Figure, file_format: Format = "png") -> Pat
     """
     drawing, to_write = draw(figure), path.with_name(f"{path.name}.{file_format}")
     with warnings.catch_warnings(), matplotlib.rc_context({"svg.hashsalt": path.name}):
-        matplotlib.rcParams["pdf.fonttype"] = 42  # TrueType, as journals require
-        # The font may lack the script of a title; it draws boxes then.
+        matplotlib.rcParams["pdf.fonttype"] = 42  # embed TrueType fonts, as journals require
+        # If the font lacks the script of a title, matplotlib draws boxes and warns.
         warnings.filterwarnings("ignore", message="Glyph .* missing from font")
         replace_file(
             to_write,
@@ -87,7 +88,7 @@ def write_figure(path: Path, figure: Figure, file_format: Format = "png") -> Pat
 
 
 def draw(figure: Figure) -> Drawing:
-    """The drawing of `figure` in matplotlib, with one legend for all its panels."""
+    """Draw `figure` in matplotlib, with one legend for all panels."""
     labels = list(dict.fromkeys(e for panel in figure.panels for e in legend_entries(panel)))
     columns, beside = 2 * len(figure.panels), len(labels) > _MOST_BELOW
     sizes = [_MAP if isinstance(panel, Map) else _CHART for panel in figure.panels]
@@ -146,7 +147,7 @@ def _draw_chart(axes: Axes, chart: Chart, handles: dict[str, Any]) -> None:
 
 
 def _set_log_ticks(axis: Axis) -> None:
-    """Label the powers of ten, and digits between them where there are few powers."""
+    """Label the powers of ten and, if the axis has few of them, digits between them."""
     low, high = axis.get_view_interval()
     decades = math.log10(high / low) if low > 0 else math.inf
     axis.set_minor_formatter(NullFormatter())
@@ -216,7 +217,7 @@ def _draw_mark(axes: Axes, mark: Mark) -> None:
     sign = 1 if mark.side == "right" else -1
     if mark.axis == "x":
         axes.axvline(mark.value, **style)
-        # Near the lower end, beside the line.
+        # Place the text near the lower end of the line, beside the line.
         where, shift, align = (mark.value, 0.03), (4 * sign, 0), "bottom"
         transform = axes.get_xaxis_transform()
         horizontal = "left" if sign > 0 else "right"
@@ -263,10 +264,10 @@ def _dashes(dash: Dash) -> Any:
 
 
 def _plain(text: str) -> str:
-    """`text` as a title of at most two lines."""
+    """Wrap `text` to a title of at most two lines."""
     return _escaped("\n".join(textwrap.wrap(text, 55, max_lines=2, placeholder=" …")))
 
 
 def _escaped(text: str) -> str:
-    """`text` with the sign of mathematics escaped."""
+    """Escape the sign $, which begins mathematics."""
     return text.replace("$", r"\$")

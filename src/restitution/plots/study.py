@@ -12,11 +12,11 @@ from restitution.plots.cor import cor_axis
 from restitution.plots.figure import PALETTE, SYMBOLS, Axis, Chart, Figure, Points
 from restitution.results.reader import StoredCase
 
-MOST_LINES = 60  # in one figure; more cannot be distinguished
+MOST_LINES = 60  # largest number of lines in a figure; more cannot be distinguished
 
 
 class Abscissa(NamedTuple):
-    """The x axis of COR: a column of the table, and its `scale` to the unit of `axis`."""
+    """The x axis of a figure of COR: a column, and the factor `scale` to the unit of `axis`."""
 
     column: str
     scale: float
@@ -28,7 +28,7 @@ IMPACT_VELOCITY = Abscissa("impact_velocity_m_per_s", 1.0, Axis("impact velocity
 
 
 def rows_with(case: StoredCase, abscissa: Abscissa) -> list[dict[str, float]]:
-    """The rows of the curve of `case` that have a value of `abscissa`."""
+    """Select the rows of the curve of `case` that have a value of `abscissa`."""
     return [row for row in case.curve.rows if not math.isnan(row[abscissa.column])]
 
 

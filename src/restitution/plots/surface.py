@@ -22,7 +22,7 @@ from restitution.surfaces import Surface
 from restitution.surfaces.psd import DirectedSpectrum
 from restitution.surfaces.texture import Autocorrelation, HeightDensity, MaterialRatio
 
-_ROUNDING = 1e-15  # part of the largest spectral density below which there is only rounding
+_ROUNDING = 1e-15  # densities below this fraction of the largest density are rounding errors
 
 
 def surface_map(surface: Surface, title: str = "") -> Figure:
@@ -34,7 +34,7 @@ def surface_map(surface: Surface, title: str = "") -> Figure:
 
 
 def height_distribution(density: HeightDensity, curve: MaterialRatio) -> Figure:
-    """Probability density of heights beside the normal one, and the material ratio (right axis)."""
+    """Probability density of heights, the normal density, and the material ratio (right axis)."""
     x = 1e9 * density.height
     return Figure(
         "",

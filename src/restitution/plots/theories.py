@@ -18,10 +18,10 @@ def theory_figure(
     marks: Mapping[str, float],
     law: Law | None = None,
 ) -> Figure:
-    """COR against velocity: one line for each theory, and the computed points of `law`.
+    """Plot COR against velocity: one line for each theory, and the computed points of `law`.
 
-    Each of `lines` has a name, a flag for fits, velocities (m/s) and COR; lines without a finite
-    COR are left out. `marks` are the velocities (m/s) of first yield and of sticking by symbol.
+    Each of `lines` has a name, a flag for fits, velocities (m/s) and COR. Lines without a finite
+    COR are left out. `marks` maps symbols to the velocities (m/s) of first yield and of sticking.
     """
     series: list[Series] = []
     if law is not None:
@@ -32,7 +32,7 @@ def theory_figure(
             label = name + " (fit)" * fitted
             series.append(Line(V, e, label, color=color, dash=dash, width=width))
     velocities = np.concatenate([V for _, _, V, _ in lines])
-    # The lower mark has its name on the left, the higher on the right.
+    # The name of the lower mark is on its left, the name of the higher mark on its right.
     order = sorted(marks, key=marks.__getitem__)
     series += [
         Mark("x", V, name[0], name[-1], "right" if name == order[-1] else "left")

@@ -1,1 +1,1 @@
-"""The figures of Ghanbarzadeh, Hassanpour and Neville (2019), computed and judged."""
+"""Reproduce the figures of Ghanbarzadeh, Hassanpour and Neville (2019); compare their claims."""

@@ -1,7 +1,7 @@
 """Claims of the paper on each figure, compared with the results of the bundled studies.
 
-Each function takes the studies by name and returns one `Finding`. The threshold for agreement is in
-the function of the claim.
+Each function in `CLAIMS` judges one claim. It takes the studies by name and returns a `Finding`. It
+also contains the threshold for agreement.
 """
 
 from __future__ import annotations
@@ -23,16 +23,17 @@ Array = NDArray[np.float64]
 Studies = Mapping[str, xr.Dataset]
 Verdict = Literal["agrees", "agrees in part", "does not agree", "not decided"]
 
-# The two steel spheres of the paper; its R is taken as the radius of a particle.
+# R* (m), E* (Pa), p_y (Pa) and radius (m) of the two steel spheres of the paper. The R of the paper
+# is taken as the radius of a particle.
 R, E_STAR, P_Y, RADIUS = 250e-6, 112e9, 750e6, 500e-6
-SMOOTH = "1 pm"  # the roughness of cases that represent the smooth sphere
+SMOOTH = "1 pm"  # rms roughness of cases that represent the smooth sphere
 _VARIABLES = ("indentation", "restitution", "force", "pull_off_force", "resolved")
 _NEAR = 0.05  # relative difference of COR below which a rough sphere behaves as a smooth one
 
 
 @dataclass(frozen=True)
 class Finding:
-    """A claim, the result, the number that decides, and the number of resolved depths."""
+    """A claim, the result, the number that decides on agreement, and the resolved depths."""
 
     figure: str
     claim: str
@@ -55,7 +56,7 @@ class Curve:
 
 
 def curves(study: xr.Dataset) -> list[Curve]:
-    """The complete cases of a study, labelled by their swept values."""
+    """Return the complete cases of a study, labelled with their swept values."""
     dims = [str(dim) for dim in study["restitution"].dims if dim != "depth"]
     stacked = study.stack(_case=dims).transpose("_case", "depth", ...)
     found = []
@@ -74,7 +75,9 @@ def curves(study: xr.Dataset) -> list[Curve]:
 def _as_written(coordinate: xr.DataArray) -> dict[float | str, str]:
     """Map each value of a swept quantity to its text in the study file."""
     values = coordinate.values.tolist()
-    written = coordinate.attrs.get(AS_WRITTEN)  # earlier versions stored only texts
+    written = coordinate.attrs.get(
+        AS_WRITTEN
+    )  # missing in files of earlier versions, which stored texts
     return dict(
         zip(values, map(str, values) if written is None else json.loads(written), strict=True)
     )
@@ -244,7 +247,7 @@ def _single_nodes(flags: NDArray[np.bool_]) -> str:
 def critical_indentation(curve: Curve, smooth: Curve) -> float:
     """Depth (m) beyond which COR stays within 5 % of the smooth sphere's; NaN if not reached.
 
-    It is interpolated in the logarithm of depth between the last depth outside and the next one.
+    It is interpolated in the logarithm of depth between the last depth outside 5 % and the next.
     """
     off = np.abs(curve.cor / smooth.cor - 1)
     apart = np.flatnonzero(off > _NEAR)

@@ -1,4 +1,4 @@
-"""The page of the paper's figures, from the stored studies."""
+"""Write the page with the figures of the paper from the stored studies."""
 
 from __future__ import annotations
 
@@ -187,7 +187,7 @@ def _lines(
     *,
     log: bool = False,
 ) -> Drawing:
-    """Drawing of `y` against indentation for several curves; theoretical laws are dashed."""
+    """Draw `y` against indentation for several curves; theoretical laws are dashed."""
     rows: list[list[Cell]] = []
     series: list[Series] = []
     for number, (curve, values) in enumerate(lines):

@@ -1,4 +1,4 @@
-"""The bundled studies in three sizes: that of the paper, smaller, and on finer grids."""
+"""The bundled studies in three sizes: as in the paper, smaller, and on finer grids."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ NAMES = (
     "rough-energy",
 )
 
-# Changes of the paper's size, by paths into the study file.
+# Changes that turn each study into its quick size: values by their keys in the study file.
 _QUICK: dict[str, dict[str, Any]] = {
     "hertz": {"grid.nodes": 256, "indentation.to": "1 um", "indentation.steps": 6},
     "thornton-ning": {"grid.nodes": 256, "indentation.to": "1 um", "indentation.steps": 6},
@@ -46,14 +46,15 @@ _QUICK: dict[str, dict[str, Any]] = {
     "rough-yield": {"grid.nodes": 256, "indentation.to": "1 um", "indentation.steps": 8},
     "rough-energy": {"grid.nodes": 256, "indentation.to": "1 um", "indentation.steps": 8},
 }
-# The paper's spacing does not resolve rough contacts below some tens of nanometres.
+# Changes for the refined size. The spacing of the paper does not resolve rough contacts below some
+# tens of nanometres.
 _REFINED: dict[str, dict[str, Any]] = {
     name: {"grid.refine": 2} for name in ("roughness", "rough-yield", "rough-energy")
 }
 
 
 def bundled(name: str, size: Size) -> Study:
-    """The bundled study `name` (one of `NAMES`) in the given size."""
+    """Return the bundled study `name` (one of `NAMES`) in the given size."""
     text = (files("restitution.reproduce") / "studies" / f"{name}.toml").read_text("utf-8")
     changes = {"quick": _QUICK, "refined": _REFINED, "paper": {}}[size].get(name, {})
     if changes:

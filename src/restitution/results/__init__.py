@@ -1,1 +1,1 @@
-"""Results in files: written safely, and read and checked in one place."""
+"""Results folders: safe writing, and reading with checks."""

@@ -1,7 +1,7 @@
 """SHA-256 checksums of the files of a folder, so that damaged files are not read as results.
 
-The checksums are in `SHA256SUMS`, in the format of the program `sha256sum`. Files without a
-checksum (`SHA256SUMS` was removed or never written) are not checked.
+The checksums are in the file `SHA256SUMS`, in the format of the program `sha256sum`. If this file
+is missing (removed or never written), files are not checked.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ CHECKSUMS = "SHA256SUMS"
 
 
 def checksums(folder: Path, names: Sequence[str]) -> str:
-    """The content of `SHA256SUMS` for the files `names` in `folder`."""
+    """Compute the content of `SHA256SUMS` for the files `names` in `folder`."""
     return "".join(f"{_checksum(folder / name)}  {name}\n" for name in names)
 
 
@@ -44,7 +44,8 @@ def _known(folder: Path) -> dict[str, str]:
         return {}
     except (OSError, ValueError):
         raise OutputError(
-            f"{path}: is damaged; compute the results again, or remove it to read them unchecked"
+            f"{path}: is damaged; compute the results again, or remove this file to read the "
+            "results unchecked"
         ) from None
 
 

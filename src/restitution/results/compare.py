@@ -1,4 +1,4 @@
-"""Compare two runs or two studies: their COR, with errors, and their inputs."""
+"""Compare COR, with errors, and the inputs of two runs or two studies."""
 
 from __future__ import annotations
 
@@ -15,16 +15,17 @@ from restitution.errors import OutputError
 from restitution.results.reader import RunResults, StudyResults
 
 _Row = Mapping[str, float]
-_SAME = 1e-9  # depths are equal within this relative difference
+_SAME = 1e-9  # largest relative difference of two depths that count as equal
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """Rows with the values of both results and their difference, differing inputs, and notes.
+    """Table of the values of two results a and b, the inputs that differ, and notes.
 
-    A row has the swept values of a study's case, `max_indentation_m`, `restitution_a`,
-    `restitution_b`, `difference` (b − a), its `error` (see `_error`), `significant` (the difference
-    exceeds the error), `resolved` (by both grids), and `force_ratio` (b/a).
+    A row contains the swept values of a study's case, `max_indentation_m`, `restitution_a`,
+    `restitution_b`, `difference` (b − a), the `error` of the difference (see `_error`),
+    `significant` (the difference exceeds the error), `resolved` (both grids resolve the contact),
+    and `force_ratio` (b/a).
     """
 
     rows: list[dict[str, Any]]
@@ -36,7 +37,7 @@ def compare(a: Path, b: Path) -> Comparison:
     """Compare the results in the folders `a` and `b`. Raises `OutputError`."""
     kinds = {_kind(a), _kind(b)}
     if len(kinds) > 1:
-        raise OutputError(f"{a}, {b}: one is a run and one a study; compare two of a kind")
+        raise OutputError(f"{a}, {b}: are a run and a study; compare two runs or two studies")
     if kinds == {"run"}:
         (of_a, case_a), (of_b, case_b) = _run(a), _run(b)
         rows, notes = _curves(of_a, of_b, {})
@@ -75,7 +76,7 @@ def _studies(a: Path, b: Path) -> Comparison:
 def _curves(
     a: Sequence[_Row], b: Sequence[_Row], swept: Mapping[str, str]
 ) -> tuple[list[dict[str, Any]], list[str]]:
-    """Rows at the depths of `a` within the range of `b`, which is interpolated; and notes."""
+    """Make rows, and notes, for the depths of `a` within the range of `b`; interpolate `b`."""
     depth_b = np.array([row["max_indentation_m"] for row in b])
     rows, between, beyond = [], 0, 0
     for row in a:
@@ -126,7 +127,7 @@ def _curves(
 
 
 def _error(row: _Row) -> float:
-    """Error of COR: numerical, of the grid, and of the mean of an ensemble, in quadrature."""
+    """Error of COR: root sum of squares of its numerical error, grid error and ensemble error."""
     parts = [row["restitution_error"], row["discretisation_error"]]
     if "restitution_low" in row:
         parts.append(0.5 * (row["restitution_high"] - row["restitution_low"]))
@@ -140,7 +141,7 @@ def _ratio(over: float, under: float) -> float:
 def _complete_cases(
     study: StudyResults,
 ) -> dict[tuple[tuple[str, str], ...], list[dict[str, float]]]:
-    """Rows of the complete cases of a study by their swept values."""
+    """Rows of the complete cases of a study, with the swept values as keys."""
     return {
         tuple(case.swept.items()): case.curve.rows
         for case in study.cases
@@ -149,7 +150,7 @@ def _complete_cases(
 
 
 def _run(folder: Path) -> tuple[list[dict[str, float]], str]:
-    """Rows and case of a run; the case is empty if the run was killed and left only its curve."""
+    """Rows and case text of a run; the text is empty if a killed run left only its curve."""
     run = RunResults(folder)
     if not (folder / "summary.json").exists() and not (folder / "results.nc").exists():
         return run.curve.rows, ""
@@ -158,7 +159,7 @@ def _run(folder: Path) -> tuple[list[dict[str, float]], str]:
 
 
 def _inputs(a: str, b: str) -> list[tuple[str, str, str]]:
-    """Keys whose values differ between two TOML texts, with the values of both."""
+    """Return the keys whose values differ between two TOML texts, with both values."""
     flat_a, flat_b = (dict(_flat(parse_toml(text))) for text in (a, b))
     return [
         (key, flat_a.get(key, "–"), flat_b.get(key, "–"))

@@ -1,7 +1,8 @@
 """Delay Ctrl-C and similar signals during operations that must complete.
 
-Python raises `KeyboardInterrupt` between any two instructions. Inside the libraries that write and
-read netCDF files it would leave their locks taken, and the next access would wait for ever.
+Python can raise `KeyboardInterrupt` between any two instructions. Raised inside the libraries that
+write and read netCDF files, it would leave the locks of the libraries taken, and the next access
+would wait forever.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from types import FrameType
 _SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")  # Windows has no SIGHUP
 _Handler = Callable[[int, FrameType | None], object]
 
-_depth = 0  # of nested `hold_signals`
+_depth = 0  # number of nested `hold_signals`
 _received: list[int] = []
 _handlers: dict[int, _Handler] = {}
 
@@ -24,8 +25,8 @@ _handlers: dict[int, _Handler] = {}
 def hold_signals() -> Iterator[None]:
     """Delay SIGINT, SIGTERM and SIGHUP until the `with` body has ended, normally or by an error.
 
-    Only signals with a Python handler are delayed, because the others do not raise. Only the main
-    thread receives signals; in other threads this does nothing.
+    Only signals with a Python handler are delayed, because other signals do not raise exceptions.
+    In other threads than the main thread, which receives all signals, this function does nothing.
     """
     global _depth
     if threading.current_thread() is not threading.main_thread():
@@ -34,7 +35,8 @@ def hold_signals() -> Iterator[None]:
     if not _depth:
         _received.clear()
         _install()
-    # Python handles no signal between `_depth += 1` and `try`, nor between `_depth -= 1` and `if`.
+    # Python does not handle signals between `_depth += 1` and `try`, nor between `_depth -= 1` and
+    # `if`.
     _depth += 1
     try:
         yield

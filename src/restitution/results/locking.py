@@ -16,9 +16,9 @@ from restitution.results.writer import writing
 
 @contextmanager
 def locked(folder: Path) -> Iterator[None]:
-    """Make `folder`, and lock it against other processes.
+    """Make `folder`, and lock it against other processes during the `with` body.
 
-    The lock file is removed at the end, and so is the folder if it is new and still empty. Raises
+    At the end the lock file is removed. A new folder that is still empty is also removed. Raises
     `OutputError` if another process holds the lock or the folder cannot be written.
     """
     lock = FileLock(folder / LOCK)
@@ -38,10 +38,10 @@ def locked(folder: Path) -> Iterator[None]:
         yield
     finally:
         with hold_signals():
-            # Remove before release: filelock grants no lock on a removed file.
+            # Remove the file before its release, because filelock grants no lock on a removed file.
             with suppress(OSError):
                 (folder / LOCK).unlink()
             lock.release()
             if new:
-                with suppress(OSError):  # it is not empty
+                with suppress(OSError):  # the folder is not empty
                     folder.rmdir()

@@ -1,7 +1,7 @@
 """Read stored results, and reject damaged files.
 
-Every reader of `curve.csv`, `summary.json`, `results.nc`, `table.csv` and `study.nc` is here. It
-compares files with their checksums, if there are any, and requires content that a run can write.
+This module reads `curve.csv`, `summary.json`, `results.nc`, `table.csv` and `study.nc`. It compares
+files with their checksums, if there are any, and rejects content that a run cannot have written.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ class _Summary(BaseModel):
 
 @dataclass(frozen=True)
 class UnloadingCurve:
-    """Indentation (m), increasing, and force (N) of the unloading from the depth `start` (m)."""
+    """Unloading from the depth `start` (m): indentation (m), increasing, and force (N)."""
 
     start: float
     indentation: Array
@@ -125,7 +125,7 @@ class RunResults:
 
     @cached_property
     def dataset(self) -> xr.Dataset:
-        """The whole of `results.nc`, in memory."""
+        """The whole content of `results.nc`, loaded into memory."""
         results = read_netcdf(self._netcdf)
         for name, column in ((column.variable, column) for column in COLUMNS.values()):
             if name not in results or results[name].dims != ("indentation_max",):
@@ -149,7 +149,7 @@ class RunResults:
 
     @cached_property
     def case(self) -> Case:
-        """The case."""
+        """The case of the run, parsed from `case_text`."""
         try:
             return parse_case(self.case_text)
         except CaseError as error:
@@ -207,7 +207,7 @@ class RunResults:
 
 @dataclass(frozen=True)
 class EnsembleResults(RunResults):
-    """The results of one case on several surfaces: rows are means over them."""
+    """The results of one case on several surfaces; each row is a mean over the surfaces."""
 
     @property
     def surfaces(self) -> int:
@@ -219,7 +219,7 @@ class EnsembleResults(RunResults):
 
 @dataclass(frozen=True)
 class StoredCase:
-    """One case of a study: name of its folder, status and reason, swept values, and curve."""
+    """One case of a study: name of its folder, status, reason of a failure, swept values, curve."""
 
     name: str
     status: str
@@ -230,7 +230,10 @@ class StoredCase:
 
 @dataclass(frozen=True)
 class StudyResults:
-    """The results of a study in `folder`; files are read and checked as those of a run."""
+    """The results of a study in `folder`.
+
+    Each file is read on first use; a missing or damaged file raises `OutputError`.
+    """
 
     folder: Path
 
@@ -262,16 +265,16 @@ class StudyResults:
 
     @cached_property
     def text(self) -> str:
-        """The study file."""
+        """The text of the study file."""
         return read_text(self.folder / "study.toml")
 
     @cached_property
     def dataset(self) -> xr.Dataset:
-        """The whole of `study.nc`, in memory."""
+        """The whole content of `study.nc`, loaded into memory."""
         return read_netcdf(self.folder / "study.nc")
 
     def run(self, name: str) -> RunResults:
-        """The results of the case `name`."""
+        """Return the results of the case `name`."""
         return RunResults(self.folder / "cases" / name)
 
     def _summary(self) -> list[str]:
@@ -286,13 +289,13 @@ class StudyResults:
 
 
 def read_run(folder: Path) -> RunResults:
-    """The results in `folder`; `EnsembleResults` for several surfaces. Raises `OutputError`."""
+    """Open the results in `folder`: of one surface or of an ensemble. Raises `OutputError`."""
     run = RunResults(folder)
     return EnsembleResults(folder) if "realisations" in run.summary else run
 
 
 def damaged(path: Path, why: object) -> OutputError:
-    """The error for a damaged file."""
+    """Make the error for a damaged file."""
     return OutputError(f"{path}: is damaged ({one_line(str(why))}); compute it again")
 
 
@@ -302,7 +305,9 @@ def reading(path: Path) -> Iterator[None]:
     try:
         yield
     except FileNotFoundError:
-        raise OutputError(f"{path}: does not exist; name a folder that -o has created") from None
+        raise OutputError(
+            f"{path}: does not exist; give a folder that was the -o of a command"
+        ) from None
     except OSError as error:
         raise OutputError(f"{path}: cannot be read ({error.strerror or error})") from None
     except (ValueError, csv.Error, RecursionError) as error:
@@ -310,7 +315,7 @@ def reading(path: Path) -> Iterator[None]:
 
 
 def read_text(path: Path) -> str:
-    """The text of a file of results. Raises `OutputError`."""
+    """Read a text file of results. Raises `OutputError`."""
     with reading(path):
         text = path.read_text(encoding="utf-8")
     check_file(path)
@@ -318,7 +323,7 @@ def read_text(path: Path) -> str:
 
 
 def read_json(path: Path) -> dict[str, Any]:
-    """The object in a JSON file. Raises `OutputError`."""
+    """Read a JSON file that contains an object. Raises `OutputError`."""
     with reading(path):
         content = json.loads(read_text(path))
     if not isinstance(content, dict):
@@ -333,7 +338,7 @@ def read_netcdf(path: Path) -> xr.Dataset:
 
 
 def _cells(path: Path, *more: str) -> list[dict[str, str]]:
-    """The rows of a table, which must have the columns of a curve and those of `more`."""
+    """Read the rows of a table that must have the columns of a curve and the columns `more`."""
     with reading(path), open(path, newline="", encoding="utf-8") as file:
         reader = csv.DictReader(file, strict=True)
         rows = list(reader)
@@ -350,7 +355,7 @@ def _cells(path: Path, *more: str) -> list[dict[str, str]]:
 
 
 def _numbers(path: Path, line: int, cells: Mapping[str, str]) -> dict[str, float]:
-    """The numbers of one row, by column of a curve."""
+    """Convert the cells of one row in the columns of a curve to numbers."""
     found = {}
     for name, column in ALL_COLUMNS.items():
         if name in SPREAD_COLUMNS and name not in cells:
@@ -382,9 +387,9 @@ def _check_number(path: Path, where: str, column: Column, value: float) -> None:
 
 @contextmanager
 def _opened(path: Path) -> Iterator[xr.Dataset]:
-    """Open a netCDF file and delay signals, which would leave the library's locks taken."""
+    """Open a netCDF file; delay signals, because they would leave the library's locks taken."""
     with reading(path):
-        open(path, "rb").close()  # raises the system's reason, which the library hides
+        open(path, "rb").close()  # raises the error of the system, which the library hides
     check_file(path)
     try:
         with hold_signals(), xr.open_dataset(path, engine="netcdf4") as stored:

@@ -11,7 +11,7 @@ from restitution.display import counted, quantity
 
 
 def curve_lines(rows: Sequence[Mapping[str, float]]) -> list[str]:
-    """The number of rows of a curve, and its first columns."""
+    """Describe a curve by its number of rows and its first columns."""
     columns = f": {', '.join(list(rows[0])[:3])}, …" if rows else ""
     return [f"{counted(len(rows), 'row')}{columns}"]
 
@@ -19,7 +19,7 @@ def curve_lines(rows: Sequence[Mapping[str, float]]) -> list[str]:
 def run_lines(
     folder: Path, rows: Sequence[Mapping[str, float]], summary: Mapping[str, Any]
 ) -> list[str]:
-    """Title, status and warnings of a run, and the ranges of its depths and COR."""
+    """Describe a run by its title, status and warnings, and the ranges of its depths and COR."""
     depths = [row["max_indentation_m"] for row in rows]
     e = [row["restitution"] for row in rows]
     span = f" to {quantity(max(depths), 'm')}, COR {min(e):.4f} to {max(e):.4f}" if e else ""
@@ -33,7 +33,7 @@ def run_lines(
 def study_lines(
     folder: Path, status: Sequence[str], swept: Sequence[Mapping[str, str]]
 ) -> list[str]:
-    """Numbers of cases by status, and the swept keys with their numbers of values."""
+    """Describe a study by its numbers of cases of each status, and its swept keys."""
     count = ", ".join(f"{number} {ended}" for ended, number in Counter(status).items())
     values = {key: len({each[key] for each in swept}) for key in swept[0]}
     keys = ", ".join(f"{key} ({counted(n, 'value')})" for key, n in values.items())

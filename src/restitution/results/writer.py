@@ -1,8 +1,9 @@
 """Write the results folder.
 
-`curve.csv` and `unloading.csv` grow row by row while a case runs, so that the rows survive whatever
-stops the run. `results.nc` and `summary.json` are written once, at the end or on interruption, each
-into a temporary file that is then renamed. Signals are delayed while a file is written.
+While a case runs, rows are appended to `curve.csv` and `unloading.csv` one by one, so that the rows
+survive if the run is stopped. `results.nc` and `summary.json` are written once, at the end or on
+interruption. Each is written into a temporary file, which is then renamed. Signals are delayed
+while a file is written.
 """
 
 from __future__ import annotations
@@ -36,15 +37,16 @@ from restitution.results.checksums import CHECKSUMS, checksums
 from restitution.results.interruption import hold_signals
 from restitution.results.schema import ALL_COLUMNS, COLUMNS, LOCK, UNLOADING_COLUMNS
 
-_BLOCK = 1 << 16  # bytes
+_BLOCK = 1 << 16  # bytes written to find out whether the disk is full
 
 
 def curve_row(
     state: State, collision: Collision, refine: int = 1, touch: float = 0.0
 ) -> dict[str, float]:
-    """The row of `curve.csv` for one state of loading; NaN for undefined values.
+    """Make the row of `curve.csv` for one state of loading, with NaN for undefined values.
 
-    `refine` is that of the grid; `touch` (m) is the indentation at its first touch.
+    `refine` is the refinement factor of the grid, and `touch` (m) the indentation at first touch on
+    this grid.
     """
     patches = state.patch_sizes()
     median = median_patch(patches)
@@ -86,7 +88,7 @@ def versions() -> dict[str, str]:
 
 
 class ResultsFolder:
-    """A folder that holds only the results of one run."""
+    """A folder for the results of one run and nothing else."""
 
     def __init__(self, path: Path) -> None:
         """Make the folder. Raises `OutputError` if it is not empty or cannot be written."""
@@ -116,7 +118,7 @@ class ResultsFolder:
             self.rows.append(row)
 
     def part(self, name: str) -> ResultsFolder:
-        """A results folder inside this one, for one of several runs."""
+        """Make a results folder inside this folder, for one of several runs."""
         return ResultsFolder(self.path / name)
 
     def put_curve(self, rows: list[dict[str, float]]) -> None:
@@ -137,7 +139,7 @@ class ResultsFolder:
             self.unloading.append((deepest, points))
 
     def discard(self) -> None:
-        """Remove the empty tables, and the folder if it is new, so that it can be named again."""
+        """Remove the empty tables, and the folder if it is new, so that -o can name it again."""
         for name in ("curve.csv", "unloading.csv"):
             (self.path / name).unlink(missing_ok=True)
         if self._new:
@@ -166,8 +168,8 @@ class ResultsFolder:
 def make_folder(path: Path, remedy: str = "move it away") -> bool:
     """Make the folder `path`, and return whether it is new.
 
-    Raises `OutputError` if it is not empty or cannot be written; `remedy` is the user's alternative
-    to naming another folder.
+    Raises `OutputError` if the folder is not empty or cannot be written. The message advises the
+    user to name another folder, or to do what `remedy` says.
     """
     with writing(path):
         new = not path.exists()
@@ -175,7 +177,7 @@ def make_folder(path: Path, remedy: str = "move it away") -> bool:
         if any(file.name != LOCK for file in path.iterdir()):
             raise OutputError(
                 f"{path}: this folder is not empty, and nothing in it is overwritten; name another "
-                f"one with -o, or {remedy}"
+                f"folder with -o, or {remedy}"
             )
     return new
 
@@ -196,13 +198,14 @@ def write_checksums(folder: Path, names: Sequence[str]) -> None:
 def write_netcdf(
     path: Path, dataset: xr.Dataset, encoding: Mapping[str, Any] | None = None
 ) -> None:
-    """Write `dataset` as netCDF, all of it or nothing. Raises `OutputError`."""
+    """Write `dataset` as netCDF, completely or not at all. Raises `OutputError`."""
 
     def write(to: Path) -> None:
         try:
             dataset.to_netcdf(to, engine="netcdf4", encoding=encoding or {})
         except (RuntimeError, OSError) as error:
-            # On a full disk the library hides the reason: writing here raises the system's error.
+            # The library hides the reason, such as a full disk. Writing to the file again raises
+            # the error of the system.
             with open(to, "ab") as file:
                 file.write(bytes(_BLOCK))
             raise OSError(f"{path.name}: {error}") from error
@@ -211,19 +214,19 @@ def write_netcdf(
 
 
 def write_json(path: Path, content: Mapping[str, Any]) -> None:
-    """Write `content` as JSON, all of it or nothing. Raises `OutputError`."""
+    """Write `content` as JSON, completely or not at all. Raises `OutputError`."""
     text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
     replace_file(path, lambda to: to.write_text(text, encoding="utf-8"))
 
 
 def write_table(path: Path, rows: Sequence[Mapping[str, float | str]]) -> None:
-    """Write `rows`, whose keys are the columns, as CSV, all of it or nothing."""
+    """Write `rows`, whose keys are the columns, as CSV, completely or not at all."""
     text = table_text(rows)
     replace_file(path, lambda to: to.write_text(text, encoding="utf-8", newline=""))
 
 
 def table_text(rows: Sequence[Mapping[str, float | str]]) -> str:
-    """`rows`, whose keys are the columns, as CSV; empty without rows."""
+    """Format `rows`, whose keys are the columns, as CSV; empty without rows."""
     text = io.StringIO()
     if rows:
         table = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
@@ -233,9 +236,9 @@ def table_text(rows: Sequence[Mapping[str, float | str]]) -> str:
 
 
 def replace_file(path: Path, write: Callable[[Path], object]) -> None:
-    """Let `write` fill a temporary file and rename it to `path`. Raises `OutputError`.
+    """Let `write` fill a temporary file, then rename the file to `path`. Raises `OutputError`.
 
-    Signals are delayed meanwhile.
+    Signals are delayed until the file is renamed.
     """
     temporary = path.with_name(f".{path.name}.part")
     with hold_signals(), writing(path.parent):
@@ -243,7 +246,7 @@ def replace_file(path: Path, write: Callable[[Path], object]) -> None:
             write(temporary)
             os.replace(temporary, path)
         except BaseException:
-            with suppress(OSError):  # free the disk space even if a library holds the file open
+            with suppress(OSError):  # frees disk space even if a library has it open
                 os.truncate(temporary, 0)
             raise
         finally:
@@ -251,7 +254,7 @@ def replace_file(path: Path, write: Callable[[Path], object]) -> None:
 
 
 def results_dataset(folder: ResultsFolder, deepest: State) -> xr.Dataset:
-    """The content of `results.nc`, with units: curve, unloading curves and maps."""
+    """Make the content of `results.nc`, with units: curve, unloading curves and maps."""
     data = curve_variables(folder.rows)
     if folder.unloading:
         depths, curves = zip(*folder.unloading, strict=True)
@@ -285,7 +288,7 @@ def results_dataset(folder: ResultsFolder, deepest: State) -> xr.Dataset:
 
 
 def curve_variables(rows: Sequence[Mapping[str, float]]) -> dict[str, Any]:
-    """The variables of `results.nc` for the rows of a curve."""
+    """Make the variables of `results.nc` for the rows of a curve."""
     data: dict[str, Any] = {}
     for name, column in ALL_COLUMNS.items():
         if rows and name in rows[0]:
@@ -296,7 +299,7 @@ def curve_variables(rows: Sequence[Mapping[str, float]]) -> dict[str, Any]:
 
 
 def format_cell(value: float | str) -> str:
-    """The text of a table's cell: true or false, empty for NaN, a number with all digits."""
+    """Format the cell of a table: true or false, empty for NaN, or a number with all digits."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):

@@ -1,7 +1,8 @@
-"""Companion curves of a run: how much COR changes with the grid, the surface and the materials.
+"""Companion curves of a run: additional curves that show how COR changes with other input.
 
-They are computed on cells twice as large, and each costs a fifth of the run. They are compared with
-the run at equal loading work, that is, at equal impact velocity.
+The grid, the surface or the materials are changed. Companion curves are computed on cells twice as
+large, so each of them costs a fifth of the run. They are compared with the run at equal loading
+work, that is, at equal impact velocity.
 """
 
 from __future__ import annotations
@@ -26,23 +27,23 @@ from restitution.surfaces.refine import coarsen
 
 Array = NDArray[np.float64]
 
-SURFACES = 7  # additional surfaces, for the scatter
-_TOLERANCE = 0.005  # error of COR by the steps of adhesive unloading
+SURFACES = 7  # number of additional surfaces from which the scatter is estimated
+_TOLERANCE = 0.005  # allowed error of COR due to the steps of adhesive unloading
 _SHALLOWER, _DEEPER = (
     0.5,
     1.3,
-)  # times first and last depth: other surfaces need them for equal work
+)  # factors for additional depths, because other surfaces reach the same work at other depths
 
 
 @dataclass(frozen=True)
 class Curve:
-    """Loading works (J), increasing, and the coefficient of restitution at each."""
+    """COR as a function of the loading work (J), at increasing values of the work."""
 
     work: Array
     restitution: Array
 
     def at(self, work: Array) -> Array:
-        """COR at `work` (J), by a monotone cubic in ln W; constant beyond the ends."""
+        """Interpolate COR at `work` (J) by a monotone cubic in ln W; constant beyond the ends."""
         from scipy.interpolate import PchipInterpolator
 
         if self.work.size == 0:
@@ -60,10 +61,10 @@ def curve_of(
     method: UnloadingMethod,
     tolerance: float = _TOLERANCE,
 ) -> Curve:
-    """The curve of `contact` over `depths` (m) and one depth beyond each end.
+    """Compute the curve of `contact` at `depths` (m) and at one more depth beyond each end.
 
-    `tolerance` is the error allowed for COR in adhesive unloading. A depth that fails is left out;
-    the first contact that reaches the edge of the grid ends the curve.
+    `tolerance` is the allowed error of COR due to the steps of adhesive unloading. A depth that
+    fails is left out. The first contact that reaches the edge of the grid ends the curve.
     """
     works: list[float] = []
     restitutions: list[float] = []
@@ -90,20 +91,21 @@ class Companions:
     depths: Sequence[float]
 
     def own(self) -> Curve:
-        """The curve of the case itself on cells twice as large, without its shortest waves."""
+        """Compute the curve of the case on cells twice as large, without its shortest waves."""
         return self._curve(self._coarse(self.case))
 
     def others(self, progress: Say = ignore) -> Iterator[Curve]:
-        """Curves of other surfaces of the same kind: other seeds, or other places of the scan."""
+        """Compute curves of other surfaces of the same kind (other seeds or places of the scan)."""
         for number in range(1, SURFACES + 1):
             progress(f"error: surface {number} of {SURFACES}")
             yield self._curve(self._coarse(self.case.variant(number)))
 
     def materials(self, work: Array) -> list[Array]:
-        """Changes of COR at `work` (J) due to elasticity, yield model and density of the library.
+        """Changes of COR at `work` (J) due to the spread of library values.
 
-        Each is the larger of the changes at the low and at the high end of the library's spread;
-        both bodies are at the same end. Empty if no value comes from the library.
+        There is one change each for elasticity, yield model and density. It is the larger of the
+        changes at the low and at the high end of the spread, with both bodies at the same end.
+        Empty if no value comes from the library.
         """
         coarse = self._coarse(self.case)
         ends = [_spread(self.case, end) for end in ("low", "high")]
@@ -130,7 +132,7 @@ class Companions:
 
 
 def coarser_contact(contact: Contact) -> Contact:
-    """`contact` on cells twice as large, without its shortest waves."""
+    """Return `contact` on cells twice as large, without its shortest waves."""
     coarser = coarsen(contact.surface)
     if contact.surface.provenance.get("source") == "smooth":
         coarser = smooth(coarser.grid)
@@ -138,7 +140,7 @@ def coarser_contact(contact: Contact) -> Contact:
 
 
 def _with_modulus_of(pair: Pair, other: Pair) -> Pair:
-    """`pair` with the elasticity of `other`, and its own masses and radii."""
+    """Return a pair with the elasticity of `other` and the masses and radii of `pair`."""
     first, second = (
         replace(body, youngs_modulus=its.youngs_modulus, poissons_ratio=its.poissons_ratio)
         for body, its in ((pair.first, other.first), (pair.second, other.second))
@@ -147,7 +149,7 @@ def _with_modulus_of(pair: Pair, other: Pair) -> Pair:
 
 
 def _yielding(case: Case) -> Yielding:
-    """The yield model of `case`; the default one if its own lacks the softer body's strength."""
+    """Yield model of `case`; the default model if the softer body lacks the required strength."""
     try:
         return case.yielding()
     except CaseError:
@@ -157,7 +159,7 @@ def _yielding(case: Case) -> Yielding:
 
 
 def _spread(case: Case, end: str) -> Case:
-    """`case` with its library values at the `low` or `high` end of their spread."""
+    """Return `case` with its library values at the `low` or `high` end of their spread."""
 
     def moved(body: BodyTable) -> BodyTable:
         found = body.from_library()

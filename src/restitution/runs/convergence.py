@@ -4,11 +4,12 @@ With COR f₁, f₂, f₃ on cells h, h/2, h/4 of the same surface,
 
     error of f₃ = max(1.5 |f₃ − f₂|, 0.5 |f₂ − f₁|),   observed order = log₂((f₂ − f₁)/(f₃ − f₂)).
 
-The COR of rough contacts oscillates with h more often than it follows a power of h, so Richardson
-extrapolation (Roache 1994, J. Fluids Eng. 116, 405–413) would mostly divide by random numbers. The
-error is the remainder after first-order convergence with either difference, with a safety factor of
-1.5 on the last one. It covered the true error in 95 % of the cases of docs/resolution.md. On two
-grids it is 3 |f₂ − f₁|.
+The COR of rough contacts oscillates with h more often than it follows a power of h. Richardson
+extrapolation (Roache 1994, J. Fluids Eng. 116, 405–413) would then mostly divide by random numbers.
+Instead, each of the two differences gives an error of f₃ by assuming first-order convergence:
+|f₃ − f₂|, multiplied by a safety factor of 1.5, and 0.5 |f₂ − f₁|. The larger value is used. It
+covered the true error in 95 % of the cases of docs/resolution.md. On two grids the error is
+3 |f₂ − f₁|.
 """
 
 from __future__ import annotations
@@ -53,12 +54,14 @@ def run_convergence(
 ) -> dict[str, Any]:
     """Run `case` on its grid and on grids with cells 2, 4, … times smaller; return the summary.
 
-    With `grid.refine = "auto"` the first grid is the one that the shallowest depth needs.
-    Each grid has its run in a folder `refine-<n>` of `out`; the curve of `out` is that of the
+    With `grid.refine = "auto"`, the first grid is the grid that the shallowest depth needs. The run
+    on each grid is stored in a folder `refine-<n>` of `out`. The curve of `out` is the curve of the
     finest grid with its `discretisation_error`, and `convergence.csv` has a row for every depth and
-    grid. Depths are measured from first touch on the finest grid. The highest summit lies between
-    the nodes of a coarser grid, which therefore touches after a larger approach; its indentations
-    are smaller by this difference. If a run fails, the study ends and keeps the results so far.
+    grid. If a run fails, the study ends and keeps the results so far.
+
+    Depths are measured from first touch on the finest grid. The highest summit lies between the
+    nodes of a coarser grid, so a coarser grid touches after a larger approach. Indentations on the
+    coarser grid are smaller by this difference.
     """
     log, runs = RunLog(progress, warn), _Runs()
     unsettled: list[str] = []
@@ -101,7 +104,7 @@ def _add_errors(
     runs: _Runs,
     progress: Say,
 ) -> None:
-    """Add the errors of surface and materials to the finest rows, from the coarsest grid."""
+    """Add the errors of surface and materials, found on the coarsest grid, to the finest rows."""
     coarsest, finest = case.refined(min(runs)), runs[max(runs)][1]
     alone = [dict(row) for row in finest]
     add_errors(coarsest, folder, coarsest.surface(folder), alone, progress)
@@ -110,7 +113,7 @@ def _add_errors(
 
 
 def _levels(case: Case, folder: Path, grids: int) -> dict[int, float]:
-    """Refinement factors, with the extra approach (m) to first touch compared with the finest."""
+    """Refinement factors, each with its extra approach (m) to first touch; 0 on the finest grid."""
     if grids < 2:
         raise CaseError(f"grids: {grids} cannot show convergence; give 2 or more")
     if case.realisations > 1:
@@ -130,7 +133,7 @@ def _levels(case: Case, folder: Path, grids: int) -> dict[int, float]:
 
 
 def _pressed_less(case: Case, later: float) -> Case:
-    """`case` with indentations reduced by `later` (m), without those that lose contact."""
+    """Reduce the indentations of `case` by `later` (m); leave out indentations without contact."""
     if case.indentation is None:
         return case  # loads and velocities are the same on every grid
     depths = [depth - later for depth in case.depths() if depth > later]
@@ -211,11 +214,11 @@ def _write_results(
 
 
 def _with_grid_errors(case: Case, folder: Path, rows: list[_Row]) -> int:
-    """Add to the discretisation error of the finest rows what differences of COR cannot show.
+    """Add two parts to the discretisation error of the finest rows that differences cannot show.
 
-    The additions are a floor, because differences may vanish by chance, and the effect of the waves
-    that the finest grid leaves out of a scan. Returns the number of rows that these waves leave
-    unresolved.
+    One part is a lower limit, because differences of COR may vanish by chance. The other part is
+    the effect of the waves that the finest grid leaves out of a scan. Returns the number of rows
+    that these waves leave unresolved.
     """
     octaves = Band.of(case.refined(int(max(row["refine"] for row in rows))).surface(folder)).octaves
     lacking = 0
@@ -231,11 +234,11 @@ def _with_grid_errors(case: Case, folder: Path, rows: list[_Row]) -> int:
 
 
 def _by_depth(case: Case, runs: _Runs) -> list[dict[int, _Row]]:
-    """For each depth, the rows of all grids that reached it, with error and observed order."""
+    """Return, for each depth, the rows of all grids that reached it, with error and order."""
     asked = case.depths()
     found: list[dict[int, _Row]] = [{} for _ in asked]
     for factor, (later, rows) in sorted(runs.items()):
-        # A coarse grid lacks the shallowest depths, an interrupted run the deepest.
+        # A coarse grid lacks the shallowest depths, and an interrupted run lacks the deepest.
         missed = sum(depth <= later for depth in asked) if case.indentation else 0
         for number, row in enumerate(rows, missed):
             values = [other["restitution"] for other in found[number].values()]
@@ -253,10 +256,11 @@ def _by_depth(case: Case, runs: _Runs) -> list[dict[int, _Row]]:
 
 
 def discretisation(values: Sequence[float]) -> tuple[float, float]:
-    """Error of the last of `values` of COR, whose cells halve from one to the next, and order.
+    """Error of the last of `values`, and observed order (see the module docstring).
 
-    See the module docstring. Both are NaN for too few values; the observed order is also NaN if the
-    last three values are not monotone.
+    `values` are COR on successive grids, each with cells half as large as those of the grid before.
+    Error and order are NaN for too few values. The observed order is also NaN if the last three
+    values are not monotone.
     """
     if len(values) < 2:
         return math.nan, math.nan
@@ -269,9 +273,10 @@ def discretisation(values: Sequence[float]) -> tuple[float, float]:
 
 
 def observed_order(depths: Sequence[dict[int, _Row]]) -> float:
-    """Observed order of the last three grids, from the rms differences of COR over depths; or NaN.
+    """Observed order of the last three grids, from rms differences of COR over depths; or NaN.
 
-    The depths are those that the finest grid resolves and all three reach; single depths scatter.
+    The orders of single depths scatter. Only depths that the finest grid resolves and that all
+    three grids reach are used.
     """
     factors = sorted({factor for rows in depths for factor in rows})[-3:]
     steps = np.array(

@@ -23,7 +23,7 @@ from restitution.runs.run import run_case
 
 CONFIDENCE = 0.95
 _Row = dict[str, float]
-# Columns of an ensemble's curve that are not means over its surfaces.
+# Columns of an ensemble's curve that are not means over its surfaces, with their functions.
 _WORST: dict[str, Callable[[list[float]], float]] = {
     "residual": max,
     "model_error": max,
@@ -44,10 +44,11 @@ def run_realisations(
 ) -> dict[str, Any]:
     """Run `case` on each of its surfaces, and return the summary.
 
-    One surface is run by `run_case` alone. Of several, each has its run in a folder
-    `realisation-<n>` (n from 1; n − 1 is added to the seed), and the curve of `out` holds their
-    means (`mean_rows`). A surface that fails is recorded, and the others continue; if all fail, the
-    first error is raised. `refinement` selects one grid for all if `grid.refine = "auto"`.
+    A single surface is run by `run_case` alone. If there are several surfaces, the run of each is
+    stored in a folder `realisation-<n>` (n from 1; n − 1 is added to the seed), and the curve of
+    `out` contains the means (`mean_rows`). If a surface fails, this is recorded and the others
+    continue. If all surfaces fail, the first error is raised. With `grid.refine = "auto"`,
+    `refinement` selects one grid for all surfaces.
     """
     if case.realisations == 1:
         return run_case(case, text, folder, out, progress, warn)
@@ -86,7 +87,7 @@ class _Ensemble:
         part = self.out.part(f"realisation-{number + 1}")
         reason = ""
         try:
-            # The surfaces have mostly the same input warnings: pass on those of the first.
+            # Most input warnings are the same for all surfaces, so pass on those of the first.
             run_case(
                 case.model_copy(update={"title": title}),
                 self.text,
@@ -110,9 +111,9 @@ class _Ensemble:
             self.ended.append({"realisation": number + 1, "depths": depths, "reason": reason})
 
     def _add_errors(self) -> None:
-        """Estimate the errors of grid and materials on the surface that has reached most depths.
+        """Estimate the errors of grid and materials on the surface that reached the most depths.
 
-        The ensemble itself gives the scatter between surfaces.
+        The scatter between surfaces follows from the ensemble itself.
         """
         if not self.curves or not self.case.total_error:
             return
@@ -207,14 +208,16 @@ class _Ensemble:
 
 
 def mean_rows(curves: Sequence[Sequence[_Row]], errors: Sequence[_Row] = ()) -> list[_Row]:
-    """The curve of an ensemble: a row for each depth, over the surfaces that have reached it.
+    """Make the curve of an ensemble: a row for each depth, over the surfaces that reached it.
 
-    Columns are means, except the largest residual and model_error, the smallest median patch, the
-    sum of the convolutions, and flags, which are true if all are. Additional columns are the number
-    of surfaces, the sample standard deviation s of COR, and the ends of the 95 % confidence
-    interval of its mean, mean ± t s/√n with Student's t, clipped to [0, 1] (NaN for one surface).
-    `errors` are the rows of one surface with the errors of grid and materials, which are used for
-    the mean, too; `surface_scatter` is half of the interval.
+    Most columns are means over the surfaces. `residual`, `model_error` and `refine` are the largest
+    values, `median_patch_nodes` the smallest value and `convolutions` the sum. Flags are true if
+    they are true for all surfaces. Additional columns are the number of surfaces, the sample
+    standard deviation s of COR, and the ends of the 95 % confidence interval of the mean COR,
+    mean ± t s/√n with Student's t, clipped to [0, 1] (NaN for one surface).
+
+    `errors` are the rows of one surface with the errors of grid and materials. These errors are
+    used for the mean, too. `surface_scatter` is half of the confidence interval.
     """
     from scipy.stats import t
 

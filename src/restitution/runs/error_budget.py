@@ -2,17 +2,18 @@
 
     total² = restitution_error² + discretisation_error² + surface_scatter² + material_error²
 
-The exact value is the COR of the pair at the impact velocity of the row: the mean over surfaces of
-the same kind, on a grid that resolves all waves of the surface. ΔCOR is the change of COR on cells
-twice as large, without the shortest octave of waves (`companions`):
+Errors are differences from the exact COR of the pair at the impact velocity of the row. This is the
+mean over surfaces of the same kind, on a grid that resolves all waves of the surface. ΔCOR is the
+change of COR on cells twice as large, without the shortest octave of waves (`companions`):
 
     discretisation_error² = ΔCOR² [1 + (1.5 n)²] + (s f)²,   n = ln(S/S_h)/ln(S_h/S_2h).
 
 S is the rms slope of the scan, and S_h and S_2h are the rms slopes on cells of h and 2h. The
 formula assumes that COR changes with ln S beyond the grid as in the last octave that the grid
 resolves. For generated surfaces n = 0, because the shortest wave belongs to their definition. f is
-the error found for contacts with as many nodes in the median patch (docs/resolution.md). s is small
-if the contact is resolved, so that the error does not vanish by chance, and large if it is not.
+the error found for contacts with as many nodes in the median patch (docs/resolution.md), and s is
+the share of f that is added. s is large if the grid does not resolve the contact. Otherwise s is
+small; it only keeps the error from vanishing by chance.
 
 The constants were chosen on some 260 random cases, 30 of them adhesive, and checked on others
 (docs/error.md).
@@ -39,18 +40,23 @@ Array = NDArray[np.float64]
 Row = dict[str, float]
 
 _BAND = 1.5  # safety factor on the change of COR expected from waves that the grid leaves out
+# The factor s: for resolved contacts; and for unresolved contacts, interpolated between 3 and 7
+# nodes in the median patch.
 _SHARE_RESOLVED = 0.03
 _FEW_NODES, _SHARE_UNRESOLVED = (3, 7), (0.6, 0.1)
-# Errors of COR by the number of nodes in the median patch: about 90 % of the contacts differed from
-# the solution on a finer grid by less. A single node yields late and all at once, so that its COR
-# may have almost any error.
+# The error f of COR as a function of the number of nodes in the median patch. In about 90 % of the
+# contacts, the difference from the solution on a finer grid was below f. A single node yields late
+# and all at once, so its COR may have almost any error.
 _PATCH_NODES = (1, 3, 7, 14, 30, 100, 400)
 _PATCH_ERROR = (0.9, 0.4, 0.15, 0.08, 0.05, 0.024, 0.008)
-_SCATTER = 1.5  # standard deviations of COR between surfaces: covers about 88 % with eight surfaces
-# Smoothing lengths in ln W, because single differences may vanish by chance.
+# Error due to the surface, in standard deviations of COR between surfaces. With eight surfaces, it
+# covers about 88 %.
+_SCATTER = 1.5
+# Lengths in ln W over which differences of COR are smoothed, because single differences may vanish
+# by chance.
 _NEAR_GRID, _NEAR_SURFACE = 2.0, 1.0
-MOST_AFFORDABLE = 2**24  # nodes: minutes and some 2 GB
-MISSING_BAND = 0.03  # error of COR due to omitted waves above which a row is not resolved
+MOST_AFFORDABLE = 2**24  # largest recommended number of nodes (some minutes and about 2 GB)
+MISSING_BAND = 0.03  # largest error of COR due to omitted waves at which a row is resolved
 
 NOT_INCLUDED = (
     "the model (of plasticity: model_error; half-space; no range of attraction), values that the "
@@ -62,8 +68,9 @@ NOT_INCLUDED = (
 class Band:
     """The waves that a grid leaves out of a scan.
 
-    `octaves` is n in the formula above, 0 if nothing is left out; `removed_slope` is their share of
-    the rms slope; `pixel` is the spacing (m) that resolves them.
+    `octaves` is n in the formula of the module docstring, 0 if no wave is left out. `removed_slope`
+    is the rms slope of the omitted waves over that of the scan. `pixel` is the spacing (m) that
+    resolves these waves.
     """
 
     octaves: float
@@ -72,7 +79,7 @@ class Band:
 
     @classmethod
     def of(cls, surface: Surface) -> Band:
-        """The waves that `surface` lost when it was placed on the grid."""
+        """Return the waves that `surface` lost when it was placed on the grid."""
         provenance = surface.provenance
         removed = float(provenance.get("removed_slope", 0.0))
         pixel = max(float(provenance.get(f"pixel_{axis}_m", 0.0)) for axis in "xy")
@@ -87,7 +94,7 @@ class Band:
 def grid_error(
     change: Array, work: Array, rows: Sequence[Row], octaves: float
 ) -> tuple[Array, Array]:
-    """Discretisation error of COR of `rows`, and its part due to waves that the grid leaves out.
+    """Discretisation error of COR of `rows`, and the part of it due to omitted waves.
 
     `change` is the difference of COR from the value on cells twice as large, at `work` (J).
     """
@@ -99,16 +106,17 @@ def grid_error(
 def widened_error(
     error: float, last_change: float, row: Row, octaves: float
 ) -> tuple[float, float]:
-    """`error` of several grids with the floor and omitted waves added, and the part of the waves.
+    """Add the least error and the effect of omitted waves to `error`; return the latter, too.
 
-    `last_change` is the difference of COR between the last two grids.
+    `error` comes from a convergence study. `last_change` is the difference of COR between the last
+    two grids.
     """
     band = _BAND * octaves * last_change
     return math.hypot(error, band, _floor(row)), band
 
 
 def scatter(restitution: Array, work: Array) -> Array:
-    """Scatter of COR between surfaces; NaN if fewer than two of them have a curve.
+    """Scatter of COR between surfaces; NaN if fewer than two surfaces have a curve.
 
     `restitution` has a row for each surface.
     """
@@ -130,10 +138,10 @@ def add_errors(
 ) -> list[float]:
     """Add the errors of grid, surface and materials, and their total, to the rows of a run.
 
-    `surface` is that of the deepest depth; without `scattered` the scatter between surfaces is left
-    out. A row without a positive loading work, which no impact reaches, gets no errors; a row with
-    an unknown part gets no total. Returns the part of the errors due to waves that the grid leaves
-    out.
+    `surface` is the surface of the deepest depth. Without `scattered`, the scatter between surfaces
+    is left out. If the loading work of a row is not positive, no impact reaches its depth, and the
+    row gets no errors. If a part of the error is unknown, the row gets no total. Returns the part
+    of the errors due to waves that the grid leaves out.
     """
     band: list[float] = []
     for factor in dict.fromkeys(int(row["refine"]) for row in rows):
@@ -155,7 +163,7 @@ def _add_errors(
     *,
     scattered: bool,
 ) -> list[float]:
-    """`add_errors` of the rows of one grid, all with a positive loading work."""
+    """Do `add_errors` for the rows of one grid, all with a positive loading work."""
     work = np.array([row["loading_work_J"] for row in reached])
     restitution = np.array([row["restitution"] for row in reached])
     companions = Companions(case, folder, sorted(row["max_indentation_m"] for row in reached))
@@ -179,9 +187,9 @@ def _add_errors(
 
 
 def band_warning(surface: Surface, band_errors: Sequence[float]) -> str | None:
-    """A warning about waves that the grid leaves out of a scan, if they change COR, or None.
+    """Make a warning if waves that the grid leaves out of a scan change COR; otherwise None.
 
-    It names the grid that would resolve them, and tells if it would be too large.
+    The warning names the grid that would resolve these waves, and says if this grid is too large.
     """
     band = Band.of(surface)
     lacking = [error for error in band_errors if error > MISSING_BAND]
@@ -213,7 +221,7 @@ def total_error_summary(case: Case, rows: Sequence[Row]) -> dict[str, object]:
 
 
 def included(case: Case) -> list[str]:
-    """The parts of the total error of a curve of `case`, in words."""
+    """List the parts of the total error of a curve of `case`, in words."""
     words = ["solver", "grid"]
     if any(part.kind == "measured" for part in case.roughness):
         words.append("waves of the scan that the grid leaves out")
@@ -230,7 +238,7 @@ def included(case: Case) -> list[str]:
 
 
 def steps(case: Case) -> int:
-    """Number of calls of `progress` while the errors of a run or ensemble of `case` are found."""
+    """Number of calls of `progress` during the error estimate of a run or ensemble of `case`."""
     if not case.total_error:
         return 0
     surfaces = SURFACES if case.roughness and case.realisations == 1 else 0
@@ -238,14 +246,17 @@ def steps(case: Case) -> int:
 
 
 def total(row: Mapping[str, float]) -> float:
-    """The known errors of a row in quadrature; at most the largest possible one, as COR ≤ 1."""
+    """Root sum of squares of the known errors of a row, at most the largest error possible.
+
+    The error is limited because COR is between 0 and 1.
+    """
     parts = ("restitution_error", "discretisation_error", "surface_scatter", "material_error")
     known = [error for name in parts if not math.isnan(error := row.get(name, math.nan))]
     return min(math.hypot(*known), max(row["restitution"], 1 - row["restitution"]))
 
 
 def _floor(row: Row) -> float:
-    """The least discretisation error of a row, whatever the differences between grids."""
+    """Least discretisation error s f of a row, added to the error from differences of COR."""
     nodes = max(row["median_patch_nodes"], 1.0)
     expected = math.exp(np.interp(math.log(nodes), np.log(_PATCH_NODES), np.log(_PATCH_ERROR)))
     if resolves(nodes) and row["adhesion_resolved"]:

@@ -1,4 +1,4 @@
-"""The log of a run: progress, warnings, and the status at its end with the reason."""
+"""The log of a run: progress, warnings, and how the run ended."""
 
 from __future__ import annotations
 
@@ -21,10 +21,11 @@ def ignore(_: str) -> None:
 
 @dataclass
 class RunLog:
-    """The log of one run, or of several of one case.
+    """The log of one run, or of several runs of one case.
 
-    `progress` is called with a few words after every step, `tell` with every warning. `warnings`
-    are told already, and are stored with the results.
+    `progress` is called with a few words after every step, and `tell` with every warning.
+    `warnings` holds the warnings so far, which are stored with the results. `status` and `reason`
+    say how the run ended.
     """
 
     progress: Say = ignore
@@ -41,18 +42,19 @@ class RunLog:
         return round(time.perf_counter() - self.began, 3)
 
     def warn(self, warning: str) -> None:
-        """Tell a warning, and store it with the results."""
+        """Issue a warning, and store it with the results."""
         self.warnings.append(warning)
         self.tell(warning)
 
     def progress_of(self, name: str) -> Say:
-        """The progress of one of several runs."""
+        """Return a `progress` for one of several runs, which adds the `name` of the run."""
         return lambda words: self.progress(f"{name}, {words}")
 
     def warnings_of(self, part: ResultsFolder) -> Say:
-        """A `warn` for one of several runs, which passes on warnings given before its first row.
+        """Return a `warn` for one of several runs.
 
-        It drops warnings about the results of a single run: the summary of all runs replaces them.
+        It passes on warnings that are issued before the first row of the run. It drops warnings
+        about the results of the run, because the summary of all runs replaces them.
         """
 
         def say(warning: str) -> None:
@@ -65,10 +67,10 @@ class RunLog:
     def record(
         self, out: ResultsFolder, keep: Callable[[], dict[str, Any] | None]
     ) -> Iterator[None]:
-        """Record how the `with` body ends, let `keep` write the results, and tell new warnings.
+        """Record how the `with` body ends, let `keep` write the results, and issue new warnings.
 
-        `keep` returns the summary, which becomes `summary`, or None if nothing was computed: then
-        the folder is removed. Errors of the body are raised again.
+        `keep` returns the summary, which becomes `summary`, or None if nothing was computed. In the
+        latter case the folder is removed. Errors of the body are raised again.
         """
         try:
             yield

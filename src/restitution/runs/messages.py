@@ -27,7 +27,7 @@ _ERRORS: dict[Code, type[RestitutionError]] = {
     "contact-beyond-radius": CaseError,
     "pixel-above-contact": SurfaceError,
 }
-_KEYS = {"force": "load", "velocity": "impact"}  # by arguments of the solvers
+_KEYS = {"force": "load", "velocity": "impact"}  # arguments of the solvers: keys of the case file
 
 
 def require_possible(contact: Contact, indentation: float) -> None:
@@ -38,7 +38,7 @@ def require_possible(contact: Contact, indentation: float) -> None:
 
 
 def input_warnings(contact: Contact, indentation: float) -> list[str]:
-    """One warning for each doubtful property of `contact` when loaded to `indentation` (m)."""
+    """Make a warning for each doubtful property of `contact` when loaded to `indentation` (m)."""
     return [message(found) for found in doubtful(contact, indentation)]
 
 
@@ -57,7 +57,7 @@ def naming_keys() -> Iterator[None]:
 
 
 def message(found: Finding) -> str:
-    """`found` as one line, with the remedy."""
+    """Word the finding `found` as one line, with the remedy."""
     match found.code:
         case "roughness-above-radius":
             return (
@@ -108,8 +108,9 @@ def message(found: Finding) -> str:
         case "no-half-space":
             radius, R = found["radius"], found["reduced_radius"]
             return (
-                f"the contact radius {_um(radius)} is {radius / R:.4g} of R*: the half-space holds "
-                f"up to about {found['limit']} (a tenth of the radius of two equal spheres)"
+                f"the contact radius {_um(radius)} is {radius / R:.4g} of R*: the half-space "
+                f"approximation holds up to about {found['limit']} R* (a tenth of the radius of "
+                "two equal spheres)"
             )
         case "finer-than-scan":
             return (
@@ -136,8 +137,8 @@ def message(found: Finding) -> str:
         case "oblong-pixels":
             return (
                 f"{found['file']}: the pixels are {1e6 * found['x']:.4g} x {1e6 * found['y']:.4g} "
-                "um, not square: if scan lines are missing in the file, it is stretched; check the "
-                "size"
+                "um, not square: if scan lines are missing in the file, the scan is stretched; "
+                "check the size"
             )
         case "coarser-than-scan":
             spacing = found["spacing"]
@@ -165,7 +166,7 @@ def message(found: Finding) -> str:
 
 
 def _edge_advice(found: Finding) -> str:
-    """Advice that keeps the contact inside the grid, as the end of a sentence."""
+    """Word advice that keeps the contact inside the grid, for the end of a sentence."""
     x, y = found["first_touch"]
     where = (
         f"the bodies touch first at x = {1e6 * x:.3g} um, y = {1e6 * y:.3g} um, off the centre; "

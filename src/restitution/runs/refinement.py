@@ -1,4 +1,4 @@
-"""The grid of each depth for `grid.refine = "auto"`: the coarsest that resolves its contact."""
+"""Choose the coarsest grid that resolves the contact at each depth, for `grid.refine = "auto"`."""
 
 from __future__ import annotations
 
@@ -13,24 +13,26 @@ from restitution.errors import DomainError, NotConvergedError
 from restitution.runs.loading import load_to
 from restitution.runs.log import Say, ignore
 
-# Nodes of the finest grid that "auto" tries: a few minutes and about 2 GiB.
+# Most nodes of a grid that "auto" tries. Such a grid takes a few minutes and about 2 GiB.
 MOST_NODES = 2**24
-# Times the nodes that a patch needs: other surfaces of an ensemble may have smaller patches.
+# Factor on the number of nodes that a patch needs, because other surfaces of an ensemble may have
+# smaller patches.
 _MARGIN = 1.5
 
 
 def settled(case: Case, folder: Path, warn: Say = ignore) -> Case:
-    """`case` with a number for each depth in place of `grid.refine = "auto"`.
+    """Replace `grid.refine = "auto"` in `case` by a factor for each depth.
 
-    Each depth gets the coarsest grid on which half of its contact lies in patches of 1.5 times
-    `NODES_PER_PATCH` nodes, on the first surface of an ensemble. Deeper contacts have larger
-    patches, so bisection finds the shallowest depth that a grid resolves. Depths that no grid of up
-    to `MOST_NODES` nodes resolves get the finest one, and `warn` is told. Raises as `solve`.
+    Each depth gets the coarsest grid on which half of its contact lies in patches of at least 1.5
+    times `NODES_PER_PATCH` nodes. In an ensemble, the first surface decides. Deeper contacts have
+    larger patches, so bisection finds the shallowest depth that a grid resolves. If no grid of up
+    to `MOST_NODES` nodes resolves a depth, the depth gets the finest grid, and `warn` is called.
+    Raises the errors of `solve`.
     """
     if case.grid is None or case.grid.refine != "auto":
         return case
     depths = case.depths()
-    factors: list[int] = []  # of the deepest depths, in order
+    factors: list[int] = []  # factors of the deepest depths so far, from shallow to deep
     finest, why, nodes = 1, "", (1, 1)
     for factor in FACTORS:
         if factor > 1 and factor**2 * nodes[0] * nodes[1] > MOST_NODES:
@@ -61,9 +63,9 @@ def settled(case: Case, folder: Path, warn: Say = ignore) -> Case:
 
 
 def later_touches(case: Case, folder: Path, factors: Iterable[int]) -> dict[int, float]:
-    """How much later (m) each grid touches first than the finest of `factors`.
+    """Extra approach (m) to first touch on each grid, compared with the finest of `factors`.
 
-    The highest point of a surface lies between the nodes of a coarse grid.
+    A coarse grid touches later because the highest point of the surface lies between its nodes.
     """
     R, touch = case.pair().radius, {}
     for factor in factors:
@@ -74,16 +76,16 @@ def later_touches(case: Case, folder: Path, factors: Iterable[int]) -> dict[int,
 
 
 def _first_resolved(case: Case, contact: Contact, depths: list[float]) -> int:
-    """The index of the shallowest of `depths` that the grid resolves; their number for none."""
+    """Index of the shallowest of `depths` that the grid resolves; the number of depths if none."""
     low, high = 0, len(depths)
     while low < high:
         middle = (low + high) // 2
         try:
             patch = median_patch(load_to(case, contact, depths[middle]).patch_sizes())
-        except DomainError:  # beyond the edge, which the run will report
+        except DomainError:  # contact at the edge, which the run will report
             high = middle
             continue
-        except NotConvergedError:  # the work jumps: too few nodes
+        except NotConvergedError:  # the work jumps because of too few nodes
             low = middle + 1
             continue
         if patch >= _MARGIN * NODES_PER_PATCH:

@@ -46,7 +46,7 @@ FULL_PRESSURE = (
     "begin to yield at about 1.6 times the yield strength"
 )
 
-# Limits above which there is a warning
+# Limits above which a warning is issued.
 _VELOCITY = 1e-3  # relative error of a prescribed impact velocity
 _IMPRECISE = 0.02  # numerical error of COR
 _BALANCE = 0.01  # relative difference of unloading work and stored energy
@@ -77,16 +77,18 @@ def run_case(
 ) -> dict[str, Any]:
     """Run `case` (with the text `text`, and files relative to `folder`) and return the summary.
 
-    With `errors` (and unless the case has total_error = false) every row gets its total error
-    (`error_budget`), and a depth that does not converge is left out. Without `errors` it ends the
-    curve, because the rows of several runs are compared by their number. Contact at the edge of the
-    grid always ends the curve. In each of these cases the run fails after its last depth.
+    With `errors` (and unless the case has total_error = false), every row gets its total error
+    (`error_budget`), and a depth that does not converge is left out. Without `errors`, a depth that
+    does not converge ends the curve, because rows of several runs are compared by their number.
+    Contact at the edge of the grid always ends the curve. In each of these cases the run fails
+    after its last depth.
 
-    The case has one surface (see `ensemble`). `refinement` replaces `grid.refine = "auto"` first;
-    depths are measured from first touch on the finest grid. `progress` is called with a few words
-    after every depth, `warn` with every warning: about the input before the first solve, about the
-    results at the end, even after an error. Errors are raised again after the results so far and
-    the reason are written; the folder is removed if there are no results.
+    The case has one surface (see `ensemble`). `grid.refine = "auto"` is replaced first
+    (`refinement`). Depths are measured from first touch on the finest grid. `progress` is called
+    with a few words after every depth. `warn` is called with every warning: about the input before
+    the first solve, and about the results at the end, even after an error. An error is raised again
+    after the results so far and the reason are written. If there are no results, the folder is
+    removed.
     """
     run = _Run(progress, warn)
 
@@ -108,7 +110,7 @@ def run_case(
             _add_errors(case, folder, contact.surface, out, run)
         if failure is not None:
             raise failure
-    assert run.summary is not None  # without any depth an error was raised
+    assert run.summary is not None  # if there is no depth, an error was raised above
     return run.summary
 
 
@@ -134,16 +136,16 @@ def _load_and_unload(
     *,
     go_on: bool,
 ) -> RestitutionError | None:
-    """Compute the depths one after the other; return the error of the first that failed."""
+    """Compute the depths one after the other; return the error of the first depth that failed."""
     count, curves = len(case.depths()), case.unloading.curves
-    # Evenly spaced by number, with the deepest.
+    # Numbers of the depths that are unloaded: evenly spaced, with the deepest depth.
     unloaded = {count - 1 - (k * count) // curves for k in range(curves)}
     began = time.perf_counter()
     failure: RestitutionError | None = None
     for number, depth in enumerate(depths):
         if depth.state is None:
             failure = failure or depth.error
-            # Deeper ones reach the edge, too.
+            # Deeper contacts reach the edge, too.
             if not go_on or isinstance(depth.error, DomainError):
                 break
         else:
@@ -159,7 +161,7 @@ def _keep(
 ) -> None:
     """Unload from a depth, and keep its row."""
     collision, back = collision_at(case, state, unload=unload)
-    with hold_signals():  # an interruption leaves a complete row or none
+    with hold_signals():  # an interruption leaves a complete row or no row
         run.asked.append(depth.asked)
         run.adhesive_nodes.append(adhesive_nodes(state))
         run.loading_work_errors.append(state.work_error / max(abs(state.loading_work), 1e-300))
@@ -177,7 +179,7 @@ def _add_errors(
     out: ResultsFolder,
     run: _Run,
 ) -> None:
-    """Add the total error to the rows; keep its part due to waves that the grid leaves out."""
+    """Add the total error to the rows; store its part due to omitted waves in `run`."""
     try:
         run.band_errors = add_errors(case, folder, surface, out.rows, run.progress)
     except RestitutionError as error:
@@ -186,7 +188,7 @@ def _add_errors(
 
 
 def _check(state: State, back: Sequence[State], collision: Collision) -> dict[str, float]:
-    """The work of an unloading curve, compared with the stored energy."""
+    """Compare the work of an unloading curve with the stored energy."""
     work = -integrate_curve([s.indentation for s in back], [s.force for s in back])
     estimate = collide(state, method="energy-estimate")
     return {
@@ -202,7 +204,9 @@ def _check(state: State, back: Sequence[State], collision: Collision) -> dict[st
 def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> dict[str, Any]:
     patches = [row["median_patch_nodes"] for row in out.rows]
     depths = [row["max_indentation_m"] for row in out.rows]
-    nodes = run.adhesive_nodes[: len(depths)]  # one more if the last row could not be written
+    nodes = run.adhesive_nodes[
+        : len(depths)
+    ]  # has one value more if the last row could not be written
     unresolved = unresolved_patches(depths, patches) + unresolved_adhesion(depths, nodes)
     found = [*map(message, unresolved), band_warning(contact.surface, run.band_errors)]
     found += [_imprecise(out, case), _velocities_missed(out, case, run.asked)]
@@ -261,13 +265,13 @@ def _materials(case: Case) -> dict[str, Any]:
 
 
 def _imprecise(out: ResultsFolder, case: Case) -> str | None:
-    """A warning about depths whose COR is less precise than requested, or None."""
+    """Make a warning if the COR of some depths is less precise than requested; otherwise None."""
     asked = max(_IMPRECISE, case.unloading.restitution_error)
     missed = [row for row in out.rows if row["restitution_error"] > asked]
     if not missed:
         return None
     worst = max(missed, key=lambda row: row["restitution_error"])
-    why = "contact forms and breaks in jumps there; use a finer grid"
+    why = "contact forms and breaks in jumps at these depths; use a finer grid"
     if case.unloading.method == "energy-estimate":
         why = 'unloading is an estimate; set unloading.method = "path"'
     depth = 1e9 * worst["max_indentation_m"]
@@ -278,7 +282,7 @@ def _imprecise(out: ResultsFolder, case: Case) -> str | None:
 
 
 def _velocities_missed(out: ResultsFolder, case: Case, computed: list[float]) -> str | None:
-    """A warning about impact velocities that differ from the prescribed ones, or None."""
+    """Make a warning if impact velocities differ from the prescribed values; otherwise None."""
     if case.impact is None:
         return None
     pairs = zip((row["impact_velocity_m_per_s"] for row in out.rows), computed, strict=False)
@@ -289,7 +293,7 @@ def _velocities_missed(out: ResultsFolder, case: Case, computed: list[float]) ->
     worst = max(missed, key=lambda asked: off[asked])
     return (
         f"{len(missed)} of {len(off)} impact velocities are reached only within the error of the "
-        f"work, at worst {worst:g} m/s within {off[worst]:.1%}: use those in curve.csv"
+        f"work, at worst {worst:g} m/s within {off[worst]:.1%}: use the velocities in curve.csv"
     )
 
 
@@ -305,7 +309,7 @@ def _adhesion_of(contact: Contact, case: Case) -> dict[str, Any]:
 
 
 def _unbalanced(checks: list[dict[str, float]]) -> str | None:
-    """A warning about unloading curves whose work differs from the stored energy, or None."""
+    """Make a warning if the work of unloading curves differs from the stored energy, or None."""
     off = [check for check in checks if not abs(check["relative_to_stored_energy"]) <= _BALANCE]
     if not off:
         return None

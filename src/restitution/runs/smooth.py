@@ -1,4 +1,4 @@
-"""The smooth bodies of a case with its own model, for comparison with its rough surface."""
+"""Curves of the smooth bodies of a case with its models, to compare with the rough bodies."""
 
 from __future__ import annotations
 
@@ -16,28 +16,30 @@ from restitution.contact.loading import solve
 from restitution.numerics.grid import Grid
 from restitution.theory import FirstYield, Hertz
 
-# The error of COR is below 0.3 % with eight nodes or more over the contact radius.
+# Nodes along each edge of the grids. With eight or more nodes over the contact radius, the error of
+# COR is below 0.3 %.
 _NODES = 80
-_WIDTH = 2.5  # of each grid, in predicted contact radii
-_DEPTHS = 20
+_WIDTH = 2.5  # width of each grid (predicted contact radii)
+_DEPTHS = 20  # number of depths
 
 
 def smooth_curve(
     contact: Contact, rows: list[dict[str, float]], check: Callable[[], None] = lambda: None
 ) -> dict[str, Any]:
-    """Variables of results.nc: force, restitution and velocity of the smooth bodies of `contact`.
+    """Make the variables of results.nc for the smooth bodies: force, restitution and velocity.
 
-    They span the depths and velocities of `rows`. Each depth beyond yield is solved on a small grid
-    of its own; up to yield Hertz holds. Empty in the `truncated` model, whose smooth contact is
-    Thornton and Ning's, and with adhesion, which small grids do not resolve. `check` is called
-    before every solve, and may raise to end the curve. Raises as `solve`.
+    The curve spans the depths and velocities of `rows`. Up to yield it is Hertz's solution. Beyond
+    yield, each depth is solved on a separate small grid. There are no variables for the `truncated`
+    model, because Thornton and Ning's formulas give its smooth contact. There are none with
+    adhesion either, because small grids do not resolve it. `check` is called before every solve,
+    and may raise an error to end the curve. Raises the errors of `solve`.
     """
     pair, p_y = contact.pair, contact.hardness
     R, E_star = pair.radius, pair.contact_modulus
     if contact.plasticity == "truncated" or contact.adhesive or not rows:
         return {}
     last = max(row["max_indentation_m"] for row in rows)
-    # Smooth bodies need less depth for the same work.
+    # Smooth bodies reach the same work at a smaller depth.
     least = min(row["loading_work_J"] for row in rows)
     hertz = Hertz(R, E_star)
     same_work = float(hertz.indentation_from_energy(least))

@@ -1,8 +1,8 @@
 """Cache of surfaces that took long to make, in the user's cache folder.
 
-A file contains the heights, the provenance and the key, which is everything the surface depends on,
-including the version of the program. If a file cannot be written or read, the surface is made again
-without a message.
+Each file contains the heights, the provenance and the key of a surface. The key lists everything on
+which the surface depends, including the version of the program. If a file cannot be written or
+read, the surface is made again without a message.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ import numpy as np
 from restitution.numerics.grid import Grid
 from restitution.surfaces.surface import Surface
 
-_LONG = 1.0  # s; surfaces that are made faster are not cached
-_MOST = 2**30  # bytes of all files
-_LARGEST = 2**28  # bytes of one surface
-_REST = 2**12  # bytes of a file besides the heights
+_LONG = 1.0  # shortest time (s) to make a surface that is cached
+_MOST = 2**30  # largest size of all files together (bytes)
+_LARGEST = 2**28  # largest size of one surface (bytes)
+_REST = 2**12  # allowance for the content of a file besides the heights (bytes)
 
 
 def kept(parameters: Mapping[str, Any], make: Callable[[], Surface]) -> Surface:
-    """The surface that `make` returns, cached by `parameters` (JSON types), which determine it."""
+    """Return the surface from the cache, or make it; `parameters` (JSON types) determine it."""
     key = json.dumps({"version": version("restitution"), **parameters}, sort_keys=True)
     file = _folder() / f"{hashlib.sha256(key.encode()).hexdigest()}.npz"
     found = _read(file, key)
@@ -50,8 +50,8 @@ def _folder() -> Path:
 
 
 def _read(file: Path, key: str) -> Surface | None:
-    """The surface in `file`; None if the file is missing, damaged or of another key."""
-    # A damaged file can raise any exception in its reader, and none of them matters here.
+    """Read the surface in `file`; None if the file is missing or damaged or has another key."""
+    # A damaged file can raise any exception in NumPy's reader; the surface is then made again.
     with suppress(Exception):
         with file.open("rb") as stream, np.load(stream, allow_pickle=False) as content:
             told = json.loads(str(content["told"]))

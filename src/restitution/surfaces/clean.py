@@ -14,16 +14,16 @@ from restitution.surfaces.surface import Surface
 
 Range = tuple[float, float]
 
-_NEIGHBOURHOOD = 5  # pixels across
-_SIGMA = 1.4826  # standard deviation over median absolute deviation, normal distribution
-_MOST = 0.1  # largest fraction of pixels that can be outliers
+_NEIGHBOURHOOD = 5  # edge of the square whose median a pixel is compared with (pixels)
+_SIGMA = 1.4826  # standard deviation over median absolute deviation of a normal distribution
+_MOST = 0.1  # largest fraction of pixels that may be outliers; more would not be exceptions
 
 
 def crop(surface: Surface, *, x: Range | None = None, y: Range | None = None) -> Surface:
     """Cut out the pixels whose centres lie within ranges of x and y.
 
-    Coordinates are those of `surface.grid`, with zero in the middle. The new surface has its own
-    zero in its middle.
+    The ranges are in the coordinates of `surface.grid`, with zero in the middle. The coordinates of
+    the new surface are zero in the middle of the cropped area.
 
     Args:
         surface: Surface to crop.
@@ -88,14 +88,15 @@ def remove_outliers(surface: Surface, threshold: float) -> Surface:
     height = surface.height
     step = np.abs(height - median_filter(height, _NEIGHBOURHOOD, mode="reflect"))
     deviation = _SIGMA * float(np.median(step))
-    # Without a scale (most pixels equal the median of their neighbours) there are no outliers.
+    # A deviation of zero means that most pixels equal the median of their neighbours. There is then
+    # no scale to compare with, and no pixel counts as an outlier.
     out = step > threshold * deviation if deviation > 0 else np.zeros(height.shape, bool)
     count = int(np.count_nonzero(out))
     if count > _MOST * out.size:
         raise SurfaceError(
             f"threshold: {count / out.size:.0%} of the pixels differ from their neighbourhood by "
             f"more than {threshold:g} standard deviations, too many to be outliers; give a larger "
-            "number, or keep the outliers"
+            "threshold, or keep the outliers"
         )
     return replace(
         surface,

@@ -1,8 +1,8 @@
-"""Numbers that characterise a rough surface, after ISO 25178-2.
+"""Height, slope and correlation parameters of a rough surface, after ISO 25178-2.
 
-z is the height less its mean, ⟨ ⟩ the mean over all cells. The standard defines its parameters
-on the scale-limited surface, so subtract tilt and form first (`level`). Clauses are those of
-ISO 25178-2:2012.
+z is the height minus its mean, and ⟨ ⟩ is the mean over all cells. The standard defines its
+parameters for the scale-limited surface, so subtract tilt and form first (`level`). Clause numbers
+refer to ISO 25178-2:2012.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from restitution.surfaces.surface import Surface
 
-# Autocorrelation at Hu and Tonder's (1992) correlation length, as in `generate_surface`. (The
-# standard's autocorrelation length Sal uses 0.2.)
+# Value of the autocorrelation that defines the correlation length (Hu and Tonder 1992), as in
+# `generate_surface`. The autocorrelation length Sal of the standard uses 0.2 instead.
 _CORRELATION_LEVEL = 0.1
 
 
@@ -29,13 +29,13 @@ def describe(surface: Surface) -> dict[str, float | None]:
     - `Sv_m`: maximum pit height, −min z (4.1.5)
     - `Sz_m`: maximum height, Sp + Sv (4.1.6)
     - `Sa_m`: arithmetical mean height, ⟨|z|⟩ (4.1.7)
-    - `Sdq`: root mean square gradient, ⟨(∂z/∂x)² + (∂z/∂y)²⟩^½ (4.3.1), by differences between
-      neighbouring cells. (Central differences are blind to the shortest waves.)
-    - `rms_curvature_per_m`: half the root mean square Laplacian, ½⟨(∇²z)²⟩^½, by second
+    - `Sdq`: root mean square gradient, ⟨(∂z/∂x)² + (∂z/∂y)²⟩^½ (4.3.1), from differences between
+      neighbouring cells. (Central differences do not detect the shortest waves.)
+    - `rms_curvature_per_m`: half the root mean square Laplacian, ½⟨(∇²z)²⟩^½, from second
       differences. For isotropic asperities this is their rms curvature.
-    - `correlation_length_x_m`, `correlation_length_y_m`: lag along that axis at which the biased
-      autocorrelation estimate of z, normalised to 1 at lag zero, first falls to 10 % (Hu and
-      Tonder 1992), interpolated linearly between lags.
+    - `correlation_length_x_m`, `correlation_length_y_m`: lag along x or y at which the
+      autocorrelation of z first falls to 10 % of its value at lag zero (Hu and Tonder 1992). The
+      biased estimate of the autocorrelation is interpolated linearly between lags.
 
     Args:
         surface: Surface to describe; subtract its tilt and form first (`level`).
@@ -62,7 +62,7 @@ def describe(surface: Surface) -> dict[str, float | None]:
         "correlation_length_x_m": None,
         "correlation_length_y_m": None,
     }
-    # A constant height less its mean can differ from zero by rounding.
+    # Rounding can make the heights of a flat surface differ from their mean.
     if Sq > 8 * np.finfo(np.float64).eps * float(np.abs(height).max()):
         unit = z / Sq
         values["Ssk"] = float(np.mean(unit**3))
@@ -80,12 +80,12 @@ def rms_slope(surface: Surface) -> float:
 
 
 def _mean_square_slope(z: NDArray[np.float64], h: float) -> float:
-    """⟨(∂z/∂x)²⟩ along the first axis; a single line of cells has no slope."""
+    """Mean square slope ⟨(∂z/∂x)²⟩ along the first axis; 0 for a single line of cells."""
     return float(np.mean((np.diff(z, axis=0) / h) ** 2)) if z.shape[0] > 1 else 0.0
 
 
 def _rms_curvature(z: NDArray[np.float64], hx: float, hy: float) -> float:
-    """½⟨(∇²z)²⟩^½ over the nodes off the rim; fewer than three in a line have no curvature."""
+    """½⟨(∇²z)²⟩^½ over the inner nodes; an axis with fewer than three nodes adds no curvature."""
     laplacian = np.zeros([n - 2 if n > 2 else n for n in z.shape])
     inner = tuple(slice(1, -1) if n > 2 else slice(None) for n in z.shape)
     if z.shape[0] > 2:

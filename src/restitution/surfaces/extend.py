@@ -1,6 +1,6 @@
-"""Continue a scan beyond the area measured: by tiles of its mirror image, or by a twin.
+"""Extend a scan beyond the measured area, by tiles of mirror images or by a statistical twin.
 
-Neither is the surface that was measured, as the `notice` in the provenance states.
+In both cases the result is not the measured surface, as the `notice` in its provenance states.
 """
 
 from __future__ import annotations
@@ -20,34 +20,35 @@ Extension = Literal["twin", "mirror"]
 def extend(
     surface: Surface, to: Grid | tuple[float, float], how: Extension, *, seed: int | None = None
 ) -> Surface:
-    """Continue a scan over a larger area.
+    """Extend a scan to a larger area.
 
-    - `twin`: another surface with random phases, and with the spectrum, the distribution of heights
-      and the rms slope of the scan. It has no waves longer than the scan.
+    - `twin`: a new random surface with the spectrum, the distribution of heights and the rms slope
+      of the scan. It has no waves longer than the scan.
     - `mirror`: the scan in the middle, surrounded by tiles that are its mirror images. The surface
       repeats every two tiles, and slopes jump where tiles meet.
 
     Waves that the cells of the grid cannot carry are left out.
 
     Args:
-        surface: Scan to continue.
-        to: Grid of the new surface, or its edge lengths (m), with the pixels of the scan as cells.
+        surface: Scan to extend.
+        to: Grid of the new surface, or its edge lengths (m). With edge lengths, the cells have the
+            size of the pixels of the scan.
         how: Method, `twin` or `mirror`.
-        seed: Seed of the random phases (1), for a twin only.
+        seed: Seed of the random phases (1); for a twin only.
 
     Returns:
-        Surface whose provenance has a `notice` that it is not the scan.
+        Extended surface. The `notice` in its provenance states that it is not the scan.
 
     Raises:
-        SurfaceError: An argument is invalid, or a twin is asked of a scan that is flat, has fewer
-            than 16 pixels along an axis or is smaller than two cells.
+        SurfaceError: An argument is invalid, or the scan allows no twin because it is flat, has
+            fewer than 16 pixels along an axis or is smaller than two cells.
     """
     if how not in get_args(Extension):
         raise SurfaceError(f"how: {how!r} is unknown; choose 'twin' or 'mirror'")
     grid = to if isinstance(to, Grid) else _with_pixels_of(surface, to)
     if how == "twin":
         if seed is None or seed < 0:
-            raise SurfaceError("seed: a twin needs one; give a whole number from 0 up")
+            raise SurfaceError("seed: a twin needs a seed; give a whole number from 0 up")
         return twin(surface, grid, seed)
     if seed is not None:
         raise SurfaceError("seed: does not apply to how='mirror'; leave it out")

@@ -2,8 +2,9 @@
 
     z = IFFT(H · FFT(white noise)),
 
-where H are the amplitudes of `spectra` (Hu and Tonder 1992, Int. J. Mach. Tools Manufact. 32,
-83–90). Heights are normally distributed unless another skewness or kurtosis is given (`heights`).
+where the module `spectra` computes the amplitudes H (Hu and Tonder 1992, Int. J. Mach. Tools
+Manufact. 32, 83–90). Heights are normally distributed unless another skewness or kurtosis is given
+(module `heights`).
 """
 
 from __future__ import annotations
@@ -25,7 +26,9 @@ from restitution.surfaces.surface import Surface
 Array = NDArray[np.float64]
 RoughnessKind = Literal["exponential", "gaussian", "self-affine"]
 
-_MARGIN = 2.0  # margin that makes a surface non-periodic, in correlation lengths
+# A non-periodic surface is cut from a periodic one that is larger by this margin (in correlation
+# lengths), so that its opposite edges are uncorrelated.
+_MARGIN = 2.0
 
 
 class Waves(TypedDict, total=False):
@@ -59,12 +62,12 @@ def generate_surface(
     """Generate a random surface with zero mean and a given rms height.
 
     The same arguments give the same surface on every machine and with every NumPy version, within
-    rounding. Another grid draws other noise, so the same seed on a finer grid gives another
-    surface; use `refine` to refine this one.
+    rounding. The noise also depends on the grid, so the same seed on a finer grid gives a different
+    surface. Use `refine` to get the same surface on a finer grid.
 
-    For a skewness or kurtosis that is not normal, the noise is transformed before it is filtered.
-    If the filter cannot reach these moments, heights and amplitudes are adjusted alternately, and
-    the provenance has the misfit of the amplitudes.
+    For heights that are not normally distributed, the noise is transformed before it is filtered.
+    If filtering cannot give the skewness and kurtosis asked for, heights and amplitudes are
+    adjusted alternately, and the provenance states the misfit of the amplitudes.
 
     Args:
         grid: Grid of the surface.
@@ -75,14 +78,14 @@ def generate_surface(
         kurtosis: Kurtosis of the heights (1), 3 for a normal distribution; at least
             skewness² + 1.1.
         periodic: Whether opposite edges of the surface match (bool).
-        **waves: Waves of the `kind`; None is the same as leaving an argument out.
+        **waves: Parameters of the waves of this `kind`; None is the same as no argument.
             `correlation_length` (m; exponential, gaussian): length over which the autocorrelation
             falls to 10 %, or two lengths, along and across the lay.
             `lay` (rad; exponential, gaussian): angle of the first length from the x axis,
             default 0.
             `hurst` (1; self-affine): Hurst exponent.
-            `rolloff` (m; self-affine): wavelength above which the spectrum is flat; without it the
-            power law extends to the domain.
+            `rolloff` (m; self-affine): wavelength above which the spectrum is constant; without
+            `rolloff` the power law extends to the size of the domain.
             `shortest` (m; all kinds): wavelength below which waves are left out.
 
     Returns:
@@ -103,7 +106,7 @@ def generate_surface(
     if not possible(skewness, kurtosis):
         raise SurfaceError(
             f"kurtosis: no heights have a skewness of {skewness:g} and a kurtosis of "
-            f"{kurtosis:g}; it has to be at least skewness² + {LEAST_KURTOSIS:g} = "
+            f"{kurtosis:g}; kurtosis must be at least skewness² + {LEAST_KURTOSIS:g} = "
             f"{skewness**2 + LEAST_KURTOSIS:g}"
         )
     spectrum.check(grid)
@@ -153,12 +156,12 @@ def _spectrum(kind: str, waves: Waves) -> Spectrum:
 def _heights(
     grid: Grid, spectrum: Spectrum, seed: int, wanted: tuple[float, float], periodic: bool
 ) -> tuple[Array, dict[str, str | float]]:
-    """Heights, not yet scaled, and provenance entries on the method."""
+    """Generate heights with an arbitrary scale, and provenance entries on the method."""
     from scipy.fft import irfft2, rfft2
 
     larger = grid if periodic else _enlarged(grid, spectrum.longest)
     noise, H = white_noise(larger.nodes, seed), spectrum.amplitude(larger)
-    # The mean is not a wave, and a grid of one node has no other mode.
+    # The first mode is the mean, not a wave. A grid of one node has no other mode.
     if not H.ravel()[1:].any() or grid.nodes == (1, 1):
         raise SurfaceError(
             f"grid: {grid.nodes[0]} x {grid.nodes[1]} nodes cannot carry a wave of this roughness; "
@@ -181,14 +184,14 @@ def _heights(
             z, made["amplitude_misfit"] = adjusted(z, heights)
             made["method"] = "Schreiber and Schmitz 1996, adjusted amplitudes"
     z = z[: grid.nodes[0], : grid.nodes[1]].copy()
-    if not periodic and wanted != (0.0, 3.0):  # cropping has changed the moments
+    if not periodic and wanted != (0.0, 3.0):  # cropping changed the moments
         heights = distribution(z.size, *wanted)
         z = z if heights is None else in_order(heights, z)
     return z, made
 
 
 def _enlarged(grid: Grid, longest: float) -> Grid:
-    """A larger grid, on which opposite edges of a part the size of `grid` are uncorrelated."""
+    """Larger grid, so that a part as large as `grid` has uncorrelated opposite edges."""
     from scipy.fft import next_fast_len
 
     nx, ny = (

@@ -1,7 +1,7 @@
 """Rough surfaces with given wave amplitudes and given skewness and kurtosis of the heights.
 
-`filtered`: white noise η is transformed (Johnson's translation) before it is filtered, to moments
-that the filter changes to those wanted,
+There are two methods. `filtered` gives white noise η a skewness and kurtosis before it is filtered
+(Johnson's translation). They are chosen so that the filter turns them into those of the heights z:
 
     Sk_z = Sk_η Σθ³/(Σθ²)^{3/2},   K_z − 3 = (K_η − 3) Σθ⁴/(Σθ²)²,
 
@@ -9,10 +9,10 @@ where θ is the impulse response of the filter (Watson and Spedding 1982, Wear 8
 al. 2010, Tribol. Int. 43, 2218–2225). Filtering sums over many nodes, so heights tend to the normal
 distribution, and only moderate moments can be reached.
 
-`adjusted`: the heights are replaced by those of the wanted distribution in the same order, then the
-amplitudes by the wanted ones with the same phases, and so on alternately (Schreiber and Schmitz
-1996, Phys. Rev. Lett. 77, 635–638). The last step replaces the heights, so their distribution is
-exact and the amplitudes are approximate.
+`adjusted` alternates two steps (Schreiber and Schmitz 1996, Phys. Rev. Lett. 77, 635–638). One step
+replaces the heights by heights of the desired distribution, in the same rank order. The other step
+replaces the amplitudes by the desired amplitudes, with the same phases. The last step replaces the
+heights, so their distribution is exact and the amplitudes are approximate.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ Array = NDArray[np.float64]
 Waves = Callable[[Array], Array]
 
 _STRONGEST = 3.0, 40.0  # largest skewness and kurtosis of the noise in `filtered`
-_CLOSE = 0.02  # tolerance on skewness (absolute) and kurtosis (relative)
-_CORRECTIONS = 12
-_ADJUSTMENTS = 60
+_CLOSE = 0.02  # tolerance on skewness (absolute) and kurtosis (relative) in `filtered`
+_CORRECTIONS = 12  # most corrections of the moments of the noise in `filtered`
+_ADJUSTMENTS = 60  # most adjustments of heights and amplitudes in `adjusted`
 _NEGLIGIBLE = 1e-3  # misfit of amplitudes at which the adjustment ends
 _STANDSTILL = 0.05  # relative decrease of the misfit, per adjustment, below which it ends
 
 
 def filtered(noise: Array, H: Array, skewness: float, kurtosis: float) -> Array | None:
-    """Heights by filtering `noise` with `H`; None if this does not reach the moments."""
+    """Filter transformed `noise` with `H`; None if the heights do not reach these moments."""
     from scipy.fft import irfft2, rfft2
 
     theta = irfft2(H, s=noise.shape)
@@ -57,7 +57,8 @@ def filtered(noise: Array, H: Array, skewness: float, kurtosis: float) -> Array 
         skew, kurt = moments(z)
         if abs(skew - skewness) < _CLOSE and abs(kurt - kurtosis) < _CLOSE * kurtosis:
             return z
-        # The moments of one realisation differ from their expectation: correct the target by that.
+        # The moments of one realisation differ from their expectation. Correct the moments of the
+        # noise by this difference.
         asked = (
             asked[0] + (skewness - skew) / skewing if skewing else 0.0,
             asked[1] + (kurtosis - kurt) / peaking,
@@ -66,10 +67,11 @@ def filtered(noise: Array, H: Array, skewness: float, kurtosis: float) -> Array 
 
 
 def adjusted(z: Array, heights: Array) -> tuple[Array, float]:
-    """The sorted `heights`, arranged to have nearly the amplitudes of `z`, and the misfit.
+    """Arrange the sorted `heights` to have nearly the amplitudes of `z`; return the misfit, too.
 
-    The amplitudes of `z` are scaled to the mean square of `heights`. The misfit is the root mean
-    square difference from them, relative to their root mean square.
+    The target amplitudes are the amplitudes of `z`, scaled to the mean square of `heights`. The
+    misfit is the root mean square difference from the target amplitudes, relative to their root
+    mean square.
     """
     from scipy.fft import irfft2, rfft2
 
@@ -89,14 +91,14 @@ def adjusted(z: Array, heights: Array) -> tuple[Array, float]:
 
 
 def in_order(heights: Array, z: Array) -> Array:
-    """The sorted `heights`, placed in the rank order of `z`."""
+    """Place the sorted `heights` in the rank order of `z`."""
     placed = np.empty(z.size)
     placed[np.argsort(z, axis=None, kind="stable")] = heights
     return placed.reshape(z.shape)
 
 
 def distribution(n: int, skewness: float, kurtosis: float) -> Array | None:
-    """n sorted heights with mean 0, variance 1, skewness and kurtosis; None if not found."""
+    """Return n sorted heights with mean 0, variance 1 and these moments; None if not found."""
     from scipy.special import ndtri
 
     translate = translation(skewness, kurtosis)

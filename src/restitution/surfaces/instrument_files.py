@@ -1,8 +1,8 @@
-"""Read instruments' own file formats through the SurfaceTopography package.
+"""Read the file formats of instruments with the SurfaceTopography package.
 
-SurfaceTopography returns heights as `[i, j]` ↔ `[x, y]`, like this package, with y pointing down
-the picture (`imshow(heights.T)` shows the picture of the instrument). Its physical size is the
-number of pixels times the pixel size. The package is an optional extra and imported on use.
+SurfaceTopography indexes heights `[i, j]` along x and y, as this package does. Its y axis points
+down the picture: `imshow(heights.T)` shows the picture of the instrument. Its physical size is the
+number of pixels times the pixel size. SurfaceTopography is an optional extra and imported on use.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ import numpy as np
 from restitution.errors import SurfaceError
 from restitution.surfaces.scan import Y_DOWN, Scan, in_metres
 
-# Earlier versions misread the sample files without an error (1.25.0: .tmd a thousand times too
-# small along all axes, undefined pixels of .sur as heights).
+# Earlier versions misread some files without an error. Version 1.25.0 reads .tmd files a thousand
+# times too small along all axes, and undefined pixels of .sur files as heights.
 _OLDEST_VERSION = (1, 27)
 _LARGEST_UNPACKED = 2**31  # bytes of all files in an archive
 INSTALL_READERS = (
@@ -35,7 +35,7 @@ class UnrecognisedError(SurfaceError):
 
 
 class NoReadersError(SurfaceError):
-    """SurfaceTopography, which has the readers, is not installed or too old."""
+    """SurfaceTopography, which provides the readers, is not installed or is too old."""
 
 
 def read_instrument(path: Path, channel: int | None) -> Scan:
@@ -61,8 +61,8 @@ def read_instrument(path: Path, channel: int | None) -> Scan:
             raise
         except Exception as error:
             raise SurfaceError(
-                f"{path}: its heights cannot be read ({_first_line(error)}); export it again, or "
-                "as a text matrix of heights"
+                f"{path}: its heights cannot be read ({_first_line(error)}); export the file "
+                "again, or as a text matrix of heights"
             ) from error
 
 
@@ -83,7 +83,7 @@ def _check_archive(path: Path) -> None:
 
 
 def _import_readers(path: Path) -> Callable[[str], Any]:
-    """SurfaceTopography's function that opens a file."""
+    """Import SurfaceTopography's function that opens a file."""
     try:
         import SurfaceTopography
     except ImportError as error:
@@ -141,7 +141,7 @@ def _read_channel(path: Path, reader: Any, channel: int | None) -> Scan:
 
 
 def _default_index(reader: Any, channels: list[Any]) -> int:
-    """The reader's default channel, or the first height map if that one is not a height map."""
+    """Index of the reader's default channel, or of the first height map if it is no height map."""
     default = int(reader.default_channel.index)
     if _is_height(channels[default]):
         return default
@@ -174,7 +174,7 @@ def _list(some: list[Any], channels: list[Any]) -> str:
 
 
 def _why_unreadable(error: Exception, suffix: str) -> str:
-    """The part of SurfaceTopography's error message on the reader named after `suffix`."""
+    """Describe the error; prefer the message of the reader that is named after `suffix`."""
     named_after_suffix = rf"tried {re.escape(suffix.removeprefix('.'))}reader:\s*(.+)"
     reason = re.search(named_after_suffix, str(error), re.IGNORECASE)
     if reason is None:

@@ -2,9 +2,10 @@
 
     unbounded (SU):  x = sinh((z − γ)/δ)        bounded (SB):  x = 1/(1 + exp(−(z − γ)/δ))
 
-The lognormal distribution is the limit of both, on the line between their regions. Johnson (1949),
-Biometrika 36, 149–176; fitting by moments: Hill, Hill and Holder (1976), Applied Statistics 25,
-180–189 (AS 99). Kurtosis is that of ISO 25178, 3 for a normal variable.
+In the plane of skewness and kurtosis, each form covers one region. The line between the regions
+belongs to the lognormal distribution, the limit of both forms. Source: Johnson (1949), Biometrika
+36, 149–176; fit of the parameters: Hill, Hill and Holder (1976), Applied Statistics 25, 180–189
+(AS 99). The kurtosis of a normal variable is 3, as in ISO 25178.
 """
 
 from __future__ import annotations
@@ -18,10 +19,12 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-# No kurtosis is below skewness² + 1, and distributions near this limit are nearly two-valued.
+# Smallest allowed value of kurtosis − skewness². For any distribution this value is at least 1, and
+# near this limit nearly all heights take one of two values.
 LEAST_KURTOSIS = 1.1
 _ABSCISSAE, _WEIGHTS = np.polynomial.hermite_e.hermegauss(201)
-_EXACT, _CLOSE = 1e-6, 2e-3  # misfits; the looser one is for the lognormal line
+# Misfits of the moments up to which a fit is accepted; the larger one is for the lognormal line.
+_EXACT, _CLOSE = 1e-6, 2e-3
 _STARTS = ((0.0, 0.0), (0.5, 0.3), (1.5, 0.5), (3.0, 0.8), (0.5, -0.7), (1.2, -1.2), (2.5, -1.5))
 
 
@@ -40,9 +43,10 @@ def possible(skewness: float, kurtosis: float) -> bool:
 
 
 def translation(skewness: float, kurtosis: float) -> Callable[[Array], Array] | None:
-    """An increasing map of a standard normal variable to mean 0, variance 1 and these moments.
+    """Return an increasing function of a standard normal variable that gives these moments.
 
-    None if no parameters are found that give the moments to 0.2 %.
+    The result of the function has mean 0 and variance 1. Return None if no parameters are found
+    that give the moments within 0.2 %.
     """
     if skewness == 0 and kurtosis == 3:
         return np.array
@@ -89,7 +93,7 @@ def _moments(form: Callable[..., Array], shape: Array) -> tuple[float, float, fl
 
 
 def _fitted(form: Callable[..., Array], skewness: float, kurtosis: float) -> _Fit:
-    """The fit of the parameters (γ, ln δ) of a form to the moments."""
+    """Fit the parameters (γ, ln δ) of a form to the moments."""
     from scipy.optimize import least_squares
 
     def miss(shape: Array) -> Array:

@@ -1,4 +1,4 @@
-"""Read measured topographies: one function for all file formats, with one type of error."""
+"""Read measured topographies of all file formats with one function and one type of error."""
 
 from __future__ import annotations
 
@@ -29,13 +29,15 @@ from restitution.surfaces.text_files import TEXT_SUFFIXES, NotAMatrixError, read
 
 UndefinedPixels = Literal["error", "interpolate"]
 
-# Largest fraction of a scan that is filled; more of the smooth fill would affect all statistics.
+# Largest fraction of undefined pixels that is filled. A larger smooth fill would distort the
+# statistics of the surface.
 _LARGEST_FILL = 0.2
-# Relative difference up to which the sizes in the file and in the argument agree.
+# Largest relative difference between the sizes in the file and in the argument.
 _SIZE_ROUNDING = 1e-6
-# Largest height range over the longer edge; heights in another unit than metres exceed it by far.
+# Largest ratio of the height range to the longer edge. Heights that are not in metres exceed this
+# ratio by far.
 _TALLEST = 10.0
-_LARGEST = 2**30  # bytes of a file
+_LARGEST = 2**30  # largest size of a file (bytes)
 
 
 def read_surface(
@@ -61,9 +63,9 @@ def read_surface(
         channel: Number of the channel (1), from 0; None selects the reader's default height
             channel.
         size: Lengths of the x and y edges (m), pixels times pixel size. Required if the file does
-            not contain them; they must agree if it does.
-        undefined: `interpolate` fills up to 20 % of undefined pixels harmonically from their
-            neighbours, `error` rejects them.
+            not contain the lengths; otherwise both must agree.
+        undefined: `interpolate` fills undefined pixels harmonically from their neighbours, if at
+            most 20 % of all pixels are undefined. `error` rejects a scan with undefined pixels.
 
     Returns:
         Surface with heights (m), shape (nx, ny).
@@ -87,8 +89,8 @@ def read_surface(
 
     if nx * ny > MOST_PIXELS:
         raise SurfaceError(
-            f"{file}: holds {nx} x {ny} pixels, more than the {MOST_PIXELS} a scan may have; crop "
-            "it, or save fewer pixels"
+            f"{file}: holds {nx} x {ny} pixels, more than the {MOST_PIXELS} that a scan may have; "
+            "crop it, or save fewer pixels"
         )
     defined = np.isfinite(scan.height)
     missing = int(np.count_nonzero(~defined))
@@ -126,8 +128,8 @@ def _check_readable(file: Path) -> None:
             )
         if kind.st_size > _LARGEST:
             raise SurfaceError(
-                f"{file}: has {kind.st_size} bytes, more than the {_LARGEST} a scan may have; crop "
-                "it, or save fewer pixels"
+                f"{file}: has {kind.st_size} bytes, more than the {_LARGEST} that a scan may have; "
+                "crop it, or save fewer pixels"
             )
         with file.open("rb"):
             length = kind.st_size
@@ -157,8 +159,8 @@ def _read_scan(file: Path, channel: int | None) -> Scan:
         try:
             scan = read_text(file)
         except NotAMatrixError as not_a_matrix:
-            # Instruments use these suffixes, too. If no instrument reader knows the file, report
-            # the error of the matrix reader.
+            # Files of instruments can have these suffixes, too. If no instrument reader knows the
+            # file, report the error of the matrix reader.
             try:
                 return read_instrument(file, channel)
             except UnrecognisedError:
@@ -180,8 +182,8 @@ def _agreed_size(file: Path, scan: Scan, given: tuple[float, float] | None) -> t
     """Edge lengths (m) from the file and the argument, which must not contradict each other."""
     if not all(side is None or (math.isfinite(side) and side > 0) for side in scan.size):
         raise SurfaceError(
-            f"{file}: its size of the scan, {_text(scan.size)} um, is not two positive lengths; "
-            "correct the file"
+            f"{file}: the size of the scan in the file, {_text(scan.size)} um, is not two positive "
+            "lengths; correct the file"
         )
     x, y = scan.size
     if given is None:

@@ -19,10 +19,10 @@ Array = NDArray[np.float64]
 
 
 def mirrored(scan: Surface, grid: Grid) -> Surface:
-    """Tiles of `scan` and its mirror images at the nodes of `grid`, with the scan in the middle.
+    """Cover `grid` with tiles: the scan in the middle, surrounded by its mirror images.
 
-    If the scan covers the grid, there is only one tile. Waves that the cells of `grid` cannot carry
-    are removed. Heights are interpolated between pixels by a cubic spline.
+    If the scan is at least as large as the grid, there is only one tile. Waves that the cells of
+    `grid` cannot carry are removed. A cubic spline interpolates the heights between pixels.
     """
     if all(g <= s * (1 + 1e-9) for g, s in zip(grid.size, scan.grid.size, strict=True)):
         return place_on_grid(scan, grid)
@@ -57,7 +57,7 @@ def _axes(grid: Grid) -> tuple[tuple[int, float], tuple[int, float]]:
 
 
 def _pixel(along: Array, axis: tuple[int, float]) -> Array:
-    """Fractional pixel of the scan that each coordinate `along` an axis (m) maps to."""
+    """Fractional index of the scan pixel for each coordinate `along` an axis (m) of the tiling."""
     n, h = axis
     from_edge = np.mod(along / h + n // 2 + 0.5, 2 * n)
     folded: Array = np.minimum(from_edge, 2 * n - from_edge) - 0.5

@@ -11,9 +11,9 @@ def white_noise(shape: tuple[int, int], seed: int) -> NDArray[np.float64]:
     from scipy.special import ndtri
 
     # NumPy never changes the raw stream of a bit generator, but the methods of Generator (such as
-    # standard_normal) can change between releases (NEP 19), so the raw 64-bit words are mapped
-    # here. Adding one half to 52 of their bits keeps u off 0 and 1, where the inverse distribution
-    # is infinite. With 53 bits u could round to 1.
+    # standard_normal) can change between releases (NEP 19). So the raw 64-bit words are mapped to
+    # normal numbers here. u = (52 bits + ½)/2⁵² is never 0 or 1, where the inverse distribution is
+    # infinite. With 53 bits u could round to 1.
     raw = np.random.PCG64(seed).random_raw(shape[0] * shape[1])
     u = ((raw >> np.uint64(12)).astype(np.float64) + 0.5) * 2.0**-52
     noise: NDArray[np.float64] = ndtri(u).reshape(shape)
@@ -23,8 +23,9 @@ def white_noise(shape: tuple[int, int], seed: int) -> NDArray[np.float64]:
 def wave_phases(seed: int, numbers: NDArray[np.int64], count: int) -> NDArray[np.float64]:
     """Phases (rad) of the waves with numbers (m, n), m in `numbers` and n in 0 … count − 1.
 
-    The shape is (numbers.size, count). A phase depends only on `seed`, m and n, so a finer grid
-    adds phases to those of a coarser one. Waves with n = 0 come in conjugate pairs, m and −m.
+    The shape is (numbers.size, count). A phase depends only on `seed`, m and n. So a finer grid
+    keeps the phases of a coarser grid and adds phases of shorter waves. Waves with n = 0 come in
+    conjugate pairs, m and −m.
     """
     phases = np.empty((numbers.size, count))
     for row, m in enumerate(numbers.tolist()):

@@ -32,7 +32,7 @@ def read_numpy(path: Path) -> Scan:
         raise SurfaceError(
             f"{path}: holds data of type {array.dtype}, not real numbers; {SAVE_AS_NUMPY}"
         )
-    # A long double beyond the range of float64 becomes infinite and is reported as undefined.
+    # A long double beyond the range of float64 becomes infinite and counts as an undefined height.
     with np.errstate(over="ignore"):
         height = np.array(array, dtype=np.float64)
     return Scan(height, size, details)
@@ -45,8 +45,8 @@ def _load_arrays(
     try:
         _check_headers(path)
         if path.suffix.lower() == ".npy":
-            # Memory mapping checks the shape in the header against the length of the file; loading
-            # would allocate the memory that a damaged header asks for.
+            # Memory mapping compares the shape in the header with the length of the file. Loading
+            # would first allocate the memory for this shape, which a damaged header can make huge.
             return np.lib.format.open_memmap(path, mode="r"), (None, None), {"format": "npy"}
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as archive:
             key = _height_key(path, archive.files)
@@ -108,5 +108,5 @@ def _check_header(path: Path, stream: IO[bytes]) -> None:
     ):
         raise SurfaceError(
             f"{path}: holds an array of {' x '.join(map(str, shape))[:60]} values, more than the "
-            f"{MOST_PIXELS} pixels a scan may have; crop it, or save fewer pixels"
+            f"{MOST_PIXELS} pixels that a scan may have; crop it, or save fewer pixels"
         )

@@ -2,11 +2,12 @@
 
     C(q) = |∫ z exp(−iq·r) d²r|²/A,   Sq² = (2π)⁻² ∫ C d²q,   (Surf. Topogr. 5, 013001, eqs 2, 6)
 
-C is in m⁴, and A is the area of the surface. A scan is not periodic, and the jump between its
-opposite edges would dominate the spectrum. The scan is therefore multiplied by nine sine tapers,
-and the spectra are averaged (Riedel and Sidorenko 1995, IEEE Trans. Signal Process. 43, 188–195).
-Together the tapers cover all of the scan except its rim, and the leakage from long waves to short
-ones decreases with the fourth power of the wave number. The resolution in frequency is ±1.5/size.
+C is in m⁴, and A is the area of the surface. A scan is not periodic, so the jump between its
+opposite edges would dominate the spectrum. The scan is therefore multiplied by each of nine sine
+tapers, and the nine spectra are averaged (Riedel and Sidorenko 1995, IEEE Trans. Signal Process.
+43, 188–195). Together the tapers cover all of the scan except its rim. The leakage from long waves
+to short waves decreases with the fourth power of the wave number. The resolution in frequency is
+±1.5/size.
 """
 
 from __future__ import annotations
@@ -21,9 +22,9 @@ from restitution.surfaces.surface import Surface, is_periodic
 
 Array = NDArray[np.float64]
 
-_TAPERS = 3  # along either axis
-_BANDS_PER_OCTAVE = 4
-_SECTOR = 15  # ° on either side of an axis
+_TAPERS = 3  # number of sine tapers along each axis
+_BANDS_PER_OCTAVE = 4  # bands of the radial spectrum per factor of two in wave number
+_SECTOR = 15  # half the width of the sectors around the x and y axes (°)
 
 
 class RadialSpectrum(NamedTuple):
@@ -43,7 +44,7 @@ class DirectedSpectrum(NamedTuple):
 def power_spectral_density(surface: Surface) -> Array:
     """C (m⁴), shape `grid.nodes`, at the wave vectors of `numpy.fft.fftfreq` times 2π.
 
-    It is exact for a periodic surface, otherwise an estimate by tapers.
+    C is exact for a periodic surface; otherwise it is estimated with tapers.
     """
     from scipy.fft import fft2
 
@@ -63,8 +64,9 @@ def power_spectral_density(surface: Surface) -> Array:
 def radial_spectrum(surface: Surface, density: Array | None = None) -> RadialSpectrum:
     """The power spectral density, averaged over directions.
 
-    `density` is that of `surface`, if already known; wave vectors at which it is NaN are left out.
-    Bands are a quarter of an octave wide, up to the shortest wave that both axes carry.
+    `density` is the `power_spectral_density` of `surface`, if it is already known. Wave vectors at
+    which it is NaN are left out. Bands are a quarter of an octave wide, up to the shortest wave
+    that both axes carry.
     """
     C = power_spectral_density(surface) if density is None else density
     q = wave_numbers(C.shape, surface.grid.spacing)

@@ -1,4 +1,4 @@
-"""Resample a surface to a finer or coarser grid over the same domain, by its spectrum."""
+"""Resample a surface to a finer or coarser grid over the same domain by means of its spectrum."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ Array = NDArray[np.float64]
 def refine(surface: Surface, factor: int) -> Surface:
     """Divide the cells of a surface, over the same domain.
 
-    Heights at the new nodes are those of the trigonometric polynomial through the old ones (zero
-    padding of the spectrum), so no wave is added. A surface that is not periodic is continued by
-    its mirror image first to avoid ringing at its edges. The origins of the grids coincide (see
-    `Grid`).
+    Heights at the new nodes are values of the trigonometric polynomial through the old heights
+    (zero padding of the spectrum). So no wave is added. A surface that is not periodic is first
+    extended by its mirror image, to avoid ringing at its edges. The origins of the two grids
+    coincide (see `Grid`).
 
     Args:
         surface: Surface to refine.
@@ -44,11 +44,12 @@ def refine(surface: Surface, factor: int) -> Surface:
 
 
 def coarsen(surface: Surface, factor: int = 2) -> Surface:
-    """`surface` on cells `factor` times as large, without waves shorter than two such cells.
+    """Resample `surface` to cells `factor` times as large.
+
+    Waves shorter than two new cells are removed; other waves do not change.
 
     If `factor` does not divide the number of nodes, the cells are slightly smaller, so that a whole
-    number of them covers the domain. Waves that remain are not changed. Raises `SurfaceError` for a
-    factor below 1.
+    number of them covers the domain. Raises `SurfaceError` for a factor below 1.
     """
     if factor < 1:
         raise SurfaceError(f"factor: {factor} must be a positive integer")
@@ -67,7 +68,7 @@ def _resampled(surface: Surface, nodes: tuple[int, int]) -> Array:
 
 
 def divided(grid: Grid, factor: int) -> Grid:
-    """`grid` with every cell divided into `factor` along either axis."""
+    """Divide every cell of `grid` into `factor` cells along each axis."""
     return Grid(
         (factor * grid.nodes[0], factor * grid.nodes[1]),
         (grid.spacing[0] / factor, grid.spacing[1] / factor),
@@ -75,7 +76,7 @@ def divided(grid: Grid, factor: int) -> Grid:
 
 
 def _at_nodes(height: Array, nodes: int, *, periodic: bool) -> Array:
-    """`height` resampled along the first axis to another number of nodes over the same length."""
+    """Resample `height` along the first axis to another number of nodes over the same length."""
     from scipy.fft import irfft, rfft
 
     n = height.shape[0]
@@ -85,9 +86,10 @@ def _at_nodes(height: Array, nodes: int, *, periodic: bool) -> Array:
     new_period = nodes * period // n
     modes = rfft(values, axis=0)
     if period % 2 == 0:
-        modes[-1] *= 0.5  # the Nyquist mode stands for two conjugate modes now
+        modes[-1] *= 0.5  # the old Nyquist mode now stands for two conjugate modes
     if new_period < period:
-        # The new Nyquist mode (two cells) is ambiguous in phase, so it is left out as well.
+        # The phase of the new Nyquist mode (a wave of two cells) is ambiguous, so this mode is also
+        # removed.
         modes = modes[: (new_period + 1) // 2]
     number = np.arange(modes.shape[0])[:, None]
     modes *= new_period / period * np.exp(2j * np.pi * number * first / period)

@@ -1,4 +1,4 @@
-"""Errors that keep the remedy apart, so that the case layer can word it with keys of the file."""
+"""Errors that store the remedy separately, so that `case` can replace it by one with file keys."""
 
 from __future__ import annotations
 
@@ -17,7 +17,10 @@ Code = Literal[
 
 
 class RefusedSurfaceError(SurfaceError):
-    """The surface cannot be made: `fact` says why, with its `code`; `remedy` is for callers."""
+    """The surface cannot be made.
+
+    `fact` says why, and `code` identifies this reason. `remedy` addresses callers of the functions.
+    """
 
     def __init__(self, code: Code, fact: str, remedy: str) -> None:
         super().__init__(code, fact, remedy)

@@ -15,7 +15,7 @@ from restitution.surfaces.surface import Surface
 
 Array = NDArray[np.float64]
 
-_ROUNDING = 1e-9  # relative difference up to which two lengths are equal
+_ROUNDING = 1e-9  # largest relative difference of two lengths that count as equal
 
 
 def place_on_grid(surface: Surface, grid: Grid) -> Surface:
@@ -65,11 +65,12 @@ def place_on_grid(surface: Surface, grid: Grid) -> Surface:
 
 
 def carried(surface: Surface, spacing: tuple[float, float], *, mirrored: bool = False) -> Array:
-    """The heights of `surface` without the waves that cells of `spacing` (m) cannot carry.
+    """Return the heights of `surface` without the waves that cells of `spacing` (m) cannot carry.
 
-    These are waves shorter than two cells along either axis. Beyond its edges the surface is
-    continued by its mirror image if `mirrored`; otherwise each line, less the straight line between
-    its ends, is continued antisymmetrically.
+    Waves shorter than two cells along either axis are removed. To filter a finite surface, it is
+    continued beyond its edges. If `mirrored`, it is continued by its mirror image. Otherwise the
+    straight line between the ends of each line of heights is subtracted, and the rest is continued
+    antisymmetrically.
     """
     height = surface.height
     keep = _carried_mirrored if mirrored else _carried
@@ -82,10 +83,11 @@ def carried(surface: Surface, spacing: tuple[float, float], *, mirrored: bool = 
 
 
 def left_out(surface: Surface, kept: Array, spacing: tuple[float, float]) -> dict[str, float]:
-    """Provenance entries for a surface of which cells of `spacing` (m) carry the heights `kept`.
+    """Provenance entries on the waves that resampling to cells of `spacing` (m) removes.
 
-    `removed_rms_m` and `removed_slope`: rms height of the waves removed, and their rms slope over
-    that of the surface; `shortest_carried_m`: the shortest wave left; `pixel_x_m`, `pixel_y_m`: the
+    `kept` are the heights of `surface` without these waves. The entries are `removed_rms_m`, the
+    rms height of the removed waves; `removed_slope`, their rms slope divided by the rms slope of
+    the surface; `shortest_carried_m`, the shortest remaining wave; `pixel_x_m` and `pixel_y_m`, the
     coarsest pixel to which the heights have been sampled.
     """
     before = surface.provenance
@@ -103,7 +105,8 @@ def left_out(surface: Surface, kept: Array, spacing: tuple[float, float]) -> dic
         "pixel_y_m": pixel[1],
         "shortest_carried_m": 2 * max(*spacing, *pixel),
         "removed_rms_m": math.hypot(had_rms, rms),
-        # The waves removed before have left the fraction 1 − had_slope² of the mean square slope.
+        # Earlier resampling removed the fraction had_slope² of the mean square slope. `slope` is
+        # relative to the slope that was left.
         "removed_slope": math.sqrt(had_slope**2 + max(1 - had_slope**2, 0.0) * slope**2),
     }
 
@@ -112,7 +115,7 @@ def _check_covers(scan: Grid, grid: Grid) -> None:
     if any(g > s * (1 + _ROUNDING) for g, s in zip(grid.size, scan.size, strict=True)):
         raise RefusedSurfaceError(
             "grid-beyond-surface",
-            f"grid: its {_micrometres(grid.size)} um reach beyond the surface of "
+            f"grid: its area of {_micrometres(grid.size)} um reaches beyond the surface of "
             f"{_micrometres(scan.size)} um",
             "use a smaller grid or a larger surface, or continue the surface with extend",
         )
@@ -127,7 +130,7 @@ def same_spacing(scan: Grid, grid: Grid) -> bool:
 
 
 def crop_to(height: Array, nodes: tuple[int, int]) -> Array:
-    """The part of `height` with `nodes` (nx, ny) about the same origin."""
+    """Return the part of `height` with `nodes` (nx, ny) nodes around the same origin."""
     # The origin of a `Grid` is node n // 2.
     i, j = (have // 2 - want // 2 for have, want in zip(height.shape, nodes, strict=True))
     return height[i : i + nodes[0], j : j + nodes[1]]
@@ -138,8 +141,9 @@ def _carried(height: Array, ratio: float) -> Array:
     from scipy.fft import dst, idst
 
     n = height.shape[0]
-    # Less the straight line between its ends and continued antisymmetrically, a line of heights has
-    # neither steps nor kinks at the ends. Sine k then has a wavelength of 2(n − 1)/k pixels.
+    # The straight line between the ends is subtracted, and the rest is continued antisymmetrically.
+    # So there are neither steps nor kinks at the ends. Sine k then has a wavelength of 2(n − 1)/k
+    # pixels.
     line = height[:1] + (height[-1:] - height[:1]) * np.linspace(0.0, 1.0, n)[:, None]
     modes = dst((height - line)[1:-1], type=1, axis=0)
     modes[math.floor((n - 1) * ratio) :] = 0.0
@@ -158,7 +162,10 @@ def _carried_mirrored(height: Array, ratio: float) -> Array:
 
 
 def spline(height: Array, at: Array, to: Array) -> Array:
-    """Cubic spline along the first axis from `at` to `to`, constant beyond the ends."""
+    """Interpolate along the first axis from points `at` to points `to` by a cubic spline.
+
+    Heights are constant beyond the ends.
+    """
     from scipy.interpolate import make_interp_spline
 
     if at.size == 1:

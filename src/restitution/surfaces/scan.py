@@ -9,7 +9,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-# Units per metre: division by 1e6 makes 10 um exactly 1e-05, multiplication by 1e-6 does not.
+# Units per metre. Values are divided by these numbers because 10/1e6 is exactly 1e-05, but 10 times
+# 1e-6 is not.
 _PER_METRE = {
     "km": 1e-3,
     "m": 1.0,
@@ -24,9 +25,9 @@ _PER_METRE = {
     "fm": 1e15,
 }
 
-MOST_PIXELS = 2**26  # of a scan; more would take gigabytes of memory before any check
+MOST_PIXELS = 2**26  # limit for a scan; more pixels would take gigabytes before any check
 
-# Provenance of files of scan lines: y counts the lines from the top of the picture.
+# Provenance entry for files whose first scan line is at the top of the picture.
 Y_DOWN = {"y_axis": "down"}
 
 
@@ -34,9 +35,9 @@ Y_DOWN = {"y_axis": "down"}
 class Scan:
     """Heights (m), shape (nx, ny), NaN where undefined, and further content of the file.
 
-    `size` are the lengths of the x and the y edge (m), None if the file does not contain them.
-    `details` become part of the provenance; they include `Y_DOWN` if the first line of the file is
-    at the top of the picture.
+    `size` contains the lengths of the x and y edges (m), or None for a length that is not in the
+    file. `details` become part of the provenance; they include `Y_DOWN` if the first line of the
+    file is at the top of the picture.
     """
 
     height: NDArray[np.float64]

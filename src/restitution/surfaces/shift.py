@@ -9,16 +9,16 @@ import numpy as np
 
 from restitution.surfaces.surface import Surface, is_periodic
 
-# Additive recurrence with low discrepancy: the first and second power of the inverse of the plastic
-# number, the root of x³ = x + 1. Its first N points fill a square evenly for any N.
+# Steps along x and y of an additive recurrence with low discrepancy: its first N points fill a
+# square evenly for any N. The steps are 1/ρ and 1/ρ², where ρ is the plastic number (ρ³ = ρ + 1).
 _STEPS = 1 / 1.324717957244746, 1 / 1.324717957244746**2
 
 
 def place_of(surface: Surface, number: int) -> Surface:
-    """`surface` moved so that point `number` of it is in the middle; point 0 is the middle itself.
+    """Move `surface` so that its point `number` is in the middle; point 0 is the middle itself.
 
-    The points fill the scan evenly for any count. Beyond its edges the surface is continued
-    periodically if it is periodic, and by its mirror image otherwise.
+    The points fill the scan evenly, however many are used. Beyond its edges the surface is
+    continued periodically if it is periodic, and by its mirror image otherwise.
     """
     if number == 0:
         return surface

@@ -51,7 +51,7 @@ class Autocorrelated:
             where = (
                 f"along {'xy'[axis]}" if self.lay == 0 else ("along", "across")[axis] + " the lay"
             )
-            # If the lay is rotated, each length has to fit both axes of the grid.
+            # If the lay is rotated, the grid must carry each length along both axes.
             spacing, size = grid.spacing[axis], grid.size[axis]
             if self.lay != 0:
                 spacing, size = max(grid.spacing), min(grid.size)
@@ -77,7 +77,8 @@ class Autocorrelated:
         rho2 = (along / self.correlation_length[0]) ** 2
         rho2 = rho2 + (across / self.correlation_length[1]) ** 2
         R = np.exp(-2.3 * (np.sqrt(rho2) if self.kind == "exponential" else rho2))
-        # Periodic wrapping makes a kink in R at half the domain, so its spectrum can be negative.
+        # Periodic wrapping makes a kink in R at half the domain, so the spectrum of R can be
+        # negative.
         H: Array = np.sqrt(np.maximum(rfft2(R).real, 0.0))
         return _without_short_waves(H, grid, self.shortest)
 
@@ -95,9 +96,9 @@ class Autocorrelated:
 
 @dataclass(frozen=True)
 class SelfAffine:
-    """A power law between the wavelengths `shortest` and `rolloff` (m), and constant above.
+    """Power law between the wavelengths `shortest` and `rolloff` (m), constant above `rolloff`.
 
-    Without `rolloff` it extends to the domain.
+    Without `rolloff` the power law extends to the size of the domain.
     """
 
     hurst: float
@@ -124,8 +125,8 @@ class SelfAffine:
         if not shortest < rolloff <= max(grid.size):
             raise SurfaceError(
                 f"rolloff: {rolloff * 1e6:g} um is not between the shortest wavelength, "
-                f"{shortest * 1e6:g} um, and the domain, {max(grid.size) * 1e6:g} um; move it, or "
-                "leave it out for a power law up to the domain"
+                f"{shortest * 1e6:g} um, and the domain, {max(grid.size) * 1e6:g} um; change it, "
+                "or leave it out for a power law up to the size of the domain"
             )
 
     def amplitude(self, grid: Grid) -> Array:

@@ -1,4 +1,4 @@
-"""The height map that all sources of roughness return and that the contact takes."""
+"""The height map of a rough surface: the result of all sources of roughness, input of a contact."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from restitution.numerics.read_only import read_only
 class Surface:
     """Heights on a grid, and their provenance.
 
-    An array that could still be written to elsewhere is copied. Surfaces are compared and hashed by
-    identity; compare `height` and `grid` to compare values.
+    The heights are copied if other code could still write to the array. Surfaces are compared and
+    hashed by identity; to compare values, compare `height` and `grid`.
 
     Attributes:
         height: Heights (m), positive towards the other body, shape `grid.nodes`; read-only.

@@ -1,7 +1,8 @@
 """Read height matrices from plain text.
 
-A line of the file is a scan line: columns are x, lines are y, as in files of Gwyddion,
-SurfaceTopography and instruments. Heights are `[i, j]` ↔ `[x, y]`, as everywhere in this package.
+Each line of the file is a scan line: x runs along a line, and y counts the lines, as in files of
+Gwyddion, SurfaceTopography and instruments. The array of heights is transposed, so that it is
+indexed `[i, j]` along x and y, as everywhere in this package.
 """
 
 from __future__ import annotations
@@ -18,13 +19,13 @@ from restitution.surfaces.scan import Y_DOWN, Scan, in_metres
 
 TEXT_SUFFIXES = frozenset({".txt", ".csv", ".dat", ".asc"})
 
-_LEAST_VALUES = 4  # of a scan line; fewer are coordinates or a profile
-_LONGEST = 200  # characters of a value in the header
+_LEAST_VALUES = 4  # fewest values of a scan line; fewer are coordinates or a profile
+_LONGEST = 200  # largest length of a value in the header that is stored (characters)
 _NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?"
 _QUANTITY = re.compile(rf"(?P<number>{_NUMBER})\s*(?P<unit>\S+)")
-# Keys that set units and scales in headers of other programs (SPIP, Nova, Gwyddion's XYZ).
+# Keys with which headers of other programs (SPIP, Nova, Gwyddion's XYZ) set units and scales.
 _FOREIGN_KEY = re.compile(r"unit|length|pixel|bit2|file format|factor", re.IGNORECASE)
-# Keys for the number of values (x) and of lines (y).
+# Keys for the number of values per line (x) and of lines (y).
 _COLUMNS = frozenset({"nx", "columns", "values per line"})
 _LINES = frozenset({"ny", "rows", "lines"})
 _OWN_KEYS = frozenset({"width", "height", "value units"})
@@ -82,10 +83,10 @@ def _decode(path: Path) -> str:
 
 
 def _parse_rows(path: Path, data: list[tuple[int, str]], *, plain: bool) -> list[list[float]]:
-    """The values of all lines. Raises `NotAMatrixError` for text, `SurfaceError` for damaged lines.
+    """Parse all lines. Raise `NotAMatrixError` for text and `SurfaceError` for damaged lines.
 
     Text between scan lines counts as a damaged line; other readers would skip that line. Text above
-    the scan lines counts as damaged, too, if the comments show that the file is a `plain` matrix.
+    the scan lines also counts as damaged if the comments show that the file is a `plain` matrix.
     """
     rows: list[list[float] | None] = []
     first: NotAMatrixError | None = None
@@ -150,7 +151,7 @@ def _parse_field(path: Path, number: int, text: str) -> float:
 def _read_header(
     path: Path, comments: list[str]
 ) -> tuple[tuple[float | None, float | None], float, dict[str, str | float], _Counts]:
-    """Edge lengths (m), metres per unit of height, provenance details and counts of `comments`."""
+    """Read edge lengths (m), metres per unit of height, provenance details and counts."""
     sides: dict[str, float] = {}
     metres_per_value = 1.0
     details: dict[str, str | float] = {}
@@ -168,8 +169,8 @@ def _read_header(
         elif key == "value units":
             if quantity or length is None:
                 raise SurfaceError(
-                    f"{path}: its values are in {shown(value)}, which is not a length; export the "
-                    "height channel instead"
+                    f"{path}: its values are in {shown(value)}, which is not a unit of length; "
+                    "export the height channel instead"
                 )
             metres_per_value = length
         elif key == "channel":
@@ -188,7 +189,7 @@ def _read_header(
 
 
 def _statement(comment: str) -> tuple[str, str]:
-    """Key (lower case) and value of a line `# key: value` or `# key = value`, otherwise empty."""
+    """Split `# key: value` or `# key = value` into key (lower case) and value; else empty texts."""
     text = comment[1:]
     ends = [at for at in (text.find(":"), text.find("=")) if at >= 0]
     if not ends:

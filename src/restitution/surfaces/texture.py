@@ -1,7 +1,7 @@
 """Texture and material ratio parameters after ISO 25178-2.
 
-Unlike the parameters of `describe`, these need the whole autocorrelation or the material ratio
-curve. Clauses are those of ISO 25178-2:2012. Subtract tilt and form first (`level`).
+Unlike the parameters of `describe`, these parameters need the whole autocorrelation or the material
+ratio curve. Clause numbers refer to ISO 25178-2:2012. Subtract tilt and form first (`level`).
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from restitution.surfaces.surface import Surface, is_periodic
 
 Array = NDArray[np.float64]
 
-_BINS = 80  # of the density of heights
-_DECAY = 0.2  # autocorrelation at the lags of Sal and Str (4.2)
-_DIRECTIONS = 180  # over a half turn
-_CORE = 0.4  # material ratio that the secant of the core spans (5.2)
+_BINS = 80  # number of bins of the density of heights
+_DECAY = 0.2  # value of the autocorrelation that defines Sal and Str (4.2)
+_DIRECTIONS = 180  # number of directions over a half turn
+_CORE = 0.4  # range of material ratio that the secant of the core spans (5.2)
 
 
 class Autocorrelation(NamedTuple):
-    """Lags (m) along x and y, from −size/2, and the autocorrelation there, 1 at lag zero."""
+    """Lags (m) along x and y, from −size/2, and the autocorrelation at them (1 at lag zero)."""
 
     x: Array
     y: Array
@@ -38,7 +38,7 @@ class MaterialRatio(NamedTuple):
 
 
 class HeightDensity(NamedTuple):
-    """Heights (m) above the mean, their probability density and a normal one of equal Sq (1/m)."""
+    """Heights (m) above the mean, their density (1/m), and the normal density of equal Sq (1/m)."""
 
     height: Array
     density: Array
@@ -76,7 +76,10 @@ def texture(surface: Surface) -> dict[str, float | None]:
 
 
 def height_density(surface: Surface) -> HeightDensity:
-    """The density of the heights less their mean, and the normal density (0 for flat surfaces)."""
+    """Probability density of the heights minus their mean, and the normal density of equal Sq.
+
+    The normal density of a flat surface is set to 0.
+    """
     z = surface.height - surface.height.mean()
     density, edges = np.histogram(1e9 * z, bins=_BINS, density=True)
     height = 0.5 * (edges[1:] + edges[:-1])
@@ -88,10 +91,10 @@ def height_density(surface: Surface) -> HeightDensity:
 
 
 def autocorrelation(surface: Surface) -> Autocorrelation:
-    """Autocorrelation of the heights less their mean, shape (nx, ny), lag zero at (nx//2, ny//2).
+    """Autocorrelation of the heights minus their mean, shape (nx, ny), lag zero at (nx//2, ny//2).
 
-    It is periodic for a periodic surface. Otherwise the value at each lag is the mean over the
-    pairs of pixels at this lag, so that the finite size of a scan does not bias it.
+    The autocorrelation of a periodic surface is periodic. Otherwise the value at each lag is the
+    mean over the pairs of pixels at this lag, so that the finite size of a scan does not bias it.
     """
     from scipy.fft import irfft2, next_fast_len, rfft2
 
@@ -118,7 +121,7 @@ def material_ratio(surface: Surface, points: int = 1001) -> MaterialRatio:
 
 
 def _decay_lags(R: Autocorrelation) -> Array:
-    """Lag (m) at which the autocorrelation first falls to 0.2 in each direction; NaN if nowhere."""
+    """Lag (m) in each direction at which the autocorrelation first falls to 0.2; NaN if none."""
     from scipy.ndimage import map_coordinates
 
     reach = min(-R.x[0], -R.y[0])
@@ -164,7 +167,8 @@ def _core(curve: MaterialRatio) -> dict[str, float | None]:
     top = float(height[start] - slope * ratio[start])
     bottom = top + float(slope)
     above, below = np.maximum(height - top, 0.0), np.maximum(bottom - height, 0.0)
-    # Triangles over Smr1 and 1 − Smr2 have the areas of the curve above and below the core.
+    # Spk and Svk are the heights of two triangles over the lengths Smr1 and 1 − Smr2. The triangles
+    # have the areas between the curve and the core line above and below the core.
     Smr1, Smr2 = float(np.mean(height > top)), float(np.mean(height >= bottom))
     peaks, dales = (float(trapezoid(part, ratio)) for part in (above, below))
     return {

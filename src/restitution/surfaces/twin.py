@@ -3,15 +3,15 @@
 The waves of a twin (`wave_spectrum`) first get random phases. Then heights and amplitudes are
 adjusted alternately (Schreiber and Schmitz 1996, Phys. Rev. Lett. 77, 635–638), because the
 skewness and kurtosis of the heights depend on the phases of all waves together. Phases and
-adjustment depend on the scan, the period and the seed, but not on the grid: a grid twice as fine
+adjustment depend on the scan, the period and the seed, but not on the grid. So a grid twice as fine
 gets the same surface with shorter waves added.
 
-For this reason the adjustment proceeds from long waves to short ones:
+To make the result independent of the grid, the adjustment proceeds from long to short waves:
 
 * Longest band: all its waves are adjusted together, on the fewest nodes that carry them. The target
-  heights are those of the scan without its shorter waves. The last adjustment is that of the
-  amplitudes, which are therefore exact.
-* Each further band halves the shortest wavelength. Only the new phases are adjusted.
+  is the distribution of heights of the scan without its shorter waves. The last step adjusts the
+  amplitudes, so the amplitudes are exact.
+* Each further band halves the shortest wavelength. Only the phases of the new waves are adjusted.
 * The bands end where the remaining waves have 1 % of the scan's mean square height. These waves
   hardly affect the distribution of heights and keep their random phases.
 
@@ -35,31 +35,33 @@ from restitution.surfaces.wave_spectrum import Modes, WaveSpectrum, spectrum_of
 
 Array = NDArray[np.float64]
 
-LEAST_PIXELS = 16  # of a scan along either axis; fewer do not determine its spectrum
+LEAST_PIXELS = 16  # fewest pixels of a scan along each axis that determine its spectrum
 _UNADJUSTED = 0.01  # fraction of the mean square height in waves that are not adjusted
-_FIRST_BAND = 2**20  # most nodes of the longest band
+_FIRST_BAND = 2**20  # largest number of nodes of the longest band
 _LEAST_FIRST = 8  # fewest pixels of the scan, without its shorter waves, in the longest band
-_WORK = 2**24  # nodes times adjustments of a band
-_ADJUSTMENTS = 3, 60  # fewest and most
+_WORK = 2**24  # limit on the number of nodes times the number of adjustments of a band
+_ADJUSTMENTS = 3, 60  # smallest and largest number of adjustments of a band
 _NEGLIGIBLE = 1e-3  # misfit of heights at which the adjustment ends
-_STANDSTILL = 0.05  # relative decrease of the misfit, per adjustment, below which it ends
-_PARTS = 16  # most parts of the twin, as large as the scan, in the comparison of spectra
-_COMPARED = 2**23  # most nodes of these parts together, if there is more than one
-_UNLIKE = 0.5  # misfit of the spectrum above which the notice warns
+_STANDSTILL = 0.05  # the adjustment ends if the misfit decreases by less than this fraction
+_PARTS = 16  # most parts of the twin, each as large as the scan, for the comparison of spectra
+_COMPARED = 2**23  # most nodes of these parts together, if there is more than one part
+_UNLIKE = 0.5  # misfit of the spectrum above which the notice contains a warning
 _PROBABILITIES = 0.5 * (1 - np.cos(np.linspace(0, np.pi, 4097)))  # denser in the tails
 _TABLE = 2**14  # steps between the lowest and the highest node
 
 
 def twin(scan: Surface, grid: Grid, seed: int) -> Surface:
-    """A twin of `scan` on `grid`, periodic over it (or over a multiple, if the scan is larger).
+    """Make a twin of `scan` on `grid`, periodic over `grid` or, if the scan is larger, a multiple.
 
-    Including all waves, Rq is that of the scan; skewness and kurtosis are close to it. Waves that
-    the cells of `grid` cannot carry are left out (`removed_…` in the provenance). `spectrum_misfit`
-    is the root mean square of the relative difference of the spectra, on parts as large as the
-    scan, over bands of a quarter octave, weighted by their shares of the mean squares of height and
-    slope. The provenance also contains the statistics of the scan (`scan_…`). Raises `SurfaceError`
-    for a scan that is flat or has fewer than 16 pixels along an axis, and for cells that are too
-    large for any wave of the scan.
+    With all its waves, the twin has the Rq of the scan and nearly its skewness and kurtosis. Waves
+    that the cells of `grid` cannot carry are left out (`removed_…` in the provenance). The
+    provenance also contains the statistics of the scan (`scan_…`) and `spectrum_misfit`, the root
+    mean square of the relative difference of the two spectra. The spectra are compared on parts as
+    large as the scan, in bands of a quarter octave. The weights of the bands are their shares of
+    the mean squares of height and slope.
+
+    Raises `SurfaceError` for a scan that is flat or has fewer than 16 pixels along an axis, and for
+    cells that are too large for any wave of the scan.
     """
     _check(scan, grid)
     repeats = tuple(
@@ -98,7 +100,7 @@ def _check(scan: Surface, grid: Grid) -> None:
 
 
 def _adjusted(spectrum: WaveSpectrum, scan: Surface, grid: Grid, seed: int) -> Modes:
-    """The waves of the twin that `grid` carries, in the order of `rfft2` on it."""
+    """Return the waves of the twin that `grid` carries, in the order of `rfft2` on `grid`."""
     cells = _bands(spectrum, scan)
     modes: Modes | None = None
     most = 0, 0
@@ -145,7 +147,10 @@ def _band(
     known: Modes | None,
     kept: tuple[int, int],
 ) -> tuple[Modes, tuple[int, int]]:
-    """The waves that `cell` carries, keeping those of `known` up to the wave numbers `kept`."""
+    """Adjust the waves that cells of size `cell` carry; do not change `known` waves up to `kept`.
+
+    `kept` are wave numbers along the two axes.
+    """
     from scipy.fft import irfft2, rfft2
 
     most = spectrum.numbers(cell)
@@ -174,7 +179,7 @@ def _band(
 
 
 def _with_heights(z: Array, heights: Array) -> Array:
-    """`z` mapped monotonically to the distribution of the sorted `heights`."""
+    """Map `z` monotonically to the distribution of the sorted `heights`."""
     have = np.sort(z, axis=None)
     low, high = float(have[0]), float(have[-1])
     if not low < high:
@@ -189,7 +194,7 @@ def _quantiles(ascending: Array) -> Array:
 
 
 def _between(table: Array, at: Array) -> Array:
-    """Linear interpolation of `table` at the fractional indices `at`."""
+    """Interpolate `table` linearly at the fractional indices `at`."""
     before = np.minimum(at.astype(np.intp), table.size - 2)
     first = table[before]
     before += 1
@@ -197,7 +202,7 @@ def _between(table: Array, at: Array) -> Array:
 
 
 def _nodes(most: tuple[int, int]) -> tuple[int, int]:
-    """The fewest nodes that carry waves up to the numbers `most` and are fast to transform."""
+    """Smallest numbers of nodes that carry waves up to `most` and have a fast transform."""
     from scipy.fft import next_fast_len
 
     return (
@@ -270,7 +275,7 @@ def _provenance(
 
 
 def _misfit(made: Surface, scan: Surface) -> float:
-    """The relative difference of the radial spectra of parts of `made` and of `scan`.
+    """Relative difference between the radial spectra of parts of `made` and of `scan`.
 
     Only waves that both can carry are compared.
     """
@@ -295,7 +300,8 @@ def _misfit(made: Surface, scan: Surface) -> float:
     q, C = of_scan.wave_number[both], of_scan.density[both]
     if not q.size or not C.max() > 0:
         return 0.0
-    # Weights are the bands' shares of the mean squares of height and slope, ∫ C q^(2 or 4) d(ln q).
+    # The weight of a band is the sum of its shares of the mean squares of height and slope, which
+    # are ∫ C q² d(ln q) and ∫ C q⁴ d(ln q).
     share = sum(power / power.sum() for power in (C * q**k for k in (2, 4)))
     off = (of_twin.density[both] / np.maximum(C, 1e-12 * C.max()) - 1) ** 2
     return float(np.sqrt(np.average(off, weights=share)))

@@ -1,9 +1,10 @@
-"""Waves of a statistical twin: amplitudes from the spectrum of a scan, for another period.
+"""Amplitudes of the waves of a statistical twin, from the spectrum of a scan of another size.
 
 1. The scan's power spectrum C (`psd`) is interpolated linearly to the wave vectors of the twin.
    Waves longer than the scan have not been measured and are left out.
-2. The result is multiplied by a + b/k² so that height and slope have the mean squares of the scan.
-   (The tapers of C give the rim of the scan less weight than its middle.)
+2. The result is multiplied by a + b/k², where k is the number of waves per scan, so that height and
+   slope have the mean squares of the scan. C alone does not give them, because its tapers give the
+   rim of the scan less weight than its middle.
 
 Both steps depend on the scan and the period of the twin, but not on the grid, so grids of all
 spacings get the same waves.
@@ -25,9 +26,9 @@ from restitution.surfaces.surface import Surface
 Array = NDArray[np.float64]
 Modes = NDArray[np.complex128]
 
-_SUMMED = 2**20  # most waves summed one by one in the mean squares; the rest is an integral
-_LEAST = 2  # waves per scan up to which waves are always summed one by one
-_ROWS = 2**20  # waves computed at a time
+_SUMMED = 2**20  # most waves summed one by one in mean squares (see `_moments`)
+_LEAST = 2  # waves with at most this number of waves per scan are always summed one by one
+_ROWS = 2**20  # number of waves computed at a time, which limits the memory
 _ROUNDING = 1e-9
 
 
@@ -40,8 +41,8 @@ class WaveSpectrum:
     """
 
     density: Array
-    waves: tuple[float, float]  # waves of the twin per wave of the scan, along either axis
-    pixel: tuple[float, float]  # of the scan, m
+    waves: tuple[float, float]  # wave numbers of the twin per wave number of the scan, along x, y
+    pixel: tuple[float, float]  # pixel of the scan (m)
     period: tuple[float, float]
     flat: float = 1.0  # a
     steep: float = 0.0  # b, for k in waves per scan
@@ -99,7 +100,7 @@ def spectrum_of(scan: Surface, period: tuple[float, float]) -> WaveSpectrum:
     if abs(np.linalg.det(moments)) > 1e-9 * abs(moments[0, 0] * moments[1, 1]):
         a, b = (float(value) for value in np.linalg.solve(moments, wanted))
     spectrum = WaveSpectrum(C, raw.waves, raw.pixel, period, a, b)
-    # Clipping the power at zero changes the mean square height: correct it.
+    # Clipping negative power to zero changes the mean square height, so rescale the power.
     excess = _moments(spectrum, raw=False)[0, 0] / wanted[0]
     return WaveSpectrum(C, raw.waves, raw.pixel, period, a / excess, b / excess)
 
@@ -108,8 +109,8 @@ def _moments(spectrum: WaveSpectrum, *, raw: bool = True) -> Array:
     """Mean squares of height and slope (rows) for C and for C/k² (columns).
 
     If not `raw`, the first column is for the corrected power and the second is 0. Slopes are
-    between neighbouring pixels, as in `rms_slope`. Long waves are summed one by one, short ones
-    over the wave vectors of the scan.
+    differences between neighbouring pixels, as in `rms_slope`. Long waves are summed one by one.
+    For short waves, the density is summed over the wave vectors of the scan instead.
     """
     wx, wy = spectrum.waves
     (mx, my), (hx, hy) = spectrum.density.shape, spectrum.pixel

@@ -1,1 +1,1 @@
-"""Studies: a case swept over values, computed on many processes."""
+"""Studies: many cases that differ in swept values, computed in parallel processes."""

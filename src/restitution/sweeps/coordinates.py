@@ -1,4 +1,4 @@
-"""Swept values as coordinates of `study.nc`: numbers in SI units where they are quantities."""
+"""Convert swept values to coordinates of `study.nc`; quantities become numbers in SI units."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 from restitution.case.quantities import read_quantity
 
-# The units of quantities in a case file, as netCDF writes them.
+# Units of quantities in a case file, and the same units in the notation of netCDF.
 _UNITS = {
     "m": "m",
     "Pa": "Pa",
@@ -19,21 +19,21 @@ _UNITS = {
     "rad": "rad",
 }
 AS_WRITTEN = "as_written"
-"""The attribute that holds the values as written in the study file, a JSON list of texts."""
+"""Name of the attribute with the values as written in the study file, a JSON list of texts."""
 
 
 def as_text(value: Any) -> str:
-    """A swept value as written in the study file: "0.1 um", 3, true, [1, 2]."""
+    """Format a swept value as written in the study file: "0.1 um", 3, true, [1, 2]."""
     if isinstance(value, str):
         return value
     return json.dumps(value, ensure_ascii=False, default=str)
 
 
 def coordinate(values: Sequence[Any]) -> tuple[list[Any], dict[str, str]]:
-    """The values of a swept key and their attributes.
+    """Convert the values of a swept key to a coordinate; return its values and attributes.
 
-    Quantities of one kind ("0.1 um") are numbers with the attribute `units`, numbers stay numbers,
-    and all other values are text as in the study file.
+    Quantities of one kind ("0.1 um") become numbers with the attribute `units`. Numbers stay
+    numbers. All other values become text as in the study file.
     """
     texts = [as_text(value) for value in values]
     attributes = {AS_WRITTEN: json.dumps(texts, ensure_ascii=False)}

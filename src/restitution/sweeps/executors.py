@@ -1,7 +1,7 @@
-"""Processes that compute cases: on this machine, or those of a Dask cluster.
+"""Processes that compute cases, on this machine or on a Dask cluster.
 
-Both are a `concurrent.futures.Executor` with a number of places and a channel for progress, so that
-`scheduler` treats them alike.
+In both cases `Workers` holds a `concurrent.futures.Executor`, the number of cases that it computes
+at a time, and a channel for progress. So `scheduler` need not distinguish the two cases.
 """
 
 from __future__ import annotations
@@ -42,24 +42,25 @@ class Workers:
 
 
 def chosen_workers(count: int | None, scheduler: str | None) -> AbstractContextManager[Workers]:
-    """The workers of the Dask cluster at `scheduler`, or `count` processes on this machine.
+    """Provide the workers of the Dask cluster at `scheduler`, or `count` local processes.
 
     Raises `CaseError` if both are given.
     """
     if scheduler is not None and count is not None:
         raise CaseError(
-            "--workers, --scheduler: give one; --workers counts processes on this machine"
+            "--workers, --scheduler: give only one of them; --workers is the number of processes "
+            "on this machine"
         )
     return cluster_workers(scheduler) if scheduler else local_workers(count)
 
 
 @contextmanager
 def local_workers(count: int | None) -> Iterator[Workers]:
-    """`count` processes on this machine, which share its cores; None: one for each usable core."""
+    """Provide `count` processes that share the cores of this machine; None: one for each core."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     places = count or cores or 1
     threads = max(1, (cores or 1) // places)
-    # A fork would copy locks that other threads hold, so spawn.
+    # Spawn processes, because a fork would copy locks that other threads hold.
     context = multiprocessing.get_context("spawn")
     started: list[ProcessPoolExecutor] = []
 
@@ -87,14 +88,14 @@ def local_workers(count: int | None) -> Iterator[Workers]:
         finally:
             with hold_signals():
                 for pool in started:
-                    # Stop running cases, because their results would not be kept.
+                    # Stop running cases, because nothing would store their results.
                     for process in list((pool._processes or {}).values()):
                         process.terminate()
                     pool.shutdown(cancel_futures=True)
 
 
 class _Pool(ProcessPoolExecutor):
-    """A pool that blocks Ctrl-C in its processes; they start when tasks are submitted."""
+    """A pool that blocks Ctrl-C in its processes. Processes start when tasks are submitted."""
 
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         with _without_interrupts():
@@ -105,7 +106,8 @@ class _Pool(ProcessPoolExecutor):
 def _without_interrupts() -> Iterator[None]:
     """Block SIGINT in processes that start here, until they ignore it (`_serve`).
 
-    Ctrl-C reaches all processes of a terminal; before `_serve` it would end them with a traceback.
+    Ctrl-C reaches all processes of a terminal. Before `_serve` has run in a new process, Ctrl-C
+    would end this process with a traceback.
     """
     if not hasattr(signal, "pthread_sigmask"):  # Windows
         yield
@@ -114,8 +116,9 @@ def _without_interrupts() -> Iterator[None]:
 
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGHUP})
     try:
-        # Start the tracker now: if started with the first process, it would unblock SIGINT. It
-        # keeps SIGHUP blocked, because it must outlive this process when the terminal closes.
+        # Start the resource tracker now, because starting it with the first process would unblock
+        # SIGINT. The tracker keeps SIGHUP blocked, because it must outlive this process when the
+        # terminal closes.
         resource_tracker.ensure_running()
         signal.pthread_sigmask(signal.SIG_SETMASK, before | {signal.SIGINT})
         yield
@@ -138,7 +141,7 @@ def _serve() -> None:
 
 @contextmanager
 def cluster_workers(address: str) -> Iterator[Workers]:
-    """The workers of the Dask cluster whose scheduler is at `address`.
+    """Provide the workers of the Dask cluster whose scheduler is at `address`.
 
     Raises `OutputError` if there is no such cluster, or if Dask is not installed.
     """
@@ -153,13 +156,14 @@ def cluster_workers(address: str) -> Iterator[Workers]:
         client = Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
         raise OutputError(
-            f"scheduler: {address} does not answer ({error}); start one with `dask scheduler`"
+            f"scheduler: {address} does not answer ({error}); start a scheduler with "
+            "`dask scheduler`"
         ) from None
     with client:
         places = sum(client.ncores().values())
         if not places:
             raise OutputError(
-                f"scheduler: {address} has no workers; start some with `dask worker {address}`"
+                f"scheduler: {address} has no workers; start workers with `dask worker {address}`"
             )
         queue = Queue(client=client)
 

@@ -1,4 +1,4 @@
-"""Compute the cases of a study in parallel, and store each as soon as it is done."""
+"""Compute the cases of a study in parallel, and store each case as soon as it is complete."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from restitution.sweeps.study_folder import StudyFolder
 from restitution.sweeps.sweep import Study, SweptCase
 from restitution.sweeps.task import Outcome, compute
 
-_POLL = 0.2  # s between updates of the progress
-_DEATHS = 3  # deaths of its worker after which a case has failed
+_POLL = 0.2  # time between updates of the progress (s)
+_DEATHS = 3  # a case has failed if its worker died this many times
 
 
 @dataclass
 class Tally:
-    """Progress of a study: cases done and failed, and depths done of each running case."""
+    """Progress of a study: numbers of cases done and failed, and depths done per running case."""
 
     cases: int
     done: int = 0
@@ -42,7 +42,7 @@ def run_study(
 
     Files of measured surfaces are relative to `folder`. A failed case is stored with its reason,
     and computed again only with `retry_failed`. Completed cases are kept, whatever ends the study.
-    A case whose worker dies is computed again, alone, and fails after three deaths.
+    If the worker of a case dies, the case is computed again, alone; it fails after three deaths.
     """
     out.clear()
     known = {case.number: out.reason(case) for case in study.cases}
@@ -75,7 +75,7 @@ def _compute_all(
     running: dict[Future[Outcome], SweptCase] = {}
     broken = False
     while waiting or suspects or running:
-        # Cases whose worker has died run alone, so that a faulty case harms no other case.
+        # Cases whose worker died run alone, so that a faulty case does not stop other cases.
         places = 1 if suspects else workers.places
         if broken or (places != size and not running):
             executor, size, broken = workers.renewed(places), places, False

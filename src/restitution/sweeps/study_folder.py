@@ -1,7 +1,7 @@
 """The folder of a study: one folder for each case, and tables over all of them.
 
-A case is written to a temporary folder, which is then renamed: the case exists completely or not at
-all. The tables are made from the cases and replaced as a whole.
+A case is written to a temporary folder, which is then renamed. So a case is stored completely or
+not at all. The tables are made from the stored cases and replaced as a whole.
 """
 
 from __future__ import annotations
@@ -39,15 +39,15 @@ FAILED, STUDY_FILE = "failed.json", "study.toml"
 def prepare_folder(path: Path, name: str, text: str, *, resume: bool, what: str) -> None:
     """Prepare the folder `path` for a study or mixture (`what`), and write its `text` to `name`.
 
-    Raises `OutputError` if the folder holds another one (without `resume`: anything), has none to
-    resume, or cannot be written.
+    Raises `OutputError` if the folder cannot be written. Without `resume` the folder must be new or
+    empty. With `resume` it must hold a study or mixture with the same `text`.
     """
     held = path / name
     if not resume:
         make_folder(path, "continue with --resume" if held.is_file() else "move it away")
         replace_file(held, lambda to: to.write_text(text, encoding="utf-8"))
     elif not held.is_file():
-        raise OutputError(f"{path}: holds no {what}; leave out --resume to start one")
+        raise OutputError(f"{path}: holds no {what} to resume; leave out --resume to start one")
     elif read_text(held) != text:
         raise OutputError(
             f"{path}: holds another {what} (its {name} differs); name another folder with -o, or "
@@ -61,8 +61,8 @@ class StudyFolder:
     def __init__(self, path: Path, study: Study, *, resume: bool) -> None:
         """Prepare the folder for `study`.
 
-        Raises `OutputError` if the folder holds another study (without `resume`: anything), has no
-        study to resume, or cannot be written.
+        Raises `OutputError` if the folder cannot be written. Without `resume` the folder must be
+        new or empty. With `resume` it must hold the same study.
         """
         self.path, self.study = path, study
         self._cases = path / "cases"
@@ -75,11 +75,11 @@ class StudyFolder:
         return locked(self.path)
 
     def folder_of(self, case: SweptCase) -> Path:
-        """The folder that holds the results of `case`."""
+        """Return the folder for the results of `case`."""
         return self._cases / case.name
 
     def clear(self) -> None:
-        """Remove incomplete cases that a killed process has left."""
+        """Remove incomplete cases that a killed process left behind."""
         for left in self._cases.glob(".*"):
             shutil.rmtree(left, ignore_errors=True)
 
@@ -101,10 +101,10 @@ class StudyFolder:
             part.rename(whole)
 
     def reason(self, case: SweptCase) -> str | None:
-        """The reason why a case failed; "" if it is complete, None if it is missing or damaged.
+        """Return why a case failed; "" if it is complete, None if it is missing or damaged.
 
-        A case is complete if its files pass the checks of `reader`. A stored case with another text
-        counts as missing.
+        A case is complete if its files pass the checks of `reader`. A stored case counts as missing
+        if its text differs.
         """
         folder = self._cases / case.name
         try:
@@ -135,7 +135,7 @@ class StudyFolder:
     def _rows(
         self, known: dict[int, str | None], curves: dict[int, list[dict[str, str]]]
     ) -> list[dict[str, str]]:
-        """Swept values, then the columns of `curve.csv`; cases without a curve have one row."""
+        """Make rows of swept values and the columns of `curve.csv`; one row without a curve."""
         columns = next((list(rows[0]) for rows in curves.values() if rows), list(COLUMNS))
         rows = []
         for case in self.study.cases:
@@ -149,7 +149,7 @@ class StudyFolder:
     def _dataset(
         self, known: dict[int, str | None], curves: dict[int, list[dict[str, float]]]
     ) -> xr.Dataset:
-        """All curves; the dimensions are the swept keys (or the cases) and the depth."""
+        """Make a dataset of all curves, over the swept keys (or the cases) and the depth."""
         study = self.study
         depths = max((len(rows) for rows in curves.values()), default=0)
         if study.mode == "paired":

@@ -1,4 +1,4 @@
-"""The study file: a case with a table [sweep] of the keys that vary, expanded into cases."""
+"""Read a study file, which is a case file with a table [sweep], and expand it into cases."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class SweptCase:
 
     @property
     def name(self) -> str:
-        """The name of its folder."""
+        """The name of the folder of this case."""
         return f"case-{self.number:05d}"
 
 
@@ -119,7 +119,7 @@ def _check_values(swept: Mapping[str, Any], mode: str) -> None:
 
 
 def _combinations(swept: Mapping[str, list[Any]], mode: str) -> Iterator[dict[str, Any]]:
-    """Values of each case; in a grid the last quantity varies fastest."""
+    """Yield the swept values of each case; in a grid the last key varies fastest."""
     rows = (
         zip(*swept.values(), strict=True)
         if mode == "paired"
@@ -130,7 +130,7 @@ def _combinations(swept: Mapping[str, list[Any]], mode: str) -> Iterator[dict[st
 
 
 def put(case: dict[str, Any], path: str, value: Any) -> None:
-    """Set the key at `path`, in which a number (from 1) selects one of several tables."""
+    """Set the key at the dotted `path`; a number (from 1) in it selects one of several tables."""
     table: Any = case
     *way, last = path.split(".")
     for step in way:

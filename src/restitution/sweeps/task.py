@@ -12,17 +12,17 @@ from restitution.errors import OutputError, RestitutionError, one_line
 
 
 class Channel(Protocol):
-    """Takes a worker's messages about its progress."""
+    """A channel for the messages of a worker about its progress."""
 
     def put(self, message: tuple[int, int], /) -> object:
-        """Take (number of the case, depths done)."""
+        """Send a message: the number of the case, and the number of depths done."""
 
 
 @dataclass(frozen=True)
 class Outcome:
     """The outcome of a case: the files of its results folder, and the reason if it failed.
 
-    `reason` is empty if the case is complete. A failed case has the files written until then.
+    `reason` is empty if the case is complete. A failed case has the files written before it failed.
     """
 
     files: dict[str, bytes]
@@ -32,10 +32,10 @@ class Outcome:
 def compute(text: str, folder: str, number: int, threads: int, channel: Channel | None) -> Outcome:
     """Run the case of `text`, with files relative to `folder`, in this process.
 
-    Results are returned instead of written to the study's folder: workers need no shared disk, and
-    only one process writes there.
+    Results are returned instead of written to the study's folder. So workers need no shared disk,
+    and only one process writes to the folder.
     """
-    # A process reads this once, before its first transform.
+    # A process reads this variable once, before its first transform.
     os.environ.setdefault("DUCC0_NUM_THREADS", str(threads))
     from restitution.case.case_file import parse_case
     from restitution.results.writer import ResultsFolder

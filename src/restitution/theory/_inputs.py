@@ -1,4 +1,4 @@
-"""Checks of the arguments of the laws, and the rule for separated spheres."""
+"""Checks of the arguments of the laws, and the convention for separated spheres."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Values: TypeAlias = float | Array
 
 
 def positive(**quantities: Values) -> tuple[Array, ...]:
-    """Return the named quantities as float arrays; `CaseError` unless all are positive and finite.
+    """Check that the named quantities are positive and finite; return them as float arrays.
 
     The error message names the keyword, so pass each quantity under its public argument name.
     """
@@ -32,7 +32,7 @@ def positive(**quantities: Values) -> tuple[Array, ...]:
 
 
 def between(low: Values, high: Values, **quantities: Values) -> tuple[Array, ...]:
-    """Return the named quantities as float arrays; `CaseError` unless finite and within bounds.
+    """Check that the named quantities are finite and within bounds; return them as float arrays.
 
     The error message names the keyword, so pass each quantity under its public argument name.
     """

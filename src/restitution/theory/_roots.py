@@ -13,22 +13,23 @@ from numpy.typing import NDArray
 
 from ._inputs import Array, Values
 
-_MAX_STEPS = 200  # about 10 are usual; bisection takes 100 for a root of 1e-14 in [0, 1]
+# Limit on iterations. About 10 are usual; bisection alone takes 100 for a root of 1e-14 in [0, 1].
+_MAX_STEPS = 200
 _EXACT = 2 * np.finfo(float).eps  # relative width of a converged bracket
 
 
 def increasing_root(excess: Callable[[Array], Array], low: Values, high: Values) -> Array:
-    """Return the root of the increasing function `excess` between `low` and `high`; NaN stays NaN.
+    """Return the root of the increasing function `excess` between `low` and `high`.
 
-    The result is `low` where `excess` is already positive there, and `high` where it is still
-    negative there.
+    If `excess` is already positive at `low`, the result is `low`; if it is still negative at
+    `high`, the result is `high`. NaN bounds give NaN.
     """
     low, high = (np.asarray(end, float) for end in np.broadcast_arrays(low, high))
     below, above = excess(low), excess(high)
     root = np.where(below >= 0, low, np.where(above <= 0, high, low + high + below + above))
     inside = (below < 0) & (above > 0)
     if inside.any():
-        with np.errstate(all="ignore"):  # elements that have converged, steps not taken
+        with np.errstate(all="ignore"):  # from converged elements and unused trials
             found = _chandrupatla(excess, low, high, below, above, inside)
         root = np.where(inside, found, root)
     return root
@@ -42,9 +43,10 @@ def _chandrupatla(
     above: Array,
     inside: NDArray[np.bool_],
 ) -> Array:
-    """Return the roots of the elements `inside`.
+    """Return the roots of the elements where the mask `inside` is true.
 
-    Point 1 is the newest, point 2 the other end of the bracket, point 3 the previous point.
+    Point 1 is the newest point, point 2 the other end of the bracket, and point 3 the point before
+    the newest.
     """
     x1, f1, x2, f2 = high, above, low, below
     root, share = np.full_like(x1, np.nan), np.full_like(x1, 0.5)

@@ -9,10 +9,10 @@ C. Thornton, Z. Ning, Powder Technology 99 (1998) 154–162. With e_p from `Thor
 e is continuous at V_y, where e_p = 1. It rises from 0 at V_s to a peak above V_y and then falls.
 
 The sum of the two losses is an assumption: each loss is computed as if the other were absent. The
-adhesive loss is that of the undeformed radius R*, although yielding flattens the contact to
-R_p > R*, whose detachment takes more work (∝ R_p^{4/3}). Yielding caused by adhesion alone is
-neglected. So e is an upper estimate, accurate if the adhesive loss is small at first yield
-(V_s ≪ V_y).
+adhesive loss is computed with the undeformed radius R*. But yielding flattens the contact to a
+radius R_p > R*, and detaching this flatter contact takes more work (∝ R_p^{4/3}). Yielding caused
+by adhesion alone is neglected. So e is an upper estimate, accurate if the adhesive loss is small at
+first yield (V_s ≪ V_y).
 
 If V_s > V_y, the pair yields below its sticking velocity and the formula fails. Such a pair sticks
 up to V_y (e = 0); above V_y the result is NaN. An example is ammonium fluorescein (radius 2.45 μm,

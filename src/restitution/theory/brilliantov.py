@@ -16,8 +16,9 @@ Compared with a numerical solution of the equation, the error of the Padé form 
 up to v = 0.2 (e ≥ 0.95), 10⁻³ up to v = 0.6 (e ≥ 0.68) and 0.009 for any v. For e < 0.2 the last
 bound is more than 5 % of e.
 
-Valid for a material that relaxes faster than the impact lasts and for smooth spheres with a ≪ R*
-without yield or adhesion. Ending the contact at x = 0 instead would give a lower e.
+Valid for smooth spheres with a ≪ R*, without yield or adhesion, of a material that relaxes faster
+than the impact lasts. The contact ends when the force returns to zero, at x > 0; ending it at x = 0
+would give a lower e.
 Units, shapes and errors are those of `restitution.theory`.
 """
 

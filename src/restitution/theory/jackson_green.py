@@ -112,7 +112,7 @@ class JacksonGreen:
             Mean pressure H_G (Pa).
         """
         a = touching(contact_radius)
-        with np.errstate(divide="ignore"):  # a = 0: exp(−∞) = 0
+        with np.errstate(divide="ignore"):  # for a = 0, the exponential is exp(−∞) = 0
             share = -np.expm1(-0.82 * (a / self.radius) ** -0.7)
         return scalar_or_array(2.84 * self.yield_strength * share)
 

@@ -13,10 +13,11 @@ Johnson sets p_d = 3Y, the indentation pressure of a material of yield strength 
 
 This coefficient is used here; the preceding equation gives 3.74.
 
-Valid for fully developed plastic flow, E*a/YR* > 30 or so (his section 6.3): e < 0.6 for any
-material, V > 190 V_y with `FirstYield.velocity` at p_y = 1.6 Y. At lower velocity the contact
-pressure is below 3Y and the formula overestimates e; it reaches 1 at 28.5 V_y and is limited to 1
-below. At high velocity the limit is a ≪ R*. Rate effects on p_d are neglected.
+Valid for fully developed plastic flow, at E*a/YR* > 30 or so (his section 6.3). This corresponds to
+e < 0.6 for any material, and to V > 190 V_y, where V_y is `FirstYield.velocity` at p_y = 1.6 Y. At
+lower velocity the contact pressure is below 3Y and the formula overestimates e. It gives e = 1 at
+28.5 V_y; at lower velocities e is limited to 1. The formula also requires a ≪ R*, which limits the
+velocity from above. Rate effects on p_d are neglected.
 Units, shapes and errors are those of `restitution.theory`.
 """
 
@@ -29,7 +30,7 @@ import numpy as np
 from ._inputs import Array, Values, keep_positive, positive, scalar_or_array, touching
 
 COEFFICIENT = 3.8
-"""As printed by Johnson; the derived value is (3π^{5/4} 4^{3/4}/10)^½ 3^{5/8} = 3.743."""
+"""Coefficient printed by Johnson; the derived value is (3π^{5/4} 4^{3/4}/10)^½ 3^{5/8} = 3.743."""
 
 
 @dataclass(frozen=True, eq=False)

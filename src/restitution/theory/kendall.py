@@ -11,9 +11,10 @@ a^{3/2}, so the mean pressure F/(πa²) at detachment falls with size. The work 
 twice the surface energy; the other half is dissipated. JKR theory is Hertz theory minus this force
 and this displacement at the same contact radius (`jkr`).
 
-Valid for a rigid punch (or an elastic one whose compliance is part of E*, if its sides do not
-matter), if the contact is frictionless or incompressible, the range of the surface forces is much
-shorter than the displacement (2πwa/E*)^½, and a is much smaller than the bodies.
+Valid under three conditions. The contact is frictionless, or the half-space is incompressible. The
+range of the surface forces is much shorter than the displacement (2πwa/E*)^½. The radius a is much
+smaller than the bodies. The punch is rigid, or it is elastic, its compliance is part of E* and the
+influence of its side walls is negligible.
 Units, shapes and errors are those of `restitution.theory`.
 """
 

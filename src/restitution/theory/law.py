@@ -1,4 +1,4 @@
-"""The interface that laws of impact share, and the restitution from works."""
+"""The interface that impact laws share, and restitution computed from work and velocity."""
 
 from __future__ import annotations
 

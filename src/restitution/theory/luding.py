@@ -75,7 +75,7 @@ class Luding:
     def limit_indentation(self) -> Array:
         """Indentation δ* (m) beyond which first loading is elastic; infinite if k̂₂ = k₁."""
         k1, k2_hat = self.loading_stiffness, self.limit_stiffness
-        with np.errstate(divide="ignore"):  # k̂₂ = k₁: elastic at any depth
+        with np.errstate(divide="ignore"):  # δ* is infinite for k̂₂ = k₁
             return scalar_or_array(k2_hat / (k2_hat - k1) * self._limit_residual)
 
     def loading_force(self, indentation: Values) -> Array:

@@ -6,8 +6,8 @@ sections 6.1 and 6.3). Setting p₀ = 2E*a/(πR*) = p_y with a² = R*δ gives
 
     δ_y = (πp_y/2E*)² R*,   F_y = π³R*²p_y³/(6E*²),   ½ m* V_y² = W(δ_y) = ⅖ F_y δ_y.
 
-Exact within Hertz theory and valid in the same range: δ_y ≪ R*, which holds if p_y ≪ E*. No
-adhesion.
+These relations are exact within Hertz theory and valid in its range: δ_y ≪ R*, which holds if
+p_y ≪ E*. They neglect adhesion.
 Units, shapes and errors are those of `restitution.theory`.
 """
 

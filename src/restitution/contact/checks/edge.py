@@ -12,12 +12,12 @@ from restitution.contact.contact import Contact
 from restitution.contact.state import State
 from restitution.errors import DomainError
 
-_MARGIN = 1.2  # width of the grid advised over the largest width that the contact can have
-_OFF_CENTRE = 0.25  # distance from the centre, in widths of the grid, that counts as off-centre
+_MARGIN = 1.2  # width of the recommended grid over the largest possible width of the contact
+_OFF_CENTRE = 0.25  # least distance from the centre that counts as off-centre (widths of the grid)
 
 
 class EdgeReachedError(DomainError):
-    """The contact reaches the edge of the grid; `finding` has the values of `edge_values`."""
+    """The contact reaches the edge of the grid; `finding` contains the values of `edge_values`."""
 
     def __init__(self, finding: Finding) -> None:
         wide, long = (1e6 * edge for edge in finding["size"])
@@ -53,10 +53,12 @@ def require_inside_grid(state: State) -> None:
 
 
 def edge_values(contact: Contact, indentation: float) -> dict[str, Any]:
-    """Values of a finding about the edge of the grid, lengths in m.
+    """Return the values of a finding about the edge of the grid (lengths in m).
 
-    `indentation`; `size` of the grid; `needed` edge lengths; `first_touch` and whether it is
-    `off_centre`; for a measured surface its `levelling` and the size of the `scan`, else None.
+    The values are `indentation`; `size`, the edge lengths of the grid; `needed`, the edge lengths
+    of a grid that is large enough; `first_touch`, the coordinates of first touch; `off_centre`,
+    whether first touch is far from the centre; and for a measured surface `levelling` and the size
+    of the `scan`, otherwise None.
     """
     provenance, size = contact.surface.provenance, contact.grid.size
     touch = first_touch(contact)
@@ -88,8 +90,9 @@ def first_touch(contact: Contact) -> tuple[float, float]:
 def needed_edges(contact: Contact, indentation: float) -> tuple[float, float]:
     """Edge lengths (m) of a grid that contains the contact; never below the present lengths.
 
-    Contact lies where h₀ < δ. With heights up to z_max and h₀ = r²/(2R*) − z − c this means
-    r² < 2R*(δ + z_max + c), or r < sqrt(2R*δ) for smooth bodies.
+    Contact is possible only where the initial gap h₀ is below the indentation δ. With heights up to
+    z_max and h₀ = r²/(2R*) − z − c, this means r² < 2R*(δ + z_max + c), or r < sqrt(2R*δ) for
+    smooth bodies.
     """
     R, x, y = contact.pair.radius, contact.grid.x[:, None], contact.grid.y[None, :]
     height = contact.surface.height

@@ -1,4 +1,4 @@
-"""A finding: the result of a check, as data. `runs.messages` puts findings into words."""
+"""A finding: the result of a check, as data. `runs.messages` makes messages of findings."""
 
 from __future__ import annotations
 

@@ -17,16 +17,18 @@ from restitution.contact.contact import Contact
 from restitution.surfaces import level, rms_slope
 from restitution.theory import Hertz, Kendall
 
+# Limits beyond which an input is doubtful.
 _TILTED = 0.5  # fraction of the variance of the heights that a plane explains
 _OBLONG = 0.01  # relative difference of the edges of a pixel
-_STEEP = 0.5  # rms slope beyond which small-slope theory is inaccurate
-_PRESSURES = (1e-5, 0.3)  # p_y/E* of materials, from soft polymers to the ideal strength
-_NEAR_EDGE = 0.1  # distance from the edge, in widths of the grid
-_DISPLACED = 0.7  # reduction of the displacement outside a contact, as rough ones carry less force
+_STEEP = 0.5  # rms slope, beyond which small-slope theory is inaccurate
+_PRESSURES = (1e-5, 0.3)  # p_y/E*, from soft polymers to the ideal strength
+_NEAR_EDGE = 0.1  # distance of first touch from the edge (widths of the grid)
+# Factor on the displacement outside a contact, because a rough contact carries less force.
+_DISPLACED = 0.7
 
 
 def impossible(contact: Contact, indentation: float) -> Finding | None:
-    """The reason why loading `contact` to `indentation` (m) is meaningless; None if there is none.
+    """Return why loading `contact` to `indentation` (m) is meaningless; None if it is not.
 
     * `roughness-above-radius`: `radius` of the smaller particle, `peak` above the mean (m);
     * `contact-beyond-radius`: predicted `radius`, `indentation`, `reduced_radius` (m);
@@ -44,9 +46,9 @@ def impossible(contact: Contact, indentation: float) -> Finding | None:
 
 
 def doubtful(contact: Contact, indentation: float) -> list[Finding]:
-    """Reasons to doubt a result of loading `contact` to `indentation` (m), besides `impossible`.
+    """Find reasons to doubt the result of loading `contact` to `indentation` (m).
 
-    The findings of `resolution_findings`, and
+    They are the findings of `resolution_findings` and the following ones:
 
     * `tilted-scan`: `file`, `explained`, the fraction of the variance that a plane explains;
     * `edge-predicted`: `gap` at the edge at first touch (m), and the values of `edge_values`;
@@ -82,7 +84,7 @@ def _tilt(contact: Contact) -> Finding | None:
 
 
 def _edge(contact: Contact, indentation: float) -> Finding | None:
-    """Whether contact at the edge of the grid is expected, with a margin for roughness."""
+    """Find out whether contact at the edge of the grid is expected, with a margin for roughness."""
     radius = predicted_radius(contact.pair, indentation, contact.hardness)
     gap, grid = contact.gap, contact.grid
     half_width = 0.5 * min(grid.size)
@@ -99,10 +101,10 @@ def _edge(contact: Contact, indentation: float) -> Finding | None:
 def _closed_gap(contact: Contact, indentation: float, distance: float) -> float:
     """The largest undeformed gap (m) that is predicted to close at `distance` from the centre.
 
-    It is the indentation less the displacement F/(πE*r) outside a smooth contact. With adhesion the
-    pull-off displacement of a punch as wide as the contact (JKR) is added to the indentation. The
-    displacement is reduced as the roughness approaches the indentation, because single asperities
-    then carry the load.
+    The result is the indentation minus the displacement F/(πE*r) outside a smooth contact. With
+    adhesion, the pull-off displacement of a punch as wide as the contact (JKR) is added to the
+    indentation. The displacement F/(πE*r) is reduced if the roughness is not small compared with
+    the indentation, because single asperities then carry the load.
     """
     pair, p_y, w = contact.pair, contact.hardness, contact.work_of_adhesion
     E_star, deeper = pair.contact_modulus, indentation
@@ -133,7 +135,7 @@ def _yield_pressure(contact: Contact) -> Finding | None:
 
 
 def _oblong(contact: Contact) -> Finding | None:
-    """Pixels that are not square: scan lines may be missing in the file."""
+    """Find pixels that are not square, because scan lines may be missing in the file."""
     provenance = contact.surface.provenance
     for key, hx in provenance.items():
         if not key.endswith("pixel_x_m") or (key != "pixel_x_m" and not key.startswith("part_")):

@@ -1,6 +1,7 @@
-"""Checks that the grid is large enough for a contact and that its nodes resolve it.
+"""Checks that the grid is large enough for a contact and fine enough to resolve it.
 
-The contact is not solved here; it is predicted from smooth spheres.
+Before a solve, the contact is predicted from smooth spheres. The functions with `unresolved` in
+their names use the results of a run.
 """
 
 from __future__ import annotations
@@ -18,30 +19,31 @@ from restitution.contact.state import State
 from restitution.numerics.box import widen
 from restitution.theory import JKR, FirstYield, Hertz
 
-# Smooth spheres are within 0.3 % of tabulated values from eight nodes per contact radius. For rough
-# surfaces, restitution is within 2 % (root mean square; 5 % at worst) of the value on the finest
-# grid if half of the contact lies in patches of at least 20 nodes (docs/resolution.md).
+# With eight or more nodes per contact radius, results for smooth spheres are within 0.3 % of
+# tabulated values. For rough surfaces, restitution is within 2 % (root mean square; 5 % at worst)
+# of the value on the finest grid if half of the contact lies in patches of at least 20 nodes
+# (docs/resolution.md).
 NODES_PER_RADIUS = 8
 NODES_PER_PATCH = 20
-# With four or more nodes per pull-off radius, the pull-off force is within 4 % in the mean and 7 %
-# at worst, over positions of the apex between the nodes (docs/adhesion.md).
+# With four or more nodes per pull-off radius, the error of the pull-off force is 4 % on average and
+# 7 % at worst, over all positions of the apex between the nodes (docs/adhesion.md).
 ADHESIVE_NODES = 4
 _HALF_SPACE = 0.2  # contact radius over R* beyond which the half-space approximation fails
 
 
 def predicted_radius(pair: Pair, indentation: float, yield_pressure: float = math.inf) -> float:
-    """Contact radius (m) of smooth bodies: Hertz's sqrt(R*δ), or sqrt(2R*δ) if fully plastic."""
+    """Contact radius (m) of smooth bodies: sqrt(R*δ) if elastic, sqrt(2R*δ) if fully plastic."""
     R = pair.radius
     yielded = math.inf
     if math.isfinite(yield_pressure):
         yielded = float(FirstYield(R, pair.contact_modulus, yield_pressure).indentation)
-    # Between first yield and the fully plastic limit the area per πR*δ grows from 1 to 2.
+    # Between first yield and the fully plastic limit, the area divided by πR*δ grows from 1 to 2.
     fullness = 1.0 if indentation <= yielded else 2.0 - (yielded / indentation) ** 0.25
     return float(Hertz(fullness * R, pair.contact_modulus).contact_radius(indentation))
 
 
 def adhesive_nodes(state: State) -> float:
-    """Nodes per pull-off radius of an asperity, a_c/h; inf without adhesion.
+    """Number of nodes per pull-off radius of an asperity, a_c/h; inf without adhesion.
 
     a_c = (9πw/(8E*κ²))^⅓ (JKR), where κ is the mean curvature of the undeformed gap over the
     contact, 1/R* for smooth spheres.
@@ -77,9 +79,9 @@ def expected_pull_off_error(contact: Contact) -> float:
 
 
 def coarse_scan(contact: Contact, indentation: float) -> Finding | None:
-    """`pixel-above-contact`: one pixel of a scan exceeds the contact radius at `indentation` (m).
+    """Finding `pixel-above-contact`: a pixel of a scan exceeds the contact radius.
 
-    Values: `file`, `pixel`, `radius` (m), `indentation`.
+    Values: `file`, `pixel`, `radius` at the indentation (m), `indentation`.
     """
     provenance = contact.surface.provenance
     if "file" not in provenance:
@@ -100,7 +102,7 @@ def coarse_scan(contact: Contact, indentation: float) -> Finding | None:
 
 
 def resolution_findings(contact: Contact, indentation: float) -> list[Finding]:
-    """Findings about the grid from the contact of the smooth bodies at `indentation` (m).
+    """Find faults of the grid from the contact of the smooth bodies at `indentation` (m).
 
     * `contact-beyond-grid`: `radius`, `indentation`, `half_width` (m), `whole_scan`;
     * `few-nodes`: `spacing`, `radius` (m);
@@ -151,9 +153,10 @@ def resolves(median_patch_nodes: float) -> bool:
 
 
 def unresolved_patches(depths: Sequence[float], median_patches: Sequence[float]) -> list[Finding]:
-    """`patches-unresolved`: contact patches have too few nodes at some `depths` (m).
+    """Finding `patches-unresolved`: contact patches have too few nodes at some `depths` (m).
 
-    Values: `few`, the number of these depths; `depths`, the number of all; `deepest` of these (m).
+    Values: `few`, the number of such depths; `depths`, the number of all depths; `deepest`, the
+    deepest unresolved depth (m).
     """
     few = [depth for depth, n in zip(depths, median_patches, strict=True) if not resolves(n)]
     if not few:
@@ -163,9 +166,10 @@ def unresolved_patches(depths: Sequence[float], median_patches: Sequence[float])
 
 
 def unresolved_adhesion(depths: Sequence[float], nodes: Sequence[float]) -> list[Finding]:
-    """`adhesion-unresolved`: the pull-off radius has too few `nodes` at some `depths` (m).
+    """Finding `adhesion-unresolved`: the pull-off radius has too few `nodes` at some `depths` (m).
 
-    Values: `few`, the number of these depths; `depths`, the number of all; `nodes`, the fewest.
+    Values: `few`, the number of such depths; `depths`, the number of all depths; `nodes`, the
+    smallest number of nodes per pull-off radius.
     """
     few = sum(n < ADHESIVE_NODES for _, n in zip(depths, nodes, strict=True))
     if not few:
@@ -175,7 +179,7 @@ def unresolved_adhesion(depths: Sequence[float], nodes: Sequence[float]) -> list
 
 
 def grid_of_a_scan(contact: Contact) -> bool:
-    """Whether the grid covers a whole scan, so that only a larger scan allows a larger grid."""
+    """Whether the grid covers a whole scan. If so, only a larger scan allows a larger grid."""
     provenance = contact.surface.provenance
     if provenance.get("source") != "measured":
         return False

@@ -2,16 +2,17 @@
 
 Drake's compliant point contact is F = kx (1 + d x′), never attractive (Drake documentation,
 Compliant point contact and Hydroelastic contact: Hunt & Crossley). Geometries a and b give
-k = k_a k_b/(k_a + k_b) and d = (k_b d_a + k_a d_b)/(k_a + k_b): with 2k and d on both, the contact
-has k and d. e depends on dV alone (`damping.hunt_crossley_dissipation`), not on k or the mass, and
-decreases with the velocity V. k gives a contact as long as Hertz's. The relation holds for any
-force times 1 + d x′, so also for a hydroelastic contact whose surfaces approach at one velocity
-(not run).
+k = k_a k_b/(k_a + k_b) and d = (k_b d_a + k_a d_b)/(k_a + k_b). So the export gives both geometries
+2k and d to obtain a contact with k and d. e depends only on dV and not on k or the mass
+(`damping.hunt_crossley_dissipation`). It decreases with the velocity V. k is chosen such that the
+contact lasts as long as Hertz's. The relation between e and dV holds for any force times 1 + d x′.
+So it also holds for a hydroelastic contact whose surfaces approach at one velocity (not tested in
+Drake).
 
 A geometry has one k and one d, so the pairs of three types cannot be set in one scene.
 
-Drake 1.51: a continuous plant (`time_step=0`) is exact. A discrete plant loses energy to its time
-step, and its SAP approximation does not use the dissipation at all: e is close to 0.
+In Drake 1.51, a continuous plant (`time_step=0`) is exact. A discrete plant loses energy because of
+its time step. Its SAP approximation does not use the dissipation at all, so e is close to 0.
 """
 
 from __future__ import annotations
@@ -61,12 +62,12 @@ class Contact:
         return self.pair.law.mass * (math.pi / self.duration) ** 2
 
     def restitution(self, share: float) -> float:
-        """The e in Drake at `share` of the velocity of the export."""
+        """Return e in Drake at the velocity of the export times `share`."""
         return hunt_crossley_restitution(self.dissipation * self.velocity * share)
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """The module to import and a test collision that prints its e: file names and texts.
+    """Write the module to import and a test collision that prints e; return file names and texts.
 
     Raises `CaseError`, `DomainError`.
     """

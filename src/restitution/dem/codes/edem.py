@@ -1,8 +1,9 @@
-"""EDEM: tables of interactions and materials, to be typed into its panels; not tested with EDEM.
+"""EDEM: tables of interactions and materials, to be typed into the panels of EDEM.
 
-EDEM's Hertz–Mindlin model has Tsuji's damping with the coefficient of Antypov & Elliott (Altair's
-documentation). Its hysteretic spring model is that of Walton & Braun with K1 = 5 R* min(Y1, Y2) and
-e = (K1/K2)^½ at every velocity, so the export gives K2 at its own velocity.
+The tables were not tested in EDEM. EDEM's Hertz–Mindlin model has Tsuji's damping with the
+coefficient of Antypov & Elliott (Altair's documentation). Its hysteretic spring model is that of
+Walton & Braun with K1 = 5 R* min(Y1, Y2) and e = (K1/K2)^½ at every velocity. So the export gives
+K2 for the velocity of the export.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ _NOTES = [
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """The two tables: file names and texts. Raises `DomainError`."""
+    """Write the two tables; return file names and texts. Raises `DomainError`."""
     pairs = pairs_at(table, velocity, CODE, 0.0)
     head = header(table, pairs, velocity, code=CODE, ends=_ENDS) + _NOTES
     comments = commented(head, "#") + "\n"
@@ -74,7 +75,7 @@ def _interaction(pair: Pair, velocity: float) -> dict[str, str]:
 def _springs(pair: Pair, velocity: float) -> tuple[float, float] | None:
     """K1 and K2 (N/m) of the fitted Walton–Braun law: K2 = k_u + S V (m* K1)^½.
 
-    None without such a fit, and outside the velocities to which it was fitted.
+    None if there is no such fit, or if `velocity` is outside the fitted range.
     """
     if not pair.law.fits_hold_at(velocity):
         return None

@@ -1,10 +1,11 @@
 """LAMMPS: `pair_style granular` with `hertz/material` and `damping coeff_restitution`.
 
 LAMMPS uses the E and ν of a pair_coeff for both bodies, also at walls: E* = E/2(1 − ν²),
-G* = E/4(2 − ν)(1 + ν). Each pair is given the E and ν that yield its own E* and G*. LAMMPS' mixing
-of two materials applies the ½ twice and is not used. Force and damping (Antypov & Elliott, EPL 94
-(2011) 50004) act until δ = 0, with a tension at the end; `limit_damping` would cut the tension off
-and raise e. `damping tsuji` has an error of √2 in released versions.
+G* = E/4(2 − ν)(1 + ν). Each pair gets the E and ν that give the E* and G* of this pair. LAMMPS'
+mixing of two materials applies the factor ½ twice, so the export does not use it. Force and damping
+(Antypov & Elliott, EPL 94 (2011) 50004) act until δ = 0, with a tension at the end. `limit_damping`
+would cut the tension off and raise e. `damping tsuji` is wrong by a factor of √2 in released
+versions.
 """
 
 from __future__ import annotations
@@ -24,10 +25,10 @@ from restitution.dem.pair_table import PairTable
 from restitution.dem.velocity_matching import SCRIPT, Target, matching_script
 
 CODE = "LAMMPS"
-LOWEST = 0.001  # reproduced within 0.5 % with `STEPS` steps a contact
+LOWEST = 0.001  # smallest e that is reproduced within 0.5 % with `STEPS` time steps in a contact
 FRAGMENT, COLLISION, PACKING = "restitution.lmp", "collision.in", "packing.in"
-_GRAINS = 500  # of the packing
-_FILLED = 0.12  # of the volume in which they are placed
+_GRAINS = 500  # number of spheres of the packing
+_FILLED = 0.12  # fraction of the initial volume that the spheres fill
 KOKKOS = "restitution_kokkos.lmp"
 _MATCHED = Target(CODE, "lmp -in my.in", FRAGMENT, "matched.lmp", LOWEST)
 _ENDS = (
@@ -39,10 +40,11 @@ _KOKKOS_ENDS = "the overlap is back to zero. The damping pulls before; do not ad
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """The fragment to include, one for KOKKOS, a test collision, and a packing where possible.
+    """Write the fragment to include, a fragment for KOKKOS, a test collision, and a packing.
 
-    The packing drops spheres of all types on the first wall that has a law with each of them.
-    Returns file names and texts. Raises `CaseError`, `DomainError`.
+    In the packing, spheres of all types fall on the first wall that has a law with each type.
+    Without such a wall there is no packing. Returns file names and texts. Raises `CaseError`,
+    `DomainError`.
     """
     walls_only = all(j > len(table.spheres) for _, j in table.laws)
     if not walls_only:
@@ -101,7 +103,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
 
 
 def _floor(table: PairTable) -> int | None:
-    """The number of the first wall that has a law with every sphere."""
+    """Type number of the first wall that has a law with every sphere."""
     count = len(table.spheres)
     for wall in range(count + 1, len(table.particles) + 1):
         if all((k, wall) in table.laws for k in range(1, count + 1)):

@@ -1,14 +1,15 @@
-"""Damping that KOKKOS has, as a second fragment of the export to LAMMPS.
+"""Second fragment of the export to LAMMPS, with damping models that its package KOKKOS supports.
 
-LAMMPS 22Jul2025 has no KOKKOS variant of pair_style granular. The one of pull request 5187 has
-hooke and hertz normal forces with velocity-based damping, linear and Mindlin tangential forces, and
-needs newton off. gran/hooke/history/kk is older; it has one set of values for all pairs of types.
+LAMMPS 22Jul2025 has no KOKKOS variant of pair_style granular. The variant of pull request 5187 has
+hooke and hertz normal forces with velocity-based damping and linear and Mindlin tangential forces;
+it needs newton off. gran/hooke/history/kk is older; it has one set of values for all pairs of
+types.
 
-For each pair: Hertz with a constant damping coefficient (`damping velocity`,
-`damping.hertz_damping`), whose e increases with the velocity as g ∝ V^{−⅕} decreases. For a single
-type of particle, besides, a linear spring whose e is constant: its contact lasts as long as
-Hertz's, and LAMMPS lets the damping pull until the overlap is zero, so that e = exp(−πζ/(1 −
-ζ²)^½) (Schäfer, Dippel, Wolf, J. Phys. I France 6 (1996) 5).
+Each pair gets a Hertz force with a constant damping coefficient (`damping velocity`,
+`damping.hertz_damping`). Its e increases with the velocity, because g ∝ V^{−⅕} decreases. If there
+is a single type of particle, the fragment also offers a linear spring, whose e is constant. Its
+contact lasts as long as Hertz's. LAMMPS lets the damping pull until the overlap is zero, so
+e = exp(−πζ/(1 − ζ²)^½) (Schäfer, Dippel, Wolf, J. Phys. I France 6 (1996) 5).
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ class VelocityDamping:
         return 8 * self.pair.shear_modulus
 
     def restitution(self, share: float) -> float:
-        """The e at `share` of the velocity of the export."""
+        """Return e at the velocity of the export times `share`."""
         return hertz_restitution_at(self.pair.law, self.damping, share * self.velocity)
 
 
@@ -53,7 +54,7 @@ class LinearSpring:
 
 
 def velocity_damping(pairs: list[Pair], velocity: float) -> list[VelocityDamping]:
-    """The damping of every pair that returns its e at `velocity` (m/s)."""
+    """Compute the damping of every pair that gives the e of the pair at `velocity` (m/s)."""
     return [
         VelocityDamping(pair, velocity, hertz_damping(pair.law, velocity, pair.restitution))
         for pair in pairs
@@ -61,7 +62,7 @@ def velocity_damping(pairs: list[Pair], velocity: float) -> list[VelocityDamping
 
 
 def linear_spring(pairs: list[Pair], velocity: float) -> LinearSpring | None:
-    """The linear spring of the only pair of spheres; None where there are several, or none."""
+    """Compute the linear spring of the only pair of spheres; None if there is not exactly one."""
     spheres = [pair for pair in pairs if not pair.wall]
     if len(spheres) != 1:
         return None

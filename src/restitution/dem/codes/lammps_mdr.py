@@ -1,9 +1,9 @@
 """The fitted `mdr` law as comments in the export to LAMMPS, for the pairs that can use it.
 
-LAMMPS 22Jul2025 behaves as follows (`tests/dem/test_lammps_mdr.py`): pair_style granular accepts
-one mdr model, with the same values for every pair of types, and no other normal model besides. A
-wall with mdr crashes LAMMPS unless pair_style has mdr as well; fix wall/gran then accepts its own
-values (or another model), fix wall/gran/region only those of pair_style.
+LAMMPS 22Jul2025 behaves as follows (`tests/dem/test_lammps_mdr.py`). pair_style granular accepts
+one mdr model, with the same values for every pair of types, and no other normal model beside it. A
+wall with mdr crashes LAMMPS unless pair_style has mdr as well. If it has, fix wall/gran accepts
+other values or another model, but fix wall/gran/region accepts only the values of pair_style.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from restitution.dem.export_common import Pair
 from restitution.laws.law import FittedLaw
 
 NAME = "lammps-mdr"
-_FAR = 0.1  # largest difference in e of a fitted law that is offered
+_FAR = 0.1  # a fitted law is offered if its largest difference in e is at most this value
 
 
 def mdr_offers(pairs: list[Pair], velocity: float) -> list[tuple[Pair, FittedLaw | None, str]]:
-    """Every pair, its fitted mdr law, and the reason not to offer it (empty: offered)."""
+    """List every pair, its fitted mdr law, and the reason not to offer it (empty if offered)."""
     return [(pair, _fit_of(pair), _obstacle(pairs, pair, velocity)) for pair in pairs]
 
 
@@ -27,7 +27,7 @@ def _fit_of(pair: Pair) -> FittedLaw | None:
 
 
 def _obstacle(pairs: list[Pair], pair: Pair, velocity: float) -> str:
-    """The reason why `pair` gets no mdr line; empty if it gets one."""
+    """Return why `pair` gets no mdr line; empty if it gets a line."""
     spheres = [other for other in pairs if not other.wall]
     if not pair.wall and len(spheres) > 1:
         return (
@@ -43,7 +43,7 @@ def _obstacle(pairs: list[Pair], pair: Pair, velocity: float) -> str:
 
 
 def _unfit(pair: Pair, velocity: float) -> str:
-    """The reason in the fit of `pair` itself; empty if the fit can be offered."""
+    """Return why the fit of `pair` cannot be offered; empty if it can."""
     fit = _fit_of(pair)
     if fit is None and not pair.law.laws:
         return "no law was fitted to it"

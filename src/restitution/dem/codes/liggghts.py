@@ -1,9 +1,9 @@
 """LIGGGHTS: `pair_style gran model hertz tangential history`, properties by type and pair of types.
 
-LIGGGHTS computes E* of a pair from the E and ν of its types, including walls, so the types have
-the values of the materials; m* and R* then agree with the law. Force and damping (Tsuji's form with
-the coefficient of Antypov & Elliott) act until δ = 0, with a tension at the end; `limitForce on`
-would cut the tension off.
+LIGGGHTS computes the E* of a pair from the E and ν of its types, including walls. So the types get
+the E and ν of the materials, and E*, m* and R* agree with the law. Force and damping (Tsuji's form
+with the coefficient of Antypov & Elliott) act until δ = 0, with a tension at the end. `limitForce
+on` would cut the tension off.
 """
 
 from __future__ import annotations
@@ -13,18 +13,18 @@ from restitution.dem.pair_table import PairTable
 from restitution.dem.velocity_matching import SCRIPT, Target, matching_script
 
 CODE = "LIGGGHTS"
-LOWEST = 0.0501  # "0.05 < coefficientRestitution <= 1 required"
+LOWEST = 0.0501  # LIGGGHTS demands "0.05 < coefficientRestitution <= 1 required"
 FRAGMENT, COLLISION = "restitution.liggghts", "collision.in.liggghts"
 _MATCHED = Target(CODE, "liggghts -in my.in", FRAGMENT, "matched.liggghts", LOWEST)
 _ENDS = (
     "the overlap is back to zero. The force is tensile shortly before, due to damping; do not add "
     "`limitForce on`, which cuts off the tension and raises e (0.397 for 0.3)."
 )
-_HARD, _SOFT = 1e9, 5e6  # Pa; LIGGGHTS needs a command to accept E outside
+_HARD, _SOFT = 1e9, 5e6  # range of E (Pa) outside which LIGGGHTS needs a command to accept E
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """The fragment to include and a test collision that prints its e: file names and texts.
+    """Write the fragment to include and a test collision that prints e; return names and texts.
 
     Raises `CaseError`, `DomainError`.
     """
@@ -56,7 +56,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
 
 
 def _hardness(table: PairTable) -> str:
-    """The command with which LIGGGHTS accepts these E; empty if it needs none."""
+    """Return the command that makes LIGGGHTS accept these E; empty if none is needed."""
     E = [body.youngs_modulus for body in table.particles]
     if max(E) > _HARD:
         return "hard_particles yes"
@@ -64,7 +64,7 @@ def _hardness(table: PairTable) -> str:
 
 
 def _restitution(table: PairTable) -> list[list[str]]:
-    """The symmetric matrix of e by types, as variables; 1 between walls, which never meet."""
+    """Symmetric matrix of variables for e by types; 1 between walls, which never meet."""
     numbers = range(1, len(table.particles) + 1)
 
     def entry(i: int, j: int) -> str:

@@ -2,16 +2,18 @@
 
 MuJoCo solves a₁ = (1 − d) a₀ + d a_ref for the normal acceleration of a contact, with a_ref = −bv −
 kr, b = damping/d_max and k = stiffness d(r)/d_max² (MuJoCo documentation, Computation: Constraint
-model, and Modeling: Solver parameters). Where the impedance d is constant, contact therefore is
+model, and Modeling: Solver parameters). If the impedance d is constant, the equation of motion is
 
     r″ = −stiffness r − damping r′ + (1 − d) a₀,
 
 a linear spring and dashpot per unit of mass, whatever the masses. The contact force is never
-attractive, so e is that of `damping.dashpot_ratio`; from the ζ of e = exp(−πζ/(1 − ζ²)^½) MuJoCo
-returns 0.632 for 0.6. d = 0.9999, the largest that MuJoCo accepts, makes e independent of the
-friction cone: with d = 0.9 and pyramidal cones it returns 0.79 for 0.8.
+attractive, so `damping.dashpot_ratio` gives the relation between e and ζ. The formula
+e = exp(−πζ/(1 − ζ²)^½) does not apply: with its ζ for e = 0.6, MuJoCo returns 0.632. d = 0.9999,
+the largest value that MuJoCo accepts, makes e independent of the friction cone. With d = 0.9 and
+pyramidal cones, MuJoCo returns 0.79 for e = 0.8.
 
-The stiffness gives a contact as long as Hertz's. e does not depend on it.
+The stiffness is chosen such that the contact lasts as long as Hertz's. e does not depend on the
+stiffness.
 """
 
 from __future__ import annotations
@@ -33,7 +35,7 @@ from restitution.dem.export_common import (
 from restitution.dem.pair_table import PairTable
 
 CODE = "MuJoCo"
-LOWEST = 0.05  # within 2 % with `_STEPS` steps
+LOWEST = 0.05  # smallest e that is reproduced within 2 % with `_STEPS` time steps in a contact
 FRAGMENT, COLLISION = "restitution_mujoco.xml", "collision_mujoco.py"
 NOTE = (
     "MuJoCo: e is that of the export at every velocity, if the time step is at most 1/200 of the "
@@ -44,9 +46,9 @@ _ENDS = (
     "with 200 time steps in a contact for e from 0.2, with 50 for e from 0.5."
 )
 _STEPS = 500
-_LARGEST = 1e8  # m/s²; MuJoCo resets a simulation above 1e10
-_DEEPEST = 0.05  # of the smaller radius, in a softened contact
-_COARSE = 50  # steps in a softened contact
+_LARGEST = 1e8  # largest acceleration (m/s²); MuJoCo resets a simulation above 1e10
+_DEEPEST = 0.05  # largest overlap in a softened contact, as a fraction of the smaller radius
+_COARSE = 50  # number of time steps in a softened contact
 
 
 @dataclass(frozen=True)
@@ -83,7 +85,7 @@ class Contact:
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """The MJCF file to include and a test collision that prints its e: file names and texts.
+    """Write the MJCF file to include and a test collision that prints e; return names and texts.
 
     Raises `CaseError`, `DomainError`.
     """

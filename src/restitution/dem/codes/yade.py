@@ -9,8 +9,8 @@ equation of motion for e from 0.01:
     β = L exp(Σ c_k L^k),  L = −ln e,  within 10⁻⁵ of e
 
 YADE computes E* from the two materials. On a wall it takes R/2 for R*, which makes the contact
-softer by √2 and does not change e. Each contact has its own `betan`, so that a simulation can
-follow the law: `betan` is set at first touch, from the velocity there.
+softer by √2 and does not change e. Each contact has a separate `betan`, so a simulation can follow
+the law: the export sets `betan` at first touch, from the velocity at first touch.
 """
 
 from __future__ import annotations
@@ -38,13 +38,13 @@ _ENDS = (
     "YADE takes R*/2 for R*: the contact is softer by sqrt(2), with the same e."
 )
 _STEPS = 2000
-_WALL_DENSITY = 1000.0  # kg/m³, of a wall without a density: YADE needs one
+_WALL_DENSITY = 1000.0  # density (kg/m³) for a wall without a density, because YADE needs a value
 
 _FIT = (-1.23589, 0.202669, 0.0108748, 0.000410051, -3.09169e-5, -1.19887e-6)
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """The module to import and a test collision that prints its e: file names and texts.
+    """Write the module to import and a test collision that prints e; return file names and texts.
 
     Raises `CaseError`, `DomainError`.
     """
@@ -77,7 +77,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
 
 
 def _density(body: Particle) -> float:
-    """The density (kg/m³); a wall without one gets a value, which has no effect."""
+    """The density (kg/m³) of a body; a wall without a density gets a value without effect."""
     return _WALL_DENSITY if body.wall and body.density is None else density_of(body)
 
 

@@ -80,5 +80,6 @@ class OperatorCache:
             self._values.popitem(last=False)
 
 
-# Boxes follow the growing contact, so older operators are rarely used again.
+# Cache of operators and kernels for the whole process. Boxes grow with the contact, so older
+# operators are rarely used again.
 operator_cache = OperatorCache(max_bytes=384 * 2**20, max_items=17)

@@ -3,7 +3,8 @@
 //
 // A few columns at a time are transformed, so that they stay in the cache. Zero padding is neither
 // stored nor transformed. For n values in a period of 2 m ≥ 2 n, a transform of length m gives the modes
-// of even wave number; the same transform of the values times exp(−πi j/m) gives the odd ones.
+// of even wave number. The same transform of the values times exp(−πi j/m) gives the modes of odd wave
+// number.
 
 #include "thread_team.h"
 #include "rows.h"
@@ -24,8 +25,8 @@
 
 constexpr double PI = 3.14159265358979323846;
 
-// Plan of the transform of a period, for any instruction set. If at least half of the period is padding,
-// the transform has two parts: the even modes and the odd ones.
+// Precomputed tables for the transform of one period; they do not depend on the instruction set. If at
+// least half of the period is padding, the transform has two parts: the even and the odd modes.
 template <class T>
 struct Plan {
     Index period;
@@ -67,7 +68,7 @@ struct Plan {
     }
 };
 
-// cos and sin of 2πj/r.
+// cos(2πj/r) and sin(2πj/r) for j < r, the constants of a transform of r values.
 template <class T, int r>
 struct Roots {
     std::array<T, r> cosine, sine;
@@ -94,7 +95,7 @@ std::shared_ptr<const Plan<T>> plan_for(Index values, Index period) {
     return plan;
 }
 
-// Size of a cache line, to which memory is aligned.
+// Size of a cache line (bytes). Rows are aligned to cache lines.
 constexpr Index LINE = 64;
 
 struct Free {
@@ -104,8 +105,8 @@ inline std::unique_ptr<void, Free> allocate(Index bytes) {
     return std::unique_ptr<void, Free>(::operator new(bytes, std::align_val_t(LINE)));
 }
 
-// Rows begin at cache lines and are an odd number of lines apart, because rows a power of two apart would
-// evict each other from the cache.
+// Distance between the starts of two rows (bytes): an odd number of cache lines. Rows at a distance of a
+// power of two would evict each other from the cache.
 inline Index bytes_of_row(Index bytes) { return ((bytes + LINE - 1) / LINE | 1) * LINE; }
 
 template <class T>
@@ -121,8 +122,8 @@ Rows<T> rows_in(Rows<unsigned char> workspace, Index rows, Index length) {
             bytes_of_row(length * Index(sizeof(T))) / Index(sizeof(T))};
 }
 
-// Vectors of n values: vector types of the compiler or, if it has none, arrays. NO_VECTORS selects the
-// arrays on GCC too, to test them.
+// Vectors of n values. They are vector types of the compiler or, if the compiler has none, arrays.
+// Defining NO_VECTORS selects the arrays with any compiler, for tests.
 #if defined(__GNUC__) && !defined(NO_VECTORS)
 #define COMPILER_VECTORS
 template <class T, int n>

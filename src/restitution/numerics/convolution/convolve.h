@@ -1,6 +1,6 @@
-// Vectorised convolution of an array with an even kernel. Each lane holds one column, so a transform is
-// written as for a single column. convolve.cpp describes the method and includes this file once for
-// each instruction set, with LANE_BYTES the size of its vectors.
+// Vectorised convolution of an array with an even kernel. Each lane of a vector holds one column, so the
+// code of a transform reads as if there were a single column. convolve.cpp describes the method and
+// includes this file once for each instruction set. LANE_BYTES is the size of the vectors.
 
 template <class T>
 struct Lanes {
@@ -18,7 +18,7 @@ struct Lanes {
     Lanes times_i() const { return {-im, re}; }
 };
 
-// x_k = Σ_j x_j exp(∓2πi jk/r) over r values: − forward, + backward.
+// Transform r values in place: x_k = Σ_j x_j exp(∓2πi jk/r), with − forward and + backward.
 template <int r, bool is_forward, class T>
 inline void transform_few(Lanes<T>* x) {
     constexpr T sign = is_forward ? -1 : 1;
@@ -33,7 +33,7 @@ inline void transform_few(Lanes<T>* x) {
         x[1] = b + e;
         x[2] = a - c;
         x[3] = b - e;
-    } else {  // odd: x_j and x_(r−j) share their cosines and sines
+    } else {  // r is odd: the factors of x_j and x_(r−j) have the same cosines and sines
         constexpr int half = r / 2;
         const auto& cosine = ROOTS<T, r>.cosine;
         const auto& sine = ROOTS<T, r>.sine;
@@ -56,7 +56,7 @@ inline void transform_few(Lanes<T>* x) {
     }
 }
 
-// One stage: combine r blocks of `length` values (forward), or separate them again (backward).
+// One stage of the transform: combine r blocks of `length` values (forward) or undo this (backward).
 template <int r, bool is_forward, class T>
 inline void join(Lanes<T>* x, Index length, const std::complex<T>* twiddle) {
     for (Index j = 0; j < length; ++j, twiddle += r - 1) {
@@ -148,7 +148,7 @@ inline void transpose(Vector* x) {
     }
 }
 
-// Copy `some` values, at most `most`. A copy of fixed size compiles to moves instead of a call.
+// Copy `some` values, but at most `most`. A copy of fixed size compiles to moves instead of a call.
 template <class T, Index most>
 inline void copy_some(void* to, const void* from, Index some) {
     if (some >= most)
@@ -157,8 +157,8 @@ inline void copy_some(void* to, const void* from, Index some) {
         std::memcpy(to, from, some * sizeof(T));
 }
 
-// Load `some` values of a row into a vector or store them, multiplied by a factor that may be outside the
-// range of single precision.
+// Load `some` values of a row into a vector (`load`) or store them (`store`). They are multiplied by a
+// factor, which may be outside the range of single precision.
 template <class T, class From>
 inline typename Lanes<T>::Vector load(const From* from, double factor, Index some) {
     constexpr int count = Lanes<T>::count;
@@ -199,7 +199,7 @@ struct Columns {
     const Plan<T>& plan;
     Lanes<T>* x;  // the length of a period
 
-    // Expects x[i] for i < values.
+    // The caller has set x[i] for i < values.
     void transform(Index values) {
         const Index length = plan.length;
         for (Index i = values; i < length; ++i) x[i] = Lanes<T>{};
@@ -222,7 +222,7 @@ struct Columns {
     Lanes<T>& negative_wave(Index k) { return x[plan.places[k ? plan.period - k : 0]]; }
 };
 
-// Modes are stored transposed: a row of modes for each column of values.
+// The steps of one convolution. Modes are stored transposed: a row of modes for each column of values.
 template <class T>
 struct Convolution {
     static constexpr int count = Lanes<T>::count;
@@ -309,9 +309,9 @@ struct Convolution {
     }
 };
 
-// `out` = `factor_back` K ∗ (`factor` `values`), circular with periods (px, py). `weights`, shape
-// (py/2 + 1, px/2 + 1), is the transposed quadrant of the real, even spectrum of K. `workspace` has
-// `workspace_bytes` bytes.
+// Compute `out` = `factor_back` K ∗ (`factor` `values`), a circular convolution with periods (px, py).
+// `weights`, shape (py/2 + 1, px/2 + 1), is the transposed quadrant of the real, even spectrum of K. The
+// size of `workspace` is at least `workspace_bytes`.
 template <class From, class T, class To>
 void convolve(Rows<const From> values, double factor, Rows<const T> weights, Index px, Index py,
               Rows<unsigned char> workspace, double factor_back, Rows<To> out) {

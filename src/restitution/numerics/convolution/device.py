@@ -63,8 +63,9 @@ class Device(Protocol):
         """Multiply the Fourier modes of `values` by a real, even spectrum; write to `out`.
 
         `values` and `out` have shape (nx, ny); `values` is padded with zeros to `periods`.
-        `spectrum` is the transpose of a quadrant made by `even_spectrum`; its precision is that of
-        the computation. `values` are divided by `scale` first, and the result is multiplied by it.
+        `spectrum` is the transpose of a quadrant made by `even_spectrum`. The computation has the
+        precision of `spectrum`. `values` is divided by `scale` before the transform, and the result
+        is multiplied by `scale`.
         """
 
 
@@ -75,7 +76,7 @@ class _Compiled:
 
     def __init__(self, loops: Any) -> None:
         self._loops = loops
-        # Use as many threads as ducc0, whose number DUCC0_NUM_THREADS sets.
+        # Use as many threads as ducc0; the environment variable DUCC0_NUM_THREADS sets the number.
         loops.use_threads(ducc0.misc.thread_pool_size())
 
     def put(self, values: Array) -> Array:
@@ -136,7 +137,7 @@ class _Arrays:
         return waves[:half].copy()  # type: ignore[no-any-return]
 
     def workspace(self, shape: tuple[int, int], periods: tuple[int, int]) -> Array:
-        return np.empty(0)  # the library allocates its own
+        return np.empty(0)  # the library allocates its own memory
 
     def convolve(
         self,
@@ -150,12 +151,13 @@ class _Arrays:
         nx, ny = values.shape
         px, py = periods
         scaled = np.divide(values, scale, dtype=np.float64)
-        # One axis after the other, so that padding rows are not transformed.
+        # Transform one axis after the other, so that padding rows are not transformed.
         modes = self._fft.rfft(scaled.astype(spectrum.dtype), n=py, axis=1)
         modes = self._fft.fft(modes, n=px, axis=0)
         weights, last = spectrum.T, px // 2
         modes[: last + 1] *= weights
-        # Negative wave numbers. In an odd period the largest one has a negative counterpart too.
+        # Modes of negative wave number. If the period is odd, the largest wave number also has a
+        # negative counterpart.
         modes[last + 1 :] *= weights[px - last - 1 : 0 : -1]
         modes = self._fft.ifft(modes, axis=0, norm="forward", overwrite_x=True)[:nx]
         padded = self._fft.irfft(modes, n=py, axis=1, norm="forward")
@@ -163,7 +165,7 @@ class _Arrays:
 
 
 def accelerator(name: str, arrays: Any, fft: Any) -> Device:
-    """Return a device for a CuPy-like library (`arrays`) and its version of scipy.fft (`fft`)."""
+    """Make a device of a library like CuPy (`arrays`) and its counterpart of scipy.fft (`fft`)."""
     return _Arrays(name, arrays, fft)
 
 

@@ -25,7 +25,8 @@ from restitution.numerics.convolution.device import CPU, Device
 from restitution.numerics.reductions import max_magnitude
 
 Array = NDArray[np.float64]
-# The kernel at integer lags i and j, which broadcast. The operator overwrites the result.
+# Function that returns the kernel at integer lags i and j, two arrays that broadcast. The operator
+# may overwrite the array that it returns.
 Kernel = Callable[[NDArray[np.int64], NDArray[np.int64]], Array]
 
 
@@ -40,8 +41,8 @@ class _Spectral:
     `count` is the number of products so far.
 
     Several threads may use one operator, but a lock on its workspace lets only one of them compute
-    at a time. For parallel products each thread takes an operator `with_own_workspace`. The
-    workspace is allocated on first use and kept.
+    at a time. To compute products in parallel, each thread uses its own copy `with_own_workspace`.
+    The workspace is allocated on first use and kept.
     """
 
     def __init__(self, shape: tuple[int, int], periods: tuple[int, int], device: Device) -> None:
@@ -89,7 +90,7 @@ class FreeConvolution(_Spectral):
         return int(self._spectrum.nbytes + self._single_spectrum.nbytes)
 
     def __call__(self, p: Array, out: Array | None = None) -> Array:
-        """Return K ∗ p, same shape as `p`, in a new array or in `out`."""
+        """Return K ∗ p, with the shape of `p`, in a new array or in `out`."""
         return self._convolve(p, self._spectrum, out, 1.0)
 
     def single_precision(self, p: Array, out: Array | None = None) -> Array:
@@ -98,11 +99,11 @@ class FreeConvolution(_Spectral):
 
 
 class SpectralFilter(_Spectral):
-    """Multiplication by a real, even symbol of the wave vector; a cheap approximate operator.
+    """Multiplication by a real, even symbol in Fourier space; a cheap approximate operator.
 
     `symbol(qx, qy)` takes the angular wave numbers (rad per cell, ≥ 0) as arrays that broadcast and
-    returns a new array. Arrays are padded only to a fast size, so the filter is periodic. It
-    computes in single precision, which is enough for a preconditioner.
+    returns a new array. Arrays are padded only to a fast size, so the filter is periodic. The
+    filter computes in single precision, which is accurate enough for a preconditioner.
     """
 
     def __init__(
@@ -125,7 +126,7 @@ class SpectralFilter(_Spectral):
         return int(self._symbol.nbytes)
 
     def __call__(self, r: Array, out: Array | None = None) -> Array:
-        """Return the filtered array, same shape as `r`, in a new array or in `out`."""
+        """Return the filtered `r`, with the shape of `r`, in a new array or in `out`."""
         # Scale the values to about one: single precision has a limited range.
         scale = max_magnitude(r)
         return self._convolve(r, self._symbol, out, scale if scale != 0 else 1.0)

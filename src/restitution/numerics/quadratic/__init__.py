@@ -1,1 +1,1 @@
-"""Box-constrained minimisation of a convex quadratic, and its multilevel start."""
+"""Minimisation of a convex quadratic within bounds, started from the solutions on coarser grids."""

@@ -1,10 +1,10 @@
-// Steps of the minimiser, each in one pass over memory. fused_ops.py documents them and has the
-// equivalent array expressions. Bounds are arrays; all their rows may be the same memory. The order of
-// summation is left to the compiler, so that it may use vectors.
+// Steps of the minimiser, each in one pass over memory. fused_ops.py documents the steps and has the
+// equivalent array expressions. Bounds are arrays; all rows of a bound may be the same memory. The
+// compiler chooses the order of summation, so that it may use vectors.
 
 using Bounds = std::pair<Rows<const double>, Rows<const double>>;  // lower, upper
 
-// The gradient if the node can move downhill within its bounds, else zero.
+// The gradient at a node that can move downhill within its bounds; zero at other nodes.
 inline double free_gradient(double p, double g, double low, double high) {
     const bool falls = (p > low) | (g < 0), rises = (p < high) | (g > 0);
     return (falls & rises) ? g : 0.0;

@@ -1,9 +1,9 @@
-"""Steps of the minimiser, each with several array operations that its loop fuses into one pass.
+"""Steps of the minimiser. A compiled loop fuses the array operations of each step into one pass.
 
-The arguments are those of `minimise`: the point p, its gradient g, the lower and the upper bound
-(numbers, or arrays of the shape of p), the projected gradient r, the preconditioned gradient z, the
-step d and its product Kd. p, g and the bounds are in double precision, the others in double or
-single precision.
+All functions share the notation of `minimise`: the point p, its gradient g, the lower and the upper
+bound (numbers, or arrays of the shape of p), the projected gradient r, the preconditioned gradient
+z, the step d and its product Kd. p, g and the bounds are in double precision; r, z, d and Kd are in
+double or single precision.
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ def as_rows(lower: Bound, upper: Bound, p: Array) -> Bounds:
 def projected_gradient(p: Array, g: Array, b: Array, bounds: Bounds, out: Array) -> float:
     """Turn the product K p in `g` into the gradient K p − b, and write its projection to `out`.
 
-    The projected gradient is zero at nodes on a bound whose gradient pushes them against it. Return
-    its largest magnitude, the violation of the optimality conditions.
+    The projected gradient is zero at the nodes on a bound that a descent step would move out of
+    their bounds. Return its largest magnitude, the violation of the optimality conditions.
     """
     g -= b
     free = g * _free(p, g, bounds)
@@ -94,9 +94,11 @@ def take_step(
 ) -> float:
     """Update p to p + `step` d and g to g + `step` Kd.
 
-    `out` and the return value are those of `projected_gradient`.
+    Write the projected gradient at the new point to `out` and return its largest magnitude, as
+    `projected_gradient` does.
 
-    If the step is full (1), nodes truncated at a bound end exactly on it, without rounding error.
+    After a full step (1), nodes truncated at a bound lie exactly on the bound, without rounding
+    error.
     """
     lower, upper = bounds
     low, high = ((step == 1) & (d == (bound - p).astype(d.dtype, copy=False)) for bound in bounds)
@@ -108,7 +110,7 @@ def take_step(
 
 
 def _free(p: Array, g: Array, bounds: Bounds) -> NDArray[np.bool_]:
-    """Free nodes: p is between the bounds, or at a bound and −g points away from this bound."""
+    """Mask of free nodes: p is between the bounds, or −g points from the bound into the range."""
     lower, upper = bounds
     free = p > lower
     free |= g < 0

@@ -1,5 +1,5 @@
-// Restriction to a coarser grid and prolongation back, in double precision. grid_transfer.py has the
-// equivalent array expressions.
+// Restriction to a coarser grid and prolongation back to the finer grid, in double precision.
+// grid_transfer.py has the equivalent array expressions.
 
 template <class Coarse, class Fine>
 void expect_halves(const Coarse& coarse, const Fine& fine) {

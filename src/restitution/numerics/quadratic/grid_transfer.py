@@ -1,4 +1,4 @@
-"""Restriction to a grid with cells twice as wide, and prolongation back.
+"""Restriction to a grid with cells twice as wide, and prolongation back to the finer grid.
 
 Cells are merged in pairs along each axis, starting with the first; an odd last cell stays alone.
 """
@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 @use_loop
 def restrict(fine: Array, coarse: Array) -> None:
-    """Write the means of 2 × 2 nodes into `coarse`; an odd last row or column counts twice."""
+    """Write the means over 2 × 2 nodes into `coarse`; an odd last row or column counts twice."""
     rows, columns = (n % 2 for n in fine.shape)
     fine = np.pad(fine, [(0, rows), (0, columns)], mode="edge")
     np.add(fine[::2, ::2], fine[1::2, ::2], out=coarse)
@@ -26,7 +26,7 @@ def restrict(fine: Array, coarse: Array) -> None:
 
 @use_loop
 def prolong(coarse: Array, fine: Array) -> None:
-    """Write the linear interpolation of `coarse` into `fine`; constant beyond the outer centres."""
+    """Interpolate `coarse` linearly into `fine`; values are constant beyond the outer centres."""
     rows, columns = fine.shape
     taller = _doubled_rows(coarse)[:rows].T
     fine[...] = _doubled_rows(taller)[:columns].T

@@ -1,8 +1,10 @@
-// Local means of an array. local_mean.py documents them and has the equivalent array expressions.
+// Local means of an array. local_mean.py documents the functions and has the equivalent array
+// expressions.
 
-// Linear weights of the nodes along an axis at evenly spaced places. Part k holds the nodes between
-// the centres of places k and k + 1; the first and the last part also hold the nodes beyond the centres.
-// A node in part k has weight 1 − `to_next` at place k and `to_next` at place k + 1.
+// Evenly spaced places along an axis, and the linear weights with which each node contributes to them.
+// Part k holds the nodes between the centres of places k and k + 1; the first and the last part also
+// hold the nodes beyond the outermost centres. A node in part k has weight 1 − `to_next` at place k and
+// `to_next` at place k + 1.
 template <class T>
 struct Axis {
     std::vector<Index> begin;  // first node of each part, and one past the last node
@@ -40,7 +42,8 @@ void local_sums(Rows<const T> r, Rows<double> sums, Rows<double> nodes) {
     const Axis<T> along_x(r.count, sums.count), along_y(r.length, across);
     const auto some = [&](Index first, Index last) {
         PlaceSums found{std::vector<double>(2 * places)};
-        // Column sums of a part, weighted for the two places of each row.
+        // Column sums over the rows of a part, weighted for the two neighbouring places: `all` and
+        // `next` sum the values, `here` and `there` count the nonzero nodes.
         std::vector<T> all(r.length), next(r.length), here(r.length), there(r.length);
         const auto add = [&](std::vector<T>& column, double* at) {
             for (Index l = 0; l < along_y.parts(); ++l) {

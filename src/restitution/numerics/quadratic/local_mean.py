@@ -1,4 +1,4 @@
-"""Local means of an array over its nonzero nodes, around a coarse lattice of points ("places")."""
+"""Local means of an array over its nonzero nodes, around points ("places") of a coarse lattice."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ Array = NDArray[Any]  # double or single precision
 def local_sums(r: Array, sums: Array, nodes: Array) -> None:
     """Write Σ r and the number of nodes with r ≠ 0 around each place into `sums` and `nodes`.
 
-    Both have shape (places, places), with at least two places. A node between two places
-    contributes to both with linear weights (hat functions).
+    `sums` and `nodes` have shape (places, places), with at least two places. A node between two
+    places contributes to both with linear weights (hat functions).
     """
     over_x, over_y = _hat_weights(r, sums)
     sums[...] = over_x.T @ r @ over_y

@@ -1,9 +1,9 @@
-"""Box-constrained minimisation of a convex quadratic: the one solver of the program.
+"""Minimisation of a convex quadratic within bounds. All contact problems use this solver.
 
     minimise  ½ pᵀK p − pᵀb   subject to   lower ≤ p ≤ upper,
 
-with K symmetric positive definite and known only through its product with an array. With the
-gradient g = K p − b the solution satisfies the conditions of Karush, Kuhn and Tucker:
+K is symmetric positive definite and known only through its product with an array. With the
+gradient g = K p − b, the solution satisfies the conditions of Karush, Kuhn and Tucker:
 
     g ≥ 0 where p = lower,   g = 0 between the bounds,   g ≤ 0 where p = upper.
 
@@ -34,16 +34,18 @@ from restitution.numerics.reductions import max_magnitude
 
 Array = NDArray[np.float64]
 
-# Rounding error of a product with K, in machine epsilons of its largest value (at most 8 on 64²
-# to 4096² nodes).
+# Bound on the rounding error of a product with K, in machine epsilons times the largest value of
+# the product. The largest error measured on 64² to 4096² nodes is 8 in this unit.
 _ROUNDING = 10.0
-# The estimated gradient is used while the violation is at least this multiple of its error.
+# The gradient updated along the steps is used while the violation is at least this multiple of the
+# estimated error of the gradient.
 _CLEAR = 3.0
 # If the optimal step exceeds this fraction of the projected step, take the full step.
 _FULL_STEP_FRACTION = 0.8
-# Initial trial step, chosen near the typical accepted one because bounds truncate early steps.
+# Initial trial length. It is near the typical accepted length, because bounds truncate early steps.
 _INITIAL_STEP = 0.3
-# The optimal length oscillates, so changes of the trial length are limited and damped (root).
+# Smallest and largest trial length, and the exponent that damps its changes. Damping is needed
+# because the optimal length oscillates from step to step.
 _MIN_STEP, _MAX_STEP, _STEP_DAMPING = 0.1, 3.0, 0.5
 
 
@@ -58,9 +60,9 @@ class Operator(Protocol):
 class BoundedQuadratic:
     """The problem: ½ pᵀK p − pᵀb with lower ≤ p ≤ upper.
 
-    `K` is in double precision, `b` has shape (nx, ny), and a bound is a number or an array of that
-    shape. `K_single` is K in single precision, for the products along the steps; by default K
-    itself.
+    `K` computes in double precision. `b` has shape (nx, ny), and a bound is a number or an array of
+    this shape. `K_single` is K in single precision, for the products along the steps. If it is
+    None, K is used there too.
     """
 
     K: Operator
@@ -103,22 +105,23 @@ def minimise_quadratic(
     falls. (2) The direction is not reset when nodes reach or leave a bound. Polak–Ribière's β,
     limited to between zero and the β of Fletcher and Reeves (Gilbert and Nocedal 1992, SIAM J.
     Optim. 2, 21–42), decreases after steps that end at a bound, because they are not optimal.
-    (3) The residual is preconditioned by an approximate inverse of K, which need not be symmetric
-    nor give a descent direction.
+    (3) The projected gradient is preconditioned by an approximate inverse of K, which need not be
+    symmetric and need not give a descent direction.
 
     `start` is the initial point, shape (nx, ny), and is overwritten. `precondition` is an
-    approximate inverse of K. `tolerance` is on the violation, in the units of `b`. `K_start` is the
-    product of `K_single` and a `start` within the bounds, if known, and is overwritten. With
-    `accept_estimated_gradient` the result may rest on the gradient that was updated along the
-    steps, if the violation and the estimated error are together within `tolerance`. Otherwise the
-    result is accepted only with a gradient computed with K at the final point.
+    approximate inverse of K. `tolerance` limits the violation and has the units of `b`. `K_start`
+    is the product of `K_single` and `start`, if it is known and `start` is within the bounds;
+    `K_start` is overwritten. With `accept_estimated_gradient`, the final gradient may be the one
+    updated along the steps, provided that the violation plus the estimated error of this gradient
+    is within `tolerance`. Otherwise the final gradient is computed with K at the final point.
 
     The first gradient is computed with K, unless `K_start` is given or the estimate is accepted.
-    Then the products along the steps update it. Their rounding errors are added up as independent
-    errors, and the gradient is computed with K again when the violation is no longer well above the
-    error. If the solve does not converge, the result says so; no exception is raised.
+    The products along the steps then update the gradient. Their rounding errors are added up as
+    independent errors. When the violation is no longer well above this error, the gradient is
+    computed with K again. If the solve does not converge, the result says so; no exception is
+    raised.
     """
-    # Work arrays that only determine the direction have the precision of the products.
+    # Work arrays that only determine the direction have the same precision as the products.
     work_type: Any = np.float64 if problem.K_single is None else np.float32
     K, b, K_single = problem.K, problem.b, problem.K_single or problem.K
     rounding = _ROUNDING * float(np.finfo(work_type).eps)
@@ -133,7 +136,7 @@ def minimise_quadratic(
     g = K_start  # projected_gradient subtracts b
     residual = projected_gradient(p, g, b, bounds, r)
     rz_old, iteration = 0.0, 0
-    step_change = 1.0  # factor of the last change of the trial length
+    step_change = 1.0  # factor by which the trial length changed last
     trial_length = _INITIAL_STEP
 
     for iteration in range(1, max_iterations + 1):

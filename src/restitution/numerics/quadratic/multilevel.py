@@ -1,11 +1,12 @@
-"""Box-constrained minimisation with a multilevel start: coarser grids first, then a window.
+"""Minimisation within bounds, first on coarser grids and then on a window of the finest grid.
 
-The problem is that of `minimise` with lower = 0 on a uniform grid. Restricted to means over 2 × 2
-nodes, it becomes the same problem on a grid with half as many nodes along each axis. The solution
-there is a good first guess of all but the shortest waves (nested iteration; Venner and Lubrecht
-2000, *Multilevel Methods in Lubrication*). The guess also shows where the pressure is nonzero, so
-the fine problem is solved on a window around this region. The optimality conditions are then
-checked on all nodes, and the window is widened to include violations outside it.
+The problem is that of `minimise` with lower = 0 on a uniform grid. Restricting b to means over
+2 × 2 nodes gives the same problem on a grid with half as many nodes along each axis. The solution
+on this coarser grid is a good first guess of all but the shortest waves (nested iteration; Venner
+and Lubrecht 2000, *Multilevel Methods in Lubrication*). The guess also shows where the pressure is
+nonzero, so the fine problem is solved on a window around this region. The optimality conditions are
+then checked on all nodes. If nodes outside the window violate them, the window is widened to
+include these nodes and the problem is solved again.
 """
 
 from __future__ import annotations
@@ -33,26 +34,27 @@ from restitution.numerics.reductions import dot
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-# Builds the operator and its approximate inverse for a shape (in nodes) and a level n, at which the
-# spacing is 2ⁿ times that of the finest grid.
+# Function that builds the operator and its approximate inverse for a shape (nodes) and a level n.
+# At level n the spacing is 2ⁿ times the spacing of the finest grid.
 Operators = Callable[[tuple[int, int], int], tuple[FreeConvolution, SpectralFilter]]
 
-# Minimum numbers of nodes along the shorter edge: for a first guess, which costs more than it saves
-# on smaller grids, and for a further restriction.
+# Fewest nodes along the shorter edge of a finest grid that gets a first guess from coarser grids,
+# and of a coarser grid that gets one. On smaller grids a guess costs more time than it saves.
 _MIN_NODES_FOR_GUESS, _MIN_NODES_TO_COARSEN = 120, 80
-# Tolerance on coarser grids, as a fraction of the largest b. Prolongation errors are larger.
+# Tolerance on coarser grids, as a fraction of the largest b. A smaller tolerance is useless because
+# prolongation errors are larger.
 _COARSE_ACCURACY = 1e-2
 _COARSE_ITERATIONS = 60
-_MARGIN = 3  # nodes around the guess
-# Largest window, as a fraction of all nodes: a larger one saves less than its check costs.
+_MARGIN = 3  # nodes by which the window exceeds the guessed contact on each side
+# Largest window, as a fraction of all nodes. A larger window saves less than its check costs.
 _MAX_WINDOW_FRACTION = 0.7
-_PLACES = 8  # places along each axis around which means are taken
-# Largest fraction of contact nodes strictly between the bounds for which the guess corrects the
-# edge of the contact by the gradient; and the size of the correction as a fraction of the pressure
-# that would close the gap at one node alone (0.15 to 0.5 work nearly as well).
+_PLACES = 8  # points along each axis around which local means are taken (see `local_mean`)
+# The gradient corrects the contact edge of a guess if at most this fraction of the contact nodes is
+# strictly between the bounds. The second number is the size of the correction, as a fraction of the
+# pressure that would close the gap at one node alone (0.15 to 0.5 work nearly as well).
 _MAX_FREE_FRACTION, _GAP_FRACTION = 0.05, 0.3
-# Rayleigh quotient of K·M on the free nodes (M is the approximate inverse) above which the mean is
-# damped; and the largest damping factor that still saves time.
+# The mean is damped if the Rayleigh quotient of K·M on the free nodes exceeds this value (M is the
+# approximate inverse). The second number is the largest damping factor that still saves time.
 _USUAL_STIFFNESS, _MAX_DAMPING_FACTOR = 3.5, 0.7
 
 
@@ -66,19 +68,20 @@ def solve_multilevel(
 ) -> tuple[Minimum, int]:
     """Minimise with 0 ≤ p ≤ `upper` from a multilevel start.
 
-    `b` has shape (nx, ny); `upper` is a number or an array of that shape. `tolerance` is on the
-    violation, in the units of `b`. Return the result and the number of products with K on the
+    `b` has shape (nx, ny); `upper` is a number or an array of this shape. `tolerance` limits the
+    violation and has the units of `b`. Return the result and the number of products with K on the
     finest grid. If the solve does not converge, the result says so; no exception is raised.
     """
     whole_grid: Box = (slice(0, b.shape[0]), slice(0, b.shape[1]))
     size = shape_of(whole_grid)
     p, Kp, products = np.zeros_like(b), None, 0
-    whole_K, whole_inverse = operators(size, 0)  # first: smaller blocks reuse its coefficients
+    whole_K, whole_inverse = operators(size, 0)  # smaller blocks reuse its coefficients
     if min(size) >= _MIN_NODES_FOR_GUESS:
         p = _first_guess(operators, b, upper, level=1)
     window = bounding_box(p > 0)
     if window is not None and _is_worth_its_check(window, size):
-        # Coarse grids miss some contact. Include the nodes that the guess leaves closed.
+        # Coarse grids miss some contact. The window also includes the nodes where the guess has no
+        # pressure but the bodies overlap.
         Kp = whole_K.single_precision(p)
         window = bounding_box((p > 0) | (Kp < b))
     window = whole_grid if window is None else widen(window, _MARGIN, size)
@@ -110,22 +113,22 @@ def solve_multilevel(
             return checked, products + whole_K.count
         wider = union(window, bounding_box(g < -tolerance))
         Kp = np.add(g, b, out=g)
-        # If the window did not grow, only rounding is left: solve on the whole grid.
+        # If the window did not grow, the violation comes from rounding: solve on the whole grid.
         window = whole_grid if wider is None or wider == window else widen(wider, _MARGIN, size)
 
 
 def mean_damped_preconditioner(inverse: Operator, p: Array, b: Array, upper: Bound) -> Operator:
-    """`inverse`, with the local mean of its argument damped where `inverse` overestimates it.
+    """Return `inverse` with the local mean of its argument damped where `inverse` overestimates it.
 
     The mean of a residual is constant on the contact nodes and drops to zero at their edge. The
     inverse of a smoothing operator amplifies the short waves of this drop, more so on finer grids
-    (McLean and Steinbach 1999, Adv. Comput. Math. 11, 271–286). So it overestimates the constant
-    part, by up to 30 times on rough contacts, and conjugate gradients would have to correct this
-    part again whenever nodes reach or leave a bound. The guess `p` gives the factor, because
-    K p = b on those nodes. Means around 8 × 8 places represent the nearly constant part.
+    (McLean and Steinbach 1999, Adv. Comput. Math. 11, 271–286). So `inverse` overestimates the
+    constant part, by up to 30 times on rough contacts. Conjugate gradients would have to correct
+    this part again whenever nodes reach or leave a bound. The guess `p` gives the damping factor,
+    because K p = b on the free nodes. Means around 8 × 8 places represent the nearly constant part.
     """
     free, free_nodes, contact_nodes = _between_the_bounds(p, upper)
-    if free_nodes <= 0.5 * contact_nodes:  # no guess, or mostly yielding
+    if free_nodes <= 0.5 * contact_nodes:  # no guess, or most contact nodes yield
         return inverse
     constant: Any = free.astype(np.float32)
     image = inverse(constant, out=np.empty_like(constant))
@@ -150,7 +153,7 @@ def _is_array(bound: Bound) -> TypeGuard[Array]:
 
 
 def _between_the_bounds(p: Array, upper: Bound) -> tuple[Mask, int, int]:
-    """Return the mask of 0 < p < `upper`, its number of nodes, and the number with p > 0."""
+    """Return the mask of 0 < p < `upper`, its number of true nodes, and the number with p > 0."""
     touching = p > 0
     free = touching & (p < upper)
     return free, int(np.count_nonzero(free)), int(np.count_nonzero(touching))
@@ -163,9 +166,10 @@ def _is_worth_its_check(window: Box, size: tuple[int, int]) -> bool:
 
 
 def _first_guess(operators: Operators, b: Array, upper: Bound, level: int) -> Array:
-    """Return the prolonged solution on the grid of `level`, started from the next coarser grid.
+    """Solve on the grid of `level` and return the solution prolonged to the next finer grid.
 
-    On the coarsest grid the guess is zero.
+    The solve starts from the first guess of the next coarser grid, or from zero on the coarsest
+    grid.
     """
     if min(b.shape) < _MIN_NODES_TO_COARSEN:
         return np.zeros_like(b)
@@ -192,7 +196,7 @@ def _first_guess(operators: Operators, b: Array, upper: Bound, level: int) -> Ar
     if free_nodes > _MAX_FREE_FRACTION * contact_nodes:
         prolong(found.point, guess)
         return guess
-    # In a nearly fully plastic contact the pressure jumps to zero between two nodes. The gradient
-    # at both (plastic displacement at one, gap at the other) tells where.
+    # In a nearly fully plastic contact, the pressure jumps to zero between two nodes. The gradients
+    # at these nodes (plastic displacement at one, gap at the other) locate the jump.
     prolong(found.point - _GAP_FRACTION / K.diagonal * found.gradient, guess)
     return np.clip(guess, 0.0, upper, out=guess)
