@@ -43,8 +43,9 @@ REPORT = """\
 {date}, {machine}.
 {versions}.
 
-Each ratio is the time of the program divided by the time of restitution in the same run.
-`make bench-peers` writes this page; all columns are in [peers.csv](peers.csv).
+This page compares the time of restitution with that of other programs for the same contacts. Each
+ratio is the time of the program divided by the time of restitution in the same run. `make
+bench-peers` writes this page; [peers.csv](peers.csv) contains all columns.
 
 {table}
 
@@ -52,33 +53,39 @@ Each ratio is the time of the program divided by the time of restitution in the 
 
 ## What is timed
 
-R* = 250 µm, E* = 112 GPa, spacing 0.25 µm, {nodes} × {nodes} nodes. Elastic: δ = a²/R* with
-a = 10 µm; rough is a Gaussian autocorrelation of length 2 µm and Rq = 0.1 µm (`seed = 1`).
-Plastic: p ≤ 750 MPa, a = 20 µm. "full" is the whole grid, as users of each program run it;
-"cropped" hands it only the bounding box of {{h₀ < δ}} (widened to sizes that FFTs like), which this
-program finds by itself.
+**Contacts.** All contacts have R* = 250 µm, E* = 112 GPa and {nodes} × {nodes} nodes with a spacing
+of 0.25 µm. The indentation is δ = a²/R*.
 
-A time is that of one complete solve in a process that is already running: set-up and kernel are
-in it, and nothing is kept from earlier solves (FFTW's plans excepted, which spares SlipPy most of
-its planning). Imports, compiling and the reading of the problem are not. "First" is what comes
-before: the start of the process with its imports, and the first solve in it.
+* Elastic contacts have a = 10 µm.
+* Plastic contacts have p ≤ 750 MPa and a = 20 µm.
+* Rough surfaces have a Gaussian autocorrelation of length 2 µm and Rq = 0.1 µm (`seed = 1`).
+* "full" is the whole grid, as users of each program run it.
+* "cropped" gives the program only the bounding box of {{h₀ < δ}}, enlarged to sizes that are fast
+  to transform. restitution finds this box by itself.
 
-Every program runs at the loosest tolerance of its own (in decades) at which the contact conditions
-0 ≤ p ≤ p_y hold to {residual} δ. How far they hold is computed from the pressures alone, by code
-that none of the programs share: g = K p + h₀ − δ with Love's formula in extended precision and a
-zero-padded FFT over the whole grid. A program that needs more than {limit:.0f} s for a solve, or
-does not get there at any tolerance, is reported so.
+**Time.** A time is that of one complete solution in a process that is already running. It includes
+the set-up and the kernel. It does not include imports, compilation and reading the problem. Nothing
+is kept from earlier solutions, except the plans of FFTW, which saves SlipPy most of its planning.
+"First" is the time of the start of the process with its imports, plus that of the first solution.
 
-The programs take turns, in an order that is reversed each time, {rounds} times; times are medians,
-ratios are taken turn by turn and given as median (least–largest). U, one zero-padded convolution
-(forward and inverse) of {nodes} × {nodes} nodes with scipy.fft, two workers, float64, is measured
-at every turn: its median is {unit:.1f} ms ({least:.1f}–{largest:.1f}). Where that spread is wide
-something else ran at the same time, and threads suffer most.
+**Accuracy.** Every program has its own tolerance. It runs with the largest one, in powers of ten,
+at which the contact conditions 0 ≤ p ≤ p_y hold to {residual} δ. This is checked with the pressures
+alone, by code that none of the programs use: g = K p + h₀ − δ with Love's formula in extended
+precision and a zero-padded FFT over the whole grid. If a program needs more than {limit:.0f} s for
+a solution, or does not reach this accuracy at any tolerance, the table says so.
 
-Each program is run in the best way that was found, in the units that suit it best: see the workers
-in `benchmarks/peers`. Tamaas cannot be given an indentation on a free half-space; it is given the
-right force, which saves it the search for it. Its package runs on one core. SlipPy uses one core on
-grids of up to 256², where its threads gain nothing.
+**Repetitions.** The programs take turns {rounds} times, in an order that is reversed each time.
+Times are medians. Ratios are computed for each turn, and the table shows their median
+(smallest–largest). U is the time of one zero-padded convolution (forward and inverse) of
+{nodes} × {nodes} nodes with scipy.fft, two workers and float64. It is measured at every turn, and
+its median is {unit:.1f} ms ({least:.1f}–{largest:.1f}). A wide range means that other processes
+ran at the same time, which slows down threads most.
+
+**Settings.** Each program runs with the best settings that were found, and in the units that suit
+it best (see the workers in `benchmarks/peers`). Tamaas does not accept an indentation on a free
+half-space. It is given the correct force instead, which saves it the search for the force. Its
+package runs on one core. SlipPy uses one core on grids of up to 256², where its threads save no
+time.
 """
 
 

@@ -52,19 +52,21 @@ REPORT = """\
 
 {date}, {machine}. Written by `make bench`.
 
-All on {nodes}² nodes of 0.25 µm, two steel spheres (R* = 250 µm, E* = 112 GPa, p_y = 750 MPa),
-times from the contact in memory to the numbers, kernels included. U is one zero-padded convolution
-(forward and inverse) on that grid with scipy.fft, two workers, float64: {unit_ms:.0f} ms, measured
-between the others. Medians of {repeats} (least and largest), of Fig. 10 one run each.
+All contacts are those of two steel spheres (R* = 250 µm, E* = 112 GPa, p_y = 750 MPa) on {nodes}²
+nodes of 0.25 µm. The times start with the contact in memory and end with the results; they include
+the kernels of the convolutions. They are medians of {repeats} runs (smallest and largest). Fig. 10
+was run once. U is the time of one zero-padded convolution (forward and inverse) on the same grid
+with scipy.fft, two workers and float64. It was measured between the runs and is {unit_ms:.0f} ms.
 
 | what | time, s | U | convolutions | largest error of COR |
 |---|---|---|---|---|
 {rows}
 
-Fig. 10 is that of Ghanbarzadeh et al. (2019): smooth, and Rq = 0.1, 0.2, 0.5 and 1 µm (Gaussian,
-correlation length 2 µm), w = 0.09 J/m², 24 depths from 10 nm to 1 µm each, every one loaded and
-followed back to separation. As a study it is one command, with its start and its tables; its cases,
-the surfaces, are shared out among processes ("smooth" is Rq = 1 pm there).
+Fig. 10 is the figure of Ghanbarzadeh et al. (2019). It has five surfaces: smooth, and Rq = 0.1,
+0.2, 0.5 and 1 µm (Gaussian, correlation length 2 µm), with w = 0.09 J/m². Each surface is loaded to
+24 depths from 10 nm to 1 µm, and unloaded from each depth step by step until separation. The last
+row is the time of one `restitution study` command, including its start and its tables. Its cases
+are the surfaces, which are distributed among processes ("smooth" is Rq = 1 pm in this study).
 """
 
 

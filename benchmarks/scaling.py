@@ -38,21 +38,29 @@ REPORT = """\
 
 {date}, {machine}. Written by `make bench`; all columns are in [scaling.csv](scaling.csv).
 
-One solve to 1e-8 of a sphere (R* = 250 µm, E* = 112 GPa) on one rough surface (Rq = 0.1 µm,
-Gaussian autocorrelation of length 2 µm) over 64 µm, made on {coarsest}² nodes and refined by zero
-padding its spectrum. "a = 20 um" is δ = 20²/250 µm; "filling" is the depth at which {{h₀ < δ}} all
-but reaches the rim ({filling:.2f} µm). Plastic: p ≤ 750 MPa. U is one zero-padded convolution
-(forward and inverse) on the whole grid of that size with scipy.fft, two workers, float64, measured
-just before. Every row is a process of its own; memory is the most that it ever held, Python and the
-surface included, in GiB and in float64 arrays of the whole grid. Times are medians of {fewest} to
-{most} solves, set-up and kernel included; "least" is the quickest of them, "first" the one before,
-which touches its memory for the first time. A virtual machine whose host takes back what lies idle,
-like this one, may need 1 to 2 s per GiB for that, whichever the program.
+This page shows how time and memory grow with the size of the grid. Each row is one solution to 1e-8
+of a sphere (R* = 250 µm, E* = 112 GPa) with the same rough surface over 64 µm (Rq = 0.1 µm,
+Gaussian autocorrelation of length 2 µm). The surface is made on {coarsest}² nodes and refined by
+zero padding its spectrum. Each row was measured in a process of its own.
+
+* case: "a = 20 um" has an indentation of 20²/250 µm. "filling" has the indentation at which the
+  region {{h₀ < δ}} nearly reaches the edge of the grid ({filling:.2f} µm). Plastic contacts have
+  p ≤ 750 MPa.
+* time: the median of {fewest} to {most} solutions, including the set-up and the kernel.
+* U: the time divided by that of one zero-padded convolution (forward and inverse) on the whole grid
+  with scipy.fft, two workers and float64, measured just before.
+* least: the fastest of these solutions.
+* first: the solution before these, which touches its memory for the first time. On a virtual
+  machine whose host reclaims idle memory, like this one, any program may need 1 to 2 s per GiB for
+  this.
+* memory: the largest memory of the process, including Python and the surface, in GiB.
+* arrays per node: the same memory in float64 arrays of the whole grid.
 
 {table}
 
-Time grows with the number of nodes to the power {exponents}. The least times: {least}; those of the
-first solves: {first}.
+Time grows with the number of nodes to the power {exponents}.
+For the least times the powers are {least}.
+For the first solutions they are {first}.
 
 ![time and memory against nodes](scaling.png)
 """

@@ -27,8 +27,9 @@ REPORT = """\
 
 {date}, {machine}. Written by `make bench`.
 
-Whole processes of this Python, in turns, medians of {turns} (least and largest); the process
-itself, {bare:.3f} s without any import, is in them.
+The table shows the time of whole Python processes, measured in turns: the median of {turns} runs
+(smallest and largest). The times include the start of Python itself, which takes {bare:.3f} s
+without any import.
 
 | what | time, s | over {base} |
 |---|---|---|

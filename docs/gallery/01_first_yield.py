@@ -2,10 +2,11 @@ r"""
 First yield
 ===========
 
-Where does a smooth sphere start to lose energy? Its largest pressure is Hertz's,
-:math:`p_0 = 2 E^* a/(\pi R^*)`. It yields beneath the surface when :math:`p_0` reaches 1.6 times
-the yield strength. The velocity at which an impact gets there does not depend on the size of the
-particle, and for most materials it is far below the velocities of a DEM simulation.
+This figure shows the velocity at which a smooth sphere starts to lose energy. The largest pressure
+follows from the theory of Hertz, :math:`p_0 = 2 E^* a/(\pi R^*)`. The sphere yields below its
+surface when :math:`p_0` reaches 1.6 times the yield strength. The impact velocity at which this
+happens does not depend on the size of the particle. For most materials it is far below the
+velocities of a DEM simulation.
 """
 
 import matplotlib.pyplot as plt

@@ -2,9 +2,10 @@
 COR of smooth and rough spheres
 ===============================
 
-The same pair of 1 mm steel beads with three roughnesses. Asperities yield at a touch, so a rough
-bead loses energy at any velocity; where the bulk takes over, COR rises and then joins the smooth
-curve. Open markers: the grid does not resolve the contact there.
+This figure shows COR of the same pair of 1 mm steel beads with three roughnesses. Asperities yield
+under very small forces, so a rough bead loses energy at any velocity. At higher velocities the bulk
+carries the load, and COR rises towards the curve of the smooth bead. Open markers show contacts
+that the grid does not resolve.
 """
 
 import matplotlib.pyplot as plt

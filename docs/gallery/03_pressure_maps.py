@@ -2,9 +2,9 @@
 Pressure maps
 =============
 
-What a rough contact looks like at three depths. At first a few asperities carry the load, each at
-the largest pressure that the metal bears; at last the patches merge and the pressure follows the
-bulk.
+These maps show the pressure in a rough contact at three depths. At the smallest depth a few
+asperities carry the load, each at the largest pressure that the metal can bear. At the largest
+depth the patches have merged, and the pressure follows the shape of the sphere.
 """
 
 import matplotlib.pyplot as plt

@@ -2,8 +2,9 @@
 Resolution
 ==========
 
-The same band-limited surface on ever finer grids. While a contact patch is a few nodes, COR belongs
-to the grid. From about 20 nodes in the patch of the median contact node on it stays within 2 %.
+This figure shows COR of one band-limited surface on successively finer grids. If a contact patch
+has only a few nodes, COR depends on the grid. COR changes by less than 2 % once the patch that
+contains the median contact node has about 20 nodes or more.
 """
 
 import matplotlib.pyplot as plt

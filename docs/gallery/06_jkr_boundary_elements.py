@@ -2,9 +2,9 @@
 JKR against boundary elements
 =============================
 
-A smooth adhesive sphere on the grid, unloaded step by step until it snaps off, beside the curve of
-Johnson, Kendall and Roberts (1971). Nodes let go by crack closure: where the energy release rate
-exceeds the work of adhesion.
+This figure compares a computed adhesive contact with the theory of Johnson, Kendall and Roberts
+(1971). A smooth sphere is unloaded step by step until it snaps off. Nodes are released by the
+crack-closure criterion, that is where the energy release rate exceeds the work of adhesion.
 """
 
 import matplotlib.pyplot as plt

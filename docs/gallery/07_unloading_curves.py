@@ -2,8 +2,9 @@
 Loading and unloading curves
 ============================
 
-COR is the square root of the ratio of two areas: below the unloading and below the loading curve.
-The rough contact is softer at first and has lost more when it parts.
+COR is the square root of the ratio of two areas: the area below the unloading curve and the area
+below the loading curve. The rough contact is softer at first, and it has lost more energy when the
+bodies separate.
 """
 
 import matplotlib.pyplot as plt

@@ -2,9 +2,10 @@
 Validation against finite elements
 ==================================
 
-COR of three models of plasticity over that of axisymmetric finite elements (smooth spheres and
-spheres on waves) and of a rough contact in 3D, from ``validation/models.csv``. Given a yield
-strength the program uses ``expanding-cavity``.
+This figure shows COR of three models of plasticity divided by COR of two references: axisymmetric
+finite elements (smooth spheres and spheres with waves), and a rough contact in 3D. The data are
+from ``validation/models.csv``. If a yield strength is given, the program uses the model
+``expanding-cavity``.
 """
 
 import csv

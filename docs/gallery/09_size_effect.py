@@ -2,9 +2,10 @@
 Size effect
 ===========
 
-The same roughness on beads of different size, at one impact velocity. Smooth spheres have the same
-COR at every size; the dots are three surfaces of the same statistics for each size. A COR measured
-on large balls does not hold for powder of the same material.
+This figure shows COR of beads of different sizes with the same roughness, at one impact velocity.
+Smooth spheres have the same COR at every size. The dots show three surfaces with the same
+statistics for each size. COR measured on large balls is therefore not valid for powder of the same
+material.
 """
 
 import matplotlib.pyplot as plt

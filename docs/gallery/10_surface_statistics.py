@@ -2,8 +2,8 @@
 Surface statistics
 ==================
 
-Three generated surfaces of the same Rq: a section, the distribution of heights and the power
-spectral density, which decides how COR behaves at low velocity.
+This figure shows three generated surfaces with the same Rq: a section, the distribution of heights
+and the power spectral density. The power spectral density determines COR at low velocity.
 """
 
 import matplotlib.pyplot as plt

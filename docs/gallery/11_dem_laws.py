@@ -2,10 +2,10 @@
 Laws of DEM codes beside a computed curve
 =========================================
 
-The COR of a rough bead, and what laws of DEM codes give with the same yield strength: a constant,
-Thornton and Ning's law, and LAMMPS' ``mdr``. Smooth laws lose no energy below their yield velocity,
-where the rough bead loses most. ``restitution fit-law`` fits seven laws to a computed curve and
-prints how far each is off.
+This figure compares the computed COR of a rough bead with laws of DEM codes that have the same
+yield strength: a constant, the law of Thornton and Ning, and ``mdr`` of LAMMPS. Laws of smooth
+spheres lose no energy below their yield velocity, where the rough bead loses most.
+``restitution fit-law`` fits seven laws to a computed curve and prints the error of each law.
 """
 
 import matplotlib.pyplot as plt

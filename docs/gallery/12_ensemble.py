@@ -2,9 +2,9 @@
 An ensemble of rough surfaces
 =============================
 
-Twelve surfaces of the same statistics: the mean COR, its spread from surface to surface, and single
-curves. The spread is largest where a few asperities carry the load. ``realisations = 12`` in a case
-computes this with confidence intervals.
+This figure shows COR of twelve surfaces with the same statistics: the mean, the standard deviation
+between surfaces, and single curves. The standard deviation is largest where a few asperities carry
+the load. ``realisations = 12`` in a case computes the mean with its confidence interval.
 """
 
 import matplotlib.pyplot as plt

@@ -237,7 +237,8 @@ def summary(path: Path) -> str:
         first.setdefault(row["case"], []).append(row)
     single = [of[int(case) % len(of)] for case, of in first.items()]
     lines = [
-        "| | cases | COR | held | bar over what is needed, median | over the difference | bar |",
+        "| | cases | values of COR | held | total error / needed error, median | "
+        "total error / difference, median | total error, median |",
         "|---|---|---|---|---|---|---|",
         line("all", rows),
         line("one of each case", single),
