@@ -17,7 +17,8 @@ VELOCITY_TOLERANCE = 1e-6
 # Relative tolerance on the velocity if the loading work is integrated. The relative error of the
 # integral is about 1e-3, so a smaller tolerance would be useless.
 _INTEGRATED_TOLERANCE = 1e-4
-_MAX_GROWTH = 3.0  # largest factor between two trial depths in the search for an upper bound
+_MAX_GROWTH = 3.0  # largest factor between two trial depths
+_MOST_STEPS = 8  # of Newton's method
 
 
 def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None = None) -> State:
@@ -26,7 +27,7 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
     If the work is known exactly, the relative error of the velocity is at most 1e-6. If the work is
     integrated, the velocity computed from `State.loading_work` is V within 1e-4, and
     `State.work_error` is an additional error. Where the work is positive, it increases with the
-    indentation, so a bracketing root finder always converges.
+    indentation, so the search always converges.
 
     Args:
         contact: Contact to load.
@@ -41,8 +42,6 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
         DomainError: The contact reaches the edge of the grid.
         NotConvergedError: The work jumps at this indentation, or a solve did not converge.
     """
-    from scipy.optimize import toms748
-
     mass = contact.pair.mass
     if mass is None:
         raise CaseError("density: is missing; give the density of both bodies, or no velocity")
@@ -50,40 +49,93 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
         raise CaseError(f"velocity: {velocity} m/s is not positive")
     work = 0.5 * mass * velocity**2
     tolerance = _INTEGRATED_TOLERANCE if work_is_integrated(contact) else VELOCITY_TOLERANCE
-    found: dict[float, State] = {}
-
-    def excess(indentation: float) -> float:
-        """Function with the sign of W − ½ m* V², nearly linear because W grows as δ² to δ^2.5."""
-        indentation = float(indentation)  # the root finder passes a NumPy scalar
-        if indentation == 0:
-            return -1.0
-        guess = max(
-            (state for depth, state in found.items() if depth < indentation),
-            key=lambda state: state.indentation,
-            default=start,
-        )
-        state = solve_without_work(contact, indentation, start=guess, residual=RESIDUAL)
-        found[indentation] = state = with_work(state, guess)
-        return math.copysign((abs(state.loading_work) / work) ** 0.4, state.loading_work) - 1
-
-    # Start at Hertz's depth for this work; yield and roughness make the contact deeper.
-    smooth = Hertz(contact.pair.radius, contact.pair.contact_modulus)
-    high = float(smooth.indentation_from_energy(work))
-    low, above = 0.0, excess(high)
-    while above < 0:
-        low, high = high, high * min(_MAX_GROWTH, max(1.05, 1.05 / max(1 + above, 1e-9)))
-        above = excess(high)
-    # The tolerance on the depth follows from ΔV/V = ½ ΔW/W, between Δδ/δ and 1.25 Δδ/δ.
-    deepest = float(toms748(excess, low, high, xtol=0.3 * tolerance * high, rtol=1e-12, k=1))
-    if deepest not in found:
-        excess(deepest)
-    state = found[deepest]
+    search = _Search(contact, work, start)
+    depth, sharp = search.first_depth(), 0.3 * tolerance
+    for _ in range(_MOST_STEPS):
+        if search.miss(search.at(depth)) <= sharp:
+            break
+        following = search.newton(depth)
+        if following is None:
+            depth = search.bracketed(sharp)
+            break
+        depth = following
+    else:
+        depth = search.bracketed(sharp)
+    state = search.at(depth)
     require_inside_grid(state)
-    miss = abs(math.sqrt(max(state.loading_work, 0.0) / work) - 1)
+    miss = search.miss(state)
     if miss > max(tolerance, state.work_error / work):
         raise NotConvergedError(
             f"velocity: {velocity:.6g} m/s was met only within {miss:.1e} at an indentation of "
-            f"{1e9 * deepest:.6g} nm, where the work jumps (too few nodes in contact); refine the "
+            f"{1e9 * depth:.6g} nm, where the work jumps (too few nodes in contact); refine the "
             "grid or change the velocity"
         )
-    return replace(state, convolutions=sum(each.convolutions for each in found.values()))
+    return replace(state, convolutions=sum(each.convolutions for each in search.found.values()))
+
+
+class _Search:
+    """The search for the indentation at which the loading work is `work` (J).
+
+    Newton's method for ln W as a function of ln δ, whose slope is F δ/W because dW/dδ = F, needs
+    two or three solves. Where the work jumps it can fail; then a bracketing root finder takes over.
+    """
+
+    def __init__(self, contact: Contact, work: float, start: State | None) -> None:
+        self._contact, self._work, self._start = contact, work, start
+        self.found: dict[float, State] = {}
+
+    def at(self, indentation: float) -> State:
+        """The state at an indentation (m), loaded from the deepest shallower state."""
+        if indentation not in self.found:
+            shallower = (state for depth, state in self.found.items() if depth < indentation)
+            guess = max(shallower, key=lambda state: state.indentation, default=self._start)
+            state = solve_without_work(self._contact, indentation, start=guess, residual=RESIDUAL)
+            self.found[indentation] = with_work(state, guess)
+        return self.found[indentation]
+
+    def miss(self, state: State) -> float:
+        """Relative difference of the velocity of `state` from the prescribed velocity."""
+        return abs(math.sqrt(max(state.loading_work, 0.0) / self._work) - 1)
+
+    def first_depth(self) -> float:
+        """A first guess (m): a Newton step from the start, or else Hertz's depth for this work."""
+        if self._start is not None and (depth := self._step(self._start)) is not None:
+            return depth
+        # Yield and roughness make the contact deeper.
+        smooth = Hertz(self._contact.pair.radius, self._contact.pair.contact_modulus)
+        return float(smooth.indentation_from_energy(self._work))
+
+    def newton(self, depth: float) -> float | None:
+        """The next depth (m) after `depth`, or None if it lies outside the bracket so far."""
+        following = self._step(self.at(depth))
+        low = max((d for d, s in self.found.items() if self._excess(s) < 0), default=0.0)
+        high = min((d for d, s in self.found.items() if self._excess(s) >= 0), default=math.inf)
+        return following if following is not None and low < following < high else None
+
+    def bracketed(self, tolerance: float) -> float:
+        """The depth (m), within the relative `tolerance`, by a bracketing root finder."""
+        from scipy.optimize import toms748
+
+        low = max((d for d, s in self.found.items() if self._excess(s) < 0), default=0.0)
+        high = max(low, self.first_depth())
+        while (above := self._excess(self.at(high))) < 0:
+            low, high = high, high * min(_MAX_GROWTH, max(1.05, 1.05 / max(1 + above, 1e-9)))
+
+        def excess(indentation: float) -> float:
+            return self._excess(self.at(float(indentation))) if indentation else -1.0
+
+        # The tolerance on the depth follows from ΔV/V = ½ ΔW/W, between Δδ/δ and 1.25 Δδ/δ.
+        return float(toms748(excess, low, high, xtol=tolerance * high, rtol=1e-12, k=1))
+
+    def _step(self, state: State) -> float | None:
+        """A Newton step from `state`; None where the work does not grow from a positive value."""
+        force, work = state.force, state.loading_work
+        if not (force > 0 and work > 0):
+            return None
+        change = math.log(self._work / work) * work / (force * state.indentation)
+        return state.indentation * math.exp(min(change, math.log(_MAX_GROWTH)))
+
+    def _excess(self, state: State) -> float:
+        """Number with the sign of W − work, nearly linear in δ because W grows as δ² to δ^2.5."""
+        work = state.loading_work
+        return math.copysign((abs(work) / self._work) ** 0.4, work) - 1
