@@ -2,6 +2,7 @@
 
 import csv
 import json
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -79,12 +80,10 @@ def test_the_interpolation_error_vanishes_at_computed_radii_only(mixture_text, t
         assert abs(point.restitution - direct.at(same_work).restitution) < point.error
 
 
-def test_the_verb(cli, refused, mixture_text, tmp_path):
+def test_the_verb(cli, refused, mixture_text, computed_mixture, tmp_path):
     file, out = tmp_path / "mixture.toml", tmp_path / "out"
+    shutil.copytree(computed_mixture, out)
     file.write_text(mixture_text())
-    status, said, _ = cli("mixture", file, "-o", out, "--workers", "1")
-    assert status == 0
-    assert "14 pairs from" in said
     laws = read_laws([out])
     assert len(laws) == 14
     summary = json.loads((out / "summary.json").read_text())
@@ -97,8 +96,18 @@ def test_the_verb(cli, refused, mixture_text, tmp_path):
     first = laws[0]
     assert float(rows[0]["restitution"]) == approx(first.points[0].restitution, rel=1e-12)
     # Nothing is computed again.
-    status, _, _ = cli("mixture", file, "-o", out, "--workers", "1", "--resume")
+    before = {path: path.stat().st_mtime_ns for path in out.glob("runs/**/curve.csv")}
+    status, said, warned = cli("mixture", file, "-o", out, "--workers", "1", "--resume")
     assert status == 0
+    assert "14 pairs from" in said
+    assert before == {path: path.stat().st_mtime_ns for path in before}
+    assert len(before) == summary["curves_computed"]
+    # Each warning once, with the pairs that it concerns.
+    assert len(summary["warnings"]) == 5
+    (coarse,) = (text for text in summary["warnings"] if "nodes on the smooth contact" in text)
+    assert coarse.startswith("9 of 14 pairs (alu+alu, alu+pmma, alu+drum): the spacing 0.6 um puts")
+    assert coarse.endswith("(with other numbers in other pairs)")
+    assert all(warned.count(f"Warning: {text[:60]}") == 1 for text in summary["warnings"])
     assert [law.points for law in read_laws([out])] == [law.points for law in laws]
     assert "is not empty" in refused("mixture", file, "-o", out)
     file.write_text(mixture_text(("80 um", "81 um")))
