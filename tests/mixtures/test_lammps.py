@@ -62,6 +62,32 @@ def test_the_packing_runs_to_its_end_and_keeps_every_sphere(lammps):
     assert max(energies) < 1.1 * energies[0]
 
 
+def test_the_packing_has_the_fractions_of_the_sizes(laws):
+    def counts(fractions):
+        """The spheres of each type of the packing, for the fractions of the types."""
+
+        def given(body):
+            number = None if body.wall else types.index(body)
+            return (
+                body
+                if number is None
+                else body.model_copy(update={"number_fraction": fractions[number]})
+            )
+
+        types = pair_table(laws).spheres
+        changed = [
+            law.model_copy(update={"first": given(law.first), "second": given(law.second)})
+            for law in laws
+        ]
+        text = export(changed, "lammps", VELOCITY)["packing.in"]
+        return [int(n) for n in re.findall(r"^variable number_\d+ index (\d+)", text, re.MULTILINE)]
+
+    assert counts([None] * 4) == [125] * 4
+    assert counts([0.5, 0.3, 0.2, 1.0]) == [125, 75, 50, 250]
+    # Every type is there, and the spheres are 500 in all.
+    assert counts([0.9998, 0.0001, 0.0001, 1.0]) == [248, 1, 1, 250]
+
+
 def test_ten_random_pairs_collide_by_their_laws(lammps, laws):
     pairs = random.Random(27).sample(list(pair_table(laws).pairs()), 10)
     for i, j, law in pairs:

@@ -35,13 +35,17 @@ class _Stored(BaseModel):
 
 
 class Particle(_Stored):
-    """One body of the pair, in SI units. `radius` is None for a flat wall."""
+    """One body of the pair, in SI units. `radius` is None for a flat wall.
+
+    `number_fraction` is the fraction of this size in its material, by number, in a mixture.
+    """
 
     name: str
     radius: Positive | None
     youngs_modulus: Positive
     poissons_ratio: Annotated[float, Field(gt=-1, le=0.5)]
     density: Positive | None
+    number_fraction: Share | None = None
 
     @property
     def wall(self) -> bool:
