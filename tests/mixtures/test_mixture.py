@@ -123,6 +123,24 @@ def test_the_verb(cli, refused, mixture_text, computed_mixture, tmp_path):
     assert written >= {"restitution.lmp", "collision.in", "packing.in"}
 
 
+def test_the_page_of_the_runs_names_the_reduced_radii(cli, computed_mixture, tmp_path):
+    shutil.copytree(computed_mixture / "runs", tmp_path / "runs")
+    assert cli("report", tmp_path / "runs")[0] == 0
+    page = (tmp_path / "runs" / "report.html").read_text()
+    assert "14 cases over pair, reduced_radius: 14 complete" in page
+    for radius in ("25 um", "40 um", "37.5 um"):
+        assert radius in page
+    assert "3.9999999999999996e-05" not in page
+
+
+def test_a_mixture_that_is_not_complete_is_refused(refused, computed_mixture, tmp_path):
+    out = tmp_path / "out"
+    shutil.copytree(computed_mixture, out, ignore=shutil.ignore_patterns("laws", "summary.json"))
+    export = ("export", out, "--to", "csv", "-o", tmp_path / "input")
+    for verb in (("report", out), export):
+        assert "the mixture is not complete; finish it with" in refused(*verb)
+
+
 def test_the_stored_blind_check_holds():
     with open(STUDIES / "mixture_blind.csv", newline="") as table:
         rows = list(csv.DictReader(table))

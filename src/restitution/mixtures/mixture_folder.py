@@ -7,13 +7,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from restitution.display import some_of, without_numbers
-from restitution.laws.law_files import LAWS, write_law
+from restitution.laws.law_files import LAWS, MIXTURE_FILE, write_law
 from restitution.mixtures.mixture import PairLaw, empty_study
 from restitution.mixtures.mixture_file import Mixture
 from restitution.results.writer import write_json, write_table, writing
 from restitution.sweeps.study_folder import STUDY_FILE, StudyFolder, prepare_folder
 
-MIXTURE_FILE, RUNS, PAIRS = "mixture.toml", "runs", "pairs.csv"
+RUNS, PAIRS = "runs", "pairs.csv"
 
 
 def open_mixture_folder(out: Path, mixture: Mixture, *, resume: bool) -> StudyFolder:
