@@ -141,6 +141,39 @@ def test_a_mixture_that_is_not_complete_is_refused(refused, computed_mixture, tm
         assert "the mixture is not complete; finish it with" in refused(*verb)
 
 
+ADHESIVE = """
+[materials.glass]
+material = "glass"
+radius = "20 um"
+roughness = {{ kind = "measured", file = '{scan}', detrend = "tilt", extend = "mirror" }}
+[interface]
+yield_pressure = "hardness"
+work_of_adhesion = "0.05 J/m^2"
+[grid]
+nodes = 24
+spacing = "0.1 um"
+refine = 1
+[impact]
+from = "0.1 m/s"
+to = "0.3 m/s"
+steps = 2
+"""
+
+
+def test_an_adhesive_mixture_with_a_scan(cli, compute_mixture, own_scan, tmp_path):
+    out = compute_mixture(ADHESIVE.format(scan=own_scan), tmp_path / "out")
+    (law,) = read_laws([out])
+    assert law.work_of_adhesion == 0.05
+    assert all(point.pull_off_force > 0 for point in law.points)
+    summary = json.loads((out / "summary.json").read_text())
+    (adhesion,) = (text for text in summary["warnings"] if "adhesion" in text)
+    assert adhesion.startswith("1 of 1 pairs (glass+glass): adhesion is not resolved at 2 of 2")
+    assert cli("report", out)[0] == cli("report", out / "runs")[0] == 0
+    export = ("export", out, "--to", "lammps", "--velocity", "0.2 m/s", "-o", tmp_path / "input")
+    assert cli(*export)[0] == 0
+    assert "pull-off force" in (tmp_path / "input" / "restitution.lmp").read_text()
+
+
 def test_the_stored_blind_check_holds():
     with open(STUDIES / "mixture_blind.csv", newline="") as table:
         rows = list(csv.DictReader(table))
