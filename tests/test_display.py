@@ -5,7 +5,7 @@ import math
 import pytest
 
 import restitution as rs
-from restitution.display import counted, quantity
+from restitution.display import counted, quantity, some_of, without_numbers
 from restitution.results.reader import RunResults
 
 STEEL = rs.Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25, density=7850)
@@ -94,3 +94,15 @@ def test_a_notebook_shows_escaped_html():
 
 def test_results_that_cannot_be_read_still_have_a_repr(tmp_path):
     assert "curve.csv: does not exist" in repr(RunResults(tmp_path))
+
+
+def test_texts_that_differ_in_numbers_only_are_equal_without_them():
+    one, other = "3 of 4 depths (up to 1.5e-07 m)", "12 of 40 depths (up to 20.25 m)"
+    assert without_numbers(one) == without_numbers(other)
+    assert without_numbers(one) != without_numbers(one.replace("depths", "forces"))
+
+
+def test_some_of_many_names():
+    assert some_of(["b", "a", "", "b"]) == "b, a"
+    assert some_of("abcde", most=3) == "a, b, c and 2 more"
+    assert some_of([]) == ""

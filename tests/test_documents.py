@@ -27,7 +27,10 @@ NOT_RUN = {
     ("README.md", "make demo"): "installs the package",
     ("README.md", "pip install ."): "installs the package",
     ("CONTRIBUTING.md", "make help"): "each target takes minutes",
-    ("docs/start.md", "cd restitution       # the folder of your copy of the repository"): "installs the package",
+    (
+        "docs/start.md",
+        "cd restitution       # the folder of your copy of the repository",
+    ): "installs the package",
     ("docs/tutorials/cluster.md", "dask scheduler --port 8786"): "needs the machines of a cluster",
     ("docs/tutorials/cluster.md", "#!/bin/bash"): "needs Slurm",
     ("docs/developers/recipes.md", "python tests/document_blocks.py docs/developers/recipes.md"): (

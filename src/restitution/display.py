@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import html
 import math
-from collections.abc import Sequence
+import re
+from collections.abc import Iterable, Sequence
 from typing import Protocol
 
+_NUMBER = re.compile(r"\d+(\.\d+)?(e[-+]?\d+)?")
 _PREFIXES = {-5: "f", -4: "p", -3: "n", -2: "µ", -1: "m", 0: "", 1: "k", 2: "M", 3: "G", 4: "T"}
 
 
@@ -47,3 +49,15 @@ def quantity(value: float | None, unit: str) -> str:
 def counted(number: int, noun: str) -> str:
     """Format a number with its noun, in the singular or plural: "1 warning", "2 warnings"."""
     return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
+def without_numbers(text: str) -> str:
+    """`text` with a sign in place of each number: equal for texts that differ in numbers only."""
+    return _NUMBER.sub("#", text)
+
+
+def some_of(names: Iterable[str], most: int = 6) -> str:
+    """Each of `names` once, at most `most` of them and the number of the others; no empty ones."""
+    each = list(dict.fromkeys(filter(None, names)))
+    more = f" and {len(each) - most} more" if len(each) > most else ""
+    return ", ".join(each[:most]) + more

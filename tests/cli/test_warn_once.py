@@ -26,11 +26,19 @@ def test_repetitions_are_counted(capsys):
 
 def test_subjects_are_named(capsys):
     long = "a warning" + 10 * " that is long"
-    lines = warned(capsys, (long, "glass"), (long, "steel"), (long, "zinc"))
+    lines = warned(capsys, *((long, name) for name in ("glass", "steel", "zinc")))
     assert lines[0] == f"Warning: glass: {long}"
-    assert lines[1].startswith("Warning: the same with other numbers for 2 more (steel, zinc): ")
+    assert lines[1].startswith("Warning: the same for 2 more (steel, zinc): ")
     assert lines[1].endswith('…"')
     assert len(lines) == 2
+
+
+def test_of_many_subjects_the_first_six_are_named(capsys):
+    lines = warned(capsys, *(("tilted", f"pair {k}") for k in range(10)))
+    assert lines[1] == (
+        "Warning: the same for 9 more (pair 1, pair 2, pair 3, pair 4, pair 5, pair 6 and 3 more): "
+        '"tilted"'
+    )
 
 
 def test_a_run_that_fails_on_every_surface_says_why_once(cli, case_text, tmp_path):

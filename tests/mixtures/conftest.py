@@ -1,4 +1,12 @@
+from collections.abc import Callable
+from pathlib import Path
+
 import pytest
+
+from restitution.mixtures.mixture import run_mixture
+from restitution.mixtures.mixture_file import parse_mixture
+from restitution.mixtures.mixture_folder import open_mixture_folder, write_mixture
+from restitution.sweeps.executors import chosen_workers
 
 MIXTURE = """
 title = "Beads and a wall"
@@ -36,3 +44,25 @@ def mixture_text():
         return text
 
     return changed
+
+
+@pytest.fixture(scope="session")
+def computed_mixture(tmp_path_factory, compute_mixture) -> Path:
+    """The folder of the computed mixture; not to be changed."""
+    out = tmp_path_factory.mktemp("mixture") / "out"
+    return compute_mixture(MIXTURE, out)
+
+
+@pytest.fixture(scope="session")
+def compute_mixture() -> Callable[[str, Path], Path]:
+    """Compute a mixture, given as its text, into a folder."""
+
+    def compute(text: str, out: Path) -> Path:
+        mixture = parse_mixture(text)
+        folder = open_mixture_folder(out, mixture, resume=False)
+        with chosen_workers(1, None) as workers:
+            pairs = run_mixture(mixture, out, folder, workers, lambda _: None)
+        write_mixture(out, mixture, pairs, len(folder.study.cases), 0.0)
+        return out
+
+    return compute

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -79,12 +80,10 @@ def test_the_interpolation_error_vanishes_at_computed_radii_only(mixture_text, t
         assert abs(point.restitution - direct.at(same_work).restitution) < point.error
 
 
-def test_the_verb(cli, refused, mixture_text, tmp_path):
+def test_the_verb(cli, refused, mixture_text, computed_mixture, tmp_path):
     file, out = tmp_path / "mixture.toml", tmp_path / "out"
+    shutil.copytree(computed_mixture, out)
     file.write_text(mixture_text())
-    status, said, _ = cli("mixture", file, "-o", out, "--workers", "1")
-    assert status == 0
-    assert "14 pairs from" in said
     laws = read_laws([out])
     assert len(laws) == 14
     summary = json.loads((out / "summary.json").read_text())
@@ -97,8 +96,18 @@ def test_the_verb(cli, refused, mixture_text, tmp_path):
     first = laws[0]
     assert float(rows[0]["restitution"]) == approx(first.points[0].restitution, rel=1e-12)
     # Nothing is computed again.
-    status, _, _ = cli("mixture", file, "-o", out, "--workers", "1", "--resume")
+    before = {path: path.stat().st_mtime_ns for path in out.glob("runs/**/curve.csv")}
+    status, said, warned = cli("mixture", file, "-o", out, "--workers", "1", "--resume")
     assert status == 0
+    assert "14 pairs from" in said
+    assert before == {path: path.stat().st_mtime_ns for path in before}
+    assert len(before) == summary["curves_computed"]
+    # Each warning once, with the pairs that it concerns.
+    assert len(summary["warnings"]) == 5
+    (coarse,) = (text for text in summary["warnings"] if "nodes on the smooth contact" in text)
+    assert coarse.startswith("9 of 14 pairs (alu+alu, alu+pmma, alu+drum): the spacing 0.6 um puts")
+    assert coarse.endswith("(with other numbers in other pairs)")
+    assert all(warned.count(f"Warning: {text[:60]}") == 1 for text in summary["warnings"])
     assert [law.points for law in read_laws([out])] == [law.points for law in laws]
     assert "is not empty" in refused("mixture", file, "-o", out)
     file.write_text(mixture_text(("80 um", "81 um")))
@@ -112,6 +121,57 @@ def test_the_verb(cli, refused, mixture_text, tmp_path):
     assert cli(*export, "--velocity", "0.3 m/s")[0] == 0
     written = {path.name for path in (tmp_path / "input").iterdir()}
     assert written >= {"restitution.lmp", "collision.in", "packing.in"}
+
+
+def test_the_page_of_the_runs_names_the_reduced_radii(cli, computed_mixture, tmp_path):
+    shutil.copytree(computed_mixture / "runs", tmp_path / "runs")
+    assert cli("report", tmp_path / "runs")[0] == 0
+    page = (tmp_path / "runs" / "report.html").read_text()
+    assert "14 cases over pair, reduced_radius: 14 complete" in page
+    for radius in ("25 um", "40 um", "37.5 um"):
+        assert radius in page
+    assert "3.9999999999999996e-05" not in page
+
+
+def test_a_mixture_that_is_not_complete_is_refused(refused, computed_mixture, tmp_path):
+    out = tmp_path / "out"
+    shutil.copytree(computed_mixture, out, ignore=shutil.ignore_patterns("laws", "summary.json"))
+    export = ("export", out, "--to", "csv", "-o", tmp_path / "input")
+    for verb in (("report", out), export):
+        assert "the mixture is not complete; finish it with" in refused(*verb)
+
+
+ADHESIVE = """
+[materials.glass]
+material = "glass"
+radius = "20 um"
+roughness = {{ kind = "measured", file = '{scan}', detrend = "tilt", extend = "mirror" }}
+[interface]
+yield_pressure = "hardness"
+work_of_adhesion = "0.05 J/m^2"
+[grid]
+nodes = 24
+spacing = "0.1 um"
+refine = 1
+[impact]
+from = "0.1 m/s"
+to = "0.3 m/s"
+steps = 2
+"""
+
+
+def test_an_adhesive_mixture_with_a_scan(cli, compute_mixture, own_scan, tmp_path):
+    out = compute_mixture(ADHESIVE.format(scan=own_scan), tmp_path / "out")
+    (law,) = read_laws([out])
+    assert law.work_of_adhesion == 0.05
+    assert all(point.pull_off_force > 0 for point in law.points)
+    summary = json.loads((out / "summary.json").read_text())
+    (adhesion,) = (text for text in summary["warnings"] if "adhesion" in text)
+    assert adhesion.startswith("1 of 1 pairs (glass+glass): adhesion is not resolved at 2 of 2")
+    assert cli("report", out)[0] == cli("report", out / "runs")[0] == 0
+    export = ("export", out, "--to", "lammps", "--velocity", "0.2 m/s", "-o", tmp_path / "input")
+    assert cli(*export)[0] == 0
+    assert "pull-off force" in (tmp_path / "input" / "restitution.lmp").read_text()
 
 
 def test_the_stored_blind_check_holds():

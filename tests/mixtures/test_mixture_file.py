@@ -43,6 +43,34 @@ def test_sizes(mixture_text, radius, radii):
     assert mixture.components[0].radii == approx(radii, rel=1e-7)
 
 
+@pytest.mark.parametrize(
+    ("sizes", "radii", "fractions"),
+    [
+        (RADII, (50e-6, 80e-6, 150e-6), (1 / 3, 1 / 3, 1 / 3)),
+        (f"{RADII}\nnumber_fractions = [0.5, 0.3, 0.2]", (50e-6, 80e-6, 150e-6), (0.5, 0.3, 0.2)),
+        # In the order of the file, whatever the sizes.
+        (
+            '["80 um", "50 um"]\nnumber_fractions = [0.75, 0.25]',
+            (50e-6, 80e-6),
+            (0.25, 0.75),
+        ),
+        # The same mass: eight times as many particles of half the radius.
+        ('["50 um", "100 um"]\nmass_fractions = [0.5, 0.5]', (50e-6, 100e-6), (8 / 9, 1 / 9)),
+        (
+            '{ bins = [["80 um", "320 um"], ["20 um", "80 um"]] }\nmass_fractions = [0.8, 0.2]',
+            (40e-6, 160e-6),
+            (16 / 17, 1 / 17),
+        ),
+        # Rounded fractions: the sum is made 1.
+        (f"{RADII}\nnumber_fractions = [0.33, 0.33, 0.33]", (50e-6, 80e-6, 150e-6), (1 / 3,) * 3),
+    ],
+)
+def test_fractions_of_the_sizes(mixture_text, sizes, radii, fractions):
+    component = parse_mixture(mixture_text((RADII, sizes))).components[0]
+    assert component.radii == approx(radii, rel=1e-9)
+    assert component.fractions == approx(fractions, rel=1e-9)
+
+
 def test_a_pair_may_have_an_interface_of_its_own(mixture_text):
     own = '[pairs."drum+alu"]\nwork_of_adhesion = "0.05 J/m^2"\n[grid]'
     mixture = parse_mixture(mixture_text(("[grid]", own)))
@@ -69,6 +97,35 @@ def test_a_pair_may_have_an_interface_of_its_own(mixture_text):
         ),
         ('material = "pmma"', 'material = "unobtainium"', "materials.pmma"),
         ('material = "steel"', 'material = "steel"\nradius = "1 mm"', "a wall is flat"),
+        (RADII, f"{RADII}\nmass_fractions = [0.5, 0.5]", "has 2 values for 3 sizes"),
+        (RADII, f"{RADII}\nmass_fractions = [0.5, 0.5, 0.5]", "the sum is 1.5, and should be 1"),
+        (
+            RADII,
+            f"{RADII}\nmass_fractions = [1.0, 0.5, -0.5]",
+            "-0.5 should be above 0 and at most 1",
+        ),
+        (
+            RADII,
+            f"{RADII}\nmass_fractions = [1.0, nan, 0.5]",
+            "nan should be above 0 and at most 1",
+        ),
+        (
+            RADII,
+            f"{RADII}\nnumber_fractions = ['20 %', 0.5, 0.3]",
+            "materials.alu.number_fractions: '20 %' should be a number without a unit",
+        ),
+        (RADII, f"{RADII}\nmass_fractions = 1", "should be a list with a fraction for each size"),
+        (
+            RADII,
+            f"{RADII}\nmass_fractions = [1]\nnumber_fractions = [1]",
+            "give mass_fractions or number_fractions, not both",
+        ),
+        (
+            RADII,
+            '{ median = "100 um", geometric_std = 1.5, count = 2 }\nmass_fractions = [0.5, 0.5]',
+            "hold equal numbers already",
+        ),
+        ('material = "steel"', 'material = "steel"\nmass_fractions = [1]', "a wall has no sizes"),
         ("[walls.drum]", "[walls.alu]", "walls.alu: is also the name of a material"),
         ("[impact]", "[impacts]", "impacts: unknown key"),
         ('from = "0.1 m/s"', 'from = "2 m/s"', "`from` must be smaller than `to`"),

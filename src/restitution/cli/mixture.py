@@ -33,7 +33,11 @@ def mixture(
     from restitution.cli.console import command, say, say_next, say_written, warn
     from restitution.mixtures.mixture import run_mixture
     from restitution.mixtures.mixture_file import read_mixture
-    from restitution.mixtures.mixture_folder import open_mixture_folder, write_mixture
+    from restitution.mixtures.mixture_folder import (
+        condensed_warnings,
+        open_mixture_folder,
+        write_mixture,
+    )
     from restitution.plots.mixture import mixture_figure
     from restitution.plots.static import write_figure
     from restitution.sweeps.executors import chosen_workers
@@ -55,6 +59,8 @@ def mixture(
         names = write_mixture(out, read, pairs, runs, time.perf_counter() - began)
     picture = mixture_figure(read.title, [pair.law for pair in pairs])
     names.append(write_figure(out / "restitution", picture, figures.value).name)
+    for warning in condensed_warnings(pairs):
+        warn(warning)
     unresolved = sum(any(not point.resolved for point in pair.law.points) for pair in pairs)
     if unresolved:
         warn(f"{unresolved} of {len(pairs)} laws have velocities that the grid does not resolve")

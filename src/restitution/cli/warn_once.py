@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Protocol
 
-_NUMBER = re.compile(r"\d+(\.\d+)?(e[-+]?\d+)?")
 _QUOTED = 60  # number of characters of a warning that the count of its repetitions quotes
 
 
@@ -20,16 +18,20 @@ class Warn(Protocol):
 
 @contextmanager
 def warn_once() -> Iterator[Warn]:
-    """Print each warning once; at the end, say how often it was repeated with other numbers."""
+    """Print each warning once; at the end, say how often it was repeated, and for what."""
     from restitution.cli.console import warn
+    from restitution.display import some_of, without_numbers
 
     first: dict[str, str] = {}
     repeated: dict[str, list[str]] = {}
+    differing: set[str] = set()  # kinds that were repeated with other numbers
 
     def warn_or_count(message: str, subject: str = "") -> None:
-        kind = _NUMBER.sub("#", message)
+        kind = without_numbers(message)
         if kind in first:
             repeated.setdefault(kind, []).append(subject)
+            if message != first[kind]:
+                differing.add(kind)
             return
         first[kind] = message
         warn(f"{subject}: {message}" if subject else message)
@@ -40,6 +42,7 @@ def warn_once() -> Iterator[Warn]:
         for kind, subjects in repeated.items():
             start = first[kind]
             start = start if len(start) <= _QUOTED else f"{start[:_QUOTED].rstrip()}…"
-            named = ", ".join(dict.fromkeys(filter(None, subjects)))
+            named = some_of(subjects)
+            numbers = " with other numbers" if kind in differing else ""
             which = f" ({named})" if named else ""
-            warn(f'the same with other numbers for {len(subjects)} more{which}: "{start}"')
+            warn(f'the same{numbers} for {len(subjects)} more{which}: "{start}"')

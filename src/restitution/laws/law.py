@@ -22,8 +22,8 @@ Array = NDArray[np.float64]
 
 LOSS = 1e-3
 """A law is not fitted if 1 − e is below this value at every velocity, or if e is."""
-# Largest relative difference of velocities that count as equal. Where the loading work is integrated,
-# a run meets the velocities of its case within 1e-4 (`solve_at_velocity`).
+# Largest relative difference of velocities that count as equal. Where the loading work is
+# integrated, a run meets the velocities of its case within 1e-4 (`solve_at_velocity`).
 _SAME = 1.01e-4
 
 
@@ -37,13 +37,17 @@ class _Stored(BaseModel):
 
 
 class Particle(_Stored):
-    """One body of the pair, in SI units. `radius` is None for a flat wall."""
+    """One body of the pair, in SI units. `radius` is None for a flat wall.
+
+    `number_fraction` is the fraction of this size in its material, by number, in a mixture.
+    """
 
     name: str
     radius: Positive | None
     youngs_modulus: Positive
     poissons_ratio: Annotated[float, Field(gt=-1, le=0.5)]
     density: Positive | None
+    number_fraction: Share | None = None
 
     @property
     def wall(self) -> bool:

@@ -21,7 +21,7 @@ from restitution.results.interruption import hold_signals
 from restitution.results.writer import make_folder, replace_file, write_checksums, write_table
 
 LAW_FILE = "law.json"
-LAWS = "laws"  # folder with the laws of a mixture
+LAWS, MIXTURE_FILE = "laws", "mixture.toml"  # folder with the laws of a mixture, and its file
 
 
 def write_law(law: Law, out: Path) -> list[Path]:
@@ -72,14 +72,23 @@ def read_laws(folders: Sequence[Path]) -> list[Law]:
     """
     found: list[Law] = []
     for folder in folders:
-        inside = sorted((folder / LAWS).iterdir()) if is_mixture(folder) else [folder]
-        found += map(read_law, inside)
+        found += map(read_law, _of_mixture(folder) if is_mixture(folder) else [folder])
     return found
 
 
 def is_mixture(folder: Path) -> bool:
-    """Whether `folder` holds the laws of a mixture."""
-    return (folder / LAWS).is_dir()
+    """Whether `folder` is that of a mixture, complete or not."""
+    return (folder / MIXTURE_FILE).is_file()
+
+
+def _of_mixture(folder: Path) -> list[Path]:
+    """The folders of its laws."""
+    if not (folder / LAWS).is_dir() or not (folder / "summary.json").is_file():
+        raise OutputError(
+            f"{folder}: the mixture is not complete; finish it with `restitution mixture MIXTURE "
+            f"-o {folder} --resume`"
+        )
+    return sorted((folder / LAWS).iterdir())
 
 
 def write_theories(velocities: NDArray[np.float64], found: list[Theory], out: Path) -> Path:

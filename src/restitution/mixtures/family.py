@@ -68,11 +68,10 @@ class Family:
         return tuple(_meeting(one, two) for one, two in self._sizes())
 
     def _sizes(self) -> Iterable[tuple[Particle, Particle]]:
-        ours = [_particle(self.first, radius) for radius in self.first.radii]
+        ours = _particles(self.first)
         if self.second is self.first:
             return itertools.combinations_with_replacement(ours, 2)
-        theirs = [_particle(self.second, radius) for radius in self.second.radii or (None,)]
-        return itertools.product(ours, theirs)
+        return itertools.product(ours, _particles(self.second))
 
     @cached_property
     def radii(self) -> tuple[float, ...]:
@@ -190,8 +189,15 @@ def _values(component: Component) -> dict[str, Any]:
     }
 
 
-def _particle(component: Component, radius: float | None) -> Particle:
-    return Particle(**_values(component), radius=radius)
+def _particles(component: Component) -> list[Particle]:
+    """One particle for each size; the flat wall."""
+    values = _values(component)
+    if component.wall:
+        return [Particle(**values, radius=None)]
+    return [
+        Particle(**values, radius=radius, number_fraction=fraction)
+        for radius, fraction in zip(component.radii, component.fractions, strict=True)
+    ]
 
 
 def _meeting(first: Particle, second: Particle) -> Meeting:

@@ -82,7 +82,7 @@ class _Rounds:
     def compute(self, wanted: list[tuple[Family, float]]) -> None:
         """Run the cases of families at reduced radii (m)."""
         for family, radius in wanted:
-            values = {"pair": family.name, "reduced_radius": f"{radius!r} m"}
+            values = {"pair": family.name, "reduced_radius": f"{1e6 * radius:.6g} um"}
             case = SweptCase(len(self._cases) + 1, values, family.case(radius))
             self._cases[family.name, radius] = case
         cases = tuple(self._cases.values())

@@ -18,6 +18,7 @@ from restitution.case.quantities import Length
 from restitution.case.roughness import Roughness
 from restitution.case.schema import GridTable, ImpactTable, PairOf, Table
 from restitution.errors import CaseError
+from restitution.mixtures.fractions import number_fractions
 
 MOST_SIZES = 50  # largest number of sizes of one material
 
@@ -56,14 +57,14 @@ class Sizes(Table):
         return self
 
     def radii(self) -> list[float]:
-        """The radius of each bin (m), increasing."""
+        """The radius of each bin (m), in the order of the file."""
         if self.median is not None and self.geometric_std is not None:
             from scipy.special import ndtri
 
             middles = ndtri((np.arange(self.count) + 0.5) / self.count)
             return [self.median * self.geometric_std ** float(z) for z in middles]
         bins = self.bins or list(itertools.pairwise(self.edges or []))
-        return [math.sqrt(low * high) for low, high in sorted(bins)]
+        return [math.sqrt(low * high) for low, high in bins]
 
 
 @dataclass(frozen=True)
@@ -71,13 +72,15 @@ class Component:
     """A material with its sizes, or a wall.
 
     `body` has the keys of the table `[first]` of a case without `radius`. `roughness` contains the
-    tables of its roughness. A wall has no `radii` (m).
+    tables of its roughness. A wall has no `radii` (m, increasing). `fractions` are the fractions of
+    the particles, by number, that have each size; their sum is 1.
     """
 
     name: str
     body: dict[str, Any]
     roughness: list[dict[str, Any]]
     radii: tuple[float, ...]
+    fractions: tuple[float, ...]
 
     @property
     def wall(self) -> bool:
@@ -188,7 +191,7 @@ def _component(key: str, name: str, table: Any) -> Component:
         _Rough.model_validate({"roughness": rough})
     except ValidationError as error:
         raise CaseError(in_words(error, _Rough, key)) from None
-    sizes = body.pop("radius", None)
+    sizes = body.get("radius")
     radii: tuple[float, ...] = ()
     if key.startswith("walls."):
         if sizes not in (None, "flat"):
@@ -197,13 +200,17 @@ def _component(key: str, name: str, table: Any) -> Component:
         raise CaseError(f"{key}.radius: is missing; give one or more radii, or bins")
     else:
         radii = _radii(f"{key}.radius", sizes)
+    fractions = number_fractions(key, body, radii)
+    body.pop("radius", None)
     try:
         checked = BodyTable.model_validate({**body, "radius": "flat"})
     except ValidationError as error:
         raise CaseError(in_words(error, BodyTable, key)) from None
     if radii and checked.density is None:
         raise CaseError(f"{key}.density: is missing; an impact velocity needs the mass")
-    return Component(name, body, rough, radii)
+    order = sorted(range(len(radii)), key=radii.__getitem__)
+    increasing, shares = (tuple(values[k] for k in order) for values in (radii, fractions))
+    return Component(name, body, rough, increasing, shares)
 
 
 class _Rough(Table):
@@ -223,7 +230,7 @@ def _radii(key: str, sizes: Any) -> tuple[float, ...]:
         if isinstance(sizes, dict):
             return tuple(Sizes.model_validate(sizes).radii())
         listed = sizes if isinstance(sizes, list) else [sizes]
-        radii = sorted(_Radii.model_validate({"radius": listed}).radius)
+        radii = _Radii.model_validate({"radius": listed}).radius
     except ValidationError as error:
         where = key if isinstance(sizes, dict) else key.removesuffix(".radius")
         raise CaseError(in_words(error, Sizes, where)) from None

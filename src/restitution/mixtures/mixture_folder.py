@@ -6,13 +6,14 @@ import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
-from restitution.laws.law_files import LAWS, write_law
+from restitution.display import some_of, without_numbers
+from restitution.laws.law_files import LAWS, MIXTURE_FILE, write_law
 from restitution.mixtures.mixture import PairLaw, empty_study
 from restitution.mixtures.mixture_file import Mixture
 from restitution.results.writer import write_json, write_table, writing
 from restitution.sweeps.study_folder import STUDY_FILE, StudyFolder, prepare_folder
 
-MIXTURE_FILE, RUNS, PAIRS = "mixture.toml", "runs", "pairs.csv"
+RUNS, PAIRS = "runs", "pairs.csv"
 
 
 def open_mixture_folder(out: Path, mixture: Mixture, *, resume: bool) -> StudyFolder:
@@ -69,17 +70,22 @@ def write_mixture(
             "largest_restitution_error": max(
                 point.error for pair in pairs for point in pair.law.points
             ),
-            "warnings": _warnings(pairs),
+            "warnings": condensed_warnings(pairs),
             "seconds": round(seconds, 1),
         },
     )
     return [LAWS, MIXTURE_FILE, PAIRS, RUNS, "summary.json"]
 
 
-def _warnings(pairs: Sequence[PairLaw]) -> list[str]:
-    """List each warning once, with the number of pairs that have this warning."""
-    found: dict[str, int] = {}
+def condensed_warnings(pairs: Sequence[PairLaw]) -> list[str]:
+    """Each warning once, with the pairs that have it; texts that differ in numbers are one."""
+    found: dict[str, list[tuple[str, str]]] = {}
     for pair in pairs:
-        for warning in pair.law.warnings:
-            found[warning] = found.get(warning, 0) + 1
-    return [f"{count} of {len(pairs)} pairs: {warning}" for warning, count in found.items()]
+        family = f"{pair.law.first.name}+{pair.law.second.name}"
+        for warning in dict.fromkeys(pair.law.warnings):
+            found.setdefault(without_numbers(warning), []).append((family, warning))
+    return [
+        f"{len(of)} of {len(pairs)} pairs ({some_of([family for family, _ in of])}): {of[0][1]}"
+        + ("" if len({text for _, text in of}) == 1 else " (with other numbers in other pairs)")
+        for of in found.values()
+    ]

@@ -14,7 +14,7 @@ from restitution.results.reader import read_json, read_text
 
 def write_mixture_page(out: Path) -> Path:
     """Write `report.html` from the laws, the summary and the mixture file in `out`."""
-    summary, laws = read_json(out / "summary.json"), read_laws([out])
+    laws, summary = read_laws([out]), read_json(out / "summary.json")
     parts: list[Table | Drawing | Listing] = [
         _drawing(members) for members in families_of(laws).values()
     ]

@@ -10,6 +10,8 @@ versions.
 
 from __future__ import annotations
 
+import itertools
+
 from restitution.dem.codes.lammps_kokkos import linear_spring, velocity_damping
 from restitution.dem.codes.lammps_mdr import mdr_offers
 from restitution.dem.export_common import (
@@ -84,14 +86,13 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
     }
     floor = _floor(table)
     if floor is not None and not walls_only:
-        size, count = table.largest_radius, len(table.spheres)
-        counts = [_GRAINS // count + (k < _GRAINS % count) for k in range(count)]
+        size = table.largest_radius
         edge = 16 * size
         files[PACKING] = render(
             PACKING,
             comments=commented(short, "#"),
             table=table,
-            counts=counts,
+            counts=_counts(table),
             floor=floor,
             velocity=velocity,
             size=size,
@@ -100,6 +101,19 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
             contact=min(contact_time(law) for _, _, law in table.pairs()) * velocity**-0.2,
         )
     return files
+
+
+def _counts(table: PairTable) -> list[int]:
+    """The spheres of each type, at least one, `_GRAINS` in all.
+
+    Every material of a mixture has the same number of spheres, divided by the fractions of its
+    sizes; types without fractions have equal numbers.
+    """
+    weights = [body.number_fraction or 1.0 for body in table.spheres]
+    ends = [round(_GRAINS * part / sum(weights)) for part in itertools.accumulate(weights)]
+    counts = [max(1, end - start) for start, end in itertools.pairwise([0, *ends])]
+    counts[counts.index(max(counts))] += _GRAINS - sum(counts)
+    return counts
 
 
 def _floor(table: PairTable) -> int | None:

@@ -1,0 +1,55 @@
+"""The fraction of each size of a material, by mass or by number."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from restitution.errors import CaseError
+
+KEYS = ("mass_fractions", "number_fractions")
+_OFF = 0.02  # that the sum may differ from 1: fractions are often rounded
+
+
+def number_fractions(key: str, table: dict[str, Any], radii: Sequence[float]) -> tuple[float, ...]:
+    """Take the fractions out of the `table` of a material; return them by number, with sum 1.
+
+    `radii` (m) are in the order of the file. Without fractions every size has the same number of
+    particles. All sizes have one density, so that a mass fraction is proportional to the number
+    times R³. Raises `CaseError` that names the key.
+    """
+    given = [name for name in KEYS if name in table]
+    if len(given) > 1:
+        raise CaseError(f"{key}: give {KEYS[0]} or {KEYS[1]}, not both")
+    if not given:
+        return tuple(1 / len(radii) for _ in radii)
+    where = f"{key}.{given[0]}"
+    if not radii:
+        raise CaseError(f"{where}: a wall has no sizes; leave it out")
+    sizes = table.get("radius")
+    if isinstance(sizes, dict) and "median" in sizes:
+        raise CaseError(
+            f"{where}: the bins of a log-normal distribution hold equal numbers already; leave it "
+            "out, or give edges or bins"
+        )
+    fractions = _checked(where, table.pop(given[0]), len(radii))
+    power = 3 if given[0] == "mass_fractions" else 0
+    numbers = [share / R**power for share, R in zip(fractions, radii, strict=True)]
+    return tuple(number / math.fsum(numbers) for number in numbers)
+
+
+def _checked(where: str, values: Any, count: int) -> list[float]:
+    if not isinstance(values, list):
+        raise CaseError(f"{where}: should be a list with a fraction for each size")
+    for value in values:
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            raise CaseError(f"{where}: {value!r} should be a number without a unit, such as 0.25")
+        if not 0 < value <= 1:
+            raise CaseError(f"{where}: {value:g} should be above 0 and at most 1")
+    if len(values) != count:
+        raise CaseError(f"{where}: has {len(values)} values for {count} sizes")
+    total = math.fsum(values)
+    if abs(total - 1) > _OFF:
+        raise CaseError(f"{where}: the sum is {total:g}, and should be 1")
+    return [float(value) for value in values]
