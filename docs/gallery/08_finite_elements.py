@@ -31,6 +31,6 @@ fig, ax = plt.subplots(layout="constrained")
 for marker, (model, pairs) in zip("^so", sorted(points.items(), reverse=True), strict=True):
     ax.plot(*zip(*pairs, strict=True), marker, ms=4, mfc="none", label=model)
 ax.plot([0, 1], [0, 1], "k", lw=0.8)
-ax.set(xlabel="COR of the reference", ylabel="COR of the model", xlim=(0.3, 1), ylim=(0.2, 1))
+ax.set(xlabel="COR of the reference", ylabel="COR of the model", xlim=(0.3, 1.03), ylim=(0.2, 1.03))
 ax.legend()
 plt.show()

@@ -28,7 +28,7 @@ for i, (kind, waves) in enumerate(kinds.items()):
     heights.hist(z.ravel(), bins=60, density=True, histtype="step")
     power = np.abs(np.fft.fft(z, axis=0)[1:256]) ** 2
     spectra.loglog(np.arange(1, 256) / (1e6 * 512 * 50e-9), power.mean(axis=1))
-sections.set(xlabel="x (µm)", ylabel="height (nm), shifted")
+sections.set(xlabel="x (µm)", ylabel="height (nm), shifted", ylim=(None, 1500))
 sections.legend(fontsize="x-small", loc="upper right")
 heights.set(xlabel="height (nm)", ylabel="density (1/nm)")
 spectra.set(xlabel="wave number (1/µm)", ylabel="power of sections", ylim=(1e-3, None))
