@@ -149,7 +149,7 @@ def _settle_grid(model: CaseModel, start: Array) -> None:
     case = model.case(start)
     if case.grid is not None and case.grid.refine == "auto":
         factor = settled(case, model.folder).grid
-        assert factor is not None  # it has `refine`
+        assert factor is not None  # a case with `refine` has a table [grid]
         content: dict[str, Any] = dict(model.content)
         content["grid"] = {**content["grid"], "refine": factor.factor}
         model.content = content

@@ -41,7 +41,7 @@ def write_fit(found: Fit, text: str, out: Path) -> list[Path]:
 
 
 def fitted_case(found: Fit, out: Path) -> str:
-    """Write the case file with the fitted values and the measured velocities, for `out`."""
+    """The text of a case file in `out` with the fitted values and the measured velocities."""
     import tomli_w
 
     content = parse_toml(

@@ -29,7 +29,7 @@ from restitution.errors import CaseError, SurfaceError, shown
 from restitution.surfaces.generate import RoughnessKind
 
 _LARGEST = 2**22  # largest size of a case file (bytes)
-_DEEPEST = 32  # deepest nesting of tables and lists, and most parts of a dotted key
+_DEEPEST = 32  # deepest nesting of tables and lists, and largest number of parts of a dotted key
 _NAMED = 3  # number of further wrong keys that a message names
 _KINDS = (*get_args(RoughnessKind), "measured")
 

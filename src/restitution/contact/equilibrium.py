@@ -206,7 +206,7 @@ def candidate_box(contact: Contact, indentation: float, history: State | None = 
     nodes = contact.grid.nodes
     if history is None:
         return bounding_box(contact.gap < indentation)
-    if indentation <= history.indentation:  # no new contact forms outside the old box
+    if indentation <= history.indentation:  # outside the old box no new contact arises
         region = widen(history.box, 2, nodes)
     else:
         region = (slice(0, nodes[0]), slice(0, nodes[1]))

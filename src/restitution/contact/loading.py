@@ -43,9 +43,9 @@ PULL_INCREMENT = 1e-10
 _TRUNCATION_TOLERANCE = 3e-5
 _TRUNCATION_MARGIN = 10.0
 _TRUNCATION_PANELS = 4
-# Quadrature of an adhesive force: tolerance relative to the work, and most bisections. The force
-# jumps as asperities attach, which limits the accuracy. An error of 1.5e-3 of the work is an error
-# of at most 0.00075 in restitution.
+# Quadrature of an adhesive force: tolerance relative to the work, and largest number of bisections.
+# The force jumps as asperities attach, which limits the accuracy. An error of 1.5e-3 of the work is
+# an error of at most 0.00075 in restitution.
 _ADHESIVE_TOLERANCE = 1.5e-3
 _ADHESIVE_HALVINGS = 5
 # Error of the work because the loading steps influence which nodes attach, divided by w times the
@@ -204,8 +204,8 @@ def truncate_pressure(elastic: State) -> State:
     """Truncate the elastic pressure at p_y, without redistributing the excess pressure.
 
     Force and area are then those of Thornton and Ning (1998). The truncated pressure deforms the
-    bodies less, so they overlap, also next to the contact. This overlap becomes the plastic
-    displacement, so that unloading starts from the truncated pressure.
+    bodies less, so their surfaces overlap in the contact and beside it. This overlap becomes the
+    plastic displacement, so that unloading starts from the truncated pressure.
     """
     contact, indentation, box = elastic.contact, elastic.indentation, elastic.box
     pressure = np.minimum(elastic.box_pressure, contact.yield_pressure)

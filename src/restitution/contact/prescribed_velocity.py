@@ -124,7 +124,7 @@ class _Search:
         def excess(indentation: float) -> float:
             return self._excess(self.at(float(indentation))) if indentation else -1.0
 
-        # The tolerance on the depth follows from ΔV/V = ½ ΔW/W, between Δδ/δ and 1.25 Δδ/δ.
+        # The tolerance on the depth follows from ΔV/V = ½ ΔW/W, which is Δδ/δ to 1.25 Δδ/δ.
         return float(toms748(excess, low, high, xtol=tolerance * high, rtol=1e-12, k=1))
 
     def _step(self, state: State) -> float | None:

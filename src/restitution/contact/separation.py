@@ -63,7 +63,7 @@ def separate(state: State, *, tolerance: float = RESTITUTION_ERROR) -> Iterator[
         returned, given = separation.unloading_work, state.loading_work
         # From e = sqrt(W_u/W_l), the errors satisfy 2 de/e = dW_u/W_u + dW_l/W_l. For a pair that
         # sticks, e = 0 and the number of steps does not matter. Finer steps do not reduce the error
-        # of the loading work, so this error counts only up to half the tolerance.
+        # of the loading work, so this error is taken as at most half the tolerance.
         if returned <= 0 or given <= 0:
             break
         half = 0.5 * math.sqrt(returned / given)
@@ -137,7 +137,8 @@ def separation_of(path: list[State]) -> Separation:
     fewer = np.append(np.arange(0, len(path) - 1, 2), len(path) - 1)
     halved = -integrate_curve(depth[fewer], force[fewer])
     late = -float(np.dot([_late_force(state) for state in path[1:]], np.diff(depth)))
-    # The energy lost between the states must equal the work of the steps with late release.
+    # The energy that the bodies lose along the path must equal the work of the force. `late` is the
+    # part of this work due to nodes that are released only at the end of a step.
     unaccounted = (start.loading_work - end.loading_work) - (trapezoid - late)
     return Separation(
         unloading_work=work,

@@ -96,7 +96,7 @@ def pairs_at(table: PairTable, velocity: float, code: str, lowest: float) -> lis
 
 
 def contact_time(law: Law, radius: float | None = None) -> float:
-    """Elastic contact time at 1 m/s, s: t_c = 2.87 (m*²/(R* E*² V))^⅕ (Johnson 1985, eq. 11.24)."""
+    """Elastic contact time (s) at 1 m/s, 2.87 (m*²/(R* E*² V))^⅕ (Johnson 1985, eq. 11.24)."""
     R = law.radius if radius is None else radius
     return float(2.87 * (law.mass**2 / (R * law.contact_modulus**2)) ** 0.2)
 

@@ -155,9 +155,8 @@ def _adhesion_of(law: Law, V_s: float) -> Parameters:
 
 def _walton_braun(law: Law) -> FittedLaw:
     k1 = _stiffness(law, exponent=1.0)
-    scale = (
-        math.sqrt(k1 / law.mass) / law.highest
-    )  # a hardening of this size gives k2 = 2 k1 at the top
+    # A hardening of this size gives k2 = 2 k1 at the highest velocity.
+    scale = math.sqrt(k1 / law.mass) / law.highest
 
     def springs(x: Array) -> tuple[float, float, float]:
         return k1, k1 * math.exp(x[0]), scale * float(x[1]) ** 2

@@ -35,7 +35,7 @@ def bare_law(out: Path) -> Law:
 
     The law of an ensemble is that of its mean curve, and its errors include the confidence interval
     of the mean. The errors from a convergence study include the error of the grid. Depths without
-    an impact velocity are left out; at these depths adhesion did more work than the approach.
+    an impact velocity are left out: there the loading work is negative, because of adhesion.
     Raises `OutputError` if the folder holds no run, and `CaseError` if no depth has an impact
     velocity.
     """

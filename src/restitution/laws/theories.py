@@ -23,7 +23,7 @@ COMPUTED = "computed"
 """The name of the computed points among the theories."""
 
 _FINE = 600  # number of velocities of a line in a figure
-_SAME = 1e-6  # largest relative difference of R*, E* or m* that count as equal
+_SAME = 1e-6  # values of R*, E* or m* with at most this relative difference count as equal
 _FITTED = ("constant", "walton-braun", "luding", "eepa")  # theories whose parameters need a fit
 
 
@@ -79,7 +79,7 @@ def theory_lines(
     """Lines of a figure: name, whether fitted, velocities (m/s) and COR of each theory in `found`.
 
     Closed forms are evaluated at many velocities from the first to the last. Fits are given at
-    `velocities`. The computed points are left out.
+    `velocities`. The points that this program computed are not among the lines.
     """
     closed: dict[str, Array] = {}
     V = velocities

@@ -182,8 +182,8 @@ def collide_in_time(law: StoredForce, velocity: float) -> ReferenceCollision:
     down = _integrate(law.loading, m1, m2, start, scale, velocity, (stop, too_deep))
     if down.t_events[1].size:
         raise NotConvergedError(
-            f"velocity: at {velocity:.6g} m/s the stored loading curve cannot absorb this impact "
-            "energy; run the case again"
+            f"velocity: at {velocity:.6g} m/s the stored loading curve ends before the particles "
+            "stop, so its forces contradict its velocities; run the case again"
         )
     turn = down.y[:, -1]
     deepest = float(turn[0] - turn[1])

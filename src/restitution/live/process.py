@@ -19,7 +19,7 @@ from typing import Any
 from restitution.live.figures import as_json
 from restitution.live.worker import Request, serve
 
-_PATIENCE = 1.5  # s that a request may take to stop
+_PATIENCE = 1.5  # time (s) that a request may take to stop
 _LOST = as_json(
     {
         "error": "the process that computes has ended unexpectedly (the system may have been short "

@@ -94,7 +94,7 @@ class Server:
         }
 
     def _guarded(self, handler: Handler) -> Handler:
-        """`handler` for requests with the token and the right kind of content."""
+        """Wrap `handler`: pass on only requests with the token and the right kind of content."""
 
         async def answer(request: Request) -> Response:
             token = request.headers.get("x-token", "")

@@ -30,8 +30,8 @@ def number_fractions(key: str, table: dict[str, Any], radii: Sequence[float]) ->
     sizes = table.get("radius")
     if isinstance(sizes, dict) and "median" in sizes:
         raise CaseError(
-            f"{where}: the bins of a log-normal distribution hold equal numbers already; leave it "
-            "out, or give edges or bins"
+            f"{where}: the bins of a log-normal distribution hold equal numbers already; leave "
+            "this key out, or give edges or bins instead of the distribution"
         )
     fractions = _checked(where, table.pop(given[0]), len(radii))
     power = 3 if given[0] == "mass_fractions" else 0

@@ -23,7 +23,7 @@ from restitution.plots.figure import (
     legend_entries,
 )
 
-_MOST_PIXELS = 320  # most pixels of a map along each axis; a larger map is thinned
+_MOST_PIXELS = 320  # largest number of pixels of a map along each axis; a larger map is thinned
 _LAYERS = (Band, Line, Points)  # drawing order of the series, from bottom to top
 
 

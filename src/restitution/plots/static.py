@@ -41,7 +41,8 @@ Format = Literal["png", "svg", "pdf"]
 # a row of the legend, and the width of a legend at the side.
 _CHART, _MAP, _SECOND = (6.4, 4.0), (5.6, 4.6), 4.6
 _ROW, _SIDE = 0.2, 2.4
-_MOST_BELOW = 8  # most entries of a legend below the axes; a longer legend is placed at the side
+# Largest number of entries of a legend below the axes; a longer legend is placed at the side.
+_MOST_BELOW = 8
 # Number of decades of a logarithmic axis, and the digits that are labelled up to this number.
 _DIGITS: tuple[tuple[float, tuple[int, ...]], ...] = ((1.0, (1, 2, 3, 5, 7)), (3.0, (1, 2, 5)))
 _TICKS = 6  # approximate number of labels of a linear axis (at most one more)

@@ -40,8 +40,8 @@ Array = NDArray[np.float64]
 Row = dict[str, float]
 
 _BAND = 1.5  # safety factor on the change of COR expected from waves that the grid leaves out
-# The factor s: for resolved contacts; and for unresolved contacts, interpolated between 3 and 7
-# nodes in the median patch.
+# The factor s of resolved contacts, and of unresolved contacts. The latter is interpolated between
+# its values at 3 and at 7 nodes in the median patch.
 _SHARE_RESOLVED = 0.03
 _FEW_NODES, _SHARE_UNRESOLVED = (3, 7), (0.6, 0.1)
 # The error f of COR as a function of the number of nodes in the median patch. In about 90 % of the
@@ -56,7 +56,7 @@ _SCATTER = 1.5
 # by chance.
 _NEAR_GRID, _NEAR_SURFACE = 2.0, 1.0
 MOST_AFFORDABLE = 2**24  # largest recommended number of nodes (some minutes and about 2 GB)
-MISSING_BAND = 0.03  # largest error of COR due to omitted waves at which a row is resolved
+MISSING_BAND = 0.03  # a row counts as resolved up to this error of COR due to omitted waves
 
 NOT_INCLUDED = (
     "the model (of plasticity: model_error; half-space; no range of attraction), values that the "
@@ -256,7 +256,7 @@ def total(row: Mapping[str, float]) -> float:
 
 
 def _floor(row: Row) -> float:
-    """Least discretisation error s f of a row, added to the error from differences of COR."""
+    """The part s f of the discretisation error of a row (s and f: see the top of this file)."""
     nodes = max(row["median_patch_nodes"], 1.0)
     expected = math.exp(np.interp(math.log(nodes), np.log(_PATCH_NODES), np.log(_PATCH_ERROR)))
     if resolves(nodes) and row["adhesion_resolved"]:

@@ -13,7 +13,8 @@ from restitution.errors import DomainError, NotConvergedError
 from restitution.runs.loading import load_to
 from restitution.runs.log import Say, ignore
 
-# Most nodes of a grid that "auto" tries. Such a grid takes a few minutes and about 2 GiB.
+# Largest number of nodes of a grid that "auto" tries. Such a grid takes a few minutes and about
+# 2 GiB.
 MOST_NODES = 2**24
 # Factor on the number of nodes that a patch needs, because other surfaces of an ensemble may have
 # smaller patches.

@@ -30,8 +30,8 @@ Waves = Callable[[Array], Array]
 
 _STRONGEST = 3.0, 40.0  # largest skewness and kurtosis of the noise in `filtered`
 _CLOSE = 0.02  # tolerance on skewness (absolute) and kurtosis (relative) in `filtered`
-_CORRECTIONS = 12  # most corrections of the moments of the noise in `filtered`
-_ADJUSTMENTS = 60  # most adjustments of heights and amplitudes in `adjusted`
+_CORRECTIONS = 12  # largest number of corrections of the moments of the noise in `filtered`
+_ADJUSTMENTS = 60  # largest number of adjustments of heights and amplitudes in `adjusted`
 _NEGLIGIBLE = 1e-3  # misfit of amplitudes at which the adjustment ends
 _STANDSTILL = 0.05  # relative decrease of the misfit, per adjustment, below which it ends
 

@@ -167,8 +167,8 @@ def _core(curve: MaterialRatio) -> dict[str, float | None]:
     top = float(height[start] - slope * ratio[start])
     bottom = top + float(slope)
     above, below = np.maximum(height - top, 0.0), np.maximum(bottom - height, 0.0)
-    # Spk and Svk are the heights of two triangles over the lengths Smr1 and 1 − Smr2. The triangles
-    # have the areas between the curve and the core line above and below the core.
+    # Spk is the height of a triangle over the length Smr1, with the area between the curve and the
+    # core line above the core. Svk is that of a triangle over 1 − Smr2, with the area below it.
     Smr1, Smr2 = float(np.mean(height > top)), float(np.mean(height >= bottom))
     peaks, dales = (float(trapezoid(part, ratio)) for part in (above, below))
     return {

@@ -43,22 +43,24 @@ _WORK = 2**24  # limit on the number of nodes times the number of adjustments of
 _ADJUSTMENTS = 3, 60  # smallest and largest number of adjustments of a band
 _NEGLIGIBLE = 1e-3  # misfit of heights at which the adjustment ends
 _STANDSTILL = 0.05  # the adjustment ends if the misfit decreases by less than this fraction
-_PARTS = 16  # most parts of the twin, each as large as the scan, for the comparison of spectra
-_COMPARED = 2**23  # most nodes of these parts together, if there is more than one part
+# Largest number of parts of the twin, each as large as the scan, for the comparison of spectra.
+_PARTS = 16
+_COMPARED = 2**23  # largest number of nodes of these parts together, if there is more than one part
 _UNLIKE = 0.5  # misfit of the spectrum above which the notice contains a warning
 _PROBABILITIES = 0.5 * (1 - np.cos(np.linspace(0, np.pi, 4097)))  # denser in the tails
 _TABLE = 2**14  # steps between the lowest and the highest node
 
 
 def twin(scan: Surface, grid: Grid, seed: int) -> Surface:
-    """Make a twin of `scan` on `grid`, periodic over `grid` or, if the scan is larger, a multiple.
+    """Make a twin of `scan` on `grid`.
 
-    With all its waves, the twin has the Rq of the scan and nearly its skewness and kurtosis. Waves
-    that the cells of `grid` cannot carry are left out (`removed_…` in the provenance). The
-    provenance also contains the statistics of the scan (`scan_…`) and `spectrum_misfit`, the root
-    mean square of the relative difference of the two spectra. The spectra are compared on parts as
-    large as the scan, in bands of a quarter octave. The weights of the bands are their shares of
-    the mean squares of height and slope.
+    The twin is periodic over `grid` or, if the scan is larger, over a multiple of it. It is made
+    with the Rq of the scan, and nearly with its skewness and kurtosis. Then the waves that the
+    cells of `grid` cannot carry are left out (`removed_…` in the provenance). The provenance also
+    contains the statistics of the scan (`scan_…`) and `spectrum_misfit`, the root mean square of
+    the relative difference of the two spectra. The spectra are compared on parts as large as the
+    scan, in bands of a quarter octave. The weights of the bands are their shares of the mean
+    squares of height and slope.
 
     Raises `SurfaceError` for a scan that is flat or has fewer than 16 pixels along an axis, and for
     cells that are too large for any wave of the scan.

@@ -26,7 +26,7 @@ from restitution.surfaces.surface import Surface
 Array = NDArray[np.float64]
 Modes = NDArray[np.complex128]
 
-_SUMMED = 2**20  # most waves summed one by one in mean squares (see `_moments`)
+_SUMMED = 2**20  # largest number of waves summed one by one in mean squares (see `_moments`)
 _LEAST = 2  # waves with at most this number of waves per scan are always summed one by one
 _ROWS = 2**20  # number of waves computed at a time, which limits the memory
 _ROUNDING = 1e-9

@@ -146,6 +146,7 @@ def put(case: dict[str, Any], path: str, value: Any) -> None:
             raise CaseError(f"sweep.{path}: {shown(step)} is a value, not a table")
     if isinstance(table, list):
         raise CaseError(
-            f"sweep.{path}: there are {len(table)} tables; give the number of one, as in 1.{last}"
+            f"sweep.{path}: there are {len(table)} tables; say which one by its number, as in "
+            f"1.{last}"
         )
     table[last] = value

@@ -155,8 +155,8 @@ def resolves(median_patch_nodes: float) -> bool:
 def unresolved_patches(depths: Sequence[float], median_patches: Sequence[float]) -> list[Finding]:
     """Finding `patches-unresolved`: contact patches have too few nodes at some `depths` (m).
 
-    Values: `few`, the number of such depths; `depths`, the number of all depths; `deepest`, the
-    deepest unresolved depth (m).
+    Values of the finding: `few`, the number of these depths; `depths`, the number of all depths;
+    `deepest`, the deepest of these depths (m).
     """
     few = [depth for depth, n in zip(depths, median_patches, strict=True) if not resolves(n)]
     if not few:

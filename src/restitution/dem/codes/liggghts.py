@@ -64,7 +64,7 @@ def _hardness(table: PairTable) -> str:
 
 
 def _restitution(table: PairTable) -> list[list[str]]:
-    """Symmetric matrix of variables for e by types; 1 between walls, which never meet."""
+    """Symmetric matrix, by types, of the variables that hold e; 1 for walls, which never meet."""
     numbers = range(1, len(table.particles) + 1)
 
     def entry(i: int, j: int) -> str:

@@ -438,7 +438,8 @@ function drawCurves() {
   const at = curve.rows[depthNow()];
   const line = (x) => ({ type: "line", yref: "paper", y0: 0, y1: 1, x0: x, x1: x, line: { color: css("--soft"), width: 1 } });
   const shapes = at && at[KEYS[what]] > 0 ? [line(scale * at[KEYS[what]])] : [];
-  draw("cor", curve.figures[what], pins.map((pin) => pinTrace(pin, KEYS[what], scale, "restitution")), shapes);
+  const traces = [...modelBand(KEYS[what], scale), ...pins.map((pin) => pinTrace(pin, KEYS[what], scale, "restitution"))];
+  draw("cor", curve.figures[what], traces, shapes);
   draw("force", curve.figures.force, pins.map((pin) => pinTrace(pin, "max_indentation_m", 1e6, "force_N")), at ? [line(1e6 * at.max_indentation_m)] : []);
   const cors = curve.rows.map((row) => row.restitution);
   $("cor").setAttribute("aria-label", cors.length
@@ -447,6 +448,20 @@ function drawCurves() {
   $("cursor").max = Math.max(0, curve.rows.length - 1);
   $("cursor").value = depthNow();
   showCursor();
+}
+
+// COR with the error of the model of plasticity, which is known at once; the total error takes longer.
+function modelBand(key, scale) {
+  const rows = curve.rows.filter((row) => row[key] > 0);
+  const edge = (sign) => ({
+    type: "scatter", mode: "lines", line: { width: 0 }, hoverinfo: "skip", x: rows.map((row) => scale * row[key]),
+    y: rows.map((row) => Math.min(1, Math.max(0, row.restitution + sign * row.model_error))),
+  });
+  if (!rows.some((row) => row.model_error > 0)) return [];
+  return [
+    { ...edge(-1), showlegend: false },
+    { ...edge(1), fill: "tonexty", fillcolor: "rgba(0,114,178,0.15)", name: "± error of the model" },
+  ];
 }
 
 function pinTrace(pin, key, scale, quantity) {
