@@ -24,13 +24,12 @@ README = (ROOT / "README.md").read_text()
 
 # Blocks that are not run, by page and first line, and why.
 NOT_RUN = {
+    ("README.md", 'pip install ".[app,measured]"'): "the page waits for Ctrl-C",
+    ("docs/app.md", 'pip install "restitution[app]"'): "the page waits for Ctrl-C",
     ("README.md", "make demo"): "installs the package",
     ("README.md", "pip install ."): "installs the package",
     ("CONTRIBUTING.md", "make help"): "each target takes minutes",
-    (
-        "docs/start.md",
-        "cd restitution       # the folder of your copy of the repository",
-    ): "installs the package",
+    ("docs/start.md", "cd restitution"): "installs the package",
     ("docs/tutorials/cluster.md", "dask scheduler --port 8786"): "needs the machines of a cluster",
     ("docs/tutorials/cluster.md", "#!/bin/bash"): "needs Slurm",
     ("docs/developers/recipes.md", "python tests/document_blocks.py docs/developers/recipes.md"): (

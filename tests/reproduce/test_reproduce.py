@@ -187,7 +187,7 @@ def test_the_page_is_drawn(reproduced, opened):
 
 def test_sizes_exclude_each_other_and_nothing_is_overwritten(refused, tmp_path):
     out = tmp_path / "out"
-    assert "give one" in refused("reproduce", "-o", out, "--quick", "--refined")
+    assert "give only one" in refused("reproduce", "-o", out, "--quick", "--refined")
     out.mkdir()
     (out / "thesis.txt").write_text("")
     assert "not empty" in refused("reproduce", "-o", out)

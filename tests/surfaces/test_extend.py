@@ -184,8 +184,8 @@ def test_mirrored_tiles_keep_the_scan_in_the_middle(nodes):
     ("how", "size", "seed", "words"),
     [
         ("wrap", (1e-5, 1e-5), None, "'wrap' is unknown"),
-        ("twin", (1e-5, 1e-5), None, "needs one"),
-        ("twin", (1e-5, 1e-5), -1, "needs one"),
+        ("twin", (1e-5, 1e-5), None, "needs a seed"),
+        ("twin", (1e-5, 1e-5), -1, "needs a seed"),
         ("mirror", (1e-5, 1e-5), 1, "^seed: does not apply to how='mirror'"),
         ("twin", (0.0, 1e-5), 1, "^to: .* must be two positive lengths"),
         ("mirror", (float("nan"), 1e-5), None, "^to: .* must be two positive lengths"),

@@ -251,7 +251,7 @@ def test_header_with_one_side_only(write, refusal, tmp_path):
 
 def test_values_that_are_no_lengths(write, refusal, tmp_path):
     path = write(tmp_path / "a.txt", HEADER.replace("nm", "deg").replace("{um}", "um") + MATRIX)
-    assert 'values are in "deg", which is not a length' in refusal(path)
+    assert 'values are in "deg", which is not a unit of length' in refusal(path)
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ def app(
     case: Annotated[
         Path | None,
         typer.Argument(
-            metavar="[CASE]",
+            metavar="CASE",
             help="Case file (TOML) to begin with.",
             show_default="two rough steel spheres",
             readable=False,

@@ -11,6 +11,7 @@ versions.
 from __future__ import annotations
 
 import itertools
+import math
 
 from restitution.dem.codes.lammps_kokkos import linear_spring, velocity_damping
 from restitution.dem.codes.lammps_mdr import mdr_offers
@@ -29,7 +30,9 @@ from restitution.dem.velocity_matching import SCRIPT, Target, matching_script
 CODE = "LAMMPS"
 LOWEST = 0.001  # smallest e that is reproduced within 0.5 % with `STEPS` time steps in a contact
 FRAGMENT, COLLISION, PACKING = "restitution.lmp", "collision.in", "packing.in"
+_PACKING_STEPS = 50  # time steps of the packing in the shortest contact
 _GRAINS = 500  # number of spheres of the packing
+_FALLS = 0.25  # duration of its run, over the time in which the highest sphere falls to the wall
 _FILLED = 0.12  # fraction of the initial volume that the spheres fill
 KOKKOS = "restitution_kokkos.lmp"
 _MATCHED = Target(CODE, "lmp -in my.in", FRAGMENT, "matched.lmp", LOWEST)
@@ -87,7 +90,11 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
     floor = _floor(table)
     if floor is not None and not walls_only:
         size = table.largest_radius
-        edge = 16 * size
+        edge = 24 * size
+        height = _GRAINS * 4.2 * size**3 / (_FILLED * edge**2)
+        step = (
+            min(contact_time(law) for _, _, law in table.pairs()) * velocity**-0.2 / _PACKING_STEPS
+        )
         files[PACKING] = render(
             PACKING,
             comments=commented(short, "#"),
@@ -97,8 +104,9 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
             velocity=velocity,
             size=size,
             edge=edge,
-            height=_GRAINS * 4.2 * size**3 / (_FILLED * edge**2),
-            contact=min(contact_time(law) for _, _, law in table.pairs()) * velocity**-0.2,
+            height=height,
+            step=step,
+            count=1000 * math.ceil(_FALLS * height / (velocity * step) / 1000),
         )
     return files
 
