@@ -413,7 +413,7 @@ function draw(id, spec, traces = [], shapes = []) {
   const layout = themed(structuredClone(spec.layout));
   layout.shapes = [...(layout.shapes || []), ...shapes];
   $(id).dataset.drawn = "yes";
-  return Plotly.react($(id), [...spec.data, ...traces], layout, { responsive: true, displaylogo: false });
+  return Plotly.react($(id), [...spec.data, ...traces], layout, { responsive: true, displaylogo: false, showSendToCloud: false });
 }
 
 const depthNow = () => Math.min(cursor === null ? Infinity : cursor, curve.rows.length - 1);
