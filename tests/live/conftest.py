@@ -15,7 +15,7 @@ PROGRAMS = ("chromium", "chromium-browser", "google-chrome")
 OPTIONS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking"]
 # The plotting library tries one style of its own, which the page does not allow.
 HARMLESS = "Applying inline style violates"
-SLOW = 90_000  # ms that a busy machine may take
+SLOW = 40_000  # ms that a busy machine may take
 
 CASE = """
 title = "A small rough contact"

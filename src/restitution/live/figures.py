@@ -90,13 +90,16 @@ def surface_content(surface: Surface) -> dict[str, Any]:
         ["spacing", " × ".join(quantity(h, "m") for h in spacing)],
     ]
     for name, value in describe(surface).items():
-        words, unit = name.replace("_", " "), ""
-        for ending in ("m", "per m"):
-            if name.endswith(f"_{ending.replace(' ', '_')}"):
-                words, unit = words.removesuffix(f" {ending}"), ending.replace("per m", "1/m")
-        shown = "–" if value is None else quantity(value, unit) if unit else f"{value:.4g}"
-        rows.append([words, shown])
+        words = name.replace("_", " ")
+        bare = words.removesuffix(" per m").removesuffix(" m")
+        rows.append([bare, _in_unit(value, words.removeprefix(bare))])
     return {"surface": drawing(surface_map(_thinned(surface))), "statistics": rows}
+
+
+def _in_unit(value: float | None, unit: str) -> str:
+    if value is None:
+        return "–"
+    return quantity(value, "m") if unit == " m" else f"{value:.4g}{unit.replace('per m', '1/m')}"
 
 
 def _thinned(surface: Surface) -> Surface:

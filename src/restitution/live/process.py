@@ -27,6 +27,8 @@ _LOST = as_json(
         "lost": True,
     }
 )
+_CLOSED = as_json({"error": "the program has ended; start restitution app again", "lost": True})
+_AGAIN = "again"  # to a request whose process was ended for the sake of another one
 _Lines = asyncio.Queue[str | None]
 
 
@@ -40,22 +42,28 @@ class Process:
 
     async def ask(self, tab: str, kind: str, **values: Any) -> AsyncGenerator[str]:
         """The lines of JSON that answer a request. A request that is left alone is given up."""
-        running = self._started()
-        number, lines = next(self._numbers), _Lines()
-        running.waiting[number] = lines
-        try:
-            running.send(Request(number, tab, kind, values))
-            while (line := await lines.get()) is not None:
-                yield line
-            number = 0
-        finally:
-            if number:
-                running.give_up(number, lines)
+        asked = True
+        while asked:
+            asked = False
+            running = self._started()
+            number, lines = next(self._numbers), _Lines()
+            running.waiting[number] = lines
+            try:
+                running.send(Request(number, tab, kind, values))
+                while (line := await lines.get()) is not None:
+                    if line is _AGAIN:
+                        asked = True
+                    else:
+                        yield line
+                number = 0
+            finally:
+                if number:
+                    running.give_up(number, lines)
 
     def stop(self) -> None:
         """End the process."""
         if self._running is not None:
-            self._running.end()
+            self._running.end(_CLOSED)
 
     @property
     def pid(self) -> int | None:
@@ -63,7 +71,7 @@ class Process:
         return None if self._running is None else self._running.process.pid
 
     def _started(self) -> _Running:
-        if self._running is None or not self._running.process.is_alive():
+        if self._running is None or not self._running.usable:
             self._running = _Running(*self._folders)
         return self._running
 
@@ -78,9 +86,15 @@ class _Running:
         self.process.start()
         theirs.close()  # so that the end of the process closes the connection
         self.waiting: dict[int, _Lines] = {}
+        self._last_words = ""  # to requests that wait, once it is ended on purpose
         self._watching: set[asyncio.Task[None]] = set()
         self._loop = asyncio.get_running_loop()
         threading.Thread(target=self._receive, args=(self._connection,), daemon=True).start()
+
+    @property
+    def usable(self) -> bool:
+        """Whether the process lives, and nobody has ended it."""
+        return not self._last_words and self.process.is_alive()
 
     def send(self, message: Request | int) -> None:
         with suppress(OSError):  # the process has ended: the thread that receives tells
@@ -88,6 +102,8 @@ class _Running:
 
     def give_up(self, number: int, lines: _Lines) -> None:
         """Tell the process that nobody waits for a request; end it if it does not stop."""
+        if not self.usable:
+            return
         self.send(number)
 
         async def watch() -> None:
@@ -96,15 +112,18 @@ class _Running:
                     while await lines.get() is not None:
                         pass
                 return
-            self.process.terminate()
+            self.waiting.pop(number, None)
+            self.end(_AGAIN)
 
         task = self._loop.create_task(watch())
         self._watching.add(task)
         task.add_done_callback(self._watching.discard)
 
-    def end(self) -> None:
+    def end(self, last_words: str) -> None:
+        """End the process, with a last line for the requests that still wait."""
+        self._last_words = last_words
         self.process.terminate()
-        for task in self._watching:
+        for task in self._watching - {asyncio.current_task()}:
             task.cancel()
 
     def _receive(self, connection: Connection) -> None:
@@ -123,8 +142,9 @@ class _Running:
                 del self.waiting[number]
 
     def _lose(self) -> None:
+        self._last_words = self._last_words or _LOST
         self.process.join(timeout=0)
         for lines in self.waiting.values():
-            lines.put_nowait(_LOST)
+            lines.put_nowait(self._last_words)
             lines.put_nowait(None)
         self.waiting.clear()

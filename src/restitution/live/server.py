@@ -77,8 +77,12 @@ class Server:
         try:
             yield
         finally:
-            for process in (self._live, self._runs, self._finer):
-                process.stop()
+            self.stop()
+
+    def stop(self) -> None:
+        """End the processes, which also ends the answers that are under way."""
+        for process in (self._live, self._runs, self._finer):
+            process.stop()
 
     def _handlers(self) -> dict[str, Handler]:
         return {

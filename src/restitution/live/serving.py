@@ -14,16 +14,23 @@ from restitution.live.session import Session
 
 
 class _Uvicorn(uvicorn.Server):
-    """A server that tells when it accepts requests."""
+    """A server that tells when it accepts requests, and that it is about to end."""
 
-    def __init__(self, config: uvicorn.Config, ready: Callable[[], None]) -> None:
+    def __init__(
+        self, config: uvicorn.Config, ready: Callable[[], None], ending: Callable[[], None]
+    ) -> None:
         super().__init__(config)
-        self._ready = ready
+        self._ready, self._ending = ready, ending
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         """Start, and tell."""
         await super().startup(sockets)
         self._ready()
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """Tell, and end."""
+        self._ending()
+        await super().shutdown(sockets)
 
 
 def serve_page(session: Session, port: int, ready: Callable[[str], Any]) -> None:
@@ -49,4 +56,4 @@ def serve_page(session: Session, port: int, ready: Callable[[str], Any]) -> None
             timeout_graceful_shutdown=1,
         )
         address = f"http://127.0.0.1:{port}/#{session.token}"
-        _Uvicorn(config, lambda: ready(address)).run(sockets=[listening])
+        _Uvicorn(config, lambda: ready(address), server.stop).run(sockets=[listening])

@@ -94,14 +94,25 @@ class Inbox:
                 os._exit(0)  # nobody waits for the solve that may be under way
             with self._changed:
                 if isinstance(message, Request):
-                    replaced = self._waiting.pop((message.tab, message.kind), None)
-                    if replaced is not None:
-                        self._wire.send(replaced.number, REPLACED)
-                        self._wire.send(replaced.number, None)
+                    self._drop((message.tab, message.kind))
                     self._waiting[message.tab, message.kind] = message
                 else:
-                    self._given_up.add(message)
+                    self._give_up(message)
                 self._changed.notify_all()
+
+    def _give_up(self, number: int) -> None:
+        waits = [key for key, each in self._waiting.items() if each.number == number]
+        for key in waits:
+            self._drop(key)
+        if not waits:  # it is being computed, or answered already
+            self._given_up.add(number)
+
+    def _drop(self, key: tuple[str, str]) -> None:
+        """Answer a request that waits, if there is one, that it is not computed."""
+        dropped = self._waiting.pop(key, None)
+        if dropped is not None:
+            self._wire.send(dropped.number, REPLACED)
+            self._wire.send(dropped.number, None)
 
 
 class Worker:

@@ -426,7 +426,7 @@ function draw(id, spec, traces = [], shapes = []) {
     layout.margin = { l: 55, r: 10, t: 15, b: 45 };
   }
   $(id).dataset.drawn = "yes";
-  return Plotly.react($(id), [...spec.data, ...traces], layout, { responsive: true, displaylogo: false });
+  return Plotly.react($(id), [...spec.data, ...traces], layout, { responsive: true, displaylogo: false, showSendToCloud: false });
 }
 
 const depthNow = () => Math.min(cursor === null ? Infinity : cursor, curve.rows.length - 1);
