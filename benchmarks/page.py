@@ -52,8 +52,8 @@ time ends when the browser has painted the new curve of COR. Medians in ms (larg
 
 A curve of the bound that grows needs two solves at each depth, and one more for its work.
 
-After {many} changes the server and its processes hold {after:.0f} MiB, and after the first
-{changes} {before:.0f} MiB.
+Memory of the server and its processes, with the constant bound: {before:.0f} MiB after {changes}
+changes, and {after:.0f} MiB after {many} more.
 """
 
 
