@@ -1,9 +1,13 @@
 """`restitution simulate`: collisions integrated in time with the stored force curves."""
 
+import math
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+if TYPE_CHECKING:
+    from restitution.laws.time_integration import StoredForce
 
 
 def simulate(
@@ -21,6 +25,18 @@ def simulate(
             show_default="those of the unloading curves",
         ),
     ] = None,
+    friction: Annotated[
+        float | None,
+        typer.Option(min=0.0, metavar="MU", help="Coefficient of friction, for oblique impacts."),
+    ] = None,
+    angle: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="ANGLE",
+            help='Angle of impact from the normal, such as "30 deg"; may be repeated.',
+            show_default="head-on",
+        ),
+    ] = None,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -32,7 +48,11 @@ def simulate(
         ),
     ] = None,
 ) -> None:
-    """Integrate collisions in time with the stored forces of RESULTS; compare COR with energies."""
+    """Integrate collisions in time with the stored forces of RESULTS; compare COR with energies.
+
+    With --friction and --angle the impacts are oblique: VELOCITY is that of the centres, and the
+    table has the tangential restitution, the angle of rebound and the spin.
+    """
     from restitution.cli.console import answers, say_written, table_of_numbers
     from restitution.laws.from_results import bare_law
     from restitution.laws.law import velocity_of
@@ -41,6 +61,9 @@ def simulate(
 
     require_new_file(out)
     law, force = bare_law(results), stored_force(results)
+    if angle or friction is not None:
+        _oblique(force, law.work_of_adhesion, velocity or [], angle or [], friction, out)
+        return
     velocities = [velocity_of(text) for text in velocity or []]
     unloaded = force.unloading_from
     velocities = velocities or [
@@ -84,4 +107,65 @@ def simulate(
             "More curves (unloading.curves) bring COR in time closer to COR by energies."
         )
     if out is not None:
+        say_written(out)
+
+
+def _oblique(
+    force: "StoredForce",
+    work_of_adhesion: float,
+    velocities: list[str],
+    angles: list[str],
+    friction: float | None,
+    out: Path | None,
+) -> None:
+    """Oblique impacts at every velocity and angle, as a table."""
+    from restitution.case.quantities import read_quantity
+    from restitution.cli.console import answers, say, say_written, table_of_numbers
+    from restitution.errors import CaseError
+    from restitution.laws.law import velocity_of
+    from restitution.laws.oblique import collide_obliquely, course
+    from restitution.results.writer import write_table
+
+    if friction is None:
+        raise CaseError("--friction: is missing; an oblique impact needs a coefficient of friction")
+    if not angles or not velocities:
+        raise CaseError("--angle, --velocity: an oblique impact needs both; give them")
+    if work_of_adhesion > 0:
+        raise CaseError("--angle: oblique impacts are computed for pairs without adhesion only")
+    try:
+        wanted = [read_quantity(text, "rad") for text in angles]
+    except ValueError as error:
+        raise CaseError(f"--angle: {error}") from None
+    table = table_of_numbers(
+        "V (m/s)",
+        "angle (°)",
+        "e_n",
+        "e_t",
+        "rebound (°)",
+        "spins (rad/s)",
+        "friction loss (J)",
+        "",
+    )
+    courses = []
+    for text in velocities:
+        for each in wanted:
+            found = collide_obliquely(force, velocity_of(text), each, friction)
+            courses += course(found)
+            table.add_row(
+                f"{found.velocity:.4g}",
+                f"{math.degrees(each):.4g}",
+                f"{found.normal_restitution:.4f}",
+                f"{found.tangential_restitution:.4f}",
+                f"{math.degrees(found.rebound_angle):.2f}",
+                ", ".join(f"{spin:.4g}" for spin in found.spins),
+                f"{found.friction_loss:.4g}",
+                "slides" if found.sliding else "sticks in part",
+            )
+    answers.print(table)
+    say(
+        "The tangential law is exact for smooth elastic spheres of like materials. Its error is "
+        "not known for rough contacts and for contacts that have yielded."
+    )
+    if out is not None:
+        write_table(out, courses)
         say_written(out)

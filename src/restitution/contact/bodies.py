@@ -89,6 +89,14 @@ class Pair:
         )
 
     @property
+    def tangential_modulus(self) -> float:
+        """Tangential modulus G* (Pa): 1/G* = (2 − ν₁)/(4 G₁) + (2 − ν₂)/(4 G₂), G = E/(2 + 2ν)."""
+        return 1 / sum(
+            (2 - body.poissons_ratio) * (1 + body.poissons_ratio) / (2 * body.youngs_modulus)
+            for body in (self.first, self.second)
+        )
+
+    @property
     def mass(self) -> float | None:
         """Reduced mass m* (kg): 1/m* = 1/m₁ + 1/m₂; None if a sphere's density is not given."""
         if self.first.mass is None or self.second.mass is None:

@@ -97,27 +97,33 @@ class StoredForce:
         `DomainError` if the stored unloading curves do not enclose this depth.
         """
         depths = self.unloading_from
-        near = np.flatnonzero(np.abs(depths / deepest - 1) < _SAME)
-        after = int(near[0]) if near.size else int(np.searchsorted(depths, deepest))
-        if after == depths.size or (after == 0 and not near.size):
+        if not depths[0] * (1 - _SAME) <= deepest <= depths[-1] * (1 + _SAME):
             raise DomainError(
                 f"the particles turn at {1e9 * deepest:.4g} nm, but unloading curves are stored "
                 f"only from {1e9 * depths[0]:.4g} to {1e9 * depths[-1]:.4g} nm, and nothing is "
                 "extrapolated; raise unloading.curves, or choose another velocity"
             )
         end, largest = self.separation(deepest), self.loading(deepest)
-        upper = lower = _shape(*self.unloading[after])
-        share = 1.0
-        if not near.size:
-            lower = _shape(*self.unloading[after - 1])
-            between = math.log(depths[after] / depths[after - 1])
-            share = math.log(deepest / depths[after - 1]) / between
+        shape, blended = self.shape(deepest)
+        return lambda x: largest * shape((x - end) / (deepest - end)), end, blended
 
-        def force(x: float) -> float:
-            s = (x - end) / (deepest - end)
-            return largest * ((1 - share) * lower(s) + share * upper(s))
+    def shape(self, deepest: float) -> tuple[Callable[[Any], Any], bool]:
+        """Return the shape of the unloading curve from `deepest` (m), and a flag.
 
-        return force, end, not near.size
+        The shape is F/F_max as a function of (δ − δ_s)/(δ_max − δ_s), for numbers and arrays. The
+        flag says whether it is interpolated between two stored curves. Beyond the first and the
+        last stored curve, it is the shape of this curve.
+        """
+        depths = self.unloading_from
+        near = np.flatnonzero(np.abs(depths / deepest - 1) < _SAME)
+        after = int(near[0]) if near.size else int(np.searchsorted(depths, deepest))
+        upper = _shape(*self.unloading[min(after, depths.size - 1)])
+        if near.size or after in (0, depths.size):
+            return upper, False
+        lower = _shape(*self.unloading[after - 1])
+        between = math.log(depths[after] / depths[after - 1])
+        share = math.log(deepest / depths[after - 1]) / between
+        return lambda s: (1 - share) * lower(s) + share * upper(s), True
 
 
 def stored_force(out: Path) -> StoredForce:
@@ -351,8 +357,7 @@ def _pchip(x: Array, y: Array) -> Force:
     low, high = float(x[0]), float(x[-1])
     # The integrator evaluates trial points slightly beyond the ends.
 
-    def at(where: float) -> float:
-        value: float = curve(min(max(where, low), high))
-        return value
+    def at(where: Any) -> Any:
+        return curve(np.minimum(np.maximum(where, low), high))
 
     return at

@@ -1,0 +1,101 @@
+"""A one-dimensional foundation with the normal and tangential response of a stored contact.
+
+Springs stand side by side on a line. The spring at the distance x from the middle touches at the
+indentation g(x), and carries the normal load 2E* (δ − g) and the tangential load 2G* u for each
+metre of the half line. g follows from the normal curve alone: its inverse is the contact radius
+a(δ) = F′(δ)/2E*. In a spring that sticks, u follows the motion of the bodies; |2G* u| is at most µ
+times the normal load. For a sphere, g = x²/R*, and the foundation is exact: it gives Hertz's force,
+and Cattaneo's and Mindlin's tangential force for every history (Popov and Heß 2015, Method of
+Dimensionality Reduction, chapters 3 and 5). For other elastic contacts the rule "tangential is µ
+times the difference of two normal states" is a good approximation (Jäger 1995, Arch. Appl. Mech.
+65, 478–487; Ciavarella 1998, Int. J. Solids Struct. 35, 2349–2378).
+
+A contact that has yielded responds to small motions as on its unloading curve. At every depth of
+loading, the springs therefore get the loads of the unloading curve from this depth, and those that
+touch already keep their tangential displacement. This extension is not in the literature cited.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.laws.time_integration import StoredForce
+
+Array = NDArray[np.float64]
+
+_SPRINGS = 400
+_DEPTHS = 200  # number of depths of loading at which the loads of the springs are tabulated
+_POINTS = 400  # points of an unloading curve, for its slope
+
+
+@dataclass(frozen=True, eq=False)
+class Foundation:
+    """Springs of a contact that is loaded up to `depths[-1]` (m).
+
+    `radius` (m, shape (n,)) are the distances of the springs from the middle, and `width` (m) their
+    spacing. `loads` (N/m, shape (depths, n)) are the normal loads on both half lines at each depth
+    of loading. `moduli` are E* and G* (Pa).
+    """
+
+    radius: Array
+    width: float
+    depths: Array
+    loads: Array
+    moduli: tuple[float, float]
+
+    @classmethod
+    def of(cls, law: StoredForce, deepest: float) -> Foundation:
+        """The foundation of the force `law`, loaded up to `deepest` (m)."""
+        E, G = law.pair.contact_modulus, law.pair.tangential_modulus
+        depths = np.linspace(0.0, deepest, _DEPTHS + 1)[1:]
+        curves = [_touching(law, float(depth), E) for depth in depths]
+        width = max(radii[-1] for _, radii in curves) / _SPRINGS
+        x = (np.arange(_SPRINGS) + 0.5) * width
+        loads = np.zeros((_DEPTHS, _SPRINGS))
+        for row, depth, (reached, radii) in zip(loads, depths, curves, strict=True):
+            touch = np.interp(x, radii, reached)
+            row[:] = np.where(x < radii[-1], 2 * E * np.maximum(depth - touch, 0.0), 0.0)
+        return cls(x, width, depths, loads, (E, G))
+
+    def load(self, indentation: float, deepest: float) -> Array:
+        """Normal load (N) of every spring at an indentation (m), after the largest one so far."""
+        share = np.clip(deepest / self.depths[0] - 1, 0.0, len(self.depths) - 1.0)
+        k = min(int(share), len(self.depths) - 2)
+        at_deepest = self.loads[k] + (share - k) * (self.loads[k + 1] - self.loads[k])
+        if deepest < self.depths[0]:
+            at_deepest = at_deepest * deepest / self.depths[0]
+        lifted = 2 * self.moduli[0] * (deepest - indentation)
+        load: Array = np.maximum(at_deepest - lifted, 0.0) * self.width
+        return load
+
+    def move(self, u: Array, motion: float, limit: Array) -> tuple[Array, float, float]:
+        """Move the bodies tangentially by `motion` (m).
+
+        `u` (m) are the tangential displacements of the springs, and `limit` (N) are the largest
+        tangential loads. Returns the new displacements, the tangential force (N), and the work of
+        friction (J).
+        """
+        stiffness = 2 * self.moduli[1] * self.width
+        free = u + motion
+        held = np.clip(free, -limit / stiffness, limit / stiffness)
+        work = 0.5 * stiffness * float(np.dot(u + held, free - held))
+        return held, stiffness * float(held.sum()), work
+
+
+def _touching(law: StoredForce, depth: float, contact_modulus: float) -> tuple[Array, Array]:
+    """Indentations (m) of the unloading curve from `depth`, and contact radii (m) there.
+
+    The radii increase with the indentation, so that every spring touches once. They are scaled so
+    that the loads of the springs add up to the force.
+    """
+    end, force = law.separation(depth), law.loading(depth)
+    shape, _ = law.shape(depth)
+    s = np.linspace(0.0, 1.0, _POINTS + 1)
+    F = force * np.asarray(shape(s))
+    slope = np.maximum.accumulate(np.maximum(np.diff(F), 0.0)) / ((depth - end) / _POINTS)
+    slope *= force / (slope.sum() * (depth - end) / _POINTS)
+    middle = end + (s[:-1] + 0.5 / _POINTS) * (depth - end)
+    return np.append(end, middle), np.append(0.0, slope / (2 * contact_modulus))

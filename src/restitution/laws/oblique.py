@@ -1,0 +1,211 @@
+"""Oblique impact: tangential rebound, spin and friction loss from the stored normal curves.
+
+The normal motion does not depend on the tangential motion: it is that of a head-on impact at the
+normal velocity (`time_integration`). The contact point slides with the velocity
+
+    U = v_t − R₁ω₁ − R₂ω₂,   dU/dt = −(7/2) T/m*,   dv_t/dt = −T/m*,   dω_i/dt = (5/2) T/(m_i R_i)
+
+for solid spheres (I = 2/5 m R²). ω is positive in the sense of rolling, in which friction turns a
+sphere without spin. The tangential force T follows from a one-dimensional foundation with constant
+friction µ (`foundation`). If all springs slide to the end, the impulse of T is µ (1 + e) m* V_n for
+every law of force.
+
+Neglected: the coupling of normal and tangential displacements of unlike materials, the torque about
+the normal, rolling friction, and elastic waves.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.errors import CaseError
+from restitution.laws.foundation import Foundation
+from restitution.laws.time_integration import ReferenceCollision, StoredForce, collide_in_time
+
+Array = NDArray[np.float64]
+
+_STEPS = 4000  # time steps of a collision
+_LEAST = 1e-3  # part of the largest normal force below which sticking is not looked for
+_INERTIA = 3.5  # 1 + m R²/I of a solid sphere
+
+
+@dataclass(frozen=True, eq=False)
+class ObliqueCollision:
+    """One oblique collision, in SI units; arrays are its course in time.
+
+    Attributes:
+        velocity: Impact velocity (m/s).
+        angle: Angle of impact from the normal (rad).
+        friction: Coefficient of friction µ (1).
+        normal_restitution: Normal velocity after over before the impact (1).
+        tangential_restitution: Tangential velocity of the centres after over before the impact (1);
+            NaN for a head-on impact.
+        rebound_angle: Angle of rebound of the centres from the normal (rad).
+        spins: Angular velocities of the two bodies after the impact (rad/s); 0 for a wall.
+        friction_loss: Energy lost to friction (J).
+        normal_loss: Energy lost in the normal contact (J).
+        sliding: Whether the whole contact slides from the beginning to the end.
+        time: Time since first touch (s).
+        normal_force: Normal force (N).
+        tangential_force: Tangential force (N).
+        slip_velocity: Velocity of the contact point (m/s).
+        sticking: Part of the normal force that is carried by springs that stick (1).
+    """
+
+    velocity: float
+    angle: float
+    friction: float
+    normal_restitution: float
+    tangential_restitution: float
+    rebound_angle: float
+    spins: tuple[float, float]
+    friction_loss: float
+    normal_loss: float
+    sliding: bool
+    time: Array
+    normal_force: Array
+    tangential_force: Array
+    slip_velocity: Array
+    sticking: Array
+
+
+def collide_obliquely(
+    law: StoredForce,
+    velocity: float,
+    angle: float,
+    friction: float,
+    spins: tuple[float, float] = (0.0, 0.0),
+) -> ObliqueCollision:
+    """Let the two particles of `law` collide at an angle.
+
+    Args:
+        law: Stored normal force of the pair (`stored_force`), without adhesion.
+        velocity: Relative velocity of the centres before the impact (m/s), positive.
+        angle: Angle between this velocity and the normal (rad), from 0 to below π/2.
+        friction: Coefficient of friction µ (1), not negative.
+        spins: Angular velocities of the two bodies before the impact (rad/s), positive in the sense
+            in which friction turns a body without spin.
+
+    Returns:
+        The collision and its course.
+
+    Raises:
+        CaseError: An argument lies outside its range.
+        DomainError: The normal velocity is above the computed ones, or the depth has no stored
+            unloading curve.
+        NotConvergedError: The integration of the normal motion failed.
+    """
+    if not 0 <= angle < math.pi / 2:
+        raise CaseError(
+            f"angle: {math.degrees(angle):.6g} degrees from the normal is not an impact; give 0 to "
+            "below 90 degrees"
+        )
+    if not (math.isfinite(friction) and friction >= 0):
+        raise CaseError(f"friction: {friction} is not a coefficient of friction; give 0 or more")
+    if not all(map(math.isfinite, spins)):
+        raise CaseError("spins: must be finite numbers (rad/s)")
+    V_n, V_t = velocity * math.cos(angle), velocity * math.sin(angle)
+    normal = collide_in_time(law, V_n)
+    bodies = law.pair.first, law.pair.second
+    arms = [0.0 if math.isinf(body.radius) else body.radius for body in bodies]
+    rolling = sum(R * spin for R, spin in zip(arms, spins, strict=True))
+    mass = law.pair.mass
+    assert mass is not None  # StoredForce
+    course = _slide(law, normal, V_t - rolling, friction, mass)
+    J = course.impulse
+    turned = [
+        0.0 if R == 0 else spin + 2.5 * J / (body.mass or math.inf) / R
+        for R, spin, body in zip(arms, spins, bodies, strict=True)
+    ]
+    e = normal.restitution
+    after = V_t - J / mass
+    return ObliqueCollision(
+        velocity=velocity,
+        angle=angle,
+        friction=friction,
+        normal_restitution=e,
+        tangential_restitution=after / V_t if V_t > 0 else math.nan,
+        rebound_angle=math.atan2(after, e * V_n),
+        spins=(turned[0], turned[1]),
+        friction_loss=course.loss,
+        normal_loss=0.5 * mass * V_n**2 * (1 - e**2),
+        sliding=bool(course.sticking[1:-1].max(initial=0.0) == 0),
+        time=course.time,
+        normal_force=course.normal,
+        tangential_force=course.force,
+        slip_velocity=course.slip,
+        sticking=course.sticking,
+    )
+
+
+def course(collision: ObliqueCollision) -> list[dict[str, float | str]]:
+    """Convert the course of a collision to rows of a table."""
+    columns = zip(
+        collision.time,
+        collision.normal_force,
+        collision.tangential_force,
+        collision.slip_velocity,
+        collision.sticking,
+        strict=True,
+    )
+    return [
+        {
+            "impact_velocity_m_per_s": collision.velocity,
+            "angle_rad": collision.angle,
+            "time_s": float(time),
+            "normal_force_N": float(normal),
+            "tangential_force_N": float(tangential),
+            "slip_velocity_m_per_s": float(slip),
+            "sticking": float(sticking),
+        }
+        for time, normal, tangential, slip, sticking in columns
+    ]
+
+
+@dataclass(frozen=True, eq=False)
+class _Course:
+    """Tangential motion in time, the impulse (N s) and the work of friction (J)."""
+
+    time: Array
+    normal: Array
+    force: Array
+    slip: Array
+    sticking: Array
+    impulse: float
+    loss: float
+
+
+def _slide(
+    law: StoredForce, normal: ReferenceCollision, slip: float, friction: float, mass: float
+) -> _Course:
+    """Integrate the tangential motion from the velocity `slip` (m/s) of the contact point."""
+    from scipy.interpolate import CubicHermiteSpline
+
+    at, first = np.unique(normal.time, return_index=True)
+    depth = CubicHermiteSpline(at, normal.indentation[first], normal.closing_velocity[first])
+    t = np.linspace(0.0, normal.duration, _STEPS + 1)
+    dt, delta = normal.duration / _STEPS, np.maximum(depth(t), 0.0)
+    back, _, _ = law.branch(min(normal.largest_indentation, law.deepest))
+    springs = Foundation.of(law, normal.largest_indentation)
+    turn = float(t[int(np.argmax(delta))])
+    F = np.array([(law.loading if s <= turn else back)(x) for s, x in zip(t, delta, strict=True)])
+    T, U, stick = np.zeros(t.size), np.full(t.size, slip), np.zeros(t.size)
+    u, speed, loss = np.zeros(springs.radius.size), slip, 0.0
+    for k in range(1, t.size):
+        loads = springs.load(delta[k], delta[k] if t[k] <= turn else normal.largest_indentation)
+        total = loads.sum()
+        if total > 0:
+            loads *= max(F[k], 0.0) / total
+        free = u + speed * dt
+        u, T[k], work = springs.move(u, speed * dt, friction * loads)
+        if F[k] > _LEAST * F.max():
+            stick[k] = loads[free == u].sum() / loads.sum()
+        loss += work
+        before, speed = speed, speed - _INERTIA * T[k] / mass * dt
+        U[k] = 0.5 * (before + speed)
+    impulse = (slip - speed) * mass / _INERTIA
+    return _Course(t, F, T, U, stick, impulse, loss)

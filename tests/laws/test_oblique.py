@@ -1,0 +1,281 @@
+"""Oblique impact: the tangential law against closed forms, energy and a measurement."""
+
+import math
+
+import numpy as np
+import pytest
+
+from restitution import Body, Pair
+from restitution.errors import CaseError, DomainError
+from restitution.laws.foundation import Foundation
+from restitution.laws.oblique import collide_obliquely, course
+from restitution.laws.time_integration import StoredForce, stored_force
+from restitution.theory import Hertz
+from tolerance import approx
+
+ALUMINA = Body(2.5e-3, 380e9, 0.23, 4000)
+GLASS_WALL = Body(math.inf, 70e9, 0.22)
+MU = 0.3
+
+
+def elastic(pair, velocity):
+    """The stored force of smooth elastic spheres, up to an impact velocity."""
+    hertz = Hertz(pair.radius, pair.contact_modulus)
+    deepest = 1.01 * float(hertz.indentation_from_energy(0.5 * pair.mass * velocity**2))
+    depths, s = np.geomspace(deepest / 100, deepest, 20), np.linspace(0, 1, 1001)
+    return StoredForce(
+        pair,
+        deepest,
+        1.005 * velocity,
+        lambda x: float(hertz.force(max(x, 0.0))),
+        lambda x: 0.0,
+        depths,
+        tuple((depth * s, hertz.force(depth * s)) for depth in depths),
+    )
+
+
+@pytest.fixture(scope="module")
+def wall():
+    return elastic(Pair(ALUMINA, GLASS_WALL), 3.9)
+
+
+@pytest.fixture(scope="module")
+def pressed(wall):
+    """The foundation, and its springs' loads, at a normal force held constant."""
+    springs = Foundation.of(wall, wall.deepest)
+    return springs, springs.load(wall.deepest, wall.deepest)
+
+
+def dragged(pressed, path, friction=MU):
+    """Forces, and the displacements of the springs, along a path of tangential displacements."""
+    springs, loads = pressed
+    u, before, forces, loss = np.zeros(loads.size), 0.0, [], 0.0
+    for place in path:
+        u, force, work = springs.move(u, place - before, friction * loads)
+        before, loss = place, loss + work
+        forces.append(force)
+    return np.array(forces), u, loss
+
+
+def largest_displacement(wall, force):
+    """The tangential displacement (m) at which Cattaneo and Mindlin's contact slides."""
+    a = math.sqrt(wall.pair.radius * wall.deepest)
+    return 3 * MU * force / (4 * wall.pair.tangential_modulus * a)
+
+
+def test_the_springs_carry_the_normal_force(wall):
+    springs = Foundation.of(wall, wall.deepest)
+    hertz = Hertz(wall.pair.radius, wall.pair.contact_modulus)
+    for depth in wall.deepest * np.array([0.2, 0.5, 1.0]):
+        assert springs.load(depth, wall.deepest).sum() == approx(
+            float(hertz.force(depth)), rel=2e-3
+        )
+        assert springs.load(depth, depth).sum() == approx(float(hertz.force(depth)), rel=5e-3)
+
+
+def test_partial_slip_is_that_of_cattaneo_and_mindlin(wall, pressed):
+    force = pressed[1].sum()
+    share = np.linspace(0.05, 1, 20)
+    forces, _, _ = dragged(pressed, share * largest_displacement(wall, force))
+    assert forces / (MU * force) == approx(1 - (1 - share) ** 1.5, rel=1e-3)
+
+
+@pytest.mark.parametrize("part", [0.2, 0.5, 0.9])
+def test_the_slip_annulus_is_that_of_cattaneo_and_mindlin(wall, pressed, part):
+    springs, loads = pressed
+    force = loads.sum()
+    place = largest_displacement(wall, force) * (1 - (1 - part) ** (2 / 3))
+    (found,), u, _ = dragged(pressed, [place])
+    assert found == approx(part * MU * force, rel=1e-3)
+    stuck = springs.radius[np.isclose(u, place, rtol=1e-9)].max() + springs.width / 2
+    a = math.sqrt(wall.pair.radius * wall.deepest)
+    assert stuck / a == approx((1 - part) ** (1 / 3), rel=1e-2)
+
+
+def test_the_loop_loses_the_energy_of_mindlin_and_deresiewicz(wall, pressed):
+    """One cycle between ±T at constant normal force: the area between the two branches, which are
+    Cattaneo and Mindlin's curve twice as large (Mindlin and Deresiewicz 1953)."""
+    force, part = pressed[1].sum(), 0.6
+    far = largest_displacement(wall, force) * (1 - (1 - part) ** (2 / 3))
+    path = far * np.concatenate(
+        [np.linspace(0, 1, 400), np.linspace(1, -1, 800), np.linspace(-1, 1, 800)]
+    )
+    springs, _ = pressed
+    _, _, first = dragged(pressed, path[:400])
+    _, _, whole = dragged(pressed, path)
+    a, G = math.sqrt(wall.pair.radius * wall.deepest), springs.moduli[1]
+    loss = (18 * (MU * force) ** 2 / (5 * a * G)) * (
+        1 - (1 - part) ** (5 / 3) - 5 * part / 6 * (1 + (1 - part) ** (2 / 3))
+    )
+    assert whole - first == approx(loss, rel=1e-2)
+
+
+def test_full_slip_follows_the_impulse_exactly(wall):
+    for degrees in (45, 60, 80):
+        angle, friction = math.radians(degrees), 0.092
+        found = collide_obliquely(wall, 3.9, angle, friction)
+        assert found.sliding
+        lost = friction * (1 + found.normal_restitution) / math.tan(angle)
+        assert found.tangential_restitution == approx(1 - lost, rel=1e-5)
+
+
+@pytest.mark.parametrize(("factor", "sliding"), [(1.01, True), (0.99, False)])
+def test_the_range_of_full_slip_is_that_of_maw_barber_and_fawcett(wall, factor, sliding):
+    """Maw, Barber and Fawcett (1976): from ψ₁ = 4χ − 1 on, with ψ₁ = κ tan θ/µ and χ = 7κ/4."""
+    kappa = wall.pair.tangential_modulus / wall.pair.contact_modulus
+    angle = math.atan(factor * 0.2 * (7 - 1 / kappa))
+    assert collide_obliquely(wall, 3.9, angle, 0.2).sliding is sliding
+
+
+@pytest.mark.parametrize(("factor", "sticks"), [(0.95, True), (1.05, False)])
+def test_the_contact_sticks_at_first_below_the_angle_of_maw_barber_and_fawcett(
+    wall, factor, sticks
+):
+    """All of the contact sticks at the beginning where ψ₁ < 1."""
+    kappa = wall.pair.tangential_modulus / wall.pair.contact_modulus
+    found = collide_obliquely(wall, 3.9, math.atan(factor * 0.2 / kappa), 0.2)
+    early = found.sticking[
+        (found.time > 0.02 * found.time[-1]) & (found.time < 0.1 * found.time[-1])
+    ]
+    assert bool(early.min() > 0.9) == sticks
+
+
+def test_the_energy_lost_is_that_of_friction_and_of_the_normal_contact(wall):
+    mass = wall.pair.mass
+    for degrees, spin in ((5, 0.0), (20, 0.0), (20, 800.0), (35, -300.0), (60, 0.0)):
+        angle = math.radians(degrees)
+        found = collide_obliquely(wall, 3.9, angle, 0.15, (spin, 0.0))
+        V_n, V_t = 3.9 * math.cos(angle), 3.9 * math.sin(angle)
+        inertia = 0.4 * mass * ALUMINA.radius**2
+        before = 0.5 * mass * (V_n**2 + V_t**2) + 0.5 * inertia * spin**2
+        after = 0.5 * inertia * found.spins[0] ** 2 + 0.5 * mass * (
+            (found.normal_restitution * V_n) ** 2 + (found.tangential_restitution * V_t) ** 2
+        )
+        assert before - after == approx(found.friction_loss + found.normal_loss, rel=1e-4)
+
+
+def test_without_friction_nothing_tangential_changes(wall):
+    found = collide_obliquely(wall, 2.0, math.radians(30), 0.0)
+    assert found.tangential_restitution == approx(1.0, rel=1e-12)
+    assert found.spins == (0.0, 0.0)
+    assert found.friction_loss == 0.0
+    assert found.rebound_angle == approx(math.radians(30), rel=1e-6)
+
+
+def test_equal_spheres_spin_alike_and_a_rolling_sphere_keeps_its_velocity(wall):
+    pair = elastic(Pair(ALUMINA, ALUMINA), 2.0)
+    found = collide_obliquely(pair, 2.0, math.radians(40), 0.2)
+    assert found.spins[0] == approx(found.spins[1], rel=1e-12)
+    assert found.spins[0] > 0
+    angle = math.radians(30)
+    rolling = 2.0 * math.sin(angle) / ALUMINA.radius
+    found = collide_obliquely(wall, 2.0, angle, 0.2, (rolling, 0.0))
+    assert found.tangential_restitution == approx(1.0, rel=1e-9)
+
+
+# Kharaz, Gorham and Salman (2001), Powder Technol. 120, 281: angle (degrees), e_t.
+KHARAZ = (
+    (1.84, 0.79344),
+    (3.703, 0.74533),
+    (9.496, 0.67257),
+    (20.012, 0.59691),
+    (30.127, 0.68756),
+    (39.382, 0.77148),
+    (49.694, 0.84761),
+    (60.02, 0.90142),
+)
+
+
+@pytest.mark.parametrize(("degrees", "measured"), KHARAZ)
+def test_the_tangential_restitution_of_alumina_on_glass_is_as_measured(wall, degrees, measured):
+    found = collide_obliquely(wall, 3.9, math.radians(degrees), 0.092)
+    assert found.tangential_restitution == approx(measured, rel=0.04)
+
+
+@pytest.fixture(scope="module")
+def yielded(computed_yielding):
+    return stored_force(computed_yielding)
+
+
+@pytest.fixture(scope="module")
+def computed_yielding(tmp_path_factory):
+    """The run of a rough pair that yields."""
+    from restitution import run
+
+    case = {
+        "total_error": False,
+        "first": {"material": "steel", "radius": "500 um"},
+        "interface": {"yield_strength": "500 MPa"},
+        "roughness": {
+            "kind": "gaussian",
+            "rms": "0.05 um",
+            "correlation_length": "3 um",
+            "seed": 2,
+        },
+        "grid": {"nodes": 96, "spacing": "0.4 um"},
+        "indentation": {"from": "50 nm", "to": "500 nm", "steps": 6},
+        "unloading": {"curves": 6},
+    }
+    out = tmp_path_factory.mktemp("yielding") / "out"
+    run(case, out=out)
+    return out
+
+
+def test_the_springs_of_a_yielded_rough_contact_carry_its_forces(yielded):
+    springs = Foundation.of(yielded, yielded.deepest)
+    force, end, _ = yielded.branch(yielded.deepest)
+    largest = yielded.loading(yielded.deepest)
+    for share in (0.3, 0.6, 0.9, 1.0):
+        at = end + share * (yielded.deepest - end)
+        total = springs.load(at, yielded.deepest).sum()
+        assert abs(total - force(at)) < 0.02 * largest
+    for share in (0.3, 0.7):
+        at = share * yielded.deepest
+        assert springs.load(at, at).sum() == approx(yielded.loading(at), rel=0.02)
+
+
+def test_a_yielded_contact_keeps_its_normal_restitution(yielded):
+    angle = math.radians(25)
+    found = collide_obliquely(yielded, 0.9 * yielded.highest, angle, 0.3)
+    head_on = collide_obliquely(yielded, 0.9 * yielded.highest * math.cos(angle), 0.0, 0.3)
+    assert found.normal_restitution == approx(head_on.normal_restitution, rel=1e-12)
+    assert 0 < found.tangential_restitution < 1
+    assert math.isnan(head_on.tangential_restitution)
+    assert len(course(found)) == found.time.size
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"angle": math.pi / 2}, "below 90 degrees"),
+        ({"angle": -0.1}, "below 90 degrees"),
+        ({"angle": math.nan}, "below 90 degrees"),
+        ({"friction": -0.1}, "give 0 or more"),
+        ({"friction": math.inf}, "give 0 or more"),
+        ({"spins": (math.nan, 0.0)}, "finite numbers"),
+    ],
+)
+def test_bad_arguments_are_refused(wall, changed, words):
+    given = {"velocity": 1.0, "angle": 0.1, "friction": 0.1} | changed
+    with pytest.raises(CaseError, match=words):
+        collide_obliquely(wall, **given)
+
+
+def test_nothing_is_extrapolated(wall):
+    with pytest.raises(DomainError, match="outside the computed velocities"):
+        collide_obliquely(wall, 10.0, 0.1, 0.1)
+
+
+def test_the_command_line(cli, refused, computed_yielding, tmp_path):
+    given = ["simulate", computed_yielding, "--velocity", "0.2 m/s"]
+    table = tmp_path / "course.csv"
+    _, said, _ = cli(
+        *given, "--angle", "30 deg", "--angle", "60 deg", "--friction", "0.2", "-o", table
+    )
+    assert "slides" in said
+    assert "not known for" in said
+    assert table.read_text().startswith("impact_velocity_m_per_s,angle_rad,time_s")
+    assert "--friction: is missing" in refused(*given, "--angle", "30 deg")
+    assert "--angle" in refused(*given, "--friction", "0.2")
+    assert "is not an angle" in refused(*given, "--friction", "0.2", "--angle", "30 m")
+    assert "below 90 degrees" in refused(*given, "--friction", "0.2", "--angle", "95 deg")
