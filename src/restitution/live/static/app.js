@@ -612,10 +612,13 @@ async function upload(file) {
 
 // ---- the case as a file, finer runs, files to take away ---------------------------------------
 
+let textEdited = false; // the text holds changes of the reader that are not used yet
+
 async function updateText() {
-  if (!$("case-file").open || document.activeElement === $("case-text")) return;
+  if (!$("case-file").open || textEdited) return;
   try {
-    $("case-text").value = (await (await post("text", { content })).json()).text;
+    const found = await (await post("text", { content })).json();
+    if (!textEdited) $("case-text").value = found.text; // the reader may have begun to edit meanwhile
   } catch (error) { $("text-problem").textContent = error.message; }
 }
 
@@ -624,6 +627,7 @@ async function useText() {
   $("text-problem").hidden = !found.error;
   $("text-problem").textContent = found.error || "";
   if (found.error) return;
+  textEdited = false;
   content = found.content;
   drawForm();
   changed();
@@ -692,6 +696,7 @@ function listen() {
   $("pin").addEventListener("click", pin);
   $("form").addEventListener("submit", (event) => event.preventDefault());
   $("case-file").addEventListener("toggle", updateText);
+  $("case-text").addEventListener("input", () => { textEdited = true; });
   $("use-text").addEventListener("click", useText);
   $("finer").addEventListener("click", runFiner);
   $("cancel").addEventListener("click", () => finer && finer.abort());
