@@ -237,7 +237,8 @@ def _streamed(request: Request, lines: AsyncGenerator[str]) -> Response:
     """Lines of JSON, each sent as soon as it is there, until the page goes away."""
 
     async def body() -> AsyncIterator[str]:
-        gone = line = asyncio.ensure_future(_gone(request))
+        gone = asyncio.ensure_future(_gone(request))
+        line: asyncio.Future[str | None] = asyncio.Future()
         try:
             while True:
                 line = asyncio.ensure_future(anext(lines, None))
