@@ -238,17 +238,18 @@ def _streamed(request: Request, lines: AsyncGenerator[str]) -> Response:
 
     async def body() -> AsyncIterator[str]:
         gone = asyncio.ensure_future(_gone(request))
+        line: asyncio.Future[str | None] = asyncio.Future()
         try:
             while True:
                 line = asyncio.ensure_future(anext(lines, None))
                 await asyncio.wait({line, gone}, return_when=asyncio.FIRST_COMPLETED)
                 if not line.done():
-                    line.cancel()  # which gives the request up
                     return
                 if (text := line.result()) is None:
                     return
                 yield text + "\n"
         finally:
+            line.cancel()  # which gives the request up, unless it is answered
             gone.cancel()
 
     return StreamingResponse(body(), media_type="application/x-ndjson")
