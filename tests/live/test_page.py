@@ -408,6 +408,21 @@ def test_a_scan_gives_a_curve(page):
     assert len(table(page, "numbers")) == 6
 
 
+def test_a_scan_is_dropped_onto_the_page(page):
+    rest(page)
+    scan = page.evaluate_handle(
+        "(text) => { const data = new DataTransfer();"
+        " data.items.add(new File([text], 'dropped.txt')); return data; }",
+        GLASS_BEAD.read_text(encoding="utf-8"),
+    )
+    page.dispatch_event("body", "dragover", {"dataTransfer": scan})
+    expect(page.locator("#drop")).to_be_visible()
+    page.dispatch_event("body", "drop", {"dataTransfer": scan})
+    expect(page.locator("#drop")).to_be_hidden()
+    expect(page.locator("#field-roughness-file")).to_have_value("dropped.txt")
+    expect_a_curve_or_a_message(page)
+
+
 @pytest.mark.parametrize(
     "name", ["mi-1.mi", "nid-1.nid", "di-3.di", "matrix-3.txt", "sur-2.sur", "tmd-1.tmd"]
 )
