@@ -61,7 +61,7 @@ class Deviations:
 
     @property
     def by_grid(self) -> Array:
-        """The difference on cells twice as large; zero if unknown."""
+        """The difference of COR on cells twice as large; zero if unknown."""
         return np.zeros(self.random.size) if self.grid is None else self.grid
 
     @property

@@ -69,7 +69,7 @@ def measured_bytes(grid: Grid, scan: Grid, *, twin: bool) -> float:
 
 
 def _band_nodes(grid: Grid, scan: Grid) -> float:
-    """Largest number of nodes of the finest adjusted band of a twin (see `surfaces.twin`)."""
+    """Number of nodes, at most, of the finest band that a twin adjusts (see `surfaces.twin`)."""
     repeats = [max(1.0, s / g) for s, g in zip(scan.size, grid.size, strict=True)]
     ratio = min(h / pixel for h, pixel in zip(grid.spacing, scan.spacing, strict=True))
     coarser = 2.0 ** max(math.floor(math.log2(ratio)), 0)

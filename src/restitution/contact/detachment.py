@@ -138,7 +138,10 @@ def energy_release_rate(
     outwards = (_FACES @ np.array([row, 1]))[side]
 
     def values_at(values: Array, cells: int) -> Array:
-        """Return `values` at the node `cells` cells outwards from the edge node of each face."""
+        """Return `values` on the normal of each face, `cells` cells outwards from its edge node.
+
+        A face is a side of an edge node without contact beyond it. Negative `cells` lie inwards.
+        """
         found: Array = np.take(values, here + cells * outwards, mode="clip")
         return found
 

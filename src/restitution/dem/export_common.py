@@ -151,7 +151,10 @@ def summary(
     fragment: str,
     constant: bool = True,
 ) -> list[str]:
-    """Write shorter comments, with all warnings, above a collision that uses `fragment`."""
+    """Write the comments above the script of a collision, which uses the file `fragment`.
+
+    They are shorter than those of `header`, but contain all warnings.
+    """
     lines = [
         *_origin(velocity, code, ends, constant),
         f"The comments in {fragment} give the origin of e.",

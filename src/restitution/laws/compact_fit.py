@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 _HIGHEST_DEGREE = 8
 _FEWEST = 4  # smallest number of points for a fit
 _NO_LOSS = 1e-3  # a point counts as lossless if 1 − W_u/W_l is below this value
-_SIMPLER = 1.1  # a lower degree is preferred if its error is at most this factor larger
+_SIMPLER = 1.1  # a lower degree is preferred if its error is at most this multiple of the least
 _GOOD = 1e-3  # a lower degree is always preferred if its error of e is below this value
 _COUNTS = 0.01  # loss of e² by adhesion at the velocity `adhesive_below`
 

@@ -22,7 +22,7 @@ STEPS = 25
 COMPUTED = "computed"
 """The name of the computed points among the theories."""
 
-_FINE = 600  # number of velocities of a line in a figure
+_FINE = 600  # number of velocities at which a line in a figure is computed
 _SAME = 1e-6  # values of R*, E* or m* with at most this relative difference count as equal
 _FITTED = ("constant", "walton-braun", "luding", "eepa")  # theories whose parameters need a fit
 

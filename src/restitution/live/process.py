@@ -28,7 +28,7 @@ _LOST = as_json(
     }
 )
 _CLOSED = as_json({"error": "the program has ended; start restitution app again", "lost": True})
-_AGAIN = "again"  # to a request whose process was ended for the sake of another one
+_AGAIN = "again"  # asks a request again: its process was ended for another one
 _Lines = asyncio.Queue[str | None]
 
 
@@ -67,7 +67,7 @@ class Process:
 
     @property
     def pid(self) -> int | None:
-        """The number of the process in the system; None before the first request."""
+        """The process id (PID); None before the first request."""
         return None if self._running is None else self._running.process.pid
 
     def _started(self) -> _Running:

@@ -86,7 +86,7 @@ class Inbox:
                 raise NotWanted
 
     def _listen(self) -> None:
-        """Receive requests, and numbers of those that are given up, until the parent is gone."""
+        """Receive requests, and the numbers of requests to give up, until the parent has ended."""
         while True:
             try:
                 message = self._wire.receive()
@@ -108,7 +108,7 @@ class Inbox:
             self._given_up.add(number)
 
     def _drop(self, key: tuple[str, str]) -> None:
-        """Answer a request that waits, if there is one, that it is not computed."""
+        """If a request waits under `key`, remove it, and answer that it is not computed."""
         dropped = self._waiting.pop(key, None)
         if dropped is not None:
             self._wire.send(dropped.number, REPLACED)

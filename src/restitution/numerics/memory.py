@@ -63,7 +63,7 @@ def _of_control_groups(groups: str = "/proc/self/cgroup") -> float:
         else:
             continue
         group = root / path.lstrip("/")
-        # In a container the path may be the host's and not exist here, but the root exists.
+        # In a container, `path` may belong to the host and not exist here, but `root` exists.
         for folder in (group, *group.parents):
             least = min(least, _limit(folder / file))
             if folder == root:

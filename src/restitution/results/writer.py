@@ -246,7 +246,7 @@ def replace_file(path: Path, write: Callable[[Path], object]) -> None:
             write(temporary)
             os.replace(temporary, path)
         except BaseException:
-            with suppress(OSError):  # frees disk space even if a library has it open
+            with suppress(OSError):  # frees the disk space even if a library has the file open
                 os.truncate(temporary, 0)
             raise
         finally:

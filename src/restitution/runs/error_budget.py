@@ -40,8 +40,8 @@ Array = NDArray[np.float64]
 Row = dict[str, float]
 
 _BAND = 1.5  # safety factor on the change of COR expected from waves that the grid leaves out
-# The factor s of resolved contacts, and of unresolved contacts. The latter is interpolated between
-# its values at 3 and at 7 nodes in the median patch.
+# The share s (see the top of this file), first for resolved contacts, then for unresolved ones. For
+# the latter it is interpolated between its values at 3 and at 7 nodes in the median patch.
 _SHARE_RESOLVED = 0.03
 _FEW_NODES, _SHARE_UNRESOLVED = (3, 7), (0.6, 0.1)
 # The error f of COR as a function of the number of nodes in the median patch. In about 90 % of the

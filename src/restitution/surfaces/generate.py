@@ -156,7 +156,7 @@ def _spectrum(kind: str, waves: Waves) -> Spectrum:
 def _heights(
     grid: Grid, spectrum: Spectrum, seed: int, wanted: tuple[float, float], periodic: bool
 ) -> tuple[Array, dict[str, str | float]]:
-    """Generate heights with an arbitrary scale, and provenance entries on the method."""
+    """Generate heights of arbitrary scale; return them and provenance entries naming the method."""
     from scipy.fft import irfft2, rfft2
 
     larger = grid if periodic else _enlarged(grid, spectrum.longest)

@@ -41,8 +41,9 @@ class NoReadersError(SurfaceError):
 def read_instrument(path: Path, channel: int | None) -> Scan:
     """Read height channel `channel`, or the default channel of the reader.
 
-    Raises `NoReadersError`, `UnrecognisedError` if no reader can open the file, and `SurfaceError`
-    if the channel does not exist or is not a height map in a unit of length.
+    Raises `NoReadersError` if the readers are missing or too old, `UnrecognisedError` if no reader
+    can open the file, and `SurfaceError` if the channel does not exist or is not a height map in a
+    unit of length.
     """
     _check_archive(path)
     with _quiet():

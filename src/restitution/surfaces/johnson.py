@@ -23,7 +23,8 @@ Array = NDArray[np.float64]
 # near this limit nearly all heights take one of two values.
 LEAST_KURTOSIS = 1.1
 _ABSCISSAE, _WEIGHTS = np.polynomial.hermite_e.hermegauss(201)
-# Misfits of the moments up to which a fit is accepted; the larger one is for the lognormal line.
+# A misfit of the moments below the first value ends the search. The best fit is accepted up to the
+# second value, which moments on the lognormal line need.
 _EXACT, _CLOSE = 1e-6, 2e-3
 _STARTS = ((0.0, 0.0), (0.5, 0.3), (1.5, 0.5), (3.0, 0.8), (0.5, -0.7), (1.2, -1.2), (2.5, -1.5))
 

@@ -20,7 +20,7 @@ from restitution.surfaces.scan import Y_DOWN, Scan, in_metres
 TEXT_SUFFIXES = frozenset({".txt", ".csv", ".dat", ".asc"})
 
 _LEAST_VALUES = 4  # fewest values of a scan line; fewer are coordinates or a profile
-_LONGEST = 200  # largest length of a value in the header that is stored (characters)
+_LONGEST = 200  # longest header value that is read as a number with a unit (characters)
 _NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?"
 _QUANTITY = re.compile(rf"(?P<number>{_NUMBER})\s*(?P<unit>\S+)")
 # Keys with which headers of other programs (SPIP, Nova, Gwyddion's XYZ) set units and scales.

@@ -37,10 +37,11 @@ FAILED, STUDY_FILE = "failed.json", "study.toml"
 
 
 def prepare_folder(path: Path, name: str, text: str, *, resume: bool, what: str) -> None:
-    """Prepare the folder `path` for a study or mixture (`what`), and write its `text` to `name`.
+    """Prepare the folder `path` for a study or mixture, whose file `name` holds `text`.
 
-    Raises `OutputError` if the folder cannot be written. Without `resume` the folder must be new or
-    empty. With `resume` it must hold a study or mixture with the same `text`.
+    `what` is the word for it in messages. Without `resume` the folder must be new or empty, and the
+    file is written. With `resume` the folder must hold a study or mixture with the same `text`.
+    Raises `OutputError` otherwise, or if the folder cannot be written.
     """
     held = path / name
     if not resume:

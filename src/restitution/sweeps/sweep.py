@@ -63,7 +63,7 @@ def read_study(path: Path) -> Study:
 
 
 def parse_study(text: str) -> Study:
-    """Check the text of a study file and all cases that follow. Raises `CaseError`."""
+    """Check the text of a study file and every case made from it. Raises `CaseError`."""
     content = parse_toml(text)
     sweep = content.pop("sweep", None)
     if not isinstance(sweep, dict):
