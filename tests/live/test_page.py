@@ -247,6 +247,46 @@ def test_each_problem_is_shown_on_the_page(page, field, value, words):
     expect(page.locator("#status")).to_have_text(re.compile("^not computed"))
 
 
+def test_a_message_about_a_table_is_told_beside_a_field(page):
+    computed(page)
+    page.locator("#field-indentation-from").fill("1 um")
+    expect(page.locator("#field-indentation-from-problem")).to_contain_text("must be smaller")
+    for end in ("from", "to", "steps"):
+        page.locator(f"#field-indentation-{end}").fill("")
+    expect(page.locator("#field-indentation-from-problem")).to_contain_text("give from, to and")
+    expect(page.locator("#field-depths")).to_have_value("indentation")
+
+
+def test_values_return_with_their_fields_after_a_choice_is_taken_back(page):
+    computed(page)
+    page.locator("#field-second").select_option("own")
+    expect(page.locator("#field-second-material")).to_have_value("steel")
+    change(page, "#field-second-radius", "1 mm")
+    change(page, RMS, "30 nm")
+    for field, away, back in (
+        ("second", "", "own"),
+        ("roughness-kind", "", "gaussian"),
+        ("depths", "load", "indentation"),
+    ):
+        page.locator(f"#field-{field}").select_option(away)
+        page.locator(f"#field-{field}").select_option(back)
+    expect(page.locator("#field-second-radius")).to_have_value("1 mm")
+    expect(page.locator(RMS)).to_have_value("30 nm")
+    expect(page.locator("#field-roughness-correlation_length")).to_have_value("1 um")
+    expect(page.locator("#field-indentation-to")).to_have_value("200 nm")
+    computed(page)
+
+
+@pytest.mark.parametrize("value", ["1979-01-01", "inf", "nan"])
+def test_a_text_with_a_value_that_no_case_has_is_told(page, live_case, value):
+    computed(page)
+    page.locator("#case-file summary").click()
+    expect(page.locator("#case-text")).to_have_value(re.compile('material = "steel"'))
+    page.locator("#case-text").fill(f"colour = {value}\n{live_case}")
+    page.get_by_role("button", name="Use this text").click()
+    expect(page.locator("#text-problem")).to_contain_text("no key of a case has such a value")
+
+
 def test_an_unknown_key_of_the_case_as_a_text_is_told(page, live_case):
     computed(page)
     page.locator("#case-file summary").click()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import tomllib
 from pathlib import Path, PurePath
 from typing import Any
@@ -18,9 +19,15 @@ Content = dict[str, Any]
 def content_of(text: str) -> Content:
     """The tables of the case file `text`; a wall is a table, and `roughness` is a list of tables.
 
-    Raises `CaseError` if `text` is not TOML.
+    Raises `CaseError` if `text` is not TOML, or has a value that JSON lacks.
     """
     content = parse_toml(text)
+    try:
+        json.dumps(content, allow_nan=False)
+    except (TypeError, ValueError):
+        raise CaseError(
+            "a value is a date, a time, infinite or not a number; no key of a case has such a value"
+        ) from None
     for name in ("first", "second"):
         if isinstance(content.get(name), str):
             content[name] = {"material": content[name], "radius": "flat"}

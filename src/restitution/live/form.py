@@ -321,8 +321,8 @@ _RANGE = (
         ),
     ),
     *_span("indentation", "Indentation", "m", (1e-10, 1e-4), ("20 nm", "2 um")),
-    *_span("impact", "Velocity", "m/s", (1e-4, 10.0), ("10 mm/s", "1 m/s")),
-    *_span("load", "Load", "N", (1e-9, 1e2), ("1 mN", "10 N")),
+    *_span("impact", "Velocity", "m/s", (1e-4, 10.0), ("10 mm/s", "0.3 m/s")),
+    *_span("load", "Load", "N", (1e-9, 1e2), ("1 mN", "0.3 N")),
 )
 
 _REST = (

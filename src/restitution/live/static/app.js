@@ -53,6 +53,7 @@ function say(words) { $("status").textContent = words; }
 // ---- the tree of tables -----------------------------------------------------------------------
 
 const TABLES = ["indentation", "impact", "load"];
+const KEPT = ["first", "second", ...TABLES]; // tables that stay in the case when all their fields are empty
 
 function table(name, make) {
   if (name === "roughness") {
@@ -76,7 +77,8 @@ function set(key, value) {
     for (const name of TABLES) if (name !== value) delete content[name];
     table(value, true);
   } else if (key === "second") {
-    if (value) table("second", true); else delete content.second;
+    if (!value) delete content.second;
+    else if (content.second === undefined) content.second = structuredClone(content.first || {});
   } else if (key === "roughness.kind" && value === "") {
     delete content.roughness;
   } else {
@@ -85,20 +87,24 @@ function set(key, value) {
     if (of === undefined) return;
     if (value === "") delete of[inner === undefined ? name : inner];
     else of[inner === undefined ? name : inner] = value;
-    if (inner !== undefined && !Object.keys(of).length && name !== "first") delete content[name];
+    if (inner !== undefined && !Object.keys(of).length && !KEPT.includes(name)) delete content[name];
   }
 }
 
 const fields = () => form.groups.flatMap((group) => group.fields);
 const shown = (field) => !field.when.length || field.when.slice(1).includes(get(field.when[0]));
 
-// After a choice: keys of fields that vanish are left out, and those that appear get their first value.
+const lastValues = new Map(); // of fields, when a choice was made; they return with their fields
+
+// After a choice: keys of fields that vanish are left out, and those that appear get their last or first value.
 function settle(before) {
   const now = new Set(fields().filter(shown).map((field) => field.key));
   for (const field of before) if (!now.has(field.key) && !TABLES.includes(field.key.split(".")[0])) set(field.key, "");
   const old = new Set(before.map((field) => field.key));
+  for (const field of fields().filter(shown)) if (!old.has(field.key) && lastValues.has(field.key)) set(field.key, lastValues.get(field.key));
   const listed = ["impact.velocity", "indentation.values", "load.values"].some((key) => get(key) !== "");
   for (const field of fields().filter(shown)) {
+    if (lastValues.has(field.key)) continue;
     const spans = TABLES.includes(field.key.split(".")[0]) && listed;
     if (!old.has(field.key) && field.initial !== null && get(field.key) === "" && !spans) set(field.key, field.initial);
   }
@@ -190,7 +196,11 @@ function drawGroup(group) {
     more.addEventListener("toggle", () => (more.open ? opened.add(group.title) : opened.delete(group.title)));
     parts.push(more);
   }
-  if (group.title === "Surface") parts.push(drawUpload());
+  if (group.title === "Surface") {
+    const others = (content.roughness || []).length - 1;
+    if (others > 0) parts.unshift(element("p", { class: "hint" }, `The fields show the first of ${others + 1} roughnesses, which are added; edit the others in the case file below.`));
+    parts.push(drawUpload());
+  }
   if (!group.closed) return element("fieldset", {}, element("legend", {}, group.title), ...parts);
   const inner = element("details", {}, element("summary", {}, group.title), ...parts);
   return element("fieldset", {}, inner);
@@ -220,6 +230,7 @@ function drawChoice(field, id) {
   }
   select.addEventListener("change", () => {
     const before = fields().filter(shown);
+    for (const each of before) if (each.key !== field.key) lastValues.set(each.key, get(each.key));
     set(field.key, select.value);
     settle(before);
     drawForm();
@@ -248,6 +259,7 @@ function drawSlider(field, id) {
     const value = fromSlider(field, Number(slider.value));
     set(field.key, value);
     $(id).value = asText(value);
+    slider.classList.remove("unset");
     slider.setAttribute("aria-valuetext", asText(value));
     changed();
   });
@@ -257,7 +269,17 @@ function drawSlider(field, id) {
 function placeSlider(field, slider) {
   const position = toSlider(field);
   slider.value = position === null ? 500 : position;
-  slider.setAttribute("aria-valuetext", asText(get(field.key)) || libraryValue(field) || "left out");
+  const value = asText(get(field.key)) || libraryValue(field);
+  slider.classList.toggle("unset", !value);
+  slider.setAttribute("aria-valuetext", value || "left out");
+}
+
+// The field that a message is about; of a message about a table, its first field that the message names.
+function fieldOf(key, words) {
+  const visible = fields().filter(shown);
+  const inside = visible.filter((field) => field.key.startsWith(`${key}.`));
+  const named = inside.find((field) => new RegExp(`\\b${field.key.split(".")[1]}\\b`).test(words));
+  return visible.find((field) => field.key === key) || named || inside[0];
 }
 
 function showProblems(problems) {
@@ -265,7 +287,7 @@ function showProblems(problems) {
   for (const box of document.querySelectorAll("#groups [aria-invalid]")) box.removeAttribute("aria-invalid");
   const rest = [];
   for (const [key, words] of Object.entries(problems)) {
-    const field = fields().find((each) => each.key === key && shown(each));
+    const field = fieldOf(key, words);
     const box = field && $(`${idOf(field)}-problem`);
     if (!box) { rest.push(key ? `${key}: ${words}` : words); continue; }
     box.textContent = words;
@@ -281,7 +303,7 @@ function showProblems(problems) {
 // A message of the solver starts with the key that it is about, if there is one.
 function showError(message) {
   const match = /^([a-z_]+(?:\.[a-z_]+)?): (.*)$/s.exec(message);
-  const known = match && fields().some((field) => field.key === match[1] && shown(field));
+  const known = match && fieldOf(match[1], match[2]);
   showProblems(known ? { [match[1]]: match[2] } : { "": message });
 }
 
@@ -546,9 +568,12 @@ function pin() {
 function flat(tables) {
   const found = {};
   for (const [name, value] of Object.entries(tables)) {
-    const inner = name === "roughness" ? (value[0] || {}) : value;
-    if (inner !== null && typeof inner === "object" && !Array.isArray(inner)) for (const [key, each] of Object.entries(inner)) found[`${name}.${key}`] = asText(each);
-    else found[name] = asText(inner);
+    const parts = name === "roughness" && Array.isArray(value) ? value : [value];
+    for (const [k, inner] of parts.entries()) {
+      const path = k ? `${name} ${k + 1}` : name;
+      if (inner !== null && typeof inner === "object" && !Array.isArray(inner)) for (const [key, each] of Object.entries(inner)) found[`${path}.${key}`] = asText(each);
+      else found[path] = asText(inner);
+    }
   }
   return found;
 }
@@ -623,12 +648,16 @@ async function updateText() {
 }
 
 async function useText() {
-  const found = await (await post("content", { text: $("case-text").value })).json();
+  let found;
+  try {
+    found = await (await post("content", { text: $("case-text").value })).json();
+  } catch (error) { found = { error: lostServer(error) }; }
   $("text-problem").hidden = !found.error;
   $("text-problem").textContent = found.error || "";
   if (found.error) return;
   textEdited = false;
   content = found.content;
+  lastValues.clear();
   drawForm();
   changed();
 }
