@@ -89,6 +89,16 @@ def test_the_points_are_those_of_the_run(rough):
     assert said == summary["conventions"]
 
 
+def test_the_law_holds_at_an_end_that_the_run_met_within_its_tolerance(rough):
+    """A run meets the velocities of its case within 1e-4, and the law is asked for these."""
+    law = bare_law(rough)
+    assert law.at(law.lowest * (1 - 1e-4)).restitution == law.points[0].restitution
+    assert law.at(law.highest * (1 + 1e-4)).restitution == law.points[-1].restitution
+    for beyond in (law.lowest * (1 - 2e-4), law.highest * (1 + 2e-4)):
+        with pytest.raises(DomainError, match="nothing is extrapolated"):
+            law.at(beyond)
+
+
 def test_at_a_point_the_law_is_the_point_and_between_points_it_is_between(rough):
     law = bare_law(rough)
     for before, point in zip(law.points, law.points[1:], strict=False):

@@ -1,6 +1,7 @@
 """Oblique impact: the tangential law against closed forms, energy and a measurement."""
 
 import math
+import warnings
 
 import numpy as np
 import pytest
@@ -264,6 +265,23 @@ def test_bad_arguments_are_refused(wall, changed, words):
 def test_nothing_is_extrapolated(wall):
     with pytest.raises(DomainError, match="outside the computed velocities"):
         collide_obliquely(wall, 10.0, 0.1, 0.1)
+
+
+def test_a_pair_with_adhesion_is_refused(refused, tmp_path):
+    from restitution import run
+
+    case = {
+        "total_error": False,
+        "first": {"material": "glass", "radius": "50 um"},
+        "interface": {"yield_pressure": "elastic", "work_of_adhesion": "0.05 J/m^2"},
+        "grid": {"nodes": 64, "spacing": "0.1 um"},
+        "indentation": {"values": ["20 nm", "40 nm"]},
+        "unloading": {"curves": 2},
+    }
+    with warnings.catch_warnings(action="ignore"):
+        run(case, out=tmp_path / "out")
+    given = ["simulate", tmp_path / "out", "--velocity", "0.05 m/s", "--friction", "0.2"]
+    assert "without adhesion only" in refused(*given, "--angle", "30 deg")
 
 
 def test_the_command_line(cli, refused, computed_yielding, tmp_path):

@@ -1,15 +1,11 @@
 """One server and one browser for the tests of the page, and what they see on it."""
 
-import os
-import re
 import shutil
-import signal
-import subprocess
-import sys
 from contextlib import contextmanager
-from pathlib import Path
 
 import pytest
+
+from live_app import App
 
 PROGRAMS = ("chromium", "chromium-browser", "google-chrome")
 OPTIONS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking"]
@@ -48,63 +44,11 @@ def live_case():
     return CASE
 
 
-class App:
-    """`restitution app` in a process of its own, with its temporary files in `folder`."""
-
-    def __init__(self, folder):
-        (folder / "case.toml").write_text(CASE)
-        command = [sys.executable, "-m", "restitution", "app", "case.toml", "--no-browser"]
-        environment = {**os.environ, "TMPDIR": str(folder), "COLUMNS": "200"}
-        self.folder = folder
-        self.process = subprocess.Popen(
-            [*command, "--port", "0"],
-            cwd=folder,
-            env=environment,
-            stdout=subprocess.PIPE,
-            text=True,
-        )
-        self.address = re.search(r"http://\S+", self.process.stdout.readline())[0]
-
-    def children(self):
-        """The numbers of the processes that the server has started."""
-        found = (_parent_of(each) for each in Path("/proc").iterdir() if each.name.isdigit())
-        return [number for number, parent in found if parent == self.process.pid]
-
-    def workers(self):
-        """Those of them that compute."""
-        return [number for number in self.children() if b"spawn_main" in _command_of(number)]
-
-    def end(self):
-        """Ctrl-C, and the status after it."""
-        self.process.send_signal(signal.SIGINT)
-        try:
-            return self.process.wait(10)
-        finally:
-            self.process.kill()
-            self.process.stdout.close()
-
-
-def _parent_of(process):
-    """The number of a process and of its parent; the latter is None if the process is gone."""
-    try:
-        after_name = (process / "stat").read_text().rpartition(")")[2].split()
-    except OSError:
-        return int(process.name), None
-    return int(process.name), None if after_name[0] == "Z" else int(after_name[1])
-
-
-def _command_of(number):
-    try:
-        return Path(f"/proc/{number}/cmdline").read_bytes()
-    except OSError:
-        return b""
-
-
 @contextmanager
 def _served(folder):
     pytest.importorskip("starlette", reason='the extra "app" is not installed')
     pytest.importorskip("uvicorn", reason='the extra "app" is not installed')
-    served = App(folder)
+    served = App(folder, CASE)
     try:
         yield served
     finally:
@@ -112,9 +56,9 @@ def _served(folder):
             served.end()
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def app(tmp_path_factory):
-    """The server of a module."""
+    """The server of all tests that do not end it."""
     with _served(tmp_path_factory.mktemp("app")) as served:
         yield served
 
@@ -126,7 +70,7 @@ def own_app(tmp_path):
         yield served
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def browser():
     """A browser without a window."""
     playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
@@ -163,5 +107,5 @@ def open_page(browser):
 
 @pytest.fixture
 def page(app, open_page):
-    """The page of the server of this module, not yet complete."""
+    """The page of the server, not yet complete."""
     return open_page(app.address)

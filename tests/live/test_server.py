@@ -7,8 +7,6 @@ import os
 import pickle
 import re
 import signal
-import subprocess
-import sys
 import time
 import zipfile
 from pathlib import Path
@@ -16,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from live_app import App
 from tolerance import approx
 
 pytest.importorskip("starlette", reason='the extra "app" is not installed')
@@ -38,26 +37,14 @@ values = ["100 nm", "200 nm"]
 """
 
 
-class App:
-    """`restitution app` in a process of its own, and requests to it."""
+class Client(App):
+    """`restitution app`, and requests to it."""
 
     def __init__(self, folder):
-        (folder / "case.toml").write_text(CASE)
-        command = [sys.executable, "-m", "restitution", "app", "case.toml", "--no-browser"]
-        environment = {**os.environ, "TMPDIR": str(folder), "PYTHONUNBUFFERED": "1"}
-        self.process = subprocess.Popen(
-            command, cwd=folder, env=environment, stdout=subprocess.PIPE, text=True
-        )
-        address = self.process.stdout.readline().split()[-1]
-        self.port, self.token = re.fullmatch(r"http://127.0.0.1:(\d+)/#(\S+)", address).groups()
-        self.folder = folder
-
-    def end(self):
-        """The status after Ctrl-C."""
-        self.process.send_signal(signal.SIGINT)
-        status = self.process.wait(10)
-        self.process.stdout.close()
-        return status
+        super().__init__(folder, CASE)
+        self.port, self.token = re.fullmatch(
+            r"http://127.0.0.1:(\d+)/#(\S+)", self.address
+        ).groups()
 
     def ask(self, method, path, body=None, **headers):
         """The status, headers and text of an answer."""
@@ -68,7 +55,7 @@ class App:
         text = json.dumps(body) if isinstance(body, dict) else body
         connection.request(method, path, text, sent)
         answer = connection.getresponse()
-        found = answer.status, answer.headers, answer.read().decode()
+        found = answer.status, answer.headers, answer.read().decode(errors="replace")
         connection.close()
         return found
 
@@ -89,14 +76,10 @@ class App:
         (room,) = self.folder.glob("restitution-app-*")
         return sorted(path.name for path in (room / "scans").iterdir())
 
-    def children(self):
-        tasks = Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children")
-        return [int(pid) for pid in tasks.read_text().split()]
-
 
 @pytest.fixture(scope="module")
 def app(tmp_path_factory):
-    running = App(tmp_path_factory.mktemp("app"))
+    running = Client(tmp_path_factory.mktemp("app"))
     yield running
     running.end()
 
@@ -272,14 +255,13 @@ def test_a_worker_that_is_killed_is_replaced(app):
     slow = app.content() | {"grid": {"nodes": 1024, "spacing": "0.25 um"}}
     slow["indentation"] = {"from": "100 nm", "to": "2 um", "steps": 48}
     slow["interface"] = {"yield_strength": "300 MPa"}
-    before = app.children()
+    before = app.workers()
     connection = http.client.HTTPConnection("127.0.0.1", int(app.port), timeout=60)
     headers = {"X-Token": app.token, "Content-Type": "application/json"}
     connection.request("POST", "/api/curve", json.dumps({"tab": "a", "content": slow}), headers)
     time.sleep(0.5)
     for pid in before:
-        if b"spawn_main" in Path(f"/proc/{pid}/cmdline").read_bytes():
-            os.kill(pid, signal.SIGKILL)
+        os.kill(pid, signal.SIGKILL)
     lines = [json.loads(line) for line in connection.getresponse().read().splitlines()]
     connection.close()
     assert "ended unexpectedly" in lines[-1]["error"]
@@ -318,6 +300,16 @@ def test_the_files_to_take_away_agree_with_the_page(app):
             assert row[name] == of_page[name]
 
 
+def test_a_file_that_was_taken_leaves_nothing_behind(app):
+    values = {"tab": "a", "content": app.content(), "code": "", "velocity": "", "grids": 1}
+    assert app.ask("POST", "/api/take", values | {"what": "results"})[0] == 200
+    (room,) = app.folder.glob("restitution-app-*")
+    until = time.monotonic() + 5  # the folder is removed after the answer
+    while list(room.glob("take-*")):
+        assert time.monotonic() < until
+        time.sleep(0.05)
+
+
 def test_what_cannot_be_taken_is_one_message(app):
     values = {"tab": "a", "content": app.content(), "grids": 1}
     for asked in ({"what": "secrets", "code": "", "velocity": ""},
@@ -329,7 +321,7 @@ def test_what_cannot_be_taken_is_one_message(app):
 
 
 def test_ctrl_c_ends_everything(tmp_path):
-    app = App(tmp_path)
+    app = Client(tmp_path)
     app.post("curve", tab="a", content=app.content())
     children = app.children()
     assert children

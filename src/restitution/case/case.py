@@ -167,7 +167,7 @@ class Case(Table):
 
         Raises `CaseError` if a run needs more memory than is available.
         """
-        self.pair()
+        self.pair()  # two flat bodies are refused before a surface is made
         if grid := self._own_grid():
             fine = divided(grid, self.grid.factor if self.grid else 1)
             needs.require(self.run_bytes(fine), fine)

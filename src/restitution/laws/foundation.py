@@ -26,9 +26,9 @@ from restitution.laws.time_integration import StoredForce
 
 Array = NDArray[np.float64]
 
-_SPRINGS = 400
+_SPRINGS = 400  # number of springs on each half line
 _DEPTHS = 200  # number of depths of loading at which the loads of the springs are tabulated
-_POINTS = 400  # points of an unloading curve, for its slope
+_POINTS = 400  # number of points of an unloading curve at which its slope is computed
 
 
 @dataclass(frozen=True, eq=False)

@@ -28,7 +28,7 @@ from restitution.laws.time_integration import ReferenceCollision, StoredForce, c
 
 Array = NDArray[np.float64]
 
-_STEPS = 4000  # time steps of a collision
+_STEPS = 4000  # number of time steps of a collision
 _LEAST = 1e-3  # part of the largest normal force below which sticking is not looked for
 _INERTIA = 3.5  # 1 + m R²/I of a solid sphere
 
@@ -195,6 +195,7 @@ def _slide(
     F = np.array([(law.loading if s <= turn else back)(x) for s, x in zip(t, delta, strict=True)])
     T, U, stick = np.zeros(t.size), np.full(t.size, slip), np.zeros(t.size)
     u, speed, loss = np.zeros(springs.radius.size), slip, 0.0
+    least = _LEAST * F.max()
     for k in range(1, t.size):
         loads = springs.load(delta[k], delta[k] if t[k] <= turn else normal.largest_indentation)
         total = loads.sum()
@@ -202,7 +203,7 @@ def _slide(
             loads *= max(F[k], 0.0) / total
         free = u + speed * dt
         u, T[k], work = springs.move(u, speed * dt, friction * loads)
-        if F[k] > _LEAST * F.max():
+        if F[k] > least:
             stick[k] = loads[free == u].sum() / loads.sum()
         loss += work
         before, speed = speed, speed - _INERTIA * T[k] / mass * dt

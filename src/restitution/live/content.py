@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import json
-import tomllib
 from pathlib import Path, PurePath
 from typing import Any
 
 import tomli_w
 
-from restitution.case.case import Case
-from restitution.case.case_file import parse_case, parse_toml, problems_of
+from restitution.case.case_file import parse_toml, problems_of
 from restitution.errors import CaseError
 
 Content = dict[str, Any]
@@ -53,15 +51,10 @@ def text_of(content: Content) -> str:
 def problems_in(text: str, folder: Path) -> dict[str, str]:
     """What is wrong with the case file `text`: messages by key; scans must lie in `folder`."""
     try:
-        content = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        return {"": f"not valid TOML: {error}"}
+        content = parse_toml(text)
+    except CaseError as error:
+        return {"": str(error)}
     return problems_of(content) or _foreign_files(content, folder)
-
-
-def case_of(text: str) -> Case:
-    """The case of a file that `problems_in` has checked."""
-    return parse_case(text)
 
 
 def scans_of(content: Content) -> list[str]:

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from restitution.case.case import Case
+from restitution.case.case_file import parse_case
 from restitution.case.derived import deepest_indentation
 from restitution.case.omissions import omissions
 from restitution.contact.contact import Contact
 from restitution.errors import DomainError, RestitutionError
-from restitution.live.content import case_of
 from restitution.live.figures import (
     ContactMaps,
     as_json,
@@ -28,8 +28,8 @@ from restitution.runs.refinement import settled
 from restitution.runs.smooth import smooth_curve
 from restitution.surfaces import Surface
 
-_PARTIAL = 0.7  # s between drawings of a curve that is not complete
-_TABS = 4  # whose last curves are kept
+_PARTIAL = 0.7  # time (s) between drawings of a curve that is not complete
+_TABS = 4  # number of tabs whose last curves are kept
 
 
 class LiveCurves:
@@ -45,7 +45,7 @@ class LiveCurves:
         `check` raises if the curve is not wanted any more. Depths that were computed are drawn even
         if others fail.
         """
-        case = settled(case_of(text).realisation(0), folder)
+        case = settled(parse_case(text).realisation(0), folder)
         contact = self._contact(case, folder)
         deepest = deepest_indentation(case)
         require_possible(contact, deepest)
@@ -72,9 +72,11 @@ class LiveCurves:
     def _contact(self, case: Case, folder: Path) -> Contact:
         """The contact of `case`; the last surface is kept, since most sliders do not change it."""
         key = repr((case.roughness, case.grid, _stamps(case, folder)))
-        if self._surface is None or self._surface[0] != key:
-            self._surface = key, case.contact(folder).surface
-        return case.contact_on(self._surface[1])
+        if self._surface is not None and self._surface[0] == key:
+            return case.contact_on(self._surface[1])
+        contact = case.contact(folder)
+        self._surface = key, contact.surface
+        return contact
 
 
 class _Curve:

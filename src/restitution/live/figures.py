@@ -29,7 +29,7 @@ from restitution.results.writer import curve_variables
 from restitution.surfaces import Surface, describe
 
 Array = NDArray[np.float64]
-_MOST_PIXELS = 200  # of a map along either axis
+_MOST_PIXELS = 200  # largest number of pixels of a map along either axis
 
 
 class Raw(str):

@@ -11,6 +11,7 @@ from restitution.case.quantities import unit_factors
 from restitution.collision import UnloadingMethod
 from restitution.contact.contact import Approach, Plasticity
 from restitution.contact.detachment import Detachment
+from restitution.dem.export import CODES
 from restitution.display import quantity
 from restitution.surfaces.extend import Extension
 from restitution.surfaces.generate import RoughnessKind
@@ -54,10 +55,11 @@ class Group:
 
 
 def form() -> dict[str, Any]:
-    """The form as JSON: groups of fields, units with their factors, and the library's values."""
+    """The form as JSON: groups of fields, units with their factors, DEM codes, and the library."""
     return {
         "groups": [asdict(group) for group in _groups()],
         "units": unit_factors(),
+        "codes": CODES,
         "library": {key: _library_values(each) for key, each in materials().items()},
     }
 

@@ -65,11 +65,6 @@ class Process:
         if self._running is not None:
             self._running.end(_CLOSED)
 
-    @property
-    def pid(self) -> int | None:
-        """The process id (PID); None before the first request."""
-        return None if self._running is None else self._running.process.pid
-
     def _started(self) -> _Running:
         if self._running is None or not self._running.usable:
             self._running = _Running(*self._folders)

@@ -9,15 +9,15 @@ from pathlib import Path
 from tempfile import mkdtemp
 from typing import Any
 
+from restitution.case.case_file import parse_case
 from restitution.errors import RestitutionError
-from restitution.live.content import case_of
 from restitution.live.figures import as_json, curve_figures
 from restitution.results.reader import read_run
 from restitution.results.writer import ResultsFolder
 from restitution.runs.convergence import run_convergence
 from restitution.runs.ensemble import run_realisations
 
-_KEPT = 4  # results folders
+_KEPT = 4  # number of results folders that are kept
 Check = Callable[[str], None]  # is told the progress; raises if the run is not wanted any more
 
 
@@ -39,7 +39,7 @@ class Runs:
 
     def _compute(self, text: str, folder: Path, check: Check, grids: int) -> Path:
         out = Path(mkdtemp(dir=self._room, prefix="results-"))
-        case = case_of(text)
+        case = parse_case(text)
         try:
             if grids == 1:
                 run_realisations(case, text, folder, ResultsFolder(out), check)

@@ -10,6 +10,7 @@ import asyncio
 import hmac
 import json
 import secrets
+import shutil
 from collections.abc import AsyncGenerator, AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
 from functools import cache
@@ -19,6 +20,7 @@ from urllib.parse import unquote
 
 from plotly.offline import get_plotlyjs
 from starlette.applications import Starlette
+from starlette.background import BackgroundTask
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect, Request
 from starlette.responses import FileResponse, JSONResponse, Response, StreamingResponse
@@ -31,7 +33,7 @@ from restitution.live.form import form
 from restitution.live.process import Process
 from restitution.live.session import LARGEST_SCAN, Session
 
-_LARGEST_BODY = 2**22  # bytes of a JSON request
+_LARGEST_BODY = 2**22  # largest size of a JSON request (bytes)
 _HEADERS = {
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
@@ -179,7 +181,8 @@ class Server:
             found = json.loads(line)
             if "file" in found:
                 file = self._session.room / found["file"]
-                return FileResponse(file, filename=file.name)
+                tidy = BackgroundTask(shutil.rmtree, file.parent, ignore_errors=True)
+                return FileResponse(file, filename=file.name, background=tidy)
             problems = found.get("problems", {})
             error = found.get("error") or next(
                 (f"{key}: {words}" for key, words in problems.items()), error

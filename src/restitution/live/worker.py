@@ -74,6 +74,7 @@ class Inbox:
             self._changed.wait_for(lambda: self._waiting)
             key = next(iter(self._waiting))
             self._now = self._waiting.pop(key)
+            self._given_up.clear()  # of earlier requests, all of which are answered
             return self._now
 
     def check(self) -> None:
@@ -193,7 +194,6 @@ def serve(connection: Connection, scans: Path, room: Path) -> None:
     wire = Wire(connection)
     inbox = Inbox(wire)
     worker = Worker(scans, room, inbox.check)
-    wire.send(0, None)  # ready
     while True:
         request = inbox.next()
 

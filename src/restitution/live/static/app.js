@@ -10,7 +10,6 @@ const SHORT_REST = 100;
 const REST = 600;
 const DASHES = ["dash", "dot", "dashdot", "longdash", "solid"];
 const PIN_COLOURS = ["#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#d55e00"];
-const CODES = ["lammps", "liggghts", "yade", "mercurydpm", "edem", "mujoco", "drake", "csv"];
 // Units that a slider writes, smallest first.
 const SLIDER_UNITS = {
   "m": ["pm", "nm", "um", "mm", "m"], "Pa": ["Pa", "kPa", "MPa", "GPa"], "kg/m^3": ["kg/m^3"],
@@ -730,7 +729,7 @@ function listen() {
   $("finer").addEventListener("click", runFiner);
   $("cancel").addEventListener("click", () => finer && finer.abort());
   for (const button of document.querySelectorAll("[data-take]")) button.addEventListener("click", () => take(button.dataset.take));
-  $("code").append(...CODES.map((code) => element("option", {}, code)));
+  $("code").append(...form.codes.map((code) => element("option", {}, code)));
   const holdsFile = (event) => [...event.dataTransfer.types].includes("Files");
   document.addEventListener("dragover", (event) => { if (holdsFile(event)) { event.preventDefault(); $("drop").hidden = false; } });
   document.addEventListener("dragleave", (event) => { if (!event.relatedTarget) $("drop").hidden = true; });
