@@ -22,7 +22,7 @@ CHROMIUM = "/usr/bin/chromium"
 CHANGES, MANY = 50, 200
 CASES = {
     "constant bound (`benchmarks/steel.toml`)": {},
-    "bound that grows (Y = 268 MPa)": {
+    "growing bound (Y = 268 MPa)": {
         'yield_pressure = "750 MPa"': 'yield_strength = "268 MPa"',
         'plasticity = "equilibrium"': "",
     },
@@ -42,15 +42,16 @@ REPORT = """\
 
 {date}, {machine}. Written by `benchmarks/page.py`.
 
-The page of `restitution app` in Chromium (headless, without a GPU) on the same machine: the slider
-of Rq moves {changes} times, each time after the curve before is drawn. 24 depths on 512² nodes. The
-time ends when the browser has painted the new curve of COR. Medians in ms (largest).
+The page of `restitution app` ran in Chromium (headless, without a GPU) on the same machine. The
+slider of Rq moved {changes} times, each time after the previous curve had been drawn. Each curve
+has 24 depths on 512² nodes. The time ends when the browser has painted the new curve of COR. The
+table shows medians in ms (largest).
 
 | case | whole | solve | server and transfer | drawing |
 |---|---|---|---|---|
 {rows}
 
-A curve of the bound that grows needs two solves at each depth, and one more for its work.
+With the growing bound a curve takes two solutions at each depth, and one more for the loading work.
 
 Memory of the server and its processes, with the constant bound: {before:.0f} MiB after {changes}
 changes, and {after:.0f} MiB after {many} more.

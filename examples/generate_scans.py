@@ -1,7 +1,8 @@
-"""Generate the two scans of the examples. They are synthetic: no instrument has measured them.
+"""Generate the two synthetic scans of the examples.
 
 Writes glass-bead.txt and lactose.x3p beside this file, or into the folder that is given:
-`python examples/generate_scans.py [FOLDER]`. Seeds are fixed, so that the scans are the same again.
+`python examples/generate_scans.py [FOLDER]`. The seeds are fixed, so every call writes the same
+scans.
 """
 
 from __future__ import annotations

@@ -3,8 +3,8 @@ Pressure maps
 =============
 
 These maps show the pressure in a rough contact at three depths. At the smallest depth a few
-asperities carry the load, each at the largest pressure that the metal can bear. At the largest
-depth the patches have merged, and the pressure follows the shape of the sphere.
+asperities carry the load, each at the yield pressure of the metal. At the largest depth the patches
+have merged, and the pressure follows the shape of the sphere.
 """
 
 import matplotlib.pyplot as plt
