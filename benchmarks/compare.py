@@ -1,8 +1,7 @@
 """Time this program beside Tamaas, ContactMechanics and SlipPy on the same contacts.
 
 `make bench-peers` makes an environment for each program and runs this, which writes peers.csv,
-peers.md and peers.png into docs/benchmarks. How it is measured is said in `peers.md` (`REPORT`
-below).
+peers.md and peers.png into docs/benchmarks. `peers.md` (`REPORT` below) describes the method.
 """
 
 from __future__ import annotations
@@ -33,9 +32,9 @@ PROGRAMS = {
     "contactmechanics": "ContactMechanics",
     "tamaas": "Tamaas",
 }
-RESIDUAL = 1e-8  # asked of every program, over δ
+RESIDUAL = 1e-8  # residual divided by δ that every program must reach
 LADDER = [10.0**-k for k in range(4, 21)]  # tolerances tried, loosest first
-LEAST_SECONDS = 0.2  # quick solves are repeated this long at each visit, and their median taken
+LEAST_SECONDS = 0.2  # quick solves are repeated for this time, and their median is used
 
 REPORT = """\
 # Beside other programs
@@ -90,7 +89,7 @@ time.
 
 
 class Worker:
-    """A program in a process of its own, started when first asked."""
+    """A program in a process of its own, started by the first request."""
 
     def __init__(self, name: str, python: Path, folder: Path, limit: float) -> None:
         self.name, self.limit = name, limit
@@ -100,7 +99,7 @@ class Worker:
         self._process: subprocess.Popen[bytes] | None = None
 
     def solve(self, tolerance: float, least_seconds: float = 0.0) -> tuple[list[float], np.ndarray]:
-        """Seconds of each solve of `problem.npz`, and the pressure. Raises `UnsolvedError`."""
+        """Solve `problem.npz`; return the times (s) and the pressure. Raises `UnsolvedError`."""
         if not self.running:
             self._start()
         request = {
@@ -118,7 +117,7 @@ class Worker:
 
     @property
     def running(self) -> bool:
-        """Whether there is a process; none is left after a time limit."""
+        """Whether the process runs; it is ended at the time limit."""
         return self._process is not None
 
     def stop(self) -> None:
@@ -154,11 +153,11 @@ class Worker:
 
 
 class UnsolvedError(Exception):
-    """A program did not solve the problem, and why."""
+    """A program did not solve the problem; the message gives the reason."""
 
 
 def find_tolerance(worker: Worker, problem: Problem) -> float:
-    """The loosest tolerance at which `worker` meets `RESIDUAL`. Raises `UnsolvedError`."""
+    """Find the largest tolerance at which `worker` reaches `RESIDUAL`. Raises `UnsolvedError`."""
     best, failure = "", "stalls"
     least = float("inf")
     for tolerance in LADDER:
@@ -166,7 +165,7 @@ def find_tolerance(worker: Worker, problem: Problem) -> float:
             _, pressure = worker.solve(tolerance)
         except UnsolvedError as unsolved:
             failure = f"{unsolved} at {power(tolerance)}"
-            if not worker.running:  # out of time, the more so at any tighter tolerance
+            if not worker.running:  # out of time, and smaller tolerances take longer
                 break
             continue
         found = residual(problem, pressure)
@@ -178,14 +177,14 @@ def find_tolerance(worker: Worker, problem: Problem) -> float:
 
 
 def power(number: float) -> str:
-    """A number as 2e-8."""
+    """Format a number as 2e-8."""
     return f"{number:.0e}".replace("e-0", "e-")
 
 
 def compare(
     problem: Problem, grid: str, workers: list[Worker], rounds: int, nodes: int
 ) -> tuple[list[dict], list[float]]:
-    """One row per program: how long it takes for this problem; and U at each turn."""
+    """Make a row with the times of each program for this problem; return U at each turn, too."""
     rows = {}
     for worker in workers:
         row = {
@@ -233,7 +232,7 @@ def compare(
 
 
 def table(rows: list[dict], unit: float) -> str:
-    """The rows as Markdown."""
+    """Format the rows as a Markdown table."""
     lines = [
         "| problem | grid | program | time, s | ratio | U | own tolerance | first, s |",
         "|---|---|---|---|---|---|---|---|",
@@ -255,12 +254,12 @@ def table(rows: list[dict], unit: float) -> str:
 
 
 def short(number: float) -> str:
-    """A positive number in about two digits, without exponent."""
+    """Format a positive number with about two digits, without exponent."""
     return f"{number:.0f}" if number >= 10 else f"{number:.2g}"
 
 
 def draw(rows: list[dict], path: Path) -> None:
-    """Bars of the ratios, one group per problem; a word where a program has no time."""
+    """Draw bars of the ratios, one group for each problem; a text replaces the bar of a failure."""
     groups = list(dict.fromkeys((row["problem"], row["grid"]) for row in rows))
     peers = [name for name in PROGRAMS if name != OURS]
     figure = Figure(figsize=(9, 4.2), layout="constrained")

@@ -72,14 +72,14 @@ are the surfaces, which are distributed among processes ("smooth" is Rq = 1 pm i
 
 @dataclass
 class Tally:
-    """What a piece of work has cost, and how far its answers can be trusted."""
+    """The number of convolutions of a computation, and the largest error of its results."""
 
     convolutions: int = 0
     error: float = 0.0
 
 
 def adhesive(rms: float) -> Contact:
-    """One of the contacts of Fig. 10."""
+    """Make a contact of Fig. 10 with the given rms roughness (m)."""
     surface = smooth(GRID)
     if rms > 0:
         surface = generate_surface(GRID, kind="gaussian", rms=rms, correlation_length=2e-6, seed=1)
@@ -87,21 +87,21 @@ def adhesive(rms: float) -> Contact:
 
 
 def add(tally: Tally, state) -> None:
-    """Let the bodies of `state` part, and add what that and the state have cost."""
+    """Unload `state` to separation, and add the cost of loading and unloading to `tally`."""
     collision = collide(state)
     tally.convolutions += state.convolutions + collision.convolutions
     tally.error = max(tally.error, collision.restitution_error)
 
 
 def one(contact: Contact, depth: float) -> Tally:
-    """One restitution."""
+    """Compute one coefficient of restitution."""
     tally = Tally()
     add(tally, solve(contact, depth))
     return tally
 
 
 def curve(contacts: list[Contact], depths) -> Tally:
-    """Curves of restitution, each depth in turn."""
+    """Compute curves of restitution, one depth after the other."""
     tally = Tally()
     for contact in contacts:
         for state in loading_path(contact, depths):
@@ -110,8 +110,8 @@ def curve(contacts: list[Contact], depths) -> Tally:
 
 
 def study() -> Tally:
-    """Fig. 10 by `restitution study`, as its users run it: the whole command."""
-    case = tomllib.loads(FIG_10.read_text())  # which goes on to deeper ones, for Fig. 12
+    """Compute Fig. 10 by the whole command `restitution study`, as users run it."""
+    case = tomllib.loads(FIG_10.read_text())  # it also has the larger depths of Fig. 12
     case["indentation"] = {"from": "10 nm", "to": "1 um", "steps": len(DEPTHS)}
     with tempfile.TemporaryDirectory() as folder:
         path, out = Path(folder, "fig10.toml"), Path(folder, "out")

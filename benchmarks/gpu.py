@@ -1,4 +1,4 @@
-"""A GPU beside this machine: one large solve.
+"""Time of one large solve on a GPU, compared with this machine.
 
 Needs CuPy and a GPU (`pip install "restitution[gpu]"`); `--device cpu` runs the same on this
 machine. `--nodes` makes it smaller.
@@ -20,7 +20,7 @@ BANDWIDTH = 3.35e12  # bytes/s: H100 SXM5, its data sheet
 
 
 def seconds(work, repeats: int) -> tuple[float, object]:
-    """Median time of a call, after one that is not counted, and its last answer."""
+    """Return the median time of a call, after one call that is not counted, and its last result."""
     answer = work()
     times = []
     for _ in range(repeats):
@@ -31,12 +31,13 @@ def seconds(work, repeats: int) -> tuple[float, object]:
 
 
 def least_seconds(n: int, products: int) -> float:
-    """What moving the arrays of a solve on n × n nodes takes, at the device's bandwidth.
+    """Time (s) to move the arrays of a solve on n × n nodes at the bandwidth of the device.
 
-    In single precision the padded half-complex array is 16n² bytes. A product fills it, transforms
-    it twice and weighs it, each time in and out: 110n²; the rows and what is converted take 60n².
-    The preconditioner, once for each, is not padded: 60n². An iteration reads or writes some 40
-    arrays of n² in double precision.
+    In single precision the padded half-complex array has 16n² bytes. A product fills it, transforms
+    it twice and multiplies it by the kernel, and reads and writes it each time: 110n² bytes. The
+    rows and the converted arrays take 60n² bytes. The preconditioner is applied once for each
+    product and is not padded: 60n² bytes. An iteration reads or writes some 40 arrays of n² values
+    in double precision.
     """
     return products * (110 + 60 + 60 + 40 * 8) * n**2 / BANDWIDTH
 

@@ -1,7 +1,7 @@
-"""The contacts that every program solves, and how well it did, found without any of them.
+"""The contacts that every program solves, and a check of the solutions that uses none of them.
 
-A problem is what is left of a contact once geometry is done: the gap before the solve h₀ (least
-value 0), the spacing, E*, the largest pressure p_y (inf: elastic) and the indentation δ.
+A problem contains the numbers of a contact that a solver needs: the gap before the solve h₀
+(smallest value 0), the spacing, E*, the largest pressure p_y (inf: elastic) and the indentation δ.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ PAIR = Pair(STEEL, STEEL)  # R* = 250 um, E* = 112 GPa
 class Problem:
     """One contact: `gap` h₀ and `spacing` in m, `contact_modulus` and `limit` p_y in Pa.
 
-    `radius` (m) serves programs that want the sphere apart from the surface, `force` (N) those
-    that cannot be given an indentation.
+    `radius` (m) is for programs that need the sphere separately from the surface, `force` (N) for
+    programs that do not accept an indentation.
     """
 
     name: str
@@ -41,7 +41,8 @@ class Problem:
     def cropped(self) -> Problem:
         """The same contact on the bounding box of {h₀ < δ}, outside which nothing can touch.
 
-        The box is widened to sizes that FFTs like, lest a prime number of nodes decide.
+        The box is widened to sizes with fast FFTs, so that large prime factors do not affect the
+        times.
         """
         inside = self.gap < self.indentation
         box = tuple(_widened(inside.any(axis)) for axis in (1, 0))
@@ -100,8 +101,9 @@ def residual(problem: Problem, pressure: np.ndarray) -> float:
     """Largest violation of the contact conditions over δ.
 
     With the deformed gap g = K p + h₀ − δ and c the displacement of a node by its own pressure,
-    c p = clip(c p − g, 0, c p_y) says at once that g ≥ 0 where p = 0, g = 0 between the bounds and
-    g ≤ 0 where p = p_y; the difference of both sides is the violation, as a length.
+    c p = clip(c p − g, 0, c p_y) is equivalent to three conditions: g ≥ 0 where p = 0, g = 0
+    between the bounds, and g ≤ 0 where p = p_y. The difference of both sides is the violation, as
+    a length.
     """
     K, own = _kernel(pressure.shape, problem.spacing)
     padded = [2 * n for n in pressure.shape]
@@ -119,7 +121,7 @@ def residual(problem: Problem, pressure: np.ndarray) -> float:
 def _kernel(shape: tuple[int, int], spacing: float) -> tuple[np.ndarray, float]:
     """Spectrum of E* K, wrapped round twice the shape, and E* K at lag 0 (Love 1929)."""
     # u(x, y) is the double difference of F = x asinh(y/|x|) + y asinh(x/|y|) over the corners of
-    # the cell; extended precision makes up for what the differences cancel.
+    # the cell. Extended precision compensates for the cancellation in these differences.
     x, y = (spacing * (np.arange(n + 2, dtype=np.longdouble) - 0.5) for n in shape)
     x, y = x[:, None], y[None, :]
     F = x * np.arcsinh(y / np.abs(x)) + y * np.arcsinh(x / np.abs(y))

@@ -31,7 +31,7 @@ STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25)
 PAIR = Pair(STEEL, STEEL)  # R* = 250 um, E* = 112 GPa
 LIMITS = {"elastic": math.inf, "plastic": 750e6}
 DEPTHS = ("a = 20 um", "filling")
-REPEAT_SECONDS, FEWEST, MOST = 3.0, 5, 25  # a solve is repeated this long, within those bounds
+REPEAT_SECONDS, FEWEST, MOST = 3.0, 5, 25  # time for which a solve is repeated, and bounds
 
 REPORT = """\
 # Time and memory against size
@@ -72,7 +72,7 @@ def refined(surface: Surface, n: int) -> Surface:
     half = coarse // 2
     modes = scipy.fft.rfft2(surface.height)
     padded = np.zeros((n, n // 2 + 1), dtype=complex)
-    # The Nyquist modes stay out: on a finer grid they have no one meaning.
+    # Leave out the Nyquist modes, because their phase is ambiguous on a finer grid.
     padded[:half, :half] = modes[:half, :half]
     padded[1 - half :, :half] = modes[1 - half :, :half]
     height = scipy.fft.irfft2(padded, s=(n, n), overwrite_x=True)
@@ -88,7 +88,7 @@ def surface_of(n: int) -> Surface:
 
 
 def indentation(depth: str) -> float:
-    """δ in m, the same at every size."""
+    """The indentation δ (m), which is the same at every size."""
     if depth == "a = 20 um":
         return (20e-6) ** 2 / PAIR.radius
     gap = Contact(PAIR, surface_of(COARSEST)).gap
@@ -97,7 +97,7 @@ def indentation(depth: str) -> float:
 
 
 def measure(n: int, limit: str, depth: str) -> dict:
-    """Solve in this process and say what it took."""
+    """Solve in this process; return the time, the memory and the number of convolutions."""
     delta = indentation(depth)
     surface = surface_of(n)
     times: list[float] = []
@@ -113,7 +113,7 @@ def measure(n: int, limit: str, depth: str) -> dict:
             "residual": state.residual,
             "force": state.force,
         }
-        del state  # or the next solve finds less room
+        del state  # free its memory for the next solve
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
     return {
         "seconds": statistics.median(times[1:]),
@@ -126,7 +126,7 @@ def measure(n: int, limit: str, depth: str) -> dict:
 
 
 def in_its_own_process(*arguments: object) -> dict:
-    """What this script prints when it is called with `--measure` and the arguments."""
+    """Call this script with `--measure` and the arguments, and return what it prints."""
     command = [sys.executable, __file__, "--measure", *map(str, arguments)]
     return json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)
 
@@ -138,7 +138,7 @@ def exponent(rows: list[dict], time: str = "seconds") -> float:
 
 
 def table(rows: list[dict]) -> str:
-    """The rows as Markdown."""
+    """Format the rows as a Markdown table."""
     lines = [
         "| case | grid | box | time, s | U | least, s | first, s | convolutions | memory, GiB "
         "| arrays per node |",

@@ -1,7 +1,8 @@
-"""How much faster a study is on two workers than on one: local processes, and a Dask cluster.
+"""Speed-up of a study by a second worker, with local processes and with a Dask cluster.
 
-`python benchmarks/studies.py`: a study of 40 cases on 256² nodes, one and two workers in turns,
-twice each; the ratio of medians of the whole command. Clusters are started before the clock.
+`python benchmarks/studies.py` runs a study of 40 cases on 256² nodes with one and two workers in
+turn, twice each, and prints the ratio of the median times of the whole command. Clusters are
+started before the time is measured.
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ ROUNDS = 2
 
 
 def seconds(folder: Path, *where: str) -> float:
-    """Of the whole command."""
+    """Time of the whole command."""
     began = time.perf_counter()
     subprocess.run(
         [
@@ -65,7 +66,7 @@ def seconds(folder: Path, *where: str) -> float:
 
 @contextmanager
 def cluster(workers: int) -> Iterator[str]:
-    """The address of a scheduler on loopback with so many workers of one thread."""
+    """Start a local cluster with `workers` workers of one thread; yield the scheduler's address."""
 
     def start(*arguments: str) -> subprocess.Popen[str]:
         return subprocess.Popen(

@@ -1,4 +1,4 @@
-"""The unit U that times are given in, and what to say about the machine they were taken on."""
+"""The unit U of the times, and a description of the machine on which they were measured."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import scipy.fft
 
 
 def convolution(n: int) -> None:
-    """One U: a zero-padded convolution, forward and inverse, on n × n nodes in float64."""
+    """Compute one U: a zero-padded convolution, forward and inverse, on n × n nodes in float64."""
     p = np.ones((n, n))
     modes = scipy.fft.rfft2(p, s=(2 * n, 2 * n), workers=2)
     modes *= 1.0
@@ -36,7 +36,7 @@ def measure_unit(n: int, *, samples: int = 5) -> float:
 
 
 def machine() -> str:
-    """Processor, number of cores, and how busy it is: figures want a quiet machine."""
+    """Processor, number of cores and load; the times are reliable only at a low load."""
     model = platform.processor() or platform.machine()
     cpuinfo = Path("/proc/cpuinfo")
     if cpuinfo.exists():

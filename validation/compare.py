@@ -148,7 +148,8 @@ def _row(case: str, name: str, contact_of: tuple, reference: dict, mine: dict) -
     row["yield_strength_over_contact_modulus"] = f"{contact_of[0]:.6g}"
     row["rms_slope"] = f"{contact_of[1]:.4g}"
     for quantity in QUANTITIES:
-        # Without what alternates as nodes of the finite elements enter the contact.
+        # Use values without the oscillation due to nodes of the finite elements entering the
+        # contact.
         smoothed = quantity.replace("_N", "_smoothed_N")
         its = reference.get(smoothed, reference[quantity])
         row[f"{quantity}_reference"] = its
@@ -158,7 +159,7 @@ def _row(case: str, name: str, contact_of: tuple, reference: dict, mine: dict) -
 
 
 def compute(names: list[str]) -> list[dict]:
-    """The rows of the cases of these names, or of all."""
+    """Compute the rows of the named cases, or of all cases."""
     rows = []
     for file in sorted(HERE.glob("*/data/*.json")):
         if names and file.stem not in names:

@@ -1,7 +1,7 @@
-"""Worker of ContactMechanics. Its tolerance is that of the gap, times δ.
+"""Worker of ContactMechanics. Its tolerance is the tolerance of the gap, divided by δ.
 
-Elastic contact is solved for the pressures by conjugate gradients without restart, the fastest of
-its solvers here; plastic contact by the one that takes a hardness.
+Elastic contact is solved for the pressures by conjugate gradients without restart, which is the
+fastest of its solvers for these contacts. Plastic contact is solved by its solver with a hardness.
 """
 
 from importlib.metadata import version

@@ -10,7 +10,7 @@ from restitution.contact import influence
 
 
 def prepare(problem):
-    """The bodies, and the surface that makes up the gap together with the sphere."""
+    """The contact: the bodies, and the surface that together with the sphere gives the gap."""
     h = float(problem.spacing)
     grid = Grid(problem.gap.shape, (h, h))
     sphere = (grid.x[:, None] ** 2 + grid.y**2) / (2 * problem.radius)

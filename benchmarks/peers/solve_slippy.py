@@ -1,8 +1,8 @@
 """Worker of SlipPy. Its tolerance is that of a step: the relative change of the pressures.
 
-Its default kernel, made in the frequency domain, lets periodic images in; the spatial one does not.
-Contact is told by an absolute 1e-14 in the units of length, so micrometres are used. Kernels are
-remembered by the material's name, and no name may be used twice.
+Its default kernel, made in the frequency domain, includes periodic images; the spatial kernel does
+not. SlipPy detects contact by an absolute tolerance of 1e-14 in the unit of length, so micrometres
+are used. It caches kernels by the name of the material, so every solve needs a new name.
 """
 
 import itertools
@@ -14,7 +14,7 @@ import slippy.surface
 from worker import serve
 
 MAX_ITERATIONS = 100_000
-# FFTW's threads wait for each other: on fewer nodes they gain nothing, and where anything else runs
+# FFTW's threads wait for each other. On fewer nodes they save no time, and beside other processes
 # they take many times as long.
 NODES_WORTH_THREADS = 256**2
 cores = slippy.CORES

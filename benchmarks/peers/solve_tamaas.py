@@ -1,10 +1,10 @@
-"""Worker of Tamaas. Its tolerance is that of the solver's error (an energy, over a scale of it).
+"""Worker of Tamaas. Its tolerance limits the solver's error, an energy divided by an energy scale.
 
-The non-periodic problem can only be given a force, so it is given the right one. `model.E` must be
-set before the operator is registered, and the operator must be chosen by name, else the periodic
-problem is solved. The steps of `KatoSaturated` depend on the units: with E* = 1 and the spacing a
+The non-periodic problem accepts only a force, so it gets the correct force. `model.E` must be set
+before the operator is registered, and the operator must be chosen by name; otherwise the periodic
+problem is solved. The steps of `KatoSaturated` depend on the units. With E* = 1 and a spacing a
 little below 1 it converges in tens of iterations, with a larger spacing or in SI units hardly ever.
-It returns 0 as its error, converged or not.
+It always returns an error of 0, even if it has not converged.
 """
 
 import numpy as np

@@ -1,9 +1,9 @@
-"""The loop that a program's worker runs: read a problem, solve it on request, say how long it took.
+"""The loop of a worker: read a problem, solve it on request, and report the time.
 
-One JSON object a line each way. A request names the problem's file, the program's own tolerance,
-the file for the pressure (Pa) and how long to go on repeating; the reply lists the seconds that
-each solve took. A solve starts from the program's own input data and nothing else: `forget` drops
-what the program remembers of earlier ones.
+Requests and replies are lines with one JSON object. A request contains the file of the problem, the
+tolerance of the program, the file for the pressure (Pa) and the time for which the solve is
+repeated. The reply lists the seconds of each solve. A solve starts only from the input data of the
+program: `forget` removes everything that the program keeps from earlier solves.
 """
 
 from __future__ import annotations

@@ -2,10 +2,10 @@
 
 Each case is run as `restitution run` does, which states a total error at each of its depths. The
 reference is the mean COR over other surfaces of the same kind (other seeds, or other places of the
-scan), on cells four times as small, at the same loading work, with adhesive unloading in steps for
-half of the error. Where a case takes materials of the library, each reference surface has
-values drawn at random from the library's spread. Constants of `error_budget` were chosen on other
-seeds (1000 to 1104 and 2000 to 2079 among them; those of the table were never looked at before).
+scan), on cells four times as small, at the same loading work, with adhesive unloading to half of
+the error. If a case uses materials of the library, each reference surface has values drawn at
+random from the library's spread. The constants of `error_budget` were chosen on other seeds, such
+as 1000 to 1104 and 2000 to 2079; the seeds of the table had not been used before.
 
     python docs/studies/blind_errors.py --topographies ../shared/topographies
 
@@ -128,7 +128,7 @@ def _generated(
 
 
 def examine(task: tuple[int, Path]) -> list[dict[str, object]]:
-    """The rows of one case: what was stated, and the reference."""
+    """Make the rows of one case: the stated errors, and the reference."""
     from restitution.case.case_file import parse_case
     from restitution.errors import RestitutionError
     from restitution.results.writer import ResultsFolder
@@ -185,7 +185,7 @@ def _reference(case, rows, seed):
     for number in range(surfaces):
         other = _with_drawn_materials(finer.variant(100 + number), rng)
         contact = other.contact(Path())
-        # The same velocity is another work where the masses differ.
+        # If the masses differ, the same velocity corresponds to another work.
         mass = contact.pair.mass / case.pair().mass
         curve = curve_of(contact, list(between), case.unloading.method, tolerance=0.001)
         found.append(curve.at(work * mass))
@@ -224,7 +224,7 @@ def summary(path: Path) -> str:
             for key in ("total_error", "restitution", "reference", "reference_error")
         )
         off = np.abs(e - reference)
-        # Below its own uncertainty, and 0.001, the reference does not say what is needed.
+        # The needed error is at least the uncertainty of the reference, and at least 0.001.
         needed = np.maximum(np.maximum(off, error), 1e-3)
         cases = len({row["case"] for row in chosen})
         return (
@@ -233,7 +233,7 @@ def summary(path: Path) -> str:
         )
 
     first = {}
-    for row in rows:  # one COR of each case, its place drawn by its number
+    for row in rows:  # one COR of each case, chosen by the number of the case
         first.setdefault(row["case"], []).append(row)
     single = [of[int(case) % len(of)] for case, of in first.items()]
     lines = [

@@ -1,4 +1,4 @@
-"""From which depth on a rough sphere bounces as a smooth one: i_cr,max against roughness.
+"""Depth from which a rough sphere rebounds like a smooth one: i_cr,max against roughness.
 
 Writes docs/studies/critical_indentation.csv and docs/images/critical-indentation.png. Some minutes:
 `python docs/studies/critical_indentation.py`.
@@ -47,7 +47,7 @@ def critical(off):
 
 
 def fit(length, x, y):
-    """Straight line and power law through what was reached, printed; the line."""
+    """Fit a straight line and a power law to the known depths; print both, return the line."""
     known = ~np.isnan(y)
     line, power = linregress(x[known], y[known]), linregress(np.log(x[known]), np.log(y[known]))
     student = t.ppf(0.975, known.sum() - 2)

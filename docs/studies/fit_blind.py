@@ -8,7 +8,8 @@ pressure and an rms roughness that are wrong by a factor of up to 3 either way.
     python docs/studies/fit_blind.py
 
 writes fit_blind.csv beside this file: a row for each parameter. `--summary` reads it again. The
-method was tried on seeds from 1000 on and on 1 to 20; those of the table were not looked at before.
+method was developed on the seeds from 1000 on and 1 to 20; the seeds of the table had not been used
+before.
 """
 
 from __future__ import annotations
@@ -70,7 +71,7 @@ def exact(text: str, seed: int) -> tuple[np.ndarray, np.ndarray]:
         if not found:
             ends = [solve_at_velocity(contact, v).indentation for v in (V[0], V[-1])]
             depths = np.geomspace(0.8 * ends[0], 1.1 * ends[1], 20)
-        # It adds depths beyond both ends.
+        # `curve_of` adds depths beyond both ends.
         found.append(curve_of(contact, depths, "path").at(0.5 * contact.pair.mass * V**2))
     return V, np.mean(found, axis=0)
 

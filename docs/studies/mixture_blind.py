@@ -2,9 +2,9 @@
 
     python docs/studies/mixture_blind.py
 
-Four families of pairs: laws at three reduced radii give those at all others, which are computed,
-too. Writes mixture_blind.csv. The errors of grid, surface and materials are left out, since both
-laws share them. Takes about ten minutes.
+In four families of pairs, laws at three reduced radii are interpolated to all other reduced radii
+and compared with laws that were computed there. Writes mixture_blind.csv. The errors of grid,
+surface and materials are left out, because both laws share them. Takes about ten minutes.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ DEPTHS = 1e-9 * np.array([2, 3, 5, 8, 12, 20, 30, 50])
 
 
 def sphere(nodes_over_pull_off_radius, offset, detachment, depth, approach="hertzian"):
-    """A contact whose apex lies `offset` cells beside a node, and how deep it is pressed: `depth`
+    """Return a contact whose apex lies `offset` cells beside a node, and its indentation: `depth`
     (m), or three times its break indentation.
     """
     body = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25, density=7850)
@@ -44,7 +44,7 @@ def pull_off(nodes, offset, detachment, depth=None):
 
 
 def row(what, found):
-    """One row of the table."""
+    """Print one row of the table."""
     print(f"| {what} | {np.mean(found):.3f} | {min(found):.3f} | {max(found):.3f} |", flush=True)
 
 

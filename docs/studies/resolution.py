@@ -3,8 +3,8 @@
 Writes docs/studies/resolution.csv and docs/images/resolution.png. Half a minute:
 `python docs/studies/resolution.py`.
 
-Every grid is pressed to the same depth below the highest point of the finest, so that what is
-compared is the contact and not where its first touch lies between the nodes.
+Every grid is pressed to the same depth below the highest point of the finest grid, so that the
+position of first touch between the nodes does not affect the comparison.
 """
 
 from __future__ import annotations
@@ -34,7 +34,8 @@ def rows():
         for seed in SEEDS:
             coarse = generate_surface(GRID, seed=seed, **kind)
             contacts = {k: Contact(PAIR, refine(coarse, k), 750e6) for k in FACTORS}
-            # All grids keep the coarse nodes: there gaps differ by where first touch lies.
+            # All grids contain the coarse nodes, where the gaps differ only by the shift of first
+            # touch.
             finest = contacts[FACTORS[-1]].gap[:: FACTORS[-1], :: FACTORS[-1]]
             for k, contact in contacts.items():
                 later = float((finest - contact.gap[::k, ::k]).mean())
@@ -74,7 +75,7 @@ def errors(table):
 
 
 def estimates(table):
-    """Of the last but one grid: the error that `converge` states, Richardson's, and what it is."""
+    """Errors of the last but one grid: stated by `converge`, Richardson's, and the true one."""
     cor = {}
     for row in table:
         case = row["surface"], row["seed"], row["depth_m"]

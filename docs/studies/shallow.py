@@ -1,4 +1,4 @@
-"""Shallow depths on the paper's grid and on one eight times finer: its claims about 8 and 50 nm.
+"""The paper's claims about 8 and 50 nm, checked on its grid and on a grid eight times finer.
 
 Writes docs/studies/shallow.csv and docs/images/shallow.png. Half a minute:
 `python docs/studies/shallow.py`.

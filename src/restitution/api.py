@@ -102,7 +102,7 @@ def open_results(folder: Folder) -> RunResults | StudyResults:
         return StudyResults(path)
     if not (path / "results.nc").is_file():
         raise OutputError(
-            f"{path}: does not hold the results of a run or study; give the OUT folder of one"
+            f"{path}: holds no results; give the folder that `restitution run` or `study` wrote"
         )
     results = read_run(path)
     results.check()
@@ -163,7 +163,7 @@ def export(
 
     Raises:
         CaseError: The code is not known, or does not accept the laws.
-        DomainError: The velocity lies outside the computed ones.
+        DomainError: The velocity lies outside the computed range.
         OutputError: A file exists, or cannot be read or written.
     """
     from restitution.dem.export import CODES, write_export

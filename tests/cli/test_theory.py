@@ -105,7 +105,7 @@ def test_refuses_a_law_of_another_pair(cli, refused, case, tmp_path):
     assert cli("fit-law", run, "-o", law)[0] == 0
     other = case(('"500 um"', '"400 um"'))
     message = refused("compare-theory", other, "--law", law)
-    assert "is of another pair: its R* is" in message
+    assert "belongs to another pair: its R* is" in message
     assert "E*" not in message
     assert "m* is" in message
 

@@ -117,7 +117,7 @@ def test_pinned_curves_are_drawn_compared_and_removed(page):
     expect(drawn).to_have_text(["pin 1", "pin 2"])
     page.get_by_role("button", name="Remove pin 2").click()
     expect(drawn).to_have_text(["pin 1"])
-    page.get_by_role("button", name="Go back to it").click()
+    page.get_by_role("button", name="Restore its values").click()
     expect(page.locator(RMS)).to_have_value("20 nm")
     page.get_by_role("button", name="Remove pin 1").click()
     expect(page.locator("#no-pins")).to_be_visible()

@@ -16,7 +16,8 @@ Array = NDArray[np.float64]
 WIDEST = 4.0
 """Ratio of the ends of a 95 % interval above which a parameter is not identifiable."""
 _CORRELATED = 0.99
-# A parameter has no effect if doubling it changes the residuals by fewer standard deviations.
+# A parameter has no effect if doubling it changes the residuals by less than this number of
+# standard deviations.
 _NO_EFFECT = 0.3
 # Another minimum explains the data as well if its χ² is larger by at most this value, which is two
 # standard deviations.
@@ -72,7 +73,7 @@ def _not_identifiable(found: Fit) -> Iterator[str]:
         if found.uncertainty.effect(k) < _NO_EFFECT:
             yield (
                 f"{parameter.key} is not identifiable from these data: restitution at these "
-                f"velocities does not change with it around {parameter.text(found.factors[k])}"
+                f"velocities does not depend on it near {parameter.text(found.factors[k])}"
             )
             continue
         half = found.uncertainty.halves[k]
@@ -102,7 +103,7 @@ def _correlated(found: Fit) -> Iterator[str]:
                 one, other = found.parameters[j].key, found.parameters[i].key
                 yield (
                     f"{one} and {other} cannot be told apart by these data (correlation "
-                    f"{r[i, j]:.3f}): a change of one makes up for a change of the other"
+                    f"{r[i, j]:.3f}): a change of one compensates for a change of the other"
                 )
 
 
@@ -129,7 +130,7 @@ def _other_minima(found: Fit) -> Iterator[str]:
             )
             yield (
                 f"the fit is not unique: from another start the search found {values}, which "
-                "explains the data as well"
+                "explains the data equally well"
             )
             return
 
@@ -155,8 +156,7 @@ def _unresolved(found: Fit) -> Iterator[str]:
     if few:
         yield (
             f"the grid does not resolve the contact at {few} of {found.resolved.size} measured "
-            "velocities; points there count less by the error of the grid; use grid.refine or a "
-            "smaller grid.spacing"
+            "velocities, so these points get less weight; use grid.refine or a smaller grid.spacing"
         )
 
 

@@ -145,7 +145,7 @@ def _check_points(measured: Measured, parameters: int) -> None:
 
 
 def _settle_grid(model: CaseModel, start: Array) -> None:
-    """Replace `grid.refine = "auto"` in the case by the number for the first guess."""
+    """Replace `grid.refine = "auto"` in the case by the factor that resolves the first guess."""
     case = model.case(start)
     if case.grid is not None and case.grid.refine == "auto":
         factor = settled(case, model.folder).grid
@@ -171,7 +171,7 @@ def _best(model: CaseModel, data: Data, minima: Sequence[Minimum]) -> Minimum:
 
 
 def _deviations(model: CaseModel, x: Array, velocity: Array) -> Deviations:
-    """Compute the deviations at `x`; the deviations of the points include only the solver."""
+    """Compute the deviations at `x`. The `random` part includes only the error of the solver."""
     here = model.at(x)
     own = here.restitution(velocity)
     each = np.array([curve.restitution(velocity) for curve in here.curves])

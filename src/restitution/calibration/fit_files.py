@@ -134,7 +134,7 @@ def _parameter(found: Fit, k: int) -> dict[str, Any]:
 
 
 def _known(value: float) -> float | None:
-    """Return a standard deviation of a logarithm; None if nothing is known of the parameter."""
+    """Return a standard deviation of a logarithm; None if the data do not limit the parameter."""
     return float(value) if value < math.log(1e6) else None
 
 

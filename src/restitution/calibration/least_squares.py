@@ -80,7 +80,7 @@ def search(model: CaseModel, data: Data, start: Array, cost: Cost = "full") -> M
         return (model.restitution(x, data.velocity, cost) - data.restitution) / data.deviation
 
     def safe(x: Array) -> Array:
-        """Return the residuals, or large ones if the case cannot be solved, to reject the step."""
+        """Return the residuals; if the case cannot be solved, large ones that reject the step."""
         try:
             return residuals(x)
         except RestitutionError:

@@ -192,7 +192,7 @@ class CaseModel:
 
     @property
     def surfaces(self) -> int:
-        """Number of surfaces: the realisations of the case if several; else `SURFACES`.
+        """Number of surfaces: the realisations of the case if there are several, else `SURFACES`.
 
         It is 1 without roughness.
         """
@@ -227,7 +227,7 @@ class CaseModel:
 
 
 def velocities_to_run(measured: Array) -> list[float]:
-    """Velocities (m/s) of the fitted case: all measured, or `MOST_VELOCITIES` in their span."""
+    """Velocities (m/s) of the fitted case: all measured, or `MOST_VELOCITIES` over their range."""
     own = np.unique(measured)
     if own.size <= MOST_VELOCITIES:
         return [float(V) for V in own]

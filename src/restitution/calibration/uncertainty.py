@@ -9,7 +9,8 @@ contribute to the covariance C of the parameters:
 In the first term, s are deviations that are independent between points. In the second term, Δ are
 the differences of n surfaces from their mean; the mean was fitted. This term is the variance of the
 difference between two means: the fitted mean, and the mean over n places of impact. If all impacts
-met one place, it would be (1 + 1/n) S. In the third term, Δ_grid is the deviation due to the grid.
+hit the same place, it would be (1 + 1/n) S. In the third term, Δ_grid is the deviation due to the
+grid.
 
 Intervals use Student's t, with degrees of freedom after Welch and Satterthwaite (Satterthwaite
 1946).
@@ -153,7 +154,7 @@ class Uncertainty:
 
     @cached_property
     def by_one_place(self) -> Array:
-        """Standard deviation of each logarithm if all impacts met one and the same place."""
+        """Standard deviation of each logarithm if all impacts hit the same place."""
         n = len(self.deviations.surfaces)
         return np.asarray(math.sqrt((n + 1) / 2) * self.deviation("surface"))
 

@@ -119,7 +119,7 @@ def parse_case(text: str) -> Case:
 
 
 def problems_of(content: dict[str, Any]) -> dict[str, str]:
-    """What is wrong with the tables `content` of a case file: messages by key.
+    """Find the problems of the tables `content` of a case file; return messages by key.
 
     A message about the whole file has the key "". Empty if `content` is a case.
     """
@@ -159,7 +159,7 @@ def _others(problems: list[Any]) -> str:
     return f" (also wrong: {', '.join(names[:_NAMED] + more)})"
 
 
-# What the value should be, for each type of pydantic error.
+# Expected value for each type of pydantic error.
 _WORDS = {
     "model_type": "a table",
     "model_attributes_type": "a table",

@@ -181,7 +181,7 @@ class MeasuredRoughness(Table):
     def surface(self, grid: Grid | None, folder: Path, factor: int = 1) -> Surface:
         """Make the roughness on cells `factor` times smaller than those of `grid`.
 
-        If `grid` is None, its cells are the pixels of the scan. Smaller cells resolve shorter waves
+        If `grid` is None, the pixels of the scan are its cells. Smaller cells resolve shorter waves
         of the scan, down to the pixel; cells smaller than the pixel add no waves.
         """
         scan = self.scan(folder)

@@ -21,7 +21,7 @@ from restitution.contact.separation import RESTITUTION_ERROR
 from restitution.errors import shown
 from restitution.numerics.grid import Grid
 
-FACTORS = (1, 2, 4, 8, 16, 32, 64)  # allowed numbers of parts of a cell along x and y
+FACTORS = (1, 2, 4, 8, 16, 32, 64)  # allowed refinement factors
 MOST_NODES = 2**27  # limit for a grid; more nodes do not fit into the memory of common machines
 MOST_STEPS = 10_000  # largest number of depths of a curve
 
@@ -85,7 +85,7 @@ class GridTable(Table):
 
     @property
     def factor(self) -> int:
-        """Parts into which a cell is divided along x and y at the deepest depth; 1 for "auto"."""
+        """Refinement factor of the deepest depth: parts of a cell along x and y; 1 for "auto"."""
         if isinstance(self.refine, tuple):
             return self.refine[-1]
         return 1 if self.refine == "auto" else self.refine

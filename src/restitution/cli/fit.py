@@ -30,7 +30,7 @@ def fit(
         typer.Option(
             "--case",
             metavar="CASE",
-            help="Case file (TOML); free keys hold first guesses.",
+            help="Case file (TOML); its values of the free keys are first guesses.",
             readable=False,
         ),
     ],

@@ -37,7 +37,7 @@ def app(
 
     def ready(address: str) -> None:
         say(f"The page is at {address}")
-        say("Ctrl-C ends it.")
+        say("Press Ctrl-C to end the program.")
         if browser:
             import webbrowser
 

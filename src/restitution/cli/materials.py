@@ -33,7 +33,7 @@ def materials(
         str | None,
         typer.Argument(
             metavar="NAME",
-            help="A material, to show with spread and sources.",
+            help="Material to show with its spread and sources.",
             show_default=False,
             autocompletion=_names,
         ),

@@ -50,8 +50,8 @@ def simulate(
 ) -> None:
     """Integrate collisions in time with the stored forces of RESULTS; compare COR with energies.
 
-    With --friction and --angle the impacts are oblique: VELOCITY is that of the centres, and the
-    table has the tangential restitution, the angle of rebound and the spin.
+    With --friction and --angle the impacts are oblique: VELOCITY is the relative velocity of the
+    centres, and the table contains the tangential restitution, the angle of rebound and the spin.
     """
     from restitution.cli.console import answers, say_written, table_of_numbers
     from restitution.laws.from_results import bare_law
@@ -84,7 +84,7 @@ def simulate(
     courses, blended = [], False
     for each in velocities:
         found, energies = collide_in_time(force, each), law.at(each)
-        # The force curves are as accurate as their work agrees with the stored energies.
+        # The difference from the stored energies is an estimate of the error of the force curves.
         error = max(abs(found.restitution - energies.restitution), energies.error)
         courses += course(found)
         table.add_row(

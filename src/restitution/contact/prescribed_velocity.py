@@ -18,7 +18,7 @@ VELOCITY_TOLERANCE = 1e-6
 # integral is about 1e-3, so a smaller tolerance would be useless.
 _INTEGRATED_TOLERANCE = 1e-4
 _MAX_GROWTH = 3.0  # largest factor between two trial depths
-_MOST_STEPS = 8  # of Newton's method
+_MOST_STEPS = 8  # largest number of Newton steps
 
 
 def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None = None) -> State:
@@ -77,7 +77,7 @@ class _Search:
     """The search for the indentation at which the loading work is `work` (J).
 
     Newton's method for ln W as a function of ln δ, whose slope is F δ/W because dW/dδ = F, needs
-    two or three solves. Where the work jumps it can fail; then a bracketing root finder takes over.
+    two or three solves. It can fail where the work jumps; a bracketing root finder then takes over.
     """
 
     def __init__(self, contact: Contact, work: float, start: State | None) -> None:

@@ -10,8 +10,8 @@ from restitution.laws.law import Law
 from restitution.theory.jkr import JKR
 
 _LEFT_OUT = (
-    "the pull-off force is not modelled below, because the damping alone has the e of this pair: "
-    "an adhesive contact model would lose energy besides and lower e"
+    "the pull-off force is not modelled below, because the damping alone produces the e of this "
+    "pair: an adhesive contact model would dissipate additional energy and lower e"
 )
 _OBSTACLES = {
     "LAMMPS": "jkr and dmt refuse coeff_restitution",
@@ -41,7 +41,7 @@ def adhesion_lines(law: Law, velocity: float, code: str) -> list[str]:
     jkr = JKR(law.radius, law.contact_modulus, law.work_of_adhesion)
     obstacle = f"; {_OBSTACLES[code]}" if code in _OBSTACLES else ""
     return [
-        f"  adhesion {law.work_of_adhesion:.4g} J/m^2: e includes what it dissipates",
+        f"  adhesion {law.work_of_adhesion:.4g} J/m^2: e includes its dissipation",
         f"  pull-off force after an impact at {velocity:.6g} m/s: {said}; JKR of the smooth "
         f"bodies: {float(jkr.pull_off_force):.4g} N",
         f"  {_LEFT_OUT}{obstacle}",

@@ -52,7 +52,7 @@ def export(laws: Sequence[Law], code: str, velocity: float | None) -> dict[str, 
 
 
 def limit(code: str) -> str:
-    """Say what a user must do for `code` to return the exported e; empty if nothing."""
+    """State the condition under which `code` returns the exported e; empty if there is none."""
     if code == "csv":
         return ""
     return str(getattr(import_module(f"restitution.dem.codes.{code}"), "NOTE", ""))

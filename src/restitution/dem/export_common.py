@@ -30,7 +30,7 @@ PLACEHOLDER = (
 
 STEPS = 5000
 TIME_STEP = (
-    "the elastic contact time t_c = 2.87 (m*^2/(R* E*^2 V))^(1/5); only e needs so small a step"
+    "the elastic contact time t_c = 2.87 (m*^2/(R* E*^2 V))^(1/5); only e needs such a small step"
 )
 
 _WIDTH = 98
@@ -225,9 +225,9 @@ def _environment() -> Environment:
 
 
 def _origin(velocity: float, code: str, ends: str, constant: bool) -> list[str]:
-    reason = f"{code} keeps e constant, the pairs do not."
+    reason = f"e is constant in {code}, but not for the pairs."
     if not constant:
-        reason = f"at other velocities {code} has an e of its own, not that of the pairs."
+        reason = f"at other velocities e in {code} differs from e of the pairs."
     return [
         f"Coefficients of restitution for {code}, written by restitution {program_version()}.",
         f"They hold at the impact velocity {velocity:.6g} m/s only: {reason} Export again for "

@@ -1,4 +1,4 @@
-"""The pair table that most DEM codes ask for: one law for each pair of particle types."""
+"""The pair table that most DEM codes need: one law for each pair of particle types."""
 
 from __future__ import annotations
 

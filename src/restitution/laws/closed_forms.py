@@ -216,7 +216,7 @@ def _thornton_ning(b: Bodies, V: Array) -> Form | str:
         return Form(within(inside, e), f"quasi-static impacts, {small}", parameters)
     V_s, V_y = b.sticking_velocity, b.yield_velocity
     additive = (
-        f"sum of both losses, an upper bound, good for V_s << V_y ({speed(V_s)}, {speed(V_y)})"
+        f"sum of both losses, an upper bound, accurate for V_s << V_y ({speed(V_s)}, {speed(V_y)})"
         if V_s <= V_y
         else f"only up to V_y = {speed(V_y)}, because V_s = {speed(V_s)} is higher"
     )

@@ -6,10 +6,9 @@ The last term is the loss by adhesion, which is the same energy at every velocit
 elastic pair: Thornton & Ning 1998). The polynomial describes the loss by yielding. Low velocities
 at which nothing is lost (e = 1) or the pair sticks (e = 0) are excluded.
 
-The fit is linear least squares in e². The error between the points is the largest residual, where
-both the residuals at the points and the leave-one-out residuals count (as in PRESS, Allen 1974, but
-with the maximum instead of the sum). The degree of the polynomial is the lowest whose error is
-small or near the minimum.
+The fit is linear least squares in e². The error between the points is the largest of the residuals
+at the points and the leave-one-out residuals (as in PRESS, Allen 1974, but with the maximum instead
+of the sum). The degree of the polynomial is the lowest whose error is small or near the minimum.
 """
 
 from __future__ import annotations

@@ -21,7 +21,7 @@ from restitution.laws.interpolation import RatioCurve
 Array = NDArray[np.float64]
 
 LOSS = 1e-3
-"""A law is not fitted if 1 − e is below this value at every velocity, or if e is."""
+"""A law is not fitted if 1 − e, or e, is below this value at every velocity."""
 # Largest relative difference of velocities that count as equal. Where the loading work is
 # integrated, a run meets the velocities of its case within 1e-4 (`solve_at_velocity`).
 _SAME = 1.01e-4

@@ -77,12 +77,12 @@ def read_laws(folders: Sequence[Path]) -> list[Law]:
 
 
 def is_mixture(folder: Path) -> bool:
-    """Whether `folder` is that of a mixture, complete or not."""
+    """Whether `folder` is the folder of a mixture, complete or not."""
     return (folder / MIXTURE_FILE).is_file()
 
 
 def _of_mixture(folder: Path) -> list[Path]:
-    """The folders of its laws."""
+    """The folders of the laws of a mixture. Raises `OutputError` if it is not complete."""
     if not (folder / LAWS).is_dir() or not (folder / "summary.json").is_file():
         raise OutputError(
             f"{folder}: the mixture is not complete; finish it with `restitution mixture MIXTURE "

@@ -127,8 +127,8 @@ def check_same_pair(case: Case, law: Law) -> None:
     ]
     if differing:
         raise CaseError(
-            f"the law of {law.pair} is of another pair: its {', its '.join(differing)}; give the "
-            "case from which it was computed, or another law"
+            f"the law of {law.pair} belongs to another pair: its {', its '.join(differing)}; give "
+            "the case from which it was computed, or another law"
         )
 
 
@@ -212,7 +212,7 @@ def _other_interface(bodies: Bodies, law: Law) -> str:
         differing.append("elastic" if math.isinf(p_y) else f"p_y = {1e-6 * p_y:.4g} MPa")
     if not math.isclose(law.work_of_adhesion, bodies.w, rel_tol=_SAME):
         differing.append(f"w = {law.work_of_adhesion:.4g} J/m^2")
-    return f"; computed with another interface than the case's: {', '.join(differing)}" * bool(
+    return f"; computed for an interface that differs from the case: {', '.join(differing)}" * bool(
         differing
     )
 

@@ -111,8 +111,8 @@ class StoredForce:
         """Return the shape of the unloading curve from `deepest` (m), and a flag.
 
         The shape is F/F_max as a function of (δ − δ_s)/(δ_max − δ_s), for numbers and arrays. The
-        flag says whether it is interpolated between two stored curves. Beyond the first and the
-        last stored curve, it is the shape of this curve.
+        flag says whether it is interpolated between two stored curves. Beyond the first or the last
+        stored curve, the shape is that of this curve.
         """
         depths = self.unloading_from
         near = np.flatnonzero(np.abs(depths / deepest - 1) < _SAME)

@@ -1,1 +1,1 @@
-"""A page on this machine that redraws the curves of a case while a reader changes its values."""
+"""The page of `restitution app`: it redraws the curves of a case while a user changes values."""

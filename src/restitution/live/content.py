@@ -1,4 +1,4 @@
-"""The case that a page edits: the tables of a case file, with one shape for each table."""
+"""The case that the page edits: the tables of a case file, always in the same form."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Content = dict[str, Any]
 
 
 def content_of(text: str) -> Content:
-    """The tables of the case file `text`; a wall is a table, and `roughness` is a list of tables.
+    """Parse the case file `text`; make every body a table, and `roughness` a list of tables.
 
     Raises `CaseError` if `text` is not TOML, or has a value that JSON lacks.
     """
@@ -35,7 +35,7 @@ def content_of(text: str) -> Content:
 
 
 def text_of(content: Content) -> str:
-    """The case file of the tables `content`. Raises `CaseError` if TOML has no such value."""
+    """Write the tables `content` as a case file. Raises `CaseError` if TOML lacks such a value."""
     tables = dict(content)
     parts = tables.get("roughness")
     if isinstance(parts, list):
@@ -49,7 +49,7 @@ def text_of(content: Content) -> str:
 
 
 def problems_in(text: str, folder: Path) -> dict[str, str]:
-    """What is wrong with the case file `text`: messages by key; scans must lie in `folder`."""
+    """Find the problems of the case file `text`, by key. Its scans must lie in `folder`."""
     try:
         content = parse_toml(text)
     except CaseError as error:
@@ -58,14 +58,14 @@ def problems_in(text: str, folder: Path) -> dict[str, str]:
 
 
 def scans_of(content: Content) -> list[str]:
-    """The names of the scans that the tables `content` read."""
+    """List the file names of the scans in the tables `content`."""
     parts = content.get("roughness", [])
     tables = parts if isinstance(parts, list) else [parts]
     return [table["file"] for table in tables if isinstance(table, dict) and "file" in table]
 
 
 def _foreign_files(content: Content, folder: Path) -> dict[str, str]:
-    """Refuse scans outside `folder`: a page reads only what its reader has given it."""
+    """Report a scan outside `folder`, because the page reads only files that the user gave it."""
     for name in scans_of(content):
         if PurePath(name).name != name or not (folder / name).is_file():
             return {

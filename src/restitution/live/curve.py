@@ -33,7 +33,7 @@ _TABS = 4  # number of tabs whose last curves are kept
 
 
 class LiveCurves:
-    """The last curve of each page that is open: of each tab of the browser."""
+    """The last curve of each open browser tab."""
 
     def __init__(self) -> None:
         self._curves: dict[str, _Curve] = {}
@@ -42,8 +42,8 @@ class LiveCurves:
     def lines(self, tab: str, text: str, folder: Path, check: Callable[[], None]) -> Iterator[str]:
         """Compute the curve of the case `text`; yield lines of JSON for the page.
 
-        `check` raises if the curve is not wanted any more. Depths that were computed are drawn even
-        if others fail.
+        `check` raises an exception if the curve is no longer wanted. Depths that were computed are
+        drawn even if others fail.
         """
         case = settled(parse_case(text).realisation(0), folder)
         contact = self._contact(case, folder)
@@ -57,20 +57,20 @@ class LiveCurves:
         yield from curve.compute(folder, check)
 
     def maps(self, tab: str, depth: int) -> Iterator[str]:
-        """The contact maps at one depth of the last curve."""
+        """Yield the contact maps at one depth of the last curve."""
         curve = self._curves.get(tab)
         if curve is not None and len(curve.maps):
             yield curve.maps.line(min(max(depth, 0), len(curve.maps) - 1))
 
     def beside(self, tab: str, shown: str, check: Callable[[], None]) -> Iterator[str]:
-        """The surface of the last curve, unless it is `shown` already, and its smooth curve."""
+        """Yield the smooth curve of the last case, and its surface unless it is `shown` already."""
         curve = self._curves.get(tab)
         if curve is not None:
             yield from curve.with_smooth(check)
             yield from curve.with_surface(shown, check)
 
     def _contact(self, case: Case, folder: Path) -> Contact:
-        """The contact of `case`; the last surface is kept, since most sliders do not change it."""
+        """Make the contact of `case`; reuse the last surface, which most sliders do not change."""
         key = repr((case.roughness, case.grid, _stamps(case, folder)))
         if self._surface is not None and self._surface[0] == key:
             return case.contact_on(self._surface[1])
@@ -140,6 +140,6 @@ class _Curve:
 
 
 def _stamps(case: Case, folder: Path) -> list[tuple[int, int]]:
-    """Time and size of the scans of `case`, which change when a file is dropped again."""
+    """Time and size of the scans of `case`; they change when a file is dropped again."""
     found = [folder / part.file for part in case.roughness if part.kind == "measured"]
     return [(each.stat().st_mtime_ns, each.stat().st_size) for each in found]

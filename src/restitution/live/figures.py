@@ -60,13 +60,13 @@ def _finite(value: Any) -> Any:
 
 
 def live_dataset(case: Case, contact: Contact, rows: Sequence[Mapping[str, float]]) -> xr.Dataset:
-    """The curve of `rows` as the figures of a run read it, without unloading and maps."""
+    """Make the dataset that the figures of a run need from `rows`, without unloading and maps."""
     derived = {f"derived_{k}": str(v) for k, v in derived_quantities(case, contact).items()}
     return xr.Dataset(curve_variables(rows), attrs={"title": case.title, **derived})
 
 
 def curve_figures(results: xr.Dataset) -> Raw:
-    """COR against velocity and indentation, and the force, as JSON; null where there is none."""
+    """Draw COR against velocity and indentation, and the force, as JSON; null without data."""
     found: dict[str, Figure] = {}
     if results.sizes["indentation_max"]:
         found["indentation"] = restitution_against_indentation(results)

@@ -1,4 +1,4 @@
-"""The fields of the form: the keys of a case file, with labels, units and the ends of sliders."""
+"""The fields of the form: keys of a case file with labels, units and the ranges of sliders."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ _GENERATED = get_args(RoughnessKind)
 class Field:
     """One key of the case file.
 
-    `unit` is the SI unit of a quantity. `low` and `high` are the ends of the slider, in this unit
-    or as numbers; without them the field has none. The field is shown while the key `when[0]` has
-    one of the values after it; "" is a key that is left out. `initial` is filled in when the field
-    appears. Fields with `more` are behind "More" while they are empty.
+    `unit` is the SI unit of a quantity. `low` and `high` are the ends of the slider, in this unit;
+    without them the field has no slider. The field is shown while the key `when[0]` has one of the
+    values `when[1:]`, where "" means that the key is left out. `initial` is filled in when the
+    field appears. A field with `more` is hidden behind "More" while it is empty.
     """
 
     key: str
@@ -65,7 +65,7 @@ def form() -> dict[str, Any]:
 
 
 def _library_values(material: Material) -> dict[str, str]:
-    """The values that a body has from the library, as texts."""
+    """The values that `material` supplies to a body, as texts of a case file."""
     found = ((key, unit, getattr(material, key)) for key, unit in FROM_LIBRARY.items())
     return {
         key: quantity(each.value, unit) if unit == "Pa" else f"{each.value:g} {unit}".strip()
@@ -131,7 +131,7 @@ _INTERFACE = (
         "Pa",
         1e6,
         1e11,
-        hint="of a tensile test; left out: of the softer body",
+        hint="from a tensile test; if empty, that of the softer body",
     ),
     Field(
         "interface.yield_pressure",
@@ -139,7 +139,7 @@ _INTERFACE = (
         "Pa",
         1e6,
         1e11,
-        hint='a hardness in place of Y, "2.8 Y", "hardness" or "elastic"',
+        hint='instead of Y: a hardness, "2.8 Y", "hardness" or "elastic"',
     ),
     Field(
         "interface.tangent_modulus",
@@ -162,7 +162,7 @@ _INTERFACE = (
         "J/m^2",
         1e-4,
         1.0,
-        hint="left out: no adhesion",
+        hint="if empty, no adhesion",
     ),
     Field(
         "interface.approach",
@@ -274,7 +274,7 @@ _SURFACE = (
         False,
         True,
         when=_ROUGH,
-        hint="the curve is their mean; while a slider moves, that of the first",
+        hint="the curve is their mean; only the first one while a slider moves",
     ),
 )
 
@@ -306,7 +306,7 @@ def _span(
             "Values",
             unit,
             when=when,
-            hint="a list, separated by commas, in place of the span",
+            hint="a list, separated by commas, instead of the span",
             more=True,
         ),
     )

@@ -1,7 +1,7 @@
 """A worker process and its requests, as the server sees them.
 
-The process starts with the first request. It is started anew after it has ended, and it is ended if
-a request that nobody wants any more does not stop by itself.
+The process starts with the first request. If it has ended, the next request starts it again. It is
+ended if an abandoned request does not stop by itself.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ from restitution.live.worker import Request, serve
 _PATIENCE = 1.5  # time (s) that a request may take to stop
 _LOST = as_json(
     {
-        "error": "the process that computes has ended unexpectedly (the system may have been short "
-        "of memory); it is started anew with the next change",
+        "error": "the process that computes has ended unexpectedly (perhaps because the memory was "
+        "full); the next change starts it again",
         "lost": True,
     }
 )
 _CLOSED = as_json({"error": "the program has ended; start restitution app again", "lost": True})
-_AGAIN = "again"  # asks a request again: its process was ended for another one
+_AGAIN = "again"  # makes `ask` repeat a request whose process was ended because of another one
 _Lines = asyncio.Queue[str | None]
 
 
@@ -41,7 +41,7 @@ class Process:
         self._running: _Running | None = None
 
     async def ask(self, tab: str, kind: str, **values: Any) -> AsyncGenerator[str]:
-        """The lines of JSON that answer a request. A request that is left alone is given up."""
+        """Yield the lines of JSON that answer a request. Closing the generator gives it up."""
         asked = True
         while asked:
             asked = False
@@ -81,22 +81,22 @@ class _Running:
         self.process.start()
         theirs.close()  # so that the end of the process closes the connection
         self.waiting: dict[int, _Lines] = {}
-        self._last_words = ""  # to requests that wait, once it is ended on purpose
+        self._last_words = ""  # last line for waiting requests, if the process is ended on purpose
         self._watching: set[asyncio.Task[None]] = set()
         self._loop = asyncio.get_running_loop()
         threading.Thread(target=self._receive, args=(self._connection,), daemon=True).start()
 
     @property
     def usable(self) -> bool:
-        """Whether the process lives, and nobody has ended it."""
+        """Whether the process is alive and `end` was not called."""
         return not self._last_words and self.process.is_alive()
 
     def send(self, message: Request | int) -> None:
-        with suppress(OSError):  # the process has ended: the thread that receives tells
+        with suppress(OSError):  # the process has ended; `_receive` reports this
             self._connection.send(message)
 
     def give_up(self, number: int, lines: _Lines) -> None:
-        """Tell the process that nobody waits for a request; end it if it does not stop."""
+        """Tell the process to stop a request; end the process if the request goes on."""
         if not self.usable:
             return
         self.send(number)
@@ -122,7 +122,7 @@ class _Running:
             task.cancel()
 
     def _receive(self, connection: Connection) -> None:
-        """Hand the answers to the requests that wait; at the end of the process tell them all."""
+        """Pass answers to the waiting requests; tell all of them when the process has ended."""
         with suppress(EOFError, OSError, RuntimeError):  # RuntimeError: the loop is closed
             while True:
                 number, line = connection.recv()

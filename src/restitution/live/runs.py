@@ -18,7 +18,7 @@ from restitution.runs.convergence import run_convergence
 from restitution.runs.ensemble import run_realisations
 
 _KEPT = 4  # number of results folders that are kept
-Check = Callable[[str], None]  # is told the progress; raises if the run is not wanted any more
+Check = Callable[[str], None]  # called with the progress; raises if the run is no longer wanted
 
 
 class Runs:
@@ -29,7 +29,7 @@ class Runs:
         self._folders: dict[str, Path] = {}
 
     def folder(self, text: str, folder: Path, check: Check, grids: int = 1) -> Path:
-        """The results folder of the case `text`, or of its convergence on several `grids`."""
+        """Return the results folder of the case `text`, or of its convergence on `grids` grids."""
         key = hashlib.blake2b(f"{grids}\n{text}".encode()).hexdigest()
         if key not in self._folders:
             self._folders[key] = self._compute(text, folder, check, grids)

@@ -1,7 +1,7 @@
 """The server of the page: static files, and requests as JSON that only this page can make.
 
 A request is a POST with the token of the address and, from a browser, the Origin of this page. The
-Host must be this machine's, so that no other site can reach the server through a name of its own.
+Host must be this machine, so that another site cannot reach the server under its own name.
 """
 
 from __future__ import annotations
@@ -47,9 +47,9 @@ Handler = Callable[[Request], Awaitable[Response]]
 
 
 class Server:
-    """The requests of the page, each of which a worker process answers.
+    """Receives the requests of the page and passes each of them to a worker process.
 
-    Live curves, whole runs and finer runs have a process each, so that none waits for another.
+    Live curves, whole runs and finer runs have a process each, so that no kind waits for another.
     """
 
     def __init__(self, session: Session, port: int) -> None:
@@ -82,7 +82,7 @@ class Server:
             self.stop()
 
     def stop(self) -> None:
-        """End the processes, which also ends the answers that are under way."""
+        """End the processes and with them all unfinished answers."""
         for process in (self._live, self._runs, self._finer):
             process.stop()
 
@@ -100,7 +100,7 @@ class Server:
         }
 
     def _guarded(self, handler: Handler) -> Handler:
-        """Wrap `handler`: pass on only requests with the token and the right kind of content."""
+        """Wrap `handler`: pass on only requests with the token and the right content type."""
 
         async def answer(request: Request) -> Response:
             token = request.headers.get("x-token", "")
@@ -115,7 +115,7 @@ class Server:
         return answer
 
     async def _page(self, _: Request) -> Response:
-        """The page, whose policy allows its own scripts and styles only."""
+        """The page, with a content security policy that allows only its own scripts and styles."""
         nonce = secrets.token_urlsafe(16)
         policy = (
             "default-src 'none'; script-src 'self'; connect-src 'self'; "
@@ -140,7 +140,7 @@ class Server:
         return JSONResponse({"form": form(), "content": self._session.content})
 
     async def _content(self, request: Request) -> Response:
-        """The tables of a case file that a reader has edited as text."""
+        """The tables of a case file that the user has edited as text."""
         values = await _values(request, {"text": str})
         try:
             return JSONResponse({"content": content_of(values["text"])})
@@ -148,7 +148,7 @@ class Server:
             return JSONResponse({"error": str(error)})
 
     async def _text(self, request: Request) -> Response:
-        """The case file of tables."""
+        """The text of the case file with the given tables."""
         values = await _values(request, {"content": dict})
         return JSONResponse({"text": _text(values["content"])})
 
@@ -190,7 +190,7 @@ class Server:
         return JSONResponse({"error": error})
 
     async def _upload(self, request: Request) -> Response:
-        """Keep a scan that was dropped, if the readers of scans can read it."""
+        """Store a dropped scan if it can be read."""
         name = self._session.free_name(unquote(request.headers.get("x-file-name", "")))
         file = self._session.scans / name
         try:
@@ -208,13 +208,13 @@ class Server:
 
 
 class OwnHostOnly:
-    """Refuse requests that another site, or a page of another site, makes."""
+    """Refuse requests under the name of another site, and requests from pages of other sites."""
 
     def __init__(self, app: ASGIApp, hosts: tuple[str, ...]) -> None:
         self._app, self._hosts = app, hosts
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on a request for this machine, from its own page or from no page."""
+        """Pass on requests to this machine, from its own page or from no page."""
         if scope["type"] == "http" and (why := self._refused(dict(scope["headers"]))):
             await JSONResponse({"error": why}, 403, headers=_HEADERS)(scope, receive, send)
             return
@@ -230,14 +230,14 @@ class OwnHostOnly:
     def _refused(self, headers: dict[bytes, bytes]) -> str:
         host, origin = (headers.get(name, b"").decode("latin-1") for name in (b"host", b"origin"))
         if host not in self._hosts:
-            return "this server answers to this machine only"
+            return "this server answers only requests from this machine"
         if origin and origin not in [f"http://{each}" for each in self._hosts]:
-            return "this server answers to its own page only"
+            return "this server answers only requests from its own page"
         return ""
 
 
 def _streamed(request: Request, lines: AsyncGenerator[str]) -> Response:
-    """Lines of JSON, each sent as soon as it is there, until the page goes away."""
+    """Send each line of JSON as soon as it is available, until the page closes the connection."""
 
     async def body() -> AsyncIterator[str]:
         gone = asyncio.ensure_future(_gone(request))
@@ -252,7 +252,7 @@ def _streamed(request: Request, lines: AsyncGenerator[str]) -> Response:
                     return
                 yield text + "\n"
         finally:
-            line.cancel()  # which gives the request up, unless it is answered
+            line.cancel()  # this gives up the request, unless it is answered
             gone.cancel()
 
     return StreamingResponse(body(), media_type="application/x-ndjson")
@@ -265,7 +265,7 @@ async def _gone(request: Request) -> None:
 
 
 async def _values(request: Request, kinds: dict[str, type]) -> dict[str, Any]:
-    """The values of a JSON request. Raises `HTTPException` if one lacks or has another type."""
+    """The values of a JSON request. Raises `HTTPException` if one is missing or of a wrong type."""
     body = b""
     async for part in request.stream():
         body += part
@@ -303,7 +303,7 @@ async def _store(request: Request, file: Any) -> None:
                     )
                 await asyncio.to_thread(out.write, part)
     except ClientDisconnect:
-        raise HTTPException(400, "the file did not arrive whole") from None
+        raise HTTPException(400, "the upload is incomplete; drop the file again") from None
 
 
 @cache

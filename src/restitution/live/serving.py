@@ -14,7 +14,7 @@ from restitution.live.session import Session
 
 
 class _Uvicorn(uvicorn.Server):
-    """A server that tells when it accepts requests, and that it is about to end."""
+    """A server that calls `ready` when it accepts requests, and `ending` before it ends."""
 
     def __init__(
         self, config: uvicorn.Config, ready: Callable[[], None], ending: Callable[[], None]
@@ -23,12 +23,12 @@ class _Uvicorn(uvicorn.Server):
         self._ready, self._ending = ready, ending
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        """Start, and tell."""
+        """Start, then call `ready`."""
         await super().startup(sockets)
         self._ready()
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        """Tell, and end."""
+        """Call `ending`, then end."""
         self._ending()
         await super().shutdown(sockets)
 

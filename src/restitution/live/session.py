@@ -33,7 +33,7 @@ class Session:
             _bring_scans(content, folder, self.scans)
 
     def free_name(self, wanted: str) -> str:
-        """A name for a file in `scans`: that of the reader's file without folders and odd signs."""
+        """Make an unused name in `scans` from the name of a user's file, without odd characters."""
         name = _ODD.sub("_", wanted.replace("\\", "/").rsplit("/", 1)[-1]).lstrip(".")[-80:]
         stem, dot, kind = (name or "scan").partition(".")
         numbers = ("", *(f"-{k}" for k in range(2, 1000)))
@@ -46,7 +46,7 @@ class Session:
 
 
 def first_content(case: Path | None) -> Content:
-    """The tables of the file `case`, or of a first case of the program's own."""
+    """The tables of the file `case`, or of the built-in first case."""
     if case is None:
         from importlib.resources import files
 
@@ -60,7 +60,7 @@ def first_content(case: Path | None) -> Content:
 
 
 def _bring_scans(content: Content, folder: Path, scans: Path) -> None:
-    """Link the scans of `content` into `scans`, and name them by their names alone."""
+    """Link the scans of `content` into `scans`, and remove the folders from their names."""
     for name in scans_of(content):
         source = (folder / name).resolve()
         if not source.is_file():

@@ -1,4 +1,4 @@
-"""Files that a reader takes from the page: case, figures, results, law, DEM export, report."""
+"""Files that the user downloads: case, figures, results, law, DEM export, report."""
 
 from __future__ import annotations
 
@@ -89,9 +89,9 @@ OF_RESULTS: dict[str, Callable[[Path, Path], Path]] = {
 
 
 def take(what: str, results: Path, out: Path, code: str, velocity: str) -> Path:
-    """Write what the reader asked for, from a results folder, into `out`; return the file.
+    """Write the download `what` from the folder `results` into `out`; return the file.
 
-    Raises `CaseError` if there is no such thing to take.
+    Raises `CaseError` if `what` is unknown.
     """
     if what == "export":
         return export_files(results, out, code, velocity)

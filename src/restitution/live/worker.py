@@ -38,7 +38,7 @@ class Request:
 
 
 class NotWanted(KeyboardInterrupt):
-    """A newer request has replaced this one, or the page has gone away."""
+    """A newer request has replaced this request, or the page was closed."""
 
 
 class Wire:
@@ -53,12 +53,12 @@ class Wire:
             self._connection.send((number, line))
 
     def receive(self) -> Any:
-        """The next message of the parent."""
+        """Wait for the next message of the parent."""
         return self._connection.recv()
 
 
 class Inbox:
-    """The requests that wait, of which a newer one replaces an older one of its tab and kind."""
+    """The waiting requests. A new request replaces an older one of the same tab and kind."""
 
     def __init__(self, wire: Wire) -> None:
         self._wire = wire
@@ -69,16 +69,16 @@ class Inbox:
         threading.Thread(target=self._listen, daemon=True).start()
 
     def next(self) -> Request:
-        """The request that has waited longest."""
+        """Wait for a request, and return the one that has waited longest."""
         with self._changed:
             self._changed.wait_for(lambda: self._waiting)
             key = next(iter(self._waiting))
             self._now = self._waiting.pop(key)
-            self._given_up.clear()  # of earlier requests, all of which are answered
+            self._given_up.clear()  # all earlier requests are answered
             return self._now
 
     def check(self) -> None:
-        """Raise `NotWanted` if the request that was returned last is not wanted any more."""
+        """Raise `NotWanted` if the request that `next` returned last is no longer wanted."""
         with self._changed:
             now = self._now
             assert now is not None
@@ -92,7 +92,7 @@ class Inbox:
             try:
                 message = self._wire.receive()
             except (EOFError, OSError):
-                os._exit(0)  # nobody waits for the solve that may be under way
+                os._exit(0)  # nobody needs the result of a running solve
             with self._changed:
                 if isinstance(message, Request):
                     self._drop((message.tab, message.kind))
@@ -109,7 +109,7 @@ class Inbox:
             self._given_up.add(number)
 
     def _drop(self, key: tuple[str, str]) -> None:
-        """If a request waits under `key`, remove it, and answer that it is not computed."""
+        """Remove the request that waits under `key`, if any, and answer that it was replaced."""
         dropped = self._waiting.pop(key, None)
         if dropped is not None:
             self._wire.send(dropped.number, REPLACED)
@@ -117,7 +117,7 @@ class Inbox:
 
 
 class Worker:
-    """What a request can ask for. Scans lie in `scans`, and files are written into `room`."""
+    """Answers requests: one method for each kind. Reads scans in `scans`, and writes to `room`."""
 
     def __init__(self, scans: Path, room: Path, check: Callable[[], None]) -> None:
         self._scans, self._room, self._check = scans, room, check
@@ -140,7 +140,7 @@ class Worker:
         return self._curves.lines(tab, text, self._scans, self._check)
 
     def beside(self, tab: str, shown: str) -> Iterator[str]:
-        """What is drawn beside the live curve."""
+        """The surface and the smooth curve of the live curve."""
         return self._curves.beside(tab, shown, self._check)
 
     def maps(self, tab: str, depth: int) -> Iterator[str]:
@@ -154,7 +154,7 @@ class Worker:
     def take(
         self, tab: str, text: str, what: str, code: str, velocity: str, grids: int
     ) -> Iterator[str]:
-        """A file to take away."""
+        """A file to download."""
         from restitution.live import take_away
 
         out = Path(mkdtemp(dir=self._room, prefix="take-"))
@@ -165,7 +165,7 @@ class Worker:
         yield as_json({"file": str(file.relative_to(self._room))})
 
     def read(self, tab: str, file: str) -> Iterator[str]:
-        """What a scan holds, so that a file that cannot be read is refused at once."""
+        """Read a scan and describe it, so that an unreadable file is refused at once."""
         from restitution.surfaces import read_surface
         from restitution.surfaces.refused import RefusedSurfaceError
 

@@ -2,8 +2,8 @@
 
 Smooth spheres without adhesion obey a scaling law. With lengths in units of R*, the contact depends
 only on W/R*³, where W is the loading work; the masses and the two radii have no other influence.
-Roughness and adhesion have lengths that do not scale with R*. So all pairs of two components have
-laws e(W/R*³, R*) of one family. The velocity V enters as W/R*³ = ½ κ V² with κ = m*/R*³.
+Roughness and adhesion have lengths that do not scale with R*. So the laws of all pairs of two
+components are one family e(W/R*³, R*). The velocity V enters as W/R*³ = ½ κ V² with κ = m*/R*³.
 """
 
 from __future__ import annotations
@@ -104,7 +104,7 @@ class Family:
             raise CaseError(
                 f"grid: the waves of {self.name} need cells of {1e6 * spacing:.3g} um, and the "
                 f"contact a grid of {1e6 * width:.3g} um: {nodes} nodes along an edge; give the "
-                "table [grid], fewer velocities, or sizes that are nearer to each other"
+                "table [grid], fewer velocities, or sizes that differ less"
             )
         return {"nodes": nodes, "spacing": f"{spacing!r} m", "refine": "auto"}
 

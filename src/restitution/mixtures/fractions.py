@@ -9,7 +9,7 @@ from typing import Any
 from restitution.errors import CaseError
 
 KEYS = ("mass_fractions", "number_fractions")
-_OFF = 0.02  # that the sum may differ from 1: fractions are often rounded
+_OFF = 0.02  # largest difference of the sum from 1, because fractions are often rounded
 
 
 def number_fractions(key: str, table: dict[str, Any], radii: Sequence[float]) -> tuple[float, ...]:

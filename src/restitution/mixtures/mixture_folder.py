@@ -78,7 +78,7 @@ def write_mixture(
 
 
 def condensed_warnings(pairs: Sequence[PairLaw]) -> list[str]:
-    """Each warning once, with the pairs that have it; texts that differ in numbers are one."""
+    """List each warning once, with its pairs; texts that differ only in numbers count as one."""
     found: dict[str, list[tuple[str, str]]] = {}
     for pair in pairs:
         family = f"{pair.law.first.name}+{pair.law.second.name}"

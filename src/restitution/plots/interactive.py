@@ -46,7 +46,7 @@ def draw(panel: Chart | Map, figure: Figure) -> Plot:
     }
     if isinstance(panel, Map):
         return Plot([_heatmap(panel)], layout | _map_axes(panel))
-    # One call for all: each change of a plot is checked anew, which takes longer than drawing it.
+    # Make the plot in one call, because Plotly checks it again after each change.
     plot = Plot(_all_traces(panel), layout | _chart_axes(panel))
     for each in panel.series:
         if isinstance(each, Mark):

@@ -214,7 +214,7 @@ def _write_results(
 
 
 def _with_grid_errors(case: Case, folder: Path, rows: list[_Row]) -> int:
-    """Add two parts to the discretisation error of the finest rows that differences cannot show.
+    """Add to the finest rows two parts of the discretisation error that differences do not show.
 
     One part is a lower limit, because differences of COR may vanish by chance. The other part is
     the effect of the waves that the finest grid leaves out of a scan. Returns the number of rows

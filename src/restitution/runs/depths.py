@@ -1,4 +1,4 @@
-"""The depths of a case, one after the other: each is loaded, and unloaded where that is needed."""
+"""The depths of a case, one after the other: load to each depth, and unload where needed."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def collision_at(
 ) -> tuple[Collision, Sequence[State]]:
     """The collision whose deepest point is `state`, and its unloading curve.
 
-    The curve is computed if `unload`, or if the collision needs it; otherwise it is empty.
+    The curve is computed if `unload` is true or the collision needs it; otherwise it is empty.
     """
     followed = state.contact.adhesive and case.unloading.method == "path"
     back: list[State] = []

@@ -106,7 +106,7 @@ def grid_error(
 def widened_error(
     error: float, last_change: float, row: Row, octaves: float
 ) -> tuple[float, float]:
-    """Add the least error and the effect of omitted waves to `error`; return the latter, too.
+    """Add the minimum error and the effect of omitted waves to `error`; return sum and effect.
 
     `error` comes from a convergence study. `last_change` is the difference of COR between the last
     two grids.

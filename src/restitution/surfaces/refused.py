@@ -1,4 +1,4 @@
-"""Errors that store the remedy separately, so that `case` can replace it by one with file keys."""
+"""Errors that store the remedy separately, so that `case` can reword it in terms of file keys."""
 
 from __future__ import annotations
 

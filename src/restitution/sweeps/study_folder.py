@@ -39,9 +39,9 @@ FAILED, STUDY_FILE = "failed.json", "study.toml"
 def prepare_folder(path: Path, name: str, text: str, *, resume: bool, what: str) -> None:
     """Prepare the folder `path` for a study or mixture, whose file `name` holds `text`.
 
-    `what` is the word for it in messages. Without `resume` the folder must be new or empty, and the
-    file is written. With `resume` the folder must hold a study or mixture with the same `text`.
-    Raises `OutputError` otherwise, or if the folder cannot be written.
+    Messages call it `what`. Without `resume` the folder must be new or empty, and the file is
+    written. With `resume` the folder must hold a study or mixture with the same `text`. Raises
+    `OutputError` otherwise, or if the folder cannot be written.
     """
     held = path / name
     if not resume:

@@ -5,11 +5,11 @@ Compliant point contact and Hydroelastic contact: Hunt & Crossley). Geometries a
 k = k_a k_b/(k_a + k_b) and d = (k_b d_a + k_a d_b)/(k_a + k_b). So the export gives both geometries
 2k and d to obtain a contact with k and d. e depends only on dV and not on k or the mass
 (`damping.hunt_crossley_dissipation`). It decreases with the velocity V. k is chosen such that the
-contact lasts as long as Hertz's. The relation between e and dV holds for any force times 1 + d x′.
-So it also holds for a hydroelastic contact whose surfaces approach at one velocity (not tested in
-Drake).
+contact lasts as long as a Hertz contact. The relation between e and dV holds for any force times
+1 + d x′. So it also holds for a hydroelastic contact whose surfaces approach at one velocity (not
+tested in Drake).
 
-A geometry has one k and one d, so the pairs of three types cannot be set in one scene.
+A geometry has one k and one d, so a scene cannot contain all pairs of three types.
 
 In Drake 1.51, a continuous plant (`time_step=0`) is exact. A discrete plant loses energy because of
 its time step. Its SAP approximation does not use the dissipation at all, so e is close to 0.
@@ -41,7 +41,7 @@ NOTE = (
 )
 _ENDS = (
     "the overlap is back to zero; the force never pulls. In a continuous plant (time_step=0); a "
-    "discrete one (tamsi, similar, lagged) makes 0.793 of e = 0.8 with 500 time steps in a "
+    "discrete one (tamsi, similar, lagged) returns 0.793 instead of 0.8 with 500 time steps in a "
     "contact, 0.766 with 100 and 0.653 with 20, and sap ignores the dissipation: e is close to 0."
 )
 _STEPS = 200

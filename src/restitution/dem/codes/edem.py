@@ -34,7 +34,7 @@ _ENDS = (
 _NOTES = [
     "",
     "Tables to be typed into EDEM (not run here): Interactions, and Bulk Material.",
-    PLACEHOLDER + " So is rolling friction 0.",
+    PLACEHOLDER + " Rolling friction 0 is a placeholder, too.",
     "hysteretic_*: the hysteretic spring model fitted to the law, K2 at this velocity;",
     "    its restitution is (K1/K2)^(1/2); EDEM computes K1 from the yield strength K1/(5 R*).",
     "    Empty if there is no such fit, or if the velocity is outside its fitted range.",

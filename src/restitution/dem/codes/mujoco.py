@@ -12,8 +12,8 @@ e = exp(−πζ/(1 − ζ²)^½) does not apply: with its ζ for e = 0.6, MuJoCo
 the largest value that MuJoCo accepts, makes e independent of the friction cone. With d = 0.9 and
 pyramidal cones, MuJoCo returns 0.79 for e = 0.8.
 
-The stiffness is chosen such that the contact lasts as long as Hertz's. e does not depend on the
-stiffness.
+The stiffness is chosen such that the contact lasts as long as a Hertz contact. e does not depend on
+the stiffness.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ LOWEST = 0.05  # smallest e that is reproduced within 2 % with `_STEPS` time ste
 FRAGMENT, COLLISION = "restitution_mujoco.xml", "collision_mujoco.py"
 NOTE = (
     "MuJoCo: e is that of the export at every velocity, if the time step is at most 1/200 of the "
-    "contact (1/50 for e of 0.5 and more); the file says how to soften the contact for longer ones."
+    "contact (1/50 for e of 0.5 and more); the file states softer contacts for longer steps."
 )
 _ENDS = (
     "the force is back to zero, before the overlap is: contact forces do not pull. e is within 2 % "
@@ -55,7 +55,7 @@ _COARSE = 50  # number of time steps in a softened contact
 class Contact:
     """The durations (s) of an elastic contact of a pair, and its damping ratio ζ (1).
 
-    `soft_duration` is that of a contact in which the bodies overlap by a share of their radius.
+    `soft_duration` is that of a contact whose largest overlap is a fraction of the radius.
     """
 
     pair: Pair

@@ -586,10 +586,10 @@ function differences(before, after) {
 function drawPins() {
   $("no-pins").hidden = pins.length > 0;
   if (!pins.length) { $("pins").replaceChildren(); return; }
-  fill("pins", ["curve", "what differs from the pin before", "COR, first to last", ""], pins.map((each) => {
+  fill("pins", ["curve", "changes from the previous pin", "COR, first to last", ""], pins.map((each) => {
     const swatch = element("span", { class: "swatch" });
     swatch.style.background = each.colour;
-    const back = element("button", { type: "button" }, "Go back to it");
+    const back = element("button", { type: "button" }, "Restore its values");
     back.addEventListener("click", () => { content = structuredClone(each.content); drawForm(); changed(); });
     const remove = element("button", { type: "button", "aria-label": `Remove ${each.name}` }, "Remove");
     remove.addEventListener("click", () => { pins = pins.filter((other) => other !== each); drawPins(); drawCurves(); });

@@ -38,8 +38,9 @@ Mask = NDArray[np.bool_]
 # At level n the spacing is 2ⁿ times the spacing of the finest grid.
 Operators = Callable[[tuple[int, int], int], tuple[FreeConvolution, SpectralFilter]]
 
-# Fewest nodes along the shorter edge of a finest grid that gets a first guess from coarser grids,
-# and of a coarser grid that gets one. On smaller grids a guess costs more time than it saves.
+# Smallest numbers of nodes along the shorter edge for which the finest grid, and a coarser grid,
+# are given a first guess from the next coarser grid. On smaller grids a guess costs more time than
+# it saves.
 _MIN_NODES_FOR_GUESS, _MIN_NODES_TO_COARSEN = 120, 80
 # Tolerance on coarser grids, as a fraction of the largest b. A smaller tolerance is useless because
 # prolongation errors are larger.
