@@ -52,12 +52,12 @@ def counted(number: int, noun: str) -> str:
 
 
 def without_numbers(text: str) -> str:
-    """`text` with a sign in place of each number: equal for texts that differ in numbers only."""
+    """Replace each number in `text` by a sign; texts that differ only in numbers become equal."""
     return _NUMBER.sub("#", text)
 
 
 def some_of(names: Iterable[str], most: int = 6) -> str:
-    """Each of `names` once, at most `most` of them and the number of the others; no empty ones."""
+    """List `names` without repetitions and empty ones: at most `most`, and how many others."""
     each = list(dict.fromkeys(filter(None, names)))
     more = f" and {len(each) - most} more" if len(each) > most else ""
     return ", ".join(each[:most]) + more

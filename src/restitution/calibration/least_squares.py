@@ -146,7 +146,7 @@ def squares(model: CaseModel, data: Data, x: Array) -> float:
 
 
 def at_bound(x: float) -> bool:
-    """Whether a search ended at an end of its range."""
+    """Whether a search ended at a limit of its range."""
     return abs(x) > 0.99 * math.log(RANGE)
 
 
@@ -154,5 +154,5 @@ def _scan(parameters: int) -> Sequence[Array]:
     """Return the first guess, and points spread evenly over the range of the search."""
     from scipy.stats.qmc import Halton
 
-    even = Halton(parameters, scramble=False).random(_SCANNED + 1)[1:]  # the first is a corner
+    even = Halton(parameters, scramble=False).random(_SCANNED + 1)[1:]  # the first is at a corner
     return [np.zeros(parameters), *(math.log(RANGE) * (2 * even - 1))]

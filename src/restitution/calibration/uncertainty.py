@@ -82,7 +82,7 @@ class Uncertainty:
 
     @classmethod
     def of(cls, jacobian: Array, weights: Array, deviations: Deviations) -> Uncertainty:
-        """Compute it from ∂COR/∂x (`jacobian`) and the deviations σ that weight the points."""
+        """Compute it from ∂COR/∂x (`jacobian`) and the standard deviations σ of the points."""
         scaled = jacobian / weights[:, None]
         U, s, Vt = np.linalg.svd(scaled, full_matrices=False)
         P = Vt.T @ np.diag(1 / np.maximum(s, _LEAST)) @ U.T / weights
@@ -160,7 +160,7 @@ class Uncertainty:
 
     @cached_property
     def best_direction(self) -> Array:
-        """Direction in the logarithms that the data determine best, with largest entry 1."""
+        """Direction in the logarithms that the data determine best; its largest entry is 1."""
         _, _, Vt = np.linalg.svd(self.scaled, full_matrices=False)
         direction: Array = Vt[0]
         return np.asarray(direction / direction[np.abs(direction).argmax()])

@@ -174,7 +174,7 @@ class Case(Table):
         return self.contact_on(self.surface(folder))
 
     def contact_on(self, surface: Surface) -> Contact:
-        """The contact on `surface`, which `self.surface` returned. Raises as `contact`."""
+        """The contact on `surface`, as `self.surface` made it. Raises the errors of `contact`."""
         needs.require(self.run_bytes(surface.grid), surface.grid)
         return Contact(
             self.pair(),

@@ -134,7 +134,7 @@ def problems_of(content: dict[str, Any]) -> dict[str, str]:
 
 
 def _without_key(problem: Any) -> str:
-    """One line for a pydantic error, without the key that it starts with."""
+    """Describe a pydantic error in one line, without its key."""
     return _in_words(problem, Case).removeprefix(f"{_key_of(problem)}: ")
 
 
@@ -186,7 +186,7 @@ def _key_of(problem: Any) -> str:
 
 
 def _in_words(problem: Any, root: type[Table]) -> str:
-    """One line for a pydantic error: the key, the problem and the remedy."""
+    """Describe a pydantic error in one line: the key, the problem and the remedy."""
     keys, key = _keys(problem), _key_of(problem)
     prefix = f"{key}: " if key else ""
     kind, context = problem["type"], problem.get("ctx", {})

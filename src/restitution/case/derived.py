@@ -21,7 +21,7 @@ def deepest_indentation(case: Case) -> float:
         return last
     if case.load is not None:
         return float(Hertz(pair.radius, pair.contact_modulus).indentation(last))
-    assert pair.mass is not None  # Case._check_masses
+    assert pair.mass is not None  # checked by Case._check_masses
     # For elastic bodies p_y is infinite, but ThorntonNing needs a finite value. E* exceeds any
     # contact pressure.
     p_y = min(case.yielding().hardness, pair.contact_modulus)

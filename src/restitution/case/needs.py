@@ -24,7 +24,7 @@ _DESCRIBED = 150.0  # autocorrelation, spectrum and page of `restitution surface
 # A run without adhesion, for each model of plasticity; and a run with adhesion.
 _MODELS = {"none": 115.0, "equilibrium": 140.0, "expanding-cavity": 190.0, "truncated": 190.0}
 _ADHESIVE = 150.0
-# Largest ratio of the number of nodes of the enlarged grid to that of the grid.
+# Largest factor by which the enlarged grid has more nodes than the grid.
 _ENLARGED = 4.0
 
 
@@ -63,13 +63,13 @@ def generated_bytes(grid: Grid, *, normal: bool, periodic: bool) -> float:
 
 
 def measured_bytes(grid: Grid, scan: Grid, *, twin: bool) -> float:
-    """Memory (bytes) of placing a scan with the pixels of `scan`, or its twin, on `grid`."""
+    """Memory (bytes) to place a scan, or its twin, on `grid`; `scan` is the grid of its pixels."""
     size = _PROCESS + _SURFACE * nodes_of(grid) + _SCAN * nodes_of(scan)
     return size + _BAND * _band_nodes(grid, scan) if twin else size
 
 
 def _band_nodes(grid: Grid, scan: Grid) -> float:
-    """Number of nodes, at most, of the finest band that a twin adjusts (see `surfaces.twin`)."""
+    """Largest number of nodes of the finest band that a twin adjusts (see `surfaces.twin`)."""
     repeats = [max(1.0, s / g) for s, g in zip(scan.size, grid.size, strict=True)]
     ratio = min(h / pixel for h, pixel in zip(grid.spacing, scan.spacing, strict=True))
     coarser = 2.0 ** max(math.floor(math.log2(ratio)), 0)

@@ -60,11 +60,11 @@ def _no_adhesion(case: Case) -> str | None:
 
 
 def _lowest_velocity(case: Case) -> float:
-    """The lowest impact velocity, m/s: prescribed, or that of smooth elastic bodies."""
+    """The lowest impact velocity (m/s): prescribed, or computed for smooth elastic bodies."""
     first, pair = case.depths()[0], case.pair()
     if case.impact is not None:
         return first
-    assert pair.mass is not None  # adhesion_matters_below
+    assert pair.mass is not None  # checked by adhesion_matters_below
     smooth = Hertz(pair.radius, pair.contact_modulus)
     if case.load is not None:
         first = float(smooth.indentation(first))

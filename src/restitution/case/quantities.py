@@ -13,8 +13,8 @@ from pydantic import BeforeValidator
 from restitution.errors import shown
 
 # A quantity is one number followed by one unit expression of names, powers, * and /. Arithmetic
-# with numbers is excluded, so that a case file cannot make the unit parser compute. A digit
-# directly after a name is a power: "g/cm3" is g/cm^3.
+# with numbers is excluded, so that a case file cannot start long calculations in the unit parser. A
+# digit directly after a name is a power: "g/cm3" is g/cm^3.
 _NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?"
 _UNIT = r"[^\W\d]+(?:\s*(?:\^|\*\*)\s*-?\d|\d)?"
 _POWER = re.compile(r"(?<=[^\W\d])(\d)")

@@ -79,7 +79,7 @@ Seed = Annotated[int, Field(ge=0, lt=2**63)]
 
 @contextmanager
 def _naming(keys: Mapping[str, str]) -> Iterator[None]:
-    """Reword errors of surfaces: name `keys` of the case file, not arguments, also in remedies."""
+    """Reword errors of surfaces in terms of `keys` of the case file instead of arguments."""
     try:
         yield
     except RefusedSurfaceError as error:
@@ -160,7 +160,7 @@ class MeasuredRoughness(Table):
     def variant(self, number: int) -> Self:
         """Return the table of another twin or place of the scan; 0 is the surface itself."""
         if self.extend == "twin":
-            assert self.seed is not None  # _twins
+            assert self.seed is not None  # checked by _twins
             return self.model_copy(update={"seed": self.seed + number})
         return self.model_copy(update={"place": self.place + number})
 

@@ -1,4 +1,4 @@
-"""Shared by verbs that solve one case: progress, warnings, results, and the end of a run."""
+"""Functions for verbs that solve one case: progress, warnings, results, and the end of a run."""
 
 from __future__ import annotations
 
@@ -157,6 +157,6 @@ def _curve(rows: list[dict[str, float]]) -> Table:
 
 
 def _uncertainty(row: dict[str, float]) -> str:
-    """The total error behind a sign ±; empty if it is not known."""
+    """Format the total error with a leading ±; empty if it is unknown."""
     error = row["total_error"]
     return "" if error != error else f" ± {error:.4f}"

@@ -118,7 +118,7 @@ def _oblique(
     friction: float | None,
     out: Path | None,
 ) -> None:
-    """Oblique impacts at every velocity and angle, as a table."""
+    """Compute oblique impacts at every velocity and angle, and print them as a table."""
     from restitution.case.quantities import read_quantity
     from restitution.cli.console import answers, say, say_written, table_of_numbers
     from restitution.errors import CaseError

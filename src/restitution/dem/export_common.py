@@ -42,7 +42,7 @@ _PLAIN = str.maketrans("–—−‐‑’‘“”·×≈→µ", "-----''''.x~>
 
 @dataclass(frozen=True)
 class Pair:
-    """Types `i` ≤ `j`, their bodies, their law, and e at the velocity of the export."""
+    """Two particle types `i` ≤ `j`: bodies, law, and e at the velocity of the export."""
 
     i: int
     j: int

@@ -53,7 +53,7 @@ class Bodies:
     R: float
     E: float
     m: float
-    p_y: float  # infinite: elastic
+    p_y: float  # infinite for elastic bodies
     w: float
     walls: int
     equal: bool  # two identical spheres
@@ -73,7 +73,7 @@ class Bodies:
                     f"{name}.density: is missing, and every theory of restitution needs it; write "
                     f'for example density = "2500 kg/m^3" in [{name}]'
                 )
-        assert pair.mass is not None  # just checked
+        assert pair.mass is not None  # checked above
         tables = case.first, case.second or case.first
         # A yield strength of the interface overrides those of the bodies.
         own = case.interface.yield_strength is None
@@ -96,7 +96,7 @@ class Bodies:
 
     @property
     def hertz(self) -> Hertz:
-        """The elastic contact."""
+        """Hertz contact of the bodies."""
         return Hertz(self.R, self.E)
 
     @property
@@ -160,7 +160,7 @@ class Bodies:
         return self.yielding.impact_velocity(indentation, self.m)
 
     def depth_under(self, force: Array) -> Array:
-        """Indentation (m) under `force` (N): Hertz's, or Thornton and Ning's."""
+        """Indentation (m) under `force` (N), after Thornton and Ning, or Hertz if elastic."""
         return (self.hertz if self.elastic else self.yielding).indentation(force)
 
 

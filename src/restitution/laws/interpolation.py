@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-_SAFETY = 1.5  # error estimate over the leave-one-out residual
+_SAFETY = 1.5  # ratio of the error estimate to the leave-one-out residual
 
 
 class RatioCurve:

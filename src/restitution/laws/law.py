@@ -241,7 +241,7 @@ class Law(_Stored):
             raise DomainError(
                 f"velocity: {velocity:.6g} m/s is outside the computed velocities of {self.pair} "
                 f"({self.lowest:.4g} to {self.highest:.4g} m/s), and nothing is extrapolated; "
-                "choose a velocity within, or compute a law for more velocities"
+                "choose a velocity in this range, or compute a law for more velocities"
             )
         V = self.column("velocity")
         nearest = self.points[int(np.abs(V / velocity - 1).argmin())]

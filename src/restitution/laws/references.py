@@ -28,7 +28,7 @@ class Reference:
 
 
 def force_references(results: xr.Dataset) -> list[Reference]:
-    """Force (N) against indentation (m): an elastic law and, if the bodies yield, a plastic law.
+    """Closed forms of the force (N) against indentation (m): elastic and, if bodies yield, plastic.
 
     The laws begin below the smallest indentation that carries a force in loading or unloading.
     """
@@ -47,7 +47,7 @@ def force_references(results: xr.Dataset) -> list[Reference]:
 
 
 def restitution_references_by_indentation(results: xr.Dataset) -> list[Reference]:
-    """COR against the largest indentation (m)."""
+    """Closed forms of COR against the largest indentation (m)."""
     R, E_star, p_y, w = _parameters(results)
     fine, found = _between(results["indentation"].values), []
     if np.isfinite(p_y):
@@ -60,7 +60,7 @@ def restitution_references_by_indentation(results: xr.Dataset) -> list[Reference
 
 
 def restitution_references_by_velocity(results: xr.Dataset) -> list[Reference]:
-    """COR against impact velocity (m/s); NaN where a law has no value."""
+    """Closed forms of COR against impact velocity (m/s); NaN where a law has no value."""
     R, E_star, p_y, w = _parameters(results)
     velocity, mass = results["impact_velocity"].values, results.attrs["derived_reduced_mass_kg"]
     fine, m = _between(velocity), float(mass)

@@ -42,7 +42,7 @@ Force = Callable[[float], float]
 
 _RTOL = 1e-10
 _SLACK = 1e-3  # relative overshoot of the deepest depth allowed for rounding and integration
-_STEEPEST = 6.0  # largest d ln W/d ln δ of a power law; above, adhesion nearly cancels the work
+_STEEPEST = 6.0  # largest d ln W/d ln δ of a power law; adhesion nearly cancels W above
 _SAME = 1e-5  # largest relative difference of depths that count as equal
 
 
@@ -170,10 +170,10 @@ def collide_in_time(law: StoredForce, velocity: float) -> ReferenceCollision:
     if not 0 < velocity <= law.highest * (1 + 1e-9):
         raise DomainError(
             f"velocity: {velocity:.6g} m/s is outside the computed velocities (above 0, up to "
-            f"{law.highest:.4g} m/s); choose one within, or run the case to a higher velocity"
+            f"{law.highest:.4g} m/s); choose one in this range, or compute higher velocities"
         )
     m1, m2 = law.pair.first.mass, law.pair.second.mass
-    assert m1 is not None  # StoredForce
+    assert m1 is not None  # checked by StoredForce
     assert m2 is not None
     share = 1.0 if math.isinf(m2) else 0.0 if math.isinf(m1) else m2 / (m1 + m2)
     start = np.array([0.0, 0.0, share * velocity, (share - 1) * velocity])

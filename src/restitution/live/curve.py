@@ -80,7 +80,7 @@ class LiveCurves:
 
 
 class _Curve:
-    """One curve while it is computed."""
+    """A curve that is being computed."""
 
     def __init__(self, case: Case, contact: Contact, warnings: list[str]) -> None:
         self.case, self.contact, self.warnings = case, contact, warnings

@@ -37,7 +37,7 @@ class Raw(str):
 
 
 def as_json(content: Mapping[str, Any]) -> str:
-    """One line of JSON; NaN and infinity become null."""
+    """Format `content` as one line of JSON; NaN and infinity become null."""
     parts = [
         f"{json.dumps(key)}: {value if isinstance(value, Raw) else _dump(value)}"
         for key, value in content.items()
@@ -78,7 +78,7 @@ def curve_figures(results: xr.Dataset) -> Raw:
 
 
 def drawing(figure: Figure, panel: int = 0) -> Raw:
-    """One panel of `figure` as JSON of the plotting library."""
+    """Convert one panel of `figure` to JSON for the plotting library."""
     return Raw(interactive.draw(figure.panels[panel], figure).to_json())
 
 
@@ -131,7 +131,7 @@ class ContactMaps:
         self._down = False
 
     def add(self, state: State, indentation: float) -> None:
-        """Keep the maps of `state`, thinned."""
+        """Store thinned maps of `state`."""
         grid, box = state.contact.grid, state.box
         step = math.ceil(max(state.box_pressure.shape) / _MOST_PIXELS)
         x, y = grid.x[box[0]][::step], grid.y[box[1]][::step]

@@ -49,7 +49,7 @@ Handler = Callable[[Request], Awaitable[Response]]
 class Server:
     """Receives the requests of the page and passes each of them to a worker process.
 
-    Live curves, whole runs and finer runs have a process each, so that no kind waits for another.
+    Live curves, whole runs and finer runs have a process each, so they do not delay each other.
     """
 
     def __init__(self, session: Session, port: int) -> None:
@@ -71,7 +71,7 @@ class Server:
 
     @property
     def hosts(self) -> tuple[str, ...]:
-        """The values of Host that this machine's own browser sends."""
+        """The Host headers that a browser on this machine sends."""
         return tuple(f"{name}:{self._port}" for name in ("127.0.0.1", "localhost"))
 
     @asynccontextmanager
@@ -252,7 +252,7 @@ def _streamed(request: Request, lines: AsyncGenerator[str]) -> Response:
                     return
                 yield text + "\n"
         finally:
-            line.cancel()  # this gives up the request, unless it is answered
+            line.cancel()  # cancels the request, unless it is already answered
             gone.cancel()
 
     return StreamingResponse(body(), media_type="application/x-ndjson")

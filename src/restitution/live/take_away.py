@@ -23,7 +23,7 @@ CASE_FILE = "case.toml"
 
 
 def case_file(text: str, scans: Path, out: Path) -> Path:
-    """The case file, in a zip archive with its scans if it has any; written into `out`."""
+    """Write the case file into `out`; if the case has scans, as a zip archive with the scans."""
     names = scans_of(content_of(text))
     if not names:
         (out / CASE_FILE).write_text(text, encoding="utf-8")
@@ -37,7 +37,7 @@ def case_file(text: str, scans: Path, out: Path) -> Path:
 
 
 def figure_files(results: Path, out: Path) -> Path:
-    """Every figure in all formats, and the numbers as CSV, in a zip archive."""
+    """Write every figure in all formats, and the tables, into a zip archive in `out`."""
 
     def fill(folder: Path) -> None:
         run = read_run(results)
@@ -50,12 +50,12 @@ def figure_files(results: Path, out: Path) -> Path:
 
 
 def results_files(results: Path, out: Path) -> Path:
-    """The whole results folder in a zip archive."""
+    """Write the whole results folder into a zip archive in `out`."""
     return _zipped(out / "results.zip", lambda to: _copy(results, to))
 
 
 def law_files(results: Path, out: Path) -> Path:
-    """The restitution law with its fits and figure, in a zip archive."""
+    """Write the restitution law with its fits and figure into a zip archive in `out`."""
 
     def fill(folder: Path) -> None:
         law = law_of(results)
@@ -66,7 +66,7 @@ def law_files(results: Path, out: Path) -> Path:
 
 
 def export_files(results: Path, out: Path, code: str, velocity: str) -> Path:
-    """The input of a DEM code at an impact velocity, in a zip archive."""
+    """Write the input of a DEM code at an impact velocity into a zip archive in `out`."""
 
     def fill(folder: Path) -> None:
         export(results, to=code, out=folder / "export", velocity=velocity or None)
@@ -75,7 +75,7 @@ def export_files(results: Path, out: Path, code: str, velocity: str) -> Path:
 
 
 def report_page(results: Path, out: Path) -> Path:
-    """The report page, `report.html`."""
+    """Write the report page `report.html` into `out`."""
     shutil.copy(write_report(results), out / "report.html")
     return out / "report.html"
 
@@ -101,7 +101,7 @@ def take(what: str, results: Path, out: Path, code: str, velocity: str) -> Path:
 
 
 def _zipped(archive: Path, fill: Callable[[Path], None]) -> Path:
-    """An archive of the files that `fill` writes into a folder."""
+    """Make a zip archive of the files that `fill` writes into a folder."""
     with TemporaryDirectory() as name:
         folder = Path(name)
         fill(folder)

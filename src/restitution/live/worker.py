@@ -136,25 +136,25 @@ class Worker:
             send(line)
 
     def curve(self, tab: str, text: str) -> Iterator[str]:
-        """The live curve."""
+        """Yield the live curve."""
         return self._curves.lines(tab, text, self._scans, self._check)
 
     def beside(self, tab: str, shown: str) -> Iterator[str]:
-        """The surface and the smooth curve of the live curve."""
+        """Yield the surface and the smooth curve that belong to the live curve."""
         return self._curves.beside(tab, shown, self._check)
 
     def maps(self, tab: str, depth: int) -> Iterator[str]:
-        """The contact maps at one depth of the last live curve."""
+        """Yield the contact maps at one depth of the last live curve."""
         return self._curves.maps(tab, depth)
 
     def run(self, tab: str, text: str, grids: int) -> Iterator[str]:
-        """The whole run of the case, or its convergence on several grids."""
+        """Yield the whole run of the case, or its convergence study on several grids."""
         yield from results_line(self._folder(text, grids))
 
     def take(
         self, tab: str, text: str, what: str, code: str, velocity: str, grids: int
     ) -> Iterator[str]:
-        """A file to download."""
+        """Write a file to download, and yield its name."""
         from restitution.live import take_away
 
         out = Path(mkdtemp(dir=self._room, prefix="take-"))

@@ -91,7 +91,7 @@ class Family:
 
     @cached_property
     def _grid(self) -> dict[str, Any]:
-        """Make the table `[grid]`, which is the same for all reduced radii, as is the surface."""
+        """Make the table `[grid]`. Grid and surface are the same for all reduced radii."""
         if self.mixture.grid is not None:
             return {"refine": "auto", **self.mixture.grid}
         probe = {"nodes": 64, "spacing": "1 um"}
@@ -135,7 +135,7 @@ class Family:
         }
 
     def _velocities(self, radius: float) -> list[float]:
-        """Velocities (m/s) of the mixture, and further ones that other pairs of this R* need."""
+        """Velocities (m/s) of the mixture, extended to the W/R*³ of every pair of the family."""
         asked = self.mixture.velocities
         own = Particle(**_values(self.first), radius=radius if self.second.wall else 2 * radius)
         other = Particle(**_values(self.second), radius=None if self.second.wall else 2 * radius)
@@ -190,7 +190,7 @@ def _values(component: Component) -> dict[str, Any]:
 
 
 def _particles(component: Component) -> list[Particle]:
-    """One particle for each size; the flat wall."""
+    """Make a particle for each size, or the flat wall."""
     values = _values(component)
     if component.wall:
         return [Particle(**values, radius=None)]

@@ -52,7 +52,7 @@ class Sizes(Table):
             if low < high * (1 - 1e-9):
                 raise ValueError(
                     f"bins: overlap between {low:.6g} m and {high:.6g} m; let each bin begin where "
-                    "the bin before ends"
+                    "the previous bin ends"
                 )
         return self
 

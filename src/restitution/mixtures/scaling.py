@@ -59,7 +59,7 @@ class Computed:
         )
 
     def interpolation_errors(self, meeting: Meeting) -> list[float]:
-        """The error of COR by interpolation in R*, at each velocity of the mixture."""
+        """The error of COR due to interpolation in R*, at each velocity of the mixture."""
         curves = self._curves(meeting)
         if self.has(meeting.radius):
             return [0.0] * len(curves)
@@ -153,7 +153,7 @@ def _of(law: Law, V: float, meeting: Meeting) -> float:
 
 
 def _near(velocity: float, law: Law) -> bool:
-    """Whether only rounding or the tolerance of velocities puts `velocity` outside the law."""
+    """Whether `velocity` is within the range of `law`, apart from a relative 1e-3."""
     return law.lowest * (1 - 1e-3) <= velocity <= law.highest * (1 + 1e-3)
 
 
@@ -169,7 +169,7 @@ def _with_near(curves: list[RatioCurve]) -> list[tuple[RatioCurve, list[RatioCur
 
 
 def _error_of(curve: RatioCurve, radius: float, near: list[RatioCurve]) -> float:
-    """The error of COR by interpolation at `radius` (m)."""
+    """The interpolation error of COR at `radius` (m)."""
     ratio = _value(curve, radius)
     off = max(other.error(radius) for other in near)
     e = _root(ratio)

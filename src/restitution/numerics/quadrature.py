@@ -71,7 +71,7 @@ def _refine(
     f_l, f_r = f(0.5 * (a + m)), f(0.5 * (m + b))
     whole = h / 6 * (f_a + 4 * f_m + f_b)
     halves = h / 12 * (f_a + 4 * f_l + 2 * f_m + 4 * f_r + f_b)
-    error = abs(halves - whole)  # overestimates smooth integrands 15-fold, for kinks
+    error = abs(halves - whole)  # 15 times the error of smooth integrands, to allow for kinks
     if error <= tolerance or depth == 0:
         return halves + (halves - whole) / 15, error
     left = _refine(f, a, m, f_a, f_l, f_m, tolerance / 2, depth - 1)

@@ -1,1 +1,1 @@
-"""Reproduce the figures of Ghanbarzadeh, Hassanpour and Neville (2019); compare their claims."""
+"""Reproduce the figures of Ghanbarzadeh, Hassanpour and Neville (2019); check their claims."""

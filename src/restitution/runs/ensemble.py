@@ -23,7 +23,7 @@ from restitution.runs.run import run_case
 
 CONFIDENCE = 0.95
 _Row = dict[str, float]
-# Columns of an ensemble's curve that are not means over its surfaces, with their functions.
+# Columns of an ensemble's curve that are not means, and the functions that combine the surfaces.
 _WORST: dict[str, Callable[[list[float]], float]] = {
     "residual": max,
     "model_error": max,

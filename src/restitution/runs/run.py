@@ -309,7 +309,7 @@ def _adhesion_of(contact: Contact, case: Case) -> dict[str, Any]:
 
 
 def _unbalanced(checks: list[dict[str, float]]) -> str | None:
-    """Make a warning if the work of unloading curves differs from the stored energy, or None."""
+    """Make a warning if the work of unloading curves differs from the stored energy; else None."""
     off = [check for check in checks if not abs(check["relative_to_stored_energy"]) <= _BALANCE]
     if not off:
         return None

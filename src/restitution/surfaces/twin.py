@@ -54,13 +54,13 @@ _TABLE = 2**14  # steps between the lowest and the highest node
 def twin(scan: Surface, grid: Grid, seed: int) -> Surface:
     """Make a twin of `scan` on `grid`.
 
-    The twin is periodic over `grid` or, if the scan is larger, over a multiple of it. It is made
-    with the Rq of the scan, and nearly with its skewness and kurtosis. Then the waves that the
-    cells of `grid` cannot carry are left out (`removed_…` in the provenance). The provenance also
-    contains the statistics of the scan (`scan_…`) and `spectrum_misfit`, the root mean square of
-    the relative difference of the two spectra. The spectra are compared on parts as large as the
-    scan, in bands of a quarter octave. The weights of the bands are their shares of the mean
-    squares of height and slope.
+    The twin is periodic over `grid` or, if the scan is larger, over a multiple of it. Its Rq is
+    that of the scan, and its skewness and kurtosis are nearly those of the scan. Then the waves
+    that the cells of `grid` cannot carry are left out (`removed_…` in the provenance). The
+    provenance also contains the statistics of the scan (`scan_…`) and `spectrum_misfit`, the root
+    mean square of the relative difference of the two spectra. The spectra are compared on parts as
+    large as the scan, in bands of a quarter octave. The weights of the bands are their shares of
+    the mean squares of height and slope.
 
     Raises `SurfaceError` for a scan that is flat or has fewer than 16 pixels along an axis, and for
     cells that are too large for any wave of the scan.

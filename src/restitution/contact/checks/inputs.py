@@ -72,7 +72,7 @@ def doubtful(contact: Contact, indentation: float) -> list[Finding]:
 
 def _tilt(contact: Contact) -> Finding | None:
     surface = contact.surface
-    # In a composite each part has an entry.
+    # A composite has one entry for each part.
     levelled = {value for key, value in surface.provenance.items() if key.endswith("levelling")}
     if not levelled & {"none", "center"}:
         return None

@@ -31,12 +31,12 @@ class VelocityDamping:
 
     @property
     def normal_stiffness(self) -> float:
-        """LAMMPS' Kn (Pa) of hertz."""
+        """The coefficient Kn (Pa) of the style `hertz` of LAMMPS."""
         return 4 / 3 * self.pair.law.contact_modulus
 
     @property
     def tangential_stiffness(self) -> float:
-        """LAMMPS' Kt (Pa) of mindlin."""
+        """The coefficient Kt (Pa) of the style `mindlin` of LAMMPS."""
         return 8 * self.pair.shear_modulus
 
     def restitution(self, share: float) -> float:
@@ -46,7 +46,7 @@ class VelocityDamping:
 
 @dataclass(frozen=True)
 class LinearSpring:
-    """Kn (N/m) and gamma_n (1/s) of gran/hooke/history for a pair."""
+    """The coefficients Kn (N/m) and gamma_n (1/s) of `gran/hooke/history` for a pair."""
 
     pair: Pair
     stiffness: float
