@@ -54,7 +54,7 @@ zero padding its spectrum. Each row was measured in a process of its own.
   machine whose host reclaims idle memory, like this one, any program may need 1 to 2 s per GiB for
   this.
 * memory: the largest memory of the process, including Python and the surface, in GiB.
-* arrays per node: the same memory in float64 arrays of the whole grid.
+* arrays per node: the same memory, divided by that of one float64 array of the whole grid.
 
 {table}
 

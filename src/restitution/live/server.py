@@ -208,7 +208,7 @@ class Server:
 
 
 class OwnHostOnly:
-    """Refuse requests under the name of another site, and requests from pages of other sites."""
+    """Refuse requests whose Host is not this machine, and requests from pages of other sites."""
 
     def __init__(self, app: ASGIApp, hosts: tuple[str, ...]) -> None:
         self._app, self._hosts = app, hosts

@@ -99,6 +99,6 @@ def needed_edges(contact: Contact, indentation: float) -> tuple[float, float]:
     shift = float(((x * x + y * y) / (2 * R) - height).min())
     reach = math.sqrt(2 * R * (indentation + float(height.max()) + shift))
     wide, long = contact.grid.size
-    # The grid grows by the margin even if its shorter edge already exceeds 2 · reach.
+    # Even if the shorter edge already exceeds twice the reach, recommend a larger grid.
     needed = max(2 * reach, min(wide, long)) * _MARGIN
     return max(wide, needed), max(long, needed)

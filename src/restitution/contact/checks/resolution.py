@@ -81,7 +81,7 @@ def expected_pull_off_error(contact: Contact) -> float:
 def coarse_scan(contact: Contact, indentation: float) -> Finding | None:
     """Finding `pixel-above-contact`: a pixel of a scan exceeds the contact radius.
 
-    Values: `file`, `pixel`, `radius` at the indentation (m), `indentation`.
+    Values of the finding: `file`; `pixel` (m); the contact `radius` (m) at `indentation` (m).
     """
     provenance = contact.surface.provenance
     if "file" not in provenance:
