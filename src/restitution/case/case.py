@@ -107,7 +107,7 @@ class Case(Table):
         return max((part.realisations for part in self.roughness), default=1)
 
     def realisation(self, number: int) -> Case:
-        """This case with only surface `number` (from 0); `number` is added to seeds and places."""
+        """Return the case of the single surface `number`, counted from 0."""
         parts = tuple(
             part.variant(number).model_copy(update={"realisations": 1})
             if part.realisations > 1
@@ -117,7 +117,7 @@ class Case(Table):
         return self.model_copy(update={"roughness": parts})
 
     def variant(self, number: int) -> Case:
-        """This case with another surface of its kind; `number` is added to seeds and places."""
+        """Return this case with other surfaces: seeds and places are increased by `number`."""
         parts = tuple(
             part.variant(number).model_copy(update={"realisations": 1}) for part in self.roughness
         )
@@ -128,7 +128,7 @@ class Case(Table):
         return any(body.from_library() for body in (self.first, self.second) if body is not None)
 
     def refined(self, factor: int) -> Case:
-        """This case with `refine` = `factor`: cells `factor` times smaller than those of [grid]."""
+        """Return this case with cells `factor` times smaller than those of [grid]."""
         grid = (self.grid or GridTable()).model_copy(update={"refine": factor})
         return self.model_copy(update={"grid": grid})
 

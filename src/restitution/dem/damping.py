@@ -1,23 +1,25 @@
 """Damping parameters of simple contact laws that return a given coefficient of restitution e.
 
-Linear spring and dashpot without tension, x″ = −max(ω²x + 2ζωx′, 0): the contact ends when the
-force is zero, after the phase 2 arccos ζ. For ζ > 1, arccosh and ζ² − 1 replace arccos and 1 − ζ².
+A linear spring and dashpot without tension has the equation x″ = −max(ω²x + 2ζωx′, 0). The contact
+ends when the force is zero, after the phase 2 arccos ζ. For ζ > 1, arccosh and ζ² − 1 replace
+arccos and 1 − ζ².
 
     e = exp(−2ζ arccos ζ/(1 − ζ²)^½)
 
 Source: T. Schwager, T. Pöschel, Granular Matter 9 (2007) 465, where the force must not attract.
 
-Hunt and Crossley, F = f(x)(1 + d x′) with any f: dividing m x′ dx′ by 1 + d x′ and integrating over
-the contact gives, with c = dV,
+The law of Hunt and Crossley is F = f(x)(1 + d x′) with any f. Dividing m x′ dx′ by 1 + d x′ and
+integrating over the contact gives, with c = dV,
 
     c (1 + e) = ln((1 + c)/(1 − ec))
 
 Source: K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440; the solution in the phase plane
 is that of D. W. Marhefka, D. E. Orin, IEEE Trans. Syst. Man Cybern. A 29 (1999) 566.
 
-Hertz with a constant damping coefficient, m x″ = −(4/3)E* R*^½ x^{3/2} − γx′ until x = 0. In units
-of the length L = (mV²/((4/3)E* R*^½))^⅖ and the time L/V, x″ = −x^{3/2} − g x′ with g = γL/(mV): e
-depends on g alone, and g ∝ V^{−⅕}. The equation is integrated numerically.
+A Hertz contact with a constant damping coefficient has the equation m x″ = −(4/3)E* R*^½ x^{3/2} −
+γx′ until x = 0. In units of the length L = (mV²/((4/3)E* R*^½))^⅖ and the time L/V the equation is
+x″ = −x^{3/2} − g x′ with g = γL/(mV). So e depends on g alone, and g ∝ V^{−⅕}. The equation is
+integrated numerically.
 """
 
 from __future__ import annotations

@@ -22,8 +22,8 @@ from restitution.mixtures.family import Family, Meeting
 
 Array = NDArray[np.float64]
 
-# Error that interpolation may add: a fraction of the error of the computed laws, and at most this
-# error of COR.
+# Interpolation error that is always accepted: this fraction of the error of the computed laws, but
+# at most this error of COR.
 _SHARE, _MOST = 0.25, 0.05
 _SAME = 1e-9  # largest relative difference of radii that count as equal
 

@@ -2,18 +2,19 @@
 
     total² = restitution_error² + discretisation_error² + surface_scatter² + material_error²
 
-Errors are differences from the exact COR of the pair at the impact velocity of the row. This is the
-mean over surfaces of the same kind, on a grid that resolves all waves of the surface. ΔCOR is the
-change of COR on cells twice as large, without the shortest octave of waves (`companions`):
+Errors are differences from the exact COR of the pair at the impact velocity of the row. The exact
+COR is the mean over surfaces of the same kind, on a grid that resolves all waves of the surface.
+ΔCOR is the change of COR on cells twice as large, without the shortest octave of waves
+(`companions`):
 
     discretisation_error² = ΔCOR² [1 + (1.5 n)²] + (s f)²,   n = ln(S/S_h)/ln(S_h/S_2h).
 
 S is the rms slope of the scan, and S_h and S_2h are the rms slopes on cells of h and 2h. The
 formula assumes that COR changes with ln S beyond the grid as in the last octave that the grid
 resolves. For generated surfaces n = 0, because the shortest wave belongs to their definition. f is
-the error found for contacts with as many nodes in the median patch (docs/resolution.md), and s is
-the share of f that is added. s is large if the grid does not resolve the contact. Otherwise s is
-small; it only keeps the error from vanishing by chance.
+the usual error of contacts with the same number of nodes in the median patch (docs/resolution.md),
+and s is the share of f that is added. s is large if the grid does not resolve the contact.
+Otherwise s is small; it only keeps the error from vanishing by chance.
 
 The constants were chosen on some 260 random cases, 30 of them adhesive, and checked on others
 (docs/error.md).

@@ -206,7 +206,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> d
     depths = [row["max_indentation_m"] for row in out.rows]
     nodes = run.adhesive_nodes[
         : len(depths)
-    ]  # has one value more if the last row could not be written
+    ]  # one value more than rows if the last row could not be written
     unresolved = unresolved_patches(depths, patches) + unresolved_adhesion(depths, nodes)
     found = [*map(message, unresolved), band_warning(contact.surface, run.band_errors)]
     found += [_imprecise(out, case), _velocities_missed(out, case, run.asked)]

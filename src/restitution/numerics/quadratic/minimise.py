@@ -136,7 +136,7 @@ def minimise_quadratic(
     g = K_start  # projected_gradient subtracts b
     residual = projected_gradient(p, g, b, bounds, r)
     rz_old, iteration = 0.0, 0
-    step_change = 1.0  # factor of the last change of the trial length
+    step_change = 1.0  # factor by which the trial length last changed
     trial_length = _INITIAL_STEP
 
     for iteration in range(1, max_iterations + 1):
