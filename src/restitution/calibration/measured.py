@@ -73,8 +73,8 @@ def _rows(path: Path) -> list[tuple[int, dict[str, str]]]:
             raise CaseError(f"{path}: is a folder; give a CSV file, such as table.csv of a law")
         if not stat.S_ISREG(kind.st_mode) or kind.st_size > _LARGEST:
             raise CaseError(
-                f"{path}: is not a file of at most {_LARGEST} bytes; give a CSV file with a row "
-                "for each impact velocity"
+                f"{path}: is not a regular file, or has more than {_LARGEST} bytes; give a CSV "
+                "file with a row for each impact velocity"
             )
         with open(path, newline="", encoding="utf-8-sig") as file:
             reader = csv.DictReader(file, strict=True, skipinitialspace=True)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Protocol
 
-_QUOTED = 60  # number of characters of a warning that the count of its repetitions quotes
+_QUOTED = 60  # number of characters of a warning that are quoted when its repetitions are counted
 
 
 class Warn(Protocol):

@@ -104,6 +104,8 @@ def coarse_scan(contact: Contact, indentation: float) -> Finding | None:
 def resolution_findings(contact: Contact, indentation: float) -> list[Finding]:
     """Find faults of the grid from the contact of the smooth bodies at `indentation` (m).
 
+    The findings and their values are:
+
     * `contact-beyond-grid`: `radius`, `indentation`, `half_width` (m), `whole_scan`;
     * `few-nodes`: `spacing`, `radius` (m);
     * `no-half-space`: `radius`, `reduced_radius` (m), `limit` of their ratio;
