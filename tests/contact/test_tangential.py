@@ -129,7 +129,7 @@ def test_partial_slip_is_that_of_cattaneo_and_mindlin(poissons_ratio):
     assert fine < medium < coarse
 
 
-def loop(state, far, steps=32):
+def loop(state, far, steps):
     """The states of a loop between ±far that begins at far."""
     path = far * np.concatenate(
         [np.linspace(0, 1, 9)[1:], np.cos(np.linspace(0, 2, steps + 1) * math.pi)]
@@ -142,11 +142,11 @@ def loop(state, far, steps=32):
 
 def test_the_loop_loses_the_energy_of_mindlin_and_deresiewicz():
     part, errors = 0.6, []
-    for nodes in (48, 96):
+    for nodes, steps in ((48, 32), (96, 64)):
         state, a = sphere(nodes)
         N, G = state.force, state.contact.pair.tangential_modulus
         far = largest_displacement(state, a) * (1 - (1 - part) ** (2 / 3))
-        states = list(loop(state, far))
+        states = list(loop(state, far, steps))
         loss = (18 * (MU * N) ** 2 / (5 * a * G)) * (
             1 - (1 - part) ** (5 / 3) - 5 * part / 6 * (1 + (1 - part) ** (2 / 3))
         )
@@ -157,8 +157,8 @@ def test_the_loop_loses_the_energy_of_mindlin_and_deresiewicz():
         share = 0.5 * far / largest_displacement(state, a)
         expected = states[8].force - 2 * MU * N * (1 - (1 - share) ** 1.5)
         assert middle.force == approx(expected, abs=2e-3 * states[8].force)
-    assert errors[1] < 5e-3
-    assert errors[1] < errors[0] < 1e-2
+    assert errors[0] < 1e-2
+    assert errors[1] < 0.3 * errors[0]
 
 
 def wandering(contact, depths, places, friction=MU):
@@ -174,7 +174,7 @@ def wandering(contact, depths, places, friction=MU):
 @given(st.integers(0, 1000), st.just(0.0) | st.floats(0.01, 1.5))
 def test_work_is_stored_or_lost(rough_contact, seed, friction):
     rng = np.random.default_rng(seed)
-    contact = rough_contact(seed=seed, rms=20e-9, yield_pressure=3e9)
+    contact = rough_contact((36, 30), seed=seed, rms=20e-9, yield_pressure=3e9)
     depths = 60e-9 * rng.uniform(0.2, 1, 8)
     places = 20e-9 * rng.uniform(-1, 1, 8)
     work = loss = energy = place = force = 0.0
