@@ -97,6 +97,20 @@ class Pair:
         )
 
     @property
+    def shear_compliances(self) -> tuple[float, float]:
+        """Compliances of the surfaces under a tangential force, across and along it (1/Pa).
+
+        At the distance r from a tangential force Q, the two surfaces move relative to each other by
+        α Q/r if the direction from the force is perpendicular to Q, and by β Q/r if it is parallel:
+        α = Σ (1 − ν)/(2πG) and β = Σ 1/(2πG). Their mean is 1/(πG*).
+        """
+        across, along = 0.0, 0.0
+        for body in (self.first, self.second):
+            one = (1 + body.poissons_ratio) / (math.pi * body.youngs_modulus)  # 1/(2πG)
+            across, along = across + (1 - body.poissons_ratio) * one, along + one
+        return across, along
+
+    @property
     def mass(self) -> float | None:
         """Reduced mass m* (kg): 1/m* = 1/m₁ + 1/m₂; None if a sphere's density is not given."""
         if self.first.mass is None or self.second.mass is None:

@@ -13,6 +13,7 @@ times the difference of two normal states" is a good approximation (Jäger 1995,
 A contact that has yielded responds to small motions as on its unloading curve. At every depth of
 loading, the springs therefore get the loads of the unloading curve from this depth, and those that
 touch already keep their tangential displacement. This extension is not in the literature cited.
+`tangential_error` states the error of the law.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ Array = NDArray[np.float64]
 
 _SPRINGS = 400  # number of springs on each half line
 _DEPTHS = 200  # number of depths of loading at which the loads of the springs are tabulated
+_ELASTIC = 1e-3  # indentation at separation over depth below which a contact counts as elastic
 _POINTS = 400  # number of points of an unloading curve at which its slope is computed
 
 
@@ -51,7 +53,11 @@ class Foundation:
         """The foundation of the force `law`, loaded up to `deepest` (m)."""
         E, G = law.pair.contact_modulus, law.pair.tangential_modulus
         depths = np.linspace(0.0, deepest, _DEPTHS + 1)[1:]
-        curves = [_touching(law, float(depth), E) for depth in depths]
+        if has_yielded(law, deepest):
+            curves = [_touching(law, float(depth), E) for depth in depths]
+        else:
+            # An elastic contact unloads as it is loaded, so one curve holds for all depths.
+            curves = [_touching(law, deepest, E)] * _DEPTHS
         width = max(radii[-1] for _, radii in curves) / _SPRINGS
         x = (np.arange(_SPRINGS) + 0.5) * width
         loads = np.zeros((_DEPTHS, _SPRINGS))
@@ -71,18 +77,27 @@ class Foundation:
         load: Array = np.maximum(at_deepest - lifted, 0.0) * self.width
         return load
 
-    def move(self, u: Array, motion: float, limit: Array) -> tuple[Array, float, float]:
+    def move(
+        self, u: Array, motion: Array | float, limit: Array, factor: Array | float = 1.0
+    ) -> tuple[Array, Array, Array]:
         """Move the bodies tangentially by `motion` (m).
 
         `u` (m) are the tangential displacements of the springs, and `limit` (N) are the largest
-        tangential loads. Returns the new displacements, the tangential force (N), and the work of
-        friction (J).
+        tangential loads. `factor` multiplies the tangential modulus. `motion` and `factor` may have
+        several values, each with a row of `u`. Returns the new displacements, the tangential force
+        (N), and the work of friction (J).
         """
-        stiffness = 2 * self.moduli[1] * self.width
-        free = u + motion
-        held = np.clip(free, -limit / stiffness, limit / stiffness)
-        work = 0.5 * stiffness * float(np.dot(u + held, free - held))
-        return held, stiffness * float(held.sum()), work
+        stiffness = 2 * self.moduli[1] * self.width * np.asarray(factor)
+        largest = limit / stiffness[..., None]
+        free = u + np.asarray(motion)[..., None]
+        held = np.clip(free, -largest, largest)
+        work = 0.5 * stiffness * np.einsum("...i,...i->...", u + held, free - held)
+        return held, stiffness * held.sum(axis=-1), work
+
+
+def has_yielded(law: StoredForce, deepest: float) -> bool:
+    """Whether the contact separates above first touch after loading to the depth `deepest` (m)."""
+    return law.separation(deepest) > _ELASTIC * deepest
 
 
 def _touching(law: StoredForce, depth: float, contact_modulus: float) -> tuple[Array, Array]:

@@ -10,6 +10,10 @@ sphere without spin. The tangential force T follows from a one-dimensional found
 friction µ (`foundation`). If all springs slide to the end, the impulse of T is µ (1 + e) m* V_n for
 every law of force.
 
+The error of the tangential law (`tangential_error`) becomes one of the impulse of T: the motion is
+integrated again with a larger and a smaller tangential modulus, and after yield a part of the
+impulse is added that vanishes in full slip, where the impulse is exact.
+
 Neglected: the coupling of normal and tangential displacements of unlike materials, the torque about
 the normal, rolling friction, and elastic waves.
 """
@@ -24,6 +28,7 @@ from numpy.typing import NDArray
 
 from restitution.errors import CaseError
 from restitution.laws.foundation import Foundation
+from restitution.laws.tangential_error import tangential_error
 from restitution.laws.time_integration import ReferenceCollision, StoredForce, collide_in_time
 
 Array = NDArray[np.float64]
@@ -46,6 +51,10 @@ class ObliqueCollision:
             NaN for a head-on impact.
         rebound_angle: Angle of rebound of the centres from the normal (rad).
         spins: Angular velocities of the two bodies after the impact (rad/s); 0 for a wall.
+        tangential_restitution_error: Error of `tangential_restitution` due to the tangential law
+            (1); NaN for a head-on impact. The error of the normal forces is not included.
+        rebound_angle_error: Error of `rebound_angle` due to the tangential law (rad).
+        spin_errors: Errors of `spins` due to the tangential law (rad/s).
         friction_loss: Energy lost to friction (J).
         normal_loss: Energy lost in the normal contact (J).
         sliding: Whether the whole contact slides from the beginning to the end.
@@ -63,6 +72,9 @@ class ObliqueCollision:
     tangential_restitution: float
     rebound_angle: float
     spins: tuple[float, float]
+    tangential_restitution_error: float
+    rebound_angle_error: float
+    spin_errors: tuple[float, float]
     friction_loss: float
     normal_loss: float
     sliding: bool
@@ -115,22 +127,32 @@ def collide_obliquely(
     rolling = sum(R * spin for R, spin in zip(arms, spins, strict=True))
     mass = law.pair.mass
     assert mass is not None  # StoredForce
-    course = _slide(law, normal, V_t - rolling, friction, mass)
-    J = course.impulse
-    turned = [
-        0.0 if R == 0 else spin + 2.5 * J / (body.mass or math.inf) / R
-        for R, spin, body in zip(arms, spins, bodies, strict=True)
+    error = tangential_error(law, min(normal.largest_indentation, law.deepest))
+    course = _slide(law, normal, V_t - rolling, friction, error.stiffness)
+    J, e = course.impulse, normal.restitution
+    sliding = friction * (1 + e) * mass * V_n  # impulse of full slip
+    dJ = course.impulse_error
+    if sliding > 0:
+        dJ += error.impulse * abs(J) * max(1 - abs(J) / sliding, 0.0)
+    turns = [
+        0.0 if R == 0 else 2.5 / (body.mass or math.inf) / R
+        for R, body in zip(arms, bodies, strict=True)
     ]
-    e = normal.restitution
     after = V_t - J / mass
+    rebound = math.atan2(after, e * V_n)
     return ObliqueCollision(
         velocity=velocity,
         angle=angle,
         friction=friction,
         normal_restitution=e,
         tangential_restitution=after / V_t if V_t > 0 else math.nan,
-        rebound_angle=math.atan2(after, e * V_n),
-        spins=(turned[0], turned[1]),
+        rebound_angle=rebound,
+        spins=(spins[0] + J * turns[0], spins[1] + J * turns[1]),
+        tangential_restitution_error=dJ / mass / V_t if V_t > 0 else math.nan,
+        rebound_angle_error=max(
+            abs(math.atan2(after + change / mass, e * V_n) - rebound) for change in (-dJ, dJ)
+        ),
+        spin_errors=(dJ * turns[0], dJ * turns[1]),
         friction_loss=course.loss,
         normal_loss=0.5 * mass * V_n**2 * (1 - e**2),
         sliding=bool(course.sticking[1:-1].max(initial=0.0) == 0),
@@ -168,7 +190,7 @@ def course(collision: ObliqueCollision) -> list[dict[str, float | str]]:
 
 @dataclass(frozen=True, eq=False)
 class _Course:
-    """Tangential motion in time, the impulse (N s) and the work of friction (J)."""
+    """Tangential motion in time, the impulse and its error (N s), and the work of friction (J)."""
 
     time: Array
     normal: Array
@@ -176,13 +198,17 @@ class _Course:
     slip: Array
     sticking: Array
     impulse: float
+    impulse_error: float
     loss: float
 
 
 def _slide(
-    law: StoredForce, normal: ReferenceCollision, slip: float, friction: float, mass: float
+    law: StoredForce, normal: ReferenceCollision, slip: float, friction: float, error: float
 ) -> _Course:
-    """Integrate the tangential motion from the velocity `slip` (m/s) of the contact point."""
+    """Integrate the tangential motion from the velocity `slip` (m/s) of the contact point.
+
+    `error` is the relative error of the tangential stiffness.
+    """
     from scipy.interpolate import CubicHermiteSpline
 
     at, first = np.unique(normal.time, return_index=True)
@@ -194,19 +220,22 @@ def _slide(
     turn = float(t[int(np.argmax(delta))])
     F = np.array([(law.loading if s <= turn else back)(x) for s, x in zip(t, delta, strict=True)])
     T, U, stick = np.zeros(t.size), np.full(t.size, slip), np.zeros(t.size)
-    u, speed, loss = np.zeros(springs.radius.size), slip, 0.0
-    least = _LEAST * F.max()
+    # Rows: the tangential modulus, and this modulus with the error subtracted and added.
+    factors = np.array([1.0, 1 / (1 + error), 1 + error])
+    u, speed, loss = np.zeros((3, springs.radius.size)), np.full(3, slip), 0.0
+    slowing, least = _INERTIA / (law.pair.mass or math.nan) * dt, _LEAST * F.max()
     for k in range(1, t.size):
         loads = springs.load(delta[k], delta[k] if t[k] <= turn else normal.largest_indentation)
         total = loads.sum()
         if total > 0:
             loads *= max(F[k], 0.0) / total
-        free = u + speed * dt
-        u, T[k], work = springs.move(u, speed * dt, friction * loads)
+        free = u[0] + speed[0] * dt
+        u, forces, works = springs.move(u, speed * dt, friction * loads, factors)
         if F[k] > least:
-            stick[k] = loads[free == u].sum() / loads.sum()
-        loss += work
-        before, speed = speed, speed - _INERTIA * T[k] / mass * dt
-        U[k] = 0.5 * (before + speed)
-    impulse = (slip - speed) * mass / _INERTIA
-    return _Course(t, F, T, U, stick, impulse, loss)
+            stick[k] = loads[free == u[0]].sum() / loads.sum()
+        T[k], loss = forces[0], loss + float(works[0])
+        before, speed = speed, speed - slowing * forces
+        U[k] = 0.5 * (before[0] + speed[0])
+    impulses = (slip - speed) * dt / slowing
+    spread = float(np.abs(impulses - impulses[0]).max())
+    return _Course(t, F, T, U, stick, float(impulses[0]), spread, loss)

@@ -67,6 +67,19 @@ class ReferenceCollision:
     closing_velocity: Array
 
 
+@dataclass(frozen=True, eq=False)
+class StoredRoughness:
+    """What a stored contact tells about its roughness.
+
+    `patches` are the numbers of contact patches at the indentations `depths` (m). `lay` is the
+    anisotropy of the slopes: 0 if they are equal in all directions, 1 if they have one direction.
+    """
+
+    depths: Array
+    patches: Array
+    lay: float
+
+
 @dataclass(frozen=True)
 class StoredForce:
     """The stored force law of one pair: loading, and unloading from some depths.
@@ -75,7 +88,7 @@ class StoredForce:
     (m/s) that reaches it. The function `loading` maps indentation (m) to force (N). The function
     `separation` maps the maximum indentation to the indentation at separation (m). `unloading`
     contains the indentations (increasing) and forces of one curve for each depth of
-    `unloading_from` (increasing).
+    `unloading_from` (increasing). `roughness` is None for smooth bodies.
     """
 
     pair: Pair
@@ -85,6 +98,7 @@ class StoredForce:
     separation: Callable[[float], float]
     unloading_from: Array
     unloading: tuple[tuple[Array, Array], ...]
+    roughness: StoredRoughness | None = None
 
     def __post_init__(self) -> None:
         if self.pair.mass is None:
@@ -157,7 +171,21 @@ def _stored_force(run: RunResults) -> StoredForce:
         separation=_separation(results, depth),
         unloading_from=np.array([curve.start for curve in run.unloading]),
         unloading=tuple((curve.indentation, curve.force) for curve in run.unloading),
+        roughness=_roughness(results, depth),
     )
+
+
+def _roughness(results: xr.Dataset, depth: Array) -> StoredRoughness | None:
+    height = results["height"].values
+    if not np.ptp(height) > 0:
+        return None
+    x, y = results["x"].values, results["y"].values
+    along_x, along_y = np.gradient(height, x, y)
+    xx, yy, xy = (
+        float(np.mean(product)) for product in (along_x**2, along_y**2, along_x * along_y)
+    )
+    lay = math.hypot(xx - yy, 2 * xy) / (xx + yy)
+    return StoredRoughness(depth, results["contact_patches"].values, lay)
 
 
 def collide_in_time(law: StoredForce, velocity: float) -> ReferenceCollision:

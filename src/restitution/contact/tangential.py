@@ -1,0 +1,200 @@
+"""Tangential contact at a fixed normal pressure: stick, slip and friction loss at every node.
+
+The bodies move by the tangential displacement U along x. The traction q along x moves their
+surfaces by C q relative to each other (`influence.cerruti_displacement`), and the slip of a node is
+s = U − C q. Coulomb's law limits |q| to µ p. Where |q| is below this limit, the slip does not
+change. From one state to the next, the traction minimises
+
+    ½ qᵀC q − qᵀ(U − s₀),   −µ p ≤ q ≤ µ p,
+
+where s₀ is the slip before the step. The gradient is s₀ − s: zero in stick, and of the sign of −q
+in slip. Nodes without pressure carry no traction and slip freely. A node that comes into contact
+sticks where it touches. Because s₀ = U₀ − C q₀, the traction q₀ and the displacement U₀ before the
+step are the whole history, and the normal states of a path may follow one another in any order.
+
+Neglected, as by Cattaneo (1938) and Mindlin (1949): the traction along y, and the influence of
+tangential traction on the pressure. The second is exact for bodies of like materials. Yielding
+limits the pressure alone; the traction adds nothing to it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.contact.equilibrium import MAX_ITERATIONS, RESIDUAL
+from restitution.contact.influence import inverse_half_space, shear_half_space
+from restitution.contact.state import State
+from restitution.display import quantity, summary_html, summary_text
+from restitution.errors import CaseError, NotConvergedError
+from restitution.numerics.box import NOWHERE, Box, bounding_box, reframe, shape_of, union
+from restitution.numerics.convolution.device import current
+from restitution.numerics.quadratic.minimise import BoundedQuadratic, minimise_quadratic
+from restitution.numerics.read_only import freeze, read_only
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class TangentialState:
+    """A contact in tangential equilibrium.
+
+    Attributes:
+        normal: Normal state, whose pressure limits the traction.
+        friction: Coefficient of friction µ (1).
+        displacement: Tangential displacement U of the bodies (m).
+        box: Block of the grid outside of which the traction is zero.
+        box_traction: Traction along x (Pa) on `box`.
+        box_displacement: Displacement C q along x of the two surfaces relative to each other (m) on
+            `box`.
+        friction_loss: Energy lost to friction so far (J).
+        residual: Largest violation of the conditions of stick and slip (1), relative to the largest
+            displacement.
+        convolutions: Number of convolutions (1) that the solve took.
+    """
+
+    normal: State
+    friction: float
+    displacement: float
+    box: Box
+    box_traction: Array
+    box_displacement: Array
+    friction_loss: float
+    residual: float
+    convolutions: int
+
+    def __post_init__(self) -> None:
+        for name in ("box_traction", "box_displacement"):
+            object.__setattr__(self, name, read_only(getattr(self, name)))
+
+    @property
+    def force(self) -> float:
+        """Tangential force T = Σ q hx hy (N)."""
+        return float(self.box_traction.sum()) * self.normal.contact.grid.cell_area
+
+    @property
+    def stored_energy(self) -> float:
+        """Elastic energy of the traction ½ Σ q C q hx hy (J)."""
+        twice = float(np.einsum("ij,ij->", self.box_traction, self.box_displacement))
+        return 0.5 * twice * self.normal.contact.grid.cell_area
+
+    @property
+    def slip(self) -> Array:
+        """Slip s = U − C q (m) on `box`."""
+        return self.displacement - self.box_displacement
+
+    @property
+    def sticking(self) -> NDArray[np.bool_]:
+        """Whether a node sticks (bool), on `box`: the traction is below µ p."""
+        return np.abs(self.box_traction) < _limit(self.normal, self.friction, self.box)
+
+    def _summary(self) -> list[str]:
+        nodes = int(self.sticking.sum())
+        return [
+            f"displacement {quantity(self.displacement, 'm')}, force {quantity(self.force, 'N')}",
+            f"{nodes} of {self.normal.contact_nodes} nodes in contact stick",
+            f"stored energy {quantity(self.stored_energy, 'J')}, "
+            f"friction loss {quantity(self.friction_loss, 'J')}",
+        ]
+
+    __repr__ = summary_text
+    _repr_html_ = summary_html
+
+
+def shear(
+    normal: State,
+    displacement: float,
+    friction: float,
+    *,
+    history: TangentialState | None = None,
+    residual: float = RESIDUAL,
+) -> TangentialState:
+    """Move the bodies of a contact tangentially, along x, to a displacement.
+
+    The energy lost to friction is the mean traction before and after the step times the slip of
+    each node. So the mean force before and after the step, times the change of U, is exactly the
+    change of the stored energy plus the loss. For a path that changes direction or pressure, both
+    are those of the path in the limit of small steps.
+
+    Args:
+        normal: Normal state after the step, without adhesion.
+        displacement: Tangential displacement U after the step (m).
+        friction: Coefficient of friction µ (1), not negative.
+        history: State before the step, on the same grid. None stands for bodies without tangential
+            traction at U = 0.
+        residual: Tolerance on the violation of the conditions of stick and slip (1), relative to
+            the largest displacement.
+
+    Returns:
+        State at `displacement`.
+
+    Raises:
+        CaseError: An argument lies outside its range, the contact is adhesive, or `history` is on
+            another grid.
+        NotConvergedError: The tolerance was not reached.
+    """
+    contact = normal.contact
+    if not (math.isfinite(friction) and friction >= 0):
+        raise CaseError(f"friction: {friction} is not a coefficient of friction; give 0 or more")
+    if not math.isfinite(displacement):
+        raise CaseError(f"displacement: {displacement} m is not a finite length")
+    if contact.adhesive:
+        raise CaseError("normal: is adhesive; Coulomb's law is solved without adhesion only")
+    if history is not None and history.normal.contact.grid != contact.grid:
+        raise CaseError("history: is on another grid; give a state on the grid of this contact")
+    box = union(
+        bounding_box(normal.box_pressure > 0, normal.box),
+        None if history is None else bounding_box(history.box_traction != 0, history.box),
+    )
+    loss = 0.0 if history is None else history.friction_loss
+    if box is None:
+        nothing = freeze(np.zeros((0, 0)))
+        return TangentialState(
+            normal, friction, displacement, NOWHERE, nothing, nothing, loss, 0.0, 0
+        )
+    device, shape = current(), shape_of(box)
+    K = shear_half_space(shape, contact.grid.spacing, contact.pair.shear_compliances)
+    before, moved, motion = np.zeros(shape), np.zeros(shape), displacement
+    if history is not None:
+        before = reframe(history.box_traction, history.box, box)
+        moved, motion = device.get(K(device.put(before))), displacement - history.displacement
+    limit, target = _limit(normal, friction, box), motion + moved
+    scale = float(np.abs(target).max())
+    upper = device.put(limit)
+    found = minimise_quadratic(
+        BoundedQuadratic(K, device.put(target), -upper, upper, K.single_precision),
+        start=device.put(before.copy()),  # overwritten
+        precondition=inverse_half_space(
+            shape, contact.grid.spacing, contact.pair.tangential_modulus
+        ),
+        tolerance=residual * scale,
+        max_iterations=MAX_ITERATIONS,
+    )
+    reached = found.residual / scale if scale > 0 else 0.0
+    if not found.converged:
+        raise NotConvergedError(
+            f"the tangential solve at a displacement of {1e9 * displacement:.6g} nm stopped at a "
+            f"residual of {reached:.1e} (tolerance: {residual:.0e}) after {found.iterations} "
+            "iterations; increase the tolerance (residual), or smooth or refine the surface"
+        )
+    traction, gradient = device.get(found.point), device.get(found.gradient)
+    twice = float(np.einsum("ij,ij->", before + traction, gradient))
+    return TangentialState(
+        normal=normal,
+        friction=friction,
+        displacement=displacement,
+        box=box,
+        box_traction=freeze(traction),
+        box_displacement=freeze(gradient + target),
+        friction_loss=loss - 0.5 * twice * contact.grid.cell_area,
+        residual=reached,
+        convolutions=K.count,
+    )
+
+
+def _limit(normal: State, friction: float, box: Box) -> Array:
+    """The largest traction µ p (Pa) on `box`."""
+    return friction * normal.pressure_on(box)

@@ -1,0 +1,97 @@
+"""Error of the one-dimensional tangential law, from a comparison with boundary elements.
+
+docs/oblique.md describes the comparison (`docs/studies/tangential.py`). Bodies with ν = 0 and no
+yield follow the law exactly, for every roughness. Four effects make an error:
+
+* Patches that are not round. A point load along x moves the surface at a given distance along x by
+  1 + χ and along y by 1 − χ times the mean, with χ = ν/(2 − ν) for like bodies. The law uses the
+  mean, so the stiffness of a contact in a line is off by up to χ. The patches of rough contacts
+  point in all directions, and their effects cancel as the square root of their number. A lay aligns
+  them.
+* Yield. While the contact is loaded, nodes at the pressure bound carry no more traction, but all
+  springs of the law do.
+* Few unloading curves. Between two of them, the stiffness is interpolated.
+* Unlike bodies. Pressure also moves the surfaces tangentially, and traction moves them normally, in
+  proportion to the second constant of Dundurs β. By symmetry neither adds a tangential force to
+  first order. Without slip, the exact stiffness of a round punch grows only by atanh(β)/β − 1,
+  about β²/3 (Spence 1968, Proc. R. Soc. A 305, 55–80; Johnson 1985, *Contact Mechanics*, §§3.7 and
+  5.4). With slip, tractions of β times the pressure take up part of the friction. The error is
+  taken as |β|, a bound on the order of magnitude that is not compared with a coupled solution.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from restitution.contact.bodies import Pair
+from restitution.laws.foundation import has_yielded
+from restitution.laws.time_integration import StoredForce
+
+# Numbers that bound all differences found in the comparison. _NUMERICAL is the relative error of
+# the stiffness of smooth and of rough contacts for ν = 0, _SHAPE that of one patch over χ, and
+# _ALIGNED the number of patches up to which it is as large as that of one patch.
+_NUMERICAL, _ROUGH = 0.005, 0.01
+_SHAPE, _ALIGNED = 0.35, 4.0
+# Relative errors of stiffness and impulse after yield, for each factor between the depths of two
+# neighbouring unloading curves.
+_YIELDED_STIFFNESS, _YIELDED_IMPULSE = 0.01, 0.1
+_SHALLOWEST = 0.2  # depth over the deepest one below which the number of curves does not matter
+
+
+@dataclass(frozen=True)
+class TangentialError:
+    """Relative errors of the tangential law (1).
+
+    `stiffness` is that of the tangential stiffness, and `impulse` that of the tangential impulse of
+    a contact that is far from full slip.
+    """
+
+    stiffness: float
+    impulse: float
+
+
+def tangential_error(law: StoredForce, deepest: float) -> TangentialError:
+    """Error of the tangential law for an impact that turns at the depth `deepest` (m).
+
+    The errors hold for the grid of the stored contact, and do not contain the error of the normal
+    forces.
+    """
+    stiffness, impulse = _NUMERICAL + abs(dundurs(law.pair)), 0.0
+    rough = law.roughness
+    if rough is not None:
+        across, along = law.pair.shear_compliances
+        patches = float(np.interp(deepest, rough.depths, rough.patches))
+        shape = max(_SHAPE / math.sqrt(max(1.0, patches / _ALIGNED)), rough.lay)
+        stiffness += _ROUGH + shape * (along - across) / (along + across)
+    if has_yielded(law, deepest):
+        gap = 1.0 if rough is None else _largest_gap(law, deepest)
+        stiffness += _YIELDED_STIFFNESS * gap
+        impulse = min(_YIELDED_IMPULSE * gap, 1.0)
+    return TangentialError(stiffness, impulse)
+
+
+def dundurs(pair: Pair) -> float:
+    """The second constant of Dundurs β of a pair (1), zero for like bodies.
+
+    β = [(1 − 2ν₁)/G₁ − (1 − 2ν₂)/G₂]/2[(1 − ν₁)/G₁ + (1 − ν₂)/G₂] (Johnson 1985, eq. 5.3).
+    """
+    (first, one), (second, two) = (
+        (body.poissons_ratio, (1 + body.poissons_ratio) / body.youngs_modulus)
+        for body in (pair.first, pair.second)
+    )
+    coupled = (1 - 2 * first) * one - (1 - 2 * second) * two
+    return 0.5 * coupled / ((1 - first) * one + (1 - second) * two)
+
+
+def _largest_gap(law: StoredForce, deepest: float) -> float:
+    """Largest factor between the depths of two unloading curves next to each other."""
+    depths = law.unloading_from
+    below = depths[(depths > _SHALLOWEST * deepest) & (depths < deepest)]
+    ends = [depths[depths <= _SHALLOWEST * deepest][-1:], below, depths[depths >= deepest][:1]]
+    if not ends[0].size:
+        ends[0] = np.array([_SHALLOWEST * deepest])
+    inside = np.concatenate(ends)
+    return float((inside[1:] / inside[:-1]).max()) if inside.size > 1 else 1.0
