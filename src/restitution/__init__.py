@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import restitution.theory as theory
-    from restitution.api import export, law_of, open_results, run
+    from restitution.api import collide_obliquely, export, law_of, open_results, run
     from restitution.case.materials import material, materials
     from restitution.collision import Collision, collide
     from restitution.contact.bodies import Body, Pair
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from restitution.contact.prescribed_velocity import solve_at_velocity
     from restitution.contact.state import State
     from restitution.errors import RestitutionError
+    from restitution.laws.oblique import ObliqueCollision
     from restitution.numerics.convolution.cache import operator_cache
     from restitution.numerics.convolution.device import on_device
     from restitution.numerics.grid import Grid
@@ -39,11 +40,13 @@ __all__ = [
     "Collision",
     "Contact",
     "Grid",
+    "ObliqueCollision",
     "Pair",
     "RestitutionError",
     "State",
     "Surface",
     "collide",
+    "collide_obliquely",
     "composite",
     "crop",
     "describe",
@@ -75,7 +78,7 @@ __all__ = [
 # Modules and the public names that each defines. A name is imported on first use. The command line
 # is in the same package, so it can answer (and be interrupted) before NumPy is loaded.
 _MODULES = {
-    "api": ("export", "law_of", "open_results", "run"),
+    "api": ("collide_obliquely", "export", "law_of", "open_results", "run"),
     "case.materials": ("material", "materials"),
     "collision": ("Collision", "collide"),
     "contact.bodies": ("Body", "Pair"),
@@ -86,6 +89,7 @@ _MODULES = {
     "contact.path": ("loading_path", "unloading_path"),
     "contact.state": ("State",),
     "errors": ("RestitutionError",),
+    "laws.oblique": ("ObliqueCollision",),
     "numerics.convolution.cache": ("operator_cache",),
     "numerics.convolution.device": ("on_device",),
     "numerics.grid": ("Grid",),

@@ -1,4 +1,4 @@
-"""Functions for whole tasks in Python: run a case, open its results, make and export a law."""
+"""Functions for whole tasks in Python: run a case, open its results, collide, export a law."""
 
 from __future__ import annotations
 
@@ -13,6 +13,8 @@ from restitution.errors import CaseError, OutputError
 if TYPE_CHECKING:
     from restitution.case.case import Case
     from restitution.laws.law import Law
+    from restitution.laws.oblique import ObliqueCollision
+    from restitution.laws.time_integration import StoredForce
     from restitution.results.reader import RunResults, StudyResults
 
 Folder = str | os.PathLike[str]
@@ -129,6 +131,69 @@ def law_of(results: Folder | RunResults) -> Law:
 
     folder = results.folder if isinstance(results, RunResults) else Path(results)
     return read_law(folder) if (folder / LAW_FILE).is_file() else law_from(folder)
+
+
+def collide_obliquely(
+    results: Folder | RunResults | StoredForce,
+    velocity: str | float,
+    angle: str | float,
+    *,
+    friction: float | None = None,
+    spin: str | float | tuple[str | float, str | float] = 0.0,
+) -> ObliqueCollision:
+    """Let the two particles of a run collide at an angle, with friction and spin.
+
+    The normal force is that of the stored curves, and the tangential force follows from it
+    (docs/oblique.md).
+
+    Args:
+        results: Results of a run of one surface, their folder, or a force law
+            (`restitution.laws.time_integration.StoredForce`).
+        velocity: Relative velocity of the centres, such as "0.5 m/s", or a number (m/s).
+        angle: Angle of impact from the normal, such as "30 deg", or a number (rad), from 0 to below
+            90 degrees.
+        friction: Coefficient of friction µ (1); by default that of the case.
+        spin: Spin of the first body before the impact, or of both: texts such as "100 rad/s" or
+            "20 rpm", or numbers (rad/s). Positive in the sense in which friction turns a body
+            without spin.
+
+    Returns:
+        The collision: normal and tangential restitution, angle of rebound, spins, losses, and its
+        course in time.
+
+    Raises:
+        CaseError: An argument is missing or outside its range, or the pair has adhesion.
+        DomainError: The normal velocity lies outside the computed ones.
+        OutputError: The folder does not hold results with unloading curves, or a file is damaged.
+    """
+    from restitution.case.quantities import read_impact_angle, read_quantity
+    from restitution.laws.law import velocity_of
+    from restitution.laws.oblique import collide_obliquely as collide
+    from restitution.laws.oblique import oblique_force
+    from restitution.laws.time_integration import StoredForce
+    from restitution.results.reader import RunResults, read_run
+
+    if isinstance(results, StoredForce):
+        force = results
+    else:
+        run = results if isinstance(results, RunResults) else read_run(Path(results))
+        force = oblique_force(run)
+        friction = run.case.interface.friction if friction is None else friction
+    if friction is None:
+        raise CaseError("friction: is missing; an oblique impact needs a coefficient of friction")
+    speed = velocity_of(velocity) if isinstance(velocity, str) else velocity
+    try:
+        slope = read_impact_angle(angle) if isinstance(angle, str) else angle
+    except ValueError as error:
+        raise CaseError(f"angle: {error}") from None
+    both = spin if isinstance(spin, (tuple, list)) else (spin, 0.0)
+    try:
+        first, second = (
+            read_quantity(each, "rad/s") if isinstance(each, str) else each for each in both
+        )
+    except ValueError as error:
+        raise CaseError(f"spin: {error}") from None
+    return collide(force, speed, slope, friction, (first, second))
 
 
 def _laws_in(given: Folder | Law) -> list[Law]:

@@ -8,12 +8,13 @@ import pytest
 
 from restitution.case.case_file import parse_case
 from restitution.errors import NotConvergedError
+from restitution.results.total_error import total
 from restitution.results.writer import ResultsFolder
 from restitution.runs import loading
 from restitution.runs.companions import Companions, Curve
 from restitution.runs.convergence import run_convergence
 from restitution.runs.ensemble import run_realisations
-from restitution.runs.error_budget import Band, grid_error, scatter, total, widened_error
+from restitution.runs.error_budget import Band, grid_error, scatter, widened_error
 from tolerance import approx
 
 PARTS = ("restitution_error", "discretisation_error", "surface_scatter", "material_error")

@@ -1,4 +1,4 @@
-"""`[first]`, `[second]` and `[interface]`: materials, yielding and adhesion."""
+"""`[first]`, `[second]` and `[interface]`: materials, yielding, adhesion and friction."""
 
 from __future__ import annotations
 
@@ -82,6 +82,7 @@ class BodyTable(Table):
 
 
 YieldRule = tuple[float, Literal["yield_strength", "hardness"]]
+MOST_FRICTION = 10.0  # largest coefficient of friction; a larger one is a mistake
 DEFAULT_RULE: YieldRule = (FULL_CONSTRAINT, "yield_strength")
 
 
@@ -131,7 +132,10 @@ class Yielding:
 
 
 class InterfaceTable(Table):
-    """The table `[interface]`. By default, bodies of known strength yield and do not adhere."""
+    """The table `[interface]`. By default, bodies of known strength yield and do not adhere.
+
+    `friction` is the coefficient of friction µ of oblique impacts.
+    """
 
     yield_strength: Pressure | None = None
     tangent_modulus: Pressure | None = None
@@ -141,6 +145,7 @@ class InterfaceTable(Table):
     approach: Approach = "equilibrium"
     detachment: Detachment = "crack-closure"
     equilibrium_separation: Length = 0.3e-9
+    friction: Annotated[float, Field(ge=0, le=MOST_FRICTION)] | None = None
 
     @model_validator(mode="after")
     def _one_model(self) -> InterfaceTable:

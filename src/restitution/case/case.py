@@ -54,6 +54,8 @@ class Case(Table):
             )
         if self.impact is not None:
             self._check_masses()
+            if self.impact.oblique:
+                self._check_oblique(self.impact)
         elastic = math.isinf(self.yielding().hardness)
         if self.interface.plasticity == "truncated" and elastic:
             raise ValueError(
@@ -84,6 +86,23 @@ class Case(Table):
                 raise ValueError(
                     f"{name}.density: is missing; give it, because [impact] needs the mass"
                 )
+
+    def _check_oblique(self, impact: ImpactTable) -> None:
+        key = "impact.spin" if impact.angle is None else "impact.angle"
+        if self.interface.friction is None:
+            raise ValueError(
+                f"interface.friction: is missing; give it, because {key} needs a coefficient of "
+                "friction"
+            )
+        if self.interface.adhesion > 0:
+            raise ValueError(
+                f"{key}: oblique impacts are computed for pairs without adhesion only; remove "
+                "this key, or interface.work_of_adhesion"
+            )
+        bodies = (("first", self.first), ("second", self.second or self.first))
+        for (name, body), spin in zip(bodies, impact.spins(), strict=True):
+            if body.radius is None and spin != 0:
+                raise ValueError(f'impact.spin: {name} is a wall and does not turn; give "0 rad/s"')
 
     def _check_scan_brings_grid(self) -> None:
         if len(self.roughness) == 1 and isinstance(self.roughness[0], MeasuredRoughness):

@@ -31,6 +31,7 @@ _EXAMPLES = {
     "N": '"0.1 N"',
     "J/m^2": '"0.09 J/m^2"',
     "rad": '"30 deg"',
+    "rad/s": '"100 rad/s"',
     "m/s": '"0.5 m/s"',
 }
 _NAMES = {
@@ -40,6 +41,7 @@ _NAMES = {
     "N": "a force",
     "J/m^2": "a work of adhesion",
     "rad": "an angle",
+    "rad/s": "a spin",
     "m/s": "a velocity",
 }
 # Usual units. They are suggested if a unit is written with wrong upper or lower case.
@@ -50,8 +52,11 @@ _USUAL = {
     "N": ("N", "kN", "mN", "uN", "µN", "nN"),
     "J/m^2": ("J/m^2", "J/m2", "mJ/m^2", "mJ/m2", "N/m", "mN/m"),
     "rad": ("deg", "rad"),
+    "rad/s": ("rad/s", "deg/s", "rpm"),
     "m/s": ("m/s", "cm/s", "mm/s", "um/s", "km/h"),
 }
+# Names of units of angle, one of which must occur in a spin.
+_TURNS = ("radian", "degree", "turn", "revolution")
 # Plausible ranges in SI units. A value outside almost certainly has a wrong unit, and formulas
 # would overflow or underflow.
 _BOUNDS = {
@@ -90,7 +95,8 @@ def read_quantity(value: object, unit: str) -> float:
         raise ValueError(f"{shown(value)} {problem}; {example}")
     number, name = float(match[1]), match[2].replace("·", "*").replace("^", "**")
     try:
-        factor = float(_registry().Quantity(1.0, _POWER.sub(r"**\1", name)).m_as(unit))
+        quantity = _registry().Quantity(1.0, _POWER.sub(r"**\1", name))
+        factor = float(quantity.m_as(unit))
     except pint.DimensionalityError:
         remedy = _other_case(match[2], unit) or example
         raise ValueError(f"{shown(value)} is not {_NAMES[unit]}; {remedy}") from None
@@ -98,6 +104,9 @@ def read_quantity(value: object, unit: str) -> float:
         # pint raises the last two for "¼" and "m⁰".
         remedy = _other_case(match[2], unit) or example
         raise ValueError(f"{shown(value)} has an unknown unit; {remedy}") from None
+    if unit == "rad/s" and not any(word in str(quantity.units) for word in _TURNS):
+        # For pint, 1 Hz is 1 rad/s; most people mean one turn a second.
+        raise ValueError(f"{shown(value)} is not a spin, because its unit has no angle; {example}")
     result = number * factor
     if not math.isfinite(result):
         raise ValueError(f"{shown(value)} is not a finite number; {example}")
@@ -139,6 +148,16 @@ def read_positive(value: Any, unit: str, *, or_zero: bool = False) -> float:
     return result
 
 
+def read_impact_angle(value: Any) -> float:
+    """Convert an angle of impact from the normal to rad; require 0 to below 90 degrees."""
+    result = read_quantity(value, "rad")
+    if not 0 <= result < math.pi / 2 * (1 - 1e-12):
+        raise ValueError(
+            f"{shown(value)} is not an angle of impact; give 0 to below 90 degrees from the normal"
+        )
+    return result
+
+
 def _positive(unit: str, *, or_zero: bool = False) -> BeforeValidator:
     return BeforeValidator(lambda value: read_positive(value, unit, or_zero=or_zero))
 
@@ -150,4 +169,6 @@ SurfaceEnergy = Annotated[float, _positive("J/m^2", or_zero=True)]
 Force = Annotated[float, _positive("N")]
 Velocity = Annotated[float, _positive("m/s")]
 Angle = Annotated[float, BeforeValidator(lambda value: read_quantity(value, "rad"))]
+ImpactAngle = Annotated[float, BeforeValidator(lambda value: read_impact_angle(value))]
+Spin = Annotated[float, BeforeValidator(lambda value: read_quantity(value, "rad/s"))]
 Position = Annotated[float, BeforeValidator(lambda value: read_quantity(value, "m"))]

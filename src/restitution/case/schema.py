@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any, ClassVar, Generic, Literal, Self, TypeVar, cast
 
 import numpy as np
@@ -15,7 +16,7 @@ from pydantic import (
     model_validator,
 )
 
-from restitution.case.quantities import Length, Velocity
+from restitution.case.quantities import ImpactAngle, Length, Spin, Velocity
 from restitution.collision import UnloadingMethod
 from restitution.contact.separation import RESTITUTION_ERROR
 from restitution.errors import shown
@@ -24,6 +25,7 @@ from restitution.numerics.grid import Grid
 FACTORS = (1, 2, 4, 8, 16, 32, 64)  # allowed refinement factors
 MOST_NODES = 2**27  # limit for a grid; more nodes do not fit into the memory of common machines
 MOST_STEPS = 10_000  # largest number of depths of a curve
+_SAME = 1e-9  # largest relative difference of normal velocities that count as equal
 
 
 class Table(BaseModel):
@@ -141,16 +143,77 @@ class Series(Table, Generic[Quantity]):
         return [float(v) for v in space(first, last, cast(int, self.steps))]
 
 
+def _listed(value: Any) -> Any:
+    return value if isinstance(value, list) else [value]
+
+
 class ImpactTable(Series[Velocity]):
-    """The table `[impact]`: a span of velocities with steps, or the list `velocity`."""
+    """The table `[impact]`: a span of velocities with steps, or the list `velocity`.
+
+    With `angle` or `spin` there are oblique impacts: one for each velocity of the centres and each
+    angle from the normal. `spin` is that of the first body, or those of both.
+    """
 
     values: Annotated[
         list[Velocity] | None,
-        BeforeValidator(lambda value: value if isinstance(value, list) else [value]),
+        BeforeValidator(_listed),
         Field(alias="velocity", min_length=1, max_length=MOST_STEPS),
+    ] = None
+    angle: Annotated[
+        list[ImpactAngle] | None,
+        BeforeValidator(_listed),
+        Field(min_length=1, max_length=MOST_STEPS),
+    ] = None
+    spin: Annotated[
+        list[Spin] | None, BeforeValidator(_listed), Field(min_length=1, max_length=MOST_STEPS)
     ] = None
 
     list_key: ClassVar[str] = "velocity"
+
+    @model_validator(mode="after")
+    def _few_enough(self) -> Self:
+        if self.spin is not None and len(self.spin) > 2:
+            raise ValueError(
+                f"spin: {len(self.spin)} values for two bodies; give one value (of the first "
+                "body), or two"
+            )
+        impacts = len(self.velocities()) * len(self.angles())
+        if impacts > MOST_STEPS:
+            raise ValueError(
+                f"angle: {impacts} impacts (velocities times angles) are more than {MOST_STEPS}; "
+                "give fewer"
+            )
+        return self
+
+    @property
+    def oblique(self) -> bool:
+        """Whether there are oblique impacts."""
+        return self.angle is not None or self.spin is not None
+
+    def angles(self) -> list[float]:
+        """Angles of the oblique impacts from the normal (rad), increasing; empty if none."""
+        return sorted(set(self.angle or [0.0])) if self.oblique else []
+
+    def spins(self) -> tuple[float, float]:
+        """Spins of the two bodies before an impact (rad/s)."""
+        first, second = [*(self.spin or []), 0.0, 0.0][:2]
+        return first, second
+
+    def velocities(self) -> list[float]:
+        """The prescribed velocities of the centres (m/s), increasing."""
+        return super().series()
+
+    def series(self) -> list[float]:
+        """The normal velocities to compute (m/s), increasing: of all impacts, and head-on."""
+        listed = self.velocities()
+        normal = [V * math.cos(angle) for V in listed for angle in self.angles()]
+        found: list[float] = []
+        for V in sorted({*listed, *normal}):
+            if found and V / found[-1] - 1 < _SAME:
+                found[-1] = V if V in listed else found[-1]
+            else:
+                found.append(V)
+        return found
 
 
 class UnloadingTable(Table):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from restitution.laws.time_integration import StoredForce
+    from restitution.results.reader import RunResults
 
 
 def simulate(
@@ -27,14 +27,28 @@ def simulate(
     ] = None,
     friction: Annotated[
         float | None,
-        typer.Option(min=0.0, metavar="MU", help="Coefficient of friction, for oblique impacts."),
+        typer.Option(
+            min=0.0,
+            metavar="MU",
+            help="Coefficient of friction, for oblique impacts.",
+            show_default="that of the case",
+        ),
     ] = None,
     angle: Annotated[
         list[str] | None,
         typer.Option(
             metavar="ANGLE",
             help='Angle of impact from the normal, such as "30 deg"; may be repeated.',
-            show_default="head-on",
+            show_default="those of the case, or head-on",
+        ),
+    ] = None,
+    spin: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="SPIN",
+            help='Spin of the first body before the impact, such as "100 rad/s"; given twice, '
+            "those of both.",
+            show_default="those of the case, or none",
         ),
     ] = None,
     out: Annotated[
@@ -50,20 +64,24 @@ def simulate(
 ) -> None:
     """Integrate collisions in time with the stored forces of RESULTS; compare COR with energies.
 
-    With --friction and --angle the impacts are oblique: VELOCITY is the relative velocity of the
-    centres, and the table contains the tangential restitution, the angle of rebound and the spin.
+    With an angle or a spin, here or in the case, the impacts are oblique: VELOCITY is the relative
+    velocity of the centres, and the table contains the tangential restitution, the angle of rebound
+    and the spin.
     """
     from restitution.cli.console import answers, say_written, table_of_numbers
     from restitution.laws.from_results import bare_law
     from restitution.laws.law import velocity_of
     from restitution.laws.time_integration import collide_in_time, course, stored_force
+    from restitution.results.reader import read_run
     from restitution.results.writer import require_new_file, write_table
 
     require_new_file(out)
-    law, force = bare_law(results), stored_force(results)
-    if angle or friction is not None:
-        _oblique(force, law.work_of_adhesion, velocity or [], angle or [], friction, out)
+    law, run = bare_law(results), read_run(results)
+    impact = run.case.impact
+    if angle or spin or friction is not None or (impact is not None and impact.oblique):
+        _oblique(run, velocity or [], angle or [], spin or [], friction, out)
         return
+    force = stored_force(results)
     velocities = [velocity_of(text) for text in velocity or []]
     unloaded = force.unloading_from
     velocities = velocities or [
@@ -111,31 +129,45 @@ def simulate(
 
 
 def _oblique(
-    force: "StoredForce",
-    work_of_adhesion: float,
+    run: "RunResults",
     velocities: list[str],
     angles: list[str],
+    spins: list[str],
     friction: float | None,
     out: Path | None,
 ) -> None:
     """Compute oblique impacts at every velocity and angle, and print them as a table."""
-    from restitution.case.quantities import read_quantity
+    from restitution.case.quantities import read_impact_angle, read_quantity
     from restitution.cli.console import answers, say, say_written, table_of_numbers
     from restitution.errors import CaseError
     from restitution.laws.law import velocity_of
-    from restitution.laws.oblique import collide_obliquely, course
+    from restitution.laws.oblique import collide_obliquely, course, oblique_force
     from restitution.results.writer import write_table
 
+    impact = run.case.impact
+    if friction is None:
+        friction = run.case.interface.friction
     if friction is None:
         raise CaseError("--friction: is missing; an oblique impact needs a coefficient of friction")
-    if not angles or not velocities:
-        raise CaseError("--angle, --velocity: an oblique impact needs both; give them")
-    if work_of_adhesion > 0:
-        raise CaseError("--angle: oblique impacts are computed for pairs without adhesion only")
     try:
-        wanted = [read_quantity(text, "rad") for text in angles]
+        at = [read_impact_angle(text) for text in angles]
     except ValueError as error:
         raise CaseError(f"--angle: {error}") from None
+    try:
+        turning = [read_quantity(text, "rad/s") for text in spins]
+    except ValueError as error:
+        raise CaseError(f"--spin: {error}") from None
+    if len(turning) > 2:
+        raise CaseError(f"--spin: {len(turning)} values for two bodies; give one or two")
+    fast = [velocity_of(text) for text in velocities]
+    if impact is not None and impact.oblique:
+        at, fast = at or impact.angles(), fast or impact.velocities()
+        turning = turning or list(impact.spins())
+    at = at or ([0.0] if turning else [])
+    if not at or not fast:
+        raise CaseError("--angle, --velocity: an oblique impact needs both; give them")
+    first, second = [*turning, 0.0, 0.0][:2]
+    force = oblique_force(run, "--angle")
     table = table_of_numbers(
         "V (m/s)",
         "angle (°)",
@@ -147,9 +179,9 @@ def _oblique(
         "",
     )
     courses = []
-    for text in velocities:
-        for each in wanted:
-            found = collide_obliquely(force, velocity_of(text), each, friction)
+    for speed in fast:
+        for each in at:
+            found = collide_obliquely(force, speed, each, friction, (first, second))
             courses += course(found)
             table.add_row(
                 f"{found.velocity:.4g}",

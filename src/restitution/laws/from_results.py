@@ -15,7 +15,7 @@ from restitution.laws.force_law_fits import Begin, fitted_laws
 from restitution.laws.law import Conventions, Law, Particle, Point
 from restitution.laws.law_files import LAW_FILE
 from restitution.results.reader import EnsembleResults, RunResults, read_run
-from restitution.runs.error_budget import total
+from restitution.results.total_error import total
 
 _Row = Mapping[str, float]
 _SAME = 1e-9  # largest relative difference of values that count as equal

@@ -26,10 +26,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.display import quantity, summary_html, summary_text
 from restitution.errors import CaseError
 from restitution.laws.foundation import Foundation
 from restitution.laws.tangential_error import tangential_error
-from restitution.laws.time_integration import ReferenceCollision, StoredForce, collide_in_time
+from restitution.laws.time_integration import (
+    ReferenceCollision,
+    StoredForce,
+    collide_in_time,
+    stored_force,
+)
+from restitution.results.reader import RunResults
 
 Array = NDArray[np.float64]
 
@@ -84,6 +91,21 @@ class ObliqueCollision:
     slip_velocity: Array
     sticking: Array
 
+    def _summary(self) -> list[str]:
+        spins = ", ".join(f"{spin:.4g}" for spin in self.spins)
+        return [
+            f"{quantity(self.velocity, 'm/s')} at {math.degrees(self.angle):.4g}° from the normal, "
+            f"friction {self.friction:.4g}",
+            f"e_n {self.normal_restitution:.4f}, e_t {self.tangential_restitution:.4f}, rebound at "
+            f"{math.degrees(self.rebound_angle):.4g}°, spins {spins} rad/s",
+            f"lost: {quantity(self.friction_loss, 'J')} to friction, "
+            f"{quantity(self.normal_loss, 'J')} in the normal contact; "
+            + ("slides" if self.sliding else "sticks in part"),
+        ]
+
+    __repr__ = summary_text
+    _repr_html_ = summary_html
+
 
 def collide_obliquely(
     law: StoredForce,
@@ -106,7 +128,7 @@ def collide_obliquely(
         The collision and its course.
 
     Raises:
-        CaseError: An argument lies outside its range.
+        CaseError: An argument lies outside its range, or the spin of a wall is not 0.
         DomainError: The normal velocity is above the computed ones, or the depth has no stored
             unloading curve.
         NotConvergedError: The integration of the normal motion failed.
@@ -120,6 +142,11 @@ def collide_obliquely(
         raise CaseError(f"friction: {friction} is not a coefficient of friction; give 0 or more")
     if not all(map(math.isfinite, spins)):
         raise CaseError("spins: must be finite numbers (rad/s)")
+    if any(
+        math.isinf(body.radius) and spin != 0
+        for body, spin in zip((law.pair.first, law.pair.second), spins, strict=True)
+    ):
+        raise CaseError("spins: a wall does not turn; give 0 for it")
     V_n, V_t = velocity * math.cos(angle), velocity * math.sin(angle)
     normal = collide_in_time(law, V_n)
     bodies = law.pair.first, law.pair.second
@@ -162,6 +189,25 @@ def collide_obliquely(
         slip_velocity=course.slip,
         sticking=course.sticking,
     )
+
+
+def oblique_force(run: RunResults, key: str = "angle") -> StoredForce:
+    """Read the force law of a run for oblique impacts.
+
+    Args:
+        run: Stored results of one surface.
+        key: The option or argument that asks for oblique impacts, for the message.
+
+    Returns:
+        The force law of `run`.
+
+    Raises:
+        CaseError: The pair has adhesion, or no mass.
+        OutputError: There are no unloading curves, or a file is damaged.
+    """
+    if run.case.interface.adhesion > 0:
+        raise CaseError(f"{key}: oblique impacts are computed for pairs without adhesion only")
+    return stored_force(run.folder)
 
 
 def course(collision: ObliqueCollision) -> list[dict[str, float | str]]:

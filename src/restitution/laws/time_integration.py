@@ -18,7 +18,7 @@ the maximum force F_max of the intermediate depth.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -35,7 +35,8 @@ from restitution.errors import (
     OutputError,
     RestitutionError,
 )
-from restitution.results.reader import RunResults, damaged
+from restitution.results.reader import RunResults, UnloadingCurve
+from restitution.results.tables import damaged
 
 Array = NDArray[np.float64]
 Force = Callable[[float], float]
@@ -153,24 +154,28 @@ def stored_force(out: Path) -> StoredForce:
             "(for an ensemble, give the folder of one realisation)"
         )
     try:
-        return _stored_force(run)
+        return force_of(run.case.pair(), run.dataset, run.unloading)
     except (ValueError, KeyError, IndexError, TypeError) as error:
         if isinstance(error, RestitutionError):
             raise
         raise damaged(out / "results.nc", f"{type(error).__name__}: {error}") from None
 
 
-def _stored_force(run: RunResults) -> StoredForce:
-    results = run.dataset
+def force_of(pair: Pair, results: xr.Dataset, unloading: Sequence[UnloadingCurve]) -> StoredForce:
+    """Make the force law of `pair` from the variables of a curve and its unloading curves.
+
+    `results` has the variables of `results.nc`; `unloading` is sorted by its starts. Raises
+    `OutputError` if no unloading reaches separation, `CaseError` if `pair` has no mass.
+    """
     depth, force = results["indentation"].values, results["force"].values
     return StoredForce(
-        pair=run.case.pair(),
+        pair=pair,
         deepest=float(depth[-1]),
         highest=float(np.nanmax(results["impact_velocity"].values)),
         loading=_loading(depth, force, results["loading_work"].values),
         separation=_separation(results, depth),
-        unloading_from=np.array([curve.start for curve in run.unloading]),
-        unloading=tuple((curve.indentation, curve.force) for curve in run.unloading),
+        unloading_from=np.array([curve.start for curve in unloading]),
+        unloading=tuple((curve.indentation, curve.force) for curve in unloading),
         roughness=_roughness(results, depth),
     )
 

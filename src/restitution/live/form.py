@@ -165,6 +165,16 @@ _INTERFACE = (
         hint="if empty, no adhesion",
     ),
     Field(
+        "interface.friction",
+        "Coefficient of friction µ",
+        "",
+        0.0,
+        1.0,
+        logarithmic=False,
+        hint="of oblique impacts and exports",
+        more=True,
+    ),
+    Field(
         "interface.approach",
         "Approach",
         choices=_named(get_args(Approach), "equilibrium"),
@@ -324,6 +334,22 @@ _RANGE = (
     ),
     *_span("indentation", "Indentation", "m", (1e-10, 1e-4), ("20 nm", "2 um")),
     *_span("impact", "Velocity", "m/s", (1e-4, 10.0), ("10 mm/s", "0.3 m/s")),
+    Field(
+        "impact.angle",
+        "Angles of impact",
+        "rad",
+        when=("depths", "impact"),
+        hint="from the normal, separated by commas; adds depths at the normal velocities",
+        more=True,
+    ),
+    Field(
+        "impact.spin",
+        "Spin before impact",
+        "rad/s",
+        when=("depths", "impact"),
+        hint="of the first body, or of both",
+        more=True,
+    ),
     *_span("load", "Load", "N", (1e-9, 1e2), ("1 mN", "0.3 N")),
 )
 

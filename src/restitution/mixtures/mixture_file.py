@@ -151,6 +151,9 @@ def parse_mixture(text: str) -> Mixture:
         if name in materials:
             raise CaseError(f"walls.{name}: is also the name of a material; rename the wall")
         components.append(_component(f"walls.{name}", name, table))
+    if file.impact.oblique:
+        key = "spin" if file.impact.angle is None else "angle"
+        raise CaseError(f"impact.{key}: the laws of a mixture are of head-on impacts; remove it")
     names = [component.name for component in components]
     interface = content.get("interface", {})
     interfaces = {("", ""): interface}

@@ -6,10 +6,8 @@ files with their checksums, if there are any, and rejects content that a run can
 
 from __future__ import annotations
 
-import csv
 import json
-import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -24,11 +22,18 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, NonNegativeInt, 
 from restitution.case.case import Case
 from restitution.case.case_file import parse_case
 from restitution.display import counted, quantity, summary_html, summary_text
-from restitution.errors import CaseError, OutputError, one_line
+from restitution.errors import CaseError, OutputError
 from restitution.results.checksums import check_file
 from restitution.results.interruption import hold_signals
-from restitution.results.schema import ALL_COLUMNS, COLUMNS, SPREAD_COLUMNS, STATUS, Column
+from restitution.results.schema import (
+    COLUMNS,
+    OBLIQUE_COLUMNS,
+    OBLIQUE_FILE,
+    OBLIQUE_SPREAD_COLUMNS,
+    STATUS,
+)
 from restitution.results.summaries import curve_lines, run_lines, study_lines
+from restitution.results.tables import check_number, damaged, read_cells, read_numbers, reading
 
 Array = NDArray[np.float64]
 
@@ -106,8 +111,8 @@ class RunResults:
     def curve(self) -> Curve:
         """The rows of `curve.csv`."""
         path = self.folder / "curve.csv"
-        cells = _cells(path)
-        curve = Curve([_numbers(path, line, row) for line, row in enumerate(cells, 2)], cells)
+        cells = read_cells(path, COLUMNS)
+        curve = Curve([read_numbers(path, line, row) for line, row in enumerate(cells, 2)], cells)
         check_file(path)
         return curve
 
@@ -131,7 +136,7 @@ class RunResults:
             if name not in results or results[name].dims != ("indentation_max",):
                 raise damaged(self._netcdf, f"{name} is missing")
             for value in results[name].values.tolist():
-                _check_number(self._netcdf, name, column, float(value))
+                check_number(self._netcdf, name, column, float(value))
         for name in ("case", "derived_reduced_radius_m", "derived_contact_modulus_Pa"):
             if name not in results.attrs:
                 raise damaged(self._netcdf, f"the attribute {name} is missing")
@@ -172,6 +177,18 @@ class RunResults:
         except (KeyError, ValueError, IndexError, TypeError) as error:
             raise damaged(self._netcdf, f"{type(error).__name__}: {error}") from None
         return tuple(sorted(curves, key=lambda curve: curve.start))
+
+    @cached_property
+    def oblique(self) -> list[dict[str, float]]:
+        """The rows of `oblique.csv`, one for each oblique impact; empty if there is none."""
+        path = self.folder / OBLIQUE_FILE
+        if not path.exists():
+            return []
+        cells = read_cells(path, OBLIQUE_COLUMNS)
+        columns = OBLIQUE_COLUMNS | OBLIQUE_SPREAD_COLUMNS
+        rows = [read_numbers(path, line, row, columns) for line, row in enumerate(cells, 2)]
+        check_file(path)
+        return rows
 
     @property
     def _netcdf(self) -> Path:
@@ -242,7 +259,7 @@ class StudyResults:
         """The cases in `table.csv`."""
         path = self.folder / "table.csv"
         found: dict[str, StoredCase] = {}
-        for line, cells in enumerate(_cells(path, "case", "status", "reason"), 2):
+        for line, cells in enumerate(read_cells(path, (*COLUMNS, "case", "status", "reason")), 2):
             swept = dict(list(cells.items())[: list(cells).index("max_indentation_m")])
             status = cells["status"]
             if status not in STATUS:
@@ -256,7 +273,7 @@ class StudyResults:
                     path, f"line {line}: the rows of {name} differ in status or swept values"
                 )
             if status == "complete":
-                case.curve.rows.append(_numbers(path, line, cells))
+                case.curve.rows.append(read_numbers(path, line, cells))
                 case.curve.cells.append(cells)
         check_file(path)
         if not found:
@@ -294,26 +311,6 @@ def read_run(folder: Path) -> RunResults:
     return EnsembleResults(folder) if "realisations" in run.summary else run
 
 
-def damaged(path: Path, why: object) -> OutputError:
-    """Make the error for a damaged file."""
-    return OutputError(f"{path}: is damaged ({one_line(str(why))}); compute it again")
-
-
-@contextmanager
-def reading(path: Path) -> Iterator[None]:
-    """Convert errors of the system and of decoders while reading `path` to `OutputError`."""
-    try:
-        yield
-    except FileNotFoundError:
-        raise OutputError(
-            f"{path}: does not exist; give a folder that was the -o of a command"
-        ) from None
-    except OSError as error:
-        raise OutputError(f"{path}: cannot be read ({error.strerror or error})") from None
-    except (ValueError, csv.Error, RecursionError) as error:
-        raise damaged(path, error) from None
-
-
 def read_text(path: Path) -> str:
     """Read a text file of results. Raises `OutputError`."""
     with reading(path):
@@ -335,54 +332,6 @@ def read_netcdf(path: Path) -> xr.Dataset:
     """Load a netCDF file into memory. Raises `OutputError`."""
     with _opened(path) as stored:
         return stored.load()
-
-
-def _cells(path: Path, *more: str) -> list[dict[str, str]]:
-    """Read the rows of a table that must have the columns of a curve and the columns `more`."""
-    with reading(path), open(path, newline="", encoding="utf-8") as file:
-        reader = csv.DictReader(file, strict=True)
-        rows = list(reader)
-        columns = list(reader.fieldnames or ())
-    missing = [name for name in (*COLUMNS, *more) if name not in columns]
-    if missing:
-        raise damaged(path, f"column {missing[0]} is missing")
-    if len(set(columns)) < len(columns):
-        raise damaged(path, "two columns have the same name")
-    for line, row in enumerate(rows, 2):
-        if None in row or None in row.values():
-            raise damaged(path, f"line {line} does not have {len(columns)} cells")
-    return rows
-
-
-def _numbers(path: Path, line: int, cells: Mapping[str, str]) -> dict[str, float]:
-    """Convert the cells of one row in the columns of a curve to numbers."""
-    found = {}
-    for name, column in ALL_COLUMNS.items():
-        if name in SPREAD_COLUMNS and name not in cells:
-            continue
-        text, where = cells[name], f"line {line}: {name}"
-        if column.flag:
-            if text not in ("true", "false"):
-                raise damaged(path, f"{where} is {text!r}, not true or false")
-            found[name] = float(text == "true")
-            continue
-        try:
-            found[name] = float(text) if text else math.nan
-        except ValueError:
-            raise damaged(path, f"{where} is {text!r}, not a number") from None
-        if text and math.isnan(found[name]):
-            raise damaged(path, f"{where} is {text!r}, not a number")
-        _check_number(path, where, column, found[name])
-    return found
-
-
-def _check_number(path: Path, where: str, column: Column, value: float) -> None:
-    if math.isnan(value):
-        if not column.optional:
-            raise damaged(path, f"{where} has no value")
-        return
-    if math.isinf(value) or not column.low <= value <= column.high:
-        raise damaged(path, f"{where} is {value:g}")
 
 
 @contextmanager

@@ -135,6 +135,55 @@ SPREAD_COLUMNS = {
     ),
 }
 ALL_COLUMNS = COLUMNS | SPREAD_COLUMNS
+OBLIQUE_FILE = "oblique.csv"
+# Columns of the table of oblique impacts. "Tangential" and "rebound" are those of the centres.
+OBLIQUE_COLUMNS = {
+    "impact_velocity_m_per_s": Column(
+        "oblique_velocity", "m s-1", "velocity of the centres before the impact", low=0.0
+    ),
+    "angle_rad": Column("oblique_angle", "rad", "angle of impact from the normal", low=0.0),
+    "first_spin_before_rad_per_s": Column(
+        "oblique_first_spin_before", "rad s-1", "spin of the first body before the impact"
+    ),
+    "second_spin_before_rad_per_s": Column(
+        "oblique_second_spin_before", "rad s-1", "spin of the second body before the impact"
+    ),
+    "friction": Column("oblique_friction", "1", "coefficient of friction", low=0.0),
+    "normal_restitution": Column(
+        "oblique_normal_restitution", "1", "normal restitution", low=0.0, high=1.0
+    ),
+    "normal_restitution_error": Column(
+        "oblique_normal_restitution_error", "1", "error of normal_restitution", 0.0, optional=True
+    ),
+    "tangential_restitution": Column(
+        "oblique_tangential_restitution", "1", "tangential restitution", optional=True
+    ),
+    "rebound_angle_rad": Column("oblique_rebound_angle", "rad", "angle of rebound"),
+    "first_spin_rad_per_s": Column(
+        "oblique_first_spin", "rad s-1", "spin of the first body after the impact"
+    ),
+    "second_spin_rad_per_s": Column(
+        "oblique_second_spin", "rad s-1", "spin of the second body after the impact"
+    ),
+    "friction_loss_J": Column("oblique_friction_loss", "J", "energy lost to friction", low=0.0),
+    "normal_loss_J": Column(
+        "oblique_normal_loss", "J", "energy lost in the normal contact", low=0.0
+    ),
+    "slides": Column(
+        "oblique_slides", "1", "the whole contact slides from beginning to end", flag=True
+    ),
+}
+# Additional columns for an ensemble, whose other columns are means.
+OBLIQUE_SPREAD_COLUMNS = {
+    "realisations": Column("oblique_realisations", "1", "surfaces with this impact", low=0.0),
+    "tangential_restitution_std": Column(
+        "oblique_tangential_restitution_std",
+        "1",
+        "standard deviation over the surfaces",
+        low=0.0,
+        optional=True,
+    ),
+}
 UNLOADING_COLUMNS = ("max_indentation_m", "indentation_m", "force_N")
 STATUS = ("complete", "failed", "missing")  # of a case in the table of a study
 LOCK = ".restitution-lock"  # held by the process that writes in a folder

@@ -35,7 +35,15 @@ from restitution.contact.state import State
 from restitution.errors import OutputError, one_line
 from restitution.results.checksums import CHECKSUMS, checksums
 from restitution.results.interruption import hold_signals
-from restitution.results.schema import ALL_COLUMNS, COLUMNS, LOCK, UNLOADING_COLUMNS
+from restitution.results.schema import (
+    ALL_COLUMNS,
+    COLUMNS,
+    LOCK,
+    OBLIQUE_COLUMNS,
+    OBLIQUE_FILE,
+    OBLIQUE_SPREAD_COLUMNS,
+    UNLOADING_COLUMNS,
+)
 
 _BLOCK = 1 << 16  # bytes written to find out whether the disk is full
 
@@ -95,6 +103,7 @@ class ResultsFolder:
         self.path = path
         self.rows: list[dict[str, float]] = []
         self.unloading: list[tuple[float, list[tuple[float, float]]]] = []
+        self.oblique: list[dict[str, float]] = []
         self._new = make_folder(path)
 
     @contextmanager
@@ -125,6 +134,12 @@ class ResultsFolder:
         """Replace the whole of `curve.csv` with `rows`."""
         self.rows = rows
         write_table(self.path / "curve.csv", rows)
+
+    def put_oblique(self, rows: list[dict[str, float]]) -> None:
+        """Write the table of oblique impacts `rows`, unless it is empty."""
+        self.oblique = [{**row, "slides": bool(row["slides"])} for row in rows]
+        if rows:
+            write_table(self.path / OBLIQUE_FILE, self.oblique)
 
     def add_unloading(self, path: Sequence[State], touch: float = 0.0) -> None:
         """Append one unloading curve, from its deepest state to separation, to `unloading.csv`.
@@ -255,7 +270,7 @@ def replace_file(path: Path, write: Callable[[Path], object]) -> None:
 
 def results_dataset(folder: ResultsFolder, deepest: State) -> xr.Dataset:
     """Make the content of `results.nc`, with units: curve, unloading curves and maps."""
-    data = curve_variables(folder.rows)
+    data = curve_variables(folder.rows) | oblique_variables(folder.oblique)
     if folder.unloading:
         depths, curves = zip(*folder.unloading, strict=True)
         # Pad shorter curves with NaN.
@@ -295,6 +310,33 @@ def curve_variables(rows: Sequence[Mapping[str, float]]) -> dict[str, Any]:
             values = np.array([row[name] for row in rows])
             attributes = {"units": column.unit, "long_name": column.meaning}
             data[column.variable] = ("indentation_max", values, attributes)
+    return data
+
+
+def oblique_variables(rows: Sequence[Mapping[str, float]]) -> dict[str, Any]:
+    """Make the variables of `results.nc` for the rows of oblique impacts; none without rows.
+
+    They depend on the velocity and the angle of the impact, and are NaN for a missing impact.
+    """
+    if not rows:
+        return {}
+    columns = OBLIQUE_COLUMNS | OBLIQUE_SPREAD_COLUMNS
+    keys = list(columns)[:2]
+    along = [sorted({row[key] for row in rows}) for key in keys]
+    at = tuple(
+        [values.index(row[key]) for row in rows] for key, values in zip(keys, along, strict=True)
+    )
+    data: dict[str, Any] = {}
+    for name, column in columns.items():
+        if name not in rows[0]:
+            continue
+        attributes = {"units": column.unit, "long_name": column.meaning}
+        if name in keys:
+            data[column.variable] = (column.variable, along[keys.index(name)], attributes)
+            continue
+        values = np.full([len(each) for each in along], np.nan)
+        values[at] = [row[name] for row in rows]
+        data[column.variable] = ([columns[key].variable for key in keys], values, attributes)
     return data
 
 

@@ -26,12 +26,12 @@ from restitution.case.schema import MOST_NODES
 from restitution.errors import CaseError
 from restitution.results.reader import RunResults
 from restitution.results.schema import COLUMNS
+from restitution.results.total_error import total
 from restitution.results.writer import ResultsFolder, curve_variables, write_table
 from restitution.runs.error_budget import (
     MISSING_BAND,
     Band,
     add_errors,
-    total,
     total_error_summary,
     widened_error,
 )
@@ -164,6 +164,7 @@ def _write_results(
         ],
     )
     one = RunResults(out.path / f"refine-{max(runs)}")
+    out.put_oblique(one.oblique)
     summary = one.summary | {
         "status": log.status,
         "reason": log.reason,

@@ -14,10 +14,17 @@ from restitution.contact.checks.resolution import unresolved_patches
 from restitution.errors import RestitutionError
 from restitution.results.reader import RunResults
 from restitution.results.schema import COLUMNS
-from restitution.results.writer import ResultsFolder, curve_variables, write_table
-from restitution.runs.error_budget import MISSING_BAND, add_errors, total, total_error_summary
+from restitution.results.total_error import total
+from restitution.results.writer import (
+    ResultsFolder,
+    curve_variables,
+    oblique_variables,
+    write_table,
+)
+from restitution.runs.error_budget import MISSING_BAND, add_errors, total_error_summary
 from restitution.runs.log import RunLog, Say, ignore
 from restitution.runs.messages import message
+from restitution.runs.oblique import mean_oblique
 from restitution.runs.refinement import settled
 from restitution.runs.run import run_case
 
@@ -68,6 +75,7 @@ class _Ensemble:
     ) -> None:
         self.case, self.text, self.folder, self.out, self.log = case, text, folder, out, log
         self.curves: dict[int, list[_Row]] = {}
+        self.oblique: list[list[_Row]] = []
         self.failures: list[RestitutionError] = []
         self.ended: list[dict[str, Any]] = []
         self.errors: list[_Row] = []
@@ -107,6 +115,7 @@ class _Ensemble:
         finally:
             if part.rows:
                 self.curves[number] = part.rows
+                self.oblique.append(part.oblique)
             depths = len(part.rows)
             self.ended.append({"realisation": number + 1, "depths": depths, "reason": reason})
 
@@ -145,7 +154,9 @@ class _Ensemble:
         )
         one = RunResults(self.out.path / f"realisation-{min(self.curves) + 1}")
         summary = self._summary(one.summary)
-        dataset = one.smooth().assign(curve_variables(rows))
+        self.out.put_oblique(mean_oblique(self.oblique))
+        variables = curve_variables(rows) | oblique_variables(self.out.oblique)
+        dataset = one.smooth().assign(variables)
         dataset.attrs |= {key: summary[key] for key in ("title", "status")}
         dataset.attrs["warnings"] = "\n".join(summary["warnings"])
         self.out.write(dataset, summary)

@@ -23,7 +23,7 @@ The constants were chosen on some 260 random cases, 30 of them adhesive, and che
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -32,6 +32,7 @@ from numpy.typing import NDArray
 
 from restitution.case.case import Case
 from restitution.contact.checks.resolution import resolves
+from restitution.results.total_error import total
 from restitution.runs.companions import SURFACES, Companions
 from restitution.runs.log import Say, ignore
 from restitution.surfaces import Surface, rms_slope
@@ -244,16 +245,6 @@ def steps(case: Case) -> int:
         return 0
     surfaces = SURFACES if case.roughness and case.realisations == 1 else 0
     return 1 + surfaces + int(case.has_library_values())
-
-
-def total(row: Mapping[str, float]) -> float:
-    """Root sum of squares of the known errors of a row, at most the largest error possible.
-
-    The error is limited because COR is between 0 and 1.
-    """
-    parts = ("restitution_error", "discretisation_error", "surface_scatter", "material_error")
-    known = [error for name in parts if not math.isnan(error := row.get(name, math.nan))]
-    return min(math.hypot(*known), max(row["restitution"], 1 - row["restitution"]))
 
 
 def _floor(row: Row) -> float:

@@ -31,6 +31,7 @@ from restitution.runs.depths import Depth, collision_at, loaded_depths
 from restitution.runs.error_budget import add_errors, band_warning, total_error_summary
 from restitution.runs.log import RunLog, Say, ignore
 from restitution.runs.messages import input_warnings, message, require_possible
+from restitution.runs.oblique import is_oblique, oblique_rows
 from restitution.runs.refinement import settled
 from restitution.runs.smooth import smooth_curve
 from restitution.surfaces import Surface, describe
@@ -108,6 +109,10 @@ def run_case(
             )
         if errors and case.total_error and out.rows:
             _add_errors(case, folder, contact.surface, out, run)
+        if is_oblique(case) and out.rows:
+            oblique, missing = oblique_rows(case, out)
+            out.put_oblique(oblique)
+            run.warnings += [missing] if missing else []
         if failure is not None:
             raise failure
     assert run.summary is not None  # if there is no depth, an error was raised above
@@ -137,7 +142,8 @@ def _load_and_unload(
     go_on: bool,
 ) -> RestitutionError | None:
     """Compute the depths one after the other; return the error of the first depth that failed."""
-    count, curves = len(case.depths()), case.unloading.curves
+    count = len(case.depths())
+    curves = count if is_oblique(case) else case.unloading.curves
     # Numbers of the depths that are unloaded: evenly spaced, with the deepest depth.
     unloaded = {count - 1 - (k * count) // curves for k in range(curves)}
     began = time.perf_counter()

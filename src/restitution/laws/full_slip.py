@@ -1,0 +1,53 @@
+"""Closed forms for impacts in which the whole contact slides from the beginning to the end.
+
+In the foundation (`foundation`), a spring that slides has the displacement µ (E*/G*)(δ − g). It
+slides on as long as the contact point is faster than the rate of this displacement,
+U > µ (E*/G*) dδ/dt. With full slip, U − µ (E*/G*) dδ/dt falls as long as the bodies touch, so the
+end of contact decides, where dδ/dt = −e V_n and U = V_t − (7/2) µ (1 + e) V_n:
+
+    tan θ ≥ µ [(7/2)(1 + e) − e E*/G*].
+
+For e = 1 this is the condition ψ₁ ≥ 4χ − 1 of Maw, Barber and Fawcett (1976, Wear 38, 101–114),
+with ψ₁ = (G*/E*) tan θ/µ and χ = (7/4) G*/E*. It follows for e < 1 in the same way, because springs
+unload with the stiffness E*, whether or not the contact has yielded.
+"""
+
+from __future__ import annotations
+
+import math
+
+
+def full_slip_angle(friction: float, restitution: float, modulus_ratio: float) -> float:
+    """The smallest angle of impact at which the whole contact slides, for bodies without spin.
+
+    Args:
+        friction: Coefficient of friction µ (1).
+        restitution: Normal restitution e (1).
+        modulus_ratio: G*/E* (1).
+
+    Returns:
+        The angle from the normal (rad).
+
+    Source:
+        Maw, Barber and Fawcett (1976) for e = 1; extended to e < 1 in the module's text.
+    """
+    least = 3.5 * (1 + restitution) - restitution / modulus_ratio
+    # A contact point that is slow at first sticks at first (Maw, Barber and Fawcett: ψ₁ < 1).
+    return math.atan(friction * max(least, 1 / modulus_ratio))
+
+
+def full_slip_restitution(friction: float, restitution: float, angle: float) -> float:
+    """Tangential restitution of the centres with full slip: 1 − µ (1 + e)/tan θ.
+
+    Args:
+        friction: Coefficient of friction µ (1).
+        restitution: Normal restitution e (1).
+        angle: Angle of impact from the normal (rad), above 0.
+
+    Returns:
+        Tangential velocity of the centres after over before the impact (1).
+
+    Source:
+        The impulse of a sliding contact: µ times the normal impulse, (1 + e) m* V_n.
+    """
+    return 1 - friction * (1 + restitution) / math.tan(angle)

@@ -1,0 +1,89 @@
+"""Read the tables of stored results as text and as numbers, and report damaged files."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+
+from restitution.errors import OutputError, one_line
+from restitution.results.schema import ALL_COLUMNS, Column
+
+
+def damaged(path: Path, why: object) -> OutputError:
+    """Make the error for a damaged file."""
+    return OutputError(f"{path}: is damaged ({one_line(str(why))}); compute it again")
+
+
+@contextmanager
+def reading(path: Path) -> Iterator[None]:
+    """Convert errors of the system and of decoders while reading `path` to `OutputError`."""
+    try:
+        yield
+    except FileNotFoundError:
+        raise OutputError(
+            f"{path}: does not exist; give a folder that was the -o of a command"
+        ) from None
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be read ({error.strerror or error})") from None
+    except (ValueError, csv.Error, RecursionError) as error:
+        raise damaged(path, error) from None
+
+
+def read_cells(path: Path, required: Iterable[str]) -> list[dict[str, str]]:
+    """Read the rows of a table that must have the columns `required`. Raises `OutputError`."""
+    with reading(path), open(path, newline="", encoding="utf-8") as file:
+        reader = csv.DictReader(file, strict=True)
+        rows = list(reader)
+        columns = list(reader.fieldnames or ())
+    missing = [name for name in required if name not in columns]
+    if missing:
+        raise damaged(path, f"column {missing[0]} is missing")
+    if len(set(columns)) < len(columns):
+        raise damaged(path, "two columns have the same name")
+    for line, row in enumerate(rows, 2):
+        if None in row or None in row.values():
+            raise damaged(path, f"line {line} does not have {len(columns)} cells")
+    return rows
+
+
+def read_numbers(
+    path: Path,
+    line: int,
+    cells: Mapping[str, str],
+    columns: Mapping[str, Column] = ALL_COLUMNS,
+) -> dict[str, float]:
+    """Convert the cells of one row in `columns` to numbers; columns without a cell are left out.
+
+    Raises `OutputError` for a cell that a run cannot have written.
+    """
+    found = {}
+    for name, column in columns.items():
+        if name not in cells:
+            continue
+        text, where = cells[name], f"line {line}: {name}"
+        if column.flag:
+            if text not in ("true", "false"):
+                raise damaged(path, f"{where} is {text!r}, not true or false")
+            found[name] = float(text == "true")
+            continue
+        try:
+            found[name] = float(text) if text else math.nan
+        except ValueError:
+            raise damaged(path, f"{where} is {text!r}, not a number") from None
+        if text and math.isnan(found[name]):
+            raise damaged(path, f"{where} is {text!r}, not a number")
+        check_number(path, where, column, found[name])
+    return found
+
+
+def check_number(path: Path, where: str, column: Column, value: float) -> None:
+    """Raise `OutputError` if `value` lies outside the limits of `column`."""
+    if math.isnan(value):
+        if not column.optional:
+            raise damaged(path, f"{where} has no value")
+        return
+    if math.isinf(value) or not column.low <= value <= column.high:
+        raise damaged(path, f"{where} is {value:g}")

@@ -1,0 +1,16 @@
+"""The total error of COR in a row of results: the sum of its parts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+
+def total(row: Mapping[str, float]) -> float:
+    """Root sum of squares of the known errors of a row, at most the largest error possible.
+
+    The error is limited because COR is between 0 and 1.
+    """
+    parts = ("restitution_error", "discretisation_error", "surface_scatter", "material_error")
+    known = [error for name in parts if not math.isnan(error := row.get(name, math.nan))]
+    return min(math.hypot(*known), max(row["restitution"], 1 - row["restitution"]))

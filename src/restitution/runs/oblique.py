@@ -1,0 +1,138 @@
+"""The oblique impacts of a case, from the curves of its run (`laws.oblique`).
+
+The normal velocity V cos θ of each impact is a depth of the run, and every depth is unloaded. So
+each impact turns at a computed depth, and its unloading force is that of a computed curve.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from restitution.case.case import Case
+from restitution.case.schema import ImpactTable
+from restitution.errors import CaseError, DomainError, NotConvergedError, OutputError
+from restitution.laws.oblique import ObliqueCollision, collide_obliquely
+from restitution.laws.time_integration import StoredForce, force_of
+from restitution.results.reader import UnloadingCurve
+from restitution.results.writer import ResultsFolder, curve_variables
+
+_Row = dict[str, float]
+_SAME = 1e-3  # largest relative difference of normal velocities that count as equal
+
+
+def is_oblique(case: Case) -> bool:
+    """Whether `case` asks for oblique impacts."""
+    return case.impact is not None and case.impact.oblique
+
+
+def oblique_rows(case: Case, out: ResultsFolder) -> tuple[list[_Row], str | None]:
+    """Compute the oblique impacts of `case` from the rows and the unloading curves of `out`.
+
+    Returns a row of `oblique.csv` for each impact, and a warning that names the impacts that could
+    not be computed, or None.
+    """
+    impact, friction = case.impact, case.interface.friction
+    assert impact is not None  # is_oblique
+    assert friction is not None  # Case._check_oblique
+    try:
+        law = _force(case, out)
+    except (CaseError, OutputError, ValueError) as error:
+        return [], f"oblique impacts are not computed: {error}"
+    rows: list[_Row] = []
+    failures: list[str] = []
+    for velocity in impact.velocities():
+        for angle in impact.angles():
+            try:
+                rows.append(_row(law, out.rows, impact, (velocity, angle), friction))
+            except (DomainError, NotConvergedError) as error:
+                failures.append(f"{velocity:.4g} m/s at {math.degrees(angle):.4g} deg ({error})")
+    if not failures:
+        return rows, None
+    more = f" and {len(failures) - 1} more" if len(failures) > 1 else ""
+    return rows, f"oblique impacts without result: {failures[0]}{more}"
+
+
+def mean_oblique(tables: Sequence[Sequence[_Row]]) -> list[_Row]:
+    """Means of the rows of `oblique.csv` over several surfaces, for each velocity and angle.
+
+    `slides` is true if the contact slides on all surfaces. Additional columns are the number of
+    surfaces and the standard deviation of the tangential restitution (NaN for one surface).
+    """
+    found: dict[tuple[float, float], list[_Row]] = {}
+    for table in tables:
+        for row in table:
+            found.setdefault((row["impact_velocity_m_per_s"], row["angle_rad"]), []).append(row)
+    means = []
+    for _, of in sorted(found.items()):
+        row = {name: float(np.mean([each[name] for each in of])) for name in of[0]}
+        row["slides"] = all(each["slides"] for each in of)
+        row["realisations"] = len(of)
+        tangential = [each["tangential_restitution"] for each in of]
+        row["tangential_restitution_std"] = (
+            float(np.std(tangential, ddof=1)) if len(of) > 1 else math.nan
+        )
+        means.append(row)
+    return means
+
+
+def _force(case: Case, out: ResultsFolder) -> StoredForce:
+    """The force law of the rows and unloading curves that a run has computed so far."""
+    curves = []
+    for start, points in out.unloading:
+        indentation, force = np.array(points)[::-1].T
+        curves.append(UnloadingCurve(start, indentation, force))
+    curves.sort(key=lambda curve: curve.start)
+    if not curves:
+        raise OutputError("the run has no unloading curves")
+    return force_of(case.pair(), xr.Dataset(curve_variables(out.rows)), curves)
+
+
+def _row(
+    law: StoredForce,
+    rows: Sequence[_Row],
+    impact: ImpactTable,
+    velocity_and_angle: tuple[float, float],
+    friction: float,
+) -> _Row:
+    """Compute one impact, at the normal velocity of the nearest row of the curve."""
+    velocity, angle = velocity_and_angle
+    normal = velocity * math.cos(angle)
+    nearest = min(rows, key=lambda row: _apart(row, normal))
+    error = math.nan
+    if _apart(nearest, normal) < _SAME:
+        # A run meets its velocities within the error of the work.
+        normal = nearest["impact_velocity_m_per_s"]
+        error = nearest["total_error"]
+    found = collide_obliquely(law, normal / math.cos(angle), angle, friction, impact.spins())
+    return _cells(found, velocity, impact.spins(), error)
+
+
+def _apart(row: _Row, normal: float) -> float:
+    """Relative difference of the velocity of `row` from `normal` (m/s); infinite if unknown."""
+    apart = abs(row["impact_velocity_m_per_s"] / normal - 1)
+    return math.inf if math.isnan(apart) else apart
+
+
+def _cells(
+    found: ObliqueCollision, velocity: float, before: tuple[float, float], error: float
+) -> _Row:
+    return {
+        "impact_velocity_m_per_s": velocity,
+        "angle_rad": found.angle,
+        "first_spin_before_rad_per_s": before[0],
+        "second_spin_before_rad_per_s": before[1],
+        "friction": found.friction,
+        "normal_restitution": min(found.normal_restitution, 1.0),  # above 1 by rounding
+        "normal_restitution_error": error,
+        "tangential_restitution": found.tangential_restitution,
+        "rebound_angle_rad": found.rebound_angle,
+        "first_spin_rad_per_s": found.spins[0],
+        "second_spin_rad_per_s": found.spins[1],
+        "friction_loss_J": found.friction_loss,
+        "normal_loss_J": max(found.normal_loss, 0.0),
+        "slides": found.sliding,
+    }
