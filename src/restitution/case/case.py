@@ -138,15 +138,23 @@ class Case(Table):
             return list(self.grid.refine)
         return [1 if self.grid is None else self.grid.factor] * len(self.depths())
 
+    @property
+    def periodic(self) -> bool:
+        """Whether the contact is periodic."""
+        return self.grid is not None and self.grid.periodic
+
     def pair(self) -> Pair:
-        """The two bodies. Raises `CaseError` if both are flat."""
+        """The two bodies. Raises `CaseError` if both are flat and the grid is not periodic."""
         first = self.first.body()
-        if math.isinf(first.radius) and self.second is None:
-            raise CaseError(
-                "first.radius: both bodies are flat, because [second] is left out and defaults to "
-                '[first]; add [second], or give [first] a radius such as "500 um"'
-            )
-        return Pair(first, first if self.second is None else self.second.body())
+        pair = Pair(first, first if self.second is None else self.second.body())
+        if pair.flat and not self.periodic:
+            if self.second is None:
+                raise CaseError(
+                    "first.radius: both bodies are flat, because [second] is left out and defaults "
+                    'to [first]; add [second], or give [first] a radius such as "500 um"'
+                )
+            raise CaseError("first.radius, second.radius: both are flat; one must be a sphere")
+        return pair
 
     def yielding(self) -> Yielding:
         """The yield model of the contact. Raises `CaseError` if a value for it is missing."""

@@ -6,6 +6,7 @@ maps are properties.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 
 from restitution.contact.contact import Contact
 from restitution.display import counted, quantity, summary_html, summary_text
+from restitution.errors import CaseError
 from restitution.numerics.box import Box, reframe
 from restitution.numerics.read_only import read_only
 
@@ -99,6 +101,28 @@ class State:
     def contact_area(self) -> float:
         """Real contact area (m²): nodes in contact times hx hy."""
         return self.contact_nodes * self.contact.grid.cell_area
+
+    @property
+    def relative_area(self) -> float:
+        """Real contact area over the area of the grid (1)."""
+        return self.contact_nodes / math.prod(self.contact.grid.nodes)
+
+    @property
+    def nominal_pressure(self) -> float:
+        """Force over the area of the grid (Pa)."""
+        return self.force / math.prod(self.contact.grid.size)
+
+    @property
+    def mean_gap(self) -> float:
+        """Mean of the deformed gap (m): the distance of the mean planes of the two surfaces.
+
+        Raises:
+            CaseError: The contact is not periodic.
+        """
+        if not self.contact.periodic:
+            raise CaseError("mean_gap: only a periodic contact has one")
+        gap = self.contact.gap.mean() + self.plastic_displacement.mean() - self.indentation
+        return float(gap)
 
     @property
     def stored_energy(self) -> float:
