@@ -182,7 +182,9 @@ def _is_worth_its_check(window: Box, size: tuple[int, int]) -> bool:
     return rows * columns <= _MAX_WINDOW_FRACTION * size[0] * size[1]
 
 
-def _first_guess(operators: Operators, b: Array, upper: Bound, level: int, periodic: bool) -> Array:
+def _first_guess(
+    operators: Operators, b: Array, upper: Bound, level: int, periodic: bool = False
+) -> Array:
     """Solve on the grid of `level` and return the solution prolonged to the next finer grid.
 
     The solve starts from the first guess of the next coarser grid, or from zero on the coarsest
