@@ -162,6 +162,8 @@ class State:
     def patch_sizes(self) -> NDArray[np.int64]:
         """Sizes of the contact patches, which are sets of nodes connected by cell edges.
 
+        Patches of a periodic contact continue across the edges of the grid.
+
         Returns:
             Numbers of nodes (1), shape (patches,), largest first.
         """
@@ -169,4 +171,18 @@ class State:
 
         labels, count = label(self.box_pressure != 0)
         sizes = np.bincount(labels.ravel(), minlength=count + 1)[1:]
+        if self.contact.periodic and count:
+            sizes = np.bincount(_joined(labels, count), weights=sizes).astype(np.int64)
         return np.sort(sizes)[::-1]
+
+
+def _joined(labels: NDArray[np.int32], count: int) -> NDArray[np.int32]:
+    """Return the number of the patch of each label, if patches continue across the edges."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    edges = np.hstack([[labels[0], labels[-1]], [labels[:, 0], labels[:, -1]]])
+    pairs = edges[:, edges.all(axis=0)] - 1
+    graph = coo_array((np.ones(pairs.shape[1]), pairs), shape=(count, count))
+    found: NDArray[np.int32] = connected_components(graph, directed=False)[1]
+    return found
