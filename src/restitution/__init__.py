@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from restitution.contact.loading import solve, step
     from restitution.contact.path import loading_path, unloading_path
     from restitution.contact.prescribed_force import solve_at_force
+    from restitution.contact.prescribed_pressure import solve_at_pressure
     from restitution.contact.prescribed_velocity import solve_at_velocity
     from restitution.contact.state import State
     from restitution.errors import RestitutionError
@@ -69,6 +70,7 @@ __all__ = [
     "smooth",
     "solve",
     "solve_at_force",
+    "solve_at_pressure",
     "solve_at_velocity",
     "step",
     "theory",
@@ -85,6 +87,7 @@ _MODULES = {
     "contact.contact": ("Contact", "smooth"),
     "contact.prescribed_velocity": ("solve_at_velocity",),
     "contact.prescribed_force": ("solve_at_force",),
+    "contact.prescribed_pressure": ("solve_at_pressure",),
     "contact.loading": ("solve", "step"),
     "contact.path": ("loading_path", "unloading_path"),
     "contact.state": ("State",),

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from restitution.laws.law import Law
     from restitution.laws.oblique import ObliqueCollision
     from restitution.laws.time_integration import StoredForce
+    from restitution.results.periodic import PeriodicResults
     from restitution.results.reader import RunResults, StudyResults
 
 Folder = str | os.PathLike[str]
@@ -25,7 +26,7 @@ def run(
     *,
     out: Folder,
     progress: Callable[[str], None] | None = None,
-) -> RunResults:
+) -> RunResults | PeriodicResults:
     """Run a case, as `restitution run` does, and open its results.
 
     `results.dataset` is an xarray Dataset with units; `results.curve` has the rows of `curve.csv`,
@@ -39,13 +40,15 @@ def run(
         progress: Called with a short text after every step.
 
     Returns:
-        The stored results. Each of their warnings is also issued as a `UserWarning`.
+        The stored results (`PeriodicResults` for a periodic case). Each of their warnings is also
+        issued as a `UserWarning`.
 
     Raises:
         RestitutionError: The case is invalid, `out` is not empty, or the run failed.
     """
     from restitution.case.case_file import naming
     from restitution.results.locking import locked
+    from restitution.results.periodic import PeriodicResults
     from restitution.results.reader import read_run
     from restitution.results.writer import ResultsFolder
     from restitution.runs.ensemble import run_realisations
@@ -55,7 +58,7 @@ def run(
     target = Path(out)
     with locked(target), naming(name):
         run_realisations(read, text, name.parent, ResultsFolder(target), progress or ignore)
-    results = read_run(target)
+    results = PeriodicResults(target) if read.periodic else read_run(target)
     for warning in results.summary["warnings"]:
         warnings.warn(warning, stacklevel=2)
     return results
@@ -79,7 +82,7 @@ def _read(case: Folder | Mapping[str, Any]) -> tuple[Case, str, Path]:
         return parse_case(text), text, name
 
 
-def open_results(folder: Folder) -> RunResults | StudyResults:
+def open_results(folder: Folder) -> RunResults | StudyResults | PeriodicResults:
     """Open the stored results of a run, ensemble, convergence study or study.
 
     `results.dataset` is an xarray Dataset in SI units, with the attribute `units` on every
@@ -92,14 +95,19 @@ def open_results(folder: Folder) -> RunResults | StudyResults:
         folder: Results folder, the OUT of `restitution run`, `converge` or `study`.
 
     Returns:
-        `StudyResults` for a study, `EnsembleResults` for several surfaces, or `RunResults`.
+        `StudyResults` for a study, `EnsembleResults` for several surfaces, `PeriodicResults` for a
+        periodic case, or `RunResults`.
 
     Raises:
         OutputError: The folder does not hold results, or a file is damaged.
     """
+    from restitution.results.periodic import PeriodicResults
     from restitution.results.reader import StudyResults, read_run
+    from restitution.results.schema import PERIODIC_FILE
 
     path = Path(folder)
+    if (path / PERIODIC_FILE).is_file():
+        return PeriodicResults(path)
     if (path / "study.toml").is_file():
         return StudyResults(path)
     if not (path / "results.nc").is_file():

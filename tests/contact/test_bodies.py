@@ -50,10 +50,14 @@ def test_without_a_density_there_is_no_mass():
     assert Pair(light, Body(math.inf, 1e9, 0.3)).mass is None
 
 
-def test_two_walls_are_no_contact():
+def test_two_walls_have_no_radius_and_no_finite_mass():
     wall = Body(math.inf, 70e9, 0.3)
-    with pytest.raises(CaseError, match=r"first\.radius, second\.radius: both are flat"):
-        Pair(wall, wall)
+    pair = Pair(wall, wall)
+    assert pair.flat
+    assert pair.radius == pair.mass == math.inf
+    assert pair.contact_modulus == approx(70e9 / (2 * 0.91), rel=1e-14)
+    assert repr(pair).startswith("Pair: flat bodies, E*")
+    assert not Pair(STEEL, wall).flat
 
 
 @given(bodies, bodies)

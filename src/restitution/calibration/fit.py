@@ -108,7 +108,7 @@ def fit(
     `solve_at_velocity` if the fitted case cannot be solved.
     """
     content = parse_toml(text)
-    parse_case(text)
+    parse_case(text).require_impact()
     parameters = free_parameters(content, names)
     _check_points(measured, len(parameters))
     V = measured.velocity

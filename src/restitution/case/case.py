@@ -8,9 +8,9 @@ from typing import Annotated, Any, cast
 
 from pydantic import BeforeValidator, model_validator
 
-from restitution.case import needs
+from restitution.case import needs, periodic
 from restitution.case.bodies import BodyTable, InterfaceTable, Yielding
-from restitution.case.quantities import Force, Length
+from restitution.case.quantities import Force, Length, Pressure
 from restitution.case.roughness import MeasuredRoughness, Roughness
 from restitution.case.schema import GridTable, ImpactTable, Series, Table, UnloadingTable
 from restitution.contact.bodies import Pair
@@ -26,7 +26,7 @@ def _one_or_more(value: Any) -> Any:
     return tuple(value) if isinstance(value, list) else (value,)
 
 
-DEPTHS = ("indentation", "load", "impact")  # tables that can prescribe the depths
+DEPTHS = ("indentation", "load", "impact", "pressure")  # tables that can prescribe the depths
 
 
 class Case(Table):
@@ -42,6 +42,7 @@ class Case(Table):
     indentation: Series[Length] | None = None
     load: Series[Force] | None = None
     impact: ImpactTable | None = None
+    pressure: Series[Pressure] | None = None
     unloading: UnloadingTable = UnloadingTable()
 
     @model_validator(mode="after")
@@ -50,7 +51,15 @@ class Case(Table):
         if len(given) != 1:
             which = f"[{'] and ['.join(given)}]" if given else "none of them"
             raise ValueError(
-                f"give one of the tables [indentation], [load] and [impact]; this case has {which}"
+                "give one of the tables [indentation], [load], [impact] and [pressure]; this case "
+                f"has {which}"
+            )
+        if self.periodic:
+            periodic.require_possible(self)
+        elif self.pressure is not None:
+            raise ValueError(
+                "[pressure] is the nominal pressure of a periodic contact: add periodic = true to "
+                "[grid], or give [load]"
             )
         if self.impact is not None:
             self._check_masses()
@@ -157,15 +166,31 @@ class Case(Table):
             return list(self.grid.refine)
         return [1 if self.grid is None else self.grid.factor] * len(self.depths())
 
-    def pair(self) -> Pair:
-        """The two bodies. Raises `CaseError` if both are flat."""
-        first = self.first.body()
-        if math.isinf(first.radius) and self.second is None:
+    def require_impact(self) -> None:
+        """Raise `CaseError` for a periodic contact, which has no impact and no restitution."""
+        if self.periodic:
             raise CaseError(
-                "first.radius: both bodies are flat, because [second] is left out and defaults to "
-                '[first]; add [second], or give [first] a radius such as "500 um"'
+                "grid.periodic: a periodic contact has no restitution, and only `restitution run`, "
+                "`check` and `surface` take its case"
             )
-        return Pair(first, first if self.second is None else self.second.body())
+
+    @property
+    def periodic(self) -> bool:
+        """Whether the contact is periodic."""
+        return self.grid is not None and self.grid.periodic
+
+    def pair(self) -> Pair:
+        """The two bodies. Raises `CaseError` if both are flat and the grid is not periodic."""
+        first = self.first.body()
+        pair = Pair(first, first if self.second is None else self.second.body())
+        if pair.flat and not self.periodic:
+            if self.second is None:
+                raise CaseError(
+                    "first.radius: both bodies are flat, because [second] is left out and defaults "
+                    'to [first]; add [second], or give [first] a radius such as "500 um"'
+                )
+            raise CaseError("first.radius, second.radius: both are flat; one must be a sphere")
+        return pair
 
     def yielding(self) -> Yielding:
         """The yield model of the contact. Raises `CaseError` if a value for it is missing."""
@@ -202,6 +227,7 @@ class Case(Table):
             work_of_adhesion=self.interface.adhesion,
             approach=self.interface.approach,
             detachment=self.interface.detachment,
+            periodic=self.periodic,
         )
 
     def run_bytes(self, grid: Grid) -> float:
@@ -212,7 +238,10 @@ class Case(Table):
         return needs.run_bytes(grid, plasticity=plasticity, adhesive=adhesive)
 
     def depths(self) -> list[float]:
-        """The prescribed indentations (m), loads (N) or impact velocities (m/s), increasing."""
-        table = self.indentation or self.load or self.impact
+        """The prescribed values, increasing.
+
+        They are indentations (m), loads (N), impact velocities (m/s) or nominal pressures (Pa).
+        """
+        table = self.indentation or self.load or self.impact or self.pressure
         assert table is not None  # checked by _whole
         return table.series()

@@ -14,11 +14,14 @@ def deepest_indentation(case: Case) -> float:
     """The deepest indentation (m); an estimate unless the case prescribes it.
 
     For a load, it is the indentation of smooth elastic bodies. For an impact velocity, it is the
-    indentation of smooth bodies that yield according to Thornton and Ning.
+    indentation of smooth bodies that yield according to Thornton and Ning. It is NaN for a periodic
+    case that prescribes a load or a pressure.
     """
     last, pair = case.depths()[-1], case.pair()
     if case.indentation is not None:
         return last
+    if case.periodic:
+        return math.nan
     if case.load is not None:
         return float(Hertz(pair.radius, pair.contact_modulus).indentation(last))
     assert pair.mass is not None  # checked by Case._check_masses
@@ -35,6 +38,8 @@ def derived_quantities(case: Case, contact: Contact) -> dict[str, float | None]:
     The keys end with the SI units.
     """
     pair, p_y = contact.pair, contact.hardness
+    if contact.periodic:
+        return _of_period(contact)
     deepest = deepest_indentation(case)
     radius = predicted_radius(pair, deepest, p_y)
     elastic = math.isinf(p_y)
@@ -58,6 +63,19 @@ def derived_quantities(case: Case, contact: Contact) -> dict[str, float | None]:
         "predicted_contact_radius_m": radius,
         "nodes_over_contact_radius": radius / max(contact.grid.spacing),
         "domain_half_width_m": 0.5 * min(contact.grid.size),
+    }
+
+
+def _of_period(contact: Contact) -> dict[str, float | None]:
+    """Quantities of a periodic contact; E* times the rms slope is the unit of its pressures."""
+    elastic, (wide, long) = math.isinf(contact.hardness), contact.grid.size
+    return {
+        "contact_modulus_Pa": contact.pair.contact_modulus,
+        "yield_pressure_Pa": None if elastic else contact.hardness,
+        "rms_slope": contact.slope,
+        "reduced_pressure_Pa": contact.pair.contact_modulus * contact.slope,
+        "mean_gap_at_first_touch_m": float(contact.gap.mean()),
+        "nominal_area_m2": wide * long,
     }
 
 

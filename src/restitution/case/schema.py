@@ -75,6 +75,7 @@ class GridTable(Table):
     nodes: Annotated[tuple[Nodes, Nodes], PairOf, AfterValidator(_few_enough)] | None = None
     spacing: Annotated[tuple[Length, Length], PairOf] | None = None
     refine: Annotated[int | tuple[int, ...] | Literal["auto"], PlainValidator(_factors)] = 1
+    periodic: bool = False
 
     @model_validator(mode="after")
     def _whole(self) -> Self:

@@ -34,6 +34,10 @@ _LABELS = {
     "predicted_contact_radius_m": ("contact radius there, smooth", 1e6, "um"),
     "domain_half_width_m": ("half width of the grid", 1e6, "um"),
     "nodes_over_contact_radius": ("nodes over the contact radius", 1, ""),
+    "rms_slope": ("rms slope h'", 1, ""),
+    "reduced_pressure_Pa": ("unit of pressure E* h'", 1e-6, "MPa"),
+    "mean_gap_at_first_touch_m": ("mean gap at first touch", 1e9, "nm"),
+    "nominal_area_m2": ("nominal area, one period", 1e12, "um^2"),
 }
 
 

@@ -48,6 +48,7 @@ def compare_theory(
     read, _ = read_case(case)
     points = None if law is None else read_law(law)
     with naming(case):
+        read.require_impact()
         if points is not None:
             theories.check_same_pair(read, points)
         velocities = theories.velocities_of(read, points)

@@ -77,7 +77,8 @@ def run_with_progress(
             warn_once() as warn,
             Progress(*columns, console=errors, transient=True) as bar,
         ):
-            task = bar.add_task("reading the surface", total=depths * runs(read) + steps(read))
+            more = 0 if read.periodic else steps(read)
+            task = bar.add_task("reading the surface", total=depths * runs(read) + more)
             summary = start(
                 read,
                 text,
@@ -106,7 +107,8 @@ def run_with_progress(
         raise
     names = [p.name for p in sorted(out.iterdir()) if p.name not in drawn and p.name != LOCK]
     say_written(out, [*names, *sorted(drawn)])
-    say_next(command("report", out))
+    if not read.periodic:
+        say_next(command("report", out))
     return summary
 
 
@@ -129,16 +131,23 @@ def _draw_partial_results(folder: ResultsFolder, depths: int, figures: FigureFor
 
 def _draw(out: Path, figures: FigureFormat) -> list[Path]:
     """Draw every figure that the results in `out` support; return the files written."""
+    from restitution.plots.periodic import periodic_figures
     from restitution.plots.run import run_figures
     from restitution.plots.static import write_figures
+    from restitution.results.periodic import PeriodicResults
     from restitution.results.reader import RunResults
+    from restitution.results.schema import PERIODIC_FILE
 
+    if (out / PERIODIC_FILE).is_file():
+        return write_figures(out, periodic_figures(PeriodicResults(out).dataset), figures.value)
     return write_figures(out, run_figures(RunResults(out).dataset), figures.value)
 
 
 def _curve(rows: list[dict[str, float]]) -> Table:
     from restitution.cli.console import table_of_numbers
 
+    if "nominal_pressure_Pa" in rows[0]:
+        return _periodic_curve(rows)
     table = table_of_numbers(
         "depth (nm)", "force (N)", "V (m/s)", "COR", "± model", "nodes", "resolved"
     )
@@ -152,6 +161,24 @@ def _curve(rows: list[dict[str, float]]) -> Table:
             f"{row['model_error']:.3f}",
             f"{row['contact_nodes']:.0f}",
             "yes" if row["resolved"] and row["adhesion_resolved"] else "no",
+        )
+    return table
+
+
+def _periodic_curve(rows: list[dict[str, float]]) -> Table:
+    from restitution.cli.console import table_of_numbers
+
+    table = table_of_numbers(
+        "depth (nm)", "mean gap (nm)", "pressure (MPa)", "area (%)", "energy (J)", "resolved"
+    )
+    for row in rows:
+        table.add_row(
+            f"{1e9 * row['indentation_m']:.4g}",
+            f"{1e9 * row['mean_gap_m']:.4g}",
+            f"{1e-6 * row['nominal_pressure_Pa']:.4g}",
+            f"{100 * row['corrected_relative_area']:.4g}",
+            f"{row['stored_energy_J']:.4g}",
+            "yes" if row["resolved"] else "no",
         )
     return table
 

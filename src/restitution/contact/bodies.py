@@ -64,21 +64,21 @@ class Pair:
     Attributes:
         first: One body.
         second: The other body; the same object for two equal spheres.
-
-    Raises:
-        CaseError: Both bodies are walls.
     """
 
     first: Body
     second: Body
 
-    def __post_init__(self) -> None:
-        if math.isinf(self.first.radius) and math.isinf(self.second.radius):
-            raise CaseError("first.radius, second.radius: both are flat; one must be a sphere")
+    @property
+    def flat(self) -> bool:
+        """Whether both bodies are flat, as a periodic contact needs."""
+        return math.isinf(self.first.radius) and math.isinf(self.second.radius)
 
     @property
     def radius(self) -> float:
-        """Reduced radius R* (m): 1/R* = 1/R₁ + 1/R₂."""
+        """Reduced radius R* (m): 1/R* = 1/R₁ + 1/R₂; inf if both bodies are flat."""
+        if self.flat:
+            return math.inf
         return 1 / (1 / self.first.radius + 1 / self.second.radius)
 
     @property
@@ -112,7 +112,12 @@ class Pair:
 
     @property
     def mass(self) -> float | None:
-        """Reduced mass m* (kg): 1/m* = 1/m₁ + 1/m₂; None if a sphere's density is not given."""
+        """Reduced mass m* (kg): 1/m* = 1/m₁ + 1/m₂; None if a sphere's density is not given.
+
+        It is inf if both bodies are flat.
+        """
+        if self.flat:
+            return math.inf
         if self.first.mass is None or self.second.mass is None:
             return None
         return 1 / (1 / self.first.mass + 1 / self.second.mass)
@@ -120,8 +125,10 @@ class Pair:
     def _reduced(self) -> str:
         """R*, E* and m*, as `repr` shows them."""
         mass = "" if self.mass is None else f", m* {quantity(self.mass, 'kg')}"
-        R, E = quantity(self.radius, "m"), quantity(self.contact_modulus, "Pa")
-        return f"R* {R}, E* {E}{mass}"
+        E = quantity(self.contact_modulus, "Pa")
+        if self.flat:
+            return f"flat bodies, E* {E}"
+        return f"R* {quantity(self.radius, 'm')}, E* {E}{mass}"
 
     def _summary(self) -> list[str]:
         bodies = {"first": self.first, "second": self.second}

@@ -1,8 +1,10 @@
 """The contact before loading: bodies, surface, yield model, and the gap between the bodies.
 
 Conventions: a gap above 0 is open, a pressure above 0 is compressive. The indentation (approach of
-the bodies) is 0 at the first touch of the undeformed bodies and grows as they approach. Arrays are
-indexed `[i, j]` along x and y and hold values at cell centres.
+the bodies) is 0 at the first touch of the undeformed bodies and grows as they approach. In a
+periodic contact, it is the approach of the mean planes of the two surfaces since first touch, which
+is the decrease of the mean gap. Arrays are indexed `[i, j]` along x and y and hold values at cell
+centres.
 """
 
 from __future__ import annotations
@@ -64,6 +66,9 @@ class Contact:
         yield_strength: Yield strength of a tensile test (Pa); inf if unused.
         tangent_modulus: Slope of tensile stress over strain after yield (Pa), for
             `expanding-cavity`.
+        periodic: Whether the surface repeats in both directions without end, between two flat
+            bodies. A periodic contact is elastic or has a constant bound (`equilibrium`), without
+            adhesion.
 
     Raises:
         CaseError: A value is invalid, two values exclude each other, or `pair` or `surface` has a
@@ -79,6 +84,7 @@ class Contact:
     detachment: Detachment = "crack-closure"
     yield_strength: float = math.inf
     tangent_modulus: float = 0.0
+    periodic: bool = False
 
     def __post_init__(self) -> None:
         if not isinstance(self.pair, Pair):
@@ -127,6 +133,27 @@ class Contact:
             raise CaseError("tangent_modulus: hardening needs a yield_strength")
         if not 0 <= self.work_of_adhesion < math.inf:
             raise CaseError(f"work_of_adhesion: {self.work_of_adhesion} J/m2 is not zero or more")
+        self._check_period()
+
+    def _check_period(self) -> None:
+        if not self.periodic:
+            if self.pair.flat:
+                raise CaseError(
+                    "first.radius, second.radius: both are flat; one must be a sphere, or the "
+                    "contact periodic"
+                )
+            return
+        if not self.pair.flat:
+            raise CaseError(
+                "periodic: needs two flat bodies (radius inf); the surface alone may be curved"
+            )
+        if self.adhesive:
+            raise CaseError("work_of_adhesion: a periodic contact has no adhesion; leave it out")
+        if self.plasticity != "equilibrium":
+            raise CaseError(
+                "plasticity: a periodic contact is elastic or has a constant bound; give a "
+                'yield_pressure and plasticity "equilibrium"'
+            )
 
     @property
     def grows(self) -> bool:
@@ -208,6 +235,7 @@ class Contact:
         w = quantity(self.work_of_adhesion, "J/m²")
         adheres = f", work of adhesion {w}" if self.adhesive else ""
         roughness, _, grid = self.surface._summary()
+        grid += ", periodic" if self.periodic else ""
         return [self.pair._reduced(), f"{yields}{adheres}", f"{roughness}; {grid}"]
 
     __repr__ = summary_text

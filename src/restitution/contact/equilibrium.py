@@ -12,22 +12,27 @@ Without adhesion the lower bound is zero. The contact then lies inside the set {
 K p > 0 under every positive pressure. So solving on the bounding box of this set is exact. With
 adhesion the lower bound is a tension on the nodes held in contact. The box then also contains these
 nodes and a margin of two cells.
+
+In a periodic contact, K displaces the surface by zero on average, so K p < 0 somewhere. Nodes with
+h ≥ δ may then come into contact, and the box is the whole grid. The mean of the gradient gives the
+mean gap, mean(h) − δ: an elastic contact is complete at δ = mean(h).
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from restitution.contact.contact import Contact
-from restitution.contact.influence import half_space, inverse_half_space
+from restitution.contact.influence import half_space, inverse_half_space, periodic_half_space
 from restitution.contact.state import State
-from restitution.errors import NotConvergedError
+from restitution.errors import DomainError, NotConvergedError
 from restitution.numerics.box import NOWHERE, Box, bounding_box, shape_of, widen
 from restitution.numerics.convolution.device import current
-from restitution.numerics.convolution.operators import FreeConvolution, SpectralFilter
+from restitution.numerics.convolution.operators import Convolution, SpectralFilter
 from restitution.numerics.quadratic.minimise import BoundedQuadratic, minimise_quadratic
 from restitution.numerics.quadratic.multilevel import Operators, solve_multilevel
 from restitution.numerics.read_only import freeze
@@ -83,11 +88,17 @@ def solve_pressure(
     The lower bound is 0, or minus the tension at the `held` nodes (None without adhesion). `limit`
     (Pa) is a number or an array of the shape of the grid. `box` contains the `candidate_box` and
     all held nodes. `residual` bounds the violation of the contact conditions, relative to the
-    overlap δ − min h or, with adhesion, to `Contact.residual_length`. Raises `NotConvergedError`.
-    Contact at the grid edge is not checked here.
+    overlap δ − min h or, with adhesion, to `Contact.residual_length`. Contact at the grid edge is
+    not checked here. Raises `NotConvergedError`, and `DomainError` if an elastic periodic contact
+    cannot be as deep.
     """
     device, shape = current(), shape_of(box)
     b = _overlap(contact, indentation, box, history)
+    if contact.periodic and limit == math.inf and b.mean() >= 0:
+        raise DomainError(
+            f"indentation: the contact is complete at {1e9 * (indentation - b.mean()):.6g} nm, "
+            "below this indentation; use a smaller one, or prescribe the pressure"
+        )
     scale = _scale_of(contact, indentation, b)
     operators = _operators_of(contact)
     upper = limit
@@ -100,6 +111,7 @@ def solve_pressure(
             upper,
             tolerance=residual * scale,
             max_iterations=MAX_ITERATIONS,
+            periodic=contact.periodic,
         )
     else:
         K, inverse = operators(shape, 0)
@@ -147,10 +159,11 @@ def _scale_of(contact: Contact, indentation: float, b: Array) -> float:
 def _operators_of(contact: Contact) -> Operators:
     """Return a function that makes the operator and its approximate inverse for any level."""
     E_star, (hx, hy) = contact.pair.contact_modulus, contact.grid.spacing
+    make = periodic_half_space if contact.periodic else half_space
 
-    def operators(shape: tuple[int, int], level: int) -> tuple[FreeConvolution, SpectralFilter]:
+    def operators(shape: tuple[int, int], level: int) -> tuple[Convolution, SpectralFilter]:
         cells = 2**level * hx, 2**level * hy
-        return half_space(shape, cells, E_star), inverse_half_space(shape, cells, E_star)
+        return make(shape, cells, E_star), inverse_half_space(shape, cells, E_star)
 
     return operators
 
@@ -201,9 +214,13 @@ def build_state(
 def candidate_box(contact: Contact, indentation: float, history: State | None = None) -> Box | None:
     """Return the bounding box of the nodes with a gap below `indentation`; None without such nodes.
 
-    The box contains every contact without adhesion.
+    The box contains every contact without adhesion. For a periodic contact, it is the whole grid.
     """
     nodes = contact.grid.nodes
+    if contact.periodic:
+        gap = contact.gap if history is None else contact.gap + history.plastic_displacement
+        whole = slice(0, nodes[0]), slice(0, nodes[1])
+        return whole if bool((gap < indentation).any()) else None
     if history is None:
         return bounding_box(contact.gap < indentation)
     if indentation <= history.indentation:  # outside the old box no new contact arises

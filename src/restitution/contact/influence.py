@@ -3,6 +3,9 @@
 Pressure and displacement are positive into the body. Both bodies are combined into one half-space
 of contact modulus E*: 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂. Shear traction and displacement point
 along x. The two compliances of `Pair.shear_compliances` combine the bodies.
+
+On a periodic half-space, a wave of pressure of the angular wave number q causes a wave of
+displacement of 2/(E* |q|) times the amplitude (Johnson 1985, *Contact Mechanics*, §13.2).
 """
 
 from __future__ import annotations
@@ -16,11 +19,15 @@ from numpy.typing import NDArray
 
 from restitution.numerics.convolution.cache import operator_cache
 from restitution.numerics.convolution.device import CPU, Device, current
-from restitution.numerics.convolution.operators import FreeConvolution, SpectralFilter
+from restitution.numerics.convolution.operators import (
+    FreeConvolution,
+    PeriodicConvolution,
+    SpectralFilter,
+)
 from restitution.numerics.multipoles import multipoles
 
 Array = NDArray[np.float64]
-Operator = TypeVar("Operator", FreeConvolution, SpectralFilter)
+Operator = TypeVar("Operator", FreeConvolution, PeriodicConvolution, SpectralFilter)
 Moduli = TypeVar("Moduli", float, tuple[float, float])
 
 # Distance (in cell diagonals) beyond which the series of `far_displacement` is used. Its relative
@@ -142,6 +149,39 @@ def shear_half_space(
     return _operator(_shear_half_space, shape, spacing, compliances)
 
 
+def periodic_half_space(
+    shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
+) -> PeriodicConvolution:
+    """Make the operator p ↦ u on one period of a half-space; a mean pressure displaces nothing.
+
+    The displacement is therefore measured from its mean, and its mean is zero.
+    """
+    return _operator(_periodic_half_space, shape, spacing, contact_modulus)
+
+
+def sprung_half_space(
+    shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
+) -> PeriodicConvolution:
+    """Make the operator of a periodic half-space on an elastic foundation.
+
+    It is `periodic_half_space` plus `foundation_compliance` times the mean pressure. The inverse of
+    `inverse_half_space` is exact for it. In contrast to `periodic_half_space` it is positive
+    definite.
+    """
+    return _operator(_sprung_half_space, shape, spacing, contact_modulus)
+
+
+def foundation_compliance(
+    shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
+) -> float:
+    """Displacement of `sprung_half_space` per mean pressure (m/Pa).
+
+    It is that of the wave that is twice as long as the longer edge of the period.
+    """
+    q = math.pi / max(n * h for n, h in zip(shape, spacing, strict=True))
+    return 2 / (contact_modulus * q)
+
+
 # Largest operator and largest block of coefficients that are cached, as fractions of the cache. As
 # a contact grows, larger operators would fill the cache. With the default size of the cache, the
 # limit is 1400² nodes.
@@ -233,7 +273,7 @@ def _inverse_half_space(
 ) -> SpectralFilter:
 
     def symbol(qx: Array, qy: Array) -> Array:
-        q: Array = np.sqrt((qx / spacing[0]) ** 2 + (qy / spacing[1]) ** 2)
+        q = _wave_numbers(qx, qy, spacing)
         # On a periodic half-space a mean pressure has no finite displacement, so the mean has no
         # inverse. Use half the wave number of the longest wave for the mean.
         longest = [2 * np.pi / min(spacing)]
@@ -244,3 +284,41 @@ def _inverse_half_space(
         return q
 
     return SpectralFilter(symbol, shape, device)
+
+
+def _periodic_half_space(
+    shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float, device: Device
+) -> PeriodicConvolution:
+    return _with_mean(0.0, shape, spacing, contact_modulus, device)
+
+
+def _sprung_half_space(
+    shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float, device: Device
+) -> PeriodicConvolution:
+    compliance = foundation_compliance(shape, spacing, contact_modulus)
+    return _with_mean(compliance, shape, spacing, contact_modulus, device)
+
+
+def _with_mean(
+    compliance: float,
+    shape: tuple[int, int],
+    spacing: tuple[float, float],
+    contact_modulus: float,
+    device: Device,
+) -> PeriodicConvolution:
+    """Periodic half-space in which a mean pressure displaces the surface by `compliance`."""
+
+    def symbol(qx: Array, qy: Array) -> Array:
+        q = _wave_numbers(qx, qy, spacing)
+        q[0, 0] = 1.0  # avoids a division by zero
+        displacement: Array = 2 / contact_modulus / q
+        displacement[0, 0] = compliance
+        return displacement
+
+    return PeriodicConvolution(symbol, shape, device)
+
+
+def _wave_numbers(qx: Array, qy: Array, spacing: tuple[float, float]) -> Array:
+    """Magnitude of the wave vector (rad/m) for wave numbers in rad per cell."""
+    q: Array = np.sqrt((qx / spacing[0]) ** 2 + (qy / spacing[1]) ** 2)
+    return q

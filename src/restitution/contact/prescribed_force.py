@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from restitution.contact.contact import Contact
 from restitution.contact.loading import solve, solve_without_work
+from restitution.contact.prescribed_pressure import solve_at_pressure
 from restitution.contact.state import State
 from restitution.errors import CaseError, DomainError, NotConvergedError
 from restitution.theory import Hertz
@@ -19,7 +20,8 @@ def solve_at_force(contact: Contact, force: float, *, start: State | None = None
     """Load the undeformed bodies to `force`, within a relative error of 1e-8.
 
     The force increases with the indentation, so a bracketing root finder always converges. With
-    adhesion, each solve of the root finder starts from the previous solve.
+    adhesion, each solve of the root finder starts from the previous solve. A periodic contact is
+    solved by `solve_at_pressure`, under the force divided by the area of the grid.
 
     Args:
         contact: Contact to load.
@@ -39,6 +41,8 @@ def solve_at_force(contact: Contact, force: float, *, start: State | None = None
     if not 0 < force < math.inf:
         raise CaseError(f"force: {force} N is not positive")
     nx, ny = contact.grid.nodes
+    if contact.periodic:
+        return solve_at_pressure(contact, force / (contact.grid.cell_area * nx * ny))
     capacity = contact.hardness * contact.grid.cell_area * nx * ny
     if force >= capacity:
         raise DomainError(

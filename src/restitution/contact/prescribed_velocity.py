@@ -38,13 +38,15 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
         State at the deepest point of the impact.
 
     Raises:
-        CaseError: The velocity is not positive, or a body has no density.
+        CaseError: The velocity is not positive, a body has no density, or the contact is periodic.
         DomainError: The contact reaches the edge of the grid.
         NotConvergedError: The work jumps at this indentation, or a solve did not converge.
     """
     mass = contact.pair.mass
     if mass is None:
         raise CaseError("density: is missing; give the density of both bodies, or no velocity")
+    if contact.periodic:
+        raise CaseError("velocity: the bodies of a periodic contact have no mass; use solve")
     if not 0 < velocity < math.inf:
         raise CaseError(f"velocity: {velocity} m/s is not positive")
     work = 0.5 * mass * velocity**2

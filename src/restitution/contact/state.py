@@ -6,6 +6,7 @@ maps are properties.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 
 from restitution.contact.contact import Contact
 from restitution.display import counted, quantity, summary_html, summary_text
+from restitution.errors import CaseError
 from restitution.numerics.box import Box, reframe
 from restitution.numerics.read_only import read_only
 
@@ -101,6 +103,28 @@ class State:
         return self.contact_nodes * self.contact.grid.cell_area
 
     @property
+    def relative_area(self) -> float:
+        """Real contact area over the area of the grid (1)."""
+        return self.contact_nodes / math.prod(self.contact.grid.nodes)
+
+    @property
+    def nominal_pressure(self) -> float:
+        """Force over the area of the grid (Pa)."""
+        return self.force / math.prod(self.contact.grid.size)
+
+    @property
+    def mean_gap(self) -> float:
+        """Mean of the deformed gap (m): the distance of the mean planes of the two surfaces.
+
+        Raises:
+            CaseError: The contact is not periodic.
+        """
+        if not self.contact.periodic:
+            raise CaseError("mean_gap: only a periodic contact has one")
+        gap = self.contact.gap.mean() + self.plastic_displacement.mean() - self.indentation
+        return float(gap)
+
+    @property
     def stored_energy(self) -> float:
         """Elastic energy E_el = ½ Σ p u hx hy (J)."""
         twice = float(np.einsum("ij,ij->", self.box_pressure, self.box_displacement))
@@ -138,6 +162,8 @@ class State:
     def patch_sizes(self) -> NDArray[np.int64]:
         """Sizes of the contact patches, which are sets of nodes connected by cell edges.
 
+        Patches of a periodic contact continue across the edges of the grid.
+
         Returns:
             Numbers of nodes (1), shape (patches,), largest first.
         """
@@ -145,4 +171,18 @@ class State:
 
         labels, count = label(self.box_pressure != 0)
         sizes = np.bincount(labels.ravel(), minlength=count + 1)[1:]
+        if self.contact.periodic and count:
+            sizes = np.bincount(_joined(labels, count), weights=sizes).astype(np.int64)
         return np.sort(sizes)[::-1]
+
+
+def _joined(labels: NDArray[np.int32], count: int) -> NDArray[np.int32]:
+    """Return the number of the patch of each label, if patches continue across the edges."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    edges = np.hstack([[labels[0], labels[-1]], [labels[:, 0], labels[:, -1]]])
+    pairs = edges[:, edges.all(axis=0)] - 1
+    graph = coo_array((np.ones(pairs.shape[1]), pairs), shape=(count, count))
+    found: NDArray[np.int32] = connected_components(graph, directed=False)[1]
+    return found

@@ -45,7 +45,9 @@ class LiveCurves:
         `check` raises an exception if the curve is no longer wanted. Depths that were computed are
         drawn even if others fail.
         """
-        case = settled(parse_case(text).realisation(0), folder)
+        case = parse_case(text).realisation(0)
+        case.require_impact()
+        case = settled(case, folder)
         contact = self._contact(case, folder)
         deepest = deepest_indentation(case)
         require_possible(contact, deepest)

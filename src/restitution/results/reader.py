@@ -30,6 +30,7 @@ from restitution.results.schema import (
     OBLIQUE_COLUMNS,
     OBLIQUE_FILE,
     OBLIQUE_SPREAD_COLUMNS,
+    PERIODIC_FILE,
     STATUS,
 )
 from restitution.results.summaries import curve_lines, run_lines, study_lines
@@ -307,6 +308,11 @@ class StudyResults:
 
 def read_run(folder: Path) -> RunResults:
     """Open the results in `folder`: of one surface or of an ensemble. Raises `OutputError`."""
+    if (folder / PERIODIC_FILE).is_file():
+        raise OutputError(
+            f"{folder}: holds the results of a periodic contact, which has no restitution; read "
+            f"{PERIODIC_FILE} and results.nc"
+        )
     run = RunResults(folder)
     return EnsembleResults(folder) if "realisations" in run.summary else run
 

@@ -63,6 +63,7 @@ def run_convergence(
     nodes of a coarser grid, so a coarser grid touches after a larger approach. Indentations on the
     coarser grid are smaller by this difference.
     """
+    case.require_impact()
     log, runs = RunLog(progress, warn), _Runs()
     unsettled: list[str] = []
 

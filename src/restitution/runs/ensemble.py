@@ -25,6 +25,7 @@ from restitution.runs.error_budget import MISSING_BAND, add_errors, total_error_
 from restitution.runs.log import RunLog, Say, ignore
 from restitution.runs.messages import message
 from restitution.runs.oblique import mean_oblique
+from restitution.runs.periodic import run_periodic
 from restitution.runs.refinement import settled
 from restitution.runs.run import run_case
 
@@ -51,12 +52,14 @@ def run_realisations(
 ) -> dict[str, Any]:
     """Run `case` on each of its surfaces, and return the summary.
 
-    A single surface is run by `run_case` alone. If there are several surfaces, the run of each is
-    stored in a folder `realisation-<n>` (n from 1; n − 1 is added to the seed), and the curve of
-    `out` contains the means (`mean_rows`). If a surface fails, this is recorded and the others
-    continue. If all surfaces fail, the first error is raised. With `grid.refine = "auto"`,
-    `refinement` selects one grid for all surfaces.
+    A periodic case is run by `run_periodic`. A single surface is run by `run_case` alone. If there
+    are several surfaces, the run of each is stored in a folder `realisation-<n>` (n from 1; n − 1
+    is added to the seed), and the curve of `out` contains the means (`mean_rows`). If a surface
+    fails, this is recorded and the others continue. If all surfaces fail, the first error is
+    raised. With `grid.refine = "auto"`, `refinement` selects one grid for all surfaces.
     """
+    if case.periodic:
+        return run_periodic(case, text, folder, out, progress, warn)
     if case.realisations == 1:
         return run_case(case, text, folder, out, progress, warn)
     ensemble = _Ensemble(case, text, folder, out, RunLog(progress, warn))

@@ -91,6 +91,7 @@ def run_case(
     after the results so far and the reason are written. If there are no results, the folder is
     removed.
     """
+    case.require_impact()
     run = _Run(progress, warn)
 
     def keep() -> dict[str, Any] | None:

@@ -80,7 +80,7 @@ def parse_study(text: str) -> Study:
             put(case, key, value)
         case_text = tomli_w.dumps(case)
         try:
-            parse_case(case_text)
+            parse_case(case_text).require_impact()
         except CaseError as error:
             where = ", ".join(f"{key} = {shown(value)}" for key, value in values.items())
             raise CaseError(f"in the case with {where}: {error}") from None

@@ -32,6 +32,7 @@ from .kendall import Kendall
 from .law import ImpactLaw
 from .luding import Luding
 from .mdr import MDR
+from .persson import Persson
 from .thornton_ning import ThorntonNing
 from .walton_braun import WaltonBraun
 from .yielding import FirstYield, yield_coefficient
@@ -49,6 +50,7 @@ __all__ = [
     "Johnson",
     "Kendall",
     "Luding",
+    "Persson",
     "ThorntonNing",
     "WaltonBraun",
     "yield_coefficient",

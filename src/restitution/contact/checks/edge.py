@@ -33,7 +33,12 @@ class EdgeReachedError(DomainError):
 
 
 def require_inside_grid(state: State) -> None:
-    """Raise `EdgeReachedError` if a node on the edge of the grid is in contact."""
+    """Raise `EdgeReachedError` if a node on the edge of the grid is in contact.
+
+    A periodic contact has no edge.
+    """
+    if state.contact.periodic:
+        return
     p, grid = state.box_pressure, state.contact.grid
     (top, left), (bottom, right) = (
         (part.start for part in state.box),

@@ -33,7 +33,11 @@ def impossible(contact: Contact, indentation: float) -> Finding | None:
     * `roughness-above-radius`: `radius` of the smaller particle, `peak` above the mean (m);
     * `contact-beyond-radius`: predicted `radius`, `indentation`, `reduced_radius` (m);
     * `pixel-above-contact`, see `coarse_scan`.
+
+    A periodic contact has no radius, and is never meaningless.
     """
+    if contact.periodic:
+        return None
     pair, height = contact.pair, contact.surface.height
     radius = min(pair.first.radius, pair.second.radius)
     if height.size and (peak := float(height.max() - height.mean())) >= radius:
@@ -57,17 +61,21 @@ def doubtful(contact: Contact, indentation: float) -> list[Finding]:
     * `oblong-pixels`: `file`, edges `x` and `y` of a pixel (m);
     * `coarser-than-scan`: `spacing`, `pixel` (m), `axis`;
     * `surface-notice`: `notice` from the provenance of a surface that differs from its scan.
+
+    The findings that depend on the radius of the bodies are left out for a periodic contact.
     """
+    periodic = contact.periodic
     checks = (
         _tilt(contact),
-        _edge(contact, indentation),
+        None if periodic else _edge(contact, indentation),
         _steepness(contact),
         _yield_pressure(contact),
         _oblong(contact),
         _coarse_grid(contact),
         _made_up(contact),
     )
-    return resolution_findings(contact, indentation) + [found for found in checks if found]
+    by_radius = [] if periodic else resolution_findings(contact, indentation)
+    return by_radius + [found for found in checks if found]
 
 
 def _tilt(contact: Contact) -> Finding | None:

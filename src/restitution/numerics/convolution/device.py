@@ -27,6 +27,11 @@ Array = NDArray[Any]
 DeviceName = Literal["cpu", "gpu", "auto"]
 
 
+def is_fast(size: int) -> bool:
+    """Whether `size` has only the prime factors 2, 3, 5 and 7, as the compiled transforms need."""
+    return pow(2 * 3 * 5 * 7, 64, size) == 0
+
+
 class Device(Protocol):
     """A device that stores arrays and convolves them."""
 
@@ -74,8 +79,9 @@ class _Compiled:
 
     name = "cpu"
 
-    def __init__(self, loops: Any) -> None:
-        self._loops = loops
+    def __init__(self, loops: Any, library: Device) -> None:
+        # `library` convolves arrays whose periods have other prime factors than 2, 3, 5 and 7.
+        self._loops, self._library = loops, library
         # Use as many threads as ducc0; the environment variable DUCC0_NUM_THREADS sets the number.
         loops.use_threads(ducc0.misc.thread_pool_size())
 
@@ -105,6 +111,9 @@ class _Compiled:
         workspace: Array,
         out: Array,
     ) -> None:
+        if not all(is_fast(period) for period in periods):
+            self._library.convolve(values, spectrum, periods, scale, workspace, out)
+            return
         if values.strides[-1] != values.itemsize:
             values = np.ascontiguousarray(values)
         self._loops.convolve(values, 1 / scale, spectrum, *periods, workspace, scale, out)
@@ -169,12 +178,18 @@ def accelerator(name: str, arrays: Any, fft: Any) -> Device:
     return _Arrays(name, arrays, fft)
 
 
-def _host() -> Device:
-    if kernels.loops is not None:
-        return _Compiled(kernels.loops)
-    import scipy.fft
+class _LazyFFT:
+    """The module scipy.fft, imported on first use."""
 
-    return _Arrays("cpu", np, scipy.fft)
+    def __getattr__(self, name: str) -> Any:
+        import scipy.fft
+
+        return getattr(scipy.fft, name)
+
+
+def _host() -> Device:
+    library = _Arrays("cpu", np, _LazyFFT())
+    return library if kernels.loops is None else _Compiled(kernels.loops, library)
 
 
 CPU = _host()

@@ -1,6 +1,6 @@
-"""Linear (non-periodic) convolution with a real, even kernel by zero-padded FFT.
+"""Convolution with a real, even kernel by FFT: linear (zero-padded) or periodic.
 
-For nodes (i, j) of a grid of shape (nx, ny),
+For nodes (i, j) of a grid of shape (nx, ny), the linear convolution is
 
     u[i, j] = Σ_kl  K[|i − k|, |j − l|] p[k, l].
 
@@ -8,6 +8,8 @@ Zero padding to any size ≥ 2n − 1 makes the circular convolution equal to th
 and Liu 2000, Wear 243, 101–111, "DC-FFT"); kernel values at lags beyond n − 1 have no effect. The
 kernel is even along both axes. So its spectrum is real and equals the DCT-I of one quadrant, which
 takes a quarter of the storage.
+
+A periodic convolution needs no padding. Its kernel is given by its spectrum, the `symbol`.
 """
 
 from __future__ import annotations
@@ -21,7 +23,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.numerics.convolution.device import CPU, Device
+from restitution.numerics.convolution.device import CPU, Device, is_fast
 from restitution.numerics.reductions import max_magnitude
 
 Array = NDArray[np.float64]
@@ -30,9 +32,14 @@ Array = NDArray[np.float64]
 Kernel = Callable[[NDArray[np.int64], NDArray[np.int64]], Array]
 
 
+# Function that returns the spectrum of a kernel at the angular wave numbers qx and qy (rad per
+# cell, ≥ 0), two arrays that broadcast. It returns a new array.
+Symbol = Callable[[Array, Array], Array]
+
+
 def fast_size(minimum: int) -> int:
     """Return the smallest size ≥ `minimum` that has only the prime factors 2, 3, 5 and 7."""
-    return next(size for size in count(minimum) if pow(2 * 3 * 5 * 7, 64, size) == 0)
+    return next(filter(is_fast, count(minimum)))
 
 
 class _Spectral:
@@ -69,20 +76,15 @@ class _Spectral:
         return result
 
 
-class FreeConvolution(_Spectral):
+class Convolution(_Spectral):
     """Convolution of arrays with one kernel.
 
     `diagonal` is the kernel at lag (0, 0): the response of a node to its own value.
     """
 
-    def __init__(self, kernel: Kernel, shape: tuple[int, int], device: Device = CPU) -> None:
-        px, py = (2 * fast_size(n) for n in shape)
-        super().__init__(shape, (px, py), device)
-        # Transposed, as `Device.convolve` expects.
-        lags = kernel(device.arange(px // 2 + 1)[None, :], device.arange(py // 2 + 1)[:, None])
-        self.diagonal = float(lags[0, 0])
-        self._spectrum = device.even_spectrum(lags)
-        self._single_spectrum = self._spectrum.astype(np.float32)
+    diagonal: float
+    _spectrum: Array
+    _single_spectrum: NDArray[np.float32]
 
     @property
     def nbytes(self) -> int:
@@ -98,27 +100,48 @@ class FreeConvolution(_Spectral):
         return self._convolve(p, self._single_spectrum, out, 1.0)
 
 
+class FreeConvolution(Convolution):
+    """Linear convolution: values outside the array are zero."""
+
+    def __init__(self, kernel: Kernel, shape: tuple[int, int], device: Device = CPU) -> None:
+        px, py = (2 * fast_size(n) for n in shape)
+        super().__init__(shape, (px, py), device)
+        # Transposed, as `Device.convolve` expects.
+        lags = kernel(device.arange(px // 2 + 1)[None, :], device.arange(py // 2 + 1)[:, None])
+        self.diagonal = float(lags[0, 0])
+        self._spectrum = device.even_spectrum(lags)
+        self._single_spectrum = self._spectrum.astype(np.float32)
+
+
+class PeriodicConvolution(Convolution):
+    """Circular convolution: the array is one period. The kernel is given by its spectrum."""
+
+    def __init__(self, symbol: Symbol, shape: tuple[int, int], device: Device = CPU) -> None:
+        super().__init__(shape, shape, device)
+        self._spectrum = _modes(symbol, shape, device)
+        # The kernel at lag (0, 0) is the sum over all modes. A mode of the quadrant stands for two
+        # modes along an axis, unless its wave number is zero or the largest one of an even period.
+        along = [1.0 + ((k > 0) & (2 * k != n)) for n in shape for k in [device.arange(n // 2 + 1)]]
+        self.diagonal = float((along[1] @ self._spectrum) @ along[0])
+        self._single_spectrum = self._spectrum.astype(np.float32)
+
+
 class SpectralFilter(_Spectral):
     """Multiplication by a real, even symbol in Fourier space; a cheap approximate operator.
 
-    `symbol(qx, qy)` takes the angular wave numbers (rad per cell, ≥ 0) as arrays that broadcast and
-    returns a new array. Arrays are padded only to a fast size, so the filter is periodic. The
+    Arrays are padded only to a fast size, so the filter is periodic. The
     filter computes in single precision, which is accurate enough for a preconditioner.
     """
 
     def __init__(
         self,
-        symbol: Callable[[Array, Array], Array],
+        symbol: Symbol,
         shape: tuple[int, int],
         device: Device = CPU,
     ) -> None:
-        mx, my = (fast_size(n) for n in shape)
-        super().__init__(shape, (mx, my), device)
-        # Transposed, as `Device.convolve` expects.
-        i, j = device.arange(mx // 2 + 1)[None, :], device.arange(my // 2 + 1)[:, None]
-        values = symbol(2 * np.pi / mx * i, 2 * np.pi / my * j)
-        values /= mx * my
-        self._symbol = values.astype(np.float32)
+        periods = fast_size(shape[0]), fast_size(shape[1])
+        super().__init__(shape, periods, device)
+        self._symbol = _modes(symbol, periods, device).astype(np.float32)
 
     @property
     def nbytes(self) -> int:
@@ -130,3 +153,12 @@ class SpectralFilter(_Spectral):
         # Scale the values to about one: single precision has a limited range.
         scale = max_magnitude(r)
         return self._convolve(r, self._symbol, out, scale if scale != 0 else 1.0)
+
+
+def _modes(symbol: Symbol, periods: tuple[int, int], device: Device) -> Array:
+    """Return `symbol` divided by the number of modes, transposed as `Device.convolve` expects."""
+    mx, my = periods
+    i, j = device.arange(mx // 2 + 1)[None, :], device.arange(my // 2 + 1)[:, None]
+    values = symbol(2 * np.pi / mx * i, 2 * np.pi / my * j)
+    values /= mx * my
+    return values

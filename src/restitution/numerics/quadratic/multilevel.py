@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.numerics.box import Box, bounding_box, shape_of, union, widen
-from restitution.numerics.convolution.operators import FreeConvolution, SpectralFilter
+from restitution.numerics.convolution.operators import Convolution, SpectralFilter
 from restitution.numerics.quadratic.fused_ops import Bound
 from restitution.numerics.quadratic.grid_transfer import prolong, restrict
 from restitution.numerics.quadratic.local_mean import local_sums, subtract_local_mean
@@ -36,7 +36,7 @@ Mask = NDArray[np.bool_]
 
 # Function that builds the operator and its approximate inverse for a shape (nodes) and a level n.
 # At level n the spacing is 2ⁿ times the spacing of the finest grid.
-Operators = Callable[[tuple[int, int], int], tuple[FreeConvolution, SpectralFilter]]
+Operators = Callable[[tuple[int, int], int], tuple[Convolution, SpectralFilter]]
 
 # Smallest numbers of nodes along the shorter edge for which the finest grid, and a coarser grid,
 # are given a first guess from the next coarser grid. On smaller grids a guess costs more time than
@@ -66,20 +66,23 @@ def solve_multilevel(
     *,
     tolerance: float,
     max_iterations: int,
+    periodic: bool = False,
 ) -> tuple[Minimum, int]:
     """Minimise with 0 ≤ p ≤ `upper` from a multilevel start.
 
     `b` has shape (nx, ny); `upper` is a number or an array of this shape. `tolerance` limits the
-    violation and has the units of `b`. Return the result and the number of products with K on the
-    finest grid. If the solve does not converge, the result says so; no exception is raised.
+    violation and has the units of `b`. If the operators are `periodic`, the fine problem is solved
+    on the whole grid, and only grids of even size are coarsened. Return the result and the number
+    of products with K on the finest grid. If the solve does not converge, the result says so; no
+    exception is raised.
     """
     whole_grid: Box = (slice(0, b.shape[0]), slice(0, b.shape[1]))
     size = shape_of(whole_grid)
     p, Kp, products = np.zeros_like(b), None, 0
     whole_K, whole_inverse = operators(size, 0)  # smaller blocks reuse its coefficients
     if min(size) >= _MIN_NODES_FOR_GUESS:
-        p = _first_guess(operators, b, upper, level=1)
-    window = bounding_box(p > 0)
+        p = _first_guess(operators, b, upper, 1, periodic)
+    window = None if periodic else bounding_box(p > 0)
     if window is not None and _is_worth_its_check(window, size):
         # Coarse grids miss some contact. The window also includes the nodes where the guess has no
         # pressure but the bodies overlap.
@@ -148,6 +151,20 @@ def mean_damped_preconditioner(inverse: Operator, p: Array, b: Array, upper: Bou
     return damped
 
 
+def may_coarsen(shape: tuple[int, ...], periodic: bool) -> bool:
+    """Whether a coarser grid saves time, and has the same period if it must."""
+    even = all(n % 2 == 0 for n in shape)
+    return min(shape) >= _MIN_NODES_TO_COARSEN and (even or not periodic)
+
+
+def coarsened(values: Array) -> Array:
+    """Restrict `values` to the next coarser grid, in a new array."""
+    rows, columns = values.shape
+    coarse = np.empty_like(values, shape=((rows + 1) // 2, (columns + 1) // 2), order="C")
+    restrict(values, coarse)
+    return coarse
+
+
 def _is_array(bound: Bound) -> TypeGuard[Array]:
     """Whether each node has its own bound."""
     return np.ndim(bound) > 0
@@ -166,24 +183,19 @@ def _is_worth_its_check(window: Box, size: tuple[int, int]) -> bool:
     return rows * columns <= _MAX_WINDOW_FRACTION * size[0] * size[1]
 
 
-def _first_guess(operators: Operators, b: Array, upper: Bound, level: int) -> Array:
+def _first_guess(
+    operators: Operators, b: Array, upper: Bound, level: int, periodic: bool = False
+) -> Array:
     """Solve on the grid of `level` and return the solution prolonged to the next finer grid.
 
     The solve starts from the first guess of the next coarser grid, or from zero on the coarsest
     grid.
     """
-    if min(b.shape) < _MIN_NODES_TO_COARSEN:
+    if not may_coarsen(b.shape, periodic):
         return np.zeros_like(b)
-    rows, columns = b.shape
-    size = (rows + 1) // 2, (columns + 1) // 2
-    coarse = np.empty_like(b, shape=size, order="C")
-    restrict(b, coarse)
-    bound = upper
-    if _is_array(upper):
-        bound = np.empty_like(coarse)
-        restrict(upper, bound)
-    K, inverse = operators(size, level)
-    start = _first_guess(operators, coarse, bound, level + 1)
+    coarse, bound = coarsened(b), coarsened(upper) if _is_array(upper) else upper
+    K, inverse = operators((coarse.shape[0], coarse.shape[1]), level)
+    start = _first_guess(operators, coarse, bound, level + 1, periodic)
     found = minimise_quadratic(
         BoundedQuadratic(K, coarse, 0.0, bound, K.single_precision),
         start=start,

@@ -1,0 +1,85 @@
+"""Periodic contact under a prescribed nominal pressure."""
+
+from __future__ import annotations
+
+import math
+
+from restitution.contact.contact import Contact
+from restitution.contact.equilibrium import MAX_ITERATIONS, RESIDUAL, Solution, build_state
+from restitution.contact.influence import (
+    foundation_compliance,
+    inverse_half_space,
+    sprung_half_space,
+)
+from restitution.contact.state import State
+from restitution.errors import CaseError, DomainError, NotConvergedError
+from restitution.numerics.convolution.device import current
+from restitution.numerics.convolution.operators import Convolution, SpectralFilter
+from restitution.numerics.quadratic.prescribed_mean import MeanTarget, minimise_at_mean
+
+PRESSURE_TOLERANCE = 1e-8
+
+
+def solve_at_pressure(contact: Contact, pressure: float, *, residual: float = RESIDUAL) -> State:
+    """Load a periodic contact to a nominal pressure, within a relative error of 1e-8.
+
+    The two bodies are pressed together through an elastic foundation, whose compression depends on
+    the mean pressure alone. It makes the problem positive definite even in full contact, where the
+    pressure does not depend on the indentation any more. Its compression is subtracted at the end.
+
+    Args:
+        contact: Periodic contact to load.
+        pressure: Nominal pressure: normal force per area of the grid (Pa), positive.
+        residual: Tolerance on the violation of the contact conditions (1), relative to the
+            indentation.
+
+    Returns:
+        State under `pressure`.
+
+    Raises:
+        CaseError: The contact is not periodic, or the pressure is not positive.
+        DomainError: The pressure is not below the yield pressure.
+        NotConvergedError: A tolerance was not reached.
+    """
+    if not contact.periodic:
+        raise CaseError("contact: only a periodic contact has a nominal pressure; use solve")
+    if not 0 < pressure < math.inf:
+        raise CaseError(f"pressure: {pressure} Pa is not positive")
+    if pressure >= contact.yield_pressure:
+        raise DomainError(
+            f"pressure: {pressure:.4g} Pa is not below the yield pressure, "
+            f"{contact.yield_pressure:.4g} Pa; use a smaller pressure"
+        )
+    E_star, (hx, hy), nodes = contact.pair.contact_modulus, contact.grid.spacing, contact.grid.nodes
+
+    def operators(shape: tuple[int, int], level: int) -> tuple[Convolution, SpectralFilter]:
+        cells = 2**level * hx, 2**level * hy
+        return sprung_half_space(shape, cells, E_star), inverse_half_space(shape, cells, E_star)
+
+    compliance = foundation_compliance(nodes, contact.grid.spacing, E_star)
+    device = current()
+    found = minimise_at_mean(
+        operators,
+        device.put(contact.gap),
+        contact.yield_pressure,
+        MeanTarget(pressure, PRESSURE_TOLERANCE, compliance, residual),
+        max_iterations=MAX_ITERATIONS,
+    )
+    minimum = found.minimum
+    indentation = found.multiplier - compliance * float(minimum.point.mean())
+    if not minimum.converged:
+        raise NotConvergedError(
+            f"pressure: {pressure:.6g} Pa was not reached at a tolerance of {residual:.0e}; "
+            "increase the tolerance (residual), or smooth or refine the surface"
+        )
+    solution = Solution(
+        indentation - contact.gap,
+        device.get(minimum.point),
+        device.get(minimum.gradient),
+        minimum.residual / indentation,
+        found.products,
+    )
+    whole = slice(0, nodes[0]), slice(0, nodes[1])
+    return build_state(
+        contact, indentation, whole, solution, limit=contact.yield_pressure, history=None
+    )

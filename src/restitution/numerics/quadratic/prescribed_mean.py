@@ -1,0 +1,154 @@
+"""Minimisation within bounds at a prescribed mean of the unknowns, on a periodic grid.
+
+    minimise  ½ pᵀK p + pᵀh   subject to   0 ≤ p ≤ upper,   mean(p) = `mean`.
+
+The multiplier of the mean is a scalar D, with which p minimises ½ pᵀK p − pᵀ(D − h). The mean of p
+increases with D, so a secant method within a bracket finds D. Every solve starts from the last
+solution and is only as accurate as D is at this time. The first D, p and slope of the secant method
+come from the same problem on the next coarser grid.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.numerics.quadratic.grid_transfer import prolong
+from restitution.numerics.quadratic.minimise import BoundedQuadratic, Minimum, minimise_quadratic
+from restitution.numerics.quadratic.multilevel import (
+    Operators,
+    coarsened,
+    may_coarsen,
+    mean_damped_preconditioner,
+)
+
+Array = NDArray[np.float64]
+
+_MAX_SOLVES = 60  # solves on one grid after which the search counts as not converged
+# Tolerance of a solve as a fraction of the expected error of D.
+_ACCURACY = 0.05
+# Error of the mean that the violation may cause, as a fraction of the tolerance of the mean.
+_MEAN_SHARE = 0.5
+# Tolerances on coarser grids: of the violation, as in `MeanTarget`, and of the mean.
+_COARSE_RESIDUAL, _COARSE_MEAN = 1e-2, 0.02
+
+
+@dataclass(frozen=True)
+class MeanTarget:
+    """What p must meet.
+
+    `mean` is the prescribed mean and `precision` its relative tolerance. `compliance` is the
+    product with K of a constant p = 1. `residual` limits the violation as a fraction of
+    D − `compliance` · `mean`.
+    """
+
+    mean: float
+    precision: float
+    compliance: float
+    residual: float
+
+    def tolerance(self, multiplier: float, slope: float) -> float:
+        """The limit of the violation, in the units of h.
+
+        A violation changes the mean at most as much as an equal change of the multiplier. `slope`
+        is dD/dmean.
+        """
+        by_residual = self.residual * abs(multiplier - self.compliance * self.mean)
+        return min(by_residual, _MEAN_SHARE * self.precision * self.mean * slope)
+
+
+@dataclass(frozen=True)
+class MeanSolution:
+    """The minimum, the multiplier D, the slope dD/dmean, and the products on the finest grid."""
+
+    minimum: Minimum
+    multiplier: float
+    slope: float
+    products: int
+
+
+def minimise_at_mean(
+    operators: Operators,
+    h: Array,
+    upper: float,
+    target: MeanTarget,
+    *,
+    max_iterations: int,
+    level: int = 0,
+) -> MeanSolution:
+    """Solve at a prescribed mean of p, which must be below `upper`.
+
+    `h` has shape (nx, ny) and is not negative. The operators are periodic and positive definite.
+    `max_iterations` limits each solve. `level` is that of the grid of `h`. If the search does not
+    converge, the result says so; no exception is raised.
+    """
+    p = np.zeros_like(h)
+    multiplier = target.compliance * target.mean + 0.5 * float(h.mean())
+    slope = 2 * target.compliance
+    if may_coarsen(h.shape, periodic=True):
+        coarser = replace(target, precision=_COARSE_MEAN, residual=_COARSE_RESIDUAL)
+        coarse = minimise_at_mean(
+            operators,
+            coarsened(h),
+            upper,
+            coarser,
+            max_iterations=max_iterations,
+            level=level + 1,
+        )
+        prolong(coarse.minimum.point, p)
+        multiplier, slope = coarse.multiplier, coarse.slope
+    K, inverse = operators((h.shape[0], h.shape[1]), level)
+    bracket = _Bracket(slope, target.compliance)
+    error = _COARSE_RESIDUAL * abs(multiplier - target.compliance * target.mean)  # of D
+    for _ in range(_MAX_SOLVES):
+        b = multiplier - h
+        tolerance = target.tolerance(multiplier, bracket.slope)
+        found = minimise_quadratic(
+            BoundedQuadratic(K, b, 0.0, upper, K.single_precision),
+            start=p,
+            precondition=mean_damped_preconditioner(inverse, p, b, upper),
+            tolerance=max(tolerance, _ACCURACY * error),
+            max_iterations=max_iterations,
+            accept_estimated_gradient=level > 0,
+        )
+        mean = float(p.mean())
+        meets = abs(mean - target.mean) <= target.precision * target.mean
+        done = meets and found.residual <= tolerance
+        if done or not found.converged:
+            break
+        if meets:  # only the solve was not accurate enough
+            error = 0.0
+            continue
+        following = bracket.following(multiplier, mean - target.mean, 2 * found.residual)
+        multiplier, error = following, abs(following - multiplier)
+    minimum = replace(found, converged=done)
+    return MeanSolution(minimum, multiplier, bracket.slope, K.count)
+
+
+class _Bracket:
+    """Secant steps to the root of an increasing function that is negative at zero."""
+
+    def __init__(self, slope: float, least_slope: float) -> None:
+        """Begin with a guess of the `slope` dx/dy, which is at least `least_slope`."""
+        self.slope = slope
+        self._least_slope = least_slope
+        self._low, self._high = 0.0, math.inf
+        self._before: tuple[float, float] | None = None
+
+    def following(self, x: float, y: float, uncertainty: float) -> float:
+        """Return the next x, after the value y at a point within `uncertainty` of x."""
+        if y > 0:
+            self._high = min(self._high, x + uncertainty)
+        else:
+            self._low = max(self._low, x - uncertainty)
+        if self._before is not None and (y - self._before[1]) * (x - self._before[0]) > 0:
+            secant = (x - self._before[0]) / (y - self._before[1])
+            self.slope = max(secant, self._least_slope)
+        self._before = x, y
+        following = x - self.slope * y
+        if self._low < following < self._high:
+            return following
+        return 0.5 * (self._low + self._high) if self._high < math.inf else 2 * x

@@ -1,0 +1,127 @@
+"""Results of a periodic contact: `periodic.csv`, and the content of `results.nc`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from restitution.contact.checks.resolution import median_patch, resolves
+from restitution.contact.perimeter import corrected_area
+from restitution.contact.state import State
+from restitution.display import quantity, summary_html, summary_text
+from restitution.results.reader import read_json, read_netcdf
+from restitution.results.schema import Column
+
+_PATCH = "nodes in the patch of the median contact node"
+COLUMNS = {
+    "indentation_m": Column("indentation", "m", "approach of the mean planes since first touch"),
+    "mean_gap_m": Column("mean_gap", "m", "distance of the mean planes"),
+    "nominal_pressure_Pa": Column("nominal_pressure", "Pa", "force over nominal area"),
+    "force_N": Column("force", "N", "normal force on one period"),
+    "relative_area": Column("relative_area", "1", "nodes in contact over all nodes"),
+    "corrected_relative_area": Column(
+        "corrected_relative_area", "1", "relative area without the error of the staircase edge"
+    ),
+    "largest_pressure_Pa": Column("largest_pressure", "Pa", "largest pressure of a node"),
+    "stored_energy_J": Column("stored_energy", "J", "elastic energy of one period"),
+    "plastic_work_J": Column("plastic_work", "J", "work dissipated by yielding"),
+    "loading_work_J": Column("loading_work", "J", "work of loading"),
+    "contact_nodes": Column("contact_nodes", "1", "nodes in contact"),
+    "contact_patches": Column("contact_patches", "1", "contact patches (nodes joined by an edge)"),
+    "largest_patch_nodes": Column("largest_patch_nodes", "1", "nodes in the largest patch"),
+    "median_patch_nodes": Column("median_patch_nodes", "1", _PATCH),
+    "resolved": Column("resolved", "1", "half of the contact in resolved patches", flag=True),
+    "residual": Column("residual", "1", "largest violation of the contact conditions"),
+    "convolutions": Column("convolutions", "1", "convolutions that the solve took"),
+}
+
+
+@dataclass(frozen=True)
+class PeriodicResults:
+    """The results of a periodic case in `folder`; a missing or damaged file raises `OutputError`.
+
+    Attributes:
+        folder: Results folder.
+    """
+
+    folder: Path
+
+    @cached_property
+    def dataset(self) -> xr.Dataset:
+        """The whole content of `results.nc`, loaded into memory: curve and maps, in SI units."""
+        return read_netcdf(self.folder / "results.nc")
+
+    @cached_property
+    def summary(self) -> dict[str, Any]:
+        """The content of `summary.json`."""
+        return read_json(self.folder / "summary.json")
+
+    def _summary(self) -> list[str]:
+        pressure = self.dataset["nominal_pressure"].values
+        low, high = (quantity(float(end), "Pa") for end in (pressure[0], pressure[-1]))
+        return [f"{self.folder}: {pressure.size} nominal pressures, {low} to {high}"]
+
+    __repr__ = summary_text
+    _repr_html_ = summary_html
+
+
+def periodic_row(state: State) -> dict[str, float]:
+    """Make the row of `periodic.csv` for one state of loading."""
+    patches = state.patch_sizes()
+    median = median_patch(patches)
+    values = (
+        state.indentation,
+        state.mean_gap,
+        state.nominal_pressure,
+        state.force,
+        state.relative_area,
+        corrected_area(state) / math.prod(state.contact.grid.size),
+        float(state.box_pressure.max(initial=0.0)),
+        state.stored_energy,
+        state.plastic_work,
+        state.loading_work,
+        state.contact_nodes,
+        patches.size,
+        int(patches[0]) if patches.size else 0,
+        median,
+        resolves(median),
+        state.residual,
+        state.convolutions,
+    )
+    return dict(zip(COLUMNS, values, strict=True))
+
+
+def periodic_dataset(rows: Sequence[Mapping[str, float]], deepest: State) -> xr.Dataset:
+    """Make the content of `results.nc`, with units: the curve, and maps of the deepest state."""
+    grid = deepest.contact.grid
+    data = {
+        column.variable: (
+            "depth",
+            np.array([row[name] for row in rows]),
+            {"units": column.unit, "long_name": column.meaning},
+        )
+        for name, column in COLUMNS.items()
+    }
+    maps = {
+        "height": (deepest.contact.surface.height, "m", "composite roughness"),
+        "pressure": (deepest.pressure, "Pa", "contact pressure at the deepest state"),
+        "plastic_displacement": (deepest.plastic_displacement, "m", "lowering by yielding"),
+    }
+    along = {"x": ("x", grid.x, {"units": "m"}), "y": ("y", grid.y, {"units": "m"})}
+    return xr.Dataset(
+        {
+            **data,
+            **{
+                name: (("x", "y"), values, {"units": unit, "long_name": meaning})
+                for name, (values, unit, meaning) in maps.items()
+            },
+        },
+        along,
+    )

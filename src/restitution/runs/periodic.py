@@ -1,0 +1,131 @@
+"""Run a periodic case: load to every depth, and write the results."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from restitution.case.case import Case
+from restitution.case.derived import deepest_indentation, derived_quantities
+from restitution.case.roughness import MeasuredRoughness
+from restitution.contact.checks.resolution import unresolved_patches
+from restitution.contact.contact import Contact
+from restitution.contact.loading import solve
+from restitution.contact.prescribed_force import solve_at_force
+from restitution.contact.prescribed_pressure import solve_at_pressure
+from restitution.contact.state import State
+from restitution.numerics.convolution.device import current
+from restitution.numerics.kernels import instruction_set
+from restitution.results.interruption import hold_signals
+from restitution.results.periodic import periodic_dataset, periodic_row
+from restitution.results.schema import PERIODIC_FILE
+from restitution.results.writer import ResultsFolder, versions, write_table
+from restitution.runs.log import RunLog, Say, ignore
+from restitution.runs.messages import input_warnings, message, naming_keys
+from restitution.surfaces import describe
+
+CONVENTIONS = {
+    "indentation": "approach of the mean planes of the two surfaces since first touch",
+    "nominal_pressure": "normal force over the area of one period",
+    "works": "of one period, without the uniform compression of the bodies by the mean pressure",
+}
+
+
+def run_periodic(
+    case: Case,
+    text: str,
+    folder: Path,
+    out: ResultsFolder,
+    progress: Say = ignore,
+    warn: Say = ignore,
+) -> dict[str, Any]:
+    """Run the periodic `case` and return the summary; the arguments are those of `run_case`.
+
+    A depth that cannot be solved ends the curve. Its error is raised again after the results so far
+    are written.
+    """
+    log, deepest = RunLog(progress, warn), list[State]()
+
+    def keep() -> dict[str, Any] | None:
+        return _write_results(case, text, out, log, deepest[-1]) if deepest else None
+
+    with log.record(out, keep):
+        contact = case.contact(folder)
+        for warning in _edges_of_scans(case) + input_warnings(contact, deepest_indentation(case)):
+            log.warn(warning)
+        depths = case.depths()
+        for number, depth in enumerate(depths, 1):
+            with naming_keys():
+                state = _load(case, contact, depth)
+            with hold_signals():  # an interruption leaves a complete row or no row
+                out.rows.append(periodic_row(state))
+                deepest[:] = [state]
+                write_table(out.path / PERIODIC_FILE, out.rows)
+            progress(f"{number} of {len(depths)} depths")
+    assert log.summary is not None  # if there is no depth, an error was raised above
+    return log.summary
+
+
+def _load(case: Case, contact: Contact, depth: float) -> State:
+    if case.pressure is not None:
+        return solve_at_pressure(contact, depth)
+    if case.load is not None:
+        return solve_at_force(contact, depth)
+    return solve(contact, depth)
+
+
+def _edges_of_scans(case: Case) -> list[str]:
+    """Warn of scans, whose opposite edges do not match."""
+    return [
+        f"roughness.file: the opposite edges of {part.file} do not match, so the surface has steps "
+        'along the edges of the grid; set roughness.extend = "twin" for a periodic surface with '
+        "the spectrum of the scan"
+        for part in case.roughness
+        if isinstance(part, MeasuredRoughness) and part.extend is None
+    ]
+
+
+def _write_results(
+    case: Case, text: str, out: ResultsFolder, log: RunLog, deepest: State
+) -> dict[str, Any]:
+    contact, rows = deepest.contact, out.rows
+    depths = [row["indentation_m"] for row in rows]
+    found = unresolved_patches(depths, [row["median_patch_nodes"] for row in rows])
+    summary: dict[str, Any] = {
+        "title": case.title,
+        "status": log.status,
+        "reason": log.reason,
+        "depths_asked": len(case.depths()),
+        "depths_computed": len(rows),
+        "warnings": log.warnings + [message(each) for each in found],
+        "model": {
+            "plasticity": "none" if math.isinf(contact.hardness) else contact.plasticity,
+            "adhesion": "none",
+            "half_space": "periodic, 2/(E* |q|), no mean displacement, FFT without padding",
+            **asdict(contact.grid),
+            "refine": case.grid.refine if case.grid else 1,
+            "yield_pressure": case.yielding().source,
+        },
+        "conventions": CONVENTIONS,
+        "derived": derived_quantities(case, contact),
+        "surface": dict(contact.surface.provenance),
+        "surface_statistics": describe(contact.surface),
+        "diagnostics": {"largest_residual": max(row["residual"] for row in rows)},
+        "device": current().name,
+        "kernels": instruction_set,
+        "convolutions": sum(int(row["convolutions"]) for row in rows),
+        "seconds": log.seconds,
+        "versions": versions(),
+    }
+    dataset = periodic_dataset(rows, deepest)
+    groups = ("model", "conventions", "derived", "surface", "surface_statistics", "versions")
+    dataset.attrs = {
+        "title": case.title,
+        "status": log.status,
+        "case": text,
+        **{f"{group}_{key}": str(v) for group in groups for key, v in summary[group].items()},
+    }
+    out.write(dataset, summary)
+    return summary

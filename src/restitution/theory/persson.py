@@ -1,0 +1,62 @@
+"""Persson (2001): contact area of nominally flat elastic bodies with random roughness.
+
+B. N. J. Persson, J. Chem. Phys. 115 (2001) 3840–3861, doi 10.1063/1.1388626. A diffusion equation,
+with the magnification as the time, gives the distribution of the contact pressure, and from it
+
+    A/A₀ = erf(√2 p/(E* h′)),
+
+with the nominal pressure p and the rms slope h′. At low pressure A/A₀ = κ p/(E* h′) with
+κ = √(8/π) = 1.60. The theory of Bush, Gibson and Thomas (1975, Wear 35, 87–111), which sums over
+asperities, has κ = √(2π) = 2.51 at vanishing pressure. Numerical solutions lie between both, with κ
+slightly above 2 (Prodanov, Dapp and Müser 2014, Tribol. Lett. 53, 433–448).
+
+Valid for elastic contact without adhesion and friction, small slopes and many waves.
+Units, shapes and errors are those of `restitution.theory`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ._inputs import Array, Values, keep_positive, scalar_or_array, touching
+
+_erf = np.vectorize(math.erf, otypes=[np.float64])
+
+
+@dataclass(frozen=True, eq=False)
+class Persson:
+    """Nominally flat elastic bodies with random roughness.
+
+    The fields and arguments may be arrays and broadcast (see `restitution.theory`).
+
+    Attributes:
+        rms_slope: Root mean square slope h′ of the composite roughness (1).
+        contact_modulus: Contact modulus E* (Pa).
+
+    Raises:
+        CaseError: A field is not positive and finite.
+
+    Source:
+        B. N. J. Persson, J. Chem. Phys. 115 (2001) 3840–3861.
+    """
+
+    rms_slope: Values
+    contact_modulus: Values
+
+    def __post_init__(self) -> None:
+        keep_positive(self, "rms_slope", "contact_modulus")
+
+    def relative_area(self, pressure: Values) -> Array:
+        """Real contact area over nominal area.
+
+        Args:
+            pressure: Nominal pressure p (Pa).
+
+        Returns:
+            Relative area erf(√2 p/(E* h′)) (1).
+        """
+        reduced = touching(pressure) / (self.contact_modulus * self.rms_slope)
+        return scalar_or_array(_erf(math.sqrt(2) * reduced))
