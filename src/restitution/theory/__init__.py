@@ -30,6 +30,7 @@ from .jkr import JKR
 from .johnson import Johnson
 from .kendall import Kendall
 from .law import ImpactLaw
+from .lennard_jones import LennardJones
 from .luding import Luding
 from .mdr import MDR
 from .thornton_ning import ThorntonNing
@@ -48,6 +49,7 @@ __all__ = [
     "JacksonGreen",
     "Johnson",
     "Kendall",
+    "LennardJones",
     "Luding",
     "ThorntonNing",
     "WaltonBraun",

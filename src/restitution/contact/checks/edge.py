@@ -34,7 +34,7 @@ class EdgeReachedError(DomainError):
 
 def require_inside_grid(state: State) -> None:
     """Raise `EdgeReachedError` if a node on the edge of the grid is in contact."""
-    p, grid = state.box_pressure, state.contact.grid
+    p, grid = state.box_touching, state.contact.grid
     (top, left), (bottom, right) = (
         (part.start for part in state.box),
         (part.stop for part in state.box),

@@ -60,7 +60,7 @@ def adhesive_nodes(state: State) -> float:
     gap = np.pad(contact.gap[around], missing, mode="reflect", reflect_type="odd")
     laplacian = np.diff(gap[:, 1:-1], 2, axis=0) / hx**2
     laplacian = laplacian + np.diff(gap[1:-1, :], 2, axis=1) / hy**2
-    touching = state.box_pressure != 0
+    touching = state.box_touching
     curvature = 0.5 * float(laplacian[touching].mean()) if touching.any() else 0.0
     curvature = max(curvature, 1 / contact.pair.radius)
     return pull_off_radius(contact, 1 / curvature) / max(contact.grid.spacing)
