@@ -82,7 +82,8 @@ def minimise_locally(
         negative |= bent
         predicted = _dot(r, x) + 0.5 * _dot(x, Sx + k * x)
         size = math.sqrt(max(_dot(x, Sx), 0.0))
-        new_p, new_u = p + Sx, u + x
+        new_p = p + Sx
+        new_u = K(new_p)  # the products along the step are in single precision
         phi, new_slope, new_k = potential(new_u)
         new_energy = 0.5 * _dot(new_p, new_u) + float(phi.sum())
         change = new_energy - energy
@@ -108,36 +109,42 @@ def _newton_step(
     Returns x and K⁻¹x, whether the step ended at the trust region, and whether it met a direction
     of negative curvature. The norm of the trust region is (xᵀK⁻¹x)^½.
     """
-    x, Sx = np.zeros_like(r), np.zeros_like(r)
+    x, Sx, Hd, scaled = (np.zeros_like(r) for _ in range(4))
     rest = -r
-    z = K(rest)
-    rz = first = _dot(rest, z)
+    d = K(rest)
+    z, Sd = np.empty_like(r), rest.copy()
+    rz = first = _dot(rest, d)
     # Solve more accurately towards the end, for superlinear convergence.
     forcing = min(_FORCING, (first / max(abs(energy), 1e-300)) ** 0.25)
-    d, Sd = z, rest.copy()
+    inside = math.isinf(radius)  # no trust region yet
+    xSd = xSx = dSd = 0.0
     for _ in range(_MOST_ITERATIONS):
-        Hd = k * d
+        np.multiply(k, d, out=Hd)
         Hd += Sd
-        dHd, dSd, xSd, xSx = _dot(d, Hd), _dot(d, Sd), _dot(x, Sd), _dot(x, Sx)
+        dHd = _dot(d, Hd)
+        if not inside:
+            dSd, xSd = _dot(d, Sd), _dot(x, Sd)
         bent = dHd <= 0
         a = math.inf if bent else rz / dHd
-        if bent or xSx + a * (2 * xSd + a * dSd) >= radius * radius:
-            if math.isinf(radius):
+        along = 0.0 if bent or inside else xSx + a * (2 * xSd + a * dSd)
+        if bent or along >= radius * radius:
+            if inside:
                 a = length / float(np.abs(d).max())
             else:
                 a = (math.sqrt(max(xSd * xSd + dSd * (radius**2 - xSx), 0.0)) - xSd) / dSd
-            x += a * d
-            Sx += a * Sd
-            return x, Sx, True, bent
-        x += a * d
-        Sx += a * Sd
-        rest -= a * Hd
-        z = K(rest)
+            return x + a * d, Sx + a * Sd, True, bent
+        xSx = along
+        x += np.multiply(d, a, out=scaled)
+        Sx += np.multiply(Sd, a, out=scaled)
+        rest -= np.multiply(Hd, a, out=scaled)
+        K.single_precision(rest, out=z)
         before, rz = rz, _dot(rest, z)
         if rz <= forcing**2 * first:
             break
-        d = z + (rz / before) * d
-        Sd = rest + (rz / before) * Sd
+        d *= rz / before
+        d += z
+        Sd *= rz / before
+        Sd += rest
     return x, Sx, False, False
 
 
