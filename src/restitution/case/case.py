@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, cast
 
@@ -14,6 +15,7 @@ from restitution.case.quantities import Force, Length
 from restitution.case.roughness import MeasuredRoughness, Roughness
 from restitution.case.schema import GridTable, ImpactTable, Series, Table, UnloadingTable
 from restitution.contact.bodies import Pair
+from restitution.contact.cohesive import resolves_range
 from restitution.contact.contact import Contact, smooth
 from restitution.errors import CaseError
 from restitution.numerics.grid import Grid
@@ -176,20 +178,34 @@ class Case(Table):
     def contact_on(self, surface: Surface) -> Contact:
         """The contact on `surface`, which `self.surface` returned. Raises as `contact`."""
         needs.require(self.run_bytes(surface.grid), surface.grid)
-        return Contact(
+        interface = self.interface
+        contact = Contact(
             self.pair(),
             surface,
             **self.yielding().arguments(),
-            work_of_adhesion=self.interface.adhesion,
-            approach=self.interface.approach,
-            detachment=self.interface.detachment,
+            work_of_adhesion=interface.adhesive_energy,
+            approach=interface.approach,
+            detachment=interface.detachment,
+            adhesion=interface.adhesion or "jkr",
+            equilibrium_separation=interface.equilibrium_separation,
         )
+        chosen = interface.adhesion is not None or interface.needs_jkr
+        if not chosen and contact.adhesive and resolves_range(contact):
+            return replace(contact, adhesion="cohesive")
+        return contact
+
+    def with_adhesion_of(self, contact: Contact) -> Case:
+        """This case with the model of adhesion of `contact`, if the case leaves it out."""
+        if not contact.adhesive or self.interface.adhesion is not None:
+            return self
+        interface = self.interface.model_copy(update={"adhesion": contact.adhesion})
+        return self.model_copy(update={"interface": interface})
 
     def run_bytes(self, grid: Grid) -> float:
         """Memory (bytes) of a run on `grid`."""
         yielding = self.yielding()
         plasticity = "none" if math.isinf(yielding.hardness) else yielding.plasticity
-        adhesive = self.interface.adhesion > 0
+        adhesive = self.interface.adhesive_energy > 0
         return needs.run_bytes(grid, plasticity=plasticity, adhesive=adhesive)
 
     def depths(self) -> list[float]:

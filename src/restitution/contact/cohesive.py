@@ -38,6 +38,8 @@ Array = NDArray[np.float64]
 # Largest spacing over the length of the cohesive zone E*z₀²/w. On coarser grids the edge of the
 # contact is held between nodes and the hysteresis is wrong (docs/adhesion.md).
 COARSEST = 0.4
+# Solves up to twice this spacing are for the comparison of grids; their error covers it.
+_REFUSED = 2 * COARSEST
 _REACH = 12.0  # nodes with rigid gaps up to this multiple of z₀ are solved
 # Tolerance of u over z₀, in units of the `residual` of a solve; rounding limits it.
 _TOLERANCE, _LEAST_TOLERANCE = 100.0, 1e-7
@@ -99,13 +101,19 @@ def coarsest_spacing(contact: Contact) -> float:
     return COARSEST * cohesive_length(contact)
 
 
+def resolves_range(contact: Contact) -> bool:
+    """Whether the cells are fine enough for the range of the attraction."""
+    return max(contact.grid.spacing) <= coarsest_spacing(contact) * (1 + 1e-9)
+
+
 def require_fine_grid(contact: Contact) -> None:
-    """Raise `CaseError` if the cells are too coarse for the range of the attraction."""
-    h, needed = max(contact.grid.spacing), coarsest_spacing(contact)
-    if h > needed * (1 + 1e-9):
+    """Raise `CaseError` if the cells are far too coarse for the range of the attraction."""
+    h, length = max(contact.grid.spacing), cohesive_length(contact)
+    if h > _REFUSED * length * (1 + 1e-9):
         raise CaseError(
             f"grid.spacing: {1e9 * h:.4g} nm is too coarse for the range of the attraction; "
-            f'adhesion = "cohesive" needs {1e9 * needed:.4g} nm or less (0.4 E*z0^2/w)'
+            f'adhesion = "cohesive" needs {1e9 * COARSEST * length:.4g} nm or less '
+            "(0.4 E* z0^2/w)"
         )
 
 
@@ -132,7 +140,12 @@ def solve_cohesive(
     law = _BoundedLaw(contact, _base(contact, indentation, box, before), upper)
     z0 = contact.equilibrium_separation
     found = minimise_locally(
-        K, law, p=p, u=u, length=0.5 * z0, tolerance=max(_TOLERANCE * residual, _LEAST_TOLERANCE) * z0
+        K,
+        law,
+        p=p,
+        u=u,
+        length=0.5 * z0,
+        tolerance=max(_TOLERANCE * residual, _LEAST_TOLERANCE) * z0,
     )
     if not found.converged:
         raise NotConvergedError(
@@ -253,7 +266,7 @@ def on_box(state: CohesiveState, box: Box, *, residual: float) -> CohesiveState:
         adhesive_loss=state.adhesive_loss,
         jumps=state.jumps,
         unaccounted=state.unaccounted,
-        convolutions=state.convolutions + new.convolutions + 1,
+        convolutions=new.convolutions + 1,
     )
     return with_interaction(new)
 

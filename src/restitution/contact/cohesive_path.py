@@ -151,6 +151,7 @@ def follow(
     if state.smallest_gap < 1.1 * z0:  # in contact: a part of the depth of the contact
         length = max(length, 0.02 * abs(state.indentation))
     previous: CohesiveState | None = None
+    rejected = 0  # convolutions of steps that were not accepted
     require_inside_grid(state)
     for _ in range(_MOST_STEPS):
         left = abs(target - state.indentation)
@@ -161,6 +162,7 @@ def follow(
         length = abs(at - state.indentation)
         state_on = _on_wider_box(state, at, residual)
         if state_on is not state:
+            rejected += state_on.convolutions
             state, previous = state_on, None
         try:
             step = _try(previous, state, at, residual)
@@ -174,12 +176,14 @@ def follow(
         smooth = abs(off) <= allowed
         if not smooth and step.uncertainty > allowed and length > _LEAST_STEP * z0:
             length /= 2 if step.uncertainty < 4 * allowed else 4
+            rejected += step.state.convolutions
             continue
         new = _accounted(state, step, smooth)
         require_inside_grid(new)
         # The curve has a kink at a jump, so it is not extrapolated across it.
         previous, state = (state if smooth else None), new
-        yield new
+        yield replace(new, convolutions=new.convolutions + rejected)
+        rejected = 0
         room = allowed / max(abs(off), 1e-300)
         length *= min(2.0, max(0.5, 0.8 * room ** (1 / 3))) if smooth else 2.0
     raise NotConvergedError(
@@ -198,17 +202,12 @@ def _accounted(state: CohesiveState, step: _Step, smooth: bool) -> CohesiveState
         adhesive_loss=state.adhesive_loss + lost,
         jumps=state.jumps + int(not smooth),
         unaccounted=unaccounted,
-        work_error=step.state.work_error
-        + abs(unaccounted)
-        - abs(state.unaccounted)
-        + error,
+        work_error=step.state.work_error + abs(unaccounted) - abs(state.unaccounted) + error,
     )
     return with_interaction(new)
 
 
-def _try(
-    previous: CohesiveState | None, state: CohesiveState, at: float, residual: float
-) -> _Step:
+def _try(previous: CohesiveState | None, state: CohesiveState, at: float, residual: float) -> _Step:
     """Solve at the indentation `at`, from an extrapolation of the last two states."""
     contact, box = state.contact, state.box
     limit, convolutions = state.bound, 0
@@ -222,9 +221,7 @@ def _try(
         if ratio > 0:
             p = p + ratio * (p - previous.box_pressure)
             u = u + ratio * (u - previous.box_displacement)
-    new = solve_cohesive(
-        contact, at, box, p=p, u=u, limit=limit, history=state, residual=residual
-    )
+    new = solve_cohesive(contact, at, box, p=p, u=u, limit=limit, history=state, residual=residual)
     plastic, plastic_error = 0.0, 0.0
     if isinstance(limit, np.ndarray):
         plastic, plastic_error = plastic_work(state, new)
@@ -278,9 +275,7 @@ def _on_wider_box(state: CohesiveState, at: float, residual: float) -> CohesiveS
 
 
 def _within(inner: Box, outer: Box) -> bool:
-    return all(
-        a.start >= b.start and a.stop <= b.stop for a, b in zip(inner, outer, strict=True)
-    )
+    return all(a.start >= b.start and a.stop <= b.stop for a, b in zip(inner, outer, strict=True))
 
 
 def _bound(contact: Contact, indentation: float, residual: float) -> tuple[Array | float, int]:

@@ -32,6 +32,7 @@ from .kendall import Kendall
 from .law import ImpactLaw
 from .lennard_jones import LennardJones
 from .luding import Luding
+from .maugis_dugdale import MaugisDugdale
 from .mdr import MDR
 from .thornton_ning import ThorntonNing
 from .walton_braun import WaltonBraun
@@ -51,6 +52,7 @@ __all__ = [
     "Kendall",
     "LennardJones",
     "Luding",
+    "MaugisDugdale",
     "ThorntonNing",
     "WaltonBraun",
     "yield_coefficient",
