@@ -157,7 +157,7 @@ def examine(task: tuple[int, Path]) -> list[dict[str, object]]:
                 **{name: row.get(name, "") for name in COLUMNS},
                 "case": seed,
                 "kind": kind,
-                "adhesive": case.interface.adhesion > 0,
+                "adhesive": case.interface.adhesive_energy > 0,
                 "library": case.has_library_values(),
                 "reference": mean,
                 "reference_error": error,
@@ -175,7 +175,7 @@ def _reference(case, rows, seed):
     rng = np.random.default_rng([seed, 1])
     work = np.array([row["loading_work_J"] for row in rows])
     depths = [row["max_indentation_m"] for row in rows]
-    adhesive = case.interface.adhesion > 0
+    adhesive = case.interface.adhesive_energy > 0
     between = np.geomspace(0.8 * depths[0], depths[-1], 4 if adhesive else 8)
     surfaces = (ADHESIVE_SURFACES if adhesive else SURFACES) if case.roughness else 1
     if case.has_library_values():

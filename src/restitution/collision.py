@@ -151,7 +151,9 @@ def collide(
         )
     path = list(separate(state, tolerance=tolerance) if unloading is None else unloading)
     separation = separation_of(path)
-    release_error = _RELEASE_ERROR[contact.detachment] * contact.work_of_adhesion
+    release_error = 0.0
+    if not contact.cohesive:  # no release of nodes
+        release_error = _RELEASE_ERROR[contact.detachment] * contact.work_of_adhesion
     return replace(
         elastic,
         unloading_work=separation.unloading_work,

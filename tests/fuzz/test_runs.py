@@ -93,7 +93,7 @@ def check(row, case):
         assert total != 0
         assert math.isnan(total) or total > 1e-3 or e in (0, 1)
     lost = row["loading_work_J"] - row["unloading_work_J"]
-    if case.interface.adhesion == 0 and row["loading_work_J"] > 0:
+    if case.interface.adhesive_energy == 0 and row["loading_work_J"] > 0:
         assert -1e-6 <= lost / row["loading_work_J"] <= 1
         if math.isinf(case.yielding().hardness):
             assert e == approx(1, rel=1e-9)

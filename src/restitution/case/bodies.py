@@ -20,7 +20,14 @@ from restitution.case.quantities import (
 )
 from restitution.case.schema import Table
 from restitution.contact.bodies import Body
-from restitution.contact.contact import FULL_CONSTRAINT, Approach, Plasticity
+from restitution.contact.contact import (
+    EQUILIBRIUM_SEPARATION,
+    FULL_CONSTRAINT,
+    Adhesion,
+    Approach,
+    Plasticity,
+    require_cohesive,
+)
 from restitution.contact.detachment import Detachment
 from restitution.errors import CaseError, shown
 
@@ -142,9 +149,10 @@ class InterfaceTable(Table):
     yield_pressure: Annotated[float | YieldRule | None, BeforeValidator(_pressure_or_rule)] = None
     plasticity: Plasticity | None = None
     work_of_adhesion: SurfaceEnergy | None = None
+    adhesion: Adhesion | None = None
     approach: Approach = "equilibrium"
     detachment: Detachment = "crack-closure"
-    equilibrium_separation: Length = 0.3e-9
+    equilibrium_separation: Length = EQUILIBRIUM_SEPARATION
     friction: Annotated[float, Field(ge=0, le=MOST_FRICTION)] | None = None
 
     @model_validator(mode="after")
@@ -172,8 +180,24 @@ class InterfaceTable(Table):
                     )
         return self
 
+    @model_validator(mode="after")
+    def _one_attraction(self) -> InterfaceTable:
+        if self.adhesion is not None and self.work_of_adhesion is None:
+            raise ValueError(
+                f'adhesion: "{self.adhesion}" needs a work_of_adhesion; give it, or remove the key'
+            )
+        if self.adhesion == "cohesive":
+            require_cohesive(self.approach, self.detachment, self.plasticity)
+        return self
+
     @property
-    def adhesion(self) -> float:
+    def needs_jkr(self) -> bool:
+        """Whether another key is defined for `adhesion = "jkr"` only."""
+        plain = self.approach == "equilibrium" and self.detachment == "crack-closure"
+        return not plain or self.plasticity == "truncated"
+
+    @property
+    def adhesive_energy(self) -> float:
         """The work of adhesion (J/m²); zero if the key is omitted."""
         return self.work_of_adhesion or 0.0
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, cast
 
@@ -14,6 +15,7 @@ from restitution.case.quantities import Force, Length, Pressure
 from restitution.case.roughness import MeasuredRoughness, Roughness
 from restitution.case.schema import GridTable, ImpactTable, Series, Table, UnloadingTable
 from restitution.contact.bodies import Pair
+from restitution.contact.cohesive import resolves_range
 from restitution.contact.contact import Contact, smooth
 from restitution.errors import CaseError
 from restitution.numerics.grid import Grid
@@ -103,7 +105,7 @@ class Case(Table):
                 f"interface.friction: is missing; give it, because {key} needs a coefficient of "
                 "friction"
             )
-        if self.interface.adhesion > 0:
+        if self.interface.adhesive_energy > 0:
             raise ValueError(
                 f"{key}: oblique impacts are computed for pairs without adhesion only; remove "
                 "this key, or interface.work_of_adhesion"
@@ -220,21 +222,35 @@ class Case(Table):
     def contact_on(self, surface: Surface) -> Contact:
         """The contact on `surface`, as `self.surface` made it. Raises the errors of `contact`."""
         needs.require(self.run_bytes(surface.grid), surface.grid)
-        return Contact(
+        interface = self.interface
+        contact = Contact(
             self.pair(),
             surface,
             **self.yielding().arguments(),
-            work_of_adhesion=self.interface.adhesion,
-            approach=self.interface.approach,
-            detachment=self.interface.detachment,
+            work_of_adhesion=interface.adhesive_energy,
+            approach=interface.approach,
+            detachment=interface.detachment,
+            adhesion=interface.adhesion or "jkr",
+            equilibrium_separation=interface.equilibrium_separation,
             periodic=self.periodic,
         )
+        chosen = interface.adhesion is not None or interface.needs_jkr
+        if not chosen and contact.adhesive and resolves_range(contact):
+            return replace(contact, adhesion="cohesive")
+        return contact
+
+    def with_adhesion_of(self, contact: Contact) -> Case:
+        """This case with the model of adhesion of `contact`, if the case leaves it out."""
+        if not contact.adhesive or self.interface.adhesion is not None:
+            return self
+        interface = self.interface.model_copy(update={"adhesion": contact.adhesion})
+        return self.model_copy(update={"interface": interface})
 
     def run_bytes(self, grid: Grid) -> float:
         """Memory (bytes) of a run on `grid`."""
         yielding = self.yielding()
         plasticity = "none" if math.isinf(yielding.hardness) else yielding.plasticity
-        adhesive = self.interface.adhesion > 0
+        adhesive = self.interface.adhesive_energy > 0
         return needs.run_bytes(grid, plasticity=plasticity, adhesive=adhesive)
 
     def depths(self) -> list[float]:

@@ -23,7 +23,7 @@ def require_possible(case: Case) -> None:
         )
     if "unloading" in case.model_fields_set:
         raise ValueError("[unloading]: a periodic case writes no unloading curves; leave it out")
-    if case.interface.adhesion > 0:
+    if case.interface.adhesive_energy > 0:
         raise ValueError("interface.work_of_adhesion: a periodic contact has no adhesion")
     yielding = case.yielding()
     if yielding.plasticity != "equilibrium":

@@ -56,7 +56,7 @@ def check(
     from restitution.case.case_file import naming
     from restitution.case.derived import deepest_indentation
     from restitution.cli.console import answers, command, say, say_next, waiting, warn
-    from restitution.runs.messages import input_warnings, require_possible
+    from restitution.runs.messages import input_warnings, no_range, require_possible
 
     read, cases = _read(case)
     with naming(case), waiting("making the surface"):
@@ -69,6 +69,8 @@ def check(
     require_possible(contact, deepest)
     with waiting("checking the surface"):
         warnings = input_warnings(contact, deepest)
+        if read.interface.adhesion is None and contact.adhesive:
+            warnings += no_range(contact)
     for warning in warnings:
         warn(warning)
     ending = ", with warnings." if warnings else "."

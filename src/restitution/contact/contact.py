@@ -28,6 +28,8 @@ from restitution.theory import JKR, yield_coefficient
 
 Plasticity = Literal["expanding-cavity", "equilibrium", "truncated"]
 Approach = Literal["equilibrium", "hertzian", "pull-increments"]
+Adhesion = Literal["jkr", "cohesive"]
+EQUILIBRIUM_SEPARATION = 0.3e-9  # default range of the attraction z₀ (m)
 FULL_CONSTRAINT = 2.8  # pressure over yield strength of fully plastic contact (Tabor 1951)
 # Position of the apex of smooth adhesive bodies relative to a node (cells). No symmetry of the grid
 # maps this point onto itself.
@@ -66,6 +68,9 @@ class Contact:
         yield_strength: Yield strength of a tensile test (Pa); inf if unused.
         tangent_modulus: Slope of tensile stress over strain after yield (Pa), for
             `expanding-cavity`.
+        adhesion: Range of the attraction. `jkr` has no range (the limit of soft bodies); `cohesive`
+            has the Lennard-Jones law of `theory.LennardJones`, see `contact.cohesive`.
+        equilibrium_separation: Gap z₀ without traction (m), the range of `cohesive`.
         periodic: Whether the surface repeats in both directions without end, between two flat
             bodies. A periodic contact is elastic or has a constant bound (`equilibrium`), without
             adhesion.
@@ -84,6 +89,8 @@ class Contact:
     detachment: Detachment = "crack-closure"
     yield_strength: float = math.inf
     tangent_modulus: float = 0.0
+    adhesion: Adhesion = "jkr"
+    equilibrium_separation: float = EQUILIBRIUM_SEPARATION
     periodic: bool = False
 
     def __post_init__(self) -> None:
@@ -101,12 +108,19 @@ class Contact:
             ("plasticity", self.plasticity, (None, *get_args(Plasticity))),
             ("approach", self.approach, get_args(Approach)),
             ("detachment", self.detachment, get_args(Detachment)),
+            ("adhesion", self.adhesion, get_args(Adhesion)),
         ):
             if value not in known:
                 names = ", ".join(filter(None, known))
                 raise CaseError(f'{name}: "{value}" is not one of {names}')
         # Convert numbers of other types, because the compiled loops accept double precision only.
-        for name in ("yield_pressure", "work_of_adhesion", "yield_strength", "tangent_modulus"):
+        for name in (
+            "yield_pressure",
+            "work_of_adhesion",
+            "yield_strength",
+            "tangent_modulus",
+            "equilibrium_separation",
+        ):
             object.__setattr__(self, name, float(getattr(self, name)))
         if not self.yield_pressure > 0:
             raise CaseError(f"yield_pressure: {self.yield_pressure} Pa is not positive")
@@ -133,6 +147,12 @@ class Contact:
             raise CaseError("tangent_modulus: hardening needs a yield_strength")
         if not 0 <= self.work_of_adhesion < math.inf:
             raise CaseError(f"work_of_adhesion: {self.work_of_adhesion} J/m2 is not zero or more")
+        if not 0 < self.equilibrium_separation < math.inf:
+            raise CaseError(
+                f"equilibrium_separation: {self.equilibrium_separation} m is not a positive length"
+            )
+        if self.adhesion == "cohesive":
+            require_cohesive(self.approach, self.detachment, self.plasticity)
         self._check_period()
 
     def _check_period(self) -> None:
@@ -192,6 +212,11 @@ class Contact:
     def adhesive(self) -> bool:
         """Whether nodes in contact can carry tension."""
         return self.work_of_adhesion > 0
+
+    @property
+    def cohesive(self) -> bool:
+        """Whether the bodies attract over a finite range (`adhesion = "cohesive"`)."""
+        return self.adhesive and self.adhesion == "cohesive"
 
     @property
     def adhesive_length(self) -> float:
@@ -273,6 +298,15 @@ class Contact:
         return freeze(gap)
 
     @cached_property
+    def mean_offset(self) -> float:
+        """Mean gap at first touch between the rough surface and the smooth bodies (m)."""
+        at = tuple(n // 2 for n in self.grid.nodes)
+        r2 = sum((x[i] - a) ** 2 for x, i, a in zip((self.grid.x, self.grid.y), at, self.apex))
+        height = self.surface.height
+        rise = float(height[at] - height.mean()) - float(r2) / (2 * self.pair.radius)
+        return float(self.gap[at]) + rise
+
+    @cached_property
     def elongation(self) -> NDArray[np.float64]:
         """Elongation of asperities at each node, (1 − κ₂/κ₁)² (1), shape `grid.nodes`.
 
@@ -291,6 +325,25 @@ class Contact:
         ratio = np.divide(np.abs(mean - spread), larger, out=np.ones_like(larger), where=larger > 0)
         elongation[inner, inner] = (1 - ratio) ** 2
         return freeze(elongation)
+
+
+def require_cohesive(approach: str, detachment: str, plasticity: str | None) -> None:
+    """Raise `CaseError` if an option has no meaning with `adhesion = "cohesive"`."""
+    if detachment != "crack-closure":
+        raise CaseError(
+            f'detachment: "{detachment}" belongs to adhesion = "jkr"; a cohesive contact has no '
+            "detachment criterion, so remove the key"
+        )
+    if approach != "equilibrium":
+        raise CaseError(
+            f'approach: "{approach}" belongs to adhesion = "jkr"; a cohesive contact attracts on '
+            "approach, so remove the key"
+        )
+    if plasticity == "truncated":
+        raise CaseError(
+            'plasticity: "truncated" defines no pressure with adhesion = "cohesive"; use '
+            '"equilibrium", or adhesion = "jkr"'
+        )
 
 
 def _kind(value: object) -> str:

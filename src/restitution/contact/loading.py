@@ -18,6 +18,8 @@ from numpy.typing import NDArray
 from restitution.contact.adhesion import grow_contact, unload_adhesive
 from restitution.contact.cavity import yield_bound
 from restitution.contact.checks.edge import require_inside_grid
+from restitution.contact.cohesive import CohesiveState
+from restitution.contact.cohesive_path import load_cohesive, step_cohesive
 from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import (
     RESIDUAL,
@@ -117,6 +119,8 @@ def step(state: State, indentation: float, *, residual: float = RESIDUAL) -> Sta
         raise CaseError(
             "indentation: a truncated contact can only be unloaded; use solve to load it deeper"
         )
+    if isinstance(state, CohesiveState):
+        return step_cohesive(state, indentation, residual=residual)
     if contact.adhesive:
         new = unload_adhesive(state, indentation, residual=residual)
     else:
@@ -139,7 +143,12 @@ def step(state: State, indentation: float, *, residual: float = RESIDUAL) -> Sta
 def solve_without_work(
     contact: Contact, indentation: float, *, start: State | None, residual: float
 ) -> State:
-    """Do `solve` without computing the loading work and without checking the grid edge."""
+    """Do `solve` without computing the loading work and without checking the grid edge.
+
+    Cohesive contacts follow the whole path of loading, so their state has its work.
+    """
+    if contact.cohesive:
+        return load_cohesive(contact, indentation, start=start, residual=residual)
     limit, convolutions = _limit_at(contact, indentation, residual)
     if contact.adhesive and contact.approach == "equilibrium":
         shallower = start if start is not None and start.indentation <= indentation else None
@@ -233,7 +242,7 @@ def work_is_integrated(contact: Contact) -> bool:
 def with_work(state: State, start: State | None) -> State:
     """Add the work to a state of `solve_without_work`, integrated from `start` or first touch."""
     contact, indentation = state.contact, state.indentation
-    if not work_is_integrated(contact):
+    if contact.cohesive or not work_is_integrated(contact):
         return state
     if start is None or not start.is_first_loading or start.indentation >= indentation:
         start = None

@@ -1,4 +1,6 @@
-"""Error of COR due to the plasticity model, from a comparison with finite elements.
+"""Error of COR due to the models of plasticity and of adhesion.
+
+The error of plasticity comes from a comparison with finite elements.
 
 docs/validation.md describes the comparison. The largest relative differences of COR found are
 tabulated over the COR due to plasticity alone, e_p = sqrt(E_el/(E_el + W_p)). e_p decreases
@@ -6,6 +8,11 @@ monotonically from first yield to full plasticity, for smooth bodies and for asp
 differences of `expanding-cavity` also depend on the steepness of the asperities ψ = E* S/Y, where S
 is the rms slope. Outside the range of the finite element results, the nearest value is used and may
 be too small.
+
+`adhesion = "jkr"` neglects the range of the attraction. Then the error has a second part: the loss
+of smooth elastic spheres over one cycle of contact, over that of JKR, as a function of the Tabor
+parameter (docs/studies/cohesive_reference.csv). The energy that adhesion loses is too large by this
+factor.
 """
 
 from __future__ import annotations
@@ -14,6 +21,7 @@ import math
 
 import numpy as np
 
+from restitution.contact.checks.resolution import tabor_parameter
 from restitution.contact.state import State
 
 # For each model: values of COR without adhesion, and the largest relative difference at each value.
@@ -30,11 +38,44 @@ _CONSTANT = {
 # Largest relative difference as a function of ψ, and a factor on it as a function of COR near 1.
 _STEEPNESS, _GROWING = (0.0, 4.0, 6.0, 26.0), (0.03, 0.035, 0.045, 0.05)
 _NEAR_ONE = (0.94, 0.98, 1.0), (1.0, 0.5, 0.2)
+# Tabor parameter, and the hysteresis of the axisymmetric reference over that of JKR.
+_TABOR = (0.7, 1.0, 2.0, 3.0, 5.0)
+_HYSTERESIS = (0.0, 0.0347, 0.2039, 0.3198, 0.455)
 _ONSET = 1.6 / 2.8  # pressure at first yield over the yield pressure (full plasticity)
 
 
 def model_error(state: State, restitution: float) -> float:
-    """Error of the `restitution` of an impact up to `state` due to the plasticity model.
+    """Error of the `restitution` of an impact up to `state` due to its models.
+
+    The two parts, of plasticity and of the range of adhesion, are independent.
+    """
+    parts = _plasticity_error(state, restitution), _range_error(state, restitution)
+    return math.hypot(*parts) if all(parts) else max(parts)
+
+
+def hysteresis_ratio(tabor: float) -> float:
+    """Energy lost in a cycle of contact of smooth elastic spheres, over that of JKR.
+
+    Beyond the reference the difference from 1 falls as µ^-½, slower than the distance of the jump
+    into contact, µ^-4/7 (Wu 2010, J. Phys. D 43, 415303).
+    """
+    if tabor >= _TABOR[-1]:
+        return 1 - (1 - _HYSTERESIS[-1]) * math.sqrt(_TABOR[-1] / tabor)
+    return float(np.interp(tabor, _TABOR, _HYSTERESIS))
+
+
+def _range_error(state: State, restitution: float) -> float:
+    """Error of the `restitution` because JKR neglects the range of the attraction."""
+    contact, work = state.contact, state.loading_work
+    if not contact.adhesive or contact.cohesive or work <= 0 or state.contact_nodes == 0:
+        return 0.0
+    lost = max(1 - restitution**2 - state.plastic_work / work, 0.0)
+    regained = lost * (1 - hysteresis_ratio(tabor_parameter(state)))
+    return min(math.sqrt(restitution**2 + regained), 1.0) - restitution
+
+
+def _plasticity_error(state: State, restitution: float) -> float:
+    """Error of the `restitution` due to the plasticity model.
 
     The error is 0 for elastic bodies, and if no node has reached the pressure of first yield.
     """

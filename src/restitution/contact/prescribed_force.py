@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+from restitution.contact.cohesive_path import load_until
 from restitution.contact.contact import Contact
+from restitution.contact.equilibrium import RESIDUAL
 from restitution.contact.loading import solve, solve_without_work
 from restitution.contact.prescribed_pressure import solve_at_pressure
 from restitution.contact.state import State
@@ -56,12 +58,18 @@ def solve_at_force(contact: Contact, force: float, *, start: State | None = None
         nonlocal state, convolutions
         if indentation == 0:
             return -1.0
-        state = solve_without_work(contact, indentation, start=state, residual=_SOLVE_RESIDUAL)
+        shallower = start if contact.cohesive else state
+        state = solve_without_work(contact, indentation, start=shallower, residual=_SOLVE_RESIDUAL)
         convolutions += state.convolutions
         return state.force / force - 1
 
     hertz = float(Hertz(contact.pair.radius, contact.pair.contact_modulus).indentation(force))
     low, high = 0.0, max(hertz, start.indentation if start is not None else 0.0)
+    if contact.cohesive:  # one path of loading brackets the force
+        start, reached = load_until(
+            contact, lambda state: state.force >= force, start=start, residual=RESIDUAL
+        )
+        low, high = start.indentation, reached.indentation
     while excess(high) < 0:
         low, high = high, 1.5 * high
     indentation = brentq(excess, low, high, xtol=1e-12 * high, rtol=1e-12)

@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 
 from restitution.contact.checks.edge import require_inside_grid
+from restitution.contact.cohesive_path import load_until
 from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import RESIDUAL
 from restitution.contact.loading import solve_without_work, with_work, work_is_integrated
@@ -100,7 +101,19 @@ class _Search:
         return abs(math.sqrt(max(state.loading_work, 0.0) / self._work) - 1)
 
     def first_depth(self) -> float:
-        """A first guess (m): a Newton step from the start, or else Hertz's depth for this work."""
+        """A first guess (m): a Newton step from the start, or else Hertz's depth for this work.
+
+        A cohesive contact is loaded until the work is exceeded, so that no path is followed twice.
+        """
+        if self._contact.cohesive:
+            before, reached = load_until(
+                self._contact,
+                lambda state: state.loading_work >= self._work and state.force > 0,
+                start=self._start,
+                residual=RESIDUAL,
+            )
+            self.found[before.indentation] = before
+            return reached.indentation
         if self._start is not None and (depth := self._step(self._start)) is not None:
             return depth
         # Yield and roughness make the contact deeper.

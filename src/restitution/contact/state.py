@@ -93,9 +93,15 @@ class State:
         return float(self.box_pressure.sum()) * self.contact.grid.cell_area
 
     @property
+    def box_touching(self) -> NDArray[np.bool_]:
+        """Nodes of the box in contact: those with a pressure other than zero."""
+        touching: NDArray[np.bool_] = self.box_pressure != 0
+        return touching
+
+    @property
     def contact_nodes(self) -> int:
-        """Number of nodes with a pressure other than zero (1)."""
-        return int(np.count_nonzero(self.box_pressure))
+        """Number of nodes in contact (1)."""
+        return int(np.count_nonzero(self.box_touching))
 
     @property
     def contact_area(self) -> float:
@@ -169,7 +175,7 @@ class State:
         """
         from scipy.ndimage import label
 
-        labels, count = label(self.box_pressure != 0)
+        labels, count = label(self.box_touching)
         sizes = np.bincount(labels.ravel(), minlength=count + 1)[1:]
         if self.contact.periodic and count:
             sizes = np.bincount(_joined(labels, count), weights=sizes).astype(np.int64)

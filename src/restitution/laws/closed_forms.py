@@ -84,7 +84,7 @@ class Bodies:
             E=pair.contact_modulus,
             m=pair.mass,
             p_y=case.yielding().hardness,
-            w=case.interface.adhesion,
+            w=case.interface.adhesive_energy,
             walls=sum(walls),
             equal=not any(walls) and pair.first == pair.second and Y_1 == Y_2,
             sphere_poisson=(pair.second if walls[0] else pair.first).poissons_ratio,

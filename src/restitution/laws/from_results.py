@@ -63,7 +63,7 @@ def _law(out: Path, run: RunResults) -> Law:
     warnings = list(summary["warnings"])
     if summary["status"] != "complete":
         warnings.insert(0, f"the run is not complete ({summary['status']}: {summary['reason']})")
-    if case.interface.adhesion > 0 and case.unloading.method == "energy-estimate":
+    if case.interface.adhesive_energy > 0 and case.unloading.method == "energy-estimate":
         warnings.append(
             'COR is an estimate (unloading.method = "energy-estimate"), and pull-off is not known'
         )
@@ -91,7 +91,7 @@ def _law(out: Path, run: RunResults) -> Law:
         contact_modulus=pair.contact_modulus,
         mass=derived["reduced_mass_kg"],
         yield_pressure=derived["yield_pressure_Pa"],
-        work_of_adhesion=case.interface.adhesion,
+        work_of_adhesion=case.interface.adhesive_energy,
         model={key: str(value) for key, value in model.items()},
         conventions=Conventions(
             **summary["conventions"],

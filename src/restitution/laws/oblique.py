@@ -205,7 +205,7 @@ def oblique_force(run: RunResults, key: str = "angle") -> StoredForce:
         CaseError: The pair has adhesion, or no mass.
         OutputError: There are no unloading curves, or a file is damaged.
     """
-    if run.case.interface.adhesion > 0:
+    if run.case.interface.adhesive_energy > 0:
         raise CaseError(f"{key}: oblique impacts are computed for pairs without adhesion only")
     return stored_force(run.folder)
 

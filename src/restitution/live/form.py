@@ -9,7 +9,7 @@ from restitution.case.bodies import FROM_LIBRARY
 from restitution.case.materials import Material, materials
 from restitution.case.quantities import unit_factors
 from restitution.collision import UnloadingMethod
-from restitution.contact.contact import Approach, Plasticity
+from restitution.contact.contact import Adhesion, Approach, Plasticity
 from restitution.contact.detachment import Detachment
 from restitution.dem.export import CODES
 from restitution.display import quantity
@@ -172,6 +172,12 @@ _INTERFACE = (
         1.0,
         logarithmic=False,
         hint="of oblique impacts and exports",
+        more=True,
+    ),
+    Field(
+        "interface.adhesion",
+        "Range of adhesion",
+        choices=_named(get_args(Adhesion), "by the grid"),
         more=True,
     ),
     Field(

@@ -44,6 +44,12 @@ _ADHESION = (
     "JKR limit, energy balance at the edge of contact",
     "Johnson, Kendall and Roberts (1971), Proc. R. Soc. A 324, 301–313",
 )
+_COHESIVE = (
+    "adhesion",
+    "Lennard-Jones law between half-spaces, minimum of the energy",
+    "Muller, Yushchenko and Derjaguin (1980), J. Colloid Interface Sci. 77, 91–101; Greenwood "
+    "(1997), Proc. R. Soc. A 453, 1277–1297",
+)
 _DETACHMENT = {
     "crack-closure": (
         "detachment",
@@ -82,7 +88,8 @@ def methods(summary: Mapping[str, Any]) -> Table:
     if model["plasticity"] != "none":
         rows.append(_YIELD[model["plasticity"]])
     if model["adhesion"] != "none":
-        rows += [_ADHESION, _DETACHMENT[model["detachment"]]]
+        jkr = "detachment" in model
+        rows += [_ADHESION, _DETACHMENT[model["detachment"]]] if jkr else [_COHESIVE]
     source = summary.get("surface", {}).get("source")
     if source in _ROUGHNESS:
         rows.append(_ROUGHNESS[source])

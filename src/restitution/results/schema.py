@@ -105,7 +105,10 @@ COLUMNS = {
         low=0.0,
     ),
     "model_error": Column(
-        "model_error", "1", "error of restitution due to the model of plasticity", low=0.0
+        "model_error",
+        "1",
+        "error of restitution due to the models of plasticity and adhesion",
+        low=0.0,
     ),
     "refine": Column(
         "refinement", "1", "cells along x and y that one cell of [grid] is divided into", low=1.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -13,7 +14,9 @@ from restitution.contact.checks.resolution import (
     NODES_PER_PATCH,
     NODES_PER_RADIUS,
 )
+from restitution.contact.cohesive import coarsest_spacing
 from restitution.contact.contact import Contact
+from restitution.contact.model_error import hysteresis_ratio
 from restitution.errors import (
     CaseError,
     DomainError,
@@ -21,12 +24,15 @@ from restitution.errors import (
     RestitutionError,
     SurfaceError,
 )
+from restitution.theory import JKR
 
 _ERRORS: dict[Code, type[RestitutionError]] = {
     "roughness-above-radius": CaseError,
     "contact-beyond-radius": CaseError,
     "pixel-above-contact": SurfaceError,
+    "range-unresolved": CaseError,
 }
+_NEARLY_JKR = 0.9  # energy lost by adhesion over that of JKR, beyond which no warning is issued
 _KEYS = {"force": "load", "velocity": "impact"}  # arguments of the solvers: keys of the case file
 
 
@@ -40,6 +46,25 @@ def require_possible(contact: Contact, indentation: float) -> None:
 def input_warnings(contact: Contact, indentation: float) -> list[str]:
     """Make a warning for each doubtful property of `contact` when loaded to `indentation` (m)."""
     return [message(found) for found in doubtful(contact, indentation)]
+
+
+def no_range(contact: Contact) -> list[str]:
+    """Make a warning if `contact` neglects the range of its attraction because of its grid."""
+    if contact.cohesive:
+        return []
+    pair, w = contact.pair, contact.work_of_adhesion
+    smooth = JKR(pair.radius, pair.contact_modulus, w)
+    tabor = float(smooth.tabor_parameter(contact.equilibrium_separation))
+    lost = hysteresis_ratio(tabor)
+    if lost > _NEARLY_JKR:
+        return []
+    return [
+        'interface.adhesion is left out, and the grid is too coarse for "cohesive" (it needs '
+        f'{_nm(coarsest_spacing(contact))}), so it is "jkr", without range: at the Tabor parameter '
+        f"of the smooth bodies, {tabor:.2g}, adhesion loses {lost:.2g} times the energy of JKR, "
+        f"and the sticking velocity is {math.sqrt(lost):.2g} times as high; asperities lose less; "
+        "model_error includes this"
+    ]
 
 
 @contextmanager
@@ -78,6 +103,12 @@ def message(found: Finding) -> str:
                 f"radius at the deepest indentation ({_um(found['radius'])} at "
                 f"{_nm(found['indentation'])}), so the scan does not resolve this contact; use a "
                 "finer scan, a larger particle or a deeper contact"
+            )
+        case "range-unresolved":
+            return (
+                f"grid.spacing: {_nm(found['spacing'])} is too coarse for the range of the "
+                f'attraction; interface.adhesion = "cohesive" needs {_nm(found["needed"])} or less '
+                '(0.4 E* z0^2/w): use a finer grid, grid.refine (or "auto"), or adhesion = "jkr"'
             )
         case "edge-reached":
             wide, long = (1e6 * edge for edge in found["size"])

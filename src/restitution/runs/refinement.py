@@ -8,6 +8,7 @@ from pathlib import Path
 from restitution.case.case import Case
 from restitution.case.schema import FACTORS
 from restitution.contact.checks.resolution import NODES_PER_PATCH, median_patch
+from restitution.contact.cohesive import resolves_range
 from restitution.contact.contact import Contact
 from restitution.errors import DomainError, NotConvergedError
 from restitution.runs.loading import load_to
@@ -43,10 +44,12 @@ def settled(case: Case, folder: Path, warn: Say = ignore) -> Case:
         contact = finer.realisation(0).contact(folder)
         if factor == 1:
             nodes = contact.grid.nodes
+        finest, why = factor, f"{factor} is the largest refine"
+        if contact.cohesive and not resolves_range(contact):
+            continue
         left = depths[: len(depths) - len(factors)]
         first = _first_resolved(finer, contact, left)
         factors = [factor] * (len(left) - first) + factors
-        finest, why = factor, f"{factor} is the largest refine"
         if first == 0:
             break
     if unresolved := len(depths) - len(factors):

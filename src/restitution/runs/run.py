@@ -30,7 +30,7 @@ from restitution.results.writer import ResultsFolder, results_dataset, versions
 from restitution.runs.depths import Depth, collision_at, loaded_depths
 from restitution.runs.error_budget import add_errors, band_warning, total_error_summary
 from restitution.runs.log import RunLog, Say, ignore
-from restitution.runs.messages import input_warnings, message, require_possible
+from restitution.runs.messages import input_warnings, message, no_range, require_possible
 from restitution.runs.oblique import is_oblique, oblique_rows
 from restitution.runs.refinement import settled
 from restitution.runs.smooth import smooth_curve
@@ -100,9 +100,14 @@ def run_case(
     with run.record(out, keep):
         case = settled(case, folder, run.warn)
         contact = case.contact(folder)
+        left_out = case.interface.adhesion is None
+        case = case.with_adhesion_of(contact)
         deepest = deepest_indentation(case)
         require_possible(contact, deepest)
-        for warning in omissions(case) + input_warnings(contact, deepest):
+        found = omissions(case) + input_warnings(contact, deepest)
+        if left_out and contact.adhesive:
+            found += no_range(contact)
+        for warning in found:
             run.warn(warning)
         with out.tables():
             failure = _load_and_unload(
@@ -307,6 +312,12 @@ def _velocities_missed(out: ResultsFolder, case: Case, computed: list[float]) ->
 def _adhesion_of(contact: Contact, case: Case) -> dict[str, Any]:
     if not contact.adhesive:
         return {"adhesion": "none"}
+    if contact.cohesive:
+        z0 = 1e9 * contact.equilibrium_separation
+        return {
+            "adhesion": f"Lennard-Jones between half-spaces, z0 = {z0:.4g} nm",
+            "unloading": case.unloading.method,
+        }
     return {
         "adhesion": "JKR limit",
         "approach": contact.approach,

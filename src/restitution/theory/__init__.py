@@ -30,7 +30,9 @@ from .jkr import JKR
 from .johnson import Johnson
 from .kendall import Kendall
 from .law import ImpactLaw
+from .lennard_jones import LennardJones
 from .luding import Luding
+from .maugis_dugdale import MaugisDugdale
 from .mdr import MDR
 from .persson import Persson
 from .thornton_ning import ThorntonNing
@@ -49,7 +51,9 @@ __all__ = [
     "JacksonGreen",
     "Johnson",
     "Kendall",
+    "LennardJones",
     "Luding",
+    "MaugisDugdale",
     "Persson",
     "ThorntonNing",
     "WaltonBraun",

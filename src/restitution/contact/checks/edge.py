@@ -39,7 +39,7 @@ def require_inside_grid(state: State) -> None:
     """
     if state.contact.periodic:
         return
-    p, grid = state.box_pressure, state.contact.grid
+    p, grid = state.box_touching, state.contact.grid
     (top, left), (bottom, right) = (
         (part.start for part in state.box),
         (part.stop for part in state.box),

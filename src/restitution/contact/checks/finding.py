@@ -13,6 +13,7 @@ Code = Literal[
     "contact-beyond-radius",
     "pixel-above-contact",
     "edge-reached",
+    "range-unresolved",
     # The input may be wrong, or the grid too small or too coarse.
     "contact-beyond-grid",
     "few-nodes",

@@ -13,6 +13,7 @@ from restitution.contact.checks.resolution import (
     predicted_radius,
     resolution_findings,
 )
+from restitution.contact.cohesive import coarsest_spacing, resolves_range
 from restitution.contact.contact import Contact
 from restitution.surfaces import level, rms_slope
 from restitution.theory import Hertz, Kendall
@@ -32,7 +33,8 @@ def impossible(contact: Contact, indentation: float) -> Finding | None:
 
     * `roughness-above-radius`: `radius` of the smaller particle, `peak` above the mean (m);
     * `contact-beyond-radius`: predicted `radius`, `indentation`, `reduced_radius` (m);
-    * `pixel-above-contact`, see `coarse_scan`.
+    * `pixel-above-contact`, see `coarse_scan`;
+    * `range-unresolved`: `spacing` and `needed` spacing (m) of a cohesive contact.
 
     A periodic contact has no radius, and is never meaningless.
     """
@@ -46,6 +48,9 @@ def impossible(contact: Contact, indentation: float) -> Finding | None:
     if predicted > pair.radius:
         values = {"radius": predicted, "indentation": indentation, "reduced_radius": pair.radius}
         return Finding("contact-beyond-radius", values)
+    if contact.cohesive and not resolves_range(contact):
+        spacing, needed = max(contact.grid.spacing), coarsest_spacing(contact)
+        return Finding("range-unresolved", {"spacing": spacing, "needed": needed})
     return coarse_scan(contact, indentation)
 
 

@@ -45,12 +45,29 @@ def predicted_radius(pair: Pair, indentation: float, yield_pressure: float = mat
 def adhesive_nodes(state: State) -> float:
     """Number of nodes per pull-off radius of an asperity, a_c/h; inf without adhesion.
 
-    a_c = (9πw/(8E*κ²))^⅓ (JKR), where κ is the mean curvature of the undeformed gap over the
-    contact, 1/R* for smooth spheres.
+    a_c = (9πw/(8E*κ²))^⅓ (JKR), where 1/κ is the `radius_of_asperities`.
     """
-    contact, box = state.contact, state.box
+    contact = state.contact
     if not contact.adhesive:
         return math.inf
+    return pull_off_radius(contact, radius_of_asperities(state)) / max(contact.grid.spacing)
+
+
+def tabor_parameter(state: State) -> float:
+    """Tabor parameter µ of the contact, at the `radius_of_asperities`."""
+    contact = state.contact
+    asperity = JKR(
+        radius_of_asperities(state), contact.pair.contact_modulus, contact.work_of_adhesion
+    )
+    return float(asperity.tabor_parameter(contact.equilibrium_separation))
+
+
+def radius_of_asperities(state: State) -> float:
+    """Radius (m) from the mean curvature of the undeformed gap over the contact.
+
+    It is R* for smooth spheres, and never more.
+    """
+    contact, box = state.contact, state.box
     hx, hy = contact.grid.spacing
     around = widen(box, 1, contact.grid.nodes)
     missing = [
@@ -60,10 +77,9 @@ def adhesive_nodes(state: State) -> float:
     gap = np.pad(contact.gap[around], missing, mode="reflect", reflect_type="odd")
     laplacian = np.diff(gap[:, 1:-1], 2, axis=0) / hx**2
     laplacian = laplacian + np.diff(gap[1:-1, :], 2, axis=1) / hy**2
-    touching = state.box_pressure != 0
+    touching = state.box_touching
     curvature = 0.5 * float(laplacian[touching].mean()) if touching.any() else 0.0
-    curvature = max(curvature, 1 / contact.pair.radius)
-    return pull_off_radius(contact, 1 / curvature) / max(contact.grid.spacing)
+    return min(1 / curvature if curvature > 0 else math.inf, contact.pair.radius)
 
 
 def pull_off_radius(contact: Contact, radius: float) -> float:

@@ -1,0 +1,384 @@
+"""Contact with an attraction of finite range: one solve, and the state that it returns.
+
+The bodies interact at every node by a law of the gap g (`theory.LennardJones`). At a prescribed
+indentation δ, the displacement u is a local minimum of
+
+    ½ uᵀK⁻¹u + Σ φ(g),   g = z₀ + h₀ + u_p − δ + u,
+
+with the energy φ of the law. There is no contact set and no release of nodes. Where an equilibrium
+ceases to exist, the solve descends to the next one; `cohesive_path` accounts for the work that is
+lost then. Surfaces yield where the pressure of the law would exceed the bound: the pressure stays
+at the bound, and the rest of the approach becomes plastic displacement.
+
+A node is *in contact* where its gap is below that of the largest attraction, 3^{1/6} z₀. The law is
+stable there, and the set tends to the contact of JKR, whose edge carries tension, for a short range.
+
+Nodes outside the box, and the paraboloid outside the grid, attract as rigid bodies.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.contact.contact import Contact
+from restitution.contact.influence import half_space
+from restitution.contact.state import State
+from restitution.errors import CaseError, NotConvergedError
+from restitution.numerics.box import Box, bounding_box, reframe, shape_of
+from restitution.numerics.read_only import freeze
+from restitution.numerics.truncated_newton import minimise_locally
+from restitution.theory import LennardJones
+
+Array = NDArray[np.float64]
+
+# Largest spacing over the length of the cohesive zone E*z₀²/w. On coarser grids the edge of the
+# contact is held between nodes and the hysteresis is wrong (docs/adhesion.md).
+COARSEST = 0.4
+# Solves up to twice this spacing are for the comparison of grids; their error covers it.
+_REFUSED = 2 * COARSEST
+_REACH = 12.0  # nodes with rigid gaps up to this multiple of z₀ are solved
+# Tolerance of u over z₀, in units of the `residual` of a solve; rounding limits it.
+_TOLERANCE, _LEAST_TOLERANCE = 100.0, 1e-7
+_UNIQUE = 0.7  # bound on the spectral radius below which an equilibrium counts as unique
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CohesiveState(State):
+    """A state with an attraction of finite range.
+
+    Attributes:
+        interaction_energy: Energy of the interface law (J); 0 for bodies far apart.
+        far_force: Part of the normal force from outside `box` (N).
+        adhesive_loss: Energy dissipated so far where equilibrium was lost (J).
+        jumps: Number of losses of equilibrium so far (1).
+        unaccounted: Work of the force minus the energy accounted for (J), so far.
+        smallest_gap: Smallest gap between the surfaces (m); z₀ where they touch without pressure.
+    """
+
+    interaction_energy: float = 0.0
+    far_force: float = 0.0
+    adhesive_loss: float = 0.0
+    jumps: int = 0
+    unaccounted: float = 0.0
+    smallest_gap: float = math.inf
+
+    @property
+    def force(self) -> float:
+        """Normal force (N) of all nodes and of the bodies outside the grid."""
+        return super().force + self.far_force
+
+    @property
+    def box_touching(self) -> NDArray[np.bool_]:
+        """Nodes of the box in contact, with a gap below that of the largest attraction."""
+        return box_gap(self) < float(_law(self.contact).gap_of_largest_traction)
+
+    @property
+    def potential_energy(self) -> float:
+        """Elastic energy and energy of the interaction (J)."""
+        return self.stored_energy + self.interaction_energy
+
+
+def box_gap(state: State) -> Array:
+    """Gap between the deformed surfaces on the box of `state` (m)."""
+    contact, box = state.contact, state.box
+    base = _base(contact, state.indentation, box, state.plastic_displacement)
+    gap: Array = base + state.box_displacement
+    return gap
+
+
+def cohesive_length(contact: Contact) -> float:
+    """Length of the cohesive zone at the edge of a contact, E*z₀²/w (m)."""
+    z0, w = contact.equilibrium_separation, contact.work_of_adhesion
+    return contact.pair.contact_modulus * z0**2 / w
+
+
+def coarsest_spacing(contact: Contact) -> float:
+    """The largest grid spacing (m) that resolves the cohesive zone."""
+    return COARSEST * cohesive_length(contact)
+
+
+def resolves_range(contact: Contact) -> bool:
+    """Whether the cells are fine enough for the range of the attraction."""
+    return max(contact.grid.spacing) <= coarsest_spacing(contact) * (1 + 1e-9)
+
+
+def require_fine_grid(contact: Contact) -> None:
+    """Raise `CaseError` if the cells are far too coarse for the range of the attraction."""
+    h, length = max(contact.grid.spacing), cohesive_length(contact)
+    if h > _REFUSED * length * (1 + 1e-9):
+        raise CaseError(
+            f"grid.spacing: {1e9 * h:.4g} nm is too coarse for the range of the attraction; "
+            f'adhesion = "cohesive" needs {1e9 * COARSEST * length:.4g} nm or less '
+            "(0.4 E* z0^2/w)"
+        )
+
+
+def solve_cohesive(
+    contact: Contact,
+    indentation: float,
+    box: Box,
+    *,
+    p: Array,
+    u: Array,
+    limit: Array | float,
+    history: State | None,
+    residual: float,
+) -> CohesiveState:
+    """Descend from the pressure `p` and displacement `u` = K p on `box` to an equilibrium.
+
+    `limit` is the largest pressure (Pa), a number or an array of the shape of the grid. The works
+    of the result are those of `history` (zero if None), except that interaction and plastic
+    displacement are those of the result. Raises `NotConvergedError`.
+    """
+    K = half_space(shape_of(box), contact.grid.spacing, contact.pair.contact_modulus)
+    before = np.zeros(contact.grid.nodes) if history is None else history.plastic_displacement
+    upper = limit[box] if isinstance(limit, np.ndarray) else limit
+    law = _BoundedLaw(contact, _base(contact, indentation, box, before), upper)
+    z0 = contact.equilibrium_separation
+    found = minimise_locally(
+        K,
+        law,
+        p=p,
+        u=u,
+        length=0.5 * z0,
+        tolerance=max(_TOLERANCE * residual, _LEAST_TOLERANCE) * z0,
+    )
+    if not found.converged:
+        raise NotConvergedError(
+            f"the cohesive solve at an indentation of {1e9 * indentation:.6g} nm stopped at a "
+            f"residual of {found.residual / z0:.1e} z0 after {found.steps} steps; refine the grid"
+        )
+    yielded = law.beyond(found.u)
+    plastic = before
+    if law.yields and yielded.any():
+        plastic = before.copy()
+        plastic[box] += yielded
+    gap = np.maximum(law.base + found.u, law.least)
+    area = contact.grid.cell_area
+    far_force, far_energy = _far(contact, indentation, box)
+    energy = float(np.sum(_law(contact).energy(gap))) * area
+    if not law.yields:
+        # Bodies without yield: the linear continuation of the law beyond `limit`.
+        energy += float(np.sum(law.continuation(found.u))) * area
+    return CohesiveState(
+        contact,
+        indentation,
+        box,
+        freeze(found.p),
+        freeze(found.u),
+        freeze(plastic),
+        limit,
+        plastic_work=0.0 if history is None else history.plastic_work,
+        adhesive_work=0.0,
+        work_error=0.0 if history is None else history.work_error,
+        residual=found.residual / contact.residual_length(indentation),
+        convolutions=K.count,
+        is_first_loading=history is None or history.is_first_loading,
+        interaction_energy=energy + far_energy,
+        far_force=far_force,
+        smallest_gap=float(gap.min(initial=math.inf)),
+    )
+
+
+def rigid_start(contact: Contact, *, limit: Array | float, residual: float) -> CohesiveState:
+    """The state of approaching bodies from which on equilibrium may be lost.
+
+    At every larger distance the equilibrium is unique, so nothing is dissipated.
+    """
+    z0 = contact.equilibrium_separation
+    gap, convolutions = 2 * z0, 0
+    while True:
+        indentation = z0 - gap
+        state = from_rigid(contact, indentation, limit=limit, residual=residual)
+        convolutions += state.convolutions + 1
+        if is_unique(state):
+            return replace(state, convolutions=convolutions)
+        gap *= 1.5
+
+
+def from_rigid(
+    contact: Contact,
+    indentation: float,
+    *,
+    limit: Array | float,
+    residual: float,
+    box: Box | None = None,
+) -> CohesiveState:
+    """Solve from the pressures that rigid bodies would have at `indentation`."""
+    box = box or interacting_box(contact, indentation)
+    p = rigid_pressure(contact, indentation, box)
+    K = half_space(shape_of(box), contact.grid.spacing, contact.pair.contact_modulus)
+    state = solve_cohesive(
+        contact, indentation, box, p=p, u=K(p), limit=limit, history=None, residual=residual
+    )
+    return with_interaction(state)
+
+
+def rigid_pressure(contact: Contact, indentation: float, box: Box) -> Array:
+    """Pressure of the law between rigid bodies (Pa), where they attract; zero elsewhere."""
+    gap = _base(contact, indentation, box, None)
+    least = float(_law(contact).gap_of_largest_traction)
+    return np.where(gap > least, -_law(contact).traction(np.maximum(gap, least)), 0.0)
+
+
+def with_interaction(state: CohesiveState) -> CohesiveState:
+    """Set the work of adhesion so far from the interaction and the losses of `state`."""
+    return replace(state, adhesive_work=-state.interaction_energy - state.adhesive_loss)
+
+
+def interacting_box(contact: Contact, indentation: float, history: State | None = None) -> Box:
+    """The box of the nodes that are near enough to interact as deformable bodies."""
+    reach = _REACH * contact.equilibrium_separation + contact.adhesive_length
+    gap = contact.gap if history is None else contact.gap + history.plastic_displacement
+    box = bounding_box(gap < max(indentation + reach, reach * 1e-3))
+    if box is None:  # the bodies are far apart: the nodes nearest to each other
+        box = bounding_box(gap <= gap.min() + reach)
+        assert box is not None
+    return box
+
+
+def on_box(state: CohesiveState, box: Box, *, residual: float) -> CohesiveState:
+    """Solve `state` again on a larger box."""
+    contact, indentation = state.contact, state.indentation
+    inside = reframe(np.ones(shape_of(state.box), dtype=bool), state.box, box)
+    p = np.where(
+        inside,
+        reframe(state.box_pressure, state.box, box),
+        rigid_pressure(contact, indentation, box),
+    )
+    K = half_space(shape_of(box), contact.grid.spacing, contact.pair.contact_modulus)
+    new = solve_cohesive(
+        contact,
+        indentation,
+        box,
+        p=p,
+        u=K(p),
+        limit=state.bound,
+        history=state,
+        residual=residual,
+    )
+    new = replace(
+        new,
+        adhesive_loss=state.adhesive_loss,
+        jumps=state.jumps,
+        unaccounted=state.unaccounted,
+        convolutions=new.convolutions + 1,
+    )
+    return with_interaction(new)
+
+
+def is_unique(state: CohesiveState) -> bool:
+    """Whether no other equilibrium can exist at this and at larger distances of the bodies.
+
+    This is so if the spectral radius of K diag(max(−φ″, 0)) is below 1. The largest row sum is a
+    bound for it.
+    """
+    contact = state.contact
+    x = contact.equilibrium_separation / box_gap(state)
+    softening = np.maximum(-_stiffness(contact, x), 0.0)
+    K = half_space(shape_of(state.box), contact.grid.spacing, contact.pair.contact_modulus)
+    return float(K(softening).max()) < _UNIQUE
+
+
+class _BoundedLaw:
+    """The law of the gap on a box, as a function of u, bounded or continued beyond `limit`.
+
+    Where the pressure would exceed the limit, it stays there (`yields`). For elastic bodies it is
+    continued linearly beyond E*, a pressure that no result reaches; the continuation keeps the
+    iteration away from negative gaps.
+    """
+
+    def __init__(self, contact: Contact, base: Array, limit: Array | float) -> None:
+        self.base = base
+        self.yields = bool(np.all(np.isfinite(limit)))
+        bound = np.asarray(limit if self.yields else contact.pair.contact_modulus, dtype=float)
+        w, z0 = contact.work_of_adhesion, contact.equilibrium_separation
+        self._w, self._z0 = w, z0
+        self.least = z0 / np.cbrt(_cubic_root(bound * 3 * z0 / (8 * w)))
+        x = z0 / self.least
+        self._slope = -bound
+        self._stiff = 0.0 if self.yields else _stiffness(contact, x)
+
+    def __call__(self, u: Array) -> tuple[Array, Array, Array]:
+        """Energy (J/m²), its slope (Pa) and its curvature (Pa/m) at u."""
+        gap = self.base + u
+        below = np.minimum(gap - self.least, 0.0)
+        x = self._z0 / (gap - below)
+        x2 = x * x
+        x4 = x2 * x2
+        x6 = x4 * x2
+        energy = (-self._w / 3) * x2 * (4 - x6)
+        slope = (8 * self._w / (3 * self._z0)) * (x2 * x) * (1 - x6)
+        stiff = (8 * self._w / self._z0**2) * x4 * (3 * x6 - 1)
+        energy += below * (self._slope + 0.5 * self._stiff * below)
+        slope += self._stiff * below
+        stiff[below < 0] = self._stiff
+        return energy, slope, stiff
+
+    def beyond(self, u: Array) -> Array:
+        """How far the gap would lie below that of the limit (m): the plastic displacement."""
+        yielded: Array = np.maximum(self.least - self.base - u, 0.0)
+        return yielded
+
+    def continuation(self, u: Array) -> Array:
+        """Energy beyond the limit (J/m²) of bodies that do not yield."""
+        below = -self.beyond(u)
+        energy: Array = below * (self._slope + 0.5 * self._stiff * below)
+        return energy
+
+
+def _cubic_root(c: Array) -> Array:
+    """The root y ≥ 1 of y³ − y = c for c ≥ 0, by Viète's formulas."""
+    t = 1.5 * math.sqrt(3) * c
+    inside = np.cos(np.arccos(np.minimum(t, 1.0)) / 3)
+    beyond = np.cosh(np.arccosh(np.maximum(t, 1.0)) / 3)
+    root: Array = 2 / math.sqrt(3) * np.where(t < 1, inside, beyond)
+    return root
+
+
+def _law(contact: Contact) -> LennardJones:
+    return LennardJones(contact.work_of_adhesion, contact.equilibrium_separation)
+
+
+def _stiffness(contact: Contact, x: Array) -> Array:
+    """Slope of the traction (Pa/m) at z₀/g = x."""
+    scale = 8 * contact.work_of_adhesion / contact.equilibrium_separation**2
+    stiffness: Array = scale * x**4 * (3 * x**6 - 1)
+    return stiffness
+
+
+def _base(contact: Contact, indentation: float, box: Box, plastic: Array | None) -> Array:
+    """Gap of the surfaces without elastic displacement on `box` (m)."""
+    base: Array = contact.gap[box] + (contact.equilibrium_separation - indentation)
+    if plastic is not None:
+        base += plastic[box]
+    return base
+
+
+def _far(contact: Contact, indentation: float, box: Box) -> tuple[float, float]:
+    """Force (N) and energy (J) of the rigid nodes outside `box` and of the bodies off the grid."""
+    law, grid, (rows, columns) = _law(contact), contact.grid, box
+    z0, everything = contact.equilibrium_separation, slice(None)
+    outside: tuple[Box, ...] = (
+        (slice(0, rows.start), everything),
+        (slice(rows.stop, None), everything),
+        (rows, slice(0, columns.start)),
+        (rows, slice(columns.stop, None)),
+    )
+    force = energy = 0.0
+    for part in outside:
+        gap = np.maximum(contact.gap[part] + (z0 - indentation), 1.2 * z0)
+        force -= float(np.sum(law.traction(gap))) * grid.cell_area
+        energy += float(np.sum(law.energy(gap))) * grid.cell_area
+    # Off the grid, the mean surface of the bodies beyond the circle with the area of the grid.
+    R, (wide, long) = contact.pair.radius, grid.size
+    edge = wide * long / (2 * math.pi * R) + contact.mean_offset + z0 - indentation
+    edge = max(edge, 2 * z0)
+    return (
+        force + float(law.rigid_sphere_force(edge, R)),
+        energy + float(law.rigid_sphere_energy(edge, R)),
+    )

@@ -1,0 +1,285 @@
+"""Paths of cohesive contacts: loading, and unloading to separation, with the work that is lost.
+
+In a step without instability the work of the force equals the change of the potential energy plus
+the plastic work. So the energies of the states give the work, and an integral of the force is only
+a check. Where an equilibrium ceases to exist, the solve descends to another one. Then the work of
+the force exceeds the change of energy, and the excess is the energy dissipated by adhesion. Steps
+are halved around such jumps until the uncertainty of this excess, half the jump of the force times
+the step, is small.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.contact.cavity import yield_bound
+from restitution.contact.checks.edge import require_inside_grid
+from restitution.contact.cohesive import (
+    CohesiveState,
+    interacting_box,
+    is_unique,
+    on_box,
+    require_fine_grid,
+    rigid_start,
+    solve_cohesive,
+    with_interaction,
+)
+from restitution.contact.contact import Contact
+from restitution.contact.plastic_work import plastic_work
+from restitution.contact.state import State
+from restitution.errors import NotConvergedError
+from restitution.numerics.box import Box, union
+from restitution.numerics.read_only import freeze
+
+Array = NDArray[np.float64]
+
+ACCURACY = 2e-4  # largest unaccounted work of a step, over the energies of the contact
+_FIRST_STEP = 0.25  # first step (z₀)
+_LEAST_STEP = 1e-5  # shortest step (z₀); an equilibrium that cannot be followed is an error
+_MOST_STEPS = 5000
+_FARTHEST = 0.02  # unloading ends where the tension is below this part of the largest tension
+_WIDER = 1.3  # factor on the interacting region when the box grows, so that it grows seldom
+
+
+def load_cohesive(
+    contact: Contact,
+    indentation: float,
+    *,
+    start: State | None,
+    residual: float,
+    accuracy: float = ACCURACY,
+) -> CohesiveState:
+    """Load the undeformed bodies to `indentation` from far apart, or from a shallower `start`.
+
+    Raises `CaseError` if the grid is too coarse, and `NotConvergedError`.
+    """
+    require_fine_grid(contact)
+    state: CohesiveState | None = None
+    if isinstance(start, CohesiveState) and start.is_first_loading:
+        state = start if start.indentation <= indentation else None
+    convolutions = 0
+    if state is None:
+        limit, convolutions = _bound(contact, -math.inf, residual)
+        state = rigid_start(contact, limit=limit, residual=residual)
+        if state.indentation > indentation:
+            return replace(state, convolutions=convolutions)
+    else:
+        state = replace(state, convolutions=0)
+    for state in follow(state, indentation, residual=residual, accuracy=accuracy):
+        convolutions += state.convolutions
+    return replace(state, convolutions=convolutions)
+
+
+def load_until(
+    contact: Contact,
+    reached: Callable[[CohesiveState], bool],
+    *,
+    start: State | None,
+    residual: float,
+) -> tuple[CohesiveState, CohesiveState]:
+    """Load until `reached`; return the last state before this and the first state after it.
+
+    Both are the same state if `start`, or the state of bodies far apart, has reached it already.
+    """
+    begin = start.indentation if isinstance(start, CohesiveState) else -math.inf
+    before = load_cohesive(contact, begin, start=start, residual=residual)
+    if reached(before):
+        return before, before
+    for state in follow(before, math.inf, residual=residual):
+        if reached(state):
+            return before, state
+        before = state
+    raise NotConvergedError("the loading path has ended early")  # `follow` raises before this
+
+
+def step_cohesive(state: CohesiveState, indentation: float, *, residual: float) -> CohesiveState:
+    """Move a deformed contact to another indentation, deeper or shallower."""
+    convolutions = 0
+    new = replace(state, convolutions=0)
+    for new in follow(new, indentation, residual=residual):
+        convolutions += new.convolutions
+    return replace(new, convolutions=convolutions, is_first_loading=False)
+
+
+def separate_cohesive(state: CohesiveState, *, accuracy: float = ACCURACY) -> Iterator[State]:
+    """Yield `state` and the states of unloading until the rest of the way is reversible and weak.
+
+    The last state is without contact, and no other equilibrium can exist at larger distances. Its
+    interaction energy is the work that the rest of the way takes.
+    """
+    yield state
+    tension = max(0.0, -state.force)
+    path = follow(
+        replace(state, is_first_loading=False), -math.inf, residual=1e-8, accuracy=accuracy
+    )
+    for new in path:
+        tension = max(tension, -new.force)
+        yield new
+        done = new.contact_nodes == 0 and -new.force <= _FARTHEST * tension
+        if done and is_unique(new):
+            return
+
+
+@dataclass
+class _Step:
+    """A trial step: its state, the work of the force by two rules, and the energy change (J)."""
+
+    state: CohesiveState
+    by_trapezium: float
+    by_parabola: float
+    change: float
+    uncertainty: float
+
+
+def follow(
+    state: CohesiveState, target: float, *, residual: float, accuracy: float = ACCURACY
+) -> Iterator[CohesiveState]:
+    """Yield the equilibria from `state` (not included) to the indentation `target`.
+
+    `target` may be −inf; then the caller ends the path. Raises `NotConvergedError` if an
+    equilibrium cannot be followed.
+    """
+    contact = state.contact
+    z0 = contact.equilibrium_separation
+    sign = 1.0 if target > state.indentation else -1.0
+    length = _FIRST_STEP * z0
+    if state.smallest_gap < 1.1 * z0:  # in contact: a part of the depth of the contact
+        length = max(length, 0.02 * abs(state.indentation))
+    previous: CohesiveState | None = None
+    rejected = 0  # convolutions of steps that were not accepted
+    require_inside_grid(state)
+    for _ in range(_MOST_STEPS):
+        left = abs(target - state.indentation)
+        if left == 0:
+            return
+        last = length >= left * (1 - 1e-9)
+        at = target if last else state.indentation + sign * min(length, 0.5 * left)
+        length = abs(at - state.indentation)
+        state_on = _on_wider_box(state, at, residual)
+        if state_on is not state:
+            rejected += state_on.convolutions
+            state, previous = state_on, None
+        try:
+            step = _try(previous, state, at, residual)
+        except NotConvergedError:
+            if length <= 8 * _LEAST_STEP * z0:
+                raise
+            length /= 4
+            continue
+        allowed = accuracy * _scale(step.state, loading=sign > 0)
+        off = step.by_parabola - step.change
+        smooth = abs(off) <= allowed
+        if not smooth and step.uncertainty > allowed and length > _LEAST_STEP * z0:
+            length /= 2 if step.uncertainty < 4 * allowed else 4
+            rejected += step.state.convolutions
+            continue
+        new = _accounted(state, step, smooth)
+        require_inside_grid(new)
+        # The curve has a kink at a jump, so it is not extrapolated across it.
+        previous, state = (state if smooth else None), new
+        yield replace(new, convolutions=new.convolutions + rejected)
+        rejected = 0
+        room = allowed / max(abs(off), 1e-300)
+        length *= min(2.0, max(0.5, 0.8 * room ** (1 / 3))) if smooth else 2.0
+    raise NotConvergedError(
+        f"the cohesive contact took more than {_MOST_STEPS} steps up to an indentation of "
+        f"{1e9 * state.indentation:.4g} nm; refine the grid"
+    )
+
+
+def _accounted(state: CohesiveState, step: _Step, smooth: bool) -> CohesiveState:
+    """The state of an accepted step, with its losses and errors added to those of `state`."""
+    lost = 0.0 if smooth else max(step.by_trapezium - step.change, 0.0)
+    error = 0.0 if smooth else min(step.uncertainty, max(lost, abs(step.change)))
+    unaccounted = state.unaccounted + (step.by_parabola - step.change if smooth else 0.0)
+    new = replace(
+        step.state,
+        adhesive_loss=state.adhesive_loss + lost,
+        jumps=state.jumps + int(not smooth),
+        unaccounted=unaccounted,
+        work_error=step.state.work_error + abs(unaccounted) - abs(state.unaccounted) + error,
+    )
+    return with_interaction(new)
+
+
+def _try(previous: CohesiveState | None, state: CohesiveState, at: float, residual: float) -> _Step:
+    """Solve at the indentation `at`, from an extrapolation of the last two states."""
+    contact, box = state.contact, state.box
+    limit, convolutions = state.bound, 0
+    if at > state.indentation:
+        limit, convolutions = _bound(contact, at, residual)
+        if isinstance(limit, np.ndarray):
+            limit = freeze(np.maximum(limit, state.bound))
+    p, u = state.box_pressure, state.box_displacement
+    if previous is not None and previous.box == box:
+        ratio = (at - state.indentation) / (state.indentation - previous.indentation)
+        if ratio > 0:
+            p = p + ratio * (p - previous.box_pressure)
+            u = u + ratio * (u - previous.box_displacement)
+    new = solve_cohesive(contact, at, box, p=p, u=u, limit=limit, history=state, residual=residual)
+    plastic, plastic_error = 0.0, 0.0
+    if isinstance(limit, np.ndarray):
+        plastic, plastic_error = plastic_work(state, new)
+    elif math.isfinite(limit):
+        plastic = limit * (new.plastic_volume - state.plastic_volume)
+    new = replace(
+        new,
+        plastic_work=state.plastic_work + plastic,
+        work_error=state.work_error + plastic_error,
+        convolutions=new.convolutions + convolutions,
+    )
+    way, force, before = at - state.indentation, new.force, state.force
+    trapezium = 0.5 * (force + before) * way
+    parabola = trapezium
+    if previous is not None:
+        parabola = _parabola(previous, state, new)
+    return _Step(
+        new,
+        trapezium,
+        parabola,
+        new.potential_energy - state.potential_energy + plastic,
+        0.5 * abs(force - before) * abs(way),
+    )
+
+
+def _parabola(previous: CohesiveState, state: CohesiveState, new: CohesiveState) -> float:
+    """Integral of the force over the last of two steps, of the parabola through three states."""
+    a = state.indentation - previous.indentation
+    b = new.indentation - state.indentation
+    second = ((new.force - state.force) / b - (state.force - previous.force) / a) / (a + b)
+    return 0.5 * (new.force + state.force) * b - second * b**3 / 6
+
+
+def _scale(state: CohesiveState, *, loading: bool) -> float:
+    """Energy (J) of which a step may leave the fraction `accuracy` unaccounted for."""
+    scale = state.stored_energy + abs(state.interaction_energy)
+    return scale + state.plastic_work if loading else scale
+
+
+def _on_wider_box(state: CohesiveState, at: float, residual: float) -> CohesiveState:
+    """`state`, on a larger box if bodies at the indentation `at` interact beyond its box."""
+    contact, history = state.contact, state
+    needed = interacting_box(contact, at, history)
+    if _within(needed, state.box):
+        return state
+    z0 = contact.equilibrium_separation
+    wider = interacting_box(contact, at + (_WIDER - 1) * (max(at, 0.0) + 10 * z0), history)
+    box = union(state.box, union(needed, wider))
+    assert box is not None
+    return on_box(state, box, residual=residual)
+
+
+def _within(inner: Box, outer: Box) -> bool:
+    return all(a.start >= b.start and a.stop <= b.stop for a, b in zip(inner, outer, strict=True))
+
+
+def _bound(contact: Contact, indentation: float, residual: float) -> tuple[Array | float, int]:
+    """The largest pressure (Pa) at `indentation`, and the convolutions spent on it."""
+    if contact.grows:
+        return yield_bound(contact, max(indentation, 0.0), residual)
+    return contact.yield_pressure, 0

@@ -1,0 +1,117 @@
+"""Maugis (1992): elastic spheres with a constant attraction of finite range (Dugdale).
+
+D. Maugis, J. Colloid Interface Sci. 150 (1992) 243–269; K. L. Johnson, J. A. Greenwood, J. Colloid
+Interface Sci. 192 (1997) 326–333. The traction σ₀ acts in a ring a < r < c up to the gap w/σ₀. With
+K = 4/3 E*, the parameter λ = 2σ₀ (R*/(πwK²))^{1/3} and the normalised
+
+    ā = a (K/(πwR*²))^{1/3},   F̄ = F/(πwR*),   m = c/a,
+
+the contact radius ā determines m and the force:
+
+    1 = λā²/2 [(m² − 1)^½ + (m² − 2) arcsec m] + 4λ²ā/3 [(m² − 1)^½ arcsec m − m + 1]
+    F̄ = ā³ − λā² [(m² − 1)^½ + m² arcsec m]
+
+The pull-off force goes from 2πwR* (λ → 0, rigid spheres) to 3/2 πwR* (λ → ∞, JKR). With the largest
+traction of the Lennard-Jones law, σ₀ = 1.03 w/z₀, λ = 1.16 µ for the Tabor parameter µ (Johnson and
+Greenwood); with that of `LennardJones.dugdale_traction`, λ = 0.62 µ.
+Units, shapes and errors are those of `restitution.theory`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ._inputs import Array, Values, keep_positive, scalar_or_array
+from ._roots import increasing_root
+
+_LARGEST_RADIUS = 2.0  # ā at pull-off is below 1.15, its value for JKR
+_GOLDEN = 0.5 * (5**0.5 - 1)
+_SECTIONS = 60  # of the bracket of the radius at pull-off
+
+
+@dataclass(frozen=True, eq=False)
+class MaugisDugdale:
+    """Elastic spheres with the attraction of Dugdale.
+
+    The fields may be arrays and broadcast (see `restitution.theory`).
+
+    Attributes:
+        radius: Reduced radius R* (m).
+        contact_modulus: Contact modulus E* (Pa).
+        work_of_adhesion: Work of adhesion w (J/m²).
+        traction: Attraction σ₀ per area (Pa).
+
+    Raises:
+        CaseError: A field is not positive and finite.
+
+    Source:
+        D. Maugis, J. Colloid Interface Sci. 150 (1992) 243–269.
+    """
+
+    radius: Values
+    contact_modulus: Values
+    work_of_adhesion: Values
+    traction: Values
+
+    def __post_init__(self) -> None:
+        keep_positive(self, "radius", "contact_modulus", "work_of_adhesion", "traction")
+
+    @property
+    def transition_parameter(self) -> Array:
+        """Maugis' parameter λ (1)."""
+        w, K = self.work_of_adhesion, 4 / 3 * np.asarray(self.contact_modulus)
+        return scalar_or_array(2 * self.traction * np.cbrt(self.radius / (np.pi * w * K**2)))
+
+    def force_at_contact_radius(self, contact_radius: Values) -> Array:
+        """Normal force at a radius of the contact, on both branches.
+
+        Args:
+            contact_radius: Radius a of the area in contact (m), positive.
+
+        Returns:
+            Normal force F (N), positive in compression.
+        """
+        w, K = self.work_of_adhesion, 4 / 3 * np.asarray(self.contact_modulus)
+        a = np.asarray(contact_radius) * np.cbrt(K / (np.pi * w * np.square(self.radius)))
+        unit = np.pi * w * self.radius
+        return scalar_or_array(unit * _force(a, np.asarray(self.transition_parameter)))
+
+    @property
+    def pull_off_force(self) -> Array:
+        """Magnitude of the largest tension (N)."""
+        parameter = np.asarray(self.transition_parameter)
+        low = np.full_like(parameter, 1e-4)
+        high = np.full_like(parameter, _LARGEST_RADIUS)
+        for _ in range(_SECTIONS):
+            a, b = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
+            left = _force(a, parameter) < _force(b, parameter)
+            low, high = np.where(left, low, a), np.where(left, b, high)
+        unit = np.pi * self.work_of_adhesion * self.radius
+        return scalar_or_array(-unit * _force(0.5 * (low + high), parameter))
+
+
+def _force(a: Array, parameter: Array) -> Array:
+    """Normalised force F̄ at the normalised contact radius."""
+    a, parameter = np.broadcast_arrays(a, parameter)
+
+    def excess(log_width: Array) -> Array:
+        root, angle, m = _ring(log_width)
+        inner = root + (m * m - 2) * angle
+        outer = root * angle - m + 1
+        found: Array = parameter * a**2 / 2 * inner + 4 / 3 * parameter**2 * a * outer - 1
+        return found
+
+    # m − 1 grows from 0 (JKR) without limit (rigid spheres).
+    width = increasing_root(excess, np.full_like(a, -40.0), np.full_like(a, 40.0))
+    root, angle, m = _ring(width)
+    force: Array = a**3 - parameter * a**2 * (root + m * m * angle)
+    return force
+
+
+def _ring(log_width: Array) -> tuple[Array, Array, Array]:
+    """(m² − 1)^½, arcsec m and m, for ln(m − 1)."""
+    width = np.exp(log_width)
+    root = np.sqrt(width * (2 + width))
+    return root, np.arctan(root), 1 + width
