@@ -67,7 +67,7 @@ def test_what_is_no_file_is_refused(tmp_path):
         with pytest.raises(CaseError, match=words):
             read_measured(path)
     os.mkfifo(tmp_path / "pipe")
-    with pytest.raises(CaseError, match="is not a file"):
+    with pytest.raises(CaseError, match="is not a regular file"):
         read_measured(tmp_path / "pipe")
     (tmp_path / "b.csv").write_bytes(b"\xff\xfe\x00\x01")
     with pytest.raises(CaseError, match="is not a CSV file in UTF-8"):
