@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import settings
 
+import instrument_formats
 from restitution.laws.force_law_fits import fitted_laws
 from restitution.laws.law import Law, Particle, Point
 from restitution.numerics import kernels
@@ -206,6 +207,9 @@ def _write_scan(path, height, size):
     package = pytest.importorskip(
         "SurfaceTopography", reason="the extra 'measured' is not installed"
     )
+    if own_writer := getattr(instrument_formats, f"write_{path.suffix[1:]}", None):
+        own_writer(path, height, size)
+        return path
     writer = {".x3p": "to_x3p", ".gwy": "to_gwy", ".nc": "to_netcdf", ".txt": "to_matrix"}
     heights = 1e9 * (np.ma.masked_invalid(height) if np.isnan(height).any() else height)
     topography = package.Topography(heights, tuple(1e9 * edge for edge in size), unit="nm")

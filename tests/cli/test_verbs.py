@@ -140,7 +140,7 @@ def test_the_device_is_chosen_and_recorded(cli, case_text, tmp_path, monkeypatch
     status, _, said = cli("run", case, "-o", out, "--device", "gpu")
     assert status == 1
     assert "device: gpu needs CuPy" in said
-    assert "use --device cpu" in said
+    assert "use the device cpu" in said
     assert not out.exists()
     status, _, _ = cli("run", case, "-o", out, "--device", "auto")
     assert status == 0
