@@ -74,10 +74,21 @@ def case_text():
     return CASE
 
 
+def _without_pixels(_, to, **options):
+    Path(to).write_bytes(f"a figure with {', '.join(options)}".encode())
+
+
 @pytest.fixture
-def cli(monkeypatch, capsys):
-    """Call the command line in this process: status, standard output, standard error."""
+def cli(request, monkeypatch, capsys):
+    """Call the command line in this process: status, standard output, standard error.
+
+    Figures are built, but drawn only for tests with the mark `drawn`, because this takes longer
+    than a small run.
+    """
     from restitution.cli import main
+
+    if request.node.get_closest_marker("drawn") is None:
+        monkeypatch.setattr("matplotlib.figure.Figure.savefig", _without_pixels)
 
     def call(*arguments):
         monkeypatch.setattr(sys, "argv", ["restitution", *map(str, arguments)])
