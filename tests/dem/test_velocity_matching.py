@@ -136,7 +136,6 @@ def test_the_energy_that_a_gas_loses_is_that_of_its_law(law, lammps, texts):
         (1 - found.at(max(V, found.lowest)).restitution ** 2) * found.mass * V**2 / 2
         for V in velocities
     )
-    print(len(velocities), lost, before-after, e, mean)
     assert len(velocities) > 100
     assert before - after == approx(lost, rel=0.05)
 
