@@ -24,7 +24,7 @@ demo: $(VENV)/demo.installed  ## run the bundled example
 	$(BIN)/restitution run examples/steel.toml -o demo
 
 test: $(VENV)/test.installed  ## run the tests
-	DUCC0_NUM_THREADS=1 $(BIN)/pytest -n auto
+	DUCC0_NUM_THREADS=1 $(BIN)/pytest -n auto --dist worksteal
 
 # CONTRIBUTING.md says what this leaves out.
 test-fast: $(VENV)/test.installed  ## the tests of single parts, under a minute on two cores

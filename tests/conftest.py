@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import settings
 
+import instrument_formats
 from restitution.laws.force_law_fits import fitted_laws
 from restitution.laws.law import Law, Particle, Point
 from restitution.numerics import kernels
@@ -73,10 +74,21 @@ def case_text():
     return CASE
 
 
+def _without_pixels(_, to, **options):
+    Path(to).write_bytes(f"a figure with {', '.join(options)}".encode())
+
+
 @pytest.fixture
-def cli(monkeypatch, capsys):
-    """Call the command line in this process: status, standard output, standard error."""
+def cli(request, monkeypatch, capsys):
+    """Call the command line in this process: status, standard output, standard error.
+
+    Figures are built, but drawn only for tests with the mark `drawn`, because this takes longer
+    than a small run.
+    """
     from restitution.cli import main
+
+    if request.node.get_closest_marker("drawn") is None:
+        monkeypatch.setattr("matplotlib.figure.Figure.savefig", _without_pixels)
 
     def call(*arguments):
         monkeypatch.setattr(sys, "argv", ["restitution", *map(str, arguments)])
@@ -206,6 +218,9 @@ def _write_scan(path, height, size):
     package = pytest.importorskip(
         "SurfaceTopography", reason="the extra 'measured' is not installed"
     )
+    if own_writer := getattr(instrument_formats, f"write_{path.suffix[1:]}", None):
+        own_writer(path, height, size)
+        return path
     writer = {".x3p": "to_x3p", ".gwy": "to_gwy", ".nc": "to_netcdf", ".txt": "to_matrix"}
     heights = 1e9 * (np.ma.masked_invalid(height) if np.isnan(height).any() else height)
     topography = package.Topography(heights, tuple(1e9 * edge for edge in size), unit="nm")

@@ -1,6 +1,7 @@
 """Run the blocks of a Markdown page and compare what they print with the page.
 
-Blocks of a page run from top to bottom in one folder, which holds a copy of `examples/`:
+Blocks of a page run from top to bottom in one folder, which holds a copy of `examples/`. In it
+`steel.toml` has two surfaces instead of eight, which would take most of the time of all pages.
 
 - `toml` with a caption is written to the file of that name; without, its tables take the place of
   those in `examples/steel.toml`, and the whole must be a valid case or study;
@@ -119,6 +120,8 @@ class Page:
         self.folder = folder
         self.names: dict[str, object] = {"__name__": "__main__"}
         shutil.copytree(ROOT / "examples", folder / "examples")
+        steel = folder / "examples" / "steel.toml"
+        steel.write_text(steel.read_text().replace("realisations = 8", "realisations = 2"))
         self.environment = os.environ | {
             "PATH": os.pathsep.join(
                 [str(_programs(folder)), str(Path(sys.executable).parent), os.environ["PATH"]]

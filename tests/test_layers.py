@@ -33,6 +33,8 @@ ROOMS = (
     "cli",
     "__main__",
 )
+PHYSICS = {"theory", "numerics", "surfaces", "contact"}
+CASE_KEY = re.compile(r"\b(roughness|interface|indentation|load|unloading|sweep)\.\w|(^| )--[a-z]")
 SOLVERS = {
     "solve",
     "step",
@@ -116,6 +118,35 @@ def test_the_case_calls_no_solver():
         for _, name in imported(module, source)
     }
     assert names.isdisjoint(SOLVERS)
+
+
+def texts(source):
+    """The strings in `source`, without docstrings."""
+    tree = ast.parse(source)
+    docstrings = {
+        id(node.value)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
+    }
+    constants = (node for node in ast.walk(tree) if isinstance(node, ast.Constant))
+    yield from (
+        node.value
+        for node in constants
+        if isinstance(node.value, str) and id(node) not in docstrings
+    )
+
+
+def test_messages_of_physics_name_arguments_not_keys_of_a_case_or_options():
+    found = [
+        f"{module}: {text}"
+        for module, source in MODULES.items()
+        if room(module) in PHYSICS
+        for text in texts(source)
+        if CASE_KEY.search(text)
+    ]
+    assert found == []
+    for text in ("roughness.rms: 1 m", "raise unloading.curves", "or use --device cpu"):
+        assert CASE_KEY.search(text)
 
 
 def test_the_design_names_the_rooms_in_this_order():

@@ -49,6 +49,7 @@ def test_the_table_is_split_where_the_terminal_is_narrow(cli, case, monkeypatch)
     assert max(map(len, heads)) <= 40
 
 
+@pytest.mark.drawn
 def test_writes_a_table_and_a_figure(cli, case, tmp_path):
     out = tmp_path / "out"
     status, said, _ = cli("compare-theory", case(), "-o", out)

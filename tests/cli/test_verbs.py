@@ -140,7 +140,7 @@ def test_the_device_is_chosen_and_recorded(cli, case_text, tmp_path, monkeypatch
     status, _, said = cli("run", case, "-o", out, "--device", "gpu")
     assert status == 1
     assert "device: gpu needs CuPy" in said
-    assert "use --device cpu" in said
+    assert "use the device cpu" in said
     assert not out.exists()
     status, _, _ = cli("run", case, "-o", out, "--device", "auto")
     assert status == 0
@@ -208,6 +208,7 @@ def test_check_warns_of_a_contact_larger_than_the_grid(cli, case_text, tmp_path)
     assert "the grid ends at 18 um" in warned
 
 
+@pytest.mark.drawn
 def test_surface_writes_heights_statistics_and_a_picture(cli, case_text, tmp_path):
     (tmp_path / "case.toml").write_text(case_text)
     assert cli("surface", tmp_path / "case.toml", "-o", tmp_path / "out")[0] == 0
@@ -222,6 +223,7 @@ def test_surface_writes_heights_statistics_and_a_picture(cli, case_text, tmp_pat
     assert (tmp_path / "out" / "surface.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.drawn
 @pytest.mark.parametrize("kind", ["svg", "pdf"])
 def test_figures_are_written_in_the_format_asked_for(cli, case_text, tmp_path, kind):
     case = tmp_path / "case.toml"

@@ -103,12 +103,12 @@ def test_the_energy_that_a_gas_loses_is_that_of_its_law(law, lammps, texts):
     found = law()
     R, speed = found.first.radius, 1.0
     gas = GAS.format(
-        lattice=2.3 * R,
+        lattice=2.12 * R,
         diameter=2 * R,
         density=found.first.density,
         speed=speed,
         step=contact_time(found) / 40,
-        steps=5000,
+        steps=1500,
         columns=COLUMNS,
     )
     files = lammps_code.write(pair_table([found]), 5.0)

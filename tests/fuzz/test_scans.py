@@ -113,7 +113,7 @@ def test_files_of_formats_that_have_a_writer(fuzz, tmp_path, within, plainly_ref
     height = 1e-8 * np.random.default_rng(1).standard_normal((60, 60)).cumsum(axis=0)
     files = [
         write_scan(tmp_path / "whole" / f"a.{suffix}", height, SIZE)
-        for suffix in ("x3p", "gwy", "nc", "txt")
+        for suffix in ("x3p", "gwy", "nc", "txt", "sur", "tmd", "nid", "mi", "di")
     ]
     ends = try_all(files, round(DAMAGES * fuzz), tmp_path, within, plainly_refused)
     print(ends)

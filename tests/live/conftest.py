@@ -11,7 +11,7 @@ PROGRAMS = ("chromium", "chromium-browser", "google-chrome")
 OPTIONS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking"]
 # The plotting library tries one style of its own, which the page does not allow.
 HARMLESS = "Applying inline style violates"
-SLOW = 40_000  # ms that a busy machine may take
+SLOW = 120_000  # ms that a busy machine may take
 
 CASE = """
 title = "A small rough contact"
@@ -84,28 +84,72 @@ def browser():
         opened.close()
 
 
-@pytest.fixture
-def open_page(browser):
-    """Open an address in a tab of its own; at the end no page has reported an error."""
-    contexts, errors = [], []
+def _tab(browser, errors, **options):
+    """A page in a tab of its own, which adds its errors to `errors`."""
+    page = browser.new_context(accept_downloads=True, **options).new_page()
+    page.set_default_timeout(SLOW)
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    page.on("console", lambda said: errors.append(said.text) if said.type == "error" else None)
+    return page
 
-    def opened(address, before=lambda page: None, **options):
-        contexts.append(browser.new_context(accept_downloads=True, **options))
-        page = contexts[-1].new_page()
-        page.set_default_timeout(SLOW)
-        page.on("pageerror", lambda error: errors.append(str(error)))
-        page.on("console", lambda said: errors.append(said.text) if said.type == "error" else None)
-        before(page)
-        page.goto(address)
-        return page
 
-    yield opened
-    for context in contexts:
-        context.close()
+def _expect_none(errors):
     assert [each for each in errors if HARMLESS not in each] == []
 
 
 @pytest.fixture
-def page(app, open_page):
-    """The page of the server, not yet complete."""
+def open_page(browser):
+    """Open an address in a tab of its own; at the end no page has reported an error."""
+    pages, errors = [], []
+
+    def opened(address, before=lambda page: None, **options):
+        pages.append(_tab(browser, errors, **options))
+        before(pages[-1])
+        pages[-1].goto(address)
+        return pages[-1]
+
+    yield opened
+    for page in pages:
+        page.context.close()
+    _expect_none(errors)
+
+
+@pytest.fixture
+def new_page(app, open_page):
+    """The page of the server in a tab of its own, not yet complete."""
     return open_page(app.address)
+
+
+@pytest.fixture(scope="session")
+def shared_tab(app, browser):
+    """The page of the server in the tab of all tests that begin with the first curve."""
+    errors = []
+    page = _tab(browser, errors)
+    page.goto(app.address)
+    yield page, errors
+    page.context.close()
+
+
+# Loading the page and its plotting library takes longer than a test. So the script of the page is
+# asked to begin again.
+BEGIN_AGAIN = """async (text) => {
+    pins = [];
+    drawPins();
+    $("case-file").open = false;
+    $("case-text").value = text;
+    await useText();
+    while (asking || waiting) await new Promise((later) => setTimeout(later, 10));
+}"""
+
+
+@pytest.fixture
+def page(shared_tab, live_case):
+    """The shared tab with the curve of the case; at the end the page has reported no error."""
+    page, errors = shared_tab
+    errors.clear()
+    expect = pytest.importorskip("playwright.sync_api").expect
+    expect(page.locator("#groups fieldset").first).to_be_visible()
+    page.get_by_role("radio", name="against velocity").check()
+    page.evaluate(BEGIN_AGAIN, live_case)
+    yield page
+    _expect_none(errors)

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from restitution.cli.parameters import FigureFormat, Figures, OutFolder, Scheduler, Workers
+from restitution.cli.parameters import FigureFormat, Figures, OutFolder, Resume, Scheduler, Workers
 
 
 def mixture(
@@ -21,9 +21,7 @@ def mixture(
     out: OutFolder,
     workers: Workers = None,
     scheduler: Scheduler = None,
-    resume: Annotated[
-        bool, typer.Option("--resume", help="Compute the curves that OUT does not hold yet.")
-    ] = False,
+    resume: Resume = False,
     figures: Figures = FigureFormat.png,
 ) -> None:
     """Compute the restitution law of every pair in MIXTURE; write all laws to OUT."""

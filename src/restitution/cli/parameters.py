@@ -51,3 +51,4 @@ Workers = Annotated[
     int | None,
     typer.Option(min=1, metavar="N", help="Processes on this machine.", show_default="all cores"),
 ]
+Resume = Annotated[bool, typer.Option("--resume", help="Compute what OUT does not hold yet.")]

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from restitution.cli.parameters import OutFolder, Scheduler, Workers
+from restitution.cli.parameters import OutFolder, Resume, Scheduler, Workers
 
 
 def study(
@@ -21,9 +21,7 @@ def study(
     out: OutFolder,
     workers: Workers = None,
     scheduler: Scheduler = None,
-    resume: Annotated[
-        bool, typer.Option("--resume", help="Compute the cases that OUT does not hold yet.")
-    ] = False,
+    resume: Resume = False,
     retry_failed: Annotated[
         bool, typer.Option("--retry-failed", help="With --resume: also compute failed cases again.")
     ] = False,

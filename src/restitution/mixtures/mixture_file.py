@@ -13,7 +13,7 @@ import numpy as np
 from pydantic import Field, ValidationError, model_validator
 
 from restitution.case.bodies import BodyTable, InterfaceTable
-from restitution.case.case_file import in_words, parse_toml, read_text
+from restitution.case.case_file import in_words, naming, parse_toml, read_text
 from restitution.case.quantities import Length
 from restitution.case.roughness import Roughness
 from restitution.case.schema import GridTable, ImpactTable, PairOf, Table
@@ -128,10 +128,8 @@ class Mixture:
 def read_mixture(path: Path) -> Mixture:
     """Read and check a mixture file. Raises `CaseError` that names the file and the key."""
     text = read_text(path)
-    try:
+    with naming(path):
         return parse_mixture(text)
-    except CaseError as error:
-        raise CaseError(f"{path}: {error}") from None
 
 
 def parse_mixture(text: str) -> Mixture:

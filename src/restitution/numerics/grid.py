@@ -43,12 +43,12 @@ class Grid:
     def __init__(self, nodes: int | tuple[int, int], spacing: float | tuple[float, float]) -> None:
         nx, ny = _both("nodes", nodes, "a whole number, or two (nx, ny)")
         if not all(isinstance(n, Integral) or n == math.floor(n) for n in (nx, ny)):
-            raise CaseError(f"grid.nodes: {nodes!r} are not whole numbers")
+            raise CaseError(f"nodes: {nodes!r} are not whole numbers")
         if min(nx, ny) < 1:
-            raise CaseError(f"grid.nodes: {(nx, ny)} is too small; give at least 1 x 1 nodes")
+            raise CaseError(f"nodes: {(nx, ny)} is too small; give at least 1 x 1 nodes")
         hx, hy = _both("spacing", spacing, "a length in m, or two (hx, hy)")
         if not all(math.isfinite(h) and h > 0 for h in (hx, hy)):
-            raise CaseError(f"grid.spacing: {(hx, hy)} m is not a positive length")
+            raise CaseError(f"spacing: {(hx, hy)} m is not a positive length")
         object.__setattr__(self, "nodes", (int(nx), int(ny)))
         object.__setattr__(self, "spacing", (float(hx), float(hy)))
 
@@ -92,7 +92,7 @@ def _both(name: str, value: Any, wanted: str) -> tuple[Any, Any]:
     except (TypeError, ValueError):
         first = second = None
     if not all(isinstance(one, Real) and not isinstance(one, bool) for one in (first, second)):
-        raise CaseError(f"grid.{name}: {shown(value)} is not {wanted}")
+        raise CaseError(f"{name}: {shown(value)} is not {wanted}")
     return first, second
 
 

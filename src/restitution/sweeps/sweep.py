@@ -11,7 +11,7 @@ from typing import Any, Literal
 
 import tomli_w
 
-from restitution.case.case_file import parse_case, parse_toml, read_text
+from restitution.case.case_file import naming, parse_case, parse_toml, read_text
 from restitution.errors import CaseError, shown
 
 MOST_CASES = 100_000
@@ -56,10 +56,8 @@ class Study:
 def read_study(path: Path) -> Study:
     """Read and check a study file. Raises `CaseError`, naming the file and the key."""
     text = read_text(path)
-    try:
+    with naming(path):
         return parse_study(text)
-    except CaseError as error:
-        raise CaseError(f"{path}: {error}") from None
 
 
 def parse_study(text: str) -> Study:

@@ -244,11 +244,11 @@ def _gpu() -> Device:
     except ImportError as error:
         raise CaseError(
             f"device: gpu needs CuPy ({error}); install the extra gpu, from a checkout with "
-            '`pip install ".[gpu]"`, or use --device cpu'
+            '`pip install ".[gpu]"`, or use the device cpu'
         ) from error
     except Exception as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise CaseError(
-            f"device: no usable GPU ({reason}); check its driver, or use --device cpu"
+            f"device: no usable GPU ({reason}); check its driver, or use the device cpu"
         ) from error
     return accelerator("gpu", cupy, cupyx.scipy.fft)
