@@ -44,6 +44,7 @@ SOLVERS = {
     "separate",
     "collide",
     "solve_pressure",
+    "elastic_pressure",
 }
 
 
