@@ -87,6 +87,7 @@ docs-links: $(VENV)/docs.installed  ## ask every address that the site names, wh
 bench: $(VENV)/test.installed  ## time whole curves, one solve against the size of the grid, and the start
 	$(BIN)/python benchmarks/curves.py
 	$(BIN)/python benchmarks/scaling.py
+	$(BIN)/python benchmarks/growing_bound.py
 	$(BIN)/python benchmarks/start.py
 
 PEERS := $(patsubst benchmarks/peers/%.txt,.venv-peers/%/installed,$(wildcard benchmarks/peers/*.txt))

@@ -46,6 +46,7 @@ SOLVERS = {
     "separate",
     "collide",
     "solve_pressure",
+    "elastic_pressure",
 }
 
 

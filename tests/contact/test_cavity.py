@@ -10,6 +10,7 @@ from scipy.integrate import quad
 
 from restitution import Body, Contact, Grid, Pair, Surface, generate_surface, smooth
 from restitution.collision import collide
+from restitution.contact import cavity
 from restitution.contact.cavity import GROWTH, LARGEST, bound_of, yield_bound
 from restitution.contact.loading import solve, step
 from restitution.contact.path import loading_path, unloading_path
@@ -222,6 +223,22 @@ def test_restitution_falls_smoothly_through_first_yield():
     assert (falls > -1e-9).all()
     # There is no step: each decrement is close to its neighbours.
     assert np.abs(np.diff(falls)).max() < 0.25 * falls.max()
+
+
+@pytest.mark.parametrize("kind", ["gaussian", "exponential"])
+def test_the_tolerance_of_the_elastic_pressure_hardly_moves_restitution(kind, monkeypatch):
+    """COR is within 2e-4 and force within 3e-4 of a bound from an elastic pressure at 1e-8."""
+    grid = Grid((160, 160), (0.4e-6, 0.4e-6))
+    surface = generate_surface(grid, kind=kind, rms=5e-8, correlation_length=3e-6, seed=3)
+    contact = Contact(PAIR, surface, yield_strength=Y)
+    depths = np.geomspace(1e-8, 4e-7, 5)
+    found = [(s.force, collide(s).restitution) for s in loading_path(contact, depths)]
+    monkeypatch.setattr(cavity, "_LARGEST_RESIDUAL", 1e-8)
+    exact = [(s.force, collide(s).restitution) for s in loading_path(contact, depths)]
+    assert exact != found
+    for mine, its in zip(found, exact, strict=True):
+        assert mine[0] == approx(its[0], rel=3e-4)
+        assert mine[1] == approx(its[1], abs=2e-4)
 
 
 def test_unloading_is_elastic_and_returns_what_is_stored():

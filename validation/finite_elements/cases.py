@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 import solve
 from indentation import loading_work, unloading_work
-from problem import Model, smooth_mesh, wave_mesh
+from problem import Model, crest_mesh, smooth_mesh, wave_mesh
 
 HERE = Path(__file__).parent
 _E, _R = 210e9, 500e-6
@@ -37,6 +37,7 @@ class Range:
         coarse: relative step below `low`.
         fine: relative step above `low`.
         refinement: divisor of all element sizes.
+        crests: whether only the elements near the crests of waves are fine.
     """
 
     name: str
@@ -47,6 +48,7 @@ class Range:
     coarse: float = 0.07
     fine: float = 0.035
     refinement: int = 1
+    crests: bool = False
 
 
 @dataclass(frozen=True)
@@ -143,7 +145,69 @@ def check_cases() -> list[Case]:
             replace(rough, ranges=rough.ranges[:1]), "waves_A0.1um_L4um_half_elements", elements=128
         ),
     ]
+    for refinement in (1, 2, 3):
+        result += convergence_cases(refinement)
+    for factor in (1, 2, 4):
+        result += crest_cases(factor)
+    result += [c for k in ("deformed-contact", "finite") for c in convergence_cases(1, k)]
     return result
+
+
+# Depths of the waves where a model was farthest from the reference: amplitude (µm), wavelength
+# (µm), δ/δ_c, and elements per wavelength on the coarsest of the meshes.
+_CONVERGENCE = (
+    (0.1, 8, 2, 32),
+    (0.2, 12, 4, 32),
+    (0.06, 4, 0.25, 64),
+    (0.1, 4, 0.5, 64),
+    (0.1, 4, 4, 24),
+    (0.06, 10, 8, 32),
+    (0.1, 12, 2, 32),
+    (0.1, 12, 8, 32),
+    (0.06, 4, 4, 24),
+    (0.1, 8, 1, 64),
+    (0.03, 4, 0.25, 64),
+)
+
+
+def convergence_cases(refinement: int, kinematics: str = "small") -> list[Case]:
+    """Return one depth of each steep wave on meshes with all elements `refinement` times smaller.
+
+    The gradings become finer, too, so the meshes of a depth are of one family.
+    """
+    found = []
+    for amplitude, wavelength, omega, elements in _CONVERGENCE:
+        wave = _waves(amplitude, wavelength)
+        part = wave.ranges[0]
+        mesh = Range(
+            f"refined_{refinement}",
+            (omega,),
+            omega / 2,
+            part.start,
+            elements,
+            coarse=0.1,
+            fine=0.05,
+            refinement=refinement,
+        )
+        name = f"{wave.name}_omega{omega:g}_refined_{refinement}"
+        if kinematics != "small":
+            name += f"_{kinematics}"
+        found.append(replace(wave, name=name, ranges=(mesh,), kinematics=kinematics))
+    return found
+
+
+def crest_cases(factor: int) -> list[Case]:
+    """Return the depths of `convergence_cases` with `factor` times smaller elements at the crests.
+
+    The elements elsewhere are as large on all meshes of a depth.
+    """
+    found = []
+    for case, depth in zip(convergence_cases(1), _CONVERGENCE, strict=True):
+        elements = factor * depth[-1]
+        mesh = replace(case.ranges[0], name=f"crests_{factor}", elements=elements, crests=True)
+        name = case.name.replace("refined_1", f"crests_{factor}")
+        found.append(replace(case, name=name, ranges=(mesh,)))
+    return found
 
 
 def run_case(case: Case, partial: Path) -> Iterator[dict]:
@@ -154,6 +218,8 @@ def run_case(case: Case, partial: Path) -> Iterator[dict]:
         file = partial / f"{case.name}_{part.name}.json"
         if not file.exists():
             mesh = wave_mesh if case.model.wave_amplitude else smooth_mesh
+            if part.crests:
+                mesh = crest_mesh
             spec = mesh(case.model, max(part.omegas), part.elements, part.refinement)
             force_step = 0.045 * part.fine / 0.035 if part.fine < 0.035 else 0.045
             result = solve.run_range(

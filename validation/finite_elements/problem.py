@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -81,6 +81,8 @@ class MeshSpec:
         grading_r: ratio of neighbouring widths in the first grading.
         grading_z: ratio of neighbouring heights in the first grading.
         grading_far: ratio of neighbouring sizes in the second grading.
+        crest_spacing: distance of crests (m); 0: all elements below the contact are equally wide.
+        crest_width: elements have the width `element_size` up to this distance from a crest (m).
     """
 
     element_size: float
@@ -91,12 +93,31 @@ class MeshSpec:
     grading_r: float = 1.10
     grading_z: float = 1.06
     grading_far: float = 1.25
+    crest_spacing: float = 0.0
+    crest_width: float = 0.0
+
+
+def crest_coordinates(spec: MeshSpec) -> np.ndarray:
+    """Return r of the nodes (m) up to `uniform_radius`: fine at the crests, wider between them.
+
+    The width grows with the distance from a crest by `grading_r` per element, to at most four
+    times `element_size`.
+    """
+    h, x = spec.element_size, [0.0]
+    while x[-1] < spec.uniform_radius:
+        nearest = abs(x[-1] - spec.crest_spacing * round(x[-1] / spec.crest_spacing))
+        beyond = max(nearest - spec.crest_width, 0.0)
+        x.append(x[-1] + min(h + (spec.grading_r - 1) * beyond, 4 * h))
+    return np.array(x)
 
 
 def graded_coordinates(spec: MeshSpec, uniform: float, grading: float) -> np.ndarray:
     """Return node coordinates (m) along one axis: uniform, graded, then graded faster."""
     h = spec.element_size
     x = list(np.arange(round(uniform / h) + 1) * h)
+    if spec.crest_spacing and uniform == spec.uniform_radius:
+        x = list(crest_coordinates(spec))
+        h = x[-1] - x[-2]
     while x[-1] < spec.domain:
         h *= grading if x[-1] < spec.fine_extent else spec.grading_far
         x.append(x[-1] + h)
@@ -137,6 +158,16 @@ def wave_mesh(model: Model, omega_max: float, per_wave: float, refinement: int =
         1.10**k,
         1.06**k,
         1.25**k,
+    )
+
+
+def crest_mesh(model: Model, omega_max: float, per_wave: float, refinement: int = 1) -> MeshSpec:
+    """Return a mesh like `wave_mesh`, but fine only near the crests of the waves."""
+    return replace(
+        wave_mesh(model, omega_max, per_wave, refinement),
+        uniform_depth=0.12 * model.wavelength,
+        crest_spacing=model.wavelength,
+        crest_width=0.12 * model.wavelength,
     )
 
 

@@ -33,8 +33,16 @@ from restitution.errors import DomainError, NotConvergedError
 from restitution.numerics.box import NOWHERE, Box, bounding_box, shape_of, widen
 from restitution.numerics.convolution.device import current
 from restitution.numerics.convolution.operators import Convolution, SpectralFilter
-from restitution.numerics.quadratic.minimise import BoundedQuadratic, minimise_quadratic
-from restitution.numerics.quadratic.multilevel import Operators, solve_multilevel
+from restitution.numerics.quadratic.minimise import (
+    BoundedQuadratic,
+    Minimum,
+    minimise_quadratic,
+)
+from restitution.numerics.quadratic.multilevel import (
+    Operators,
+    solve_multilevel,
+    solve_near_guess,
+)
 from restitution.numerics.read_only import freeze
 
 Array = NDArray[np.float64]
@@ -130,17 +138,54 @@ def solve_pressure(
             max_iterations=MAX_ITERATIONS,
         )
         convolutions = K.count
-    reached = found.residual / scale
+    _require_converged(found, indentation, residual, scale)
+    solution = Solution(
+        b,
+        device.get(found.point),
+        device.get(found.gradient),
+        found.residual / scale,
+        convolutions,
+    )
+    return build_state(contact, indentation, box, solution, limit=limit, history=history)
+
+
+def _require_converged(found: Minimum, indentation: float, residual: float, scale: float) -> None:
+    """Raise `NotConvergedError` if the solve has not reached `residual`."""
     if not found.converged:
         raise NotConvergedError(
             f"the solve at an indentation of {1e9 * indentation:.6g} nm stopped at a residual of "
-            f"{reached:.1e} (tolerance: {residual:.0e}) after {found.iterations} iterations; "
-            "increase the tolerance (residual), or smooth or refine the surface"
+            f"{found.residual / scale:.1e} (tolerance: {residual:.0e}) after {found.iterations} "
+            "iterations; increase the tolerance (residual), or smooth or refine the surface"
         )
-    solution = Solution(
-        b, device.get(found.point), device.get(found.gradient), reached, convolutions
+
+
+def elastic_pressure(
+    contact: Contact, indentation: float, residual: float
+) -> tuple[Array, Box, int]:
+    """Estimate the pressure (Pa) between elastic bodies without adhesion, to a large `residual`.
+
+    The pressure is given on a box and is zero outside. Contacts of a few nodes can be missing
+    beside the others, see `solve_near_guess`. Return the pressure, the box and the number of
+    convolutions. Raises `NotConvergedError`.
+    """
+    box = candidate_box(contact, indentation)
+    if box is None:
+        return np.zeros((0, 0)), NOWHERE, 0
+    device = current()
+    b = _overlap(contact, indentation, box)
+    scale = _scale_of(contact, indentation, b)
+    found, window, convolutions = solve_near_guess(
+        _operators_of(contact),
+        device.put(b),
+        tolerance=residual * scale,
+        max_iterations=MAX_ITERATIONS,
     )
-    return build_state(contact, indentation, box, solution, limit=limit, history=history)
+    _require_converged(found, indentation, residual, scale)
+    rows, columns = (
+        slice(side.start + part.start, side.start + part.stop)
+        for side, part in zip(box, window, strict=True)
+    )
+    return device.get(found.point), (rows, columns), convolutions
 
 
 def _overlap(contact: Contact, indentation: float, box: Box, history: State | None = None) -> Array:

@@ -13,6 +13,7 @@ from restitution.numerics.quadratic.multilevel import (
     _USUAL_STIFFNESS,
     mean_damped_preconditioner,
     solve_multilevel,
+    solve_near_guess,
 )
 from tolerance import approx
 
@@ -98,6 +99,35 @@ def test_the_window_holds_what_the_guess_leaves_closed(windows):
     assert_allclose(found.point, plain(b, np.inf).point, atol=1e-6 * found.point.max())
 
 
+@pytest.mark.parametrize("rough", [0.0, 0.05, 0.3])
+@pytest.mark.parametrize("shape", [(201, 180), (97, 330)])
+def test_near_the_guess_the_answer_is_that_of_all_nodes(shape, rough):
+    b = bowl(shape, rough=rough, seed=len(shape))
+    found, window, products = solve_near_guess(system, b, tolerance=1e-6, max_iterations=500)
+    expected = plain(b, np.inf).point
+    assert found.converged
+    assert found.residual <= 1e-6
+    assert products > 0
+    p = np.zeros(shape)
+    p[window] = found.point
+    assert_allclose(p, expected, atol=2e-4 * expected.max())
+    assert p.sum() == approx(expected.sum(), rel=1e-5)
+
+
+def test_near_the_guess_the_window_holds_what_the_guess_leaves_closed(windows):
+    """The spike is solved, too, although nothing is checked afterwards."""
+    b = bowl_and_spike()
+    found, window, _ = solve_near_guess(system, b, tolerance=1e-6, max_iterations=500)
+    assert found.converged
+    assert windows == [(50, 50), (100, 100), found.point.shape]
+    assert found.point.size < 0.7 * b.size
+    expected = plain(b, np.inf).point
+    assert expected[10, 15] > 0
+    p = np.zeros_like(b)
+    p[window] = found.point
+    assert_allclose(p, expected, atol=1e-3 * expected.max())
+
+
 def test_a_window_takes_no_product_that_another_tells(windows, monkeypatch):
     """The product that finds the window gives the first gradient, the final check the last one."""
     products = []
@@ -126,7 +156,7 @@ def test_what_the_guess_does_not_see_widens_the_window(windows, monkeypatch):
     b = bowl_and_spike()
     guess = np.zeros_like(b)
     guess[90:110, 90:110] = 10 * plain(b, np.inf).point.max()
-    monkeypatch.setattr(multilevel, "_first_guess", lambda *_, **__: guess)
+    monkeypatch.setattr(multilevel, "_first_guess", lambda *_: (guess, guess))
     found, _ = nested(b, np.inf)
     assert found.converged
     assert found.point[10, 15] > 0
@@ -195,7 +225,7 @@ def test_the_mean_stays_where_its_inverse_is_as_good_as_any(case):
 
 
 def guess(b, upper):
-    return multilevel._first_guess(system, b, upper, level=1)
+    return multilevel._first_guess(system, b, upper, 1, multilevel._COARSE_ACCURACY)[0]
 
 
 @pytest.mark.parametrize("rough", [0.0, 0.02])

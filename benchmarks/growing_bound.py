@@ -1,0 +1,125 @@
+"""Time of a curve under the bound that grows, over the time under a constant bound.
+
+Writes docs/benchmarks/growing-bound.md. `--repeats 1` is quicker.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import statistics
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+for _name in ("OMP_NUM_THREADS", "DUCC0_NUM_THREADS"):
+    os.environ[_name] = "1"
+
+import numpy as np  # noqa: E402
+from unit import machine, today  # noqa: E402
+
+from restitution import (  # noqa: E402
+    Body,
+    Contact,
+    Grid,
+    Pair,
+    Surface,
+    collide,
+    generate_surface,
+    loading_path,
+    smooth,
+)
+
+Curve = Callable[[Surface, dict[str, float]], None]
+OUT = Path(__file__).parents[1] / "docs" / "benchmarks" / "growing-bound.md"
+NODES = 512
+GRID = Grid((NODES, NODES), (0.25e-6, 0.25e-6))
+STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25)
+DEPTHS = np.geomspace(2e-9, 5e-6, 24)  # the depths of benchmarks/steel.toml
+CONSTANT, GROWING = {"yield_pressure": 750e6}, {"yield_strength": 268e6}
+
+REPORT = """\
+# Time of the bound that grows
+
+{date}, {machine}. Written by `benchmarks/growing_bound.py`.
+
+Two steel spheres (R* = 250 µm, E* = 112 GPa) on {nodes}² nodes of 0.25 µm are loaded to 24 depths
+from 2 nm to 5 µm: the contacts of `benchmarks/steel.toml`. The constant bound is 750 MPa, and the
+bound that grows has Y = 268 MPa. The times are processor seconds of one thread, so other programs
+on the machine change them less. They start with the surface in memory. Both curves are computed
+{repeats} times in turn. The ratio is the median of the ratios of the repeats (smallest and
+largest).
+
+| surface | curve | constant bound, s | bound that grows, s | ratio |
+|---|---|---|---|---|
+{rows}
+
+A depth under the bound that grows needs a second solve: the elastic contact at twice the depth, to
+a residual of 1e-4 (`contact/cavity.py`). The unloading is one solve per depth in both models.
+"""
+
+
+def surfaces() -> dict[str, Surface]:
+    """The surfaces, by name: smooth, and two kinds of roughness."""
+    shape = {"rms": 0.1e-6, "correlation_length": 2e-6, "seed": 1}
+    return {
+        "gaussian, Rq = 0.1 µm": generate_surface(GRID, kind="gaussian", **shape),
+        "exponential, Rq = 0.1 µm": generate_surface(GRID, kind="exponential", **shape),
+        "smooth": smooth(GRID),
+    }
+
+
+def load(surface: Surface, strength: dict[str, float]) -> None:
+    """Load to all depths."""
+    for _ in loading_path(Contact(Pair(STEEL, STEEL), surface, **strength), DEPTHS):
+        pass
+
+
+def load_and_unload(surface: Surface, strength: dict[str, float]) -> None:
+    """Load to all depths and unload from each."""
+    for state in loading_path(Contact(Pair(STEEL, STEEL), surface, **strength), DEPTHS):
+        collide(state)
+
+
+def seconds(work: Curve, surface: Surface, strength: dict[str, float]) -> float:
+    """Processor time of a curve."""
+    began = time.process_time()
+    work(surface, strength)
+    return time.process_time() - began
+
+
+def row(name: str, curve: str, times: list[tuple[float, float]]) -> str:
+    """A line of the table."""
+    constant, growing = (statistics.median(each) for each in zip(*times, strict=True))
+    ratios = [after / before for before, after in times]
+    return (
+        f"| {name} | {curve} | {constant:.3f} | {growing:.3f} | {statistics.median(ratios):.2f} "
+        f"({min(ratios):.2f} to {max(ratios):.2f}) |"
+    )
+
+
+def main() -> None:
+    """Time the curves and write the page."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--repeats", type=int, default=9)
+    repeats = parser.parse_args().repeats
+    about, rows = machine(), []
+    for name, surface in surfaces().items():
+        for curve, work in {"loading": load, "and unloading": load_and_unload}.items():
+            work(surface, CONSTANT)  # not counted: it computes the influence coefficients
+            times = [
+                (seconds(work, surface, CONSTANT), seconds(work, surface, GROWING))
+                for _ in range(repeats)
+            ]
+            rows.append(row(name, curve, times))
+            print(rows[-1], flush=True)
+    OUT.write_text(
+        REPORT.format(
+            date=today(), machine=about, nodes=NODES, repeats=repeats, rows="\n".join(rows)
+        ),
+        encoding="utf-8",
+    )
+
+
+if __name__ == "__main__":
+    main()
