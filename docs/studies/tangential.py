@@ -2,14 +2,15 @@
 
     python docs/studies/tangential.py
 
-Writes docs/studies/tangential.csv and prints the tables of docs/oblique.md. About half an hour.
+Writes docs/studies/tangential.csv and prints the table of docs/oblique.md. A quarter of an hour.
 
 Each contact is run as a case, and the one-dimensional law (`laws.foundation`) is made from its
-stored results as `restitution simulate` does it. The boundary elements (`contact.tangential`) get
-the same contact. Compared are, at the deepest point and half-way through unloading at a normal
-force held constant: the tangential stiffness without slip, the force at three displacements, and
-the energy of a loop. And over whole oblique impacts with the same normal motion: the impulse of the
-tangential force, its largest value, and the tangential restitution.
+stored results as `restitution simulate` does it. The boundary elements (`contact.tangential`) solve
+the same contact. At the deepest point and half-way through unloading, with the normal force held
+constant, the study compares the tangential stiffness without slip, the force at three
+displacements, and the energy of a loop. Over whole oblique impacts with the same normal motion, it
+compares the tangential force and the tangential restitution. The constants of
+`laws/tangential_error` come from the samples that are not `blind`.
 """
 
 from __future__ import annotations
@@ -18,49 +19,53 @@ import math
 import tempfile
 import tomllib
 import warnings
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from shared import write_table
 
 from restitution import run, solve, step
 from restitution.case.case_file import parse_case
 from restitution.contact.state import State
 from restitution.contact.tangential import TangentialState, shear
+from restitution.errors import DomainError
 from restitution.laws.foundation import Foundation
+from restitution.laws.tangential_error import TangentialError, tangential_error
 from restitution.laws.time_integration import StoredForce, collide_in_time, stored_force
 
 FRICTION = 0.3
-SHARES = (0.3, 0.6, 0.9)  # of the displacement at which a smooth contact of this stiffness slides
+SHARES = (0.3, 0.6, 0.9)  # displacements over 3/2 of µN/stiffness, at which a sphere slides
 ANGLES = (0.7, 1.5, 3.0)  # tan θ/µ of the impacts
 STEPS = 60  # of an impact
-SCALED = 0.1  # change of the tangential modulus that shows how much the impact depends on it
+TOUCH = 1e-14  # displacement (m) without slip
+FEWEST = 150  # nodes of a contact that is compared
 
 
 @dataclass(frozen=True)
 class Sample:
-    """One contact: roughness (um), yield, Poisson's ratio, depth (nm) and grid."""
+    """One contact: roughness (um), yield, Poisson's ratio, depth (nm), grid and curves."""
 
     rms: float
-    length: float
+    length: str
     seed: int
     interface: str
     depth: float
-    poisson: float = 0.25
-    nodes: int = 128
-    spacing: float = 0.25
-    depths: int = 16
-    curves: int = 3
+    poisson: float
+    curves: int
+    kind: str = "gaussian"
     blind: bool = False
 
     def text(self) -> str:
         """The case file."""
         rough = f"""[roughness]
-kind = "gaussian"
+kind = "{self.kind}"
 rms = "{self.rms} um"
-correlation_length = "{self.length} um"
+correlation_length = {self.length}
 seed = {self.seed}
 """
+        spacing = 0.0125 * math.sqrt(self.depth)  # 0.25 um at 400 nm
         return f"""total_error = false
 [first]
 radius = "500 um"
@@ -71,36 +76,83 @@ density = "7850 kg/m^3"
 {self.interface}
 {rough if self.rms else ""}
 [grid]
-nodes = {self.nodes}
-spacing = "{self.spacing} um"
+nodes = 128
+spacing = "{spacing:.6g} um"
 [indentation]
 from = "{self.depth / 20} nm"
 to = "{self.depth} nm"
-steps = {self.depths}
+steps = 16
 [unloading]
 curves = {self.curves}
 """
 
 
 ELASTIC = 'yield_pressure = "elastic"'
-CONSTANT = 'yield_pressure = "1.5 GPa"'
-CAVITY = 'yield_strength = "500 MPa"'
+# Values from which the samples are drawn: rms, length, interface, depth, Poisson's ratio, curves
+# and kind. With two lengths, the roughness has a lay, along the motion or across it.
+CHOSEN = (
+    (0.02, 0.05, 0.1, 0.3),
+    ('"1 um"', '"2 um"', '"3 um"', '["4 um", "1 um"]', '["1 um", "4 um"]'),
+    (ELASTIC, 'yield_pressure = "1.5 GPa"', 'yield_strength = "500 MPa"'),
+    (50, 150, 400),
+    (0.0, 0.25, 0.45),
+    (3, 6, 16),
+    ("gaussian", "exponential"),
+)
+BLIND = (
+    (0.03, 0.07, 0.15),
+    ('"1.2 um"', '"2.2 um"', '"3.5 um"', '["3 um", "1 um"]'),
+    (
+        ELASTIC,
+        'yield_pressure = "0.8 GPa"',
+        'yield_pressure = "2 GPa"',
+        'yield_strength = "350 MPa"',
+        'yield_strength = "800 MPa"',
+    ),
+    (60, 110, 320),
+    (0.1, 0.3, 0.4, 0.49),
+    (2, 4, 10, 16),
+    ("gaussian", "exponential"),
+)
+
+
+def drawn(values: tuple, seed: int, *, blind: bool) -> Iterator[Sample]:
+    """Random samples without end."""
+    rng = np.random.default_rng(seed)
+    while True:
+        rms, length, interface, depth, poisson, curves, kind = (
+            one[int(rng.integers(len(one)))] for one in values
+        )
+        yield Sample(
+            rms, length, int(rng.integers(10**6)), interface, depth, poisson, curves, kind, blind
+        )
+
+
+def smooth(values: tuple, *, blind: bool) -> list[Sample]:
+    """Smooth bodies with every model of yield."""
+    _, _, interfaces, depths, poisson, *_ = values
+    return [
+        Sample(0.0, "", 0, interface, depths[-1], poisson[1], 3, blind=blind)
+        for interface in interfaces
+    ]
 
 
 class Springs:
     """The one-dimensional law, with the interface of `Nodes`."""
 
-    def __init__(self, springs: Foundation) -> None:
-        self.springs = springs
+    def __init__(self, springs: Foundation, factor: float = 1.0) -> None:
+        self.springs, self.factor = springs, factor
         self.u, self.loss, self.at = np.zeros(self.springs.radius.size), 0.0, 0.0
 
     def move(self, displacement: float, normal: State, deepest: float) -> float:
         """The tangential force after a step."""
         loads = self.springs.load(normal.indentation, deepest)
         loads *= normal.force / max(loads.sum(), 1e-300)
-        self.u, force, work = self.springs.move(self.u, displacement - self.at, FRICTION * loads)
-        self.loss, self.at = self.loss + work, displacement
-        return force
+        self.u, force, work = self.springs.move(
+            self.u, displacement - self.at, FRICTION * loads, self.factor
+        )
+        self.loss, self.at = self.loss + float(work), displacement
+        return float(force)
 
 
 class Nodes:
@@ -120,32 +172,23 @@ class Nodes:
         return 0.0 if self.state is None else self.state.friction_loss
 
 
-def held(foundation: Foundation, state: State, deepest: float) -> dict[str, float]:
+def held(springs: Callable[[], Springs], state: State, deepest: float) -> dict[str, float]:
     """Relative differences of the law at the normal force of `state`, held constant."""
 
-    def forces(make, path):
-        side = make()
-        found = [side.move(place, state, deepest) for place in path]
-        return np.array(found), side
+    def force(make: Callable[[], Springs | Nodes], place: float) -> float:
+        return make().move(place, state, deepest)
 
-    def springs():
-        return Springs(foundation)
-
-    (touch,), _ = forces(Nodes, [1e-14])
-    stiffness = touch / 1e-14
-    (soft,), _ = forces(springs, [1e-14])
+    stiffness = force(Nodes, TOUCH) / TOUCH
     far = 1.5 * FRICTION * state.force / stiffness
-    row = {"stiffness": soft / 1e-14 / stiffness - 1}
+    row = {"stiffness": force(springs, TOUCH) / TOUCH / stiffness - 1}
     for share in SHARES:
-        (one,), _ = forces(springs, [share * far])
-        (whole,), _ = forces(Nodes, [share * far])
+        whole = force(Nodes, share * far)
         row[f"ratio_{share}"] = whole / (FRICTION * state.force)
-        row[f"force_{share}"] = one / whole - 1
+        row[f"force_{share}"] = force(springs, share * far) / whole - 1
     there = 0.6 * far * np.linspace(0, 1, 7)[1:]
     back = 0.6 * far * np.cos(np.linspace(0, 2 * math.pi, 33))[1:]
     losses = []
-    for make in (springs, Nodes):
-        side = make()
+    for side in (springs(), Nodes()):
         for place in there:
             side.move(place, state, deepest)
         first = side.loss
@@ -155,76 +198,149 @@ def held(foundation: Foundation, state: State, deepest: float) -> dict[str, floa
     return row | {"loop": losses[0] / losses[1] - 1}
 
 
-def impacts(law: StoredForce, foundation: Foundation, deepest: State) -> dict[str, float]:
+def impacts(
+    law: StoredForce, foundation: Foundation, deepest: State, error: TangentialError
+) -> dict[str, float]:
     """Differences over whole oblique impacts that turn at `deepest`."""
-    velocity = math.sqrt(2 * deepest.loading_work / law.pair.mass)
-    normal = collide_in_time(law, min(velocity, law.highest))
+    mass = law.pair.mass or math.nan
+    velocity = min(math.sqrt(2 * deepest.loading_work / mass), law.highest)
+    normal = collide_in_time(law, velocity)
     times = np.linspace(0, normal.duration, STEPS + 1)[1:-1]
     at, first = np.unique(normal.time, return_index=True)
-    depths = np.interp(times, at, normal.indentation[first])
+    depths, dt = np.interp(times, at, normal.indentation[first]), float(times[1] - times[0])
     turn = int(np.argmax(depths))
     states: list[State] = []
-    for k, x in enumerate(depths):
+    for k, x in enumerate(map(float, depths)):
         before = states[-1] if states else None
-        states.append(
-            solve(deepest.contact, float(x), start=before) if k <= turn else step(deepest, float(x))
-        )
-    far = [float(depths[: k + 1].max()) for k in range(depths.size)]
+        down = k <= turn
+        states.append(solve(deepest.contact, x, start=before) if down else step(deepest, x))
+    far = np.maximum.accumulate(depths)
     row = {}
     for tangent in ANGLES:
         found = []
-        scaled = [
-            replace(foundation, moduli=(foundation.moduli[0], factor * foundation.moduli[1]))
-            for factor in (1.0, 1 - SCALED, 1 + SCALED)
-        ]
-        for side in (*map(Springs, scaled), Nodes()):
+        soft, stiff = 1 / (1 + error.stiffness), 1 + error.stiffness
+        for side in (
+            *(Springs(foundation, factor) for factor in (1.0, soft, stiff)),
+            Nodes(),
+        ):
             place, speed, forces = 0.0, FRICTION * tangent * velocity, []
-            for state, most in zip(states, far, strict=True):
-                place += speed * (times[1] - times[0])
+            for state, most in zip(states, map(float, far), strict=True):
+                place += speed * dt
                 forces.append(side.move(place, state, most))
-                speed -= 3.5 * forces[-1] / law.pair.mass * (times[1] - times[0])
-            after = FRICTION * tangent * velocity
-            impulse = np.sum(forces) * (times[1] - times[0]) / law.pair.mass
-            found.append((1 - impulse / after, np.max(forces), side.loss, np.array(forces)))
-        (e1, most1, loss1, T1), low, high, (e2, most2, loss2, T2) = found
-        lowest, highest = min(low[0], high[0]), max(low[0], high[0])
+                speed -= 3.5 * forces[-1] / mass * dt
+            impulse = float(np.sum(forces)) * dt / mass / velocity
+            found.append((impulse, np.array(forces)))
+        (J1, T1), (low, _), (high, _), (J2, T2) = found
+        full, after = FRICTION * (1 + normal.restitution), FRICTION * tangent
+        spread = max(abs(low - J1), abs(high - J1))
+        spread += error.impulse * abs(J1) * max(1 - abs(J1) / full, 0)
         row |= {
-            f"e_t_{tangent}": e2,
-            f"e_t_difference_{tangent}": e1 - e2,
-            f"e_t_scaled_{tangent}": max(e1 - lowest, highest - e1),
-            f"largest_{tangent}": most1 / most2 - 1,
+            f"e_t_{tangent}": 1 - J2 / after,
+            f"e_t_difference_{tangent}": (J2 - J1) / after,
+            f"e_t_error_{tangent}": spread / after,
             f"course_{tangent}": float(np.sqrt(np.mean((T1 - T2) ** 2) / np.mean(T2**2))),
-            f"loss_{tangent}": loss1 / loss2 - 1,
         }
     return row
 
 
-def compare(sample: Sample) -> dict[str, float | str]:
-    """One row of the table."""
+def compare(sample: Sample) -> dict[str, float | str] | None:
+    """One row of the table; None if the contact has too few nodes or leaves the grid."""
+    case = tomllib.loads(sample.text())
     with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings(action="ignore"):
-        run(tomllib.loads(sample.text()), out=Path(folder) / "out")
+        try:
+            run(case, out=Path(folder) / "out")
+        except DomainError:
+            return None
         law = stored_force(Path(folder) / "out")
         contact = parse_case(sample.text()).contact(Path(folder))
+    if law.deepest < 0.999e-9 * sample.depth:
+        return None
     deepest, foundation = solve(contact, law.deepest), Foundation.of(law, law.deepest)
-    end = deepest.separation_indentation
-    half = step(deepest, 0.5 * (law.deepest + end))
-    patches = deepest.patch_sizes()
+    if deepest.contact_nodes < FEWEST:
+        return None
+    end, error = deepest.separation_indentation, tangential_error(law, law.deepest, FRICTION)
+    half, patches = step(deepest, 0.5 * (law.deepest + end)), deepest.patch_sizes()
     row = {
-        "rms_um": sample.rms,
-        "length_um": sample.length,
-        "seed": sample.seed,
-        "interface": sample.interface.split(" = ")[0]
-        if "elastic" not in sample.interface
-        else "elastic",
-        "depth_nm": sample.depth,
-        "poissons_ratio": sample.poisson,
         "blind": sample.blind,
+        "kind": sample.kind if sample.rms else "smooth",
+        "rms_um": sample.rms,
+        "correlation_length": sample.length.replace('"', ""),
+        "seed": sample.seed,
+        "interface": sample.interface.replace('"', ""),
+        "poissons_ratio": sample.poisson,
+        "depth_nm": sample.depth,
+        "curves": sample.curves,
+        "lay": law.roughness.lay if law.roughness else 0.0,
         "patches": len(patches),
-        "nodes": int(patches.sum()),
-        "largest_patch": int(patches[0]),
+        "nodes": deepest.contact_nodes,
         "unrecovered": end / law.deepest,
-        "normal_difference": law.loading(law.deepest) / deepest.force - 1,
+        "stiffness_error": error.stiffness,
+        "impulse_error": error.impulse,
     }
-    row |= {f"top_{key}": value for key, value in held(foundation, deepest, law.deepest).items()}
-    row |= {f"half_{key}": value for key, value in held(foundation, half, law.deepest).items()}
-    return row | impacts(law, foundation, deepest)
+
+    def springs() -> Springs:
+        return Springs(foundation)
+
+    for name, state in (("deepest", deepest), ("half", half)):
+        differences = held(springs, state, law.deepest)
+        row |= {f"{name}_{key}": value for key, value in differences.items()}
+    return row | impacts(law, foundation, deepest, error)
+
+
+def group(row: dict) -> str:
+    """The row of the printed table to which a sample belongs."""
+    yielded = "yielded" if row["unrecovered"] > 1e-3 else "elastic"
+    roughness = "rough" if row["rms_um"] else "smooth"
+    return f"{roughness}, {yielded}{', blind' if row['blind'] else ''}"
+
+
+def largest(row: dict, *parts: str) -> float:
+    """The largest magnitude of the columns that contain every part."""
+    return max(abs(value) for key, value in row.items() if all(part in key for part in parts))
+
+
+def report(rows: list[dict]) -> None:
+    """Print the largest differences of each group, and the largest ratios to the stated error."""
+    print("| contacts | number | stiffness | force | loop energy | e_t | largest ratio |")
+    print("|---|---|---|---|---|---|---|")
+    groups: dict[str, list[dict]] = {}
+    for row in rows:
+        groups.setdefault(group(row), []).append(row)
+    for name, some in sorted(groups.items()):
+        most = [max(largest(row, part) for row in some)
+                for part in ("_stiffness", "_force_", "_loop", "e_t_difference")]  # fmt: skip
+        ratios = []
+        for part, factor in (("_stiffness", 1), ("_force_", 1), ("_loop", 3)):
+            ratios.append(max(largest(r, part) / (factor * r["stiffness_error"]) for r in some))
+        ratios.append(
+            max(
+                abs(row[f"e_t_difference_{angle}"]) / row[f"e_t_error_{angle}"]
+                for row in some
+                for angle in ANGLES
+            )
+        )
+        cells = [f"{value:.1%}" for value in most[:3]] + [f"{most[3]:.3f}"]
+        print(f"| {name} | {len(some)} | {' | '.join(cells)} |", *(f"{r:.2f}" for r in ratios), "|")
+
+
+def main() -> None:
+    """Compare all samples, write the table and print its summary."""
+    rows: list[dict] = []
+    for values, seed, number, blind in ((CHOSEN, 3, 60, False), (BLIND, 4, 60, True)):
+        found = [row for row in map(compare, smooth(values, blind=blind)) if row is not None]
+        for sample in drawn(values, seed, blind=blind):
+            row = compare(sample)
+            if row is not None:
+                found.append(row)
+                print(len(found), sample, flush=True)
+            if len(found) >= number:
+                break
+        rows += found
+    for row in rows:
+        row.update((key, float(f"{v:.5g}")) for key, v in row.items() if isinstance(v, float))
+    write_table("tangential.csv", rows)
+    report(rows)
+
+
+if __name__ == "__main__":
+    main()

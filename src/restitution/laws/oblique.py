@@ -154,7 +154,7 @@ def collide_obliquely(
     rolling = sum(R * spin for R, spin in zip(arms, spins, strict=True))
     mass = law.pair.mass
     assert mass is not None  # StoredForce
-    error = tangential_error(law, min(normal.largest_indentation, law.deepest))
+    error = tangential_error(law, min(normal.largest_indentation, law.deepest), friction)
     course = _slide(law, normal, V_t - rolling, friction, error.stiffness)
     J, e = course.impulse, normal.restitution
     sliding = friction * (1 + e) * mass * V_n  # impulse of full slip

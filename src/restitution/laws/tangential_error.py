@@ -1,7 +1,8 @@
 """Error of the one-dimensional tangential law, from a comparison with boundary elements.
 
-docs/oblique.md describes the comparison (`docs/studies/tangential.py`). Bodies with ν = 0 and no
-yield follow the law exactly, for every roughness. Four effects make an error:
+docs/oblique.md describes the comparison (`docs/studies/tangential.py` and `unlike.py`). Like bodies
+with ν = 0 follow the law exactly as long as they do not yield, for every roughness. Four effects
+make an error:
 
 * Patches that are not round. A point load along x moves the surface at a given distance along x by
   1 + χ and along y by 1 − χ times the mean, with χ = ν/(2 − ν) for like bodies. The law uses the
@@ -11,12 +12,13 @@ yield follow the law exactly, for every roughness. Four effects make an error:
 * Yield. While the contact is loaded, nodes at the pressure bound carry no more traction, but all
   springs of the law do.
 * Few unloading curves. Between two of them, the stiffness is interpolated.
-* Unlike bodies. Pressure also moves the surfaces tangentially, and traction moves them normally, in
-  proportion to the second constant of Dundurs β. By symmetry neither adds a tangential force to
-  first order. Without slip, the exact stiffness of a round punch grows only by atanh(β)/β − 1,
-  about β²/3 (Spence 1968, Proc. R. Soc. A 305, 55–80; Johnson 1985, *Contact Mechanics*, §§3.7 and
-  5.4). With slip, tractions of β times the pressure take up part of the friction. The error is
-  taken as |β|, a bound on the order of magnitude that is not compared with a coupled solution.
+* Unlike bodies. Pressure also moves the surfaces tangentially, in proportion to the second constant
+  of Dundurs β. Without slip this adds no tangential force by symmetry, and the stiffness grows only
+  by about β²/3 (atanh(β)/β − 1 for a round punch; Spence 1968, Proc. R. Soc. A 305, 55–80). But if
+  µ is not large compared with |β|, the surfaces slip radially under pressure alone (Spence 1975, J.
+  Elast. 5, 297–319), and friction cannot hold them against a tangential motion at the same time.
+  The effect on coupled impacts was that of at most |β| of the stiffness for µ < |β|, and fell
+  faster than |β|³/µ² for larger µ.
 """
 
 from __future__ import annotations
@@ -31,10 +33,11 @@ from restitution.laws.foundation import has_yielded
 from restitution.laws.time_integration import StoredForce
 
 # Numbers that bound all differences found in the comparison. _NUMERICAL is the relative error of
-# the stiffness of smooth and of rough contacts for ν = 0, _SHAPE that of one patch over χ, and
-# _ALIGNED the number of patches up to which it is as large as that of one patch.
-_NUMERICAL, _ROUGH = 0.005, 0.01
-_SHAPE, _ALIGNED = 0.35, 4.0
+# the stiffness of smooth contacts for ν = 0, and _ROUGH what roughness adds. _SHAPE is the error of
+# one patch over χ. It is as large for up to _ALIGNED patches, and does not decrease further beyond
+# _INDEPENDENT patches, because small patches are parts of larger ones.
+_NUMERICAL, _ROUGH = 0.005, 0.04
+_SHAPE, _ALIGNED, _INDEPENDENT = 0.35, 4.0, 36.0
 # Relative errors of stiffness and impulse after yield, for each factor between the depths of two
 # neighbouring unloading curves.
 _YIELDED_STIFFNESS, _YIELDED_IMPULSE = 0.01, 0.1
@@ -53,17 +56,19 @@ class TangentialError:
     impulse: float
 
 
-def tangential_error(law: StoredForce, deepest: float) -> TangentialError:
+def tangential_error(law: StoredForce, deepest: float, friction: float) -> TangentialError:
     """Error of the tangential law for an impact that turns at the depth `deepest` (m).
 
-    The errors hold for the grid of the stored contact, and do not contain the error of the normal
-    forces.
+    `friction` is the coefficient of friction (1). The errors hold for the grid of the stored
+    contact, and do not contain the error of the normal forces.
     """
-    stiffness, impulse = _NUMERICAL + abs(dundurs(law.pair)), 0.0
+    beta = abs(dundurs(law.pair))
+    slipping = min(beta / friction, 1.0) ** 2 if friction > 0 else 1.0
+    stiffness, impulse = _NUMERICAL + beta * max(slipping, beta / 3), 0.0
     rough = law.roughness
     if rough is not None:
         across, along = law.pair.shear_compliances
-        patches = float(np.interp(deepest, rough.depths, rough.patches))
+        patches = min(float(np.interp(deepest, rough.depths, rough.patches)), _INDEPENDENT)
         shape = max(_SHAPE / math.sqrt(max(1.0, patches / _ALIGNED)), rough.lay)
         stiffness += _ROUGH + shape * (along - across) / (along + across)
     if has_yielded(law, deepest):
