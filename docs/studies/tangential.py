@@ -15,6 +15,7 @@ compares the tangential force and the tangential restitution. The constants of
 
 from __future__ import annotations
 
+import itertools
 import math
 import tempfile
 import tomllib
@@ -38,7 +39,7 @@ from restitution.laws.time_integration import StoredForce, collide_in_time, stor
 FRICTION = 0.3
 SHARES = (0.3, 0.6, 0.9)  # displacements over 3/2 of µN/stiffness, at which a sphere slides
 ANGLES = (0.7, 1.5, 3.0)  # tan θ/µ of the impacts
-STEPS = 60  # of an impact
+STEPS = 40  # of an impact
 TOUCH = 1e-14  # displacement (m) without slip
 FEWEST = 150  # nodes of a contact that is compared
 
@@ -90,7 +91,31 @@ curves = {self.curves}
 ELASTIC = 'yield_pressure = "elastic"'
 # Values from which the samples are drawn: rms, length, interface, depth, Poisson's ratio, curves
 # and kind. With two lengths, the roughness has a lay, along the motion or across it.
-CHOSEN = (
+FIRST = (
+    (0.02, 0.05, 0.1, 0.3),
+    (*('"1 um"', '"2 um"', '"3 um"') * 2, '["4 um", "1 um"]', '["1 um", "4 um"]'),
+    (ELASTIC, 'yield_pressure = "1.5 GPa"', 'yield_strength = "500 MPa"'),
+    (50, 150, 400),
+    (0.0, 0.25, 0.45),
+    (3, 6, 16),
+    ("gaussian",),
+)
+SECOND = (
+    (0.03, 0.08, 0.2),
+    ('"1.5 um"', '"2.5 um"', '["3 um", "1 um"]'),
+    (
+        ELASTIC,
+        'yield_pressure = "1 GPa"',
+        'yield_pressure = "2.5 GPa"',
+        'yield_strength = "350 MPa"',
+        'yield_strength = "800 MPa"',
+    ),
+    (80, 250),
+    (0.15, 0.35, 0.49),
+    (3, 5, 8, 16),
+    ("gaussian", "exponential"),
+)
+THIRD = (
     (0.02, 0.05, 0.1, 0.3),
     ('"1 um"', '"2 um"', '"3 um"', '["4 um", "1 um"]', '["1 um", "4 um"]'),
     (ELASTIC, 'yield_pressure = "1.5 GPa"', 'yield_strength = "500 MPa"'),
@@ -99,7 +124,7 @@ CHOSEN = (
     (3, 6, 16),
     ("gaussian", "exponential"),
 )
-BLIND = (
+FOURTH = (
     (0.03, 0.07, 0.15),
     ('"1.2 um"', '"2.2 um"', '"3.5 um"', '["3 um", "1 um"]'),
     (
@@ -113,6 +138,13 @@ BLIND = (
     (0.1, 0.3, 0.4, 0.49),
     (2, 4, 10, 16),
     ("gaussian", "exponential"),
+)
+# Values, seed, number of samples, and whether they were drawn after the constants were fixed.
+SETS = (
+    (FIRST, 1, 60, False),
+    (SECOND, 2, 48, False),
+    (THIRD, 3, 27, True),
+    (FOURTH, 4, 35, True),
 )
 
 
@@ -324,21 +356,23 @@ def report(rows: list[dict]) -> None:
 
 
 def main() -> None:
-    """Compare all samples, write the table and print its summary."""
+    """Compare all samples, write the table after each of them, and print its summary."""
     rows: list[dict] = []
-    for values, seed, number, blind in ((CHOSEN, 3, 60, False), (BLIND, 4, 60, True)):
-        found = [row for row in map(compare, smooth(values, blind=blind)) if row is not None]
-        for sample in drawn(values, seed, blind=blind):
+    for values, seed, number, blind in SETS:
+        found = 0
+        for sample in itertools.chain(
+            smooth(values, blind=blind), drawn(values, seed, blind=blind)
+        ):
             row = compare(sample)
-            if row is not None:
-                found.append(row)
-                print(len(found), sample, flush=True)
-            if len(found) >= number:
+            if row is None:
+                continue
+            found += 1
+            print(found, sample, flush=True)
+            row.update((key, float(f"{v:.5g}")) for key, v in row.items() if isinstance(v, float))
+            rows.append(row)
+            write_table("tangential.csv", rows)
+            if found == number:
                 break
-        rows += found
-    for row in rows:
-        row.update((key, float(f"{v:.5g}")) for key, v in row.items() if isinstance(v, float))
-    write_table("tangential.csv", rows)
     report(rows)
 
 

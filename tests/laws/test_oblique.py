@@ -245,6 +245,57 @@ def test_a_yielded_contact_keeps_its_normal_restitution(yielded):
     assert len(course(found)) == found.time.size
 
 
+def test_the_law_of_a_yielded_rough_contact_agrees_with_boundary_elements(
+    yielded, computed_yielding
+):
+    from restitution import solve
+    from restitution.contact.tangential import shear
+    from restitution.laws.tangential_error import tangential_error
+    from restitution.results.reader import RunResults
+
+    state = solve(RunResults(computed_yielding).case.contact(computed_yielding), yielded.deepest)
+    springs = Foundation.of(yielded, yielded.deepest)
+    loads = springs.load(yielded.deepest, yielded.deepest)
+    error = tangential_error(yielded, yielded.deepest, MU)
+    stiffness = shear(state, 1e-14, MU).force / 1e-14
+    for share in (1e-6, 0.3, 0.6, 0.9):
+        place = share * MU * state.force / stiffness
+        found, _, _ = dragged((springs, loads), [place])
+        whole = shear(state, place, MU).force
+        assert found[0] == approx(whole, rel=error.stiffness)
+    assert error.stiffness < 0.15
+
+
+def test_the_error_is_that_of_the_tangential_law(yielded):
+    """The impulse changes by its error; from it follow the errors of e_t, spin and rebound."""
+    pair = elastic(Pair(ALUMINA, ALUMINA), 2.0)
+    angle = math.radians(10)
+    smooth = collide_obliquely(pair, 2.0, angle, 0.2)
+    assert 0 < smooth.tangential_restitution_error < 5e-3
+    rough = collide_obliquely(yielded, 0.9 * yielded.highest, angle, 0.2)
+    assert rough.tangential_restitution_error > 5 * smooth.tangential_restitution_error
+    for found, body in ((smooth, ALUMINA), (rough, yielded.pair.first)):
+        impulse = found.tangential_restitution_error * found.velocity * math.sin(angle)
+        mass = pair.pair.mass if found is smooth else yielded.pair.mass
+        turned = 2.5 * impulse * mass / body.mass / body.radius
+        assert found.spin_errors == approx((turned, turned), rel=1e-9)
+        normal = found.normal_restitution * found.velocity * math.cos(angle)
+        after = found.tangential_restitution * found.velocity * math.sin(angle)
+        turn = math.atan2(after + impulse, normal) - math.atan2(after, normal)
+        assert found.rebound_angle_error == approx(turn, rel=0.02)
+    assert math.isnan(collide_obliquely(pair, 2.0, 0.0, 0.2).tangential_restitution_error)
+
+
+def test_full_slip_has_an_error_for_unlike_bodies_only(wall):
+    alike = collide_obliquely(elastic(Pair(ALUMINA, ALUMINA), 2.0), 2.0, math.radians(60), 0.1)
+    assert alike.sliding
+    assert alike.tangential_restitution_error < 1e-9
+    unlike = collide_obliquely(wall, 2.0, math.radians(60), 0.1)
+    assert unlike.tangential_restitution_error == approx(
+        0.15 * 0.24903 * (1 - unlike.tangential_restitution), rel=1e-3
+    )
+
+
 @pytest.mark.parametrize(
     ("changed", "words"),
     [

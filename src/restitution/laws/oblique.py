@@ -12,7 +12,7 @@ every law of force.
 
 The error of the tangential law (`tangential_error`) becomes one of the impulse of T: the motion is
 integrated again with a larger and a smaller tangential modulus, and after yield a part of the
-impulse is added that vanishes in full slip, where the impulse is exact.
+impulse is added that vanishes in full slip, where the impulse is exact for like bodies.
 
 Neglected: the coupling of normal and tangential displacements of unlike materials, the torque about
 the normal, rolling friction, and elastic waves.
@@ -158,7 +158,7 @@ def collide_obliquely(
     course = _slide(law, normal, V_t - rolling, friction, error.stiffness)
     J, e = course.impulse, normal.restitution
     sliding = friction * (1 + e) * mass * V_n  # impulse of full slip
-    dJ = course.impulse_error
+    dJ = course.impulse_error + error.sliding * abs(J)
     if sliding > 0:
         dJ += error.impulse * abs(J) * max(1 - abs(J) / sliding, 0.0)
     turns = [

@@ -17,8 +17,9 @@ make an error:
   by about β²/3 (atanh(β)/β − 1 for a round punch; Spence 1968, Proc. R. Soc. A 305, 55–80). But if
   µ is not large compared with |β|, the surfaces slip radially under pressure alone (Spence 1975, J.
   Elast. 5, 297–319), and friction cannot hold them against a tangential motion at the same time.
-  The effect on coupled impacts was that of at most |β| of the stiffness for µ < |β|, and fell
-  faster than |β|³/µ² for larger µ.
+  In coupled solutions, the impulse changed as if the stiffness changed by less than |β| for
+  µ < |β|, and by less than |β|³/µ² for larger µ. In full slip the radial slip turns the friction
+  away from the motion, and the impulse is smaller.
 """
 
 from __future__ import annotations
@@ -41,6 +42,7 @@ _SHAPE, _ALIGNED, _INDEPENDENT = 0.35, 4.0, 36.0
 # Relative errors of stiffness and impulse after yield, for each factor between the depths of two
 # neighbouring unloading curves.
 _YIELDED_STIFFNESS, _YIELDED_IMPULSE = 0.01, 0.1
+_TURNED = 0.15  # relative error of the impulse of full slip over that of the stiffness by β
 _SHALLOWEST = 0.2  # depth over the deepest one below which the number of curves does not matter
 
 
@@ -48,12 +50,13 @@ _SHALLOWEST = 0.2  # depth over the deepest one below which the number of curves
 class TangentialError:
     """Relative errors of the tangential law (1).
 
-    `stiffness` is that of the tangential stiffness, and `impulse` that of the tangential impulse of
-    a contact that is far from full slip.
+    `stiffness` is that of the tangential stiffness, `impulse` an additional one of the tangential
+    impulse of a contact that is far from full slip, and `sliding` that of the impulse of full slip.
     """
 
     stiffness: float
     impulse: float
+    sliding: float
 
 
 def tangential_error(law: StoredForce, deepest: float, friction: float) -> TangentialError:
@@ -65,6 +68,7 @@ def tangential_error(law: StoredForce, deepest: float, friction: float) -> Tange
     beta = abs(dundurs(law.pair))
     slipping = min(beta / friction, 1.0) ** 2 if friction > 0 else 1.0
     stiffness, impulse = _NUMERICAL + beta * max(slipping, beta / 3), 0.0
+    sliding = _TURNED * beta * slipping
     rough = law.roughness
     if rough is not None:
         across, along = law.pair.shear_compliances
@@ -75,7 +79,7 @@ def tangential_error(law: StoredForce, deepest: float, friction: float) -> Tange
         gap = 1.0 if rough is None else _largest_gap(law, deepest)
         stiffness += _YIELDED_STIFFNESS * gap
         impulse = min(_YIELDED_IMPULSE * gap, 1.0)
-    return TangentialError(stiffness, impulse)
+    return TangentialError(stiffness, impulse, sliding)
 
 
 def dundurs(pair: Pair) -> float:
