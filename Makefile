@@ -11,7 +11,7 @@ FAST_TESTS := tests/theory tests/numerics tests/test_collision.py
 KERNEL_TESTS := tests/numerics/test_compiled.py tests/numerics/convolution/test_operators.py
 WITHOUT_COMPILER := CC=/bin/false CXX=/bin/false
 
-.PHONY: help demo test test-fast test-kernels test-clang wheel test-wheel fuzz mutation lint docs docs-links bench bench-peers clean
+.PHONY: help demo test test-fast test-kernels test-clang wheel test-wheel fuzz mutation lint docs docs-links bench bench-peers bench-periodic clean
 
 .DEFAULT_GOAL := demo
 
@@ -94,6 +94,9 @@ PEERS := $(patsubst benchmarks/peers/%.txt,.venv-peers/%/installed,$(wildcard be
 
 bench-peers: $(VENV)/test.installed $(PEERS)  ## time this program beside others, each in its own environment
 	$(BIN)/python benchmarks/compare.py
+
+bench-periodic: $(VENV)/test.installed $(PEERS)  ## time periodic contacts beside Tamaas and ContactMechanics
+	$(BIN)/python benchmarks/periodic.py
 
 # SlipPy's packages end with Python 3.11; its own list of them cannot be installed any more.
 .venv-peers/%/installed: benchmarks/peers/%.txt

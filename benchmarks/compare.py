@@ -200,6 +200,8 @@ def compare(
             first, pressure = worker.solve(row["tolerance"])
             row |= {
                 "residual": residual(problem, pressure),
+                "force_N": float(pressure.sum()) * problem.spacing**2,
+                "contact_nodes": int(np.count_nonzero(pressure)),
                 "start_s": worker.start_seconds,
                 "first_s": first[0],
             }

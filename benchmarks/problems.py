@@ -17,6 +17,7 @@ import scipy.fft
 from restitution import Body, Contact, Grid, Pair, generate_surface, smooth, solve
 
 SPACING = 0.25e-6
+FORCE = 1e-6  # largest relative error of a prescribed force
 STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25)
 PAIR = Pair(STEEL, STEEL)  # R* = 250 um, E* = 112 GPa
 
@@ -26,7 +27,8 @@ class Problem:
     """One contact: `gap` h₀ and `spacing` in m, `contact_modulus` and `limit` p_y in Pa.
 
     `radius` (m) is for programs that need the sphere separately from the surface, `force` (N) for
-    programs that do not accept an indentation.
+    programs that do not accept an indentation. In a `periodic` problem the gap is one period, and
+    the force is prescribed, not the indentation.
     """
 
     name: str
@@ -37,6 +39,7 @@ class Problem:
     indentation: float
     radius: float
     force: float
+    periodic: bool = False
 
     def cropped(self) -> Problem:
         """The same contact on the bounding box of {h₀ < δ}, outside which nothing can touch.
@@ -59,6 +62,7 @@ class Problem:
             indentation=self.indentation,
             radius=self.radius,
             force=self.force,
+            periodic=self.periodic,
         )
 
 
@@ -103,13 +107,20 @@ def residual(problem: Problem, pressure: np.ndarray) -> float:
     With the deformed gap g = K p + h₀ − δ and c the displacement of a node by its own pressure,
     c p = clip(c p − g, 0, c p_y) is equivalent to three conditions: g ≥ 0 where p = 0, g = 0
     between the bounds, and g ≤ 0 where p = p_y. The difference of both sides is the violation, as
-    a length.
+    a length. In a periodic problem, the force must be right within `FORCE`, and δ follows from the
+    mean g of the contact.
     """
-    K, own = _kernel(pressure.shape, problem.spacing)
-    padded = [2 * n for n in pressure.shape]
+    make = _periodic_kernel if problem.periodic else _kernel
+    K, own = make(pressure.shape, problem.spacing)
+    padded = [n if problem.periodic else 2 * n for n in pressure.shape]
     modes = scipy.fft.rfft2(pressure, s=padded, workers=2) * K
     u = scipy.fft.irfft2(modes, s=padded, workers=2)[: pressure.shape[0], : pressure.shape[1]]
     g = u / problem.contact_modulus + problem.gap - problem.indentation
+    if problem.periodic:
+        force = float(pressure.sum()) * problem.spacing**2
+        if not abs(force / problem.force - 1) <= FORCE:
+            return math.inf
+        g -= g[(pressure > 0) & (pressure < problem.limit)].mean()
     c = own / problem.contact_modulus
     with np.errstate(invalid="ignore"):
         violation = c * pressure - np.clip(c * pressure - g, 0, c * problem.limit)
@@ -129,3 +140,16 @@ def _kernel(shape: tuple[int, int], spacing: float) -> tuple[np.ndarray, float]:
     nx, ny = shape
     i, j = (np.minimum(np.arange(2 * n), 2 * n - np.arange(2 * n)) for n in (nx, ny))
     return scipy.fft.rfft2(quadrant[np.ix_(i, j)], workers=2), float(quadrant[0, 0])
+
+
+@lru_cache(maxsize=2)
+def _periodic_kernel(shape: tuple[int, int], spacing: float) -> tuple[np.ndarray, float]:
+    """Spectrum 2/|q| of E* K on one period, without the mean, and E* K at lag 0."""
+    qx, qy = (
+        2 * np.pi * np.fft.fftfreq(shape[0], spacing),
+        2 * np.pi * np.fft.rfftfreq(shape[1], spacing),
+    )
+    q = np.hypot(qx[:, None], qy)
+    q[0, 0] = np.inf
+    kernel = scipy.fft.irfft2(2 / q, s=shape)
+    return 2 / q, float(kernel[0, 0])

@@ -25,16 +25,28 @@ def prepare(problem):
         float(problem.limit) / 1e6,
         float(problem.indentation) * 1e6,
         h * h,
+        "periodic" if problem.periodic else "free",
+        float(problem.force) * 1e6,
     )
 
 
 def solve(inputs, tolerance):
-    """One indentation of the free half-space."""
-    heights, size, E_star, hardness, indentation, cell = inputs
+    """One indentation of the free half-space, or one force on a period."""
+    heights, size, E_star, hardness, indentation, cell, substrate, force = inputs
     length = tolerance * indentation
     topography = Topography(heights, size)
-    if np.isinf(hardness):
-        system = topography.make_contact_system(young=E_star, substrate="free")
+    # Its periodic half-space is compressed by the mean pressure, so that its offset is not the
+    # indentation. The force means the same in all programs (µN in these units).
+    periodic = substrate == "periodic"
+    given = {"external_force": force} if periodic else {"offset": indentation}
+    if np.isinf(hardness) and periodic:
+        system = topography.make_contact_system(young=E_star, substrate=substrate)
+        result = system.minimize_proxy(
+            **given, pentol=length, forcetol=1e-30, maxiter=MAX_ITERATIONS
+        )
+        forces = result.jac
+    elif np.isinf(hardness):
+        system = topography.make_contact_system(young=E_star, substrate=substrate)
         result = system.dual_minimize_proxy(
             offset=indentation,
             init_force=np.zeros(heights.shape),
@@ -44,9 +56,9 @@ def solve(inputs, tolerance):
         forces = result.x.reshape(heights.shape)
     else:
         topography = PlasticTopography(topography, hardness)
-        system = topography.make_plastic_contact_system(young=E_star, substrate="free")
+        system = topography.make_plastic_contact_system(young=E_star, substrate=substrate)
         result = system.minimize_proxy(
-            offset=indentation,
+            **given,
             pentol=length,
             forcetol=tolerance * hardness * cell,
             thermotol=tolerance,

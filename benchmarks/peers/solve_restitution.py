@@ -5,8 +5,7 @@ from importlib.metadata import version
 
 from worker import serve
 
-from restitution import Body, Contact, Grid, Pair, Surface, solve
-from restitution.contact import influence
+from restitution import Body, Contact, Grid, Pair, Surface, operator_cache, solve, solve_at_pressure
 
 
 def prepare(problem):
@@ -16,13 +15,17 @@ def prepare(problem):
     sphere = (grid.x[:, None] ** 2 + grid.y**2) / (2 * problem.radius)
     body = Body(2 * float(problem.radius), 2 * float(problem.contact_modulus), 0.0)
     surface = Surface(sphere - problem.gap, grid)
-    return Pair(body, body), surface, float(problem.limit), float(problem.indentation)
+    model = {"yield_pressure": float(problem.limit), "periodic": bool(problem.periodic)}
+    return Pair(body, body), surface, model, float(problem.indentation), float(problem.force)
 
 
 def solve_once(inputs, tolerance):
-    """One indentation of the undeformed bodies."""
-    pair, surface, limit, indentation = inputs
-    contact = Contact(pair, surface, yield_pressure=limit)
+    """One indentation of the undeformed bodies, or one force on a period."""
+    pair, surface, model, indentation, force = inputs
+    contact = Contact(pair, surface, **model)
+    if contact.periodic:
+        area = contact.grid.cell_area * surface.height.size
+        return solve_at_pressure(contact, force / area, residual=tolerance).pressure
     return solve(contact, indentation, residual=tolerance).pressure
 
 
@@ -33,7 +36,7 @@ def forget():
             for value in vars(module).values():
                 if hasattr(value, "cache_clear"):
                     value.cache_clear()
-    influence._known.clear()
+    operator_cache.clear()
 
 
 serve(version("restitution"), prepare, solve_once, forget)

@@ -19,22 +19,24 @@ def prepare(problem):
     """The heights in the unit of length, the limit and the mean pressure over E*."""
     h, E = problem.spacing, problem.contact_modulus
     mean = problem.force / (problem.gap.size * h**2) / E
-    return -problem.gap * (SPACING / h), problem.limit / E, mean, E
+    return -problem.gap * (SPACING / h), problem.limit / E, mean, E, bool(problem.periodic)
 
 
 def solve(inputs, tolerance):
     """One load: `PolonskyKeerRey` for elastic contact, `KatoSaturated` below a limit."""
-    heights, limit, mean, E = inputs
+    heights, limit, mean, E, periodic = inputs
     nodes = list(heights.shape)
     size = [n * SPACING for n in nodes]
     model = tm.ModelFactory.createModel(tm.model_type.basic_2d, size, nodes)
     model.E, model.nu = 1.0, 0.0
-    tm.ModelFactory.registerNonPeriodic(model, "free")
+    if not periodic:
+        tm.ModelFactory.registerNonPeriodic(model, "free")
     if np.isinf(limit):
         solver = tm.PolonskyKeerRey(model, heights, tolerance)
     else:
         solver = tm.KatoSaturated(model, heights, tolerance, limit)
-    solver.setIntegralOperator("free")
+    if not periodic:
+        solver.setIntegralOperator("free")
     solver.max_iter = MAX_ITERATIONS
     solver.solve(mean)
     return E * np.array(model.traction)

@@ -101,12 +101,12 @@ def open_results(folder: Folder) -> RunResults | StudyResults | PeriodicResults:
     Raises:
         OutputError: The folder does not hold results, or a file is damaged.
     """
+    from restitution.results.kinds import is_periodic
     from restitution.results.periodic import PeriodicResults
     from restitution.results.reader import StudyResults, read_run
-    from restitution.results.schema import PERIODIC_FILE
 
     path = Path(folder)
-    if (path / PERIODIC_FILE).is_file():
+    if is_periodic(path):
         return PeriodicResults(path)
     if (path / "study.toml").is_file():
         return StudyResults(path)

@@ -126,7 +126,8 @@ def test_nothing_says_how_deep(refused_case, case_text):
     span = case_text[case_text.index("[indentation]") : case_text.index("[unloading]")]
     message = refused_case((span, ""))
     assert (
-        "give one of the tables [indentation], [load] and [impact]; this case has none" in message
+        "give one of the tables [indentation], [load], [impact] and [pressure]; this case has none"
+        in message
     )
 
 

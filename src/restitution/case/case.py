@@ -9,10 +9,10 @@ from typing import Annotated, Any, cast
 
 from pydantic import BeforeValidator, model_validator
 
-from restitution.case import needs, periodic
+from restitution.case import needs
 from restitution.case.bodies import BodyTable, InterfaceTable, Yielding
 from restitution.case.quantities import Force, Length, Pressure
-from restitution.case.roughness import MeasuredRoughness, Roughness
+from restitution.case.roughness import GeneratedRoughness, MeasuredRoughness, Roughness
 from restitution.case.schema import GridTable, ImpactTable, Series, Table, UnloadingTable
 from restitution.contact.bodies import Pair
 from restitution.contact.cohesive import resolves_range
@@ -57,7 +57,7 @@ class Case(Table):
                 f"has {which}"
             )
         if self.periodic:
-            periodic.require_possible(self)
+            self._check_period()
         elif self.pressure is not None:
             raise ValueError(
                 "[pressure] is the nominal pressure of a periodic contact: add periodic = true to "
@@ -82,6 +82,49 @@ class Case(Table):
                 "roughness.realisations: differs between the tables; give the same number in all"
             )
         return self
+
+    def _check_period(self) -> None:
+        """Refuse keys that a periodic grid excludes."""
+        for name, body in (("first", self.first), ("second", self.second)):
+            if body is not None and body.radius is not None:
+                raise ValueError(f'{name}.radius: must be "flat" if the grid is periodic')
+        if self.impact is not None:
+            raise ValueError(
+                "[impact]: the bodies of a periodic contact have no mass; give [indentation], "
+                "[load] or [pressure]"
+            )
+        if "unloading" in self.model_fields_set:
+            raise ValueError(
+                "[unloading]: a periodic case writes no unloading curves; leave it out"
+            )
+        if self.interface.adhesive_energy > 0:
+            raise ValueError("interface.work_of_adhesion: a periodic contact has no adhesion")
+        yielding = self.yielding()
+        if yielding.plasticity != "equilibrium":
+            raise ValueError(
+                "interface.yield_pressure: is missing; a periodic contact needs a constant "
+                'pressure (such as "2.8 Y" or "hardness"), or "elastic"'
+            )
+        assert self.grid is not None  # it is periodic
+        if not isinstance(self.grid.refine, int):
+            raise ValueError("grid.refine: must be one number if the grid is periodic")
+        if not self.roughness:
+            raise ValueError("roughness: is missing; two flat bodies without it touch everywhere")
+        if self.realisations > 1:
+            raise ValueError(
+                "roughness.realisations: a periodic case has one surface; leave it out"
+            )
+        for part in self.roughness:
+            if isinstance(part, GeneratedRoughness) and not part.periodic:
+                raise ValueError("roughness.periodic: must be true if the grid is periodic")
+        series = self.pressure
+        if series is not None and math.isfinite(yielding.hardness):
+            highest = max(series.series())
+            if highest >= yielding.hardness:
+                raise ValueError(
+                    f"pressure: {1e-6 * highest:.4g} MPa is not below the yield pressure, "
+                    f"{1e-6 * yielding.hardness:.4g} MPa"
+                )
 
     def _check_factors(self, factors: tuple[int, ...]) -> None:
         depths = len(self.depths())

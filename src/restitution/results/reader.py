@@ -1,8 +1,4 @@
-"""Read stored results, and reject damaged files.
-
-This module reads `curve.csv`, `summary.json`, `results.nc`, `table.csv` and `study.nc`. It compares
-files with their checksums, if there are any, and rejects content that a run cannot have written.
-"""
+"""Read the stored tables and files, compare them with their checksums, reject damaged ones."""
 
 from __future__ import annotations
 
@@ -25,12 +21,12 @@ from restitution.display import counted, quantity, summary_html, summary_text
 from restitution.errors import CaseError, OutputError
 from restitution.results.checksums import check_file
 from restitution.results.interruption import hold_signals
+from restitution.results.kinds import require_restitution
 from restitution.results.schema import (
     COLUMNS,
     OBLIQUE_COLUMNS,
     OBLIQUE_FILE,
     OBLIQUE_SPREAD_COLUMNS,
-    PERIODIC_FILE,
     STATUS,
 )
 from restitution.results.summaries import curve_lines, run_lines, study_lines
@@ -308,11 +304,7 @@ class StudyResults:
 
 def read_run(folder: Path) -> RunResults:
     """Open the results in `folder`: of one surface or of an ensemble. Raises `OutputError`."""
-    if (folder / PERIODIC_FILE).is_file():
-        raise OutputError(
-            f"{folder}: holds the results of a periodic contact, which has no restitution; read "
-            f"{PERIODIC_FILE} and results.nc"
-        )
+    require_restitution(folder)
     run = RunResults(folder)
     return EnsembleResults(folder) if "realisations" in run.summary else run
 

@@ -188,6 +188,5 @@ OBLIQUE_SPREAD_COLUMNS = {
     ),
 }
 UNLOADING_COLUMNS = ("max_indentation_m", "indentation_m", "force_N")
-PERIODIC_FILE = "periodic.csv"  # the curve of a periodic contact, instead of curve.csv
 STATUS = ("complete", "failed", "missing")  # of a case in the table of a study
 LOCK = ".restitution-lock"  # held by the process that writes in a folder

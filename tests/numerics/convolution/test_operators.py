@@ -10,7 +10,11 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from restitution.contact.influence import half_space
 from restitution.numerics.convolution.device import accelerator
-from restitution.numerics.convolution.operators import FreeConvolution, SpectralFilter
+from restitution.numerics.convolution.operators import (
+    FreeConvolution,
+    PeriodicConvolution,
+    SpectralFilter,
+)
 from restitution.numerics.quadratic.minimise import _ROUNDING
 from tolerance import approx
 
@@ -283,3 +287,23 @@ def test_what_does_not_go_together_is_refused():
         its = {"px": 12, "out": out, "workspace": workspace, "spectrum": spectrum} | change
         with pytest.raises(ValueError, match=message):
             convolve(p, 1.0, its["spectrum"], its["px"], 10, its["workspace"], 1.0, its["out"])
+
+
+@settings(deadline=None, max_examples=40)
+@given(shapes, seeds)
+def test_a_periodic_convolution_multiplies_the_modes_of_the_whole_array(shape, seed):
+    # 11, 13, 17 … are not factors of the compiled transforms.
+    rng = np.random.default_rng(seed)
+    p = rng.normal(size=shape)
+
+    def symbol(qx, qy):
+        return 1 / (0.3 + np.sqrt(qx**2 + 2 * qy**2))
+
+    K = PeriodicConvolution(symbol, shape)
+    q = [2 * np.pi * abs(np.fft.fftfreq(n)) for n in shape]
+    expected = np.fft.ifft2(symbol(q[0][:, None], q[1][None, :]) * np.fft.fft2(p)).real
+    assert_allclose(K(p), expected, atol=1e-12 * abs(expected).max())
+    assert_allclose(K.single_precision(p), expected, atol=SINGLE * abs(expected).max())
+    point = np.zeros(shape)
+    point[0, 0] = 1.0
+    assert K(point)[0, 0] == approx(K.diagonal, rel=1e-9)

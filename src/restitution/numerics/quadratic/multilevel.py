@@ -73,9 +73,9 @@ def solve_multilevel(
 
     `b` has shape (nx, ny); `upper` is a number or an array of this shape. `tolerance` limits the
     violation and has the units of `b`. If the operators are `periodic`, the fine problem is solved
-    on the whole grid, and only grids of even size are coarsened. Return the result and the number
-    of products with K on the finest grid. If the solve does not converge, the result says so; no
-    exception is raised.
+    on the whole grid, and only grids of even size are coarsened. Their inverse is nearly exact and
+    is not damped. Return the result and the number of products with K on the finest grid. If the
+    solve does not converge, the result says so; no exception is raised.
     """
     whole_grid: Box = (slice(0, b.shape[0]), slice(0, b.shape[1]))
     size = shape_of(whole_grid)
@@ -100,7 +100,9 @@ def solve_multilevel(
         found = minimise_quadratic(
             BoundedQuadratic(K, b[window], 0.0, bound, K.single_precision),
             start=p[window],
-            precondition=mean_damped_preconditioner(inverse, p[window], b[window], bound),
+            precondition=inverse
+            if periodic
+            else mean_damped_preconditioner(inverse, p[window], b[window], bound),
             tolerance=tolerance,
             max_iterations=max_iterations,
             K_start=None if Kp is None else Kp[window],
@@ -237,7 +239,9 @@ def _first_guess(
     found = minimise_quadratic(
         BoundedQuadratic(K, coarse, 0.0, bound, K.single_precision),
         start=start,
-        precondition=mean_damped_preconditioner(inverse, start, coarse, bound),
+        precondition=inverse
+        if periodic
+        else mean_damped_preconditioner(inverse, start, coarse, bound),
         tolerance=accuracy * max(float(b.max()), 0.0),
         max_iterations=_COARSE_ITERATIONS,
         accept_estimated_gradient=True,

@@ -18,12 +18,7 @@ from numpy.typing import NDArray
 
 from restitution.numerics.quadratic.grid_transfer import prolong
 from restitution.numerics.quadratic.minimise import BoundedQuadratic, Minimum, minimise_quadratic
-from restitution.numerics.quadratic.multilevel import (
-    Operators,
-    coarsened,
-    may_coarsen,
-    mean_damped_preconditioner,
-)
+from restitution.numerics.quadratic.multilevel import Operators, coarsened, may_coarsen
 
 Array = NDArray[np.float64]
 
@@ -109,7 +104,7 @@ def minimise_at_mean(
         found = minimise_quadratic(
             BoundedQuadratic(K, b, 0.0, upper, K.single_precision),
             start=p,
-            precondition=mean_damped_preconditioner(inverse, p, b, upper),
+            precondition=inverse,
             tolerance=max(tolerance, _ACCURACY * error),
             max_iterations=max_iterations,
             accept_estimated_gradient=level > 0,
