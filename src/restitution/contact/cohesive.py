@@ -11,7 +11,7 @@ lost then. Surfaces yield where the pressure of the law would exceed the bound: 
 at the bound, and the rest of the approach becomes plastic displacement.
 
 A node is *in contact* where its gap is below that of the largest attraction, 3^{1/6} z₀. The law is
-stable there, and the set tends to the contact of JKR, whose edge carries tension, for a short range.
+stable there. For a short range, the set tends to the contact of JKR, whose edge carries tension.
 
 Nodes outside the box, and the paraboloid outside the grid, attract as rigid bodies.
 """

@@ -33,7 +33,7 @@ from restitution.contact.contact import Contact
 from restitution.contact.plastic_work import plastic_work
 from restitution.contact.state import State
 from restitution.errors import NotConvergedError
-from restitution.numerics.box import Box, reframe, union
+from restitution.numerics.box import Box, union
 from restitution.numerics.read_only import freeze
 
 Array = NDArray[np.float64]
@@ -70,7 +70,8 @@ def load_cohesive(
             return replace(state, convolutions=convolutions)
     else:
         state = replace(state, convolutions=0)
-    for state in follow(state, indentation, residual=residual, accuracy=accuracy):
+    begin = state
+    for state in follow(begin, indentation, residual=residual, accuracy=accuracy):
         convolutions += state.convolutions
     return replace(state, convolutions=convolutions)
 
@@ -101,7 +102,7 @@ def step_cohesive(state: CohesiveState, indentation: float, *, residual: float) 
     """Move a deformed contact to another indentation, deeper or shallower."""
     convolutions = 0
     new = replace(state, convolutions=0)
-    for new in follow(new, indentation, residual=residual):
+    for new in follow(state, indentation, residual=residual):
         convolutions += new.convolutions
     return replace(new, convolutions=convolutions, is_first_loading=False)
 
@@ -125,7 +126,7 @@ def separate_cohesive(state: CohesiveState, *, accuracy: float = ACCURACY) -> It
             return
 
 
-@dataclass
+@dataclass(frozen=True)
 class _Step:
     """A trial step: its state, the work of the force by two rules, and the energy change (J)."""
 
