@@ -73,7 +73,7 @@ class CohesiveState(State):
 
     @property
     def box_touching(self) -> NDArray[np.bool_]:
-        """Nodes of the box in contact, with a gap below that of the largest attraction."""
+        """Whether the gap of each node of the box is below that of the largest traction (bool)."""
         return box_gap(self) < float(_law(self.contact).gap_of_largest_traction)
 
     @property
