@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from restitution.collision import collide
 from restitution.contact.bodies import Body, Pair
-from restitution.contact.cohesive import coarsest_spacing, cohesive_length
+from restitution.contact.cohesive import cohesive_length, needed_spacing
 from restitution.contact.cohesive_path import follow, load_cohesive
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.loading import solve, step
@@ -211,7 +211,7 @@ def test_contact_is_where_the_law_is_stable():
 def test_a_coarse_grid_is_refused():
     contact = sphere(1.0, 2.0)
     coarse = replace(contact, surface=smooth(Grid(40, 1.01 * 0.8 * cohesive_length(contact))))
-    needed = coarsest_spacing(contact)
+    needed = needed_spacing(contact)
     assert needed == approx(0.4 * LENGTH)
     with pytest.raises(CaseError, match=f"needs {1e9 * needed:.4g} nm or less"):
         solve(coarse, Z0)

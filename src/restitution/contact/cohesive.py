@@ -96,23 +96,29 @@ def cohesive_length(contact: Contact) -> float:
     return contact.pair.contact_modulus * z0**2 / w
 
 
-def coarsest_spacing(contact: Contact) -> float:
-    """The largest grid spacing (m) that resolves the cohesive zone."""
-    return COARSEST * cohesive_length(contact)
+def coarsest_spacing(contact_modulus: float, work_of_adhesion: float, z0: float) -> float:
+    """The largest grid spacing (m) that resolves the cohesive zone, with a margin for rounding."""
+    return COARSEST * (1 + 1e-9) * contact_modulus * z0**2 / work_of_adhesion
+
+
+def needed_spacing(contact: Contact) -> float:
+    """The `coarsest_spacing` (m) of `contact`."""
+    z0, w = contact.equilibrium_separation, contact.work_of_adhesion
+    return coarsest_spacing(contact.pair.contact_modulus, w, z0)
 
 
 def resolves_range(contact: Contact) -> bool:
     """Whether the cells are fine enough for the range of the attraction."""
-    return max(contact.grid.spacing) <= coarsest_spacing(contact) * (1 + 1e-9)
+    return max(contact.grid.spacing) <= needed_spacing(contact)
 
 
 def require_fine_grid(contact: Contact) -> None:
     """Raise `CaseError` if the cells are far too coarse for the range of the attraction."""
-    h, length = max(contact.grid.spacing), cohesive_length(contact)
-    if h > _REFUSED * length * (1 + 1e-9):
+    h = max(contact.grid.spacing)
+    if h > _REFUSED / COARSEST * needed_spacing(contact):
         raise CaseError(
             f"grid.spacing: {1e9 * h:.4g} nm is too coarse for the range of the attraction; "
-            f'adhesion = "cohesive" needs {1e9 * COARSEST * length:.4g} nm or less '
+            f'adhesion = "cohesive" needs {1e9 * needed_spacing(contact):.4g} nm or less '
             "(0.4 E* z0^2/w)"
         )
 

@@ -61,7 +61,7 @@ def hysteresis_ratio(tabor: float) -> float:
     This exponent has grown steadily up to there, so the result is too small rather than too large.
     """
     if tabor >= _TABOR[-1]:
-        return 1 - (1 - _HYSTERESIS[-1]) * (_TABOR[-1] / tabor) ** _BEYOND
+        return 1 - (1 - _HYSTERESIS[-1]) * math.pow(_TABOR[-1] / tabor, _BEYOND)
     return float(np.interp(tabor, _TABOR, _HYSTERESIS))
 
 
