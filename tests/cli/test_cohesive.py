@@ -55,6 +55,7 @@ def test_a_run_states_its_attraction(run):
     # µ = 0.67: no loss, where JKR would stick
     assert all(float(row["restitution"]) > 0.99 for row in rows)
     check = summary["diagnostics"]["unloading_checks"][0]
+    assert check["relative_to_stored_energy"] == approx(0.0, abs=0.005)
     assert check["unloading_work_J"] == approx(float(rows[-1]["unloading_work_J"]), rel=0.03)
 
 

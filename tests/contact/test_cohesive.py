@@ -120,6 +120,14 @@ def test_a_cycle_without_jump_costs_nothing():
     assert collision.unloading_work == approx(collision.loading_work, rel=1e-9)
 
 
+def test_the_energy_estimate_holds_within_its_error():
+    state = solve(sphere(1.0, 8.0), 8 * Z0)
+    exact, estimate = collide(state), collide(state, method="energy-estimate")
+    off = estimate.unloading_work - exact.unloading_work
+    assert off == approx(exact.adhesive_loss, rel=1e-3)
+    assert 0 <= off <= estimate.unloading_work_error
+
+
 def test_the_work_of_the_force_is_that_of_the_energies():
     contact = sphere(1.0, 4.0)
     begin = load_cohesive(contact, -math.inf, start=None, residual=1e-8)

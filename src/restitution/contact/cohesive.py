@@ -29,6 +29,8 @@ from restitution.contact.influence import half_space
 from restitution.contact.state import State
 from restitution.errors import CaseError, NotConvergedError
 from restitution.numerics.box import Box, bounding_box, reframe, shape_of
+from restitution.numerics.convolution.device import CPU, on_device
+from restitution.numerics.convolution.operators import FreeConvolution
 from restitution.numerics.read_only import freeze
 from restitution.numerics.truncated_newton import minimise_locally
 from restitution.theory import LennardJones
@@ -140,7 +142,7 @@ def solve_cohesive(
     of the result are those of `history` (zero if None), except that interaction and plastic
     displacement are those of the result. Raises `NotConvergedError`.
     """
-    K = half_space(shape_of(box), contact.grid.spacing, contact.pair.contact_modulus)
+    K = _operator(contact, box)
     before = np.zeros(contact.grid.nodes) if history is None else history.plastic_displacement
     upper = limit[box] if isinstance(limit, np.ndarray) else limit
     law = _BoundedLaw(contact, _base(contact, indentation, box, before), upper)
@@ -217,7 +219,7 @@ def from_rigid(
     """Solve from the pressures that rigid bodies would have at `indentation`."""
     box = box or interacting_box(contact, indentation)
     p = rigid_pressure(contact, indentation, box)
-    K = half_space(shape_of(box), contact.grid.spacing, contact.pair.contact_modulus)
+    K = _operator(contact, box)
     state = solve_cohesive(
         contact, indentation, box, p=p, u=K(p), limit=limit, history=None, residual=residual
     )
@@ -256,7 +258,7 @@ def on_box(state: CohesiveState, box: Box, *, residual: float) -> CohesiveState:
         reframe(state.box_pressure, state.box, box),
         rigid_pressure(contact, indentation, box),
     )
-    K = half_space(shape_of(box), contact.grid.spacing, contact.pair.contact_modulus)
+    K = _operator(contact, box)
     new = solve_cohesive(
         contact,
         indentation,
@@ -286,7 +288,7 @@ def is_unique(state: CohesiveState) -> bool:
     contact = state.contact
     x = contact.equilibrium_separation / box_gap(state)
     softening = np.maximum(-_stiffness(contact, x), 0.0)
-    K = half_space(shape_of(state.box), contact.grid.spacing, contact.pair.contact_modulus)
+    K = _operator(contact, state.box)
     return float(K(softening).max()) < _UNIQUE
 
 
@@ -344,6 +346,12 @@ def _cubic_root(c: Array) -> Array:
     beyond = np.cosh(np.arccosh(np.maximum(t, 1.0)) / 3)
     root: Array = 2 / math.sqrt(3) * np.where(t < 1, inside, beyond)
     return root
+
+
+def _operator(contact: Contact, box: Box) -> FreeConvolution:
+    """The half-space on `box`. The solver works on NumPy arrays, so it is on the CPU always."""
+    with on_device(CPU):
+        return half_space(shape_of(box), contact.grid.spacing, contact.pair.contact_modulus)
 
 
 def _law(contact: Contact) -> LennardJones:

@@ -19,6 +19,7 @@ from restitution.contact.checks.resolution import (
     unresolved_adhesion,
     unresolved_patches,
 )
+from restitution.contact.cohesive import CohesiveState
 from restitution.contact.contact import FULL_CONSTRAINT, Contact
 from restitution.contact.state import State
 from restitution.errors import DomainError, RestitutionError
@@ -200,10 +201,22 @@ def _check(state: State, back: Sequence[State], collision: Collision) -> dict[st
         "max_indentation_m": state.indentation,
         "unloading_work_J": work,
         "adhesive_loss_J": collision.adhesive_loss,
-        "relative_to_stored_energy": (work + collision.adhesive_loss) / state.stored_energy - 1,
+        "relative_to_stored_energy": _unbalance(state, back[-1], work, collision.adhesive_loss),
         "restitution_from_energy_estimate": estimate.restitution,
         "separation_indentation_m": back[-1].indentation,
     }
+
+
+def _unbalance(state: State, end: State, work: float, lost: float) -> float:
+    """The `work` (J) of unloading minus the energy that it should return, over that stored.
+
+    `lost` is the energy (J) lost by adhesion on the way from `state` to `end`.
+    """
+    if isinstance(state, CohesiveState) and isinstance(end, CohesiveState):
+        released = state.potential_energy - end.potential_energy
+        released -= end.plastic_work - state.plastic_work
+        return (work + lost - released) / state.stored_energy
+    return (work + lost) / state.stored_energy - 1
 
 
 def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> dict[str, Any]:
