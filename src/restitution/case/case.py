@@ -200,13 +200,6 @@ class Case(Table):
         needed = coarsest_spacing(self.pair().contact_modulus, w, z0)
         return "cohesive" if max(grid.spacing) <= needed else "jkr"
 
-    def with_adhesion_of(self, contact: Contact) -> Case:
-        """This case with the model of adhesion of `contact`, if the case leaves it out."""
-        if not contact.adhesive or self.interface.adhesion is not None:
-            return self
-        interface = self.interface.model_copy(update={"adhesion": contact.adhesion})
-        return self.model_copy(update={"interface": interface})
-
     def run_bytes(self, grid: Grid) -> float:
         """Memory (bytes) of a run on `grid`."""
         yielding = self.yielding()

@@ -31,8 +31,8 @@ from restitution.results.writer import ResultsFolder, results_dataset, versions
 from restitution.runs.depths import Depth, collision_at, loaded_depths
 from restitution.runs.error_budget import add_errors, band_warning, total_error_summary
 from restitution.runs.log import RunLog, Say, ignore
-from restitution.runs.messages import input_warnings, message, no_range, require_possible
-from restitution.runs.refinement import settled
+from restitution.runs.messages import input_warnings, message, require_possible
+from restitution.runs.refinement import settled, with_chosen_adhesion
 from restitution.runs.smooth import smooth_curve
 from restitution.surfaces import Surface, describe
 
@@ -99,14 +99,10 @@ def run_case(
     with run.record(out, keep):
         case = settled(case, folder, run.warn)
         contact = case.contact(folder)
-        left_out = case.interface.adhesion is None
-        case = case.with_adhesion_of(contact)
+        case = with_chosen_adhesion(case, contact, run.warn)
         deepest = deepest_indentation(case)
         require_possible(contact, deepest)
-        found = omissions(case) + input_warnings(contact, deepest)
-        if left_out and contact.adhesive:
-            found += no_range(contact)
-        for warning in found:
+        for warning in omissions(case) + input_warnings(contact, deepest):
             run.warn(warning)
         with out.tables():
             failure = _load_and_unload(
