@@ -1,7 +1,7 @@
 """Axisymmetric reference for the cohesive mode: a smooth elastic sphere with a Lennard-Jones law.
 
-`python docs/studies/cohesive_reference.py`; about a minute. It writes `cohesive_reference.csv`,
-with two meshes for each Tabor parameter.
+`python docs/studies/cohesive_reference.py`; about ten minutes, most of them for the largest Tabor
+parameter. It writes `cohesive_reference.csv`, with two meshes for each Tabor parameter.
 
 This code shares nothing with `restitution`. It has rings of constant pressure instead of square
 cells, dense matrices instead of FFTs, and follows the whole equilibrium curve, stable or not, by
@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 from scipy.special import ellipe, ellipkm1
 
-TABOR = (0.1, 0.5, 1.0, 2.0, 5.0)
+TABOR = (0.1, 0.5, 1.0, 2.0, 3.0, 5.0)
 MESHES = (1, 2)  # factors on the number of rings
 JKR_HYSTERESIS = 7.0922  # of (w^5 R^4/E*^2)^(1/3)
 

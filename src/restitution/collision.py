@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from restitution.contact.cohesive import CohesiveState
 from restitution.contact.separation import RESTITUTION_ERROR, separate, separation_of
 from restitution.contact.state import State
 from restitution.display import quantity, summary_html, summary_text
@@ -113,9 +114,9 @@ def collide(
 
     Without adhesion, the work of unloading is the stored energy, whatever the method. With
     adhesion, `method="path"` simulates unloading. `method="energy-estimate"` uses W_u = E_el − wA
-    with an error of wA and does not compute the pull-off force or the separation (NaN). In all
-    cases compared with a simulation, wA exceeded the sum of the energy dissipated at detachment and
-    the grid error of detachment.
+    with an error of wA (W_u is the potential energy of cohesive contacts) and does not compute the
+    pull-off force or the separation (NaN). In all cases compared with a simulation, wA exceeded the
+    sum of the energy dissipated at detachment and the grid error of detachment.
 
     Args:
         state: Deepest state of the collision, reached by loading.
@@ -141,11 +142,12 @@ def collide(
         return elastic
     if method == "energy-estimate":
         surface_energy = contact.work_of_adhesion * state.contact_area
+        owed = -state.interaction_energy if isinstance(state, CohesiveState) else surface_energy
         return replace(
             elastic,
-            unloading_work=state.stored_energy - surface_energy,
+            unloading_work=state.stored_energy - owed,
             unloading_work_error=surface_energy,
-            adhesive_loss=surface_energy,
+            adhesive_loss=owed,
             pull_off_force=math.nan,
             separation_indentation=math.nan,
         )

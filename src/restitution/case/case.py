@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, cast
 
@@ -15,8 +14,8 @@ from restitution.case.quantities import Force, Length, Pressure
 from restitution.case.roughness import GeneratedRoughness, MeasuredRoughness, Roughness
 from restitution.case.schema import GridTable, ImpactTable, Series, Table, UnloadingTable
 from restitution.contact.bodies import Pair
-from restitution.contact.cohesive import resolves_range
-from restitution.contact.contact import Contact, smooth
+from restitution.contact.cohesive import coarsest_spacing
+from restitution.contact.contact import Adhesion, Contact, smooth
 from restitution.errors import CaseError
 from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface, composite
@@ -266,35 +265,36 @@ class Case(Table):
         """The contact on `surface`, as `self.surface` made it. Raises the errors of `contact`."""
         needs.require(self.run_bytes(surface.grid), surface.grid)
         interface = self.interface
-        contact = Contact(
+        return Contact(
             self.pair(),
             surface,
             **self.yielding().arguments(),
             work_of_adhesion=interface.adhesive_energy,
             approach=interface.approach,
             detachment=interface.detachment,
-            adhesion=interface.adhesion or "jkr",
+            adhesion=self._adhesion_on(surface.grid),
             equilibrium_separation=interface.equilibrium_separation,
             periodic=self.periodic,
         )
-        chosen = interface.adhesion is not None or interface.needs_jkr
-        if not chosen and contact.adhesive and resolves_range(contact):
-            return replace(contact, adhesion="cohesive")
-        return contact
 
-    def with_adhesion_of(self, contact: Contact) -> Case:
-        """This case with the model of adhesion of `contact`, if the case leaves it out."""
-        if not contact.adhesive or self.interface.adhesion is not None:
-            return self
-        interface = self.interface.model_copy(update={"adhesion": contact.adhesion})
-        return self.model_copy(update={"interface": interface})
+    def _adhesion_on(self, grid: Grid) -> Adhesion:
+        """The model of adhesion on `grid`: with a range where the cells are fine enough for it."""
+        interface = self.interface
+        if interface.adhesion is not None:
+            return interface.adhesion
+        w, z0 = interface.adhesive_energy, interface.equilibrium_separation
+        if w == 0 or interface.needs_jkr:
+            return "jkr"
+        needed = coarsest_spacing(self.pair().contact_modulus, w, z0)
+        return "cohesive" if max(grid.spacing) <= needed else "jkr"
 
     def run_bytes(self, grid: Grid) -> float:
         """Memory (bytes) of a run on `grid`."""
         yielding = self.yielding()
         plasticity = "none" if math.isinf(yielding.hardness) else yielding.plasticity
         adhesive = self.interface.adhesive_energy > 0
-        return needs.run_bytes(grid, plasticity=plasticity, adhesive=adhesive)
+        cohesive = adhesive and self._adhesion_on(grid) == "cohesive"
+        return needs.run_bytes(grid, plasticity=plasticity, adhesive=adhesive, cohesive=cohesive)
 
     def depths(self) -> list[float]:
         """The prescribed values, increasing.

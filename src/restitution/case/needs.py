@@ -24,6 +24,9 @@ _DESCRIBED = 150.0  # autocorrelation, spectrum and page of `restitution surface
 # A run without adhesion, for each model of plasticity; and a run with adhesion.
 _MODELS = {"none": 115.0, "equilibrium": 140.0, "expanding-cavity": 190.0, "truncated": 190.0}
 _ADHESIVE = 150.0
+# A run with an attraction of finite range keeps pressure and displacement of some 100 states of
+# unloading (16 bytes each), besides the arrays of the solver.
+_COHESIVE = 1800.0
 # Largest factor by which the enlarged grid has more nodes than the grid.
 _ENLARGED = 4.0
 
@@ -43,9 +46,11 @@ def require(needed: float, grid: Grid) -> None:
     )
 
 
-def run_bytes(grid: Grid, *, plasticity: str, adhesive: bool) -> float:
+def run_bytes(grid: Grid, *, plasticity: str, adhesive: bool, cohesive: bool = False) -> float:
     """Memory (bytes) of a run on `grid` with a given surface; `plasticity` "none" is elastic."""
     per_node = max(_MODELS[plasticity], _ADHESIVE if adhesive else 0.0)
+    if cohesive:
+        per_node = _COHESIVE
     return _PROCESS + per_node * nodes_of(grid)
 
 

@@ -11,7 +11,7 @@ lost then. Surfaces yield where the pressure of the law would exceed the bound: 
 at the bound, and the rest of the approach becomes plastic displacement.
 
 A node is *in contact* where its gap is below that of the largest attraction, 3^{1/6} z₀. The law is
-stable there, and the set tends to the contact of JKR, whose edge carries tension, for a short range.
+stable there. For a short range, the set tends to the contact of JKR, whose edge carries tension.
 
 Nodes outside the box, and the paraboloid outside the grid, attract as rigid bodies.
 """
@@ -29,6 +29,8 @@ from restitution.contact.influence import half_space
 from restitution.contact.state import State
 from restitution.errors import CaseError, NotConvergedError
 from restitution.numerics.box import Box, bounding_box, reframe, shape_of
+from restitution.numerics.convolution.device import CPU, on_device
+from restitution.numerics.convolution.operators import FreeConvolution
 from restitution.numerics.read_only import freeze
 from restitution.numerics.truncated_newton import minimise_locally
 from restitution.theory import LennardJones
@@ -73,7 +75,7 @@ class CohesiveState(State):
 
     @property
     def box_touching(self) -> NDArray[np.bool_]:
-        """Nodes of the box in contact, with a gap below that of the largest attraction."""
+        """Whether the gap of each node of the box is below that of the largest traction (bool)."""
         return box_gap(self) < float(_law(self.contact).gap_of_largest_traction)
 
     @property
@@ -96,23 +98,29 @@ def cohesive_length(contact: Contact) -> float:
     return contact.pair.contact_modulus * z0**2 / w
 
 
-def coarsest_spacing(contact: Contact) -> float:
-    """The largest grid spacing (m) that resolves the cohesive zone."""
-    return COARSEST * cohesive_length(contact)
+def coarsest_spacing(contact_modulus: float, work_of_adhesion: float, z0: float) -> float:
+    """The largest grid spacing (m) that resolves the cohesive zone, with a margin for rounding."""
+    return COARSEST * (1 + 1e-9) * contact_modulus * z0**2 / work_of_adhesion
+
+
+def needed_spacing(contact: Contact) -> float:
+    """The `coarsest_spacing` (m) of `contact`."""
+    z0, w = contact.equilibrium_separation, contact.work_of_adhesion
+    return coarsest_spacing(contact.pair.contact_modulus, w, z0)
 
 
 def resolves_range(contact: Contact) -> bool:
     """Whether the cells are fine enough for the range of the attraction."""
-    return max(contact.grid.spacing) <= coarsest_spacing(contact) * (1 + 1e-9)
+    return max(contact.grid.spacing) <= needed_spacing(contact)
 
 
 def require_fine_grid(contact: Contact) -> None:
     """Raise `CaseError` if the cells are far too coarse for the range of the attraction."""
-    h, length = max(contact.grid.spacing), cohesive_length(contact)
-    if h > _REFUSED * length * (1 + 1e-9):
+    h = max(contact.grid.spacing)
+    if h > _REFUSED / COARSEST * needed_spacing(contact):
         raise CaseError(
             f"grid.spacing: {1e9 * h:.4g} nm is too coarse for the range of the attraction; "
-            f'adhesion = "cohesive" needs {1e9 * COARSEST * length:.4g} nm or less '
+            f'adhesion = "cohesive" needs {1e9 * needed_spacing(contact):.4g} nm or less '
             "(0.4 E* z0^2/w)"
         )
 
@@ -134,7 +142,7 @@ def solve_cohesive(
     of the result are those of `history` (zero if None), except that interaction and plastic
     displacement are those of the result. Raises `NotConvergedError`.
     """
-    K = half_space(shape_of(box), contact.grid.spacing, contact.pair.contact_modulus)
+    K = _operator(contact, box)
     before = np.zeros(contact.grid.nodes) if history is None else history.plastic_displacement
     upper = limit[box] if isinstance(limit, np.ndarray) else limit
     law = _BoundedLaw(contact, _base(contact, indentation, box, before), upper)
@@ -211,7 +219,7 @@ def from_rigid(
     """Solve from the pressures that rigid bodies would have at `indentation`."""
     box = box or interacting_box(contact, indentation)
     p = rigid_pressure(contact, indentation, box)
-    K = half_space(shape_of(box), contact.grid.spacing, contact.pair.contact_modulus)
+    K = _operator(contact, box)
     state = solve_cohesive(
         contact, indentation, box, p=p, u=K(p), limit=limit, history=None, residual=residual
     )
@@ -250,7 +258,7 @@ def on_box(state: CohesiveState, box: Box, *, residual: float) -> CohesiveState:
         reframe(state.box_pressure, state.box, box),
         rigid_pressure(contact, indentation, box),
     )
-    K = half_space(shape_of(box), contact.grid.spacing, contact.pair.contact_modulus)
+    K = _operator(contact, box)
     new = solve_cohesive(
         contact,
         indentation,
@@ -280,7 +288,7 @@ def is_unique(state: CohesiveState) -> bool:
     contact = state.contact
     x = contact.equilibrium_separation / box_gap(state)
     softening = np.maximum(-_stiffness(contact, x), 0.0)
-    K = half_space(shape_of(state.box), contact.grid.spacing, contact.pair.contact_modulus)
+    K = _operator(contact, state.box)
     return float(K(softening).max()) < _UNIQUE
 
 
@@ -338,6 +346,12 @@ def _cubic_root(c: Array) -> Array:
     beyond = np.cosh(np.arccosh(np.maximum(t, 1.0)) / 3)
     root: Array = 2 / math.sqrt(3) * np.where(t < 1, inside, beyond)
     return root
+
+
+def _operator(contact: Contact, box: Box) -> FreeConvolution:
+    """The half-space on `box`. The solver works on NumPy arrays, so it is on the CPU always."""
+    with on_device(CPU):
+        return half_space(shape_of(box), contact.grid.spacing, contact.pair.contact_modulus)
 
 
 def _law(contact: Contact) -> LennardJones:

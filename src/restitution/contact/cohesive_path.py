@@ -40,6 +40,7 @@ Array = NDArray[np.float64]
 
 ACCURACY = 2e-4  # largest unaccounted work of a step, over the energies of the contact
 _FIRST_STEP = 0.25  # first step (z₀)
+_UNDER_TENSION = 0.15  # longest step of unloading under tension (z₀ plus the adhesive length)
 _LEAST_STEP = 1e-5  # shortest step (z₀); an equilibrium that cannot be followed is an error
 _MOST_STEPS = 5000
 _FARTHEST = 0.02  # unloading ends where the tension is below this part of the largest tension
@@ -70,7 +71,8 @@ def load_cohesive(
             return replace(state, convolutions=convolutions)
     else:
         state = replace(state, convolutions=0)
-    for state in follow(state, indentation, residual=residual, accuracy=accuracy):
+    begin = state
+    for state in follow(begin, indentation, residual=residual, accuracy=accuracy):
         convolutions += state.convolutions
     return replace(state, convolutions=convolutions)
 
@@ -101,7 +103,7 @@ def step_cohesive(state: CohesiveState, indentation: float, *, residual: float) 
     """Move a deformed contact to another indentation, deeper or shallower."""
     convolutions = 0
     new = replace(state, convolutions=0)
-    for new in follow(new, indentation, residual=residual):
+    for new in follow(state, indentation, residual=residual):
         convolutions += new.convolutions
     return replace(new, convolutions=convolutions, is_first_loading=False)
 
@@ -125,7 +127,7 @@ def separate_cohesive(state: CohesiveState, *, accuracy: float = ACCURACY) -> It
             return
 
 
-@dataclass
+@dataclass(frozen=True)
 class _Step:
     """A trial step: its state, the work of the force by two rules, and the energy change (J)."""
 
@@ -157,6 +159,9 @@ def follow(
         left = abs(target - state.indentation)
         if left == 0:
             return
+        if sign < 0 and state.force < 0 and state.smallest_gap < 1.2 * z0:
+            # Do not step over the largest tension.
+            length = min(length, _UNDER_TENSION * (z0 + contact.adhesive_length))
         last = length >= left * (1 - 1e-9)
         at = target if last else state.indentation + sign * min(length, 0.5 * left)
         length = abs(at - state.indentation)

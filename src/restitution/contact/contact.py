@@ -300,8 +300,8 @@ class Contact:
     @cached_property
     def mean_offset(self) -> float:
         """Mean gap at first touch between the rough surface and the smooth bodies (m)."""
-        at = tuple(n // 2 for n in self.grid.nodes)
-        r2 = sum((x[i] - a) ** 2 for x, i, a in zip((self.grid.x, self.grid.y), at, self.apex))
+        at = tuple(n // 2 for n in self.grid.nodes)  # the origin
+        r2 = sum(along**2 for along in self.apex)
         height = self.surface.height
         rise = float(height[at] - height.mean()) - float(r2) / (2 * self.pair.radius)
         return float(self.gap[at]) + rise

@@ -40,7 +40,8 @@ _STEEPNESS, _GROWING = (0.0, 4.0, 6.0, 26.0), (0.03, 0.035, 0.045, 0.05)
 _NEAR_ONE = (0.94, 0.98, 1.0), (1.0, 0.5, 0.2)
 # Tabor parameter, and the hysteresis of the axisymmetric reference over that of JKR.
 _TABOR = (0.7, 1.0, 2.0, 3.0, 5.0)
-_HYSTERESIS = (0.0, 0.0347, 0.2039, 0.3198, 0.455)
+_HYSTERESIS = (0.0, 0.0347, 0.2039, 0.3198, 0.4581)
+_BEYOND = 0.44
 _ONSET = 1.6 / 2.8  # pressure at first yield over the yield pressure (full plasticity)
 
 
@@ -56,11 +57,11 @@ def model_error(state: State, restitution: float) -> float:
 def hysteresis_ratio(tabor: float) -> float:
     """Energy lost in a cycle of contact of smooth elastic spheres, over that of JKR.
 
-    Beyond the reference the difference from 1 falls as µ^-½, slower than the distance of the jump
-    into contact, µ^-4/7 (Wu 2010, J. Phys. D 43, 415303).
+    Beyond the reference the difference from 1 falls with the exponent found between µ = 3 and 5.
+    This exponent has grown steadily up to there, so the result is too small rather than too large.
     """
     if tabor >= _TABOR[-1]:
-        return 1 - (1 - _HYSTERESIS[-1]) * math.sqrt(_TABOR[-1] / tabor)
+        return 1 - (1 - _HYSTERESIS[-1]) * math.pow(_TABOR[-1] / tabor, _BEYOND)
     return float(np.interp(tabor, _TABOR, _HYSTERESIS))
 
 

@@ -175,11 +175,29 @@ def _cohesive_separation(start: CohesiveState, end: CohesiveState, path: list[St
         unloading_work=start.potential_energy - lost - plastic,
         error=abs(end.work_error - start.work_error) + _GRID_LOSS * fineness**2 * lost,
         adhesive_loss=lost,
-        pull_off_force=max(0.0, *(-state.force for state in path)),
+        pull_off_force=_largest_tension(path),
         separation_indentation=path[min(last + 1, len(path) - 1)].indentation,
         convolutions=sum(state.convolutions for state in path[1:]),
         steps=len(path) - 1,
     )
+
+
+def _largest_tension(path: list[State]) -> float:
+    """Largest tension (N) of a cohesive path: the vertex of the parabola through three states."""
+    force = np.array([state.force for state in path])
+    k = int(force.argmin())
+    largest = max(0.0, -float(force[k]))
+    around = path[k - 1 : k + 2]
+    if not 0 < k < len(path) - 1 or len({_jumps(state) for state in around}) > 1:
+        return largest
+    depth = np.array([state.indentation for state in around]) - path[k].indentation
+    scale = float(np.abs(depth).max())
+    a, b, c = np.polyfit(depth / scale, force[k - 1 : k + 2], 2)
+    return max(largest, float(b * b / (4 * a) - c)) if a > 0 else largest
+
+
+def _jumps(state: State) -> int:
+    return state.jumps if isinstance(state, CohesiveState) else 0
 
 
 def _late_force(state: State) -> float:

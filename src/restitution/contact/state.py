@@ -94,7 +94,7 @@ class State:
 
     @property
     def box_touching(self) -> NDArray[np.bool_]:
-        """Nodes of the box in contact: those with a pressure other than zero."""
+        """Whether each node of the box has a pressure other than zero (bool): contact."""
         touching: NDArray[np.bool_] = self.box_pressure != 0
         return touching
 

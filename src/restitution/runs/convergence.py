@@ -36,7 +36,7 @@ from restitution.runs.error_budget import (
     widened_error,
 )
 from restitution.runs.log import RunLog, Say, ignore
-from restitution.runs.refinement import later_touches, settled
+from restitution.runs.refinement import later_touches, settled, with_chosen_adhesion
 from restitution.runs.run import run_case
 
 _Row = dict[str, float]
@@ -73,6 +73,8 @@ def run_convergence(
     with log.record(out, keep):
         case = settled(case, folder, log.warn)
         case = case.refined(max(case.factors()))
+        if case.interface.adhesive_energy and case.interface.adhesion is None:
+            case = with_chosen_adhesion(case, case.contact(folder), log.warn)
         unsettled[:] = log.warnings
         for factor, later in _levels(case, folder, grids).items():
             part, refined = out.part(f"refine-{factor}"), _pressed_less(case, later)

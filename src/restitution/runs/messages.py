@@ -14,7 +14,7 @@ from restitution.contact.checks.resolution import (
     NODES_PER_PATCH,
     NODES_PER_RADIUS,
 )
-from restitution.contact.cohesive import coarsest_spacing
+from restitution.contact.cohesive import needed_spacing
 from restitution.contact.contact import Contact
 from restitution.contact.model_error import hysteresis_ratio
 from restitution.errors import (
@@ -60,7 +60,7 @@ def no_range(contact: Contact) -> list[str]:
         return []
     return [
         'interface.adhesion is left out, and the grid is too coarse for "cohesive" (it needs '
-        f'{_nm(coarsest_spacing(contact))}), so it is "jkr", without range: at the Tabor parameter '
+        f'{_nm(needed_spacing(contact))}), so it is "jkr", without range: at the Tabor parameter '
         f"of the smooth bodies, {tabor:.2g}, adhesion loses {lost:.2g} times the energy of JKR, "
         f"and the sticking velocity is {math.sqrt(lost):.2g} times as high; asperities lose less; "
         "model_error includes this"

@@ -13,6 +13,7 @@ from restitution.contact.contact import Contact
 from restitution.errors import DomainError, NotConvergedError
 from restitution.runs.loading import load_to
 from restitution.runs.log import Say, ignore
+from restitution.runs.messages import no_range
 
 # Largest number of nodes of a grid that "auto" tries. Such a grid takes a few minutes and about
 # 2 GiB.
@@ -64,6 +65,19 @@ def settled(case: Case, folder: Path, warn: Say = ignore) -> Case:
     found = [finest] * unresolved + factors
     refine = found[0] if len(set(found)) == 1 else tuple(found)
     return case.model_copy(update={"grid": case.grid.model_copy(update={"refine": refine})})
+
+
+def with_chosen_adhesion(case: Case, contact: Contact, warn: Say = ignore) -> Case:
+    """Return `case` with the model of adhesion of its `contact`, so that all its grids have it.
+
+    If the case leaves the model out, and the grid is too coarse for a range, `warn` is called.
+    """
+    if not contact.adhesive or case.interface.adhesion is not None:
+        return case
+    for line in no_range(contact):
+        warn(line)
+    interface = case.interface.model_copy(update={"adhesion": contact.adhesion})
+    return case.model_copy(update={"interface": interface})
 
 
 def later_touches(case: Case, folder: Path, factors: Iterable[int]) -> dict[int, float]:

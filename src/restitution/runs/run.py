@@ -19,6 +19,7 @@ from restitution.contact.checks.resolution import (
     unresolved_adhesion,
     unresolved_patches,
 )
+from restitution.contact.cohesive import CohesiveState
 from restitution.contact.contact import FULL_CONSTRAINT, Contact
 from restitution.contact.state import State
 from restitution.errors import DomainError, RestitutionError
@@ -30,9 +31,9 @@ from restitution.results.writer import ResultsFolder, results_dataset, versions
 from restitution.runs.depths import Depth, collision_at, loaded_depths
 from restitution.runs.error_budget import add_errors, band_warning, total_error_summary
 from restitution.runs.log import RunLog, Say, ignore
-from restitution.runs.messages import input_warnings, message, no_range, require_possible
+from restitution.runs.messages import input_warnings, message, require_possible
 from restitution.runs.oblique import is_oblique, oblique_rows
-from restitution.runs.refinement import settled
+from restitution.runs.refinement import settled, with_chosen_adhesion
 from restitution.runs.smooth import smooth_curve
 from restitution.surfaces import Surface, describe
 
@@ -100,14 +101,10 @@ def run_case(
     with run.record(out, keep):
         case = settled(case, folder, run.warn)
         contact = case.contact(folder)
-        left_out = case.interface.adhesion is None
-        case = case.with_adhesion_of(contact)
+        case = with_chosen_adhesion(case, contact, run.warn)
         deepest = deepest_indentation(case)
         require_possible(contact, deepest)
-        found = omissions(case) + input_warnings(contact, deepest)
-        if left_out and contact.adhesive:
-            found += no_range(contact)
-        for warning in found:
+        for warning in omissions(case) + input_warnings(contact, deepest):
             run.warn(warning)
         with out.tables():
             failure = _load_and_unload(
@@ -207,10 +204,22 @@ def _check(state: State, back: Sequence[State], collision: Collision) -> dict[st
         "max_indentation_m": state.indentation,
         "unloading_work_J": work,
         "adhesive_loss_J": collision.adhesive_loss,
-        "relative_to_stored_energy": (work + collision.adhesive_loss) / state.stored_energy - 1,
+        "relative_to_stored_energy": _unbalance(state, back[-1], work, collision.adhesive_loss),
         "restitution_from_energy_estimate": estimate.restitution,
         "separation_indentation_m": back[-1].indentation,
     }
+
+
+def _unbalance(state: State, end: State, work: float, lost: float) -> float:
+    """The `work` (J) of unloading minus the energy that it should return, over that stored.
+
+    `lost` is the energy (J) lost by adhesion on the way from `state` to `end`.
+    """
+    if isinstance(state, CohesiveState) and isinstance(end, CohesiveState):
+        released = state.potential_energy - end.potential_energy
+        released -= end.plastic_work - state.plastic_work
+        return (work + lost - released) / state.stored_energy
+    return (work + lost) / state.stored_energy - 1
 
 
 def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> dict[str, Any]:

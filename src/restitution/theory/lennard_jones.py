@@ -69,7 +69,7 @@ class LennardJones:
             gap: Gap g between the surfaces (m), positive.
 
         Returns:
-            Energy (J/m²): −w at z₀, and 0 at infinity.
+            Energy per area (J/m²), −w at z₀ and 0 at infinity.
         """
         x2 = self._ratio(gap) ** 2
         return scalar_or_array(-self.work_of_adhesion * x2 * (4 - x2**3) / 3)

@@ -13,7 +13,7 @@ from restitution.contact.checks.resolution import (
     predicted_radius,
     resolution_findings,
 )
-from restitution.contact.cohesive import coarsest_spacing, resolves_range
+from restitution.contact.cohesive import needed_spacing, resolves_range
 from restitution.contact.contact import Contact
 from restitution.surfaces import level, rms_slope
 from restitution.theory import Hertz, Kendall
@@ -49,7 +49,7 @@ def impossible(contact: Contact, indentation: float) -> Finding | None:
         values = {"radius": predicted, "indentation": indentation, "reduced_radius": pair.radius}
         return Finding("contact-beyond-radius", values)
     if contact.cohesive and not resolves_range(contact):
-        spacing, needed = max(contact.grid.spacing), coarsest_spacing(contact)
+        spacing, needed = max(contact.grid.spacing), needed_spacing(contact)
         return Finding("range-unresolved", {"spacing": spacing, "needed": needed})
     return coarse_scan(contact, indentation)
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from restitution.contact.bodies import Pair
 from restitution.contact.checks.finding import Finding
+from restitution.contact.cohesive import resolves_range
 from restitution.contact.contact import Contact
 from restitution.contact.state import State
 from restitution.numerics.box import widen
@@ -45,11 +46,14 @@ def predicted_radius(pair: Pair, indentation: float, yield_pressure: float = mat
 def adhesive_nodes(state: State) -> float:
     """Number of nodes per pull-off radius of an asperity, a_c/h; inf without adhesion.
 
-    a_c = (9πw/(8E*κ²))^⅓ (JKR), where 1/κ is the `radius_of_asperities`.
+    a_c = (9πw/(8E*κ²))^⅓ (JKR), where 1/κ is the `radius_of_asperities`. Cohesive contacts resolve
+    the range of the attraction instead; the result is inf if they do and 0 if not.
     """
     contact = state.contact
     if not contact.adhesive:
         return math.inf
+    if contact.cohesive:
+        return math.inf if resolves_range(contact) else 0.0
     return pull_off_radius(contact, radius_of_asperities(state)) / max(contact.grid.spacing)
 
 

@@ -1,0 +1,75 @@
+"""Minimisation of an energy that is not convex."""
+
+import numpy as np
+import pytest
+
+from restitution.contact.influence import half_space
+from restitution.numerics.truncated_newton import minimise_locally
+from tolerance import approx
+
+SHAPE = (7, 6)
+
+
+@pytest.fixture(name="K")
+def operator():
+    return half_space(SHAPE, (1.0, 1.2), 1.0)
+
+
+def matrix(K):
+    unit = np.eye(SHAPE[0] * SHAPE[1])
+    return np.array([K(row.reshape(SHAPE)).ravel() for row in unit])
+
+
+def minimise(K, potential, p=None, tolerance=1e-10):
+    p = np.zeros(SHAPE) if p is None else p
+    return minimise_locally(K, potential, p=p, u=K(p), length=0.5, tolerance=tolerance)
+
+
+def test_springs_are_solved_as_by_a_dense_matrix(K):
+    rng = np.random.default_rng(0)
+    k, rest = rng.uniform(0.1, 5, SHAPE), rng.normal(size=SHAPE)
+
+    def springs(u):
+        return 0.5 * k * (u - rest) ** 2, k * (u - rest), k
+
+    found = minimise(K, springs)
+    assert found.converged
+    assert not found.negative_curvature
+    S = np.linalg.inv(matrix(K))
+    exact = np.linalg.solve(S + np.diag(k.ravel()), (k * rest).ravel())
+    assert found.u.ravel() == approx(exact, rel=1e-8)
+    assert found.p.ravel() == approx(S @ exact, rel=1e-7)
+    assert found.energy == approx(0.5 * exact @ S @ exact + springs(exact.reshape(SHAPE))[0].sum())
+
+
+def wells(u):
+    """Two wells at each node, at u = ±1, deep enough to hold a node apart from its neighbours."""
+    return 3 * (u**2 - 1) ** 2, 12 * u * (u**2 - 1), 12 * (3 * u**2 - 1)
+
+
+def test_the_end_is_a_minimum_even_from_a_maximum(K):
+    start = 1e-3 * np.random.default_rng(1).normal(size=SHAPE)
+    found = minimise(K, wells, start)
+    assert found.converged
+    assert found.negative_curvature
+    _, slope, k = wells(found.u)
+    assert found.p + slope == approx(np.zeros(SHAPE), abs=1e-7)
+    hessian = np.linalg.inv(matrix(K)) + np.diag(k.ravel())
+    assert np.linalg.eigvalsh(0.5 * (hessian + hessian.T)).min() > 0
+    assert np.isclose(K(found.p), found.u, rtol=1e-12, atol=1e-14).all()
+
+
+def test_a_minimum_is_kept(K):
+    first = minimise(K, wells, np.full(SHAPE, 0.5))
+    again = minimise(K, wells, first.p)
+    assert again.steps == 0
+    assert again.energy == approx(first.energy, rel=1e-12)
+
+
+def test_it_says_when_it_has_not_converged(K):
+    def edge(u):  # a kink keeps the gradient away from zero
+        return 5 * np.abs(u - 1), 5 * np.sign(u - 1), np.zeros(SHAPE)
+
+    found = minimise(K, edge)
+    assert not found.converged
+    assert found.residual > 1e-3
