@@ -179,10 +179,15 @@ def test_every_key_of_a_case_is_documented():
 
 
 def test_every_column_is_documented():
-    from restitution.results.schema import COLUMNS, SPREAD_COLUMNS
+    from restitution.results.schema import (
+        COLUMNS,
+        OBLIQUE_COLUMNS,
+        OBLIQUE_SPREAD_COLUMNS,
+        SPREAD_COLUMNS,
+    )
 
     text = (ROOT / "docs" / "results.md").read_text()
-    for column in (*COLUMNS, *SPREAD_COLUMNS):
+    for column in (*COLUMNS, *SPREAD_COLUMNS, *OBLIQUE_COLUMNS, *OBLIQUE_SPREAD_COLUMNS):
         assert f"`{column}`" in text
 
 

@@ -61,6 +61,14 @@ def main() -> None:
         for degrees, number in measured.items():
             found = value(at(degrees))
             print(f"| {degrees:.4g} | {number:.4g} | {found:.4g} | {found / number - 1:+.1%} |")
+    # The impulse that lowers the tangential velocity turns the sphere: R ω = 5/2 V sin θ (1 − e_t).
+    print("\n| angle (°) | spin (rad/s), measured | from the measured e_t | difference |")
+    print("|---|---|---|---|")
+    angles, values = (list(each) for each in (TANGENTIAL, TANGENTIAL.values()))
+    for degrees, number in SPIN.items():
+        e_t = np.interp(degrees, angles, values)
+        turned = 2.5 * VELOCITY * math.sin(math.radians(degrees)) * (1 - e_t) / PAIR.first.radius
+        print(f"| {degrees:.4g} | {number:.4g} | {turned:.4g} | {number / turned - 1:+.1%} |")
 
 
 if __name__ == "__main__":

@@ -38,12 +38,13 @@ struct HertzianViscoelasticMindlinSpecies : Mixed {
 
 def test_types_and_pairs_get_their_moduli_and_restitution(mixed):
     text = write(mixed, 1.0)["restitution_mercury.h"]
-    calls = re.findall(r"setRestitution\((.*), (\S+), (\S+), (\S+)\);", text)
+    calls = re.findall(r"setRestitution\((.*), (\S+), (\S+), (\S+), (\S+)\);", text)
     by_target = {target.split(".")[-1]: values for target, *values in calls}
     law = mixed.laws[1, 2]
-    modulus, shear, e = map(float, by_target["getMixedObject(species[0], species[1])"])
+    modulus, shear, e, friction = map(float, by_target["getMixedObject(species[0], species[1])"])
     assert modulus == approx(law.contact_modulus, rel=1e-8)
     assert e == approx(law.at(1.0).restitution, rel=1e-8)
+    assert friction == 0.5
     assert shear == approx(1 / (2 * 1.75 * 1.25 / 70e9 + 2 * 1.7 * 1.3 / 200e9))
     assert len(calls) == 3 + 3  # three types, three mixed pairs
     assert text.count("copyAndAddObject(type)") == 3

@@ -6,33 +6,18 @@ import warnings
 import numpy as np
 import pytest
 
+from elastic_force import elastic
 from restitution import Body, Pair
 from restitution.errors import CaseError, DomainError
 from restitution.laws.foundation import Foundation
 from restitution.laws.oblique import collide_obliquely, course
-from restitution.laws.time_integration import StoredForce, stored_force
+from restitution.laws.time_integration import stored_force
 from restitution.theory import Hertz
 from tolerance import approx
 
 ALUMINA = Body(2.5e-3, 380e9, 0.23, 4000)
 GLASS_WALL = Body(math.inf, 70e9, 0.22)
 MU = 0.3
-
-
-def elastic(pair, velocity):
-    """The stored force of smooth elastic spheres, up to an impact velocity."""
-    hertz = Hertz(pair.radius, pair.contact_modulus)
-    deepest = 1.01 * float(hertz.indentation_from_energy(0.5 * pair.mass * velocity**2))
-    depths, s = np.geomspace(deepest / 100, deepest, 20), np.linspace(0, 1, 1001)
-    return StoredForce(
-        pair,
-        deepest,
-        1.005 * velocity,
-        lambda x: float(hertz.force(max(x, 0.0))),
-        lambda x: 0.0,
-        depths,
-        tuple((depth * s, hertz.force(depth * s)) for depth in depths),
-    )
 
 
 @pytest.fixture(scope="module")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
@@ -81,6 +82,7 @@ def _table(table: PairTable, velocity: float | None) -> str:
             "type_2": j,
             "first": str(law.first),
             "second": str(law.second),
+            "friction": math.nan if law.friction is None else law.friction,
         }
         if velocity is None:
             rows += [{**pair, **row} for row in law_rows(law)]

@@ -23,11 +23,7 @@ from restitution.dem.pair_table import PairTable
 from restitution.errors import CaseError, one_line
 from restitution.laws.law import Law, Particle
 
-FRICTION = 0.5
-PLACEHOLDER = (
-    f"Friction {FRICTION} is a placeholder: friction is not computed here, set your value."
-)
-
+FRICTION = 0.5  # of pairs whose case has no friction: a placeholder
 STEPS = 5000
 TIME_STEP = (
     "the elastic contact time t_c = 2.87 (m*^2/(R* E*^2 V))^(1/5); only e needs such a small step"
@@ -55,6 +51,11 @@ class Pair:
     def wall(self) -> bool:
         """Whether the second body is a wall."""
         return self.second.wall
+
+    @property
+    def friction(self) -> float:
+        """The coefficient of friction of the case, or a placeholder."""
+        return FRICTION if self.law.friction is None else self.law.friction
 
     @property
     def shear_modulus(self) -> float:
@@ -139,7 +140,7 @@ def header(
     lines += [f"  {k}: {particle}" for k, particle in enumerate(table.particles, 1)]
     for pair in pairs:
         lines += ["", *_about(pair, velocity, code)]
-    return _wrapped(lines)
+    return wrapped(lines)
 
 
 def summary(
@@ -161,7 +162,7 @@ def summary(
     ]
     for pair in pairs:
         lines += _warnings(pair, velocity)
-    return _wrapped(lines)
+    return wrapped(lines)
 
 
 def commented(lines: Iterable[str], sign: str) -> str:
@@ -214,8 +215,6 @@ def _environment() -> Environment:
     )
     environment.filters |= {"number": number, "comment_text": comment_text}
     environment.globals |= {
-        "friction": FRICTION,
-        "placeholder": PLACEHOLDER,
         "time_step": TIME_STEP,
         "contact_time": contact_time,
         "density_of": density_of,
@@ -287,7 +286,8 @@ def _failure(law: Law, e: float) -> str:
     return "sticks (e = 0)" + ("" if begins is None else f" below {begins:.4g} m/s, so also")
 
 
-def _wrapped(lines: Iterable[str]) -> list[str]:
+def wrapped(lines: Iterable[str]) -> list[str]:
+    """Convert `lines` to lines of ASCII of at most `_WIDTH` characters, for comments."""
     found = []
     for line in map(comment_text, lines):
         indent = " " * (len(line) - len(line.lstrip()) + 4)

@@ -92,6 +92,7 @@ def _law(out: Path, run: RunResults) -> Law:
         mass=derived["reduced_mass_kg"],
         yield_pressure=derived["yield_pressure_Pa"],
         work_of_adhesion=case.interface.adhesive_energy,
+        friction=case.interface.friction,
         model={key: str(value) for key, value in model.items()},
         conventions=Conventions(
             **summary["conventions"],

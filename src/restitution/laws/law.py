@@ -165,7 +165,8 @@ class Estimate:
 class Law(_Stored):
     """Coefficient of restitution against impact velocity for one pair, in SI units.
 
-    `radius`, `contact_modulus` and `mass` are R*, E* and m*. `yield_velocity` and
+    `radius`, `contact_modulus` and `mass` are R*, E* and m*. `friction` is the coefficient of
+    friction of the case, None if it has none; e does not depend on it. `yield_velocity` and
     `sticking_velocity` belong to the smooth bodies. `sticks_below` is the velocity above which this
     pair rebounds; None if it rebounds at every computed velocity, or at none.
     """
@@ -178,6 +179,7 @@ class Law(_Stored):
     mass: Positive
     yield_pressure: Positive | None
     work_of_adhesion: NotNegative
+    friction: NotNegative | None = None
     model: dict[str, str]
     conventions: Conventions
     yield_velocity: float | None

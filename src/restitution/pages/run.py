@@ -11,8 +11,10 @@ import xarray as xr
 
 from restitution.contact.checks.resolution import NODES_PER_PATCH
 from restitution.pages.methods import methods
+from restitution.pages.oblique import oblique_drawing
 from restitution.pages.page import Cell, Drawing, Listing, Page, Table, write_page
 from restitution.plots.figure import Figure
+from restitution.plots.oblique import has_oblique
 from restitution.plots.run import (
     has_map,
     load_displacement,
@@ -32,6 +34,8 @@ def write_run_page(out: Path) -> Path:
         parts.append(_against_indentation(results))
         if (results["impact_velocity"] > 0).any():
             parts.append(_against_velocity(results))
+        if run.oblique and has_oblique(results):
+            parts.append(oblique_drawing(results, run.oblique))
         parts.append(_force(results))
         if has_map(results):
             parts.append(_pressure(results))

@@ -34,6 +34,7 @@ from restitution.plots.figure import (
     Points,
     Series,
 )
+from restitution.plots.oblique import has_oblique, oblique_figure
 
 UNRESOLVED = f"open: not resolved (patches below {NODES_PER_PATCH} nodes)"
 
@@ -56,6 +57,8 @@ def run_figures(results: xr.Dataset) -> Iterator[tuple[str, Figure]]:
         yield "restitution-velocity", restitution_against_velocity(results)
     if has_map(results):
         yield "pressure", pressure_map(results)
+    if has_oblique(results):
+        yield "oblique", oblique_figure(results)
 
 
 def has_map(results: xr.Dataset) -> bool:

@@ -30,6 +30,7 @@ from restitution.dem.export_common import (
     render,
     summary,
 )
+from restitution.dem.friction import friction_note
 from restitution.dem.pair_table import PairTable
 
 CODE = "Drake"
@@ -77,7 +78,11 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
     contacts = [_contact(pair, velocity) for pair in pairs]
     return {
         FRAGMENT: render(
-            FRAGMENT, comments=commented(head, "#"), contacts=contacts, velocity=velocity
+            FRAGMENT,
+            comments=commented(head, "#"),
+            contacts=contacts,
+            velocity=velocity,
+            friction_note=friction_note(pairs, "#"),
         ),
         COLLISION: render(
             COLLISION,

@@ -12,8 +12,6 @@ import math
 
 from restitution.dem.adhesion import pull_off_force
 from restitution.dem.export_common import (
-    FRICTION,
-    PLACEHOLDER,
     Pair,
     commented,
     header,
@@ -21,6 +19,7 @@ from restitution.dem.export_common import (
     number,
     pairs_at,
 )
+from restitution.dem.friction import friction_note
 from restitution.dem.pair_table import PairTable
 from restitution.results.writer import table_text
 
@@ -34,7 +33,6 @@ _ENDS = (
 _NOTES = [
     "",
     "Tables to be typed into EDEM (not run here): Interactions, and Bulk Material.",
-    PLACEHOLDER + " Rolling friction 0 is a placeholder, too.",
     "hysteretic_*: the hysteretic spring model fitted to the law, K2 at this velocity;",
     "    its restitution is (K1/K2)^(1/2); EDEM computes K1 from the yield strength K1/(5 R*).",
     "    Empty if there is no such fit, or if the velocity is outside its fitted range.",
@@ -44,8 +42,10 @@ _NOTES = [
 def write(table: PairTable, velocity: float) -> dict[str, str]:
     """Write the two tables; return file names and texts. Raises `DomainError`."""
     pairs = pairs_at(table, velocity, CODE, 0.0)
-    head = header(table, pairs, velocity, code=CODE, ends=_ENDS) + _NOTES
-    comments = commented(head, "#") + "\n"
+    head = header(table, pairs, velocity, code=CODE, ends=_ENDS) + _NOTES[:2]
+    friction = f"{friction_note(pairs, '#')}\n# Rolling friction 0 is a placeholder."
+    notes = commented(_NOTES[2:], "#")
+    comments = f"{commented(head, '#')}\n{friction}\n{notes}\n"
     return {
         INTERACTIONS: comments + table_text([_interaction(pair, velocity) for pair in pairs]),
         MATERIALS: comments + table_text(_materials(table)),
@@ -61,7 +61,7 @@ def _interaction(pair: Pair, velocity: float) -> dict[str, str]:
         "coefficient_of_restitution": number(pair.restitution),
         "restitution_error": f"{pair.law.at(velocity).error:.2g}",
         "pull_off_force_N": "" if math.isnan(force) else number(force),
-        "coefficient_of_static_friction": str(FRICTION),
+        "coefficient_of_static_friction": number(pair.friction),
         "coefficient_of_rolling_friction": "0",
         "hysteretic_K1_N_per_m": number(springs[0]) if springs else "",
         "hysteretic_K2_N_per_m": number(springs[1]) if springs else "",

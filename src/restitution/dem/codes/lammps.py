@@ -17,13 +17,16 @@ from restitution.dem.codes.lammps_kokkos import linear_spring, velocity_damping
 from restitution.dem.codes.lammps_mdr import mdr_offers
 from restitution.dem.export_common import (
     STEPS,
+    Pair,
     commented,
     contact_time,
     header,
+    number,
     pairs_at,
     render,
     summary,
 )
+from restitution.dem.friction import STIFFNESS_SHARE, friction_note, mindlin_stiffness
 from restitution.dem.pair_table import PairTable
 from restitution.dem.velocity_matching import SCRIPT, Target, matching_script
 
@@ -40,7 +43,11 @@ _ENDS = (
     "the overlap is back to zero. The force is tensile shortly before, due to damping; do not add "
     "limit_damping, which cuts off the tension and raises e (0.808 for 0.8)."
 )
-
+_TANGENTIAL = (
+    f"Their pairs have {STIFFNESS_SHARE} times the tangential stiffness of a contact that sticks, "
+    "because the rim of a real contact slides first: then the oblique rebound of elastic spheres "
+    "is that of the law, within 0.03 of e_t. NULL in place of the stiffness gives the whole of it."
+)
 _KOKKOS_ENDS = "the overlap is back to zero. The damping pulls before; do not add limit_damping."
 
 
@@ -64,6 +71,8 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
         FRAGMENT: render(
             FRAGMENT,
             comments=commented(head, "#"),
+            friction_note=friction_note(pairs, "#", _TANGENTIAL),
+            tangential=_tangential,
             spheres=[pair for pair in pairs if not pair.wall],
             walls=[pair for pair in pairs if pair.wall],
             mdr=mdr_offers(pairs, velocity),
@@ -71,6 +80,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
         KOKKOS: render(
             KOKKOS,
             comments=commented(kokkos, "#"),
+            friction_note=friction_note(pairs, "#"),
             spheres=[pair for pair in pairs if not pair.wall],
             damping=velocity_damping(pairs, velocity),
             spring=linear_spring(pairs, velocity),
@@ -109,6 +119,14 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
             count=1000 * math.ceil(_FALLS * height / (velocity * step) / 1000),
         )
     return files
+
+
+def _tangential(pair: Pair) -> str:
+    """The tangential model of a pair; LAMMPS' own default stiffness without a friction."""
+    if pair.law.friction is None:
+        return f"mindlin NULL 1.0 {pair.friction}"
+    stiffness = STIFFNESS_SHARE * mindlin_stiffness(pair)
+    return f"mindlin_rescale/force {number(stiffness)} 1.0 {number(pair.friction)}"
 
 
 def _counts(table: PairTable) -> list[int]:

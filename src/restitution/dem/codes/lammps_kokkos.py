@@ -19,6 +19,7 @@ from dataclasses import dataclass
 
 from restitution.dem.damping import hertz_damping, hertz_restitution_at
 from restitution.dem.export_common import Pair, contact_time
+from restitution.dem.friction import mindlin_stiffness
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,7 @@ class VelocityDamping:
     @property
     def tangential_stiffness(self) -> float:
         """The coefficient Kt (Pa) of the style `mindlin` of LAMMPS."""
-        return 8 * self.pair.shear_modulus
+        return mindlin_stiffness(self.pair)
 
     def restitution(self, share: float) -> float:
         """Return e at the velocity of the export times `share`."""

@@ -8,7 +8,18 @@ on` would cut the tension off.
 
 from __future__ import annotations
 
-from restitution.dem.export_common import STEPS, commented, header, pairs_at, render, summary
+from restitution.dem.export_common import (
+    FRICTION,
+    STEPS,
+    Pair,
+    commented,
+    header,
+    number,
+    pairs_at,
+    render,
+    summary,
+)
+from restitution.dem.friction import friction_note
 from restitution.dem.pair_table import PairTable
 from restitution.dem.velocity_matching import SCRIPT, Target, matching_script
 
@@ -19,6 +30,10 @@ _MATCHED = Target(CODE, "liggghts -in my.in", FRAGMENT, "matched.liggghts", LOWE
 _ENDS = (
     "the overlap is back to zero. The force is tensile shortly before, due to damping; do not add "
     "`limitForce on`, which cuts off the tension and raises e (0.397 for 0.3)."
+)
+_TANGENTIAL = (
+    "LIGGGHTS has the whole tangential stiffness of a contact that sticks, and contacts that stick "
+    "keep too much of their tangential velocity (docs/oblique.md); impacts that slide are exact."
 )
 _HARD, _SOFT = 1e9, 5e6  # range of E (Pa) outside which LIGGGHTS needs a command to accept E
 
@@ -40,6 +55,8 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
             hardness=_hardness(table),
             pairs=pairs,
             restitution=_restitution(table),
+            friction=_friction(table, pairs),
+            friction_note=friction_note(pairs, "#", _TANGENTIAL),
         ),
         SCRIPT: matching_script(_MATCHED, pairs, commented(short, "#")),
         COLLISION: render(
@@ -72,3 +89,10 @@ def _restitution(table: PairTable) -> list[list[str]]:
         return f"${{e_{pair[0]}_{pair[1]}}}" if pair in table.laws else "1"
 
     return [[entry(i, j) for j in numbers] for i in numbers]
+
+
+def _friction(table: PairTable, pairs: list[Pair]) -> list[list[str]]:
+    """Symmetric matrix, by types, of the coefficients of friction; walls never meet."""
+    known = {(pair.i, pair.j): pair.friction for pair in pairs}
+    numbers = range(1, len(table.particles) + 1)
+    return [[number(known.get((min(i, j), max(i, j)), FRICTION)) for j in numbers] for i in numbers]

@@ -8,7 +8,8 @@ in MercuryDPM.
 
 from __future__ import annotations
 
-from restitution.dem.export_common import commented, header, pairs_at, render
+from restitution.dem.export_common import FRICTION, commented, header, pairs_at, render
+from restitution.dem.friction import friction_note
 from restitution.dem.pair_table import PairTable
 
 CODE = "MercuryDPM"
@@ -25,6 +26,8 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
         FILE,
         comments=commented(head, "//"),
         table=table,
+        friction_note=friction_note(pairs, "//"),
+        placeholder=FRICTION,
         alike=[pair for pair in pairs if pair.i == pair.j],
         unlike=[pair for pair in pairs if pair.i != pair.j],
     )

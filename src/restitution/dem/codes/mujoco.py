@@ -32,6 +32,7 @@ from restitution.dem.export_common import (
     summary,
     xml_comment,
 )
+from restitution.dem.friction import friction_note
 from restitution.dem.pair_table import PairTable
 
 CODE = "MuJoCo"
@@ -95,7 +96,12 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
     contacts = [_contact(pair, velocity) for pair in pairs]
     return {
         FRAGMENT: render(
-            FRAGMENT, comments=xml_comment(head), contacts=contacts, share=_DEEPEST, coarse=_COARSE
+            FRAGMENT,
+            comments=xml_comment(head),
+            contacts=contacts,
+            share=_DEEPEST,
+            coarse=_COARSE,
+            friction_note=friction_note(pairs),
         ),
         COLLISION: render(
             COLLISION,

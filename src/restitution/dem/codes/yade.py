@@ -25,6 +25,7 @@ from restitution.dem.export_common import (
     render,
     summary,
 )
+from restitution.dem.friction import STIFFNESS_SHARE, friction_note
 from restitution.dem.pair_table import PairTable
 from restitution.dem.velocity_matching import law_points
 from restitution.laws.law import Law, Particle
@@ -36,6 +37,10 @@ _ENDS = (
     "the force is back to zero, which is before the overlap is zero: the force is never tensile. e "
     "is given as betan, not as en, because en = 0.99 gives e = 0.979 in YADE 2023.02a. On a wall "
     "YADE takes R*/2 for R*: the contact is softer by sqrt(2), with the same e."
+)
+_TANGENTIAL = (
+    "soften and follow give their pairs a part of the tangential stiffness of a contact that "
+    "sticks, because the rim of a real contact slides first (docs/oblique.md)."
 )
 _STEPS = 2000
 _WALL_DENSITY = 1000.0  # density (kg/m³) for a wall without a density, because YADE needs a value
@@ -63,6 +68,8 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
             wall_density=_WALL_DENSITY,
             density=_density,
             points=_points,
+            friction_note=friction_note(pairs, "#", _TANGENTIAL),
+            tangential=_tangential,
         ),
         COLLISION: render(
             COLLISION,
@@ -74,6 +81,11 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
             pair_time=_contact_time,
         ),
     }
+
+
+def _tangential(pair: Pair) -> float:
+    """Share of YADE's tangential stiffness (1); all of it without a friction of the case."""
+    return 1.0 if pair.law.friction is None else STIFFNESS_SHARE
 
 
 def _density(body: Particle) -> float:

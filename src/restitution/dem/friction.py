@@ -1,0 +1,43 @@
+"""Friction in exports: the coefficient of each pair, and the tangential stiffness.
+
+DEM codes have one tangential spring for a contact, whose stiffness is that of a contact that sticks
+(Mindlin 1949: 8 G* a, with 1/G* = Σ 2 (2 − ν)(1 + ν)/E). In a real contact the rim slides first, so
+its mean stiffness during an impact is smaller. With 0.8 times this stiffness, the tangential
+restitution of elastic spheres in LAMMPS (`mindlin_rescale/force`) is within 0.03 of the law of
+`laws.oblique`, for ν from 0 to 0.45 and any angle; with the whole stiffness it is up to 0.13 too
+large (docs/oblique.md).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from restitution.dem.export_common import FRICTION, Pair, commented, wrapped
+
+STIFFNESS_SHARE = 0.8  # of Mindlin's tangential stiffness; see the module's text
+
+
+def mindlin_stiffness(pair: Pair) -> float:
+    """Mindlin's tangential stiffness per contact radius, 8 G* (Pa)."""
+    return 8 * pair.shear_modulus
+
+
+def friction_note(pairs: Sequence[Pair], sign: str = "", tangential: str = "") -> str:
+    """Write comments on where the friction of the export comes from; each begins with `sign`.
+
+    `tangential` describes the tangential settings of pairs whose cases give the friction.
+    """
+    missing = [f"{pair.i} {pair.j}" for pair in pairs if pair.law.friction is None]
+    if len(missing) == len(pairs):
+        said = (
+            f"Friction {FRICTION} is a placeholder: friction is not computed here, set your value."
+        )
+    elif missing:
+        said = (
+            f"Friction {FRICTION} of the pairs {', '.join(missing)} is a placeholder: their cases "
+            "have no interface.friction, set your value. The other coefficients of friction are "
+            f"those of the cases. {tangential}"
+        )
+    else:
+        said = f"The coefficients of friction are those of the cases. {tangential}"
+    return commented(wrapped([said.strip()]), sign) if sign else said.strip()

@@ -1,0 +1,61 @@
+"""The part of a page about the oblique impacts of a run."""
+
+from __future__ import annotations
+
+import math
+
+import xarray as xr
+
+from restitution.pages.page import Cell, Drawing, Table
+from restitution.plots.oblique import oblique_figure
+
+_NOTE = (
+    "Tangential restitution and angles are those of the centres; spins are positive in the sense "
+    "in which friction turns a body without spin. The dotted line marks the angle from which the "
+    "whole contact slides. The tangential law is exact for smooth elastic spheres of like "
+    "materials."
+)
+
+
+def oblique_drawing(results: xr.Dataset, rows: list[dict[str, float]]) -> Drawing:
+    """The figure of the oblique impacts in `results`, with the table of their `rows`."""
+    known = [row["tangential_restitution"] for row in rows]
+    finite = [value for value in known if not math.isnan(value)]
+    ends = f"from {min(finite):.3f} to {max(finite):.3f} " if finite else ""
+    cells: list[list[Cell]] = [
+        [
+            row["impact_velocity_m_per_s"],
+            math.degrees(row["angle_rad"]),
+            row["normal_restitution"],
+            row["tangential_restitution"],
+            math.degrees(row["rebound_angle_rad"]),
+            row["first_spin_rad_per_s"],
+            row["second_spin_rad_per_s"],
+            row["friction_loss_J"],
+            row["normal_loss_J"],
+            "yes" if row["slides"] else "no",
+        ]
+        for row in rows
+    ]
+    return Drawing(
+        "Oblique impacts",
+        oblique_figure(results),
+        f"Tangential restitution {ends}against the angle of impact, angle of rebound and spin",
+        _NOTE,
+        Table(
+            "Oblique impacts",
+            [
+                "velocity (m/s)",
+                "angle (°)",
+                "e_n",
+                "e_t",
+                "rebound (°)",
+                "first spin (rad/s)",
+                "second spin (rad/s)",
+                "friction loss (J)",
+                "normal loss (J)",
+                "slides",
+            ],
+            cells,
+        ),
+    )

@@ -1,0 +1,105 @@
+"""The figure of the oblique impacts of a run: tangential restitution, rebound and spin."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+import xarray as xr
+
+from restitution.case.case_file import parse_case
+from restitution.laws.full_slip import full_slip_angle, full_slip_restitution
+from restitution.plots.figure import (
+    DASHED,
+    GREY,
+    PALETTE,
+    SYMBOLS,
+    Array,
+    Axis,
+    Chart,
+    Figure,
+    Line,
+    Mark,
+    Points,
+    Series,
+)
+
+_CURVE = 100  # number of points of a closed form
+_ROUNDS = 50  # of the fixed-point iteration for the angle of full slip
+
+
+def has_oblique(results: xr.Dataset) -> bool:
+    """Whether `results` hold oblique impacts."""
+    return "oblique_tangential_restitution" in results
+
+
+def oblique_figure(results: xr.Dataset) -> Figure:
+    """Tangential restitution, angle of rebound and spin of the first body against the angle.
+
+    The dotted line is the angle from which the whole contact slides, and the dashed line the closed
+    form of full slip, both at the largest velocity and without spin before the impact.
+    """
+    degrees = np.degrees(results["oblique_angle"].values)
+    axis = Axis("angle of impact", "°", low=0.0, high=min(90.0, 1.05 * degrees.max() + 1))
+    slip = _full_slip(results)
+    charts = []
+    for title, unit, variable, scale in (
+        ("tangential restitution", "", "oblique_tangential_restitution", 1.0),
+        ("angle of rebound", "°", "oblique_rebound_angle", math.degrees(1)),
+        ("spin of the first body", "rad/s", "oblique_first_spin", 1.0),
+    ):
+        series: list[Series] = list(_points(results, variable, scale))
+        if slip is not None:
+            begins, angles, along = slip
+            series.append(Mark("x", begins, "full slip", side="right"))
+            if variable == "oblique_tangential_restitution" and angles.size:
+                series.append(
+                    Line(angles, along, "full slip, closed form", color=GREY, dash=DASHED)
+                )
+        charts.append(Chart(axis, Axis(title, unit), series))
+    return Figure(results.attrs.get("title", ""), charts)
+
+
+def _points(results: xr.Dataset, variable: str, scale: float) -> Iterator[Points]:
+    """One series for each impact velocity; markers are open where the contact sticks in part."""
+    degrees = np.degrees(results["oblique_angle"].values)
+    for k, velocity in enumerate(results["oblique_velocity"].values):
+        values = scale * results[variable][k].values
+        known = np.isfinite(values)
+        yield Points(
+            degrees[known],
+            values[known],
+            f"{velocity:.4g} m/s",
+            color=PALETTE[k % len(PALETTE)],
+            symbol=SYMBOLS[k % len(SYMBOLS)],
+            joined=True,
+            open=results["oblique_slides"][k].values[known] == 0,
+            open_label="open: sticks in part",
+        )
+
+
+def _full_slip(results: xr.Dataset) -> tuple[float, Array, Array] | None:
+    """Angle of full slip (degrees), and the closed form beyond: angles (degrees) and e_t.
+
+    None with a spin before the impact, which the closed form does not include.
+    """
+    if results["oblique_first_spin_before"].any() or results["oblique_second_spin_before"].any():
+        return None
+    pair = parse_case(results.attrs["case"]).pair()
+    friction = float(results["oblique_friction"].max())
+    e = results["oblique_normal_restitution"][-1].values
+    angles = results["oblique_angle"].values[np.isfinite(e)]
+    e = e[np.isfinite(e)]
+    if not e.size or friction == 0:
+        return None
+    begins, ratio = float(angles[0]), pair.tangential_modulus / pair.contact_modulus
+    for _ in range(_ROUNDS):
+        begins = full_slip_angle(friction, float(np.interp(begins, angles, e)), ratio)
+    last = float(angles[-1])
+    beyond = np.linspace(begins, last, _CURVE) if last > begins else np.zeros(0)
+    along = [
+        full_slip_restitution(friction, float(np.interp(each, angles, e)), float(each))
+        for each in beyond
+    ]
+    return math.degrees(begins), np.degrees(beyond), np.array(along)

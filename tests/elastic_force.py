@@ -1,0 +1,22 @@
+"""The stored force of smooth elastic spheres, for tests of collisions in time."""
+
+import numpy as np
+
+from restitution.laws.time_integration import StoredForce
+from restitution.theory import Hertz
+
+
+def elastic(pair, velocity):
+    """The stored force of smooth elastic spheres, up to an impact velocity."""
+    hertz = Hertz(pair.radius, pair.contact_modulus)
+    deepest = 1.01 * float(hertz.indentation_from_energy(0.5 * pair.mass * velocity**2))
+    depths, s = np.geomspace(deepest / 100, deepest, 20), np.linspace(0, 1, 1001)
+    return StoredForce(
+        pair,
+        deepest,
+        1.005 * velocity,
+        lambda x: float(hertz.force(max(x, 0.0))),
+        lambda x: 0.0,
+        depths,
+        tuple((depth * s, hertz.force(depth * s)) for depth in depths),
+    )
