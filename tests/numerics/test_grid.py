@@ -66,6 +66,12 @@ def test_one_number_is_for_both_axes():
     assert hash(Grid([8, 8], [0.5, 0.5])) == hash(Grid(8, 0.5))
 
 
+def test_whole_numbers_may_be_floats():
+    nodes = Grid((64.0, np.float64(32)), 1e-6).nodes
+    assert nodes == (64, 32)
+    assert {type(n) for n in nodes} == {int}
+
+
 @pytest.mark.parametrize("nodes", ["64", None, (64,), (64, 64, 64), (64, "64"), True, 64.5])
 def test_nodes_that_are_none_are_refused_by_name(nodes):
     with pytest.raises(CaseError, match=r"^nodes: "):

@@ -14,6 +14,7 @@ from restitution.numerics.convolution.operators import (
     FreeConvolution,
     PeriodicConvolution,
     SpectralFilter,
+    fast_size,
 )
 from restitution.numerics.quadratic.minimise import _ROUNDING
 from tolerance import approx
@@ -97,6 +98,25 @@ def test_what_a_value_makes_at_its_own_node_is_known():
     p = np.zeros((9, 7))
     p[2, 3] = 4.0
     assert K(p)[2, 3] == approx(4.0 * K.diagonal, rel=1e-12)
+
+
+def test_a_fast_size_is_the_next_product_of_small_primes():
+    def smooth(n):
+        for prime in (2, 3, 5, 7):
+            while n % prime == 0:
+                n //= prime
+        return n == 1
+
+    assert [n for n in range(1, 2000) if fast_size(n) == n] == list(filter(smooth, range(1, 2000)))
+    assert (fast_size(11), fast_size(1001), fast_size(2**20 - 1)) == (12, 1008, 2**20)
+
+
+def test_its_size_is_that_of_its_spectra():
+    """A period of 2 n values has n + 1 modes of either sign, along both axes."""
+    K = FreeConvolution(point_load((1.0, 1.0)), (6, 5))
+    assert K.nbytes == 7 * 6 * (8 + 4)  # in double and in single precision
+    smoothing = SpectralFilter(lambda qx, qy: 1 / (1 + qx + qy), (6, 5))
+    assert smoothing.nbytes == 4 * 3 * 4
 
 
 def test_it_is_counted_and_leaves_its_input_and_its_earlier_answers_alone():
