@@ -332,27 +332,29 @@ def largest(row: dict, *parts: str) -> float:
 
 
 def report(rows: list[dict]) -> None:
-    """Print the largest differences of each group, and the largest ratios to the stated error."""
-    print("| contacts | number | stiffness | force | loop energy | e_t | largest ratio |")
+    """Print the largest differences of each group, and the largest share of the stated error."""
+    print("| contacts | number | stiffness | force | loop energy | e_t | share of the error |")
     print("|---|---|---|---|---|---|---|")
     groups: dict[str, list[dict]] = {}
     for row in rows:
         groups.setdefault(group(row), []).append(row)
     for name, some in sorted(groups.items()):
-        most = [max(largest(row, part) for row in some)
-                for part in ("_stiffness", "_force_", "_loop", "e_t_difference")]  # fmt: skip
-        ratios = []
-        for part, factor in (("_stiffness", 1), ("_force_", 1), ("_loop", 3)):
-            ratios.append(max(largest(r, part) / (factor * r["stiffness_error"]) for r in some))
-        ratios.append(
-            max(
-                abs(row[f"e_t_difference_{angle}"]) / row[f"e_t_error_{angle}"]
-                for row in some
-                for angle in ANGLES
-            )
-        )
-        cells = [f"{value:.1%}" for value in most[:3]] + [f"{most[3]:.3f}"]
-        print(f"| {name} | {len(some)} | {' | '.join(cells)} |", *(f"{r:.2f}" for r in ratios), "|")
+        shares = [
+            largest(row, part) / (factor * row["stiffness_error"])
+            for part, factor in (("_stiffness", 1), ("_force_", 1), ("_loop", 3))
+            for row in some
+        ]
+        shares += [
+            abs(row[f"e_t_difference_{angle}"]) / row[f"e_t_error_{angle}"]
+            for row in some
+            for angle in ANGLES
+        ]
+        cells = [
+            f"{100 * max(largest(row, part) for row in some):.1f} %"
+            for part in ("_stiffness", "_force_", "_loop")
+        ]
+        e_t = max(largest(row, "e_t_difference") for row in some)
+        print(f"| {name} | {len(some)} | {' | '.join(cells)} | {e_t:.3f} | {max(shares):.2f} |")
 
 
 def main() -> None:

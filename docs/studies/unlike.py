@@ -10,7 +10,8 @@ Dundurs, the surfaces move relative to each other by
 
 where H_x integrates x/r² over a cell (Johnson 1985, *Contact Mechanics*, §3.6). Pressure and
 traction are solved in turn until both are in equilibrium; the traction has both components, and
-|q| ≤ µ p. The impulse of the tangential force is compared with that for β = 0.
+|q| ≤ µ p. Under pressure alone, the sticking circle is that of Spence (1975, J. Elast. 5, 297–319)
+within half a cell: ln[(a + c)/(a − c)] a/2c = (µ/β) K(√(1 − c²/a²)). In impacts, the impulse of the tangential force is compared with that for β = 0.
 """
 
 from __future__ import annotations
@@ -21,12 +22,15 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
+from scipy.special import ellipk
 from shared import write_table
 
 from restitution.contact.influence import cerruti_displacement, love_displacement
 
 Array = NDArray[np.float64]
 NODES, ACROSS = 32, 12.0  # nodes along each side, and largest contact radius in cells
+RADIUS = 200.0  # of the sphere, in cells
 STEPS = 40
 ALONG = 4 / 3  # compliance along over that across the force: ν = 0.25
 BETA, FRICTION, ANGLES = (0.12, 0.25), (0.1, 0.3), (0.7, 1.5, 3.0, 6.0)
@@ -145,7 +149,7 @@ class Coupled:
 def impact(beta: float, friction: float, tangent: float, factor: float = 1.0) -> float:
     """Tangential impulse over that of full slip, for a path of Hertz's contact in time."""
     x = np.arange(NODES) - 0.5 * (NODES - 1)
-    R = 200.0
+    R = RADIUS
     shape, deepest = np.add.outer(x * x, x * x) / (2 * R), ACROSS**2 / R
     # Depth over time of Hertz's contact: δ'' = −F/m with F = 4/3 √R δ^1.5, m = 1.
     velocity = math.sqrt(2 * 8 / 15 * math.sqrt(R) * deepest**2.5)
@@ -172,8 +176,26 @@ def impact(beta: float, friction: float, tangent: float, factor: float = 1.0) ->
     return impulse / full
 
 
+def stick_radius(beta: float, friction: float) -> tuple[float, float]:
+    """Radius of the sticking circle over a under pressure alone: computed, and Spence's (1975)."""
+    x = np.arange(NODES) - 0.5 * (NODES - 1)
+    shape = np.add.outer(x * x, x * x) / (2 * RADIUS)
+    contact = Coupled(beta, friction)
+    for depth in ACROSS**2 / RADIUS * np.arange(1, 31) / 30:
+        contact.move(depth - shape, 0.0)
+    sticks = (np.hypot(*contact.q) < 0.995 * friction * contact.p) & (contact.p > 0)
+
+    def excess(c: float) -> float:
+        return math.log((1 + c) / (1 - c)) / (2 * c) - friction / beta * float(ellipk(1 - c * c))
+
+    computed = math.sqrt(int(sticks.sum()) / int((contact.p > 0).sum()))
+    return computed, float(brentq(excess, 1e-3, 1 - 1e-9))
+
+
 def main() -> None:
     """Compute, print and write the table."""
+    for beta, friction in ((0.25, 0.1), (0.12, 0.1), (0.2, 0.2)):
+        print("sticking radius, Spence's:", beta, friction, *stick_radius(beta, friction))
     table = []
     for tangent in ANGLES:
         # Without coupling, the impulse over that of full slip depends on tan θ/µ alone.

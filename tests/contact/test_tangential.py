@@ -230,6 +230,33 @@ def test_bodies_without_poisson_effect_follow_the_difference_of_two_normal_state
         assert moved.force == approx(MU * (state.force - before.force), rel=1e-6)
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_the_neglected_traction_changes_the_stiffness_by_less_than_one_per_cent(
+    rough_contact, seed
+):
+    """Both components of the traction on the stuck nodes, as a dense system."""
+    body = Body(500 * UM, 210e9, 0.45, 7850)
+    contact = rough_contact((36, 30), pair=Pair(body, body), rms=40e-9, seed=seed)
+    state = solve(contact, 60e-9)
+    i, j = np.nonzero(state.pressure > 0)
+    (hx, hy), (across, along) = contact.grid.spacing, contact.pair.shear_compliances
+    x, y = hx * (i[:, None] - i), hy * (j[:, None] - j)
+    # u_x due to q_y: the cell integral of (β − α) xy/r³, whose antiderivative is −r.
+    cross = np.zeros(x.shape)
+    for sx, sy in ((1, 1), (-1, -1), (1, -1), (-1, 1)):
+        cross -= sx * sy * (along - across) * np.hypot(x + sx * hx / 2, y + sy * hy / 2)
+    C = np.block(
+        [
+            [cerruti_displacement(x, y, hx, hy, (across, along)), cross],
+            [cross, cerruti_displacement(x, y, hx, hy, (along, across))],
+        ]
+    )
+    both = np.linalg.solve(C, np.repeat([1.0, 0.0], i.size))[: i.size].sum() * hx * hy
+    stiffness = shear(state, 1e-12, 1e6).force / 1e-12
+    assert stiffness < both * (1 + 1e-6)
+    assert stiffness == approx(both, rel=1e-2)
+
+
 def test_a_growing_contact_sticks_as_in_mindlin_and_deresiewicz():
     """Constant direction of a growing force within friction: T = ∫ 2aG* dU without slip."""
     state, _ = sphere(96)

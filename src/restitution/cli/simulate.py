@@ -175,7 +175,7 @@ def _oblique(
         "e_t",
         "rebound (°)",
         "spins (rad/s)",
-        "friction loss (J)",
+        "loss (J)",
         "",
     )
     courses = []
@@ -187,20 +187,16 @@ def _oblique(
                 f"{found.velocity:.4g}",
                 f"{math.degrees(each):.4g}",
                 f"{found.normal_restitution:.4f}",
-                f"{found.tangential_restitution:.4f} ± {found.tangential_restitution_error:.4f}",
-                f"{math.degrees(found.rebound_angle):.2f} ± "
-                f"{math.degrees(found.rebound_angle_error):.2f}",
-                ", ".join(
-                    f"{spin:.4g} ± {error:.2g}" if error > 0 else f"{spin:.4g}"
-                    for spin, error in zip(found.spins, found.spin_errors, strict=True)
-                ),
+                f"{found.tangential_restitution:.3f} ± {found.tangential_restitution_error:.3f}",
+                f"{math.degrees(found.rebound_angle):.2f}",
+                ", ".join(f"{spin:.4g}" for spin in found.spins),
                 f"{found.friction_loss:.4g}",
                 "slides" if found.sliding else "sticks in part",
             )
     answers.print(table)
     say(
-        "± is the error of the tangential law. It does not include the errors of the normal "
-        "forces and of the grid."
+        "loss: energy lost to friction. ±: error of the tangential law, without the errors of the "
+        "normal forces and of the grid."
     )
     if out is not None:
         write_table(out, courses)

@@ -98,7 +98,7 @@ class Pair:
 
     @property
     def shear_compliances(self) -> tuple[float, float]:
-        """Compliances of the surfaces under a tangential force, across and along it (1/Pa).
+        """Compliances of the surfaces under a tangential force, across and along it (SI, 1/Pa).
 
         At the distance r from a tangential force Q, the two surfaces move relative to each other by
         α Q/r if the direction from the force is perpendicular to Q, and by β Q/r if it is parallel:
