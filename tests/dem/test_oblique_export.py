@@ -1,7 +1,9 @@
 """DEM codes that run exported oblique impacts, beside the tangential law (docs/oblique.md)."""
 
+import csv
 import math
 import re
+from pathlib import Path
 
 import pytest
 
@@ -11,11 +13,13 @@ from restitution.dem.codes import lammps as to_lammps
 from restitution.dem.codes import liggghts as to_liggghts
 from restitution.dem.codes import yade as to_yade
 from restitution.dem.export import CODES, export
+from restitution.dem.friction import STIFFNESS_SHARE
 from restitution.dem.pair_table import pair_table
 from restitution.laws.law import Particle
 from restitution.laws.oblique import collide_obliquely
 from tolerance import approx
 
+STUDIES = Path(__file__).parents[2] / "docs" / "studies"
 MU = 0.15
 ANGLES = (5.0, 12.0, 20.0, 30.0, 60.0)  # sticking at first, partial slip, and full slip
 SMOOTH = Particle(
@@ -143,6 +147,42 @@ def test_the_table_of_laws_has_the_friction(sliding, law):
 def test_without_friction_the_tangential_lines_are_those_of_before(law):
     text = export([law()], "lammps", 1.0)["restitution.lmp"]
     assert "tangential mindlin NULL 1.0 0.5 damping coeff_restitution" in text
+
+
+def stored(name):
+    with open(STUDIES / name, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_the_share_of_the_stiffness_is_the_best_of_those_tried():
+    rows = [row for row in stored("oblique_stiffness.csv") if not row["yield_pressure_Pa"]]
+    worst = {}
+    for row in rows:
+        difference = float(row["largest_difference"])
+        worst[float(row["share"])] = max(worst.get(float(row["share"]), 0.0), difference)
+    assert min(worst, key=worst.get) == STIFFNESS_SHARE
+    assert worst[STIFFNESS_SHARE] < 0.03
+    assert worst[1.0] == approx(0.128, rel=0.01)
+
+
+def test_the_codes_are_as_far_from_the_measurement_as_the_page_says():
+    """Kharaz, Gorham and Salman (2001): e_t of the law and of the codes, as they were run."""
+    measured = {1.84: 0.79344, 3.703: 0.74533, 9.496: 0.67257, 20.012: 0.59691, 30.127: 0.68756}
+    pair = Pair(Body(2.5e-3, 380e9, 0.23, 4000), Body(math.inf, 70e9, 0.22))
+    force, worst = elastic(pair, 3.9), {}
+    for row in stored("oblique_codes.csv"):
+        angle, e_t = float(row["angle_deg"]), float(row["tangential_restitution"])
+        if row["code"] == "law":
+            found = collide_obliquely(force, 3.9, math.radians(angle), 0.092)
+            assert e_t == approx(found.tangential_restitution, rel=1e-3)
+        if angle in measured:
+            off = abs(e_t / measured[angle] - 1)
+            worst[row["code"]] = max(worst.get(row["code"], 0.0), off)
+    assert worst["law"] < 0.033
+    assert worst["LAMMPS 22Jul2025 mindlin_rescale/force, 0.8"] < 0.022
+    assert worst["LAMMPS 22Jul2025 mindlin_rescale/force"] == approx(0.18, rel=0.01)
+    assert worst["LIGGGHTS 3.8.0 history"] == approx(0.348, rel=0.01)
+    assert worst["YADE 2023.02a Mindlin, 0.8"] < 0.06
 
 
 def flat(text):

@@ -151,3 +151,11 @@ def test_no_two_surfaces_of_a_pair_have_the_same_seed(mixture_text):
         assert len({part.seed for part in parts}) == len(parts)
     cases = {family.name: family.case(family.radii[0]) for family in families(mixture)}
     assert len(parse_case(cases["alu+pmma"]).roughness) == 2
+
+
+def test_friction_belongs_to_pairs_and_angles_are_refused(mixture_text):
+    text = mixture_text()
+    assert "[impact]" in text
+    for key, value in (("angle", "30 deg"), ("spin", "5 rpm")):
+        with pytest.raises(CaseError, match=f"impact.{key}: the laws of a mixture are of head-on"):
+            parse_mixture(text.replace("[impact]", f'[impact]\n{key} = "{value}"'))

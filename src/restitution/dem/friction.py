@@ -5,7 +5,7 @@ DEM codes have one tangential spring for a contact, whose stiffness is that of a
 its mean stiffness during an impact is smaller. With 0.8 times this stiffness, the tangential
 restitution of elastic spheres in LAMMPS (`mindlin_rescale/force`) is within 0.03 of the law of
 `laws.oblique`, for ν from 0 to 0.45 and any angle; with the whole stiffness it is up to 0.13 too
-large (docs/oblique.md).
+large (docs/studies/oblique_stiffness.py).
 """
 
 from __future__ import annotations

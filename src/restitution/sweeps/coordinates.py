@@ -17,6 +17,7 @@ _UNITS = {
     "J/m^2": "J m-2",
     "m/s": "m s-1",
     "rad": "rad",
+    "rad/s": "rad s-1",
 }
 AS_WRITTEN = "as_written"
 """Name of the attribute with the values as written in the study file, a JSON list of texts."""
