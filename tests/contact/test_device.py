@@ -5,6 +5,7 @@ to NumPy arrays. Code that converts them implicitly, or passes them to a functio
 support them, fails here as it would on a GPU.
 """
 
+import math
 import subprocess
 import sys
 from contextlib import suppress
@@ -15,8 +16,17 @@ import pytest
 import scipy.fft
 from numpy.testing import assert_allclose
 
-from restitution import Contact, solve, unloading_path
-from restitution.contact.influence import half_space, inverse_half_space
+from restitution import (
+    Body,
+    Contact,
+    Grid,
+    Pair,
+    generate_surface,
+    solve,
+    solve_at_pressure,
+    unloading_path,
+)
+from restitution.contact.influence import half_space, inverse_half_space, periodic_half_space
 from restitution.errors import CaseError
 from restitution.numerics.convolution import device as device_module
 from restitution.numerics.convolution.device import accelerator, current, on_device
@@ -117,7 +127,7 @@ STAND_IN = accelerator("elsewhere", _Arrays(), _Transforms())
 def test_the_operators_are_those_of_this_machine(shape):
     p = np.random.default_rng(1).normal(size=shape)
     cells = (1e-7, 2e-7)
-    for make in (half_space, inverse_half_space):
+    for make in (half_space, periodic_half_space, inverse_half_space):
         here = make(shape, cells, 1e11)(p)
         with on_device(STAND_IN):
             there = make(shape, cells, 1e11)(STAND_IN.put(p))
@@ -126,7 +136,7 @@ def test_the_operators_are_those_of_this_machine(shape):
         assert_allclose(
             STAND_IN.get(there),
             here,
-            atol=1e-13 * np.abs(here).max() if make is half_space else single,
+            atol=1e-13 * np.abs(here).max() if make is not inverse_half_space else single,
         )
 
 
@@ -142,6 +152,25 @@ def test_a_solve_is_the_same_on_any_device(rough_contact, limit):
     assert there.plastic_volume == approx(here.plastic_volume, rel=1e-7)
     assert_allclose(there.box_pressure, here.box_pressure, atol=1e-7 * here.box_pressure.max())
     assert type(there.box_pressure) is np.ndarray
+
+
+@pytest.mark.parametrize("limit", [np.inf, 9e9])
+def test_a_periodic_contact_is_the_same_on_any_device(limit):
+    """The first grid is coarsened; the compiled transforms cannot take the second."""
+    wall = Body(math.inf, 210e9, 0.25)
+    for nodes in ((96, 88), (26, 33)):
+        grid = Grid(nodes, 0.25e-6)
+        surface = generate_surface(
+            grid, kind="gaussian", rms=50e-9, correlation_length=2e-6, seed=1
+        )
+        contact = Contact(Pair(wall, wall), surface, limit, periodic=True)
+        here = solve_at_pressure(contact, 1e9)
+        with on_device(STAND_IN):
+            there = solve_at_pressure(contact, 1e9)
+            deeper = solve(contact, there.indentation)
+        assert there.mean_gap == approx(here.mean_gap, rel=1e-6)
+        assert deeper.force == approx(here.force)
+        assert_allclose(there.box_pressure, here.box_pressure, atol=1e-5 * here.box_pressure.max())
 
 
 def test_unloading_and_adhesion_run_on_any_device(pair, rough_contact):

@@ -25,7 +25,7 @@ from restitution import (
     unloading_path,
 )
 from restitution.contact.perimeter import corrected_area
-from restitution.errors import CaseError, DomainError
+from restitution.errors import CaseError, DomainError, NotConvergedError
 from restitution.numerics.quadrature import integrate_curve
 from restitution.theory import Persson
 from tolerance import approx
@@ -274,12 +274,21 @@ def test_elastic_contact_cannot_be_deeper_than_complete():
         ),
         ({"yield_pressure": 1e9, "plasticity": "truncated"}, "plasticity: a periodic contact"),
         ({"pair": Pair(WALL, Body(1e-3, 210e9, 0.25))}, "periodic: needs two flat bodies"),
+        ({"surface": Surface(np.full((8, 8), 1e-6), Grid(8, 1e-6))}, "surface: is flat"),
         ({"periodic": False}, "both are flat; one must be a sphere, or the contact periodic"),
     ],
 )
 def test_what_a_periodic_contact_refuses(model, words):
     with pytest.raises(CaseError, match=words):
         replace(rough(), **model)
+
+
+def test_a_pressure_that_is_not_reached_is_an_error(monkeypatch):
+    from restitution.contact import prescribed_pressure
+
+    monkeypatch.setattr(prescribed_pressure, "MAX_ITERATIONS", 2)
+    with pytest.raises(NotConvergedError, match=r"pressure: 1e\+08 Pa was not reached at a tol"):
+        solve_at_pressure(rough(), 1e8)
 
 
 def test_what_only_one_kind_of_contact_has(rough_contact):

@@ -15,7 +15,7 @@ from pydantic import ValidationError
 
 from restitution.case.bodies import BodyTable, InterfaceTable
 from restitution.case.case import Case
-from restitution.case.quantities import Force, Length
+from restitution.case.quantities import Force, Length, Pressure
 from restitution.case.roughness import CropTable, GeneratedRoughness, MeasuredRoughness
 from restitution.case.schema import (
     MOST_STEPS,
@@ -223,6 +223,7 @@ def _keys_of(path: list[str], loc: tuple[Any, ...], root: type[Table]) -> list[s
         "indentation": Series[Length],
         "load": Series[Force],
         "impact": ImpactTable,
+        "pressure": Series[Pressure],
         "unloading": UnloadingTable,
         "roughness": MeasuredRoughness if "measured" in loc else GeneratedRoughness,
     }

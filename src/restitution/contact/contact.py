@@ -167,6 +167,8 @@ class Contact:
             raise CaseError(
                 "periodic: needs two flat bodies (radius inf); the surface alone may be curved"
             )
+        if np.ptp(self.surface.height) == 0:
+            raise CaseError("surface: is flat; a periodic contact needs roughness")
         if self.adhesive:
             raise CaseError("work_of_adhesion: a periodic contact has no adhesion; leave it out")
         if self.plasticity != "equilibrium":
