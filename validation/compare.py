@@ -5,6 +5,10 @@
 reads the references in `finite_elements/data` and `rough_plastic/data`, computes each of their
 contacts (or those of the cases that are named) with every model, and writes `models.csv` (a row for
 each model and depth) and the figure of docs/validation.md. `--figures` only draws it again.
+
+COR and force of the steepest waves are compared with the values extrapolated to vanishing element
+size (`finite_elements/data/convergence.csv`). Columns `_raw` have the value of one mesh,
+and `_uncertainty` that of the extrapolation.
 """
 
 from __future__ import annotations
@@ -18,14 +22,23 @@ from pathlib import Path
 import numpy as np
 
 HERE = Path(__file__).parent
+CONVERGENCE = HERE / "finite_elements" / "data" / "convergence.csv"
 TABLE = HERE / "models.csv"
 IMAGES = HERE.parent / "docs" / "images"
 # Constants of the model were chosen on these; all others were computed afterwards.
 CHOSEN_ON = ("smooth_0.001", "waves_A0.03um_L8um")
 MODELS = ("expanding-cavity", "equilibrium", "truncated")
 QUANTITIES = ("force_N", "contact_area_m2", "loading_work_J", "unloading_work_J", "restitution")
-NODES = 192
+EXTRAPOLATED = ("restitution", "force_N")
+NODES, NODES_ON_WAVES, NODES_PER_WAVE = 192, 304, 32
 _RATIO = 1.3  # of successive depths
+
+
+def extrapolations() -> dict[tuple[str, float], dict[str, str]]:
+    """Values extrapolated to vanishing element size, by case and ω."""
+    with open(CONVERGENCE, newline="", encoding="utf-8") as file:
+        rows = [row for row in csv.DictReader(file) if row["mesh"] == "extrapolated"]
+    return {(row["case"], float(row["omega"])): row for row in rows}
 
 
 def material(model: dict, name: str) -> dict:
@@ -93,7 +106,8 @@ def axisymmetric(reference: dict) -> list[dict]:
             half_width += 0.5 * model["wavelength_m"]
         nodes = NODES
         if not smooth:
-            nodes = max(NODES, math.ceil(2 * half_width / (model["wavelength_m"] / 24)))
+            cells = 2 * half_width / (model["wavelength_m"] / NODES_PER_WAVE)
+            nodes = max(NODES_ON_WAVES, math.ceil(cells))
         grid = Grid((nodes, nodes), (2 * half_width / nodes,) * 2)
         for name in MODELS:
             contact = Contact(pair_of(model), waves(grid, model), **material(model, name))
@@ -147,11 +161,17 @@ def _row(case: str, name: str, contact_of: tuple, reference: dict, mine: dict) -
     row["indentation_m"] = reference["indentation_m"]
     row["yield_strength_over_contact_modulus"] = f"{contact_of[0]:.6g}"
     row["rms_slope"] = f"{contact_of[1]:.4g}"
+    omega = reference.get("omega")
+    limit = {} if omega is None else extrapolations().get((case, omega), {})
     for quantity in QUANTITIES:
         # Use values without the oscillation due to nodes of the finite elements entering the
         # contact.
         smoothed = quantity.replace("_N", "_smoothed_N")
-        its = reference.get(smoothed, reference[quantity])
+        its = raw = reference.get(smoothed, reference[quantity])
+        if quantity in EXTRAPOLATED:
+            its = float(limit.get(quantity, raw))
+            row[f"{quantity}_reference_raw"] = raw
+            row[f"{quantity}_reference_uncertainty"] = limit.get(f"{quantity}_uncertainty", "")
         row[f"{quantity}_reference"] = its
         row[quantity] = f"{mine[quantity]:.6g}"
         row[f"{quantity}_off"] = f"{mine[quantity] / its - 1:.4f}"

@@ -110,7 +110,7 @@ def test_its_tables_increase():
         assert all(0 < error <= 1 for error in errors)
 
 
-@pytest.mark.parametrize(("psi", "largest"), [(0, 0.03), (4, 0.035), (6, 0.045), (26, 0.05)])
+@pytest.mark.parametrize(("psi", "largest"), [(0, 0.03), (4, 0.035), (6, 0.045), (26, 0.06)])
 def test_the_growing_bound_is_better_near_one(psi, largest):
     """Its error falls to a half at COR = 0.98 and a fifth at 1, whatever the slope."""
     state = deformed(True, "expanding-cavity", psi * 1e9 / PAIR.contact_modulus)
@@ -118,7 +118,7 @@ def test_the_growing_bound_is_better_near_one(psi, largest):
     for e, share in shares.items():
         assert largest_difference(state, e) == approx(share * largest, rel=1e-6)
     steeper = deformed(True, "expanding-cavity", 40e9 / PAIR.contact_modulus)
-    assert largest_difference(steeper, 0.5) == 0.05
+    assert largest_difference(steeper, 0.5) == 0.06
 
 
 def test_steeper_asperities_have_a_larger_error():

@@ -145,7 +145,7 @@ def check_cases() -> list[Case]:
             replace(rough, ranges=rough.ranges[:1]), "waves_A0.1um_L4um_half_elements", elements=128
         ),
     ]
-    for refinement in (1, 2, 3):
+    for refinement in (1, 2):
         result += convergence_cases(refinement)
     for factor in (1, 2, 4):
         result += crest_cases(factor)
