@@ -1,11 +1,14 @@
 import math
+import re
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 from restitution.errors import CaseError
 from restitution.numerics import memory
+from tolerance import approx
 
 
 @pytest.mark.parametrize(
@@ -46,3 +49,13 @@ def test_the_limit_of_addresses_counts():
     limited = f"ulimit -v 1500000; exec {sys.executable} -c '{code}'"
     done = subprocess.run(["bash", "-c", limited], capture_output=True, text=True, check=True)
     assert 0.5e9 < float(done.stdout) < 1.6e9
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="sizes are those of Linux")
+def test_addresses_that_are_only_reserved_do_not_count_as_free(monkeypatch):
+    monkeypatch.setattr("resource.getrlimit", lambda _: (10**12, 10**12))
+    status = Path("/proc/self/status").read_text()
+    size, resident = (
+        1024 * int(re.search(rf"{name}:\s+(\d+) kB", status)[1]) for name in ("VmSize", "VmRSS")
+    )
+    assert 10**12 - memory._of_address_space() == approx(size - resident, abs=1e7)
