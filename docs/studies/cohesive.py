@@ -159,7 +159,6 @@ def figure():
                     Axis("sticking velocity / JKR", low=0.0, high=1.1),
                     (
                         Line(np.array(ends), np.array([jkr, jkr]), "adhesion = jkr", color=ORANGE),
-                        Points(np.array(tabor), np.array(found), "adhesion = cohesive"),
                         Points(
                             np.array(list(exact)),
                             np.array(list(exact.values())),
@@ -167,6 +166,7 @@ def figure():
                             color=GREY,
                             symbol="square",
                         ),
+                        Points(np.array(tabor), np.array(found), "adhesion = cohesive"),
                         Line(fine, model, "used for model_error", color=GREY, dash=DASHED),
                     ),
                 ),
