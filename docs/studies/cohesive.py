@@ -183,7 +183,7 @@ def joined():
         jkr = JKR(pair.radius, E_STAR, W)
         V_s, length = float(jkr.sticking_velocity(pair.mass)), float(jkr.adhesive_length)
         h = float(jkr.pull_off_radius) / 5
-        for times in (2.9, 3.2, 4.0, 6.0):
+        for times in (3.5, 4.5, 7.0):
             depth = times * length
             n = 2 * int(math.sqrt(3 * depth * pair.radius) / h + 4)
             contact = Contact(
@@ -192,6 +192,8 @@ def joined():
             state = solve(contact, depth)
             collision = collide(state)
             V = collision.impact_velocity
+            if V is None:  # adhesion did more work than the approach
+                continue
             fine = sphere(tabor, depth / Z0 + 2)
             cohesive = collide(solve_at_velocity(fine, V))
             rows.append(
