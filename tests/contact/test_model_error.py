@@ -1,4 +1,4 @@
-"""Error of COR due to the plasticity model."""
+"""Error of COR due to the models of plasticity and adhesion."""
 
 import csv
 from pathlib import Path
@@ -14,6 +14,7 @@ from restitution.contact.model_error import (
     _GROWING,
     _NEAR_ONE,
     _STEEPNESS,
+    hysteresis_ratio,
     largest_difference,
     model_error,
 )
@@ -50,6 +51,39 @@ def test_adhesion_leaves_the_energy_that_plasticity_may_miss(yields):
     assert 0.02 * e < dry < 0.12 * e
     assert dry < adhesive < 0.5 * e
     assert model_error(state, 0.01) <= 0.99
+
+
+SPHERES = Path(__file__).parents[2] / "docs" / "studies" / "cohesive_reference.csv"
+
+
+def test_the_hysteresis_without_range_is_that_of_the_reference():
+    with open(SPHERES) as file:
+        finest = {float(row["tabor_parameter"]): row for row in csv.DictReader(file)}
+    for tabor, row in finest.items():
+        exact = float(row["hysteresis_over_jkr"])
+        assert hysteresis_ratio(tabor) == approx(exact, abs=3e-4)
+    ratios = [hysteresis_ratio(tabor) for tabor in np.geomspace(0.1, 1e4, 60)]
+    assert (np.diff(ratios) >= 0).all()
+    assert 0.97 < ratios[-1] < 1
+
+
+@pytest.mark.parametrize("tabor", [0.6, 1.2])
+def test_it_covers_the_range_that_jkr_neglects(tabor):
+    w, z0, E_star = 0.05, 0.3e-9, 1e11
+    radius = tabor**3 * E_star**2 * z0**3 / w**2
+    body = Body(2 * radius, 2 * E_star * (1 - 0.3**2), 0.3)
+    depth = 6 * tabor * z0
+    h = 0.35 * (radius**2 * w / E_star) ** (1 / 3)  # a_c/h = 4.3
+    n = 2 * int(np.sqrt(3 * radius * depth) / h + 4)
+    jkr = Contact(Pair(body, body), smooth(Grid(n, h)), work_of_adhesion=w)
+    state = solve(jkr, depth)
+    collision = collide(state)
+    error = model_error(state, collision.restitution)
+    # At equal work of loading, e² of smooth elastic spheres is 1 minus the loss over the work.
+    lost = hysteresis_ratio(tabor) * 7.0922 * (w**5 * radius**4 / E_star**2) ** (1 / 3)
+    exact = np.sqrt(1 - lost / state.loading_work)
+    assert 0 < exact - collision.restitution <= error + collision.restitution_error
+    assert error < 2 * (exact - collision.restitution) + collision.restitution_error
 
 
 needs_references = pytest.mark.skipif(

@@ -170,10 +170,14 @@ def _cohesive_separation(start: CohesiveState, end: CohesiveState, path: list[St
     plastic = end.plastic_work - start.plastic_work
     fineness = max(start.contact.grid.spacing) / (COARSEST * cohesive_length(start.contact))
     touching = [state.contact_nodes > 0 for state in path]
+    work = start.potential_energy - lost - plastic
+    depth, force = ([getattr(state, key) for state in path] for key in ("indentation", "force"))
+    by_force = end.potential_energy - integrate_curve(depth, force)
+    steps = max(abs(end.work_error - start.work_error), abs(by_force - work))
     last = max((k for k, touches in enumerate(touching) if touches), default=0)
     return Separation(
-        unloading_work=start.potential_energy - lost - plastic,
-        error=abs(end.work_error - start.work_error) + _GRID_LOSS * fineness**2 * lost,
+        unloading_work=work,
+        error=steps + _GRID_LOSS * fineness**2 * lost,
         adhesive_loss=lost,
         pull_off_force=_largest_tension(path),
         separation_indentation=path[min(last + 1, len(path) - 1)].indentation,

@@ -24,7 +24,7 @@ from restitution.live.figures import (
 from restitution.results.writer import curve_row
 from restitution.runs.depths import collision_at, loaded_depths
 from restitution.runs.messages import input_warnings, require_possible
-from restitution.runs.refinement import settled
+from restitution.runs.refinement import settled, with_chosen_adhesion
 from restitution.runs.smooth import smooth_curve
 from restitution.surfaces import Surface
 
@@ -51,7 +51,9 @@ class LiveCurves:
         contact = self._contact(case, folder)
         deepest = deepest_indentation(case)
         require_possible(contact, deepest)
-        curve = _Curve(case, contact, omissions(case) + input_warnings(contact, deepest))
+        warnings = omissions(case) + input_warnings(contact, deepest)
+        case = with_chosen_adhesion(case, contact, warnings.append)
+        curve = _Curve(case, contact, warnings)
         self._curves.pop(tab, None)
         self._curves[tab] = curve
         while len(self._curves) > _TABS:

@@ -61,8 +61,8 @@ MOST_AFFORDABLE = 2**24  # largest recommended number of nodes (some minutes and
 MISSING_BAND = 0.03  # a row counts as resolved up to this error of COR due to omitted waves
 
 NOT_INCLUDED = (
-    "the model (of plasticity and adhesion: model_error; half-space), values that the "
-    "case gives, rate effects, elastic waves"
+    "the model (range of adhesion and model of plasticity: model_error; half-space), values that "
+    "the case gives, rate effects, elastic waves"
 )
 
 

@@ -29,6 +29,7 @@ NODES_PER_PATCH = 20
 # With four or more nodes per pull-off radius, the error of the pull-off force is 4 % on average and
 # 7 % at worst, over all positions of the apex between the nodes (docs/adhesion.md).
 ADHESIVE_NODES = 4
+_COHESIVE_PULL_OFF = 0.01  # relative error of the pull-off force on grids that resolve the range
 _HALF_SPACE = 0.2  # contact radius over R* beyond which the half-space approximation fails
 
 
@@ -94,6 +95,8 @@ def pull_off_radius(contact: Contact, radius: float) -> float:
 
 def expected_pull_off_error(contact: Contact) -> float:
     """Relative error of the pull-off force of smooth spheres on this grid (docs/adhesion.md)."""
+    if contact.cohesive:
+        return _COHESIVE_PULL_OFF
     nodes = pull_off_radius(contact, contact.pair.radius) / max(contact.grid.spacing)
     return {"pohrt-popov": 1.5, "crack-closure": 0.25}[contact.detachment] / nodes
 
