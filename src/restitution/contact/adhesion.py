@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from restitution.contact.contact import Contact
-from restitution.contact.detachment import Mask, criterion, tension_limit
+from restitution.contact.detachment import (
+    Mask,
+    criterion,
+    energy_release_rate,
+    tension_limit,
+)
 from restitution.contact.equilibrium import (
     HeldNodes,
     candidate_box,
@@ -17,8 +23,16 @@ from restitution.contact.equilibrium import (
 )
 from restitution.contact.state import State
 from restitution.numerics.box import Box, bounding_box, reframe, union, widen
+from restitution.theory import Kendall
 
 Array = NDArray[np.float64]
+
+# Edge nodes with G above this part of w are on a receding edge, and their mean G decides where the
+# energies balance. The balance is sought from half a step before the state to the step's end.
+_ACTIVE, _EARLIEST = 0.8, -0.5
+# A loaded contact is retracted by this part of the pull-off displacement of a punch to find its
+# balance, with this tolerance of the solve.
+_RETREAT, _BALANCE_RESIDUAL = 0.05, 1e-5
 
 
 def release_nodes(
@@ -112,9 +126,18 @@ def grow_contact(
             residual=residual,
         )
         convolutions += wider.convolutions
-        if wider.contact_nodes <= state.contact_nodes:
+        if not _is_better(wider, state):
             return replace(state, convolutions=convolutions)
         state, touching = wider, wider.box_pressure != 0
+
+
+def _is_better(wider: State, state: State) -> bool:
+    """Whether the contact grows from `state` to `wider`, at the same indentation."""
+    contact = state.contact
+    if contact.detachment == "pohrt-popov" or not state.contact_nodes:
+        return wider.contact_nodes > state.contact_nodes
+    gained = wider.contact_area - state.contact_area
+    return wider.stored_energy - state.stored_energy < contact.work_of_adhesion * gained
 
 
 def unload_adhesive(
@@ -137,9 +160,72 @@ def unload_adhesive(
         residual=residual,
     )
     lost = before_release.stored_energy - settled.stored_energy
+    balance = None
+    if state.contact.detachment == "crack-closure" and _released(before_release, settled):
+        balance = _balance(state, before_release)
     return replace(
         settled,
         adhesive_work=state.adhesive_work - lost,
         force_before_release=before_release.force,
+        balance=balance,
         is_first_loading=False,
+    )
+
+
+def _released(before: State, after: State) -> bool:
+    """Whether nodes left the contact between two states of one indentation."""
+    return 0 < before.contact_nodes != after.contact_nodes
+
+
+def balance_of(state: State) -> tuple[float, float]:
+    """Indentation (m) and force (N) at which the contact area of a loaded `state` has G = w.
+
+    It takes one more solve with this contact area, at an indentation that is smaller by a part of
+    the pull-off displacement of a punch. Without a balance the values of the state are returned.
+    """
+    contact = state.contact
+    if state.contact_nodes == 0:
+        return state.indentation, state.force
+    punch = Kendall(contact.pair.contact_modulus, contact.work_of_adhesion)
+    retreat = float(punch.pull_off_displacement(math.sqrt(state.contact_area / math.pi)))
+    held = state.box_pressure != 0
+    retracted = solve_pressure(
+        contact,
+        state.indentation - _RETREAT * retreat,
+        state.box,
+        limit=state.bound,
+        history=state,
+        held=HeldNodes(held, math.inf, state.box_pressure),
+        residual=_BALANCE_RESIDUAL,
+    )
+    return _balance(state, retracted) or (state.indentation, state.force)
+
+
+def _balance(state: State, retracted: State) -> tuple[float, float] | None:
+    """Indentation (m) and force (N) at which the contact area of `state` has G = w on average.
+
+    `retracted` has the same contact area at a smaller indentation. On a grid, nodes are released
+    late or early by a part of a node, so force and indentation of a state scatter about those of
+    the continuum. This scatter disappears where G, averaged along the edge, is w. While the contact
+    area is fixed, sqrt(G) and the force are linear in the indentation, so the two states give the
+    indentation at which that is so. None without an edge that is about to move.
+    """
+    contact = state.contact
+    touching = state.box_pressure != 0
+    rates = []
+    for each in (state, retracted):
+        gap = contact.gap[each.box] + state.plastic_displacement[each.box]
+        mask = reframe(touching, state.box, each.box)
+        rates.append(energy_release_rate(each.box_pressure, each.box_displacement, gap, mask)[1])
+    active = np.maximum(*rates) > _ACTIVE * contact.work_of_adhesion
+    if not active.any():
+        return None
+    first, last = (math.sqrt(max(float(G[active].mean()), 0.0)) for G in rates)
+    if last <= first:
+        return None
+    part = (math.sqrt(contact.work_of_adhesion) - first) / (last - first)
+    part = min(max(part, _EARLIEST), 1.0)
+    return (
+        state.indentation + part * (retracted.indentation - state.indentation),
+        state.force + part * (retracted.force - state.force),
     )

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,18 +22,27 @@ from restitution.errors import NotConvergedError
 from restitution.numerics.quadrature import integrate_curve
 from restitution.theory import Kendall
 
+Array = NDArray[np.float64]
+
 RESTITUTION_ERROR = 0.002
 _ACCURACY = 1e-3  # tolerance of the solves as a fraction of the crack opening at the edge
 _STEPS_OF_RECOVERY = 8  # fewest steps over the elastic recovery
-_STEPS_OF_TENSION = 16  # fewest steps over the pull-off displacement of a punch of the same area
+# fewest steps over the pull-off displacement of a punch of the same area
+_STEPS_OF_TENSION = {"crack-closure": 32, "pohrt-popov": 16}
 _FINEST = 400  # the shortest step is this pull-off displacement divided by 400
 _REFINEMENTS = (1, 2, 4)  # factors on the number of steps, tried until the tolerance is met
+# Error of the steps, in w times the contact area, below which the error of the grid is larger
+# (`collision`), so that finer steps would not reduce the sum.
+_SMALL = {"crack-closure": 0.005, "pohrt-popov": 0.0}
+_FEW_NODES = 10  # a smaller contact has too few edge nodes for a balance
+_SMOOTHED = 11  # points through which a parabola smooths the force under tension
+_JUMP = 0.1  # a larger change of force between two points, over the largest tension, is a jump
 _MOST_STEPS = 3000  # steps after which unloading counts as not converged
 # Error of the unloading work as a fraction of the work of late release. The integral through the
 # states after each release is free of this work to first order. A comparison with ten times finer
 # steps showed errors below 0.1 for crack closure and below 1/3 for the tension limit, with which
 # nodes are released in larger jumps. The values include a margin of 1.5.
-_LATENESS = {"crack-closure": 0.15, "pohrt-popov": 0.5}
+_LATENESS = {"crack-closure": 0.0, "pohrt-popov": 0.5}
 
 
 @dataclass(frozen=True)
@@ -70,6 +79,9 @@ def separate(state: State, *, tolerance: float = RESTITUTION_ERROR) -> Iterator[
         loading = min(half * state.work_error / given, 0.5 * tolerance)
         if half * separation.error / returned + loading <= tolerance:
             break
+        surface_energy = state.contact.work_of_adhesion * state.contact_area
+        if separation.error <= _SMALL[state.contact.detachment] * surface_energy:
+            break
     yield from path
 
 
@@ -85,7 +97,7 @@ def _unload(state: State, tolerance: float, finer: int) -> Iterator[State]:
     for _ in range(_MOST_STEPS):
         reach = _tension_reach(state)
         longest = recovery / (finer * _STEPS_OF_RECOVERY)
-        shortened = reach / (finer * _STEPS_OF_TENSION)
+        shortened = reach / (finer * _STEPS_OF_TENSION[contact.detachment])
         if state.force < 0.1 * abs(_punch_force(state)):
             longest = min(longest, shortened)
         elif previous is not None:
@@ -130,27 +142,121 @@ def separation_of(path: list[State]) -> Separation:
     depth = np.array([state.indentation for state in path])
     force = np.array([state.force for state in path])
     start, end = path[0], path[-1]
-    work = -integrate_curve(depth, force)
     trapezoid = -float(np.trapezoid(force, depth))
-    # Error estimate: the work from every second state has at least four times the error of the work
-    # from all states.
-    fewer = np.append(np.arange(0, len(path) - 1, 2), len(path) - 1)
-    halved = -integrate_curve(depth[fewer], force[fewer])
     late = -float(np.dot([_late_force(state) for state in path[1:]], np.diff(depth)))
     # The energy that the bodies lose along the path must equal the work of the force. `late` is the
     # part of this work due to nodes that are released only at the end of a step.
     unaccounted = (start.loading_work - end.loading_work) - (trapezoid - late)
+    curve = unloading_curve(path)
+    found = curve.work()
+    # Unloading returns at most the elastic energy.
+    work = min(found, start.stored_energy) if curve.balanced else found
+    # The work of the curve without that of its states; zero to first order if they are the same.
+    scatter = work - trapezoid if curve.balanced else 0.0
     return Separation(
         unloading_work=work,
-        error=abs(work - halved)
+        error=abs(found - curve.halved().work())
+        + (found - work)
         + _LATENESS[start.contact.detachment] * abs(late)
         + abs(unaccounted),
-        adhesive_loss=start.adhesive_work - end.adhesive_work - late,
-        pull_off_force=max(0.0, -float(force.min())),
+        adhesive_loss=start.adhesive_work - end.adhesive_work - late - scatter,
+        pull_off_force=max(0.0, curve.largest_tension()),
         separation_indentation=end.indentation,
         convolutions=sum(state.convolutions for state in path[1:]),
         steps=len(path) - 1,
     )
+
+
+@dataclass(frozen=True)
+class UnloadingCurve:
+    """Force (N) over decreasing indentation (m), shape (points,).
+
+    With `crack-closure` the points are the state at which unloading begins and the balances of the
+    contact areas, which do not contain the jumps of the force when nodes are released. With
+    `pohrt-popov` the points are the states. `fixed` says that the contact area is fixed between the
+    first two points, so that the force is linear.
+    """
+
+    indentation: Array
+    force: Array
+    balanced: bool
+    fixed: bool = False
+
+    def work(self) -> float:
+        """Work of unloading (J)."""
+        x, F = self.indentation, self.force
+        if not self.fixed:
+            return -integrate_curve(x, F)
+        return -float(np.trapezoid(F[:2], x[:2])) - integrate_curve(x[1:], F[1:])
+
+    def halved(self) -> UnloadingCurve:
+        """Leave out every second point.
+
+        The work from these points has at least four times the error of the work from all points.
+        """
+        last = self.force.size - 1
+        fewer = np.append(np.arange(0, last, 2), last)
+        if self.fixed:
+            fewer = np.unique([0, *range(1, last, 2), last])
+        return replace(self, indentation=self.indentation[fewer], force=self.force[fewer])
+
+    def largest_tension(self) -> float:
+        """Largest tension (N); without the scatter of the points, if they are balances."""
+        F = self.force
+        if not self.balanced:
+            return -float(F.min())
+        largest = -float(F.min())
+        # Where contacts snap apart the force jumps; such a jump must not be smoothed.
+        jumps = np.flatnonzero(np.abs(np.diff(F)) > _JUMP * largest) + 1
+        smoothed = [
+            _smoothed(x, part)
+            for x, part in zip(np.split(self.indentation, jumps), np.split(F, jumps), strict=True)
+        ]
+        return -min(float(part.min()) for part in smoothed)
+
+
+def unloading_curve(path: list[State]) -> UnloadingCurve:
+    """The curve of a `path` from `separate`.
+
+    Each contact area has one point, its balance. An area without a balance has all its states.
+    """
+    states = [(state.indentation, state.force) for state in path]
+    balances = [state.balance for state in path[1:]]
+    nodes = [state.contact_nodes for state in path]
+    if not any(balances):
+        indentation, force = np.array(states).T
+        return UnloadingCurve(indentation, force, balanced=False)
+    points: list[tuple[float, float]] = []
+    same_area: list[tuple[float, float]] = []
+    for k, balance in enumerate(balances):
+        same_area.append(states[k])
+        if nodes[k + 1] == nodes[k]:
+            continue
+        found = same_area if balance is None or nodes[k] < _FEW_NODES else [balance]
+        points += [point for point in found if not points or point[0] < points[-1][0]]
+        same_area = []
+    fixed = points[0][0] < states[0][0]
+    points = [states[0], *points] if fixed else points
+    indentation, force = np.array(points).T
+    return UnloadingCurve(indentation, force, balanced=True, fixed=fixed)
+
+
+def _smoothed(x: Array, F: Array) -> Array:
+    """Replace each value by that of the least-squares parabola through the nearest points.
+
+    The parabola is limited to the range of their values. Fewer than five points are returned.
+    """
+    window = min(_SMOOTHED, F.size)
+    if window < 5:
+        return F
+    smoothed = np.empty(F.size)
+    for k in range(F.size):
+        first = min(max(k - window // 2, 0), F.size - window)
+        near = slice(first, first + window)
+        t = (x[near] - x[k]) / (x[first] - x[first + window - 1])
+        value = np.polynomial.polynomial.polyfit(t, F[near], 2)[0]
+        smoothed[k] = np.clip(value, F[near].min(), F[near].max())
+    return smoothed
 
 
 def _late_force(state: State) -> float:
@@ -176,7 +282,8 @@ def _plan(state: State, tolerance: float) -> tuple[float, float]:
     # From dCOR = dW/(2 W_l COR), the tolerance allows dW = 2 W_l COR dCOR. Half of it is reserved
     # for the error of the loading work.
     allowed = 1.0 * tolerance * max(restitution, 0.05) * work
-    return recovery, allowed / (_LATENESS[state.contact.detachment] * recovery)
+    lateness = _LATENESS[state.contact.detachment]
+    return recovery, allowed / (lateness * recovery) if lateness else math.inf
 
 
 def _tension_reach(state: State) -> float:
