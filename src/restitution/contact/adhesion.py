@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.contact.checks.resolution import adhesive_nodes
 from restitution.contact.contact import Contact
 from restitution.contact.detachment import (
     Mask,
@@ -30,6 +31,9 @@ Array = NDArray[np.float64]
 # Edge nodes with G above this part of w are on a receding edge, and their mean G decides where the
 # energies balance. The balance is sought from half a step before the state to the step's end.
 _ACTIVE, _EARLIEST = 0.8, -0.5
+# Smallest pull-off radius of an asperity (cells) for which balances are used. On coarser grids most
+# nodes leave the contact because the bodies part, not because G reaches w.
+_RESOLVED = 2.0
 # A loaded contact is retracted by this part of the pull-off displacement of a punch to find its
 # balance, with this tolerance of the solve.
 _RETREAT, _BALANCE_RESIDUAL = 0.05, 1e-5
@@ -175,6 +179,13 @@ def unload_adhesive(
 def _released(before: State, after: State) -> bool:
     """Whether nodes left the contact between two states of one indentation."""
     return 0 < before.contact_nodes != after.contact_nodes
+
+
+def balances_are_reliable(state: State) -> bool:
+    """Whether the grid resolves the adhesion of `state` enough for balances of its areas."""
+    if state.contact.detachment == "pohrt-popov":
+        return False
+    return adhesive_nodes(state) >= _RESOLVED
 
 
 def balance_of(state: State) -> tuple[float, float]:

@@ -222,7 +222,8 @@ def _curvature(touching: Mask, nodes: Nodes, faces: NDArray[np.intp]) -> Array:
     patches, count = label(touching, structure=np.ones((3, 3)))
     patch = patches[nodes]
     total = np.bincount(patch, weights=faces, minlength=count + 1)[patch]
-    return np.minimum(8 / total, _LARGEST_CURVATURE)
+    curvature: Array = np.minimum(8 / total, _LARGEST_CURVATURE)
+    return curvature
 
 
 def _apart(nodes: Nodes, pressure: Array, recession: Array) -> NDArray[np.intp]:

@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.contact.adhesion import grow_contact, unload_adhesive
+from restitution.contact.adhesion import balances_are_reliable, grow_contact, unload_adhesive
 from restitution.contact.adhesive_work import pinning_error, work_by_balance
 from restitution.contact.cavity import yield_bound
 from restitution.contact.checks.edge import require_inside_grid
@@ -41,9 +41,7 @@ PULL_INCREMENT = 1e-10
 # Quadrature of a truncated force: tolerance relative to force times indentation, margin added to
 # the error (in tolerances), and number of initial intervals. With one interval, the integrand, zero
 # up to first yield, could be zero at all sampled depths.
-_TRUNCATION_TOLERANCE = 3e-5
-_TRUNCATION_MARGIN = 10.0
-_TRUNCATION_PANELS = 4
+_TRUNCATION_TOLERANCE, _TRUNCATION_MARGIN, _TRUNCATION_PANELS = 3e-5, 10.0, 4
 # Quadrature of an adhesive force: tolerance relative to the work, and largest number of bisections.
 # The force jumps as asperities attach, which limits the accuracy. An error of 1.5e-3 of the work is
 # an error of at most 0.00075 in restitution.
@@ -255,7 +253,7 @@ def with_work(state: State, start: State | None) -> State:
         # cases above 0.7.
         return replace(state, adhesive_work=gain, work_error=0.5 * gain)
     if contact.adhesive and contact.approach != "hertzian":
-        balanced = contact.detachment == "crack-closure" and contact.approach == "equilibrium"
+        balanced = contact.approach == "equilibrium" and balances_are_reliable(state)
         if balanced and not contact.truncates:
             tolerance = _ADHESIVE_TOLERANCE
             work, error, convolutions = work_by_balance(state, start, _intermediate, tolerance)

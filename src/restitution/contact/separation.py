@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.contact.adhesion import unload_adhesive
+from restitution.contact.adhesion import balances_are_reliable, unload_adhesive
 from restitution.contact.checks.edge import require_inside_grid
 from restitution.contact.state import State
 from restitution.errors import NotConvergedError
@@ -42,7 +42,7 @@ _MOST_STEPS = 3000  # steps after which unloading counts as not converged
 # states after each release is free of this work to first order. A comparison with ten times finer
 # steps showed errors below 0.1 for crack closure and below 1/3 for the tension limit, with which
 # nodes are released in larger jumps. The values include a margin of 1.5.
-_LATENESS = {"crack-closure": 0.0, "pohrt-popov": 0.5}
+_LATENESS = {"crack-closure": 0.15, "pohrt-popov": 0.5}
 
 
 @dataclass(frozen=True)
@@ -157,7 +157,7 @@ def separation_of(path: list[State]) -> Separation:
         unloading_work=work,
         error=abs(found - curve.halved().work())
         + (found - work)
-        + _LATENESS[start.contact.detachment] * abs(late)
+        + (0.0 if curve.balanced else _LATENESS[start.contact.detachment] * abs(late))
         + abs(unaccounted),
         adhesive_loss=start.adhesive_work - end.adhesive_work - late - scatter,
         pull_off_force=max(0.0, curve.largest_tension()),
@@ -223,7 +223,7 @@ def unloading_curve(path: list[State]) -> UnloadingCurve:
     states = [(state.indentation, state.force) for state in path]
     balances = [state.balance for state in path[1:]]
     nodes = [state.contact_nodes for state in path]
-    if not any(balances):
+    if not any(balances) or not balances_are_reliable(path[0]):
         indentation, force = np.array(states).T
         return UnloadingCurve(indentation, force, balanced=False)
     points: list[tuple[float, float]] = []
@@ -282,8 +282,9 @@ def _plan(state: State, tolerance: float) -> tuple[float, float]:
     # From dCOR = dW/(2 W_l COR), the tolerance allows dW = 2 W_l COR dCOR. Half of it is reserved
     # for the error of the loading work.
     allowed = 1.0 * tolerance * max(restitution, 0.05) * work
-    lateness = _LATENESS[state.contact.detachment]
-    return recovery, allowed / (lateness * recovery) if lateness else math.inf
+    if balances_are_reliable(state):  # they do not depend on late releases
+        return recovery, math.inf
+    return recovery, allowed / (_LATENESS[state.contact.detachment] * recovery)
 
 
 def _tension_reach(state: State) -> float:
