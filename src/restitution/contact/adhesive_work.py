@@ -19,6 +19,8 @@ from restitution.numerics.quadrature import integrate_curve
 # most. The depths are closer at first touch, at t to this power, because the force bends there.
 _FROM_TOUCH, _FROM_STATE, _MOST = 8, 2, 16
 _CROWDING = 1.5
+# Factor on the difference from half as many depths, because the force of rough contacts jumps.
+_MARGIN = 1.5
 # Error of the work because the loading steps influence which nodes attach, divided by w times the
 # area. The references have 240 steps from first touch. The work was within these bounds in 93 % of
 # 29 validation contacts with `equilibrium`, and in all 11 contacts with `pull-increments`.
@@ -61,7 +63,7 @@ def work_by_balance(
                 points[t] = balance_of(found)
         ordered = [points[t] for t in sorted(points)]
         value = _integral(ordered, first, last)
-        error = abs(value - _integral(ordered[::2], first, last))
+        error = _MARGIN * abs(value - _integral(ordered[::2], first, last))
     return work + value, error, convolutions
 
 

@@ -9,8 +9,8 @@ continuous unloading by half the force jump times the step.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from restitution.contact.adhesion import balances_are_reliable, unload_adhesive
 from restitution.contact.checks.edge import require_inside_grid
 from restitution.contact.state import State
+from restitution.contact.unloading_curve import SharedUnloading, unloading_curve
 from restitution.errors import NotConvergedError
-from restitution.numerics.quadrature import integrate_curve
 from restitution.theory import Kendall
 
 Array = NDArray[np.float64]
@@ -34,9 +34,6 @@ _REFINEMENTS = (1, 2, 4)  # factors on the number of steps, tried until the tole
 # Error of the steps, in w times the contact area, below which the error of the grid is larger
 # (`collision`), so that finer steps would not reduce the sum.
 _SMALL = {"crack-closure": 0.005, "pohrt-popov": 0.0}
-_FEW_NODES = 10  # a smaller contact has too few edge nodes for a balance
-_SMOOTHED = 11  # points through which a parabola smooths the force under tension
-_JUMP = 0.1  # a larger change of force between two points, over the largest tension, is a jump
 _MOST_STEPS = 3000  # steps after which unloading counts as not converged
 # Error of the unloading work as a fraction of the work of late release. The integral through the
 # states after each release is free of this work to first order. A comparison with ten times finer
@@ -58,8 +55,16 @@ class Separation:
     steps: int
 
 
-def separate(state: State, *, tolerance: float = RESTITUTION_ERROR) -> Iterator[State]:
+def separate(
+    state: State,
+    *,
+    tolerance: float = RESTITUTION_ERROR,
+    known: Sequence[State] = (),
+) -> Iterator[State]:
     """Yield `state` and the states of unloading to separation, the last of them without contact.
+
+    `known` may be such states from a shallower depth of the same contact. If nothing has yielded
+    and both forces agree, the states below that depth are taken from there.
 
     If `state` is already without contact, it is the only state. `tolerance` is the error of the
     coefficient of restitution that the steps may cause. If the estimated error is larger, unloading
@@ -67,7 +72,7 @@ def separate(state: State, *, tolerance: float = RESTITUTION_ERROR) -> Iterator[
     do not separate.
     """
     for finer in _REFINEMENTS:
-        path = list(_unload(state, tolerance / finer, finer))
+        path = list(_unload(state, tolerance / finer, finer, known))
         separation = separation_of(path)
         returned, given = separation.unloading_work, state.loading_work
         # From e = sqrt(W_u/W_l), the errors satisfy 2 de/e = dW_u/W_u + dW_l/W_l. For a pair that
@@ -85,9 +90,11 @@ def separate(state: State, *, tolerance: float = RESTITUTION_ERROR) -> Iterator[
     yield from path
 
 
-def _unload(state: State, tolerance: float, finer: int) -> Iterator[State]:
+def _unload(
+    state: State, tolerance: float, finer: int, known: Sequence[State] = ()
+) -> Iterator[State]:
     """Yield `state` and the states to separation, in `finer` times as many steps or more."""
-    contact = state.contact
+    contact, other = state.contact, SharedUnloading.of(state, known)
     yield state
     if state.contact_nodes == 0:
         return  # `approach = "pull-increments"` has released all nodes already
@@ -129,6 +136,9 @@ def _unload(state: State, tolerance: float, finer: int) -> Iterator[State]:
         require_inside_grid(new)
         previous, state = state, new
         yield state
+        if other is not None and other.agrees(state):
+            yield from other.below(state)
+            return
         step *= min(2.0, max(0.5, 0.8 * allowed / late if late > 0 else 2.0))
     raise NotConvergedError(
         f"the bodies have not separated after {_MOST_STEPS} steps of unloading (indentation "
@@ -165,98 +175,6 @@ def separation_of(path: list[State]) -> Separation:
         convolutions=sum(state.convolutions for state in path[1:]),
         steps=len(path) - 1,
     )
-
-
-@dataclass(frozen=True)
-class UnloadingCurve:
-    """Force (N) over decreasing indentation (m), shape (points,).
-
-    With `crack-closure` the points are the state at which unloading begins and the balances of the
-    contact areas, which do not contain the jumps of the force when nodes are released. With
-    `pohrt-popov` the points are the states. `fixed` says that the contact area is fixed between the
-    first two points, so that the force is linear.
-    """
-
-    indentation: Array
-    force: Array
-    balanced: bool
-    fixed: bool = False
-
-    def work(self) -> float:
-        """Work of unloading (J)."""
-        x, F = self.indentation, self.force
-        if not self.fixed:
-            return -integrate_curve(x, F)
-        return -float(np.trapezoid(F[:2], x[:2])) - integrate_curve(x[1:], F[1:])
-
-    def halved(self) -> UnloadingCurve:
-        """Leave out every second point.
-
-        The work from these points has at least four times the error of the work from all points.
-        """
-        last = self.force.size - 1
-        fewer = np.append(np.arange(0, last, 2), last)
-        if self.fixed:
-            fewer = np.unique([0, *range(1, last, 2), last])
-        return replace(self, indentation=self.indentation[fewer], force=self.force[fewer])
-
-    def largest_tension(self) -> float:
-        """Largest tension (N); without the scatter of the points, if they are balances."""
-        F = self.force
-        if not self.balanced:
-            return -float(F.min())
-        largest = -float(F.min())
-        # Where contacts snap apart the force jumps; such a jump must not be smoothed.
-        jumps = np.flatnonzero(np.abs(np.diff(F)) > _JUMP * largest) + 1
-        smoothed = [
-            _smoothed(x, part)
-            for x, part in zip(np.split(self.indentation, jumps), np.split(F, jumps), strict=True)
-        ]
-        return -min(float(part.min()) for part in smoothed)
-
-
-def unloading_curve(path: list[State]) -> UnloadingCurve:
-    """The curve of a `path` from `separate`.
-
-    Each contact area has one point, its balance. An area without a balance has all its states.
-    """
-    states = [(state.indentation, state.force) for state in path]
-    balances = [state.balance for state in path[1:]]
-    nodes = [state.contact_nodes for state in path]
-    if not any(balances) or not balances_are_reliable(path[0]):
-        indentation, force = np.array(states).T
-        return UnloadingCurve(indentation, force, balanced=False)
-    points: list[tuple[float, float]] = []
-    same_area: list[tuple[float, float]] = []
-    for k, balance in enumerate(balances):
-        same_area.append(states[k])
-        if nodes[k + 1] == nodes[k]:
-            continue
-        found = same_area if balance is None or nodes[k] < _FEW_NODES else [balance]
-        points += [point for point in found if not points or point[0] < points[-1][0]]
-        same_area = []
-    fixed = points[0][0] < states[0][0]
-    points = [states[0], *points] if fixed else points
-    indentation, force = np.array(points).T
-    return UnloadingCurve(indentation, force, balanced=True, fixed=fixed)
-
-
-def _smoothed(x: Array, F: Array) -> Array:
-    """Replace each value by that of the least-squares parabola through the nearest points.
-
-    The parabola is limited to the range of their values. Fewer than five points are returned.
-    """
-    window = min(_SMOOTHED, F.size)
-    if window < 5:
-        return F
-    smoothed = np.empty(F.size)
-    for k in range(F.size):
-        first = min(max(k - window // 2, 0), F.size - window)
-        near = slice(first, first + window)
-        t = (x[near] - x[k]) / (x[first] - x[first + window - 1])
-        value = np.polynomial.polynomial.polyfit(t, F[near], 2)[0]
-        smoothed[k] = np.clip(value, F[near].min(), F[near].max())
-    return smoothed
 
 
 def _late_force(state: State) -> float:
