@@ -13,11 +13,10 @@ import numpy as np
 from restitution.contact.adhesion import balance_of
 from restitution.contact.contact import Contact
 from restitution.contact.state import State
-from restitution.numerics.quadrature import integrate_curve
 
 # Numbers of intervals between the depths: at first, from first touch and from another state, and at
 # most. The depths are closer at first touch, at t to this power, because the force bends there.
-_FROM_TOUCH, _FROM_STATE, _MOST = 8, 2, 16
+_FROM_TOUCH, _FROM_STATE, _MOST = 4, 2, 16
 _CROWDING = 1.5
 # Factor on the difference from half as many depths, because the force of rough contacts jumps.
 _MARGIN = 1.5
@@ -75,6 +74,8 @@ def pinning_error(state: State) -> float:
 
 def _integral(points: list[Point], first: float, last: float) -> float:
     """Integral of the force from `first` to `last` (m), extrapolated linearly at both ends."""
+    from scipy.interpolate import CubicSpline
+
     x, F = np.array(_increasing(points)).T
     if x.size == 1:
         return float(F[0]) * (last - first)
@@ -82,7 +83,7 @@ def _integral(points: list[Point], first: float, last: float) -> float:
     before, after = x[0] - first, last - x[-1]
     ends = F[0] * before - 0.5 * slopes[0] * before**2
     ends += F[-1] * after + 0.5 * slopes[-1] * after**2
-    return integrate_curve(x, F) + float(ends)
+    return float(CubicSpline(x, F).integrate(x[0], x[-1])) + float(ends)
 
 
 def _increasing(points: list[Point]) -> list[Point]:
