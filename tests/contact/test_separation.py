@@ -35,29 +35,46 @@ def test_bodies_that_do_not_part_are_said_so(pressed, monkeypatch):
     assert "check work_of_adhesion, 0.09 J/m2" in str(refusal.value)
 
 
-def test_a_smaller_error_takes_more_steps(pressed):
+def loaded(detachment, n=40, depth=3.5e-9):
+    grid = Grid((n, n), (0.15e-6, 0.15e-6))
+    contact = Contact(
+        Pair(STEEL, STEEL),
+        smooth(grid),
+        work_of_adhesion=0.09,
+        approach="hertzian",
+        detachment=detachment,
+    )
+    return solve(contact, depth)
+
+
+def test_a_smaller_error_takes_more_steps():
+    """The tension limit releases nodes late, so its error depends on the steps."""
+    state = loaded("pohrt-popov", 31, 3e-9)
     steps = [
-        separation.separation_of(list(separation.separate(pressed, tolerance=tolerance))).steps
+        separation.separation_of(list(separation.separate(state, tolerance=tolerance))).steps
         for tolerance in (0.05, 0.002)
     ]
     assert steps[1] > steps[0]
 
 
-def test_an_error_above_the_asked_one_is_mended_by_finer_steps(monkeypatch):
-    grid = Grid((40, 40), (0.15e-6, 0.15e-6))
-    contact = Contact(Pair(STEEL, STEEL), smooth(grid), work_of_adhesion=0.09, approach="hertzian")
-    state = solve(contact, 3.5e-9)
-
-    asked = 0.002
-
-    def error_of_steps():
-        found = separation.separation_of(list(separation.separate(state, tolerance=asked)))
-        e = (found.unloading_work / state.loading_work) ** 0.5
-        return 0.5 * e * found.error / found.unloading_work
-
-    assert error_of_steps() <= asked
+def test_an_error_above_the_asked_one_takes_finer_steps(monkeypatch):
+    state = loaded("pohrt-popov")
+    steps = len(list(separation.separate(state, tolerance=5e-4)))
     monkeypatch.setattr(separation, "_REFINEMENTS", (1,))
-    assert error_of_steps() > asked
+    path = list(separation.separate(state, tolerance=5e-4))
+    found = separation.separation_of(path)
+    e = (found.unloading_work / state.loading_work) ** 0.5
+    assert 0.5 * e * found.error / found.unloading_work > 5e-4
+    assert steps > len(path)
+
+
+def test_steps_stop_where_the_grid_has_the_larger_error(monkeypatch):
+    """Finer steps do not reduce the error of the grid, 0.015 w times the area."""
+    state = loaded("crack-closure")
+    monkeypatch.setattr(separation, "_SMALL", {"crack-closure": 1.0})
+    steps = len(list(separation.separate(state, tolerance=1e-6)))
+    monkeypatch.setattr(separation, "_SMALL", {"crack-closure": 0.0})
+    assert len(list(separation.separate(state, tolerance=1e-6))) > 1.5 * steps
 
 
 def test_the_error_holds_what_the_grid_takes_in_letting_go(pressed):
@@ -70,13 +87,16 @@ def test_the_error_holds_what_the_grid_takes_in_letting_go(pressed):
 
 
 def test_no_step_jumps_over_the_tension():
-    """Steps of a tenth of the recovery gave half of this pull-off force; finer steps 2.2e-4 N."""
+    """Steps of a tenth of the recovery gave half of this pull-off force; finer steps 2.2e-4 N.
+
+    The grid does not resolve these asperities (a_c/h = 0.8 to 2).
+    """
     grid = Grid((128, 128), (0.25e-6, 0.25e-6))
     surface = generate_surface(grid, kind="gaussian", rms=0.1e-6, correlation_length=2e-6, seed=2)
     contact = Contact(Pair(STEEL, STEEL), surface, 750e6, work_of_adhesion=0.09)
     path = list(separation.separate(solve(contact, 200e-9)))
     assert sum(state.force < 0 for state in path) > 15
-    assert separation.separation_of(path).pull_off_force == approx(2.2e-4, rel=0.05)
+    assert separation.separation_of(path).pull_off_force == approx(2.2e-4, rel=0.08)
 
 
 def test_a_seed_that_lets_go_of_everything_is_parted_and_returns_nothing():

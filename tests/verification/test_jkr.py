@@ -12,7 +12,7 @@ import pytest
 
 from restitution import Body, Contact, Grid, Pair, Surface, solve
 from restitution.contact.loading import solve_without_work
-from restitution.contact.separation import separate, separation_of
+from restitution.contact.separation import separate, separation_of, unloading_curve
 from restitution.theory import JKR
 from tolerance import approx
 
@@ -62,11 +62,11 @@ def cycle(approach):
 
 def test_the_unloading_branch():
     """On a uniform grid of indentations, so that where the steps crowd counts no more."""
-    path = cycle("equilibrium")[1]
+    curve = unloading_curve(cycle("equilibrium")[1])
     depths = np.linspace(-BREAK, DEEP, 2001)
-    force = np.interp(depths, [s.indentation for s in path[::-1]], [s.force for s in path[::-1]])
+    force = np.interp(depths, curve.indentation[::-1], curve.force[::-1])
     error = (force - SMOOTH.force(depths)) / F_C
-    assert math.sqrt(np.mean(error**2)) < 0.025
+    assert math.sqrt(np.mean(error**2)) < 0.02
 
 
 def test_the_break():
@@ -95,7 +95,7 @@ def test_a_cycle_loses_the_jump_in_and_the_break():
     state, path = cycle("equilibrium")
     separation = separation_of(path)
     lost = state.loading_work - separation.unloading_work
-    assert lost == approx(float(SMOOTH.hysteresis_loss), abs=0.02 * F_C * BREAK)
+    assert lost == approx(float(SMOOTH.hysteresis_loss), abs=0.035 * F_C * BREAK)
     # Each side by itself carries what the lattice holds back over 4 |δ_b|.
     expected = float(SMOOTH.loading_work(DEEP)), float(SMOOTH.unloading_work(DEEP))
     assert state.loading_work == approx(expected[0], abs=0.12 * F_C * BREAK)

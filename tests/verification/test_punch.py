@@ -64,5 +64,5 @@ def test_jkr_on_rectangular_cells(ratio):
         separation = separation_of(list(separate(state, tolerance=0.005)))
         found.append((separation.pull_off_force / F_c, separation.unloading_work / (F_c * depth)))
     square, rectangle = np.array(found)
-    assert rectangle[0] == approx(square[0], rel=0.03)
+    assert rectangle[0] == approx(square[0], rel=0.04)
     assert rectangle[1] == approx(square[1], abs=0.03)

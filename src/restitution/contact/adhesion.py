@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.contact.checks.resolution import adhesive_nodes
 from restitution.contact.contact import Contact
-from restitution.contact.detachment import Mask, criterion, tension_limit
+from restitution.contact.detachment import (
+    Mask,
+    criterion,
+    energy_release_rate,
+    tension_limit,
+)
 from restitution.contact.equilibrium import (
     HeldNodes,
     candidate_box,
@@ -17,8 +24,20 @@ from restitution.contact.equilibrium import (
 )
 from restitution.contact.state import State
 from restitution.numerics.box import Box, bounding_box, reframe, union, widen
+from restitution.theory import Kendall
 
 Array = NDArray[np.float64]
+
+_ACCURACY = 1e-3  # tolerance of solves between releases, as a fraction of the crack opening
+# Edge nodes with G above this part of w are on a receding edge, and their mean G decides where the
+# energies balance. The balance is sought from half a step before the state to the step's end.
+_ACTIVE, _EARLIEST = 0.8, -0.5
+# Smallest pull-off radius of an asperity (cells) for which balances are used. On coarser grids most
+# nodes leave the contact because the bodies part, not because G reaches w.
+_RESOLVED = 2.0
+# A loaded contact is retracted by this part of the pull-off displacement of a punch to find its
+# balance, with this tolerance of the solve.
+_RETREAT, _BALANCE_RESIDUAL = 0.05, 1e-5
 
 
 def release_nodes(
@@ -57,6 +76,11 @@ def release_nodes(
     tension = 2 * tension_limit(pair.contact_modulus, contact.work_of_adhesion, grid.spacing)
     before_release: State | None = None
     convolutions = 0
+    # Few digits decide which nodes are released; only the last solve needs all of them.
+    accuracy = residual
+    if contact.detachment == "crack-closure":
+        opening = contact.crack_opening / contact.residual_length(indentation)
+        accuracy = max(residual, _ACCURACY * opening)
     while True:
         state = solve_pressure(
             contact,
@@ -65,7 +89,7 @@ def release_nodes(
             limit=limit,
             history=history,
             held=HeldNodes(held, tension, first_guess),
-            residual=residual,
+            residual=accuracy,
         )
         convolutions += state.convolutions
         state = replace(state, convolutions=convolutions)
@@ -75,7 +99,9 @@ def release_nodes(
         held |= pressure > 0
         released = rule.releases(pressure, state.box_displacement, gap, held)
         if not released.any():
-            return before_release, state
+            if accuracy <= residual:
+                return before_release, state
+            accuracy = residual
         held &= ~released
         first_guess = np.where(released, 0.0, pressure)
 
@@ -112,9 +138,18 @@ def grow_contact(
             residual=residual,
         )
         convolutions += wider.convolutions
-        if wider.contact_nodes <= state.contact_nodes:
+        if not _is_better(wider, state):
             return replace(state, convolutions=convolutions)
         state, touching = wider, wider.box_pressure != 0
+
+
+def _is_better(wider: State, state: State) -> bool:
+    """Whether the contact grows from `state` to `wider`, at the same indentation."""
+    contact = state.contact
+    if contact.detachment == "pohrt-popov" or not state.contact_nodes:
+        return wider.contact_nodes > state.contact_nodes
+    gained = wider.contact_area - state.contact_area
+    return wider.stored_energy - state.stored_energy < contact.work_of_adhesion * gained
 
 
 def unload_adhesive(
@@ -137,9 +172,79 @@ def unload_adhesive(
         residual=residual,
     )
     lost = before_release.stored_energy - settled.stored_energy
+    balance = None
+    if state.contact.detachment == "crack-closure" and _released(before_release, settled):
+        balance = _balance(state, before_release)
     return replace(
         settled,
         adhesive_work=state.adhesive_work - lost,
         force_before_release=before_release.force,
+        balance=balance,
         is_first_loading=False,
+    )
+
+
+def _released(before: State, after: State) -> bool:
+    """Whether nodes left the contact between two states of one indentation."""
+    return 0 < before.contact_nodes != after.contact_nodes
+
+
+def balances_are_reliable(state: State) -> bool:
+    """Whether the grid resolves the adhesion of `state` enough for balances of its areas."""
+    if state.contact.detachment == "pohrt-popov":
+        return False
+    return adhesive_nodes(state) >= _RESOLVED
+
+
+def balance_of(state: State) -> tuple[float, float]:
+    """Indentation (m) and force (N) at which the contact area of a loaded `state` has G = w.
+
+    It takes one more solve with this contact area, at an indentation that is smaller by a part of
+    the pull-off displacement of a punch. Without a balance the values of the state are returned.
+    """
+    contact = state.contact
+    if state.contact_nodes == 0:
+        return state.indentation, state.force
+    punch = Kendall(contact.pair.contact_modulus, contact.work_of_adhesion)
+    retreat = float(punch.pull_off_displacement(math.sqrt(state.contact_area / math.pi)))
+    held = state.box_pressure != 0
+    retracted = solve_pressure(
+        contact,
+        state.indentation - _RETREAT * retreat,
+        state.box,
+        limit=state.bound,
+        history=state,
+        held=HeldNodes(held, math.inf, state.box_pressure),
+        residual=_BALANCE_RESIDUAL,
+    )
+    return _balance(state, retracted) or (state.indentation, state.force)
+
+
+def _balance(state: State, retracted: State) -> tuple[float, float] | None:
+    """Indentation (m) and force (N) at which the contact area of `state` has G = w on average.
+
+    `retracted` has the same contact area at a smaller indentation. On a grid, nodes are released
+    late or early by a part of a node, so force and indentation of a state scatter about those of
+    the continuum. This scatter disappears where G, averaged along the edge, is w. While the contact
+    area is fixed, sqrt(G) and the force are linear in the indentation, so the two states give the
+    indentation at which that is so. None without an edge that is about to move.
+    """
+    contact = state.contact
+    touching = state.box_pressure != 0
+    rates = []
+    for each in (state, retracted):
+        gap = contact.gap[each.box] + state.plastic_displacement[each.box]
+        mask = reframe(touching, state.box, each.box)
+        rates.append(energy_release_rate(each.box_pressure, each.box_displacement, gap, mask)[1])
+    active = np.maximum(*rates) > _ACTIVE * contact.work_of_adhesion
+    if not active.any():
+        return None
+    first, last = (math.sqrt(max(float(G[active].mean()), 0.0)) for G in rates)
+    if last <= first:
+        return None
+    part = (math.sqrt(contact.work_of_adhesion) - first) / (last - first)
+    part = min(max(part, _EARLIEST), 1.0)
+    return (
+        state.indentation + part * (retracted.indentation - state.indentation),
+        state.force + part * (retracted.force - state.force),
     )

@@ -15,7 +15,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.contact.adhesion import grow_contact, unload_adhesive
+from restitution.contact.adhesion import balances_are_reliable, grow_contact, unload_adhesive
+from restitution.contact.adhesive_work import pinning_error, work_by_balance
 from restitution.contact.cavity import yield_bound
 from restitution.contact.checks.edge import require_inside_grid
 from restitution.contact.cohesive import CohesiveState
@@ -42,18 +43,12 @@ PULL_INCREMENT = 1e-10
 # Quadrature of a truncated force: tolerance relative to force times indentation, margin added to
 # the error (in tolerances), and number of initial intervals. With one interval, the integrand, zero
 # up to first yield, could be zero at all sampled depths.
-_TRUNCATION_TOLERANCE = 3e-5
-_TRUNCATION_MARGIN = 10.0
-_TRUNCATION_PANELS = 4
+_TRUNCATION_TOLERANCE, _TRUNCATION_MARGIN, _TRUNCATION_PANELS = 3e-5, 10.0, 4
 # Quadrature of an adhesive force: tolerance relative to the work, and largest number of bisections.
 # The force jumps as asperities attach, which limits the accuracy. An error of 1.5e-3 of the work is
 # an error of at most 0.00075 in restitution.
 _ADHESIVE_TOLERANCE = 1.5e-3
 _ADHESIVE_HALVINGS = 5
-# Error of the work because the loading steps influence which nodes attach, divided by w times the
-# area. The references have 240 steps from first touch. The work was within these bounds in 93 % of
-# 29 validation contacts with `equilibrium`, and in all 11 contacts with `pull-increments`.
-_PINNING = {"equilibrium": 0.02, "pull-increments": 0.006, "hertzian": 0.0}
 # The plastic work is summed over depths that start at _SHALLOW times the indentation and grow by at
 # most the factor _RATIO, for which the errors of `plastic_work` hold.
 _RATIO, _SHALLOW = 1.42, 0.2
@@ -157,8 +152,16 @@ def solve_without_work(
             box = bounding_box(held)
             assert box is not None  # the gap is zero at first touch
             held = held[box]
-        else:
+        elif contact.detachment == "pohrt-popov":
             box, held = shallower.box, shallower.box_pressure != 0
+        else:
+            # A contact that grows from a smaller one may stop before its balance, so nodes are
+            # released from all that overlap.
+            inside = contact.gap <= indentation
+            inside[shallower.box] |= shallower.box_pressure != 0
+            box = bounding_box(inside)
+            assert box is not None
+            held = inside[box]
         state = grow_contact(
             contact,
             indentation,
@@ -259,7 +262,15 @@ def with_work(state: State, start: State | None) -> State:
         # cases above 0.7.
         return replace(state, adhesive_work=gain, work_error=0.5 * gain)
     if contact.adhesive and contact.approach != "hertzian":
-        work, error, convolutions = _work_by_force(state, start)
+        balanced = contact.approach == "equilibrium" and balances_are_reliable(state)
+        if balanced and not contact.truncates:
+            tolerance = _ADHESIVE_TOLERANCE
+            work, error, convolutions = work_by_balance(state, start, _intermediate, tolerance)
+            if start is not None:
+                error += start.work_error - pinning_error(start)
+            error += pinning_error(state)
+        else:
+            work, error, convolutions = _work_by_force(state, start)
     else:
         work, error, convolutions = _work_by_truncation(state, start)
     convolutions += state.convolutions
@@ -287,6 +298,10 @@ def _adhesive_work_is_negligible(state: State) -> bool:
     return gain <= 2 * _ADHESIVE_TOLERANCE * (state.stored_energy + state.plastic_work)
 
 
+def _intermediate(contact: Contact, depth: float) -> State:
+    return solve_without_work(contact, depth, start=None, residual=_WORK_RESIDUAL)
+
+
 def _work_by_force(state: State, start: State | None) -> tuple[float, float, int]:
     """Integrate the force; return the loading work (J), its error (J) and the convolutions."""
     contact, indentation = state.contact, state.indentation
@@ -301,7 +316,7 @@ def _work_by_force(state: State, start: State | None) -> tuple[float, float, int
     first, first_force, work, error = 0.0, 0.0, 0.0, 0.0
     if start is not None:
         first, first_force = start.indentation, start.force
-        work, error = start.loading_work, start.work_error - _pinning_error(start)
+        work, error = start.loading_work, start.work_error - pinning_error(start)
     elif contact.approach == "equilibrium":
         first_force = force_at(0.0)  # adhesive force right after the jump into contact
     scale = abs(work) + 0.5 * (abs(first_force) + abs(state.force)) * (indentation - first)
@@ -314,7 +329,7 @@ def _work_by_force(state: State, start: State | None) -> tuple[float, float, int
         _ADHESIVE_TOLERANCE * scale,
         depth=_ADHESIVE_HALVINGS,
     )
-    return work + increment, error + its_error + _pinning_error(state), convolutions
+    return work + increment, error + its_error + pinning_error(state), convolutions
 
 
 def _work_by_increments(state: State, start: State | None) -> tuple[float, float, int]:
@@ -338,12 +353,6 @@ def _work_by_increments(state: State, start: State | None) -> tuple[float, float
         increment, its_error = plastic_work(before, now)
         work, error, before = work + increment, error + its_error, now
     return work, error, convolutions
-
-
-def _pinning_error(state: State) -> float:
-    """Error of the work (J) because the grid pins the contact edge between its nodes."""
-    contact = state.contact
-    return _PINNING[contact.approach] * contact.work_of_adhesion * state.contact_area
 
 
 def _work_by_truncation(state: State, start: State | None) -> tuple[float, float, int]:

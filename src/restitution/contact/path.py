@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
@@ -66,6 +66,7 @@ def unloading_path(
     steps: int = 16,
     tolerance: float = RESTITUTION_ERROR,
     residual: float = RESIDUAL,
+    known: Sequence[State] = (),
 ) -> Iterator[State]:
     """Unload a contact to separation, where the force returns to zero.
 
@@ -79,6 +80,8 @@ def unloading_path(
             steps with adhesion, see `contact.separation`.
         residual: Tolerance on the violation of the contact conditions (1), as in `solve`; only
             without adhesion.
+        known: States of unloading from a shallower depth of the same contact. Adhesive unloading of
+            elastic bodies then ends with these states, because it is the same from any depth.
 
     Yields:
         `state`, then the state after each step.
@@ -88,7 +91,7 @@ def unloading_path(
         DomainError: The contact reaches the edge of the grid.
     """
     if state.contact.adhesive:
-        yield from separate(state, tolerance=tolerance)
+        yield from separate(state, tolerance=tolerance, known=known)
         return
     deepest, last = state.indentation, state.separation_indentation
     yield state

@@ -12,7 +12,7 @@ from restitution.contact.equilibrium import RESIDUAL
 from restitution.contact.loading import solve_without_work, with_work, work_is_integrated
 from restitution.contact.state import State
 from restitution.errors import CaseError, NotConvergedError
-from restitution.theory import Hertz
+from restitution.theory import JKR, Hertz
 
 VELOCITY_TOLERANCE = 1e-6
 # Relative tolerance on the velocity if the loading work is integrated. The relative error of the
@@ -116,6 +116,10 @@ class _Search:
             return reached.indentation
         if self._start is not None and (depth := self._step(self._start)) is not None:
             return depth
+        contact = self._contact
+        if contact.approach == "equilibrium" and contact.detachment == "crack-closure":
+            if contact.adhesive and (depth := _adhesive_depth(contact, self._work)):
+                return depth
         # Yield and roughness make the contact deeper.
         smooth = Hertz(self._contact.pair.radius, self._contact.pair.contact_modulus)
         return float(smooth.indentation_from_energy(self._work))
@@ -154,3 +158,14 @@ class _Search:
         """Number with the sign of W − work, nearly linear in δ because W grows as δ² to δ^2.5."""
         work = state.loading_work
         return math.copysign((abs(work) / self._work) ** 0.4, work) - 1
+
+
+def _adhesive_depth(contact: Contact, work: float) -> float:
+    """Indentation (m) at which smooth elastic adhesive bodies have taken up `work` (J)."""
+    from scipy.optimize import brentq
+
+    pair = contact.pair
+    smooth = JKR(pair.radius, pair.contact_modulus, contact.work_of_adhesion)
+    shallow = float(Hertz(pair.radius, pair.contact_modulus).indentation_from_energy(work))
+    deep = shallow + 10 * abs(float(smooth.break_indentation))
+    return float(brentq(lambda depth: float(smooth.loading_work(depth)) - work, shallow, deep))

@@ -9,27 +9,34 @@ continuous unloading by half the force jump times the step.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.contact.adhesion import unload_adhesive
+from restitution.contact.adhesion import balances_are_reliable, unload_adhesive
 from restitution.contact.checks.edge import require_inside_grid
 from restitution.contact.cohesive import COARSEST, CohesiveState, cohesive_length
 from restitution.contact.cohesive_path import separate_cohesive
 from restitution.contact.state import State
+from restitution.contact.unloading_curve import SharedUnloading, unloading_curve
 from restitution.errors import NotConvergedError
 from restitution.numerics.quadrature import integrate_curve
 from restitution.theory import Kendall
 
+Array = NDArray[np.float64]
+
 RESTITUTION_ERROR = 0.002
 _ACCURACY = 1e-3  # tolerance of the solves as a fraction of the crack opening at the edge
 _STEPS_OF_RECOVERY = 8  # fewest steps over the elastic recovery
-_STEPS_OF_TENSION = 16  # fewest steps over the pull-off displacement of a punch of the same area
+# fewest steps over the pull-off displacement of a punch of the same area
+_STEPS_OF_TENSION = {"crack-closure": 32, "pohrt-popov": 16}
 _FINEST = 400  # the shortest step is this pull-off displacement divided by 400
 _REFINEMENTS = (1, 2, 4)  # factors on the number of steps, tried until the tolerance is met
+# Error of the steps, in w times the contact area, below which the error of the grid is larger
+# (`collision`), so that finer steps would not reduce the sum.
+_SMALL = {"crack-closure": 0.005, "pohrt-popov": 0.0}
 _MOST_STEPS = 3000  # steps after which unloading counts as not converged
 # Error of the unloading work as a fraction of the work of late release. The integral through the
 # states after each release is free of this work to first order. A comparison with ten times finer
@@ -55,8 +62,16 @@ class Separation:
     steps: int
 
 
-def separate(state: State, *, tolerance: float = RESTITUTION_ERROR) -> Iterator[State]:
+def separate(
+    state: State,
+    *,
+    tolerance: float = RESTITUTION_ERROR,
+    known: Sequence[State] = (),
+) -> Iterator[State]:
     """Yield `state` and the states of unloading to separation, the last of them without contact.
+
+    `known` may be such states from a shallower depth of the same contact. If nothing has yielded
+    and both forces agree, the states below that depth are taken from there.
 
     If `state` is already without contact, it is the only state. `tolerance` is the error of the
     coefficient of restitution that the steps may cause. If the estimated error is larger, unloading
@@ -64,7 +79,7 @@ def separate(state: State, *, tolerance: float = RESTITUTION_ERROR) -> Iterator[
     do not separate.
     """
     for finer in _REFINEMENTS:
-        path = list(_unload(state, tolerance / finer, finer))
+        path = list(_unload(state, tolerance / finer, finer, known))
         separation = separation_of(path)
         returned, given = separation.unloading_work, state.loading_work
         # From e = sqrt(W_u/W_l), the errors satisfy 2 de/e = dW_u/W_u + dW_l/W_l. For a pair that
@@ -76,15 +91,21 @@ def separate(state: State, *, tolerance: float = RESTITUTION_ERROR) -> Iterator[
         loading = min(half * state.work_error / given, 0.5 * tolerance)
         if half * separation.error / returned + loading <= tolerance:
             break
+        surface_energy = state.contact.work_of_adhesion * state.contact_area
+        if separation.error <= _SMALL[state.contact.detachment] * surface_energy:
+            break
     yield from path
 
 
-def _unload(state: State, tolerance: float, finer: int) -> Iterator[State]:
+def _unload(
+    state: State, tolerance: float, finer: int, known: Sequence[State] = ()
+) -> Iterator[State]:
     """Yield `state` and the states to separation, in `finer` times as many steps or more."""
     contact = state.contact
     if isinstance(state, CohesiveState):
         yield from separate_cohesive(state, accuracy=_UNACCOUNTED * tolerance)
         return
+    other = SharedUnloading.of(state, known)
     yield state
     if state.contact_nodes == 0:
         return  # `approach = "pull-increments"` has released all nodes already
@@ -94,7 +115,7 @@ def _unload(state: State, tolerance: float, finer: int) -> Iterator[State]:
     for _ in range(_MOST_STEPS):
         reach = _tension_reach(state)
         longest = recovery / (finer * _STEPS_OF_RECOVERY)
-        shortened = reach / (finer * _STEPS_OF_TENSION)
+        shortened = reach / (finer * _STEPS_OF_TENSION[contact.detachment])
         if state.force < 0.1 * abs(_punch_force(state)):
             longest = min(longest, shortened)
         elif previous is not None:
@@ -126,6 +147,9 @@ def _unload(state: State, tolerance: float, finer: int) -> Iterator[State]:
         require_inside_grid(new)
         previous, state = state, new
         yield state
+        if other is not None and other.agrees(state):
+            yield from other.below(state)
+            return
         step *= min(2.0, max(0.5, 0.8 * allowed / late if late > 0 else 2.0))
     raise NotConvergedError(
         f"the bodies have not separated after {_MOST_STEPS} steps of unloading (indentation "
@@ -141,23 +165,25 @@ def separation_of(path: list[State]) -> Separation:
     start, end = path[0], path[-1]
     if isinstance(start, CohesiveState) and isinstance(end, CohesiveState):
         return _cohesive_separation(start, end, path)
-    work = -integrate_curve(depth, force)
     trapezoid = -float(np.trapezoid(force, depth))
-    # Error estimate: the work from every second state has at least four times the error of the work
-    # from all states.
-    fewer = np.append(np.arange(0, len(path) - 1, 2), len(path) - 1)
-    halved = -integrate_curve(depth[fewer], force[fewer])
     late = -float(np.dot([_late_force(state) for state in path[1:]], np.diff(depth)))
     # The energy that the bodies lose along the path must equal the work of the force. `late` is the
     # part of this work due to nodes that are released only at the end of a step.
     unaccounted = (start.loading_work - end.loading_work) - (trapezoid - late)
+    curve = unloading_curve(path)
+    found = curve.work()
+    # Unloading returns at most the elastic energy.
+    work = min(found, start.stored_energy) if curve.balanced else found
+    # The work of the curve without that of its states; zero to first order if they are the same.
+    scatter = work - trapezoid if curve.balanced else 0.0
     return Separation(
         unloading_work=work,
-        error=abs(work - halved)
-        + _LATENESS[start.contact.detachment] * abs(late)
+        error=abs(found - curve.halved().work())
+        + (found - work)
+        + (0.0 if curve.balanced else _LATENESS[start.contact.detachment] * abs(late))
         + abs(unaccounted),
-        adhesive_loss=start.adhesive_work - end.adhesive_work - late,
-        pull_off_force=max(0.0, -float(force.min())),
+        adhesive_loss=start.adhesive_work - end.adhesive_work - late - scatter,
+        pull_off_force=max(0.0, curve.largest_tension()),
         separation_indentation=end.indentation,
         convolutions=sum(state.convolutions for state in path[1:]),
         steps=len(path) - 1,
@@ -227,6 +253,8 @@ def _plan(state: State, tolerance: float) -> tuple[float, float]:
     # From dCOR = dW/(2 W_l COR), the tolerance allows dW = 2 W_l COR dCOR. Half of it is reserved
     # for the error of the loading work.
     allowed = 1.0 * tolerance * max(restitution, 0.05) * work
+    if balances_are_reliable(state):  # they do not depend on late releases
+        return recovery, math.inf
     return recovery, allowed / (_LATENESS[state.contact.detachment] * recovery)
 
 

@@ -46,6 +46,9 @@ class State:
         convolutions: Number of convolutions (1) that the solve took.
         force_before_release: Force before nodes were released in this step of adhesive unloading
             (N); None after loading.
+        balance: Indentation (m) and force (N) at which G = w on average along the edge of the
+            previous contact area, if this step of unloading released nodes of it; otherwise None.
+            None with `pohrt-popov` as well.
         is_first_loading: Whether the undeformed bodies were loaded to this state directly (bool).
     """
 
@@ -62,6 +65,7 @@ class State:
     residual: float
     convolutions: int
     force_before_release: float | None = None
+    balance: tuple[float, float] | None = None
     is_first_loading: bool = True
 
     def __post_init__(self) -> None:

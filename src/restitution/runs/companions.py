@@ -20,7 +20,8 @@ from restitution.case.case import Case
 from restitution.collision import UnloadingMethod, collide
 from restitution.contact.bodies import Pair
 from restitution.contact.contact import Contact, smooth
-from restitution.contact.path import loading_path
+from restitution.contact.path import loading_path, unloading_path
+from restitution.contact.state import State
 from restitution.errors import CaseError, DomainError, RestitutionError
 from restitution.runs.log import Say, ignore
 from restitution.surfaces.refine import coarsen
@@ -68,10 +69,13 @@ def curve_of(
     """
     works: list[float] = []
     restitutions: list[float] = []
+    back: list[State] = []
     for depth in (_SHALLOWER * depths[0], *depths, _DEEPER * depths[-1]):
         try:
             (state,) = loading_path(contact, [depth])
-            collision = collide(state, method=method, tolerance=tolerance)
+            if contact.adhesive and method == "path":
+                back = list(unloading_path(state, tolerance=tolerance, known=back))
+            collision = collide(state, back or None, method=method, tolerance=tolerance)
         except DomainError:
             break
         except RestitutionError:

@@ -66,18 +66,19 @@ def loaded_depths(case: Case, folder: Path, contact: Contact) -> Iterator[Depth]
 
 
 def collision_at(
-    case: Case, state: State, *, unload: bool = False
+    case: Case, state: State, *, unload: bool = False, known: Sequence[State] = ()
 ) -> tuple[Collision, Sequence[State]]:
     """The collision whose deepest point is `state`, and its unloading curve.
 
     The curve is computed if `unload` is true or the collision needs it; otherwise it is empty.
+    `known` is the unloading curve of a shallower depth (`unloading_path`).
     """
     followed = state.contact.adhesive and case.unloading.method == "path"
     back: list[State] = []
     if followed or unload:
         steps, tolerance = case.unloading.steps, case.unloading.restitution_error
         with naming_keys():
-            back = list(unloading_path(state, steps=steps, tolerance=tolerance))
+            back = list(unloading_path(state, steps=steps, tolerance=tolerance, known=known))
     return collide(state, back if followed else None, method=case.unloading.method), back
 
 

@@ -65,6 +65,7 @@ class _Run(RunLog):
     band_errors: list[float] = field(default_factory=list)
     depth_seconds: list[float] = field(default_factory=list)
     unloading_checks: list[dict[str, float]] = field(default_factory=list)
+    last_unloading: Sequence[State] = ()
 
 
 def run_case(
@@ -169,7 +170,8 @@ def _keep(
     depth: Depth, state: State, case: Case, out: ResultsFolder, run: _Run, unload: bool
 ) -> None:
     """Unload from a depth, and keep its row."""
-    collision, back = collision_at(case, state, unload=unload)
+    collision, back = collision_at(case, state, unload=unload, known=run.last_unloading)
+    run.last_unloading = back
     with hold_signals():  # an interruption leaves a complete row or no row
         run.asked.append(depth.asked)
         run.adhesive_nodes.append(adhesive_nodes(state))

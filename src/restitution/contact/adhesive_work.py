@@ -1,0 +1,95 @@
+"""Work of adhesive loading, from the balances of a few contact areas.
+
+The force of a loaded state scatters, because the edge of the contact lies between nodes. At the
+balance of its contact area (`adhesion`) the force does not scatter, so few depths suffice.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from restitution.contact.adhesion import balance_of
+from restitution.contact.contact import Contact
+from restitution.contact.state import State
+
+# Numbers of intervals between the depths: at first, from first touch and from another state, and at
+# most. The depths are closer at first touch, at t to this power, because the force bends there.
+_FROM_TOUCH, _FROM_STATE, _MOST = 4, 2, 16
+_CROWDING = 1.5
+# Factor on the difference from half as many depths, because the force of rough contacts jumps.
+_MARGIN = 1.5
+# Error of the work because the loading steps influence which nodes attach, divided by w times the
+# area. The references have 240 steps from first touch. The work was within these bounds in 93 % of
+# 29 validation contacts with `equilibrium`, and in all 11 contacts with `pull-increments`.
+_PINNING = {"equilibrium": 0.02, "pull-increments": 0.006, "hertzian": 0.0}
+
+Point = tuple[float, float]  # indentation (m) and force (N)
+
+
+def work_by_balance(
+    state: State,
+    start: State | None,
+    load: Callable[[Contact, float], State],
+    tolerance: float,
+) -> tuple[float, float, int]:
+    """Return the loading work (J), the error of the quadrature (J) and the convolutions.
+
+    The work is integrated from `start`, or from first touch. `load` solves at another depth (m).
+    `tolerance` is relative to the work.
+    """
+    contact, last = state.contact, state.indentation
+    first, work, convolutions = 0.0, 0.0, 0
+    if start is None:
+        begin = load(contact, 0.0)  # right after the jump into contact
+        convolutions += begin.convolutions
+    else:
+        begin, first, work = start, start.indentation, start.loading_work
+    points = {0.0: balance_of(begin), 1.0: balance_of(state)}
+    parts = 1
+    value = _integral([points[0.0], points[1.0]], first, last)
+    scale = abs(work) + 0.5 * (abs(begin.force) + abs(state.force)) * (last - first)
+    # The force grows, so the work differs from that of a straight line by at most this much.
+    error = 0.5 * abs(points[1.0][1] - points[0.0][1]) * (last - first)
+    while error > tolerance * scale and parts < _MOST:
+        parts = max(2 * parts, _FROM_TOUCH if start is None else _FROM_STATE)
+        for k in range(1, parts):
+            t = k / parts
+            if t not in points:
+                found = load(contact, first + (last - first) * t**_CROWDING)
+                convolutions += found.convolutions
+                points[t] = balance_of(found)
+        ordered = [points[t] for t in sorted(points)]
+        value = _integral(ordered, first, last)
+        error = _MARGIN * abs(value - _integral(ordered[::2], first, last))
+    return work + value, error, convolutions
+
+
+def pinning_error(state: State) -> float:
+    """Error of the work (J) because the grid pins the contact edge between its nodes."""
+    contact = state.contact
+    return _PINNING[contact.approach] * contact.work_of_adhesion * state.contact_area
+
+
+def _integral(points: list[Point], first: float, last: float) -> float:
+    """Integral of the force from `first` to `last` (m), extrapolated linearly at both ends."""
+    from scipy.interpolate import CubicSpline
+
+    x, F = np.array(_increasing(points)).T
+    if x.size == 1:
+        return float(F[0]) * (last - first)
+    slopes = np.diff(F) / np.diff(x)
+    before, after = x[0] - first, last - x[-1]
+    ends = F[0] * before - 0.5 * slopes[0] * before**2
+    ends += F[-1] * after + 0.5 * slopes[-1] * after**2
+    return float(CubicSpline(x, F).integrate(x[0], x[-1])) + float(ends)
+
+
+def _increasing(points: list[Point]) -> list[Point]:
+    """The points without those at a smaller indentation than the point before."""
+    kept = points[:1]
+    for point in points[1:]:
+        if point[0] > kept[-1][0]:
+            kept.append(point)
+    return kept

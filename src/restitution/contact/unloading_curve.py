@@ -1,0 +1,165 @@
+"""Curves of adhesive unloading: force over indentation, and where two of them are the same."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.contact.adhesion import balances_are_reliable
+from restitution.contact.state import State
+from restitution.numerics.quadrature import integrate_curve
+
+Array = NDArray[np.float64]
+
+_FEW_NODES = 10  # a smaller contact has too few edge nodes for a balance
+_SMOOTHED = 11  # points through which a parabola smooths the force under tension
+_JUMP = 0.1  # a larger change of force between two points, over the largest tension, is a jump
+# Largest difference between two forces at one indentation, over the largest tension, if they are
+# the same but for the scatter of the balances.
+_SAME = 0.03
+
+
+@dataclass(frozen=True)
+class UnloadingCurve:
+    """Force (N) over decreasing indentation (m), shape (points,).
+
+    With `crack-closure` the points are the state at which unloading begins and the balances of the
+    contact areas, which do not contain the jumps of the force when nodes are released. With
+    `pohrt-popov` the points are the states. `fixed` says that the contact area is fixed between the
+    first two points, so that the force is linear.
+    """
+
+    indentation: Array
+    force: Array
+    balanced: bool
+    fixed: bool = False
+
+    def work(self) -> float:
+        """Work of unloading (J)."""
+        x, F = self.indentation, self.force
+        if not self.fixed:
+            return -integrate_curve(x, F)
+        return -float(np.trapezoid(F[:2], x[:2])) - integrate_curve(x[1:], F[1:])
+
+    def halved(self) -> UnloadingCurve:
+        """Leave out every second point.
+
+        The work from these points has at least four times the error of the work from all points.
+        """
+        last = self.force.size - 1
+        fewer = np.append(np.arange(0, last, 2), last)
+        if self.fixed:
+            fewer = np.unique([0, *range(1, last, 2), last])
+        return replace(self, indentation=self.indentation[fewer], force=self.force[fewer])
+
+    def largest_tension(self) -> float:
+        """Largest tension (N); without the scatter of the points, if they are balances."""
+        F = self.force
+        if not self.balanced:
+            return -float(F.min())
+        largest = -float(F.min())
+        # Where contacts snap apart the force jumps; such a jump must not be smoothed.
+        jumps = np.flatnonzero(np.abs(np.diff(F)) > _JUMP * largest) + 1
+        smoothed = [
+            _smoothed(x, part)
+            for x, part in zip(np.split(self.indentation, jumps), np.split(F, jumps), strict=True)
+        ]
+        return -min(float(part.min()) for part in smoothed)
+
+
+def unloading_curve(path: list[State]) -> UnloadingCurve:
+    """The curve of a `path` from `separate`.
+
+    Each contact area has one point, its balance. An area without a balance has all its states.
+    """
+    states = [(state.indentation, state.force) for state in path]
+    balances = [state.balance for state in path[1:]]
+    nodes = [state.contact_nodes for state in path]
+    if not any(balances) or not balances_are_reliable(path[0]):
+        indentation, force = np.array(states).T
+        return UnloadingCurve(indentation, force, balanced=False)
+    points: list[tuple[float, float]] = []
+    same_area: list[tuple[float, float]] = []
+    for k, balance in enumerate(balances):
+        same_area.append(states[k])
+        if nodes[k + 1] == nodes[k]:
+            continue
+        found = same_area if balance is None or nodes[k] < _FEW_NODES else [balance]
+        points += [point for point in found if not points or point[0] < points[-1][0]]
+        same_area = []
+    fixed = points[0][0] < states[0][0]
+    points = [states[0], *points] if fixed else points
+    indentation, force = np.array(points).T
+    return UnloadingCurve(indentation, force, balanced=True, fixed=fixed)
+
+
+def _smoothed(x: Array, F: Array) -> Array:
+    """Replace each value by that of the least-squares parabola through the nearest points.
+
+    The parabola is limited to the range of their values. Fewer than five points are returned.
+    """
+    window = min(_SMOOTHED, F.size)
+    if window < 5:
+        return F
+    smoothed = np.empty(F.size)
+    for k in range(F.size):
+        first = min(max(k - window // 2, 0), F.size - window)
+        near = slice(first, first + window)
+        t = (x[near] - x[k]) / (x[first] - x[first + window - 1])
+        value = np.polynomial.polynomial.polyfit(t, F[near], 2)[0]
+        smoothed[k] = np.clip(value, F[near].min(), F[near].max())
+    return smoothed
+
+
+@dataclass(frozen=True)
+class SharedUnloading:
+    """Unloading from a shallower depth, which deeper unloading of elastic bodies joins.
+
+    An elastic contact has one equilibrium at each indentation while it unloads, whatever the depth
+    from which it came.
+    """
+
+    states: Sequence[State]
+    curve: UnloadingCurve
+
+    @classmethod
+    def of(cls, state: State, known: Sequence[State]) -> SharedUnloading | None:
+        """The unloading `known` if `state` may join it; otherwise None."""
+        if not known or known[0].contact is not state.contact or known[-1].contact_nodes:
+            return None
+        if state.plastic_displacement.any() or known[0].plastic_displacement.any():
+            return None
+        curve = unloading_curve(list(known))
+        return cls(known, curve) if curve.balanced and balances_are_reliable(state) else None
+
+    def agrees(self, state: State) -> bool:
+        """Whether the contact area before `state` balances at a force of the known unloading."""
+        if state.balance is None:
+            return False
+        (at, force), x, F = state.balance, self.curve.indentation, self.curve.force
+        if not x[1] >= at > x[-1] or not self._following(state):
+            return False
+        known = float(np.interp(at, x[::-1], F[::-1]))
+        return abs(force - known) <= _SAME * max(self.curve.largest_tension(), abs(force))
+
+    def below(self, state: State) -> Iterator[State]:
+        """The known states at smaller indentations, with the works of unloading from `state`."""
+        following = self._following(state)
+        first = following[0]
+        fallen = 0.5 * (state.force + first.force) * (state.indentation - first.indentation)
+        # The work before the first state follows from the forces, all later works as they are.
+        offset = first.loading_work - (state.loading_work - fallen)
+        for each in following:
+            joined = replace(each, adhesive_work=each.adhesive_work + offset, convolutions=0)
+            if each is first:
+                joined = replace(joined, force_before_release=each.force)
+            yield joined
+
+    def _following(self, state: State) -> list[State]:
+        started = next((k for k, each in enumerate(self.states) if each.balance is not None), None)
+        if started is None:
+            return []
+        return [each for each in self.states[started:] if each.indentation < state.indentation]
