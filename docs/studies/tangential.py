@@ -2,7 +2,7 @@
 
     python docs/studies/tangential.py
 
-Writes docs/studies/tangential.csv and prints the table of docs/oblique.md. A quarter of an hour.
+Writes docs/studies/tangential.csv and prints the table of docs/oblique.md. Half an hour.
 
 Each contact is run as a case, and the one-dimensional law (`laws.foundation`) is made from its
 stored results as `restitution simulate` does it. The boundary elements (`contact.tangential`) solve

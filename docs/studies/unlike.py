@@ -11,7 +11,8 @@ Dundurs, the surfaces move relative to each other by
 where H_x integrates x/r² over a cell (Johnson 1985, *Contact Mechanics*, §3.6). Pressure and
 traction are solved in turn until both are in equilibrium; the traction has both components, and
 |q| ≤ µ p. Under pressure alone, the sticking circle is that of Spence (1975, J. Elast. 5, 297–319)
-within half a cell: ln[(a + c)/(a − c)] a/2c = (µ/β) K(√(1 − c²/a²)). In impacts, the impulse of the tangential force is compared with that for β = 0.
+within a cell: ln[(a + c)/(a − c)] a/2c = (µ/β) K(√(1 − c²/a²)). In impacts, the impulse of the
+tangential force is compared with that for β = 0.
 """
 
 from __future__ import annotations
