@@ -75,7 +75,7 @@ def test_results_are_not_overwritten(results, case):
 def test_stored_results_are_opened(results, tmp_path):
     found = rs.open_results(str(results.folder))
     assert found.curve.rows == results.curve.rows
-    with pytest.raises(rs.RestitutionError, match="does not hold the results"):
+    with pytest.raises(rs.RestitutionError, match="holds no results; give the folder"):
         rs.open_results(tmp_path)
 
 

@@ -118,6 +118,30 @@ def test_full_slip_follows_its_closed_form(run):
     assert run.oblique[1]["slides"]
 
 
+def test_the_error_contains_that_of_the_normal_restitution(tmp_path):
+    """In full slip, e_t = 1 − µ (1 + e_n)/tan θ, and like bodies have no other error."""
+    text = CASE.replace("total_error = false\n", "").replace('"10 deg", "60 deg"', '"60 deg"')
+    run = computed(text.replace('"0.05 m/s", ', ""), tmp_path / "out")
+    assert run.oblique[0]["slides"]
+    for row in run.oblique:
+        normal, angle = row["normal_restitution_error"], row["angle_rad"]
+        V_n = row["impact_velocity_m_per_s"] * math.cos(angle)
+        assert normal > 0
+        expected = 0.2 * normal / math.tan(angle)
+        assert row["tangential_restitution_error"] == approx(expected, rel=1e-6)
+        body = run.case.pair().first
+        impulse = 0.2 * normal * run.case.pair().mass * V_n
+        turned = 2.5 * impulse / (body.mass * body.radius)
+        assert row["first_spin_error_rad_per_s"] == approx(turned, rel=1e-6)
+        # The angle of rebound atan(e_t tan θ/e_n), with both restitutions at their worst.
+        worst = math.atan2(
+            (row["tangential_restitution"] + expected) * math.tan(angle),
+            row["normal_restitution"] - normal,
+        )
+        shift = worst - row["rebound_angle_rad"]
+        assert row["rebound_angle_error_rad"] == approx(shift, rel=0.1)
+
+
 def test_a_run_without_angles_has_no_oblique_impacts(run, tmp_path):
     text = re.sub("(angle|spin) = .*\n", "", CASE).replace('["0.05 m/s", "0.1 m/s"]', '"0.1 m/s"')
     plain = computed(text, tmp_path / "out")

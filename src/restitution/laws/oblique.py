@@ -26,6 +26,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.contact.bodies import Pair
 from restitution.display import quantity, summary_html, summary_text
 from restitution.errors import CaseError
 from restitution.laws.foundation import Foundation
@@ -161,10 +162,7 @@ def collide_obliquely(
     dJ = course.impulse_error + error.sliding * abs(J)
     if sliding > 0:
         dJ += error.impulse * abs(J) * max(1 - abs(J) / sliding, 0.0)
-    turns = [
-        0.0 if R == 0 else 2.5 / (body.mass or math.inf) / R
-        for R, body in zip(arms, bodies, strict=True)
-    ]
+    turns = spin_per_impulse(law.pair)
     after = V_t - J / mass
     rebound = math.atan2(after, e * V_n)
     return ObliqueCollision(
@@ -189,6 +187,15 @@ def collide_obliquely(
         slip_velocity=course.slip,
         sticking=course.sticking,
     )
+
+
+def spin_per_impulse(pair: Pair) -> tuple[float, float]:
+    """Change of the spins of both bodies per tangential impulse (rad/s per N s); 0 for a wall."""
+    first, second = (
+        0.0 if math.isinf(body.radius) else 2.5 / (body.mass or math.inf) / body.radius
+        for body in (pair.first, pair.second)
+    )
+    return first, second
 
 
 def oblique_force(run: RunResults, key: str = "angle") -> StoredForce:

@@ -164,8 +164,9 @@ def stored_force(out: Path) -> StoredForce:
 def force_of(pair: Pair, results: xr.Dataset, unloading: Sequence[UnloadingCurve]) -> StoredForce:
     """Make the force law of `pair` from the variables of a curve and its unloading curves.
 
-    `results` has the variables of `results.nc`; `unloading` is sorted by its starts. Raises
-    `OutputError` if no unloading reaches separation, `CaseError` if `pair` has no mass.
+    `results` has the variables of `results.nc`, with the height over x and y; `unloading` is sorted
+    by its starts. Raises `OutputError` if no unloading reaches separation, `CaseError` if `pair`
+    has no mass.
     """
     depth, force = results["indentation"].values, results["force"].values
     return StoredForce(

@@ -12,8 +12,7 @@ from restitution.plots.oblique import oblique_figure
 _NOTE = (
     "Tangential restitution and angles are those of the centres; spins are positive in the sense "
     "in which friction turns a body without spin. The dotted line marks the angle from which the "
-    "whole contact slides. The tangential law is exact for smooth elastic spheres of like "
-    "materials."
+    "whole contact slides. The error of e_t contains the errors of the tangential law and of e_n."
 )
 
 
@@ -28,6 +27,7 @@ def oblique_drawing(results: xr.Dataset, rows: list[dict[str, float]]) -> Drawin
             math.degrees(row["angle_rad"]),
             row["normal_restitution"],
             row["tangential_restitution"],
+            row.get("tangential_restitution_error", math.nan),
             math.degrees(row["rebound_angle_rad"]),
             row["first_spin_rad_per_s"],
             row["second_spin_rad_per_s"],
@@ -49,6 +49,7 @@ def oblique_drawing(results: xr.Dataset, rows: list[dict[str, float]]) -> Drawin
                 "angle (°)",
                 "e_n",
                 "e_t",
+                "± e_t",
                 "rebound (°)",
                 "first spin (rad/s)",
                 "second spin (rad/s)",

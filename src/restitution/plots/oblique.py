@@ -66,6 +66,7 @@ def _points(results: xr.Dataset, variable: str, scale: float) -> Iterator[Points
     degrees = np.degrees(results["oblique_angle"].values)
     for k, velocity in enumerate(results["oblique_velocity"].values):
         values = scale * results[variable][k].values
+        error = scale * results[f"{variable}_error"][k].values
         known = np.isfinite(values)
         yield Points(
             degrees[known],
@@ -74,6 +75,8 @@ def _points(results: xr.Dataset, variable: str, scale: float) -> Iterator[Points
             color=PALETTE[k % len(PALETTE)],
             symbol=SYMBOLS[k % len(SYMBOLS)],
             joined=True,
+            error=error[known] if np.isfinite(error[known]).all() else None,
+            error_label="bars: error" if k == 0 else "",
             open=results["oblique_slides"][k].values[known] == 0,
             open_label="open: sticks in part",
         )

@@ -168,6 +168,22 @@ OBLIQUE_COLUMNS = {
     "second_spin_rad_per_s": Column(
         "oblique_second_spin", "rad s-1", "spin of the second body after the impact"
     ),
+    "tangential_restitution_error": Column(
+        "oblique_tangential_restitution_error",
+        "1",
+        "error of tangential_restitution",
+        low=0.0,
+        optional=True,
+    ),
+    "rebound_angle_error_rad": Column(
+        "oblique_rebound_angle_error", "rad", "error of rebound_angle", low=0.0, optional=True
+    ),
+    "first_spin_error_rad_per_s": Column(
+        "oblique_first_spin_error", "rad s-1", "error of first_spin", low=0.0, optional=True
+    ),
+    "second_spin_error_rad_per_s": Column(
+        "oblique_second_spin_error", "rad s-1", "error of second_spin", low=0.0, optional=True
+    ),
     "friction_loss_J": Column("oblique_friction_loss", "J", "energy lost to friction", low=0.0),
     "normal_loss_J": Column(
         "oblique_normal_loss", "J", "energy lost in the normal contact", low=0.0

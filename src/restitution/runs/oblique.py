@@ -15,10 +15,11 @@ import xarray as xr
 from restitution.case.case import Case
 from restitution.case.schema import ImpactTable
 from restitution.errors import CaseError, DomainError, NotConvergedError, OutputError
-from restitution.laws.oblique import ObliqueCollision, collide_obliquely
+from restitution.laws.oblique import ObliqueCollision, collide_obliquely, spin_per_impulse
 from restitution.laws.time_integration import StoredForce, force_of
 from restitution.results.reader import UnloadingCurve
 from restitution.results.writer import ResultsFolder, curve_variables
+from restitution.surfaces import Surface
 
 _Row = dict[str, float]
 _SAME = 1e-3  # largest relative difference of normal velocities that count as equal
@@ -29,7 +30,7 @@ def is_oblique(case: Case) -> bool:
     return case.impact is not None and case.impact.oblique
 
 
-def oblique_rows(case: Case, out: ResultsFolder) -> tuple[list[_Row], str | None]:
+def oblique_rows(case: Case, surface: Surface, out: ResultsFolder) -> tuple[list[_Row], str | None]:
     """Compute the oblique impacts of `case` from the rows and the unloading curves of `out`.
 
     Returns a row of `oblique.csv` for each impact, and a warning that names the impacts that could
@@ -39,7 +40,7 @@ def oblique_rows(case: Case, out: ResultsFolder) -> tuple[list[_Row], str | None
     assert impact is not None  # is_oblique
     assert friction is not None  # Case._check_oblique
     try:
-        law = _force(case, out)
+        law = _force(case, surface, out)
     except (CaseError, OutputError, ValueError) as error:
         return [], f"oblique impacts are not computed: {error}"
     rows: list[_Row] = []
@@ -79,7 +80,7 @@ def mean_oblique(tables: Sequence[Sequence[_Row]]) -> list[_Row]:
     return means
 
 
-def _force(case: Case, out: ResultsFolder) -> StoredForce:
+def _force(case: Case, surface: Surface, out: ResultsFolder) -> StoredForce:
     """The force law of the rows and unloading curves that a run has computed so far."""
     curves = []
     for start, points in out.unloading:
@@ -88,7 +89,12 @@ def _force(case: Case, out: ResultsFolder) -> StoredForce:
     curves.sort(key=lambda curve: curve.start)
     if not curves:
         raise OutputError("the run has no unloading curves")
-    return force_of(case.pair(), xr.Dataset(curve_variables(out.rows)), curves)
+    grid = surface.grid
+    results = xr.Dataset(
+        curve_variables(out.rows) | {"height": (("x", "y"), surface.height)},
+        coords={"x": grid.x, "y": grid.y},
+    )
+    return force_of(case.pair(), results, curves)
 
 
 def _row(
@@ -108,7 +114,7 @@ def _row(
         normal = nearest["impact_velocity_m_per_s"]
         error = nearest["total_error"]
     found = collide_obliquely(law, normal / math.cos(angle), angle, friction, impact.spins())
-    return _cells(found, velocity, impact.spins(), error)
+    return _cells(found, velocity, impact.spins(), error) | _errors(law, found, error)
 
 
 def _apart(row: _Row, normal: float) -> float:
@@ -135,4 +141,31 @@ def _cells(
         "friction_loss_J": found.friction_loss,
         "normal_loss_J": max(found.normal_loss, 0.0),
         "slides": found.sliding,
+    }
+
+
+def _errors(law: StoredForce, found: ObliqueCollision, error: float) -> _Row:
+    """Errors of the tangential results, which include the `error` of the normal restitution.
+
+    A larger normal restitution by de increases the impulse of friction by at most µ m* V_n de, its
+    change in full slip.
+    """
+    normal_velocity = found.velocity * math.cos(found.angle)
+    impulse = found.friction * error * (law.pair.mass or math.nan) * normal_velocity
+    tangent = math.tan(found.angle)
+    tangential = math.nan
+    if tangent > 0:
+        tangential = found.tangential_restitution_error + found.friction * error / tangent
+    # The angle of rebound is atan(e_t tan θ/e_n).
+    rebound = math.tan(found.rebound_angle)
+    shift = tangent * (tangential if tangent > 0 else 0.0) + abs(rebound) * error
+    turned = [
+        by_law + impulse * turn
+        for by_law, turn in zip(found.spin_errors, spin_per_impulse(law.pair), strict=True)
+    ]
+    return {
+        "tangential_restitution_error": tangential,
+        "rebound_angle_error_rad": shift / found.normal_restitution / (1 + rebound**2),
+        "first_spin_error_rad_per_s": turned[0],
+        "second_spin_error_rad_per_s": turned[1],
     }

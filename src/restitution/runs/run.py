@@ -114,7 +114,7 @@ def run_case(
         if errors and case.total_error and out.rows:
             _add_errors(case, folder, contact.surface, out, run)
         if is_oblique(case) and out.rows:
-            oblique, missing = oblique_rows(case, out)
+            oblique, missing = oblique_rows(case, contact.surface, out)
             out.put_oblique(oblique)
             run.warnings += [missing] if missing else []
         if failure is not None:
