@@ -54,7 +54,8 @@ checked with the pressures alone, by code that none of the programs use. "force"
 of the force from that prescribed, "nodes" the difference of the number of nodes in contact from
 that of restitution. restitution always meets the pressure to 1e-8, which needs accurate solutions,
 so its own tolerance hardly matters. The programs take turns {rounds} times, in an order that is
-reversed each time; ratios are medians (smallest–largest). [Beside other programs](peers.md) says what a time includes.
+reversed each time; ratios are medians (smallest–largest). [Beside other programs](peers.md) says
+what a time includes.
 
 Tamaas solves elastic contact by `PolonskyKeerRey` and plastic contact by `KatoSaturated`.
 ContactMechanics solves them by `minimize_proxy` with `external_force`. A program that needs more
