@@ -31,6 +31,10 @@ def test_limits_of_control_groups(tmp_path, monkeypatch, groups, file, text, lim
     assert memory._of_control_groups(str(tmp_path / "groups")) == limit
 
 
+def test_a_system_without_control_groups_has_no_limit(tmp_path):
+    assert memory._of_control_groups(str(tmp_path / "absent")) == math.inf
+
+
 def test_the_least_limit_counts(monkeypatch):
     monkeypatch.setattr(memory, "_of_machine", lambda: 5e9)
     monkeypatch.setattr(memory, "_of_control_groups", lambda: 3e9)
