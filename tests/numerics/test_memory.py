@@ -31,6 +31,10 @@ def test_limits_of_control_groups(tmp_path, monkeypatch, groups, file, text, lim
     assert memory._of_control_groups(str(tmp_path / "groups")) == limit
 
 
+def test_a_system_without_control_groups_has_no_limit(tmp_path):
+    assert memory._of_control_groups(str(tmp_path / "absent")) == math.inf
+
+
 def test_the_least_limit_counts(monkeypatch):
     monkeypatch.setattr(memory, "_of_machine", lambda: 5e9)
     monkeypatch.setattr(memory, "_of_control_groups", lambda: 3e9)
@@ -59,3 +63,20 @@ def test_addresses_that_are_only_reserved_do_not_count_as_free(monkeypatch):
         1024 * int(re.search(rf"{name}:\s+(\d+) kB", status)[1]) for name in ("VmSize", "VmRSS")
     )
     assert 10**12 - memory._of_address_space() == approx(size - resident, abs=1e7)
+
+
+@pytest.mark.parametrize("error", [AttributeError, ValueError, OSError])
+def test_a_system_that_does_not_say_its_memory_has_no_limit(monkeypatch, error):
+    def fail(_):
+        raise error
+
+    monkeypatch.setattr("os.sysconf", fail)
+    assert memory._of_machine() == math.inf
+
+
+def test_sizes_in_words():
+    assert [memory.in_words(size) for size in (1e9, 999e6, 2.345e10)] == [
+        "1 GB",
+        "999 MB",
+        "23.4 GB",
+    ]

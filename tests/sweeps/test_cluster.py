@@ -38,9 +38,7 @@ def cluster():
             break
     assert address, "the scheduler has not started"
     for _ in range(2):
-        started.append(
-            dask("dask_worker", address, "--nthreads", "1", "--no-nanny", "--no-dashboard")
-        )
+        started.append(dask("dask_worker", address, "--nthreads", "1", "--no-dashboard"))
     for worker in started[1:]:
         for line in worker.stderr:
             if "Registered to" in line:
