@@ -50,7 +50,7 @@ time ends when the browser has painted the new curve of COR. Medians in ms (larg
 |---|---|---|---|---|
 {rows}
 
-A curve of the bound that grows needs two solves at each depth, and one more for its work.
+A curve of the bound that grows needs two solves at each depth; [their time](growing-bound.md).
 
 Memory of the server and its processes, with the constant bound: {before:.0f} MiB after {changes}
 changes, and {after:.0f} MiB after {many} more.
