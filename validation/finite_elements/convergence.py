@@ -19,6 +19,7 @@ TABLE = HERE / "data" / "convergence.csv"
 README = HERE / "README.md"
 CHECKS = HERE / "data" / "checks"
 QUANTITIES = ("restitution", "force_N")
+_LEAST = 0.002  # relative error of smooth spheres (README.md)
 VALUES = [name + suffix for name in QUANTITIES for suffix in ("", "_uncertainty")]
 FIELDS = ("case", "omega", "mesh", "element_size_m", "elements", *VALUES)
 
@@ -29,13 +30,14 @@ def extrapolated(values: list[float]) -> tuple[float, float]:
     Where the values converge, the error is assumed of first order in the element size, as that of
     the contact edge is (Richardson): the limit is the last value plus the last change, and the last
     change is its uncertainty. Otherwise the limit is the last value, and the uncertainty is the
-    range of all values.
+    range of all values. The uncertainty is at least that of smooth spheres.
     """
+    least = _LEAST * abs(values[-1])
     changes = [b - a for a, b in itertools.pairwise(values)]
     last = changes[-1]
     if len(changes) == 1 or (last * changes[-2] > 0 and abs(last) < abs(changes[-2])):
-        return values[-1] + last, abs(last)
-    return values[-1], max(values) - min(values)
+        return values[-1] + last, max(abs(last), least)
+    return values[-1], max(max(values) - min(values), least)
 
 
 def meshes(kind: str, position: int) -> list[dict]:
