@@ -19,8 +19,8 @@ yield_pressure = "1.5 GPa"
 work_of_adhesion = "0.02 J/m^2"
 adhesion = "cohesive"
 [grid]
-nodes = 44
-spacing = "0.15 um"
+nodes = 60
+spacing = "0.08 um"
 [indentation]
 values = ["3 nm", "6 nm"]
 [unloading]
@@ -63,10 +63,10 @@ def test_the_grid_chooses_the_model(run):
     fine, summary, warned = run((GIVEN, ""))
     assert summary["model"]["adhesion"].startswith("Lennard-Jones")
     assert "interface.adhesion" not in warned
-    coarse, summary, warned = run((GIVEN, ""), ("0.15 um", "0.25 um"))
+    coarse, summary, warned = run((GIVEN, ""), ("0.08 um", "0.25 um"))
     assert summary["model"]["adhesion"] == "JKR limit"
     assert "interface.adhesion is left out" in warned
-    assert "needs 201.6 nm" in warned
+    assert "needs 82.16 nm" in warned
     # the model error of JKR covers the difference
     for with_range, without in zip(fine, coarse, strict=True):
         off = abs(float(with_range["restitution"]) - float(without["restitution"]))
@@ -79,15 +79,15 @@ def test_keys_of_jkr_choose_jkr(run):
 
 
 def test_refine_auto_finds_the_spacing(run):
-    auto = ('spacing = "0.15 um"', 'spacing = "0.3 um"\nrefine = "auto"')
-    _, summary, _ = run(auto, ("nodes = 44", "nodes = 22"), ('"3 nm", "6 nm"', '"6 nm"'))
+    auto = ('spacing = "0.08 um"', 'spacing = "0.16 um"\nrefine = "auto"')
+    _, summary, _ = run(auto, ("nodes = 60", "nodes = 30"), ('"3 nm", "6 nm"', '"6 nm"'))
     assert summary["model"]["refine"] >= 2
 
 
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ('"0.15 um"', '"0.25 um"', ("grid.spacing: 250 nm", "needs 201.6 nm", "refine")),
+        ('"0.08 um"', '"0.25 um"', ("grid.spacing: 250 nm", "needs 82.16 nm", "refine")),
         (GIVEN, GIVEN + 'detachment = "pohrt-popov"\n', ("detachment", "cohesive")),
         (GIVEN, GIVEN + 'approach = "hertzian"\n', ("approach", "cohesive")),
         (GIVEN, GIVEN + 'approach = "pull-increments"\n', ("approach", "cohesive")),

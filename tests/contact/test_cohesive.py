@@ -39,7 +39,7 @@ def pair_of(tabor):
     return Pair(body, body)
 
 
-def sphere(tabor, depth, *, cells=0.4, rough=0.0, seed=0, **options):
+def sphere(tabor, depth, *, cells=0.3, rough=0.0, seed=0, **options):
     """A cohesive contact on a grid for loading to `depth` (in z0); `cells` over the zone length."""
     pair = pair_of(tabor)
     h = min(cells * LENGTH, 0.25 * math.sqrt(pair.radius * Z0))
@@ -218,9 +218,9 @@ def test_contact_is_where_the_law_is_stable():
 
 def test_a_coarse_grid_is_refused():
     contact = sphere(1.0, 2.0)
-    coarse = replace(contact, surface=smooth(Grid(40, 1.01 * 0.8 * cohesive_length(contact))))
+    coarse = replace(contact, surface=smooth(Grid(40, 1.01 * 0.3 * cohesive_length(contact))))
     needed = needed_spacing(contact)
-    assert needed == approx(0.4 * LENGTH)
+    assert needed == approx(0.3 * LENGTH)
     with pytest.raises(CaseError, match=f"needs {1e9 * needed:.4g} nm or less"):
         solve(coarse, Z0)
 

@@ -285,7 +285,7 @@ class Case(Table):
         w, z0 = interface.adhesive_energy, interface.equilibrium_separation
         if w == 0 or interface.needs_jkr:
             return "jkr"
-        needed = coarsest_spacing(self.pair().contact_modulus, w, z0)
+        needed = coarsest_spacing(self.pair(), w, z0)
         return "cohesive" if max(grid.spacing) <= needed else "jkr"
 
     def run_bytes(self, grid: Grid) -> float:

@@ -24,8 +24,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.contact.bodies import Pair
 from restitution.contact.contact import Contact
 from restitution.contact.influence import half_space
+from restitution.contact.interface_law import BoundedLaw, stiffness
 from restitution.contact.state import State
 from restitution.errors import CaseError, NotConvergedError
 from restitution.numerics.box import Box, bounding_box, reframe, shape_of
@@ -37,11 +39,10 @@ from restitution.theory import LennardJones
 
 Array = NDArray[np.float64]
 
-# Largest spacing over the length of the cohesive zone E*z₀²/w. On coarser grids the edge of the
-# contact is held between nodes and the hysteresis is wrong (docs/adhesion.md).
-COARSEST = 0.4
-# Solves up to twice this spacing are for the comparison of grids; their error covers it.
-_REFUSED = 2 * COARSEST
+# Largest spacing over the length of the cohesive zone E*z₀²/w, and over sqrt(R*z₀). On coarser
+# grids the edge of the contact is held between nodes, and hysteresis and pull-off are wrong.
+COARSEST = 0.3
+COMPANION = "companion"  # provenance of a surface that is only compared with a finer grid
 _REACH = 12.0  # nodes with rigid gaps up to this multiple of z₀ are solved
 # Tolerance of u over z₀, in units of the `residual` of a solve; rounding limits it.
 _TOLERANCE, _LEAST_TOLERANCE = 100.0, 1e-7
@@ -98,15 +99,19 @@ def cohesive_length(contact: Contact) -> float:
     return contact.pair.contact_modulus * z0**2 / w
 
 
-def coarsest_spacing(contact_modulus: float, work_of_adhesion: float, z0: float) -> float:
-    """The largest grid spacing (m) that resolves the cohesive zone, with a margin for rounding."""
-    return COARSEST * (1 + 1e-9) * contact_modulus * z0**2 / work_of_adhesion
+def coarsest_spacing(pair: Pair, work_of_adhesion: float, z0: float) -> float:
+    """The largest grid spacing (m) that resolves cohesive zone and range, with rounding margin.
+
+    The range is z₀ above a paraboloid of radius R*: it ends at a distance of sqrt(2R*z₀).
+    """
+    zone = pair.contact_modulus * z0**2 / work_of_adhesion
+    return COARSEST * (1 + 1e-9) * min(zone, math.sqrt(pair.radius * z0))
 
 
 def needed_spacing(contact: Contact) -> float:
     """The `coarsest_spacing` (m) of `contact`."""
-    z0, w = contact.equilibrium_separation, contact.work_of_adhesion
-    return coarsest_spacing(contact.pair.contact_modulus, w, z0)
+    w, z0 = contact.work_of_adhesion, contact.equilibrium_separation
+    return coarsest_spacing(contact.pair, w, z0)
 
 
 def resolves_range(contact: Contact) -> bool:
@@ -115,13 +120,12 @@ def resolves_range(contact: Contact) -> bool:
 
 
 def require_fine_grid(contact: Contact) -> None:
-    """Raise `CaseError` if the cells are far too coarse for the range of the attraction."""
-    h = max(contact.grid.spacing)
-    if h > _REFUSED / COARSEST * needed_spacing(contact):
+    """Raise `CaseError` if the cells are too coarse for the range, except for a `COMPANION`."""
+    if not resolves_range(contact) and not contact.surface.provenance.get(COMPANION):
         raise CaseError(
-            f"grid.spacing: {1e9 * h:.4g} nm is too coarse for the range of the attraction; "
-            f'adhesion = "cohesive" needs {1e9 * needed_spacing(contact):.4g} nm or less '
-            "(0.4 E* z0^2/w)"
+            f"grid.spacing: {1e9 * max(contact.grid.spacing):.4g} nm is too coarse for the range "
+            f'of the attraction; adhesion = "cohesive" needs {1e9 * needed_spacing(contact):.4g} '
+            "nm or less (0.3 times the smaller of E* z0^2/w and sqrt(R* z0))"
         )
 
 
@@ -145,7 +149,7 @@ def solve_cohesive(
     K = _operator(contact, box)
     before = np.zeros(contact.grid.nodes) if history is None else history.plastic_displacement
     upper = limit[box] if isinstance(limit, np.ndarray) else limit
-    law = _BoundedLaw(contact, _base(contact, indentation, box, before), upper)
+    law = BoundedLaw(contact, _base(contact, indentation, box, before), upper)
     z0 = contact.equilibrium_separation
     found = minimise_locally(
         K,
@@ -287,65 +291,9 @@ def is_unique(state: CohesiveState) -> bool:
     """
     contact = state.contact
     x = contact.equilibrium_separation / box_gap(state)
-    softening = np.maximum(-_stiffness(contact, x), 0.0)
+    softening = np.maximum(-stiffness(contact, x), 0.0)
     K = _operator(contact, state.box)
     return float(K(softening).max()) < _UNIQUE
-
-
-class _BoundedLaw:
-    """The law of the gap on a box, as a function of u, bounded or continued beyond `limit`.
-
-    Where the pressure would exceed the limit, it stays there (`yields`). For elastic bodies it is
-    continued linearly beyond E*, a pressure that no result reaches; the continuation keeps the
-    iteration away from negative gaps.
-    """
-
-    def __init__(self, contact: Contact, base: Array, limit: Array | float) -> None:
-        self.base = base
-        self.yields = bool(np.all(np.isfinite(limit)))
-        bound = np.asarray(limit if self.yields else contact.pair.contact_modulus, dtype=float)
-        w, z0 = contact.work_of_adhesion, contact.equilibrium_separation
-        self._w, self._z0 = w, z0
-        self.least = z0 / np.cbrt(_cubic_root(bound * 3 * z0 / (8 * w)))
-        x = z0 / self.least
-        self._slope = -bound
-        self._stiff = 0.0 if self.yields else _stiffness(contact, x)
-
-    def __call__(self, u: Array) -> tuple[Array, Array, Array]:
-        """Energy (J/m²), its slope (Pa) and its curvature (Pa/m) at u."""
-        gap = self.base + u
-        below = np.minimum(gap - self.least, 0.0)
-        x = self._z0 / (gap - below)
-        x2 = x * x
-        x4 = x2 * x2
-        x6 = x4 * x2
-        energy = (-self._w / 3) * x2 * (4 - x6)
-        slope = (8 * self._w / (3 * self._z0)) * (x2 * x) * (1 - x6)
-        stiff = (8 * self._w / self._z0**2) * x4 * (3 * x6 - 1)
-        energy += below * (self._slope + 0.5 * self._stiff * below)
-        slope += self._stiff * below
-        stiff[below < 0] = self._stiff
-        return energy, slope, stiff
-
-    def beyond(self, u: Array) -> Array:
-        """How far the gap would lie below that of the limit (m): the plastic displacement."""
-        yielded: Array = np.maximum(self.least - self.base - u, 0.0)
-        return yielded
-
-    def continuation(self, u: Array) -> Array:
-        """Energy beyond the limit (J/m²) of bodies that do not yield."""
-        below = -self.beyond(u)
-        energy: Array = below * (self._slope + 0.5 * self._stiff * below)
-        return energy
-
-
-def _cubic_root(c: Array) -> Array:
-    """The root y ≥ 1 of y³ − y = c for c ≥ 0, by Viète's formulas."""
-    t = 1.5 * math.sqrt(3) * c
-    inside = np.cos(np.arccos(np.minimum(t, 1.0)) / 3)
-    beyond = np.cosh(np.arccosh(np.maximum(t, 1.0)) / 3)
-    root: Array = 2 / math.sqrt(3) * np.where(t < 1, inside, beyond)
-    return root
 
 
 def _operator(contact: Contact, box: Box) -> FreeConvolution:
@@ -356,13 +304,6 @@ def _operator(contact: Contact, box: Box) -> FreeConvolution:
 
 def _law(contact: Contact) -> LennardJones:
     return LennardJones(contact.work_of_adhesion, contact.equilibrium_separation)
-
-
-def _stiffness(contact: Contact, x: Array) -> Array:
-    """Slope of the traction (Pa/m) at z₀/g = x."""
-    scale = 8 * contact.work_of_adhesion / contact.equilibrium_separation**2
-    stiffness: Array = scale * x**4 * (3 * x**6 - 1)
-    return stiffness
 
 
 def _base(contact: Contact, indentation: float, box: Box, plastic: Array | None) -> Array:

@@ -46,7 +46,7 @@ _LATENESS = {"crack-closure": 0.15, "pohrt-popov": 0.5}
 # Cohesive contacts: unaccounted work of a step over the energies, in units of the tolerance of the
 # restitution, and error of the adhesive loss on the coarsest grid allowed (docs/adhesion.md).
 _UNACCOUNTED = 0.1
-_GRID_LOSS = 0.04
+_GRID_LOSS = 0.05
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,7 @@ from restitution.case.bodies import BodyTable, Yielding
 from restitution.case.case import Case
 from restitution.collision import UnloadingMethod, collide
 from restitution.contact.bodies import Pair
+from restitution.contact.cohesive import COMPANION
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.path import loading_path, unloading_path
 from restitution.contact.state import State
@@ -140,6 +141,8 @@ def coarser_contact(contact: Contact) -> Contact:
     coarser = coarsen(contact.surface)
     if contact.surface.provenance.get("source") == "smooth":
         coarser = smooth(coarser.grid)
+    if contact.cohesive:
+        coarser = replace(coarser, provenance={**coarser.provenance, COMPANION: True})
     return replace(contact, surface=coarser)
 
 

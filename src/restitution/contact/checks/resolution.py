@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from restitution.contact.bodies import Pair
 from restitution.contact.checks.finding import Finding
-from restitution.contact.cohesive import resolves_range
+from restitution.contact.cohesive import COARSEST, resolves_range
 from restitution.contact.contact import Contact
 from restitution.contact.state import State
 from restitution.numerics.box import widen
@@ -54,7 +54,9 @@ def adhesive_nodes(state: State) -> float:
     if not contact.adhesive:
         return math.inf
     if contact.cohesive:
-        return math.inf if resolves_range(contact) else 0.0
+        h, radius = max(contact.grid.spacing), radius_of_asperities(state)
+        range_of_asperity = COARSEST * math.sqrt(radius * contact.equilibrium_separation)
+        return math.inf if resolves_range(contact) and h <= range_of_asperity else 0.0
     return pull_off_radius(contact, radius_of_asperities(state)) / max(contact.grid.spacing)
 
 
