@@ -58,7 +58,7 @@ def test_the_stated_error_holds_against_jkr():
                 surface = Surface(flat - gap, grid, {"source": "shifted"})
             contact = Contact(PAIR, surface, work_of_adhesion=W)
             found = collide(solve(contact, depth - first_touch))
-            assert found.restitution_error < 0.02
+            assert found.restitution_error < 0.022
             off = abs(found.restitution - exact_restitution(depth))
             held.append(off < found.restitution_error)
     assert sum(held) >= 11  # of 12

@@ -102,6 +102,8 @@ def release_nodes(
             if accuracy <= residual:
                 return before_release, state
             accuracy = residual
+            if before_release is state:
+                before_release = None
         held &= ~released
         first_guess = np.where(released, 0.0, pressure)
 
