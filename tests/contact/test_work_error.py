@@ -33,9 +33,9 @@ def test_it_holds_where_the_grid_pins_the_edge_of_the_contact():
 @pytest.mark.parametrize(("approach", "share"), [("equilibrium", 0.02), ("pull-increments", 0.006)])
 def test_pinning_adds_a_share_of_the_surface_energy(monkeypatch, approach, share):
     """0.02 and 0.006 of w times the area sufficed in 93 % of 29 and in 11 of 11 contacts."""
-    quadrature = loading.integrate_adaptively
+    quadrature = adhesive_work.integrate_adaptively
     monkeypatch.setattr(
-        loading, "integrate_adaptively", lambda *args, **kw: (quadrature(*args, **kw)[0], 0.0)
+        adhesive_work, "integrate_adaptively", lambda *args, **kw: (quadrature(*args, **kw)[0], 0.0)
     )
     monkeypatch.setattr(adhesive_work, "balance_of", lambda state: (state.indentation, 0.0))
     state = solve(adhesive(1, approach), DEPTH)
@@ -43,7 +43,7 @@ def test_pinning_adds_a_share_of_the_surface_energy(monkeypatch, approach, share
 
 
 def test_it_holds_all_that_the_quadrature_says(monkeypatch):
-    quadrature, said = loading.integrate_adaptively, []
+    quadrature, said = adhesive_work.integrate_adaptively, []
 
     def listened(*args, **options):
         scale = 0.5 * (args[3] + args[4]) * (args[2] - args[1])
@@ -51,7 +51,7 @@ def test_it_holds_all_that_the_quadrature_says(monkeypatch):
         said.append(quadrature(*args, **options))
         return said[-1]
 
-    monkeypatch.setattr(loading, "integrate_adaptively", listened)
+    monkeypatch.setattr(adhesive_work, "integrate_adaptively", listened)
     state = solve(adhesive(1, "pull-increments"), DEPTH)
     assert len(said) == 1
     expected = said[0][1] + 0.006 * state.contact_area
