@@ -14,6 +14,9 @@ A node is *in contact* where its gap is below that of the largest attraction, 3^
 stable there. For a short range, the set tends to the contact of JKR, whose edge carries tension.
 
 Nodes outside the box, and the paraboloid outside the grid, attract as rigid bodies.
+
+In a periodic contact the box is the whole period, and the mean of u is zero at a prescribed δ, the
+approach of the mean planes. The pressure takes the mean that balances the law.
 """
 
 from __future__ import annotations
@@ -24,23 +27,24 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.contact.cohesive_law import BoundedLaw, largest_softening, law_of, stiffness
 from restitution.contact.contact import Contact
-from restitution.contact.influence import half_space
+from restitution.contact.influence import half_space, periodic_half_space
 from restitution.contact.state import State
-from restitution.errors import CaseError, NotConvergedError
+from restitution.errors import CaseError, DomainError, NotConvergedError
 from restitution.numerics.box import Box, bounding_box, reframe, shape_of
 from restitution.numerics.convolution.device import CPU, on_device
-from restitution.numerics.convolution.operators import FreeConvolution
+from restitution.numerics.convolution.operators import Convolution
 from restitution.numerics.read_only import freeze
 from restitution.numerics.truncated_newton import minimise_locally
-from restitution.theory import LennardJones
 
 Array = NDArray[np.float64]
 
 # Largest spacing over the length of the cohesive zone E*z₀²/w. On coarser grids the edge of the
 # contact is held between nodes and the hysteresis is wrong (docs/adhesion.md).
 COARSEST = 0.4
-# Solves up to twice this spacing are for the comparison of grids; their error covers it.
+# Solves up to twice this spacing are for the comparison of grids; their error covers it. Periodic
+# contacts have no such comparison.
 _REFUSED = 2 * COARSEST
 _REACH = 12.0  # nodes with rigid gaps up to this multiple of z₀ are solved
 # Tolerance of u over z₀, in units of the `residual` of a solve; rounding limits it.
@@ -76,7 +80,12 @@ class CohesiveState(State):
     @property
     def box_touching(self) -> NDArray[np.bool_]:
         """Whether the gap of each node of the box is below that of the largest traction (bool)."""
-        return box_gap(self) < float(_law(self.contact).gap_of_largest_traction)
+        return box_gap(self) < float(law_of(self.contact).gap_of_largest_traction)
+
+    @property
+    def mean_gap(self) -> float:
+        """Mean of the gap g (m) of a periodic contact; z₀ between flat surfaces without force."""
+        return super().mean_gap + self.contact.equilibrium_separation
 
     @property
     def potential_energy(self) -> float:
@@ -117,7 +126,8 @@ def resolves_range(contact: Contact) -> bool:
 def require_fine_grid(contact: Contact) -> None:
     """Raise `CaseError` if the cells are far too coarse for the range of the attraction."""
     h = max(contact.grid.spacing)
-    if h > _REFUSED / COARSEST * needed_spacing(contact):
+    coarsest = COARSEST if contact.periodic else _REFUSED
+    if h > coarsest / COARSEST * needed_spacing(contact):
         raise CaseError(
             f"grid.spacing: {1e9 * h:.4g} nm is too coarse for the range of the attraction; "
             f'adhesion = "cohesive" needs {1e9 * needed_spacing(contact):.4g} nm or less '
@@ -140,12 +150,13 @@ def solve_cohesive(
 
     `limit` is the largest pressure (Pa), a number or an array of the shape of the grid. The works
     of the result are those of `history` (zero if None), except that interaction and plastic
-    displacement are those of the result. Raises `NotConvergedError`.
+    displacement are those of the result. Raises `NotConvergedError`, and `DomainError` if a
+    periodic contact without yield is compressed beyond the law.
     """
     K = _operator(contact, box)
     before = np.zeros(contact.grid.nodes) if history is None else history.plastic_displacement
     upper = limit[box] if isinstance(limit, np.ndarray) else limit
-    law = _BoundedLaw(contact, _base(contact, indentation, box, before), upper)
+    law = BoundedLaw(contact, _base(contact, indentation, box, before), upper)
     z0 = contact.equilibrium_separation
     found = minimise_locally(
         K,
@@ -154,6 +165,7 @@ def solve_cohesive(
         u=u,
         length=0.5 * z0,
         tolerance=max(_TOLERANCE * residual, _LEAST_TOLERANCE) * z0,
+        zero_mean=contact.periodic,
     )
     if not found.converged:
         raise NotConvergedError(
@@ -161,6 +173,11 @@ def solve_cohesive(
             f"residual of {found.residual / z0:.1e} z0 after {found.steps} steps; refine the grid"
         )
     yielded = law.beyond(found.u)
+    if contact.periodic and not law.yields and yielded.any():
+        raise DomainError(
+            f"indentation: at {1e9 * indentation:.6g} nm the pressure exceeds E*, "
+            f"{contact.pair.contact_modulus:.4g} Pa; use a smaller indentation or a yield_pressure"
+        )
     plastic = before
     if law.yields and yielded.any():
         plastic = before.copy()
@@ -168,7 +185,7 @@ def solve_cohesive(
     gap = np.maximum(law.base + found.u, law.least)
     area = contact.grid.cell_area
     far_force, far_energy = _far(contact, indentation, box)
-    energy = float(np.sum(_law(contact).energy(gap))) * area
+    energy = float(np.sum(law_of(contact).energy(gap))) * area
     if not law.yields:
         # Bodies without yield: the linear continuation of the law beyond `limit`.
         energy += float(np.sum(law.continuation(found.u))) * area
@@ -229,8 +246,8 @@ def from_rigid(
 def rigid_pressure(contact: Contact, indentation: float, box: Box) -> Array:
     """Pressure of the law between rigid bodies (Pa), where they attract; zero elsewhere."""
     gap = _base(contact, indentation, box, None)
-    least = float(_law(contact).gap_of_largest_traction)
-    return np.where(gap > least, -_law(contact).traction(np.maximum(gap, least)), 0.0)
+    least = float(law_of(contact).gap_of_largest_traction)
+    return np.where(gap > least, -law_of(contact).traction(np.maximum(gap, least)), 0.0)
 
 
 def with_interaction(state: CohesiveState) -> CohesiveState:
@@ -240,6 +257,9 @@ def with_interaction(state: CohesiveState) -> CohesiveState:
 
 def interacting_box(contact: Contact, indentation: float, history: State | None = None) -> Box:
     """The box of the nodes that are near enough to interact as deformable bodies."""
+    if contact.periodic:
+        rows, columns = (slice(0, n) for n in contact.grid.nodes)
+        return rows, columns
     reach = _REACH * contact.equilibrium_separation + contact.adhesive_length
     gap = contact.gap if history is None else contact.gap + history.plastic_displacement
     box = bounding_box(gap < max(indentation + reach, reach * 1e-3))
@@ -283,86 +303,24 @@ def is_unique(state: CohesiveState) -> bool:
     """Whether no other equilibrium can exist at this and at larger distances of the bodies.
 
     This is so if the spectral radius of K diag(max(−φ″, 0)) is below 1. The largest row sum is a
-    bound for it.
+    bound for it. In a periodic contact, where the row sums vanish, the bound is the compliance of
+    the longest wave, λ/(πE*), times the largest −φ″ of all gaps from the smallest gap on.
     """
     contact = state.contact
+    if contact.periodic:
+        compliance = max(contact.grid.size) / (math.pi * contact.pair.contact_modulus)
+        return compliance * largest_softening(contact, state.smallest_gap) < _UNIQUE
     x = contact.equilibrium_separation / box_gap(state)
-    softening = np.maximum(-_stiffness(contact, x), 0.0)
+    softening = np.maximum(-stiffness(contact, x), 0.0)
     K = _operator(contact, state.box)
     return float(K(softening).max()) < _UNIQUE
 
 
-class _BoundedLaw:
-    """The law of the gap on a box, as a function of u, bounded or continued beyond `limit`.
-
-    Where the pressure would exceed the limit, it stays there (`yields`). For elastic bodies it is
-    continued linearly beyond E*, a pressure that no result reaches; the continuation keeps the
-    iteration away from negative gaps.
-    """
-
-    def __init__(self, contact: Contact, base: Array, limit: Array | float) -> None:
-        self.base = base
-        self.yields = bool(np.all(np.isfinite(limit)))
-        bound = np.asarray(limit if self.yields else contact.pair.contact_modulus, dtype=float)
-        w, z0 = contact.work_of_adhesion, contact.equilibrium_separation
-        self._w, self._z0 = w, z0
-        self.least = z0 / np.cbrt(_cubic_root(bound * 3 * z0 / (8 * w)))
-        x = z0 / self.least
-        self._slope = -bound
-        self._stiff = 0.0 if self.yields else _stiffness(contact, x)
-
-    def __call__(self, u: Array) -> tuple[Array, Array, Array]:
-        """Energy (J/m²), its slope (Pa) and its curvature (Pa/m) at u."""
-        gap = self.base + u
-        below = np.minimum(gap - self.least, 0.0)
-        x = self._z0 / (gap - below)
-        x2 = x * x
-        x4 = x2 * x2
-        x6 = x4 * x2
-        energy = (-self._w / 3) * x2 * (4 - x6)
-        slope = (8 * self._w / (3 * self._z0)) * (x2 * x) * (1 - x6)
-        stiff = (8 * self._w / self._z0**2) * x4 * (3 * x6 - 1)
-        energy += below * (self._slope + 0.5 * self._stiff * below)
-        slope += self._stiff * below
-        stiff[below < 0] = self._stiff
-        return energy, slope, stiff
-
-    def beyond(self, u: Array) -> Array:
-        """How far the gap would lie below that of the limit (m): the plastic displacement."""
-        yielded: Array = np.maximum(self.least - self.base - u, 0.0)
-        return yielded
-
-    def continuation(self, u: Array) -> Array:
-        """Energy beyond the limit (J/m²) of bodies that do not yield."""
-        below = -self.beyond(u)
-        energy: Array = below * (self._slope + 0.5 * self._stiff * below)
-        return energy
-
-
-def _cubic_root(c: Array) -> Array:
-    """The root y ≥ 1 of y³ − y = c for c ≥ 0, by Viète's formulas."""
-    t = 1.5 * math.sqrt(3) * c
-    inside = np.cos(np.arccos(np.minimum(t, 1.0)) / 3)
-    beyond = np.cosh(np.arccosh(np.maximum(t, 1.0)) / 3)
-    root: Array = 2 / math.sqrt(3) * np.where(t < 1, inside, beyond)
-    return root
-
-
-def _operator(contact: Contact, box: Box) -> FreeConvolution:
+def _operator(contact: Contact, box: Box) -> Convolution:
     """The half-space on `box`. The solver works on NumPy arrays, so it is on the CPU always."""
+    build = periodic_half_space if contact.periodic else half_space
     with on_device(CPU):
-        return half_space(shape_of(box), contact.grid.spacing, contact.pair.contact_modulus)
-
-
-def _law(contact: Contact) -> LennardJones:
-    return LennardJones(contact.work_of_adhesion, contact.equilibrium_separation)
-
-
-def _stiffness(contact: Contact, x: Array) -> Array:
-    """Slope of the traction (Pa/m) at z₀/g = x."""
-    scale = 8 * contact.work_of_adhesion / contact.equilibrium_separation**2
-    stiffness: Array = scale * x**4 * (3 * x**6 - 1)
-    return stiffness
+        return build(shape_of(box), contact.grid.spacing, contact.pair.contact_modulus)
 
 
 def _base(contact: Contact, indentation: float, box: Box, plastic: Array | None) -> Array:
@@ -375,7 +333,9 @@ def _base(contact: Contact, indentation: float, box: Box, plastic: Array | None)
 
 def _far(contact: Contact, indentation: float, box: Box) -> tuple[float, float]:
     """Force (N) and energy (J) of the rigid nodes outside `box` and of the bodies off the grid."""
-    law, grid, (rows, columns) = _law(contact), contact.grid, box
+    if contact.periodic:
+        return 0.0, 0.0
+    law, grid, (rows, columns) = law_of(contact), contact.grid, box
     z0, everything = contact.equilibrium_separation, slice(None)
     outside: tuple[Box, ...] = (
         (slice(0, rows.start), everything),

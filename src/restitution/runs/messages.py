@@ -108,7 +108,12 @@ def message(found: Finding) -> str:
             return (
                 f"grid.spacing: {_nm(found['spacing'])} is too coarse for the range of the "
                 f'attraction; interface.adhesion = "cohesive" needs {_nm(found["needed"])} or less '
-                '(0.4 E* z0^2/w): use a finer grid, grid.refine (or "auto"), or adhesion = "jkr"'
+                "(0.4 E* z0^2/w): use a finer grid, "
+                + (
+                    "or grid.refine"
+                    if found["periodic"]
+                    else 'grid.refine (or "auto"), or adhesion = "jkr"'
+                )
             )
         case "edge-reached":
             wide, long = (1e6 * edge for edge in found["size"])
