@@ -51,7 +51,7 @@ def test_a_periodic_case_with_adhesion(cli, refused, tmp_path):
     case, out = tmp_path / "case.toml", tmp_path / "out"
     text = CASE.replace('"elastic"', '"elastic"\nwork_of_adhesion = "0.05 J/m^2"')
     text = text.replace('"0.1 um"', '"1 nm"').replace('"2 um"', '"0.4 um"').replace("64", "32")
-    text = text.replace('"0.25 um"', '"0.08 um"')
+    text = text.replace('"0.25 um"', '"0.06 um"')
     case.write_text(text)
     assert "a periodic contact with adhesion needs [indentation]" in refused("check", case)
     text = text.replace(
@@ -70,7 +70,7 @@ def test_a_periodic_case_with_adhesion(cli, refused, tmp_path):
         stored = row["loading_work_J"] + row["adhesive_work_J"]
         assert abs(stored - row["stored_energy_J"]) <= 1e-12 * row["stored_energy_J"]
         assert row["adhesive_work_J"] > 0
-    case.write_text(text.replace('"0.08 um"', '"0.1 um"'))
+    case.write_text(text.replace('"0.06 um"', '"0.08 um"'))
     assert "is too coarse for the range of the attraction" in refused("check", case)
     case.write_text(text.replace("work_of", 'adhesion = "jkr"\nwork_of'))
     assert '"jkr" is not defined for a periodic contact' in refused("check", case)
