@@ -102,6 +102,8 @@ def release_nodes(
             if accuracy <= residual:
                 return before_release, state
             accuracy = residual
+            if before_release is state:
+                before_release = None
         held &= ~released
         first_guess = np.where(released, 0.0, pressure)
 
@@ -126,6 +128,11 @@ def grow_contact(
     convolutions = state.convolutions
     # At first touch, the node in contact carries no pressure yet, but its neighbours may attach.
     touching = state.box_pressure != 0 if state.contact_nodes else reframe(held, box, state.box)
+    if contact.detachment == "crack-closure" and state.contact_nodes:
+        first_box = widen(state.box, 1, contact.grid.nodes)
+        wider_set = binary_dilation(reframe(touching, state.box, first_box), structure=ring)
+        if not (wider_set & ~reframe(held, box, first_box)).any():
+            return state  # a ring of nodes around this contact was held, and has been released
     while True:
         wider_box = widen(state.box, 1, contact.grid.nodes)
         _, wider = release_nodes(

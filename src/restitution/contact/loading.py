@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.contact.adhesion import balances_are_reliable, grow_contact, unload_adhesive
-from restitution.contact.adhesive_work import pinning_error, work_by_balance
+from restitution.contact.adhesive_work import pinning_error, work_by_balance, work_by_force
 from restitution.contact.cavity import yield_bound
 from restitution.contact.checks.edge import require_inside_grid
 from restitution.contact.cohesive import CohesiveState
@@ -44,11 +44,10 @@ PULL_INCREMENT = 1e-10
 # the error (in tolerances), and number of initial intervals. With one interval, the integrand, zero
 # up to first yield, could be zero at all sampled depths.
 _TRUNCATION_TOLERANCE, _TRUNCATION_MARGIN, _TRUNCATION_PANELS = 3e-5, 10.0, 4
-# Quadrature of an adhesive force: tolerance relative to the work, and largest number of bisections.
+# Tolerance of the work of an adhesive force, relative to the work.
 # The force jumps as asperities attach, which limits the accuracy. An error of 1.5e-3 of the work is
 # an error of at most 0.00075 in restitution.
 _ADHESIVE_TOLERANCE = 1.5e-3
-_ADHESIVE_HALVINGS = 5
 # The plastic work is summed over depths that start at _SHALLOW times the indentation and grow by at
 # most the factor _RATIO, for which the errors of `plastic_work` hold.
 _RATIO, _SHALLOW = 1.42, 0.2
@@ -264,13 +263,16 @@ def with_work(state: State, start: State | None) -> State:
     if contact.adhesive and contact.approach != "hertzian":
         balanced = contact.approach == "equilibrium" and balances_are_reliable(state)
         if balanced and not contact.truncates:
-            tolerance = _ADHESIVE_TOLERANCE
-            work, error, convolutions = work_by_balance(state, start, _intermediate, tolerance)
+            work, error, convolutions = work_by_balance(
+                state, start, _intermediate, _ADHESIVE_TOLERANCE
+            )
             if start is not None:
                 error += start.work_error - pinning_error(start)
             error += pinning_error(state)
         else:
-            work, error, convolutions = _work_by_force(state, start)
+            work, error, convolutions = work_by_force(
+                state, start, _intermediate, _ADHESIVE_TOLERANCE
+            )
     else:
         work, error, convolutions = _work_by_truncation(state, start)
     convolutions += state.convolutions
@@ -298,38 +300,8 @@ def _adhesive_work_is_negligible(state: State) -> bool:
     return gain <= 2 * _ADHESIVE_TOLERANCE * (state.stored_energy + state.plastic_work)
 
 
-def _intermediate(contact: Contact, depth: float) -> State:
-    return solve_without_work(contact, depth, start=None, residual=_WORK_RESIDUAL)
-
-
-def _work_by_force(state: State, start: State | None) -> tuple[float, float, int]:
-    """Integrate the force; return the loading work (J), its error (J) and the convolutions."""
-    contact, indentation = state.contact, state.indentation
-    guess, convolutions = start, 0
-
-    def force_at(depth: float) -> float:
-        nonlocal guess, convolutions
-        guess = solve_without_work(contact, depth, start=guess, residual=_WORK_RESIDUAL)
-        convolutions += guess.convolutions
-        return guess.force
-
-    first, first_force, work, error = 0.0, 0.0, 0.0, 0.0
-    if start is not None:
-        first, first_force = start.indentation, start.force
-        work, error = start.loading_work, start.work_error - pinning_error(start)
-    elif contact.approach == "equilibrium":
-        first_force = force_at(0.0)  # adhesive force right after the jump into contact
-    scale = abs(work) + 0.5 * (abs(first_force) + abs(state.force)) * (indentation - first)
-    increment, its_error = integrate_adaptively(
-        force_at,
-        first,
-        indentation,
-        first_force,
-        state.force,
-        _ADHESIVE_TOLERANCE * scale,
-        depth=_ADHESIVE_HALVINGS,
-    )
-    return work + increment, error + its_error + pinning_error(state), convolutions
+def _intermediate(contact: Contact, depth: float, start: State | None = None) -> State:
+    return solve_without_work(contact, depth, start=start, residual=_WORK_RESIDUAL)
 
 
 def _work_by_increments(state: State, start: State | None) -> tuple[float, float, int]:
@@ -356,7 +328,7 @@ def _work_by_increments(state: State, start: State | None) -> tuple[float, float
 
 
 def _work_by_truncation(state: State, start: State | None) -> tuple[float, float, int]:
-    """Return the results of `_work_by_force` for a truncated pressure without adhesion on approach.
+    """Return the results of `work_by_force` for a truncated pressure without adhesion on approach.
 
     There are two ways to the work. One integrates the truncated force. The other integrates the
     force that truncation removes, and subtracts the integral from the energy of the elastic

@@ -117,9 +117,9 @@ class _Search:
         if self._start is not None and (depth := self._step(self._start)) is not None:
             return depth
         contact = self._contact
-        if contact.approach == "equilibrium" and contact.detachment == "crack-closure":
-            if contact.adhesive and (depth := _adhesive_depth(contact, self._work)):
-                return depth
+        balanced = contact.approach == "equilibrium" and contact.detachment == "crack-closure"
+        if contact.adhesive and balanced:
+            return _adhesive_depth(contact, self._work)
         # Yield and roughness make the contact deeper.
         smooth = Hertz(self._contact.pair.radius, self._contact.pair.contact_modulus)
         return float(smooth.indentation_from_energy(self._work))
