@@ -13,7 +13,7 @@ nodes at a kink until G = 1.0 w. The relative error of the pull-off force is the
 (Rybicki and Kanninen 1977, Eng. Fract. Mech. 9, 931–938). For each face between a node in contact
 and a node outside, this work per area is ½ |p| times the opening. The relative error of G is 1e-3
 on a straight edge; on a staircase, the mean of G over the faces has this accuracy. G is therefore
-averaged along the edge over about four cells, but never across to another patch. The opening is the
+averaged along the edge over about five cells, but never across to another patch. The opening is the
 separation of the surfaces beyond the smooth continuation of their contact:
 
     opening = (u₊ − 2u₀ + u₋) + (h₀ − 2h₋ + h₋₋),

@@ -17,8 +17,8 @@ Array = NDArray[np.float64]
 _FEW_NODES = 10  # a smaller contact has too few edge nodes for a balance
 _SMOOTHED = 11  # points through which a parabola smooths the force under tension
 _JUMP = 0.1  # a larger change of force between two points, over the largest tension, is a jump
-# Largest difference between two forces at one indentation, over the largest tension, if they are
-# the same but for the scatter of the balances.
+# Largest difference between two forces at one indentation, over the largest tension, at which they
+# count as equal: the scatter of the balances.
 _SAME = 0.03
 
 

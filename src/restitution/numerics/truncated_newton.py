@@ -6,11 +6,11 @@ K is symmetric positive definite and known only through its product with an arra
 needed. The point is stored twice, as u and as p = K⁻¹u. The gradient is r = p + φ′, and the Hessian
 is K⁻¹ + diag(φ″).
 
-Newton's method with conjugate gradients that stop at the boundary of a trust region or at negative
-curvature (Steihaug 1983, SIAM J. Numer. Anal. 20, 626–637). K preconditions the conjugate
-gradients. Then K⁻¹ of each direction is a sum of residuals that are already known, so an iteration
-takes one product with K. The energy falls in every step. So from a point that is no longer a
-minimum, the method descends into the next one.
+The method is Newton's, with conjugate gradients that stop at the boundary of a trust region or at
+negative curvature (Steihaug 1983, SIAM J. Numer. Anal. 20, 626–637). K preconditions the conjugate
+gradients. The product of K⁻¹ with each direction is then a sum of known residuals, so an iteration
+takes one product with K. The energy falls in every step. If the start is not a minimum, the method
+therefore descends to a minimum of lower energy.
 """
 
 from __future__ import annotations
@@ -39,10 +39,10 @@ _ROUNDING = 1e-13  # predicted decreases below this fraction of the energy are r
 
 @dataclass(frozen=True)
 class LocalMinimum:
-    """Where the method ended.
+    """The point at which the method ended.
 
     `residual` is the largest |r|/(φ″ + 1/K₀₀), a length like u, where K₀₀ is the diagonal of K.
-    `negative_curvature` tells whether the method left a region that is not convex.
+    `negative_curvature` is True if the method met a direction of negative curvature.
     """
 
     p: Array
