@@ -267,7 +267,7 @@ def test_elastic_contact_cannot_be_deeper_than_complete():
 @pytest.mark.parametrize(
     ("model", "words"),
     [
-        ({"work_of_adhesion": 0.05}, "work_of_adhesion: a periodic contact has no adhesion"),
+        ({"work_of_adhesion": 0.05}, 'adhesion: "jkr" is not defined for a periodic contact'),
         (
             {"yield_strength": 1e9, "plasticity": None},
             "plasticity: a periodic contact is elastic or has a constant",

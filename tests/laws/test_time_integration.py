@@ -180,7 +180,8 @@ def test_restitution_in_time_is_that_of_the_energies(run, values):
     assert len(law.points) == values["steps"]
     for point in law.points:
         found = collide_in_time(force, point.velocity)
-        assert found.restitution == approx(point.restitution, abs=1e-3)
+        # Balances of an adhesive contact scatter within its error, much less than this error.
+        assert found.restitution == approx(point.restitution, abs=max(1e-3, 0.1 * point.error))
         assert found.largest_indentation == approx(point.indentation, rel=1e-6)
         assert found.largest_force == approx(point.force, rel=1e-4)
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from restitution.contact.influence import half_space
+from restitution.contact.influence import half_space, periodic_half_space
 from restitution.numerics.truncated_newton import minimise_locally
 from tolerance import approx
 
@@ -40,6 +40,29 @@ def test_springs_are_solved_as_by_a_dense_matrix(K):
     assert found.u.ravel() == approx(exact, rel=1e-8)
     assert found.p.ravel() == approx(S @ exact, rel=1e-7)
     assert found.energy == approx(0.5 * exact @ S @ exact + springs(exact.reshape(SHAPE))[0].sum())
+
+
+def test_an_operator_without_mean_is_solved_at_mean_zero():
+    rng = np.random.default_rng(0)
+    k, rest = rng.uniform(0.1, 5, SHAPE), 1 + rng.normal(size=SHAPE)
+    K = periodic_half_space(SHAPE, (1.0, 1.2), 1.0)
+
+    def springs(u):
+        return 0.5 * k * (u - rest) ** 2, k * (u - rest), k
+
+    start = rng.normal(size=SHAPE)
+    found = minimise_locally(
+        K, springs, p=start, u=K(start), length=0.5, tolerance=1e-10, zero_mean=True
+    )
+    assert found.converged
+    # The multiplier m of the zero mean is the last unknown: S u + k (u - rest) = m, Σ u = 0.
+    n = rest.size
+    system = np.ones((n + 1, n + 1))
+    system[:n, :n] = np.linalg.pinv(matrix(K), rcond=1e-10) + np.diag(k.ravel())
+    system[n, n] = 0.0
+    exact = np.linalg.solve(system, np.append((k * rest).ravel(), 0.0))[:n]
+    assert found.u.ravel() == approx(exact, abs=1e-8)
+    assert found.p == approx(-springs(found.u)[1], abs=1e-8)
 
 
 def wells(u):

@@ -132,7 +132,7 @@ def test_without_a_depth_there_are_no_results(tmp_path):
         ('radius = "flat"', 'radius = "1 mm"', 'first.radius: must be "flat"'),
         (PRESSURE, '[impact]\nvelocity = "1 m/s"\n', "have no mass"),
         ("[grid]", "[unloading]\n[grid]", r"\[unloading\]: a periodic case"),
-        ("[roughness]", 'work_of_adhesion = "0.1 J/m^2"\n[roughness]', "has no adhesion"),
+        ("[roughness]", 'work_of_adhesion = "0.1 J/m^2"\n[roughness]', r"needs \[indentation\]"),
         ('yield_pressure = "elastic"', 'yield_strength = "1 GPa"', "yield_pressure: is missing"),
         ('"elastic"', '"1 GPa"\nplasticity = "truncated"', "yield_pressure: is missing"),
         ('"elastic"', '"900 MPa"', "pressure: 1000 MPa is not below the yield pressure, 900 MPa"),

@@ -96,8 +96,7 @@ class Case(Table):
             raise ValueError(
                 "[unloading]: a periodic case writes no unloading curves; leave it out"
             )
-        if self.interface.adhesive_energy > 0:
-            raise ValueError("interface.work_of_adhesion: a periodic contact has no adhesion")
+        self._check_attraction()
         yielding = self.yielding()
         if yielding.plasticity != "equilibrium":
             raise ValueError(
@@ -124,6 +123,20 @@ class Case(Table):
                     f"pressure: {1e-6 * highest:.4g} MPa is not below the yield pressure, "
                     f"{1e-6 * yielding.hardness:.4g} MPa"
                 )
+
+    def _check_attraction(self) -> None:
+        """Refuse what a periodic contact with adhesion excludes."""
+        if self.interface.adhesive_energy == 0:
+            return
+        if self.interface.adhesion == "jkr":
+            raise ValueError(
+                'interface.adhesion: "jkr" is not defined for a periodic contact; use "cohesive"'
+            )
+        if self.indentation is None:
+            raise ValueError(
+                "interface.work_of_adhesion: a periodic contact with adhesion needs [indentation], "
+                "because its pressure jumps"
+            )
 
     def _check_factors(self, factors: tuple[int, ...]) -> None:
         depths = len(self.depths())
@@ -283,7 +296,11 @@ class Case(Table):
         if interface.adhesion is not None:
             return interface.adhesion
         w, z0 = interface.adhesive_energy, interface.equilibrium_separation
-        if w == 0 or interface.needs_jkr:
+        if w == 0:
+            return "jkr"
+        if self.periodic:
+            return "cohesive"
+        if interface.needs_jkr:
             return "jkr"
         needed = coarsest_spacing(self.pair(), w, z0)
         return "cohesive" if max(grid.spacing) <= needed else "jkr"

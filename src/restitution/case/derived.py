@@ -76,6 +76,7 @@ def _of_period(contact: Contact) -> dict[str, float | None]:
         "reduced_pressure_Pa": contact.pair.contact_modulus * contact.slope,
         "mean_gap_at_first_touch_m": float(contact.gap.mean()),
         "nominal_area_m2": wide * long,
+        **({"work_of_adhesion_J_per_m2": contact.work_of_adhesion} if contact.adhesive else {}),
     }
 
 

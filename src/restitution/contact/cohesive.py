@@ -15,6 +15,9 @@ law is stable at these gaps. As the range decreases, the nodes in contact tend t
 JKR, whose edge carries tension.
 
 Nodes outside the box, and the paraboloid outside the grid, attract as rigid bodies.
+
+In a periodic contact the box is the whole period, and the mean of u is zero at a prescribed δ, the
+approach of the mean planes. The pressure takes the mean that balances the law.
 """
 
 from __future__ import annotations
@@ -26,17 +29,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.contact.bodies import Pair
+from restitution.contact.cohesive_law import BoundedLaw, largest_softening, law_of, stiffness
 from restitution.contact.contact import Contact
-from restitution.contact.influence import half_space
-from restitution.contact.interface_law import BoundedLaw, stiffness
+from restitution.contact.influence import half_space, periodic_half_space
 from restitution.contact.state import State
-from restitution.errors import CaseError, NotConvergedError
+from restitution.errors import CaseError, DomainError, NotConvergedError
 from restitution.numerics.box import Box, bounding_box, reframe, shape_of
 from restitution.numerics.convolution.device import CPU, on_device
-from restitution.numerics.convolution.operators import FreeConvolution
+from restitution.numerics.convolution.operators import Convolution
 from restitution.numerics.read_only import freeze
 from restitution.numerics.truncated_newton import minimise_locally
-from restitution.theory import LennardJones
 
 Array = NDArray[np.float64]
 
@@ -79,7 +81,12 @@ class CohesiveState(State):
     @property
     def box_touching(self) -> NDArray[np.bool_]:
         """Whether the gap of each node of the box is below that of the largest traction (bool)."""
-        return box_gap(self) < float(_law(self.contact).gap_of_largest_traction)
+        return box_gap(self) < float(law_of(self.contact).gap_of_largest_traction)
+
+    @property
+    def mean_gap(self) -> float:
+        """Mean of the gap g (m) of a periodic contact; z₀ between flat surfaces without force."""
+        return super().mean_gap + self.contact.equilibrium_separation
 
     @property
     def potential_energy(self) -> float:
@@ -145,9 +152,10 @@ def solve_cohesive(
 ) -> CohesiveState:
     """Descend from the pressure `p` and displacement `u` = K p on `box` to an equilibrium.
 
-    `limit` is the largest pressure (Pa), a number or an array of the shape of the grid. The result
-    has the works of `history` (zero if None); interaction energy and plastic displacement are its
-    own. Raises `NotConvergedError`.
+    `limit` is the largest pressure (Pa), a number or an array of the shape of the grid. The works
+    of the result are those of `history` (zero if None), except that interaction and plastic
+    displacement are those of the result. Raises `NotConvergedError`, and `DomainError` if a
+    periodic contact without yield is compressed beyond the law.
     """
     K = _operator(contact, box)
     before = np.zeros(contact.grid.nodes) if history is None else history.plastic_displacement
@@ -161,6 +169,7 @@ def solve_cohesive(
         u=u,
         length=0.5 * z0,
         tolerance=max(_TOLERANCE * residual, _LEAST_TOLERANCE) * z0,
+        zero_mean=contact.periodic,
     )
     if not found.converged:
         raise NotConvergedError(
@@ -168,6 +177,11 @@ def solve_cohesive(
             f"residual of {found.residual / z0:.1e} z0 after {found.steps} steps; refine the grid"
         )
     yielded = law.beyond(found.u)
+    if contact.periodic and not law.yields and yielded.any():
+        raise DomainError(
+            f"indentation: at {1e9 * indentation:.6g} nm the pressure exceeds E*, "
+            f"{contact.pair.contact_modulus:.4g} Pa; use a smaller indentation or a yield_pressure"
+        )
     plastic = before
     if law.yields and yielded.any():
         plastic = before.copy()
@@ -175,7 +189,7 @@ def solve_cohesive(
     gap = np.maximum(law.base + found.u, law.least)
     area = contact.grid.cell_area
     far_force, far_energy = _far(contact, indentation, box)
-    energy = float(np.sum(_law(contact).energy(gap))) * area
+    energy = float(np.sum(law_of(contact).energy(gap))) * area
     if not law.yields:
         # Bodies without yield: the linear continuation of the law beyond `limit`.
         energy += float(np.sum(law.continuation(found.u))) * area
@@ -236,8 +250,8 @@ def from_rigid(
 def rigid_pressure(contact: Contact, indentation: float, box: Box) -> Array:
     """Pressure of the law between rigid bodies (Pa), where they attract; zero elsewhere."""
     gap = _base(contact, indentation, box, None)
-    least = float(_law(contact).gap_of_largest_traction)
-    return np.where(gap > least, -_law(contact).traction(np.maximum(gap, least)), 0.0)
+    least = float(law_of(contact).gap_of_largest_traction)
+    return np.where(gap > least, -law_of(contact).traction(np.maximum(gap, least)), 0.0)
 
 
 def with_interaction(state: CohesiveState) -> CohesiveState:
@@ -247,6 +261,9 @@ def with_interaction(state: CohesiveState) -> CohesiveState:
 
 def interacting_box(contact: Contact, indentation: float, history: State | None = None) -> Box:
     """The box of the nodes that are near enough to interact as deformable bodies."""
+    if contact.periodic:
+        rows, columns = (slice(0, n) for n in contact.grid.nodes)
+        return rows, columns
     reach = _REACH * contact.equilibrium_separation + contact.adhesive_length
     gap = contact.gap if history is None else contact.gap + history.plastic_displacement
     box = bounding_box(gap < max(indentation + reach, reach * 1e-3))
@@ -290,23 +307,24 @@ def is_unique(state: CohesiveState) -> bool:
     """Whether no other equilibrium can exist at this and at larger distances of the bodies.
 
     This is so if the spectral radius of K diag(max(−φ″, 0)) is below 1. The largest row sum is a
-    bound for it.
+    bound for it. In a periodic contact, where the row sums vanish, the bound is the compliance of
+    the longest wave, λ/(πE*), times the largest −φ″ of all gaps from the smallest gap on.
     """
     contact = state.contact
+    if contact.periodic:
+        compliance = max(contact.grid.size) / (math.pi * contact.pair.contact_modulus)
+        return compliance * largest_softening(contact, state.smallest_gap) < _UNIQUE
     x = contact.equilibrium_separation / box_gap(state)
     softening = np.maximum(-stiffness(contact, x), 0.0)
     K = _operator(contact, state.box)
     return float(K(softening).max()) < _UNIQUE
 
 
-def _operator(contact: Contact, box: Box) -> FreeConvolution:
-    """The half-space on `box`, always on the CPU because the solver works on NumPy arrays."""
+def _operator(contact: Contact, box: Box) -> Convolution:
+    """The half-space on `box`. The solver works on NumPy arrays, so it is on the CPU always."""
+    build = periodic_half_space if contact.periodic else half_space
     with on_device(CPU):
-        return half_space(shape_of(box), contact.grid.spacing, contact.pair.contact_modulus)
-
-
-def _law(contact: Contact) -> LennardJones:
-    return LennardJones(contact.work_of_adhesion, contact.equilibrium_separation)
+        return build(shape_of(box), contact.grid.spacing, contact.pair.contact_modulus)
 
 
 def _base(contact: Contact, indentation: float, box: Box, plastic: Array | None) -> Array:
@@ -319,7 +337,9 @@ def _base(contact: Contact, indentation: float, box: Box, plastic: Array | None)
 
 def _far(contact: Contact, indentation: float, box: Box) -> tuple[float, float]:
     """Force (N) and energy (J) of the rigid nodes outside `box` and of the bodies off the grid."""
-    law, grid, (rows, columns) = _law(contact), contact.grid, box
+    if contact.periodic:
+        return 0.0, 0.0
+    law, grid, (rows, columns) = law_of(contact), contact.grid, box
     z0, everything = contact.equilibrium_separation, slice(None)
     outside: tuple[Box, ...] = (
         (slice(0, rows.start), everything),

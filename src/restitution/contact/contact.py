@@ -72,8 +72,8 @@ class Contact:
             has the Lennard-Jones law of `theory.LennardJones`, see `contact.cohesive`.
         equilibrium_separation: Gap z₀ without traction (m), the range of `cohesive`.
         periodic: Whether the surface repeats in both directions without end, between two flat
-            bodies. A periodic contact is elastic or has a constant bound (`equilibrium`), without
-            adhesion.
+            bodies. A periodic contact is elastic or has a constant bound (`equilibrium`). It
+            attracts over a finite range (`cohesive`) or not at all.
 
     Raises:
         CaseError: A value is invalid, two values exclude each other, or `pair` or `surface` has a
@@ -169,8 +169,11 @@ class Contact:
             )
         if np.ptp(self.surface.height) == 0:
             raise CaseError("surface: is flat; a periodic contact needs roughness")
-        if self.adhesive:
-            raise CaseError("work_of_adhesion: a periodic contact has no adhesion; leave it out")
+        if self.adhesive and not self.cohesive:
+            raise CaseError(
+                'adhesion: "jkr" is not defined for a periodic contact; use "cohesive", or leave '
+                "out work_of_adhesion"
+            )
         if self.plasticity != "equilibrium":
             raise CaseError(
                 "plasticity: a periodic contact is elastic or has a constant bound; give a "
@@ -222,8 +225,8 @@ class Contact:
 
     @property
     def adhesive_length(self) -> float:
-        """Length scale of adhesion (w²R*/E*²)^⅓ (m); 0 without adhesion."""
-        if not self.adhesive:
+        """Length scale of adhesion (w²R*/E*²)^⅓ (m); 0 without adhesion or between flat bodies."""
+        if not self.adhesive or self.pair.flat:
             return 0.0
         pair = self.pair
         return float(JKR(pair.radius, pair.contact_modulus, self.work_of_adhesion).adhesive_length)
@@ -244,9 +247,10 @@ class Contact:
             indentation: Approach of the bodies (m).
 
         Returns:
-            The indentation or the length scale of adhesion, whichever is larger (m).
+            The indentation or the length scale of adhesion, whichever is larger (m). The length
+            scale between flat bodies is z₀.
         """
-        return max(abs(indentation), self.adhesive_length)
+        return max(abs(indentation), self.adhesive_length or self.equilibrium_separation)
 
     @property
     def grid(self) -> Grid:

@@ -13,13 +13,15 @@ import math
 import numpy as np
 
 from restitution.contact.state import State
+from restitution.numerics.box import reframe
 
 _EXCESS = (math.pi - 1 + math.log(2)) / 24
 
 
 def corrected_area(state: State) -> float:
     """Contact area (m²) of a periodic contact, with the correction for the staircase edge."""
-    touching = state.pressure != 0
+    rows, columns = (slice(0, n) for n in state.contact.grid.nodes)
+    touching = reframe(state.box_touching, state.box, (rows, columns))
     hx, hy = state.contact.grid.spacing
     # Faces across x have the length hy and belong to cells of the width hx, and vice versa.
     faces = sum(np.count_nonzero(touching != np.roll(touching, 1, axis)) for axis in (0, 1))

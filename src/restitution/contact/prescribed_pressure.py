@@ -38,12 +38,14 @@ def solve_at_pressure(contact: Contact, pressure: float, *, residual: float = RE
         State under `pressure`.
 
     Raises:
-        CaseError: The contact is not periodic, or the pressure is not positive.
+        CaseError: The contact is not periodic, or it attracts, or the pressure is not positive.
         DomainError: The pressure is not below the yield pressure.
         NotConvergedError: A tolerance was not reached.
     """
     if not contact.periodic:
         raise CaseError("contact: only a periodic contact has a nominal pressure; use solve")
+    if contact.adhesive:
+        raise CaseError("contact: attracts, so its pressure jumps; prescribe the indentation")
     if not 0 < pressure < math.inf:
         raise CaseError(f"pressure: {pressure} Pa is not positive")
     if pressure >= contact.yield_pressure:

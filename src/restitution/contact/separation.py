@@ -20,7 +20,7 @@ from restitution.contact.checks.edge import require_inside_grid
 from restitution.contact.cohesive import COARSEST, CohesiveState, cohesive_length
 from restitution.contact.cohesive_path import separate_cohesive
 from restitution.contact.state import State
-from restitution.contact.unloading_curve import SharedUnloading, unloading_curve
+from restitution.contact.unloading_curve import SharedUnloading, complete_curve, unloading_curve
 from restitution.errors import NotConvergedError
 from restitution.numerics.quadrature import integrate_curve
 from restitution.theory import Kendall
@@ -184,7 +184,7 @@ def separation_of(path: list[State]) -> Separation:
         + abs(unaccounted),
         adhesive_loss=start.adhesive_work - end.adhesive_work - late - scatter,
         pull_off_force=max(0.0, curve.largest_tension()),
-        separation_indentation=end.indentation,
+        separation_indentation=complete_curve(path)[-1][0],
         convolutions=sum(state.convolutions for state in path[1:]),
         steps=len(path) - 1,
     )

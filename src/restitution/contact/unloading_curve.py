@@ -17,8 +17,10 @@ Array = NDArray[np.float64]
 _FEW_NODES = 10  # a smaller contact has too few edge nodes for a balance
 _SMOOTHED = 11  # points through which a parabola smooths the force under tension
 _JUMP = 0.1  # a larger change of force between two points, over the largest tension, is a jump
-# Largest difference between two forces at one indentation, over the largest tension, at which they
-# count as equal: the scatter of the balances.
+# Fall of the indentation while the last contact snaps apart, over the range of the curve.
+_END = 1e-3
+# Largest difference between two forces at one indentation, over the largest tension, if they are
+# the same but for the scatter of the balances.
 _SAME = 0.03
 
 
@@ -94,6 +96,24 @@ def unloading_curve(path: list[State]) -> UnloadingCurve:
     points = [states[0], *points] if fixed else points
     indentation, force = np.array(points).T
     return UnloadingCurve(indentation, force, balanced=True, fixed=fixed)
+
+
+def complete_curve(path: Sequence[State]) -> list[tuple[float, float]]:
+    """Indentations (m) and forces (N) of a `path` from `separate`, with both of its ends.
+
+    The points are those of `unloading_curve`, between the state at which unloading begins and the
+    separation. So their work is that of the curve, within its error.
+    """
+    curve, begin, end = unloading_curve(list(path)), path[0], path[-1]
+    if not curve.balanced:
+        return [(state.indentation, state.force) for state in path]
+    points = [(begin.indentation, begin.force)]
+    for x, force in zip(curve.indentation, curve.force, strict=True):
+        if x < points[-1][0]:
+            points.append((float(x), float(force)))
+    last = points[-1][0]
+    below = last - _END * (begin.indentation - last)
+    return [*points, (min(end.indentation, below), 0.0)]
 
 
 def _smoothed(x: Array, F: Array) -> Array:

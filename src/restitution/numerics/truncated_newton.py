@@ -6,11 +6,14 @@ K is symmetric positive definite and known only through its product with an arra
 needed. The point is stored twice, as u and as p = K⁻¹u. The gradient is r = p + φ′, and the Hessian
 is K⁻¹ + diag(φ″).
 
-The method is Newton's, with conjugate gradients that stop at the boundary of a trust region or at
-negative curvature (Steihaug 1983, SIAM J. Numer. Anal. 20, 626–637). K preconditions the conjugate
-gradients. The product of K⁻¹ with each direction is then a sum of known residuals, so an iteration
-takes one product with K. The energy falls in every step. If the start is not a minimum, the method
-therefore descends to a minimum of lower energy.
+Newton's method with conjugate gradients that stop at the boundary of a trust region or at negative
+curvature (Steihaug 1983, SIAM J. Numer. Anal. 20, 626–637). K preconditions the conjugate
+gradients. Then K⁻¹ of each direction is a sum of residuals that are already known, so an iteration
+takes one product with K. The energy falls in every step. So from a point that is no longer a
+minimum, the method descends into the next one.
+
+K may also annihilate the mean of an array (`zero_mean`). The minimum is then over all u of mean
+zero, the gradient is known except for its mean, and the mean of p is chosen so that it vanishes.
 """
 
 from __future__ import annotations
@@ -22,7 +25,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.numerics.convolution.operators import FreeConvolution
+from restitution.numerics.convolution.operators import Convolution
 
 Array = NDArray[np.float64]
 # φ, φ′ and φ″ of all nodes at u
@@ -55,30 +58,35 @@ class LocalMinimum:
 
 
 def minimise_locally(
-    K: FreeConvolution,
+    K: Convolution,
     potential: NodePotential,
     *,
     p: Array,
     u: Array,
     length: float,
     tolerance: float,
+    zero_mean: bool = False,
 ) -> LocalMinimum:
     """Descend from (p, u) to a local minimum.
 
     `p` and `u` = K p are the start, and are not changed. `length` (a value of u over which φ″
     changes) limits the first step along a direction of negative curvature. `tolerance` limits the
-    residual. If the method does not converge, the result says so; no exception is raised.
+    residual. `zero_mean` tells that K is zero for a constant array, and positive for every other.
+    If the method does not converge, the result says so; no exception is raised.
     """
     phi, slope, k = potential(u)
     energy = 0.5 * _dot(p, u) + float(phi.sum())
     radius, negative, steps = math.inf, False, 0
     while True:
         r = p + slope
+        if zero_mean:
+            p = p - r.mean()
+            r -= r.mean()
         residual = float(np.max(np.abs(r) / (np.abs(k) + 1 / K.diagonal)))
         if residual <= tolerance or steps >= MOST_STEPS:
             break
         steps += 1
-        x, Sx, at_edge, bent = _newton_step(K, r, k, energy, radius, length)
+        x, Sx, at_edge, bent = _newton_step(K, r, k, energy, (radius, length), zero_mean=zero_mean)
         negative |= bent
         predicted = _dot(r, x) + 0.5 * _dot(x, Sx + k * x)
         size = math.sqrt(max(_dot(x, Sx), 0.0))
@@ -102,13 +110,21 @@ def minimise_locally(
 
 
 def _newton_step(
-    K: FreeConvolution, r: Array, k: Array, energy: float, radius: float, length: float
+    K: Convolution,
+    r: Array,
+    k: Array,
+    energy: float,
+    limits: tuple[float, float],
+    *,
+    zero_mean: bool,
 ) -> tuple[Array, Array, bool, bool]:
     """Solve (K⁻¹ + k) x = −r approximately.
 
     Returns x and K⁻¹x, whether the step ended at the trust region, and whether it met a direction
-    of negative curvature. The norm of the trust region is (xᵀK⁻¹x)^½.
+    of negative curvature. The norm of the trust region is (xᵀK⁻¹x)^½. `limits` are its radius and
+    the length of a first step along negative curvature.
     """
+    radius, length = limits
     x, Sx, Hd, scaled = (np.zeros_like(r) for _ in range(4))
     rest = -r
     d = K(rest)
@@ -137,6 +153,8 @@ def _newton_step(
         x += np.multiply(d, a, out=scaled)
         Sx += np.multiply(Sd, a, out=scaled)
         rest -= np.multiply(Hd, a, out=scaled)
+        if zero_mean:  # K ignores the mean; without it, single precision keeps the rest
+            rest -= rest.mean()
         K.single_precision(rest, out=z)
         before, rz = rz, _dot(rest, z)
         if rz <= forcing**2 * first:

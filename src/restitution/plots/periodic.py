@@ -14,7 +14,8 @@ from restitution.theory import Persson
 
 def periodic_figures(results: xr.Dataset) -> Iterator[tuple[str, Figure]]:
     """Yield the name and the content of every figure of the content of `results.nc`."""
-    yield "area-pressure", area_against_pressure(results)
+    if (results["nominal_pressure"].values > 0).any():
+        yield "area-pressure", area_against_pressure(results)
     if results["pressure"].values.any():
         yield "pressure", _pressure_map(results)
 
@@ -22,6 +23,8 @@ def periodic_figures(results: xr.Dataset) -> Iterator[tuple[str, Figure]]:
 def area_against_pressure(results: xr.Dataset) -> Figure:
     """Relative contact area and mean gap against nominal pressure, beside Persson's area."""
     title = results.attrs.get("title", "")
+    # Attraction makes nominal pressures of weak contacts negative; the axis is logarithmic.
+    results = results.isel(depth=results["nominal_pressure"].values > 0)
     pressure = results["nominal_pressure"].values
     p = 1e-6 * pressure
     along = Axis("nominal pressure", "MPa", "log")

@@ -13,6 +13,7 @@ import numpy as np
 import xarray as xr
 
 from restitution.contact.checks.resolution import median_patch, resolves
+from restitution.contact.cohesive import CohesiveState
 from restitution.contact.perimeter import corrected_area
 from restitution.contact.state import State
 from restitution.display import quantity, summary_html, summary_text
@@ -32,6 +33,8 @@ COLUMNS = {
     "largest_pressure_Pa": Column("largest_pressure", "Pa", "largest pressure of a node"),
     "stored_energy_J": Column("stored_energy", "J", "elastic energy of one period"),
     "plastic_work_J": Column("plastic_work", "J", "work dissipated by yielding"),
+    "adhesive_work_J": Column("adhesive_work", "J", "work done by adhesion"),
+    "adhesive_loss_J": Column("adhesive_loss", "J", "energy dissipated where the contact jumps"),
     "loading_work_J": Column("loading_work", "J", "work of loading"),
     "contact_nodes": Column("contact_nodes", "1", "nodes in contact"),
     "contact_patches": Column("contact_patches", "1", "contact patches (nodes joined by an edge)"),
@@ -86,6 +89,8 @@ def periodic_row(state: State) -> dict[str, float]:
         float(state.box_pressure.max(initial=0.0)),
         state.stored_energy,
         state.plastic_work,
+        state.adhesive_work,
+        state.adhesive_loss if isinstance(state, CohesiveState) else 0.0,
         state.loading_work,
         state.contact_nodes,
         patches.size,

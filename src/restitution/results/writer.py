@@ -32,6 +32,7 @@ from restitution.contact.checks.resolution import (
 )
 from restitution.contact.model_error import model_error
 from restitution.contact.state import State
+from restitution.contact.unloading_curve import complete_curve
 from restitution.errors import OutputError, one_line
 from restitution.results.checksums import CHECKSUMS, checksums
 from restitution.results.interruption import hold_signals
@@ -147,7 +148,7 @@ class ResultsFolder:
         `touch` (m) is the indentation at the first touch on the grid of `path`.
         """
         deepest = path[0].indentation + touch
-        points = [(state.indentation + touch, state.force) for state in path]
+        points = [(indentation + touch, force) for indentation, force in complete_curve(path)]
         with hold_signals():
             for point in points:
                 _write_row(self._unloading, [repr(v) for v in (deepest, *point)])

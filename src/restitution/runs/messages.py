@@ -109,7 +109,11 @@ def message(found: Finding) -> str:
                 f"grid.spacing: {_nm(found['spacing'])} is too coarse for the range of the "
                 f'attraction; interface.adhesion = "cohesive" needs {_nm(found["needed"])} or less '
                 "(0.3 times the smaller of E* z0^2/w and sqrt(R* z0)): use a finer grid, "
-                'grid.refine (or "auto"), or adhesion = "jkr"'
+                + (
+                    "or grid.refine"
+                    if found["periodic"]
+                    else 'grid.refine (or "auto"), or adhesion = "jkr"'
+                )
             )
         case "edge-reached":
             wide, long = (1e6 * edge for edge in found["size"])

@@ -23,7 +23,7 @@ from restitution.results.kinds import PERIODIC_FILE
 from restitution.results.periodic import periodic_dataset, periodic_row
 from restitution.results.writer import ResultsFolder, versions, write_table
 from restitution.runs.log import RunLog, Say, ignore
-from restitution.runs.messages import input_warnings, message, naming_keys
+from restitution.runs.messages import input_warnings, message, naming_keys, require_possible
 from restitution.surfaces import describe
 
 CONVENTIONS = {
@@ -53,12 +53,14 @@ def run_periodic(
 
     with log.record(out, keep):
         contact = case.contact(folder)
-        for warning in _edges_of_scans(case) + input_warnings(contact, deepest_indentation(case)):
+        last = deepest_indentation(case)
+        require_possible(contact, last)
+        for warning in _edges_of_scans(case) + input_warnings(contact, last):
             log.warn(warning)
         depths = case.depths()
         for number, depth in enumerate(depths, 1):
             with naming_keys():
-                state = _load(case, contact, depth)
+                state = _load(case, contact, depth, deepest[-1] if deepest else None)
             with hold_signals():  # an interruption leaves a complete row or no row
                 out.rows.append(periodic_row(state))
                 deepest[:] = [state]
@@ -68,12 +70,12 @@ def run_periodic(
     return log.summary
 
 
-def _load(case: Case, contact: Contact, depth: float) -> State:
+def _load(case: Case, contact: Contact, depth: float, start: State | None) -> State:
     if case.pressure is not None:
         return solve_at_pressure(contact, depth)
     if case.load is not None:
         return solve_at_force(contact, depth)
-    return solve(contact, depth)
+    return solve(contact, depth, start=start)
 
 
 def _edges_of_scans(case: Case) -> list[str]:
@@ -102,7 +104,7 @@ def _write_results(
         "warnings": log.warnings + [message(each) for each in found],
         "model": {
             "plasticity": "none" if math.isinf(contact.hardness) else contact.plasticity,
-            "adhesion": "none",
+            "adhesion": contact.adhesion if contact.adhesive else "none",
             "half_space": "periodic, 2/(E* |q|), no mean displacement, FFT without padding",
             **asdict(contact.grid),
             "refine": case.grid.refine if case.grid else 1,

@@ -22,10 +22,10 @@ from restitution.contact.checks.resolution import (
 from restitution.contact.cohesive import CohesiveState
 from restitution.contact.contact import FULL_CONSTRAINT, Contact
 from restitution.contact.state import State
+from restitution.contact.unloading_curve import unloading_curve
 from restitution.errors import DomainError, RestitutionError
 from restitution.numerics.convolution.device import current
 from restitution.numerics.kernels import instruction_set
-from restitution.numerics.quadrature import integrate_curve
 from restitution.results.interruption import hold_signals
 from restitution.results.writer import ResultsFolder, results_dataset, versions
 from restitution.runs.depths import Depth, collision_at, loaded_depths
@@ -200,7 +200,7 @@ def _add_errors(
 
 def _check(state: State, back: Sequence[State], collision: Collision) -> dict[str, float]:
     """Compare the work of an unloading curve with the stored energy."""
-    work = -integrate_curve([s.indentation for s in back], [s.force for s in back])
+    work = unloading_curve(list(back)).work()
     estimate = collide(state, method="energy-estimate")
     return {
         "max_indentation_m": state.indentation,

@@ -34,12 +34,13 @@ def impossible(contact: Contact, indentation: float) -> Finding | None:
     * `roughness-above-radius`: `radius` of the smaller particle, `peak` above the mean (m);
     * `contact-beyond-radius`: predicted `radius`, `indentation`, `reduced_radius` (m);
     * `pixel-above-contact`, see `coarse_scan`;
-    * `range-unresolved`: `spacing` and `needed` spacing (m) of a cohesive contact.
+    * `range-unresolved`: `spacing` and `needed` spacing (m) of a cohesive contact, and whether
+      it is `periodic`.
 
-    A periodic contact has no radius, and is never meaningless.
+    A periodic contact has no radius; only the last of these applies to it.
     """
     if contact.periodic:
-        return None
+        return _coarse_range(contact)
     pair, height = contact.pair, contact.surface.height
     radius = min(pair.first.radius, pair.second.radius)
     if height.size and (peak := float(height.max() - height.mean())) >= radius:
@@ -48,10 +49,7 @@ def impossible(contact: Contact, indentation: float) -> Finding | None:
     if predicted > pair.radius:
         values = {"radius": predicted, "indentation": indentation, "reduced_radius": pair.radius}
         return Finding("contact-beyond-radius", values)
-    if contact.cohesive and not resolves_range(contact):
-        spacing, needed = max(contact.grid.spacing), needed_spacing(contact)
-        return Finding("range-unresolved", {"spacing": spacing, "needed": needed})
-    return coarse_scan(contact, indentation)
+    return _coarse_range(contact) or coarse_scan(contact, indentation)
 
 
 def doubtful(contact: Contact, indentation: float) -> list[Finding]:
@@ -81,6 +79,14 @@ def doubtful(contact: Contact, indentation: float) -> list[Finding]:
     )
     by_radius = [] if periodic else resolution_findings(contact, indentation)
     return by_radius + [found for found in checks if found]
+
+
+def _coarse_range(contact: Contact) -> Finding | None:
+    if not contact.cohesive or resolves_range(contact):
+        return None
+    spacing, needed = max(contact.grid.spacing), needed_spacing(contact)
+    values = {"spacing": spacing, "needed": needed, "periodic": contact.periodic}
+    return Finding("range-unresolved", values)
 
 
 def _tilt(contact: Contact) -> Finding | None:

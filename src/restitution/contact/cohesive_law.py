@@ -1,4 +1,4 @@
-"""The attraction of finite range between two surfaces, bounded by yield."""
+"""The law of the gap of a cohesive contact, with a pressure bound or a continuation beyond it."""
 
 from __future__ import annotations
 
@@ -8,8 +8,29 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.contact.contact import Contact
+from restitution.theory import LennardJones
 
 Array = NDArray[np.float64]
+
+_SOFTEST = (2 / 15) ** (1 / 6)  # z₀/g at which φ″ is smallest
+
+
+def law_of(contact: Contact) -> LennardJones:
+    """The law of the gap between the bodies of `contact`."""
+    return LennardJones(contact.work_of_adhesion, contact.equilibrium_separation)
+
+
+def stiffness(contact: Contact, x: Array) -> Array:
+    """Slope of the traction (Pa/m) at z₀/g = x; negative where the attraction weakens with g."""
+    scale = 8 * contact.work_of_adhesion / contact.equilibrium_separation**2
+    slope: Array = scale * x**4 * (3 * x**6 - 1)
+    return slope
+
+
+def largest_softening(contact: Contact, smallest_gap: float) -> float:
+    """Largest −φ″ (Pa/m) of all gaps from `smallest_gap` on."""
+    x = np.minimum(contact.equilibrium_separation / np.asarray(smallest_gap), _SOFTEST)
+    return max(0.0, -float(stiffness(contact, x)))
 
 
 class BoundedLaw:
@@ -66,10 +87,3 @@ def _cubic_root(c: Array) -> Array:
     beyond = np.cosh(np.arccosh(np.maximum(t, 1.0)) / 3)
     root: Array = 2 / math.sqrt(3) * np.where(t < 1, inside, beyond)
     return root
-
-
-def stiffness(contact: Contact, x: Array) -> Array:
-    """Slope of the traction (Pa/m) at z₀/g = x."""
-    scale = 8 * contact.work_of_adhesion / contact.equilibrium_separation**2
-    stiffness: Array = scale * x**4 * (3 * x**6 - 1)
-    return stiffness
