@@ -1,8 +1,8 @@
 """Attraction of finite range: the numbers and figures in docs/adhesion.md.
 
 `python docs/studies/cohesive.py NAME ...` with the names `grids`, `sticking`, `joined`, `rough` and
-`balance`, and `figure` after `sticking`. Each writes a table `cohesive_NAME.csv`; together about
-twenty minutes.
+`balance` computes and writes a table `cohesive_NAME.csv`; all five take about twenty minutes.
+`figure` draws the results of `sticking`.
 """
 
 from __future__ import annotations
@@ -183,7 +183,7 @@ def figure():
 
 
 def joined():
-    """COR at equal velocities in both modes, and the model error of JKR."""
+    """COR at equal velocities with both models, and the model error of JKR."""
     rows = []
     for tabor in (1.0, 2.0):
         pair = pair_of(tabor)
@@ -233,7 +233,7 @@ def rough():
             surface = generate_surface(
                 grid, kind="gaussian", rms=rms, correlation_length=0.25e-6, seed=7
             )
-            # The cells are 0.4 of the cohesive zone of glass, more than a case permits.
+            # The cells are 0.4 times the cohesive zone of glass, coarser than a case permits.
             surface = Surface(surface.height, grid, {**surface.provenance, COMPANION: 1.0})
             base = Contact(Pair(body, body), surface, p_y, work_of_adhesion=W)
             for depth in (2e-9, 6e-9):

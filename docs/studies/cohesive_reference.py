@@ -1,12 +1,11 @@
-"""Axisymmetric reference for the cohesive mode: a smooth elastic sphere with a Lennard-Jones law.
+"""Axisymmetric reference for `cohesive`: a smooth elastic sphere with a Lennard-Jones law.
 
 `python docs/studies/cohesive_reference.py`; about ten minutes, most of them for the largest Tabor
 parameter. It writes `cohesive_reference.csv`, with two meshes for each Tabor parameter.
 
-This code shares nothing with `restitution`. It has rings of constant pressure instead of square
-cells, dense matrices instead of FFTs, and follows the whole equilibrium curve, stable or not, by
-the length of its arc. So the points of instability are turning points of a curve here, not failures
-of a minimiser.
+This code shares no code with `restitution`. It has rings of constant pressure instead of square
+cells and dense matrices instead of FFTs. It follows the whole equilibrium curve, stable or not, by
+arc length. The points of instability are turning points of this curve.
 
 All quantities are normalised: E* = 1, w = 1, z0 = 1, and therefore R* = mu^3.
 """

@@ -4,7 +4,7 @@
 
 Alumina spheres of 5 mm on a glass wall at 3.9 m/s (`oblique.py`), with a normal restitution of 1
 and the E* and G* of the pair. All angles are run in one simulation of each contact model: spheres
-that do not touch each other hit one wall. Writes oblique_codes.csv, with the codes that are
+that do not touch each other hit one wall. Writes oblique_codes.csv for the codes that are
 installed.
 """
 
@@ -28,7 +28,7 @@ from restitution.theory import Hertz
 
 ANGLES = sorted({*TANGENTIAL, *SPIN, *REBOUND})
 RADIUS, DENSITY = PAIR.first.radius, PAIR.first.density
-# E and nu that, given for both bodies, have the E* and G* of the pair.
+# Young's modulus and Poisson's ratio of two like bodies with the E* and G* of the pair.
 _SHARE = 0.25 * PAIR.tangential_modulus / PAIR.contact_modulus
 NU = (1 - 4 * _SHARE) / (1 - 2 * _SHARE)
 E = 2 * (1 - NU**2) * PAIR.contact_modulus
@@ -78,7 +78,7 @@ def spheres() -> list[tuple[float, float, float, float]]:
 
 
 def run(command: list[str], text: str, name: str) -> tuple[str, str]:
-    """What a program prints about its own version, and in all; empty if it is not installed."""
+    """The version line and the whole output of a program; empty if it is not installed."""
     environment = dict(os.environ) if command[0] == "lmp" else CLEAN
     if command[0] == "lmp":
         environment["LD_LIBRARY_PATH"] = str(Path(sys.executable).parents[1] / "lib")

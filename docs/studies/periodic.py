@@ -4,7 +4,7 @@
     python docs/studies/periodic.py            # draw docs/images/periodic.png, print the tables
 
 Computed areas are kept in docs/studies/periodic.csv. `challenge-2048` and `challenge-4096` have the
-spectrum of the contact-mechanics challenge. The larger one takes 5 minutes and 2 GB a pressure.
+spectrum of the contact-mechanics challenge. The larger one takes 5 minutes and 2 GB per pressure.
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@
 Writes docs/studies/tangential.csv and prints the table of docs/oblique.md. Half an hour.
 
 Each contact is run as a case, and the one-dimensional law (`laws.foundation`) is made from its
-stored results as `restitution simulate` does it. The boundary elements (`contact.tangential`) solve
+stored results as in `restitution simulate`. The boundary elements (`contact.tangential`) solve
 the same contact. At the deepest point and half-way through unloading, with the normal force held
 constant, the study compares the tangential stiffness without slip, the force at three
 displacements, and the energy of a loop. Over whole oblique impacts with the same normal motion, it
@@ -332,7 +332,7 @@ def largest(row: dict, *parts: str) -> float:
 
 
 def report(rows: list[dict]) -> None:
-    """Print the largest differences of each group, and the largest share of the stated error."""
+    """Print the largest differences of each group, and their largest ratio to the stated error."""
     print("| contacts | number | stiffness | force | loop energy | e_t | share of the error |")
     print("|---|---|---|---|---|---|---|")
     groups: dict[str, list[dict]] = {}

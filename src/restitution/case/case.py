@@ -291,7 +291,7 @@ class Case(Table):
         )
 
     def _adhesion_on(self, grid: Grid) -> Adhesion:
-        """The model of adhesion on `grid`: with a range where the cells are fine enough for it."""
+        """The model of adhesion on `grid`: cohesive by default if the cells are fine enough."""
         interface = self.interface
         if interface.adhesion is not None:
             return interface.adhesion

@@ -105,7 +105,7 @@ def read_quantity(value: object, unit: str) -> float:
         remedy = _other_case(match[2], unit) or example
         raise ValueError(f"{shown(value)} has an unknown unit; {remedy}") from None
     if unit == "rad/s" and not any(word in str(quantity.units) for word in _TURNS):
-        # For pint, 1 Hz is 1 rad/s; most people mean one turn a second.
+        # In pint, 1 Hz is 1 rad/s, but most users mean one turn per second.
         raise ValueError(f"{shown(value)} is not a spin, because its unit has no angle; {example}")
     result = number * factor
     if not math.isfinite(result):

@@ -28,7 +28,7 @@ _LABELS = {
     "pull_off_radius_m": ("pull-off radius a_c, smooth", 1e6, "um"),
     "nodes_over_pull_off_radius": ("nodes over the pull-off radius, a_c/h", 1, ""),
     "expected_pull_off_error": ("expected error of pull-off on this grid", 100, "%"),
-    "tabor_parameter": ("Tabor parameter (JKR holds well above 1)", 1, ""),
+    "tabor_parameter": ("Tabor parameter (large in the JKR limit)", 1, ""),
     "sticking_velocity_m_per_s": ("sticking velocity V_s, smooth elastic", 1, "m/s"),
     "deepest_indentation_m": ("deepest indentation", 1e9, "nm"),
     "predicted_contact_radius_m": ("contact radius there, smooth", 1e6, "um"),

@@ -46,8 +46,8 @@ def simulate(
         list[str] | None,
         typer.Option(
             metavar="SPIN",
-            help='Spin of the first body before the impact, such as "100 rad/s"; given twice, '
-            "those of both.",
+            help='Spin of the first body before the impact, such as "100 rad/s"; give it twice '
+            "for both bodies.",
             show_default="those of the case, or none",
         ),
     ] = None,

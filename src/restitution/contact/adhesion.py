@@ -29,8 +29,8 @@ from restitution.theory import Kendall
 Array = NDArray[np.float64]
 
 _ACCURACY = 1e-3  # tolerance of solves between releases, as a fraction of the crack opening
-# Edge nodes with G above this part of w are on a receding edge, and their mean G decides where the
-# energies balance. The balance is sought from half a step before the state to the step's end.
+# Edge nodes with G above this part of w are on a receding edge, and their mean G determines the
+# balance. The balance is sought from half a step before the state to the step's end.
 _ACTIVE, _EARLIEST = 0.8, -0.5
 # Smallest pull-off radius of an asperity (cells) for which balances are used. On coarser grids most
 # nodes leave the contact because the bodies part, not because G reaches w.

@@ -16,8 +16,9 @@ from restitution.contact.contact import Contact
 from restitution.contact.state import State
 from restitution.numerics.quadrature import integrate_adaptively
 
-# Numbers of intervals between the depths: at first, from first touch and from another state, and at
-# most. The depths are closer at first touch, at t to this power, because the force bends there.
+# Numbers of intervals between the depths: initially, from first touch or from another state, and at
+# most. The depths follow t to the power _CROWDING, so they are closer at first touch, where the
+# curvature of the force is large.
 _FROM_TOUCH, _FROM_STATE, _MOST = 4, 2, 16
 _CROWDING = 1.5
 # Factor on the difference from half as many depths, because the force of rough contacts jumps.

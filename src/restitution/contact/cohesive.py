@@ -6,12 +6,13 @@ indentation δ, the displacement u is a local minimum of
     ½ uᵀK⁻¹u + Σ φ(g),   g = z₀ + h₀ + u_p − δ + u,
 
 with the energy φ of the law. There is no contact set and no release of nodes. Where an equilibrium
-ceases to exist, the solve descends to the next one; `cohesive_path` accounts for the work that is
-lost then. Surfaces yield where the pressure of the law would exceed the bound: the pressure stays
-at the bound, and the rest of the approach becomes plastic displacement.
+ceases to exist, the solve descends to another one; `cohesive_path` computes the energy that is
+dissipated there. Surfaces yield where the pressure of the law would exceed the bound: the pressure
+stays at the bound, and the rest of the approach becomes plastic displacement.
 
-A node is *in contact* where its gap is below that of the largest attraction, 3^{1/6} z₀. The law is
-stable there. For a short range, the set tends to the contact of JKR, whose edge carries tension.
+A node is *in contact* if its gap is smaller than 3^{1/6} z₀, the gap of the largest attraction. The
+law is stable at these gaps. As the range decreases, the nodes in contact tend to the contact of
+JKR, whose edge carries tension.
 
 Nodes outside the box, and the paraboloid outside the grid, attract as rigid bodies.
 
@@ -41,8 +42,9 @@ from restitution.numerics.truncated_newton import minimise_locally
 
 Array = NDArray[np.float64]
 
-# Largest spacing over the length of the cohesive zone E*z₀²/w, and over sqrt(R*z₀). On coarser
-# grids the edge of the contact is held between nodes, and hysteresis and pull-off are wrong.
+# Largest spacing over the smaller of the length of the cohesive zone, E*z₀²/w, and sqrt(R*z₀). On
+# coarser grids the edge of the contact is pinned between nodes, which falsifies the dissipated
+# energy and the pull-off force.
 COARSEST = 0.3
 COMPANION = "companion"  # provenance of a surface that is only compared with a finer grid
 _REACH = 12.0  # nodes with rigid gaps up to this multiple of z₀ are solved
@@ -58,8 +60,8 @@ class CohesiveState(State):
     Attributes:
         interaction_energy: Energy of the interface law (J); 0 for bodies far apart.
         far_force: Part of the normal force from outside `box` (N).
-        adhesive_loss: Energy dissipated so far where equilibrium was lost (J).
-        jumps: Number of losses of equilibrium so far (1).
+        adhesive_loss: Energy dissipated so far by jumps between equilibria (J).
+        jumps: Number of these jumps so far (1).
         unaccounted: Work of the force minus the energy accounted for (J), so far.
         smallest_gap: Smallest gap between the surfaces (m); z₀ where they touch without pressure.
     """
@@ -107,9 +109,10 @@ def cohesive_length(contact: Contact) -> float:
 
 
 def coarsest_spacing(pair: Pair, work_of_adhesion: float, z0: float) -> float:
-    """The largest grid spacing (m) that resolves cohesive zone and range, with rounding margin.
+    """The largest grid spacing (m) that resolves the attraction, with a margin for rounding.
 
-    The range is z₀ above a paraboloid of radius R*: it ends at a distance of sqrt(2R*z₀).
+    It resolves the cohesive zone and the radius over which a sphere attracts. The gap under a
+    paraboloid of radius R* grows by z₀ within sqrt(2R*z₀) of the apex.
     """
     zone = pair.contact_modulus * z0**2 / work_of_adhesion
     return COARSEST * (1 + 1e-9) * min(zone, math.sqrt(pair.radius * z0))
@@ -211,9 +214,9 @@ def solve_cohesive(
 
 
 def rigid_start(contact: Contact, *, limit: Array | float, residual: float) -> CohesiveState:
-    """The state of approaching bodies from which on equilibrium may be lost.
+    """The start of a loading path: a state of approaching bodies, far enough apart.
 
-    At every larger distance the equilibrium is unique, so nothing is dissipated.
+    At this and every larger distance the equilibrium is unique, so nothing is dissipated.
     """
     z0 = contact.equilibrium_separation
     gap, convolutions = 2 * z0, 0
@@ -252,7 +255,7 @@ def rigid_pressure(contact: Contact, indentation: float, box: Box) -> Array:
 
 
 def with_interaction(state: CohesiveState) -> CohesiveState:
-    """Set the work of adhesion so far from the interaction and the losses of `state`."""
+    """Set the work of adhesion so far from the interaction energy and the loss of `state`."""
     return replace(state, adhesive_work=-state.interaction_energy - state.adhesive_loss)
 
 

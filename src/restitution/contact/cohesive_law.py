@@ -36,9 +36,9 @@ def largest_softening(contact: Contact, smallest_gap: float) -> float:
 class BoundedLaw:
     """The law of the gap on a box, as a function of u, bounded or continued beyond `limit`.
 
-    Where the pressure would exceed the limit, it stays there (`yields`). For elastic bodies it is
-    continued linearly beyond E*, a pressure that no result reaches; the continuation keeps the
-    iteration away from negative gaps.
+    If the bodies yield (`yields`), the pressure does not exceed `limit`. For elastic bodies, the
+    law is continued linearly above the pressure E*, which no result reaches. The continuation keeps
+    the iteration away from negative gaps.
     """
 
     def __init__(self, contact: Contact, base: Array, limit: Array | float) -> None:

@@ -1,11 +1,11 @@
-"""Paths of cohesive contacts: loading, and unloading to separation, with the work that is lost.
+"""Paths of cohesive contacts: loading and unloading to separation, with the dissipated energy.
 
 In a step without instability the work of the force equals the change of the potential energy plus
-the plastic work. So the energies of the states give the work, and an integral of the force is only
-a check. Where an equilibrium ceases to exist, the solve descends to another one. Then the work of
-the force exceeds the change of energy, and the excess is the energy dissipated by adhesion. Steps
-are halved around such jumps until the uncertainty of this excess, half the jump of the force times
-the step, is small.
+the plastic work. The work is therefore computed from energies, and the integral of the force only
+checks it. Where an equilibrium ceases to exist, the solve descends to another one. In this step the
+work of the force exceeds the change of energy, and the excess is the energy dissipated by adhesion.
+Steps are halved around such jumps until the uncertainty of this excess, half the jump of the force
+times the step, is small.
 """
 
 from __future__ import annotations
@@ -109,10 +109,10 @@ def step_cohesive(state: CohesiveState, indentation: float, *, residual: float) 
 
 
 def separate_cohesive(state: CohesiveState, *, accuracy: float = ACCURACY) -> Iterator[State]:
-    """Yield `state` and the states of unloading until the rest of the way is reversible and weak.
+    """Yield `state` and the states of unloading until the rest of the path is reversible and weak.
 
-    The last state is without contact, and no other equilibrium can exist at larger distances. Its
-    interaction energy is the work that the rest of the way takes.
+    The last state has no contact, and no other equilibrium can exist at larger distances. Its
+    interaction energy, with the opposite sign, is the work to separate the bodies completely.
     """
     yield state
     tension = max(0.0, -state.force)

@@ -13,7 +13,7 @@ nodes at a kink until G = 1.0 w. The relative error of the pull-off force is the
 (Rybicki and Kanninen 1977, Eng. Fract. Mech. 9, 931–938). For each face between a node in contact
 and a node outside, this work per area is ½ |p| times the opening. The relative error of G is 1e-3
 on a straight edge; on a staircase, the mean of G over the faces has this accuracy. G is therefore
-averaged along the edge over about four cells, but never across to another patch. The opening is the
+averaged along the edge over about five cells, but never across to another patch. The opening is the
 separation of the surfaces beyond the smooth continuation of their contact:
 
     opening = (u₊ − 2u₀ + u₋) + (h₀ − 2h₋ + h₋₋),
@@ -49,8 +49,8 @@ _AROUND = np.array([(-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0)
 # Steps of averaging G along the edge. Each step adds a variance of ⅔ cell², so the standard
 # deviation of the weights is about five cells in all.
 _SMOOTHING_STEPS = 32
-# G is this much too small on the edge of a disc, times the curvature in cells: on discs of 5, 10
-# and 20 cells per radius, the mean of G is 0.970, 0.984 and 0.992 of its exact value.
+# Relative error by which G is too small on a curved edge, over the curvature (1/cell): on discs of
+# 5, 10 and 20 cells per radius, the mean of G is 0.970, 0.984 and 0.992 of its exact value.
 _CURVATURE_BIAS = 0.16
 _LARGEST_CURVATURE = 0.35
 # A node released alone is at least this far (cells) from the next one, and need not be further.

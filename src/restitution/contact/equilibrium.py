@@ -13,8 +13,8 @@ K p > 0 under every positive pressure. So solving on the bounding box of this se
 adhesion the lower bound is a tension on the nodes held in contact. The box then also contains these
 nodes and a margin of two cells.
 
-In a periodic contact, K displaces the surface by zero on average, so K p < 0 somewhere. Nodes with
-h ≥ δ may then come into contact, and the box is the whole grid. The mean of the gradient gives the
+In a periodic contact, the mean of K p is zero, so K p < 0 somewhere. Nodes with h ≥ δ may therefore
+come into contact, and the box is the whole grid. The mean of the gradient gives the
 mean gap, mean(h) − δ: an elastic contact is complete at δ = mean(h).
 """
 

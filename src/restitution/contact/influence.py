@@ -4,8 +4,8 @@ Pressure and displacement are positive into the body. Both bodies are combined i
 of contact modulus E*: 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂. Shear traction and displacement point
 along x. The two compliances of `Pair.shear_compliances` combine the bodies.
 
-On a periodic half-space, a wave of pressure of the angular wave number q causes a wave of
-displacement of 2/(E* |q|) times the amplitude (Johnson 1985, *Contact Mechanics*, §13.2).
+On a periodic half-space, a pressure wave with the angular wave number q causes a displacement wave
+with 2/(E* |q|) times its amplitude (Johnson 1985, *Contact Mechanics*, §13.2).
 """
 
 from __future__ import annotations
@@ -176,7 +176,7 @@ def foundation_compliance(
 ) -> float:
     """Displacement of `sprung_half_space` per mean pressure (m/Pa).
 
-    It is that of the wave that is twice as long as the longer edge of the period.
+    It is the compliance for a wave that is twice as long as the longer edge of the period.
     """
     q = math.pi / max(n * h for n, h in zip(shape, spacing, strict=True))
     return 2 / (contact_modulus * q)

@@ -1,18 +1,17 @@
 """Error of COR due to the models of plasticity and of adhesion.
 
-The error of plasticity comes from a comparison with finite elements.
-
-docs/validation.md describes the comparison. The largest relative differences of COR found are
-tabulated over the COR due to plasticity alone, e_p = sqrt(E_el/(E_el + W_p)). e_p decreases
+The error of plasticity comes from a comparison with finite elements (docs/validation.md). The
+largest relative differences of COR in this comparison are tabulated over the COR due to plasticity
+alone, e_p = sqrt(E_el/(E_el + W_p)). e_p decreases
 monotonically from first yield to full plasticity, for smooth bodies and for asperities. The
 differences of `expanding-cavity` also depend on the steepness of the asperities ψ = E* S/Y, where S
 is the rms slope. Outside the range of the finite element results, the nearest value is used and may
 be too small.
 
-`adhesion = "jkr"` neglects the range of the attraction. Then the error has a second part: the loss
-of smooth elastic spheres over one cycle of contact, over that of JKR, as a function of the Tabor
-parameter (docs/studies/cohesive_reference.csv). The energy that adhesion loses is too large by this
-factor.
+`adhesion = "jkr"` neglects the range of the attraction and therefore dissipates too much energy.
+This is the second part of the error. It follows from a table of the energy that smooth elastic
+spheres dissipate in one cycle of contact, divided by that of JKR, as a function of the Tabor
+parameter (docs/studies/cohesive_reference.csv).
 """
 
 from __future__ import annotations
@@ -46,7 +45,7 @@ _ONSET = 1.6 / 2.8  # pressure at first yield over the yield pressure (full plas
 
 
 def model_error(state: State, restitution: float) -> float:
-    """Error of the `restitution` of an impact up to `state` due to its models.
+    """Error of the `restitution` of an impact up to `state` due to the models of its contact.
 
     The two parts, of plasticity and of the range of adhesion, are independent.
     """
@@ -55,10 +54,11 @@ def model_error(state: State, restitution: float) -> float:
 
 
 def hysteresis_ratio(tabor: float) -> float:
-    """Energy lost in a cycle of contact of smooth elastic spheres, over that of JKR.
+    """Energy dissipated in a cycle of contact of smooth elastic spheres, over that of JKR.
 
-    Beyond the reference the difference from 1 falls with the exponent found between µ = 3 and 5.
-    This exponent has grown steadily up to there, so the result is too small rather than too large.
+    Beyond the last value of the reference (µ = 5), the difference from 1 is extrapolated with the
+    exponent found between µ = 3 and 5. This exponent increases with µ up to there, so the result is
+    too small rather than too large.
     """
     if tabor >= _TABOR[-1]:
         return 1 - (1 - _HYSTERESIS[-1]) * math.pow(_TABOR[-1] / tabor, _BEYOND)

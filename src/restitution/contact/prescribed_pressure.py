@@ -24,8 +24,9 @@ def solve_at_pressure(contact: Contact, pressure: float, *, residual: float = RE
     """Load a periodic contact to a nominal pressure, within a relative error of 1e-8.
 
     The two bodies are pressed together through an elastic foundation, whose compression depends on
-    the mean pressure alone. It makes the problem positive definite even in full contact, where the
-    pressure does not depend on the indentation any more. Its compression is subtracted at the end.
+    the mean pressure alone. With the foundation the problem is positive definite even in complete
+    contact, where the indentation does not depend on the pressure. The compression is subtracted at
+    the end.
 
     Args:
         contact: Periodic contact to load.

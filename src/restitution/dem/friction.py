@@ -1,11 +1,11 @@
 """Friction in exports: the coefficient of each pair, and the tangential stiffness.
 
-DEM codes have one tangential spring for a contact, whose stiffness is that of a contact that sticks
-(Mindlin 1949: 8 G* a, with 1/G* = Σ 2 (2 − ν)(1 + ν)/E). In a real contact the rim slides first, so
-its mean stiffness during an impact is smaller. With 0.8 times this stiffness, the tangential
-restitution of elastic spheres in LAMMPS (`mindlin_rescale/force`) is within 0.03 of the law of
-`laws.oblique`, for ν from 0 to 0.45 and any angle; with the whole stiffness it is up to 0.13 too
-large (docs/studies/oblique_stiffness.py).
+DEM codes have one tangential spring per contact, with the stiffness of a contact that sticks
+(Mindlin 1949: 8 G* a, with 1/G* = Σ 2 (2 − ν)(1 + ν)/E). In a real contact the edge slides first,
+so its mean stiffness during an impact is smaller. With 0.8 times Mindlin's stiffness, the
+tangential restitution of elastic spheres in LAMMPS (`mindlin_rescale/force`) is within 0.03 of the
+law of `laws.oblique`, for ν from 0 to 0.45 and any angle; with the full stiffness it is up to 0.13
+too large (docs/studies/oblique_stiffness.py).
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ def mindlin_stiffness(pair: Pair) -> float:
 
 
 def friction_note(pairs: Sequence[Pair], sign: str = "", tangential: str = "") -> str:
-    """Write comments on where the friction of the export comes from; each begins with `sign`.
+    """Write comments on the source of the coefficients of friction; each line begins with `sign`.
 
-    `tangential` describes the tangential settings of pairs whose cases give the friction.
+    `tangential` describes the tangential settings of the pairs whose cases state a friction.
     """
     missing = [f"{pair.i} {pair.j}" for pair in pairs if pair.law.friction is None]
     if len(missing) == len(pairs):

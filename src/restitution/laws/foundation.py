@@ -1,12 +1,12 @@
 """A one-dimensional foundation with the normal and tangential response of a stored contact.
 
 Springs stand side by side on a line. The spring at the distance x from the middle touches at the
-indentation g(x), and carries the normal load 2E* (δ − g) and the tangential load 2G* u for each
-metre of the half line. g follows from the normal curve alone: its inverse is the contact radius
-a(δ) = F′(δ)/2E*. In a spring that sticks, u follows the motion of the bodies; |2G* u| is at most µ
-times the normal load. For a sphere, g = x²/R*, and the foundation is exact: it gives Hertz's force,
-and Cattaneo's and Mindlin's tangential force for every history (Popov and Heß 2015, Method of
-Dimensionality Reduction, chapters 3 and 5). For other elastic contacts the rule "tangential is µ
+indentation g(x), and carries the normal load 2E* (δ − g) and the tangential load 2G* u per unit
+length of the half line. g follows from the normal curve alone: the inverse of g(x) is the contact
+radius a(δ) = F′(δ)/2E*. In a spring that sticks, u follows the motion of the bodies; |2G* u| is at
+most µ times the normal load. For a sphere, g = x²/R*, and the foundation is exact: it gives Hertz's
+force, and Cattaneo's and Mindlin's tangential force for every history (Popov and Heß 2015, Method
+of Dimensionality Reduction, chapters 3 and 5). For other elastic contacts the rule "tangential is µ
 times the difference of two normal states" is a good approximation (Jäger 1995, Arch. Appl. Mech.
 65, 478–487; Ciavarella 1998, Int. J. Solids Struct. 35, 2349–2378).
 

@@ -10,9 +10,10 @@ sphere without spin. The tangential force T follows from a one-dimensional found
 friction µ (`foundation`). If all springs slide to the end, the impulse of T is µ (1 + e) m* V_n for
 every law of force.
 
-The error of the tangential law (`tangential_error`) becomes one of the impulse of T: the motion is
-integrated again with a larger and a smaller tangential modulus, and after yield a part of the
-impulse is added that vanishes in full slip, where the impulse is exact for like bodies.
+The error of the tangential law (`tangential_error`) is converted to an error of the impulse of T.
+For this, the motion is integrated again with a larger and a smaller tangential modulus. After
+yield, a part of the impulse is added to the error. This part vanishes in full slip, where the
+impulse is exact for like bodies.
 
 Neglected: the coupling of normal and tangential displacements of unlike materials, the torque about
 the normal, rolling friction, and elastic waves.
@@ -42,7 +43,7 @@ from restitution.results.reader import RunResults
 Array = NDArray[np.float64]
 
 _STEPS = 4000  # number of time steps of a collision
-_LEAST = 1e-3  # part of the largest normal force below which sticking is not looked for
+_LEAST = 1e-3  # part of the largest normal force below which sticking is not evaluated
 _INERTIA = 3.5  # 1 + m R²/I of a solid sphere
 
 
@@ -115,7 +116,7 @@ def collide_obliquely(
     friction: float,
     spins: tuple[float, float] = (0.0, 0.0),
 ) -> ObliqueCollision:
-    """Let the two particles of `law` collide at an angle.
+    """Simulate an oblique impact of the two particles of `law`.
 
     Args:
         law: Stored normal force of the pair (`stored_force`), without adhesion.

@@ -1,16 +1,16 @@
 """Error of the one-dimensional tangential law, from a comparison with boundary elements.
 
-docs/oblique.md describes the comparison (`docs/studies/tangential.py` and `unlike.py`). Like bodies
-with ν = 0 follow the law exactly as long as they do not yield, for every roughness. Four effects
-make an error:
+docs/oblique.md describes the comparison (`docs/studies/tangential.py` and `unlike.py`). The law is
+exact for like bodies with ν = 0 and any roughness, as long as they do not yield. Four effects cause
+an error:
 
 * Patches that are not round. A point load along x moves the surface at a given distance along x by
   1 + χ and along y by 1 − χ times the mean, with χ = ν/(2 − ν) for like bodies. The law uses the
-  mean, so the stiffness of a contact in a line is off by up to χ. The patches of rough contacts
-  point in all directions, and their effects cancel as the square root of their number. A lay aligns
-  them.
-* Yield. While the contact is loaded, nodes at the pressure bound carry no more traction, but all
-  springs of the law do.
+  mean, so its stiffness of a contact with the shape of a line has an error of up to χ. The patches
+  of rough contacts point in all directions, and their effects cancel as the square root of their
+  number. A lay aligns them.
+* Yield. During loading, the largest traction of nodes at the pressure bound does not grow, but that
+  of all springs of the law does.
 * Few unloading curves. Between two of them, the stiffness is interpolated.
 * Unlike bodies. Pressure also moves the surfaces tangentially, in proportion to the second constant
   of Dundurs β. Without slip this adds no tangential force by symmetry, and the stiffness grows only

@@ -42,10 +42,10 @@ _ROUNDING = 1e-13  # predicted decreases below this fraction of the energy are r
 
 @dataclass(frozen=True)
 class LocalMinimum:
-    """Where the method ended.
+    """The point at which the method ended.
 
     `residual` is the largest |r|/(φ″ + 1/K₀₀), a length like u, where K₀₀ is the diagonal of K.
-    `negative_curvature` tells whether the method left a region that is not convex.
+    `negative_curvature` is True if the method met a direction of negative curvature.
     """
 
     p: Array

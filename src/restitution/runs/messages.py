@@ -60,10 +60,10 @@ def no_range(contact: Contact) -> list[str]:
         return []
     return [
         'interface.adhesion is left out, and the grid is too coarse for "cohesive" (it needs '
-        f'{_nm(needed_spacing(contact))}), so it is "jkr", without range: at the Tabor parameter '
-        f"of the smooth bodies, {tabor:.2g}, adhesion loses {lost:.2g} times the energy of JKR, "
-        f"and the sticking velocity is {math.sqrt(lost):.2g} times as high; asperities lose less; "
-        "model_error includes this"
+        f'a spacing of {_nm(needed_spacing(contact))}), so "jkr" is used, which neglects the range '
+        f"of the attraction: smooth bodies with this Tabor parameter ({tabor:.2g}) dissipate "
+        f"{lost:.2g} times the energy of JKR and have {math.sqrt(lost):.2g} times its sticking "
+        "velocity, and asperities dissipate less; model_error includes this"
     ]
 
 

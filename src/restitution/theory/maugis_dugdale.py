@@ -2,7 +2,7 @@
 
 D. Maugis, J. Colloid Interface Sci. 150 (1992) 243–269; K. L. Johnson, J. A. Greenwood, J. Colloid
 Interface Sci. 192 (1997) 326–333. The traction σ₀ acts in a ring a < r < c up to the gap w/σ₀. With
-K = 4/3 E*, the parameter λ = 2σ₀ (R*/(πwK²))^{1/3} and the normalised
+K = 4/3 E*, the parameter λ = 2σ₀ (R*/(πwK²))^{1/3} and the dimensionless
 
     ā = a (K/(πwR*²))^{1/3},   F̄ = F/(πwR*),   m = c/a,
 
@@ -33,7 +33,7 @@ _SECTIONS = 60  # of the bracket of the radius at pull-off
 
 @dataclass(frozen=True, eq=False)
 class MaugisDugdale:
-    """Elastic spheres with the attraction of Dugdale.
+    """Elastic spheres with a constant attraction of finite range (Dugdale).
 
     The fields may be arrays and broadcast (see `restitution.theory`).
 
@@ -65,7 +65,7 @@ class MaugisDugdale:
         return scalar_or_array(2 * self.traction * np.cbrt(self.radius / (np.pi * w * K**2)))
 
     def force_at_contact_radius(self, contact_radius: Values) -> Array:
-        """Normal force at a radius of the contact, on both branches.
+        """Normal force at a contact radius, on the stable and the unstable branch.
 
         Args:
             contact_radius: Radius a of the area in contact (m), positive.

@@ -44,9 +44,9 @@ _ENDS = (
     "limit_damping, which cuts off the tension and raises e (0.808 for 0.8)."
 )
 _TANGENTIAL = (
-    f"Their pairs have {STIFFNESS_SHARE} times the tangential stiffness of a contact that sticks, "
-    "because the rim of a real contact slides first: then the oblique rebound of elastic spheres "
-    "is that of the law, within 0.03 of e_t. NULL in place of the stiffness gives the whole of it."
+    f"These pairs have {STIFFNESS_SHARE} times the tangential stiffness of a contact that sticks, "
+    "because the edge of a contact slides first. With this factor e_t of elastic spheres is within "
+    "0.03 of the law (docs/oblique.md). For the full stiffness, replace the number by NULL."
 )
 _KOKKOS_ENDS = "the overlap is back to zero. The damping pulls before; do not add limit_damping."
 
@@ -122,7 +122,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
 
 
 def _tangential(pair: Pair) -> str:
-    """The tangential model of a pair; LAMMPS' own default stiffness without a friction."""
+    """The tangential model of a pair; LAMMPS' default stiffness if its case has no friction."""
     if pair.law.friction is None:
         return f"mindlin NULL 1.0 {pair.friction}"
     stiffness = STIFFNESS_SHARE * mindlin_stiffness(pair)

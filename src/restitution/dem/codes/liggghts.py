@@ -32,8 +32,8 @@ _ENDS = (
     "`limitForce on`, which cuts off the tension and raises e (0.397 for 0.3)."
 )
 _TANGENTIAL = (
-    "LIGGGHTS has the whole tangential stiffness of a contact that sticks, and contacts that stick "
-    "keep too much of their tangential velocity (docs/oblique.md); impacts that slide are exact."
+    "LIGGGHTS uses the full tangential stiffness of a contact that sticks. Its impacts that slide "
+    "are exact, and impacts that stick return too much tangential velocity (docs/oblique.md)."
 )
 _HARD, _SOFT = 1e9, 5e6  # range of E (Pa) outside which LIGGGHTS needs a command to accept E
 

@@ -39,8 +39,8 @@ _ENDS = (
     "YADE takes R*/2 for R*: the contact is softer by sqrt(2), with the same e."
 )
 _TANGENTIAL = (
-    "soften and follow give their pairs a part of the tangential stiffness of a contact that "
-    "sticks, because the rim of a real contact slides first (docs/oblique.md)."
+    "soften and follow reduce the tangential stiffness of these pairs, because the edge of a "
+    "contact slides first (docs/oblique.md)."
 )
 _STEPS = 2000
 _WALL_DENSITY = 1000.0  # density (kg/m³) for a wall without a density, because YADE needs a value
@@ -84,7 +84,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
 
 
 def _tangential(pair: Pair) -> float:
-    """Share of YADE's tangential stiffness (1); all of it without a friction of the case."""
+    """Factor on YADE's tangential stiffness (1); 1 if the case has no friction."""
     return 1.0 if pair.law.friction is None else STIFFNESS_SHARE
 
 

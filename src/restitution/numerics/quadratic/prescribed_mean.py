@@ -3,9 +3,9 @@
     minimise  ½ pᵀK p + pᵀh   subject to   0 ≤ p ≤ upper,   mean(p) = `mean`.
 
 The multiplier of the mean is a scalar D, with which p minimises ½ pᵀK p − pᵀ(D − h). The mean of p
-increases with D, so a secant method within a bracket finds D. Every solve starts from the last
-solution and is only as accurate as D is at this time. The first D, p and slope of the secant method
-come from the same problem on the next coarser grid.
+increases with D, so a bracketed secant method finds D. Every solve starts from the previous p, and
+its tolerance follows the current error of D. The first D, p and slope of the secant method come
+from the same problem on the next coarser grid.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _COARSE_RESIDUAL, _COARSE_MEAN = 1e-2, 0.02
 
 @dataclass(frozen=True)
 class MeanTarget:
-    """What p must meet.
+    """The prescribed mean of p, and the tolerances.
 
     `mean` is the prescribed mean and `precision` its relative tolerance. `compliance` is the
     product with K of a constant p = 1. `residual` limits the violation as a fraction of
@@ -48,8 +48,8 @@ class MeanTarget:
     def tolerance(self, multiplier: float, slope: float) -> float:
         """The limit of the violation, in the units of h.
 
-        A violation changes the mean at most as much as an equal change of the multiplier. `slope`
-        is dD/dmean.
+        A violation changes the mean by at most as much as an equal change of the multiplier does.
+        `slope` is dD/dmean.
         """
         by_residual = self.residual * abs(multiplier - self.compliance * self.mean)
         return min(by_residual, _MEAN_SHARE * self.precision * self.mean * slope)
