@@ -178,6 +178,8 @@ def test_depths_that_are_not_resolved():
     (found,) = unresolved_adhesion([1e-9, 2e-9, 3e-9], [2.0, 1.5, 9.0])
     assert message(found).startswith("adhesion is not resolved at 2 of 3 depths (adhesion_resolved")
     assert "below 4 nodes, at worst 1.5; use a finer grid" in message(found)
+    (found,) = unresolved_adhesion([1e-9, 2e-9], [0.0, math.inf])
+    assert "too coarse for the range of the attraction" in message(found)
 
 
 def test_a_notice_of_the_surface_is_repeated():

@@ -65,7 +65,10 @@ COLUMNS = {
         "sticks", "1", "the pair does not separate: unloading returns no work", flag=True
     ),
     "adhesion_resolved": Column(
-        "adhesion_resolved", "1", f"pull-off radius of at least {ADHESIVE_NODES} nodes", flag=True
+        "adhesion_resolved",
+        "1",
+        f"pull-off radius of at least {ADHESIVE_NODES} nodes, or resolved range of the attraction",
+        flag=True,
     ),
     "median_patch_nodes": Column(
         "median_patch_nodes", "1", "nodes in the patch of the median contact node", low=0.0

@@ -194,10 +194,15 @@ def message(found: Finding) -> str:
                 "grid (grid.refine)"
             )
         case "adhesion-unresolved":
+            why = (
+                "the pull-off radius of its asperities is below "
+                f"{ADHESIVE_NODES} nodes, at worst {found['nodes']:.2g}"
+            )
+            if found["nodes"] == 0:  # `adhesive_nodes` of a cohesive contact
+                why = "the grid is too coarse for the range of the attraction at its asperities"
             return (
                 f"adhesion is not resolved at {found['few']} of {found['depths']} depths "
-                "(adhesion_resolved is false): the pull-off radius of its asperities is below "
-                f"{ADHESIVE_NODES} nodes, at worst {found['nodes']:.2g}; use a finer grid"
+                f"(adhesion_resolved is false): {why}; use a finer grid"
             )
 
 
