@@ -51,7 +51,7 @@ table shows medians in ms (largest).
 |---|---|---|---|---|
 {rows}
 
-With the growing bound a curve takes two solutions at each depth; [their time](growing-bound.md).
+With the growing bound a curve takes two solutions per depth; see [their time](growing-bound.md).
 
 Memory of the server and its processes, with the constant bound: {before:.0f} MiB after {changes}
 changes, and {after:.0f} MiB after {many} more.

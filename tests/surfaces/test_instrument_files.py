@@ -123,7 +123,7 @@ def test_another_height_channel_can_be_chosen():
             "di_corrupted.di",
             {},
             "is damaged or incomplete (File is not large enough to contain all data buffers); "
-            "export it again, or as a text matrix of heights",
+            "export it again, or export it as a text matrix of heights",
         ),
         (
             "nonsense_txt_file.txt",

@@ -33,8 +33,8 @@ Array = NDArray[np.float64]
 
 _FINE = 60  # number of velocities of the fitted curve
 _EQUAL = 0.02  # initial standard deviation of COR if the table of measurements has none
-# Smallest standard deviation of COR that is estimated from residuals, the accuracy of interpolation
-# between velocities.
+# Lower limit of the standard deviation of COR that is estimated from residuals. It is the accuracy
+# of the interpolation between velocities.
 _LEAST_NOISE = 1e-4
 
 

@@ -64,7 +64,7 @@ def check(
         table = _table(read, contact)
     answers.print(table)
     if (from_where := read.yielding().source) not in ("given", "elastic"):
-        say(f"The contact yields at: {from_where}.")
+        say(f"Yield of the contact is set by {from_where}.")
     deepest = deepest_indentation(read)
     require_possible(contact, deepest)
     with waiting("checking the surface"):

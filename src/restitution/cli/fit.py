@@ -79,7 +79,9 @@ def fit(
     answers.print(_table(found))
     points = found.measured.velocity.size
     rms = float((found.residuals**2).mean() ** 0.5)
-    say(f"{points} points, residuals {rms:.2g} (rms) of COR, {found.model.evaluations} curves")
+    say(
+        f"{points} points, rms residual of COR {rms:.2g}, {found.model.evaluations} curves computed"
+    )
     for sentence in findings(found):
         warn(sentence)
     say_written(out, [path.name for path in written])

@@ -46,9 +46,10 @@ Array = NDArray[np.float64]
 # coarser grids the edge of the contact is pinned between nodes, which falsifies the dissipated
 # energy and the pull-off force.
 COARSEST = 0.3
-COMPANION = "companion"  # provenance of a surface that is only compared with a finer grid
+COMPANION = "companion"  # provenance key of a surface that serves only to compare grids
 _REACH = 12.0  # nodes with rigid gaps up to this multiple of z₀ are solved
-# Tolerance of u over z₀, in units of the `residual` of a solve; rounding limits it.
+# Tolerance of u/z₀: the first value times the `residual` of a solve, but at least the second value,
+# because of rounding.
 _TOLERANCE, _LEAST_TOLERANCE = 100.0, 1e-7
 _UNIQUE = 0.7  # bound on the spectral radius below which an equilibrium counts as unique
 

@@ -267,7 +267,7 @@ def _scale(state: CohesiveState, *, loading: bool) -> float:
 
 
 def _on_wider_box(state: CohesiveState, at: float, residual: float) -> CohesiveState:
-    """`state`, on a larger box if bodies at the indentation `at` interact beyond its box."""
+    """Move `state` to a larger box if bodies at the indentation `at` interact outside its box."""
     contact, history = state.contact, state
     needed = interacting_box(contact, at, history)
     if _within(needed, state.box):

@@ -53,10 +53,11 @@ _SMOOTHING_STEPS = 32
 # 5, 10 and 20 cells per radius, the mean of G is 0.970, 0.984 and 0.992 of its exact value.
 _CURVATURE_BIAS = 0.16
 _LARGEST_CURVATURE = 0.35
-# A node released alone is at least this far (cells) from the next one, and need not be further.
+# Smallest and largest distance (cells) that is kept between a node released alone and the next
+# released node.
 _RELEASE_RADIUS, _LARGEST_RADIUS = 3, 40
-# The edge is at rest where its mean G is w. The nodes that are released next have the largest G,
-# which is larger than the mean by this factor, because an edge moves by whole nodes.
+# The edge is at rest where its mean G is w. Because an edge moves by whole nodes, the largest G (at
+# the nodes released next) exceeds the mean by this factor.
 _MAXIMUM_OVER_MEAN = 1.04
 _CAUTION = 0.6  # part of the expected recession that is released in a strip
 # Tensions that differ by less than this fraction of the largest tension count as equal, because

@@ -77,7 +77,7 @@ class TangentialState:
 
     @property
     def stored_energy(self) -> float:
-        """Elastic energy of the traction ½ Σ q C q hx hy (J)."""
+        """Elastic energy (J) of the traction: ½ Σ q C q hx hy."""
         twice = float(np.einsum("ij,ij->", self.box_traction, self.box_displacement))
         return 0.5 * twice * self.normal.contact.grid.cell_area
 

@@ -43,7 +43,9 @@ Force = Callable[[float], float]
 
 _RTOL = 1e-10
 _SLACK = 1e-3  # relative overshoot of the deepest depth allowed for rounding and integration
-_STEEPEST = 6.0  # largest d ln W/d ln δ of a power law; adhesion nearly cancels W above
+# Largest d ln W/d ln δ that is treated as a power law. A larger value means that adhesion nearly
+# cancels W.
+_STEEPEST = 6.0
 _SAME = 1e-5  # largest relative difference of depths that count as equal
 
 

@@ -1,4 +1,4 @@
-"""Parts of all figures of COR: the axis, and the bars of the total error."""
+"""Parts shared by all figures of COR: the axis, and the bars of the total error."""
 
 from __future__ import annotations
 

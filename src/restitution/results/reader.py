@@ -336,7 +336,9 @@ def read_netcdf(path: Path) -> xr.Dataset:
 def _opened(path: Path) -> Iterator[xr.Dataset]:
     """Open a netCDF file; delay signals, because they would leave the library's locks taken."""
     with reading(path):
-        open(path, "rb").close()  # raises the error of the system, which the library hides
+        open(
+            path, "rb"
+        ).close()  # raises the error of the operating system, which the library hides
     check_file(path)
     try:
         with hold_signals(), xr.open_dataset(path, engine="netcdf4") as stored:

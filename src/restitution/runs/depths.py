@@ -21,9 +21,9 @@ from restitution.runs.refinement import later_touches
 class Depth:
     """One depth of a case, after loading.
 
-    `asked` is the depth as prescribed (m, N or m/s), and `refine` that of its grid. `touch` (m) is
-    the indentation at which this grid touches first, counted from the first touch of the finest
-    grid. `state` is None if loading failed with `error`.
+    `asked` is the prescribed value (m, N or m/s), and `refine` the refinement factor of the grid on
+    which the depth is solved. `touch` (m) is the indentation at which this grid touches first,
+    counted from the first touch of the finest grid. `state` is None if loading failed with `error`.
     """
 
     asked: float

@@ -52,7 +52,7 @@ _FEW_NODES, _SHARE_UNRESOLVED = (3, 7), (0.6, 0.1)
 _PATCH_NODES = (1, 3, 7, 14, 30, 100, 400)
 _PATCH_ERROR = (0.9, 0.4, 0.15, 0.08, 0.05, 0.024, 0.008)
 # Error due to the surface, in standard deviations of COR between surfaces. With eight surfaces, it
-# covers about 88 %.
+# covers the true error in about 88 % of cases.
 _SCATTER = 1.5
 # Lengths in ln W over which differences of COR are smoothed, because single differences may vanish
 # by chance.

@@ -67,11 +67,11 @@ def filtered(noise: Array, H: Array, skewness: float, kurtosis: float) -> Array 
 
 
 def adjusted(z: Array, heights: Array) -> tuple[Array, float]:
-    """Arrange the sorted `heights` to have nearly the amplitudes of `z`; return the misfit, too.
+    """Arrange the sorted `heights` so that their Fourier amplitudes are nearly those of `z`.
 
-    The target amplitudes are the amplitudes of `z`, scaled to the mean square of `heights`. The
-    misfit is the root mean square difference from the target amplitudes, relative to their root
-    mean square.
+    Also return the misfit. The target amplitudes are the Fourier amplitudes of `z`, scaled to the
+    mean square of `heights`. The misfit is the root mean square difference from the target
+    amplitudes, relative to their root mean square.
     """
     from scipy.fft import irfft2, rfft2
 

@@ -52,8 +52,8 @@ def read_instrument(path: Path, channel: int | None) -> Scan:
             reader = open_topography(str(path))
         except Exception as error:
             raise UnrecognisedError(
-                f"{path}: {_why_unreadable(error, path.suffix)}; export it again, or as a text "
-                "matrix of heights"
+                f"{path}: {_why_unreadable(error, path.suffix)}; export it again, or export it "
+                "as a text matrix of heights"
             ) from error
         try:
             with contextlib.closing(reader):
@@ -142,7 +142,7 @@ def _read_channel(path: Path, reader: Any, channel: int | None) -> Scan:
 
 
 def _default_index(reader: Any, channels: list[Any]) -> int:
-    """Index of the reader's default channel, or of the first height map if it is no height map."""
+    """Index of the default channel if it is a height map, otherwise of the first height map."""
     default = int(reader.default_channel.index)
     if _is_height(channels[default]):
         return default

@@ -38,7 +38,8 @@ Array = NDArray[np.float64]
 LEAST_PIXELS = 16  # fewest pixels of a scan along each axis that determine its spectrum
 _UNADJUSTED = 0.01  # fraction of the mean square height in waves that are not adjusted
 _FIRST_BAND = 2**20  # largest number of nodes of the longest band
-_LEAST_FIRST = 8  # fewest pixels of the scan, without its shorter waves, in the longest band
+# Smallest number of pixels along an edge of the scan after coarsening to the longest band.
+_LEAST_FIRST = 8
 _WORK = 2**24  # limit on the number of nodes times the number of adjustments of a band
 _ADJUSTMENTS = 3, 60  # smallest and largest number of adjustments of a band
 _NEGLIGIBLE = 1e-3  # misfit of heights at which the adjustment ends

@@ -3,11 +3,11 @@
 Drake's compliant point contact is F = kx (1 + d x′), never attractive (Drake documentation,
 Compliant point contact and Hydroelastic contact: Hunt & Crossley). Geometries a and b give k = k_a
 k_b/(k_a + k_b) and d = (k_b d_a + k_a d_b)/(k_a + k_b). So the export gives both geometries 2k and
-d to obtain a contact with k and d. e depends only on dV and not on k or the mass
-(`damping.hunt_crossley_dissipation`). It decreases with the velocity V. k is chosen such that the
-contact lasts as long as a Hertz contact. The relation between e and dV holds for any force times 1
-+ d x′. It therefore also holds for a hydroelastic contact whose surfaces approach at one velocity
-(not tested in Drake).
+d to obtain a contact with k and d. e depends only on the product of d and the velocity V,
+and not on k or the mass (`damping.hunt_crossley_dissipation`). It decreases with V. k is chosen
+such that the contact lasts as long as a Hertz contact. The same relation holds for every elastic
+force that is multiplied by (1 + d x′), so it also holds for a hydroelastic contact whose surfaces
+approach at one velocity (not tested in Drake).
 
 A geometry has one k and one d, so a scene cannot contain all pairs of three types.
 

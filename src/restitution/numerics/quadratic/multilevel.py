@@ -43,8 +43,9 @@ Operators = Callable[[tuple[int, int], int], tuple[Convolution, SpectralFilter]]
 # are given a first guess from the next coarser grid. On smaller grids a guess costs more time than
 # it saves.
 _MIN_NODES_FOR_GUESS, _MIN_NODES_TO_COARSEN = 120, 80
-# Tolerance on coarser grids, as a fraction of the largest b. A smaller tolerance is useless because
-# prolongation errors are larger. The second value saves a tenth of the time in `solve_near_guess`.
+# Tolerance on coarser grids, as a fraction of the largest b. In general a smaller tolerance gains
+# nothing, because prolongation errors are larger. Only in `solve_near_guess`, the second, smaller
+# value saves a tenth of the time.
 _COARSE_ACCURACY, _FINER_COARSE_ACCURACY = 1e-2, 3e-3
 _COARSE_ITERATIONS = 60
 _MARGIN = 3  # nodes by which the window exceeds the guessed contact on each side

@@ -27,7 +27,7 @@ _MAX_SOLVES = 60  # solves on one grid after which the search counts as not conv
 _ACCURACY = 0.05
 # Error of the mean that the violation may cause, as a fraction of the tolerance of the mean.
 _MEAN_SHARE = 0.5
-# Tolerances on coarser grids: of the violation, as in `MeanTarget`, and of the mean.
+# `MeanTarget.residual` and `MeanTarget.precision` on coarser grids.
 _COARSE_RESIDUAL, _COARSE_MEAN = 1e-2, 0.02
 
 
