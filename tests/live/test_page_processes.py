@@ -21,8 +21,8 @@ def test_two_tabs_compute_at_the_same_time(app, open_page):
 
 def start_a_heavy_solve(page):
     computed(page)
-    page.locator("#field-grid-spacing").fill("30 nm")
-    page.locator("#field-grid-nodes").fill("1024")
+    page.locator("#field-grid-spacing").fill("20 nm")
+    page.locator("#field-grid-nodes").fill("1536")
     expect(page.locator("#status")).to_have_text(re.compile("of 6 depths"))
 
 

@@ -166,7 +166,7 @@ def test_an_adhesive_mixture_with_a_scan(cli, compute_mixture, own_scan, tmp_pat
     assert law.work_of_adhesion == 0.05
     assert all(point.pull_off_force > 0 for point in law.points)
     summary = json.loads((out / "summary.json").read_text())
-    (adhesion,) = (text for text in summary["warnings"] if "adhesion" in text)
+    (adhesion,) = (text for text in summary["warnings"] if "adhesion is not resolved" in text)
     assert adhesion.startswith("1 of 1 pairs (glass+glass): adhesion is not resolved at 2 of 2")
     assert cli("report", out)[0] == cli("report", out / "runs")[0] == 0
     export = ("export", out, "--to", "lammps", "--velocity", "0.2 m/s", "-o", tmp_path / "input")

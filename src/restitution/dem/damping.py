@@ -34,6 +34,9 @@ from restitution.laws.law import Law
 
 _NEARLY_ELASTIC = 1e-4  # if 1 − e is smaller, the leading terms are exact within rounding
 _TOLERANCE = 1e-12  # tolerance of root finding
+# dV below which e = 1 − ⅔ dV, the first terms of its series. The next term is of the order (dV)²,
+# and the equation for e loses more digits to rounding.
+_SMALL = 1e-6
 # Largest ζ or g that is searched. e is below 0.001 for ζ = 20, and already for a much smaller g.
 _LARGEST_DAMPING = 20.0
 
@@ -71,8 +74,8 @@ def hunt_crossley_dissipation(restitution: float) -> float:
 def hunt_crossley_restitution(dissipation: float) -> float:
     """Return e for the product dV (1) of dissipation and impact velocity."""
     c = dissipation
-    if c == 0:
-        return 1.0
+    if c < _SMALL:
+        return 1.0 - 2 / 3 * c
 
     def excess(u: float) -> float:
         return c - math.expm1(-u) - math.log1p(c) - u
