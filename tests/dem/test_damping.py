@@ -58,6 +58,13 @@ def test_hunt_crossley_and_its_inverse(e):
     assert hunt_crossley_restitution(hunt_crossley_dissipation(e)) == approx(e, rel=1e-9)
 
 
+@pytest.mark.parametrize("loss", [1e-12, 1e-9, 1e-7, 1e-5])
+def test_hunt_crossley_with_hardly_any_dissipation(loss):
+    """The search for e did not converge here."""
+    found = 1 - hunt_crossley_restitution(hunt_crossley_dissipation(1 - loss))
+    assert found == approx(loss, rel=2e-3)
+
+
 @pytest.mark.parametrize("e", RESTITUTIONS)
 def test_hertz_with_constant_damping(law, e):
     """In SI units, at a velocity of 0.3 m/s."""
