@@ -120,36 +120,10 @@ def new_page(app, open_page):
     return open_page(app.address)
 
 
-@pytest.fixture(scope="session")
-def shared_tab(app, browser):
-    """The page of the server in the tab of all tests that begin with the first curve."""
-    errors = []
-    page = _tab(browser, errors)
-    page.goto(app.address)
-    yield page, errors
-    page.context.close()
-
-
-# Loading the page and its plotting library takes longer than a test. So the script of the page is
-# asked to begin again.
-BEGIN_AGAIN = """async (text) => {
-    pins = [];
-    drawPins();
-    $("case-file").open = false;
-    $("case-text").value = text;
-    await useText();
-    while (asking || waiting) await new Promise((later) => setTimeout(later, 10));
-}"""
-
-
 @pytest.fixture
-def page(shared_tab, live_case):
-    """The shared tab with the curve of the case; at the end the page has reported no error."""
-    page, errors = shared_tab
-    errors.clear()
-    expect = pytest.importorskip("playwright.sync_api").expect
-    expect(page.locator("#groups fieldset").first).to_be_visible()
-    page.get_by_role("radio", name="against velocity").check()
-    page.evaluate(BEGIN_AGAIN, live_case)
-    yield page
-    _expect_none(errors)
+def page(new_page):
+    """The page of the server with the curve of the case."""
+    from live_page import computed
+
+    computed(new_page)
+    return new_page
