@@ -11,25 +11,35 @@ c₀ is the ratio of the largest pressure to Y at first yield of a sphere (`yiel
 `theory`). m measures the strain. For a sphere m is (2/π) E*a/R, the largest pressure of an elastic
 contact. On a rough surface
 
-    m = p_e(2δ)/√2,
+    m = m₀ [2(δ − h_c)/(2δ − h_c)]^s,    m₀ = p_e(2δ)/√2.
 
-where p_e(2δ) is the pressure at the same node between *elastic* bodies of this shape at twice the
+p_e(2δ) is the pressure at the same node between *elastic* bodies of this shape at twice the
 indentation. The factors 2 and √2 have this reason: an elastic sphere at 2δ has the contact radius
 of a plastic sphere at δ, and √2 times the largest pressure of an elastic sphere at δ. While
 asperities are in separate contact, m follows the slope of an asperity. Once the asperity contacts
 have merged, m follows the slope of the bodies. The bound depends only on the indentation, so the
 state still does not depend on the path.
 
+The fraction in brackets corrects the depth of an asperity whose crest has an initial gap h_c. Such
+an asperity is deformed by δ − h_c, so p_e should be taken at 2(δ − h_c), but at the indentation 2δ
+the asperity is deformed by 2δ − h_c. Without the correction, COR is up to 6 % too high just after a
+new asperity has come into contact. The fraction is 1 for the asperity that touches first. The
+exponent s decreases from 1 for separate asperities to 0 for merged ones:
+
+    s = max(1 − (p_H/m₀)^1.5, 0).
+
+p_H is the pressure of smooth bodies under the elastic force at 2δ (Hertz): where p_H ≥ m₀, the
+asperity contacts have merged.
+
 A ridge yields in plane strain. This constrains plastic flow more than at a round asperity. With q
 between 0 (a round asperity, or merged contacts) and 1 (a ridge in separate contact), the
 coefficients become
 
-    c₀ (1 + 0.11 q),  c₁ (1 + q),  c₂ (1 + 0.25 q),    q = (1 − κ₂/κ₁)² max(1 − p_H/m, 0).
+    c₀ (1 + 0.11 q),  c₁ (1 + 1.1 q),  c₂ (1 + 0.25 q),    q = (1 − κ₂/κ₁)² s.
 
-κ₂ and κ₁ are the smaller and the larger curvature of the gap at the node. p_H is the pressure of
-smooth bodies under the elastic force at 2δ (Hertz): where p_H ≥ m, the asperity contacts have
-merged. 1.11 is the ratio of the pressures at first yield of a cylinder and a sphere, 1.79 and
-1.61 Y for ν = 0.3 (Johnson 1985, §§4.2, 4.4).
+κ₂ and κ₁ are the smaller and the larger curvature of the gap at the node. 1.11 is the ratio of the
+pressures at first yield of a cylinder and a sphere, 1.79 and 1.61 Y for ν = 0.3 (Johnson 1985,
+§§4.2, 4.4).
 
 All other constants were fitted to finite elements (docs/validation.md lists them and their range).
 c₂ is above 3 because it also accounts for pile-up around a deep contact, which the model does not
@@ -56,7 +66,7 @@ Nodes = tuple[NDArray[np.intp], ...]  # indices of rows and columns
 
 GROWTH, LARGEST = 0.65, 3.5  # coefficients c₁ and c₂ for round asperities
 # Relative increase of c₀, c₁ and c₂ on a ridge.
-_RIDGE_ONSET, _RIDGE_GROWTH, _RIDGE_LARGEST = 0.11, 1.0, 0.25
+_RIDGE_ONSET, _RIDGE_GROWTH, _RIDGE_LARGEST = 0.11, 1.1, 0.25
 _DEPTH_FACTOR = 2.0  # the elastic pressure is computed at this multiple of the indentation
 # Tolerance of the elastic solve: a multiple of the tolerance of the bounded solve, and its largest
 # value. At 1e-4, COR is within 1e-4 of its value at 1e-8 (tests/contact/test_cavity.py).
@@ -79,11 +89,15 @@ def yield_bound(contact: Contact, indentation: float, residual: float) -> tuple[
     measure = pressure[nodes]
     force = float(measure.sum()) * contact.grid.cell_area
     measure *= 1 / math.sqrt(_DEPTH_FACTOR)
-    merged = _smooth_pressure(contact, box, nodes, force)
-    merged /= measure
-    ridge = contact.elongation[box][nodes]
-    ridge *= np.maximum(1 - merged, 0)
-    bound[box][nodes] = bound_of(contact, measure, ridge)
+    merged = _smooth_pressure(contact, box, nodes, force) / measure
+    separate = np.maximum(1 - merged * np.sqrt(merged), 0)
+    apart = np.nonzero(separate)
+    at_apart = tuple(index[apart] for index in nodes)
+    depth_ratio = _depth_ratio(contact.crest_gap[box][at_apart], indentation)
+    ridge = contact.elongation[box][at_apart] * separate[apart]
+    bounds = bound_of(contact, measure)
+    bounds[apart] = bound_of(contact, measure[apart] * depth_ratio ** separate[apart], ridge)
+    bound[box][nodes] = bounds
     return freeze(bound), convolutions
 
 
@@ -99,9 +113,22 @@ def bound_of(contact: Contact, measure: Array, ridge: Array | float = 0.0) -> Ar
         c_0 + GROWTH * (1 + _RIDGE_GROWTH * ridge) * np.log(beyond),
         LARGEST * (1 + _RIDGE_LARGEST * ridge),
     )
-    strain = _TABOR * math.pi / 2 * (beyond - 1) * c_0 * Y / contact.pair.contact_modulus
-    bound: Array = factor * (Y + contact.hardening_modulus * strain)
+    flow_stress: Array | float = Y
+    if contact.hardening_modulus > 0:
+        strain = _TABOR * math.pi / 2 * (beyond - 1) * c_0 * Y / contact.pair.contact_modulus
+        flow_stress = Y + contact.hardening_modulus * strain
+    bound: Array = factor * flow_stress
     return bound
+
+
+def _depth_ratio(crest_gap: Array, indentation: float) -> Array:
+    """Twice the depth of each asperity at `indentation`, over its depth at twice `indentation`.
+
+    It is 0 for an asperity that does not overlap at `indentation` (m) before elastic deformation.
+    """
+    depth = np.maximum(indentation - crest_gap, 0)
+    ratio: Array = _DEPTH_FACTOR * depth / (_DEPTH_FACTOR * indentation - crest_gap)
+    return ratio
 
 
 def _smooth_pressure(contact: Contact, box: Box, nodes: Nodes, force: float) -> Array:

@@ -17,6 +17,7 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.contact.asperities import crest_gap_of, elongation_of
 from restitution.contact.bodies import Pair
 from restitution.contact.detachment import Detachment
 from restitution.display import quantity, summary_html, summary_text
@@ -51,7 +52,7 @@ class Contact:
       (Thornton and Ning 1998, Powder Technol. 99, 154–162).
 
     Contacts are equal (and have equal hashes) if their values are equal and their surface is the
-    same object. `gap` and `elongation` are computed once and are read-only.
+    same object. `gap`, `elongation` and `crest_gap` are computed once and are read-only.
 
     Attributes:
         pair: The two bodies.
@@ -314,23 +315,13 @@ class Contact:
 
     @cached_property
     def elongation(self) -> NDArray[np.float64]:
-        """Elongation of asperities at each node, (1 − κ₂/κ₁)² (1), shape `grid.nodes`.
+        """Elongation of the asperity at each node (1), see `contact.asperities`."""
+        return elongation_of(self.gap, self.grid.spacing)
 
-        The elongation is 0 at a round asperity and 1 along a ridge. κ₂ and κ₁ are the smaller and
-        the larger absolute principal curvature of the gap, from second differences. At the
-        outermost nodes of the grid, which a contact must not reach, the elongation is set to 0.
-        """
-        gap, inner = self.gap, slice(1, -1)
-        hx, hy = self.grid.spacing
-        elongation = np.zeros(self.grid.nodes)
-        xx = (gap[2:, inner] - 2 * gap[inner, inner] + gap[:-2, inner]) / hx**2
-        yy = (gap[inner, 2:] - 2 * gap[inner, inner] + gap[inner, :-2]) / hy**2
-        xy = (gap[2:, 2:] - gap[2:, :-2] - gap[:-2, 2:] + gap[:-2, :-2]) / (4 * hx * hy)
-        mean, spread = 0.5 * np.abs(xx + yy), np.hypot(0.5 * (xx - yy), xy)
-        larger = mean + spread
-        ratio = np.divide(np.abs(mean - spread), larger, out=np.ones_like(larger), where=larger > 0)
-        elongation[inner, inner] = (1 - ratio) ** 2
-        return freeze(elongation)
+    @cached_property
+    def crest_gap(self) -> NDArray[np.float64]:
+        """Gap at the crest of the asperity of each node (m), see `contact.asperities`."""
+        return crest_gap_of(self.gap)
 
 
 def require_cohesive(approach: str, detachment: str, plasticity: str | None) -> None:

@@ -35,7 +35,7 @@ _CONSTANT = {
     ),
 }
 # Largest relative difference as a function of ψ, and a factor on it as a function of COR near 1.
-_STEEPNESS, _GROWING = (0.0, 4.0, 6.0, 26.0), (0.03, 0.035, 0.045, 0.06)
+_STEEPNESS, _GROWING = (0.0, 4.0, 6.0), (0.03, 0.035, 0.045)
 _NEAR_ONE = (0.94, 0.98, 1.0), (1.0, 0.5, 0.2)
 # Tabor parameter, and the hysteresis of the axisymmetric reference over that of JKR.
 _TABOR = (0.7, 1.0, 2.0, 3.0, 5.0)

@@ -1,0 +1,83 @@
+"""Shape and height of the asperity that each node belongs to, from the gap before loading."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.numerics.read_only import freeze
+
+Array = NDArray[np.float64]
+
+_FROM, _TO = slice(1, None), slice(None, -1)
+_ALL = slice(None)
+# Each pair of blocks holds all nodes that have a neighbour in one of the eight directions, and
+# these neighbours.
+_NEIGHBOURS = [
+    ((to_x, to_y), (from_x, from_y))
+    for to_x, from_x in ((_TO, _FROM), (_ALL, _ALL), (_FROM, _TO))
+    for to_y, from_y in ((_TO, _FROM), (_ALL, _ALL), (_FROM, _TO))
+    if (to_x, to_y) != (_ALL, _ALL)
+]
+
+
+def elongation_of(gap: Array, spacing: tuple[float, float]) -> Array:
+    """Elongation of the asperity at each node, (1 − κ₂/κ₁)².
+
+    κ₂ and κ₁ are the smaller and the larger absolute principal curvature of the gap, from second
+    differences.
+
+    Args:
+        gap: Gap before loading (m), shape (nx, ny).
+        spacing: Distances of nodes along x and y (m).
+
+    Returns:
+        Elongation (1), shape of `gap`, read-only: 0 at a round asperity, 1 along a ridge. It is 0
+        at the outermost nodes of the grid, which a contact must not reach.
+    """
+    inner = slice(1, -1)
+    hx, hy = spacing
+    elongation = np.zeros(gap.shape)
+    xx = (gap[2:, inner] - 2 * gap[inner, inner] + gap[:-2, inner]) / hx**2
+    yy = (gap[inner, 2:] - 2 * gap[inner, inner] + gap[inner, :-2]) / hy**2
+    xy = (gap[2:, 2:] - gap[2:, :-2] - gap[:-2, 2:] + gap[:-2, :-2]) / (4 * hx * hy)
+    mean, spread = 0.5 * np.abs(xx + yy), np.sqrt(0.25 * (xx - yy) ** 2 + xy**2)
+    larger = mean + spread
+    ratio = np.divide(np.abs(mean - spread), larger, out=np.ones_like(larger), where=larger > 0)
+    elongation[inner, inner] = (1 - ratio) ** 2
+    return freeze(elongation)
+
+
+def crest_gap_of(gap: Array) -> Array:
+    """Gap at the crest of the asperity that each node belongs to.
+
+    The crest is the local minimum of the gap that a path of steepest descent reaches from the node.
+    Each step of the path leads to the lowest of the eight neighbours.
+
+    Args:
+        gap: Gap before loading (m), shape (nx, ny).
+
+    Returns:
+        Gap at the crests (m), shape of `gap`, read-only.
+    """
+    nodes = np.arange(gap.size).reshape(gap.shape)
+    lowest = gap.copy()
+    _take_smaller_neighbours(lowest, gap, axis=0)
+    _take_smaller_neighbours(lowest, lowest.copy(), axis=1)
+    following = nodes.copy()
+    for at, neighbour in _NEIGHBOURS:
+        np.copyto(following[at], nodes[neighbour], where=gap[neighbour] == lowest[at])
+    np.copyto(following, nodes, where=gap == lowest)
+    path = following.ravel()
+    while True:  # each pass doubles the length of the paths
+        longer = np.take(path, path, mode="clip")
+        if np.array_equal(longer, path):
+            return freeze(gap.ravel()[path].reshape(gap.shape))
+        path = longer
+
+
+def _take_smaller_neighbours(lowest: Array, values: Array, axis: int) -> None:
+    """Replace `lowest` by `values` of the two neighbours along `axis` that are smaller."""
+    ahead, behind = ((_ALL,) * axis + (part,) for part in (_FROM, _TO))
+    np.minimum(lowest[behind], values[ahead], out=lowest[behind])
+    np.minimum(lowest[ahead], values[behind], out=lowest[ahead])
