@@ -1,6 +1,7 @@
 """Hertz (1882): smooth, frictionless, linear elastic spheres.
 
-With the contact radius a, a² = R*δ (Johnson 1985, *Contact Mechanics*, section 4.2):
+With the contact radius a, where a² = R*δ, the force F, the elastic energy W and the pressure p are
+(Johnson 1985, *Contact Mechanics*, section 4.2):
 
     F = 4/3 E* R*^½ δ^{3/2},   W = 8/15 E* R*^½ δ^{5/2},
     p(r) = p₀ (1 − r²/a²)^½,   p₀ = 2E*a/(πR*).
@@ -101,7 +102,7 @@ class Hertz:
         return scalar_or_array(np.sqrt(self.radius * touching(indentation)))
 
     def contact_area(self, indentation: Values) -> Array:
-        """Contact area at an indentation, half the area of overlap of the undeformed spheres.
+        """Contact area at an indentation: half the cross-section of the overlap of rigid spheres.
 
         Args:
             indentation: Approach of the spheres δ (m).
