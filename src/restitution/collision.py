@@ -60,7 +60,7 @@ class Collision:
 
     @property
     def restitution(self) -> float:
-        """Coefficient of restitution sqrt(W_u/W_l) (1) (Johnson 1985, §11.5); 0 if they stick."""
+        """Coefficient of restitution sqrt(W_u/W_l) (1) (Johnson 1985, §11.5); 0 for sticking."""
         return _restitution(self.unloading_work, self.loading_work)
 
     @property

@@ -33,7 +33,7 @@ Result = TypeVar("Result")
 
 
 def _load() -> tuple[Any, str]:
-    """Return the compiled module and ""; or None and a text with the reason and the remedy.
+    """Return the compiled module and an empty text, or None and a text with reason and remedy.
 
     Raises `CaseError` if RESTITUTION_KERNELS names unknown kernels or kernels that cannot be
     loaded.
@@ -67,7 +67,10 @@ def missing() -> str | None:
 
 
 def use_loop(expression: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
-    """Decorate `expression` to call the loop of its name if `loop_takes` the first argument."""
+    """Make `expression` call the compiled loop of the same name, if there is one.
+
+    The loop is called if `loop_takes` the first argument, and the expression otherwise.
+    """
     if loops is None:
         return expression
     loop = getattr(loops, expression.__name__)

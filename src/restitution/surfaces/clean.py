@@ -14,7 +14,7 @@ from restitution.surfaces.surface import Surface
 
 Range = tuple[float, float]
 
-_NEIGHBOURHOOD = 5  # edge (pixels) of the square around a pixel whose median height is used
+_NEIGHBOURHOOD = 5  # edge (pixels) of the square around a pixel over which the median is taken
 _SIGMA = 1.4826  # standard deviation over median absolute deviation of a normal distribution
 _MOST = 0.1  # largest fraction of pixels that may be outliers
 
@@ -27,11 +27,11 @@ def crop(surface: Surface, *, x: Range | None = None, y: Range | None = None) ->
 
     Args:
         surface: Surface to crop.
-        x: Lowest and highest x (m); None keeps all.
-        y: Lowest and highest y (m); None keeps all.
+        x: Lowest and highest x (m); None keeps the whole range.
+        y: Lowest and highest y (m); None keeps the whole range.
 
     Returns:
-        Surface of the pixels inside.
+        Surface of the remaining pixels.
 
     Raises:
         SurfaceError: No pixel lies within a range.

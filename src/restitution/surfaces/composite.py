@@ -10,7 +10,9 @@ from restitution.surfaces.surface import Surface, is_periodic
 
 
 def composite(surfaces: Sequence[Surface]) -> Surface:
-    """Add the heights of surfaces, because the gap between rough bodies depends only on their sum.
+    """Add the heights of surfaces to one surface.
+
+    The gap between rough bodies depends only on the sum of their heights.
 
     Positive heights of each surface point towards the other body, and all surfaces share the axes
     of the contact. If the relative orientation of two scans matters, rotate or mirror one of them

@@ -1,9 +1,9 @@
 """Read the file formats of instruments with the SurfaceTopography package.
 
-SurfaceTopography indexes heights `[i, j]` along x and y, as this package does. There, the y axis
-points down the picture (`imshow(heights.T)` shows the picture of the instrument), and the physical
-size is the number of pixels times the pixel size. SurfaceTopography is an optional dependency and
-imported on first use.
+SurfaceTopography indexes heights `[i, j]` along x and y, as this package does. Its y axis points
+down the picture: `imshow(heights.T)` shows the picture of the instrument. The physical size of a
+scan is the number of pixels times the pixel size. SurfaceTopography is optional and imported on
+first use.
 """
 
 from __future__ import annotations
@@ -123,7 +123,7 @@ def _read_channel(path: Path, reader: Any, channel: int | None) -> Scan:
             f"{_value_unit(chosen) or 'no stated unit'}) is not a height map that can be converted "
             f"to metres; {remedy}"
         )
-    # If the file has no size, the reader requires one: pass the pixel count as a placeholder.
+    # If the file contains no size, the reader requires one. The number of pixels is a placeholder.
     sized = chosen.physical_sizes is not None
     topography = chosen.topography(physical_sizes=None if sized else chosen.nb_grid_pts)
     x, y = (in_metres(float(side), topography.unit) for side in topography.physical_sizes)

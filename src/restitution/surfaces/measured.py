@@ -53,8 +53,8 @@ def read_surface(
     - `.npy`, `.npz`: a 2-D array in metres, `array[i, j]` at x_i, y_j.
     - `.txt`, `.csv`, `.dat`, `.asc`: a matrix in metres, with a scan line (constant y) on each
       line.
-    - All other files, and text that is not a plain matrix: the readers of SurfaceTopography, from
-      the extra `measured`.
+    - All other files, and text that is not a plain matrix: any format that SurfaceTopography reads
+      (the extra `measured`).
 
     The provenance contains the file, its SHA-256, format and channel, the size, and the number of
     undefined pixels.
@@ -187,7 +187,7 @@ def _agreed_size(file: Path, scan: Scan, given: tuple[float, float] | None) -> t
     """Edge lengths (m) from the file or from `given`; raise `SurfaceError` if they disagree."""
     if not all(side is None or (math.isfinite(side) and side > 0) for side in scan.size):
         raise SurfaceError(
-            f"{file}: the size of the scan in the file, {_text(scan.size)} um, is not two positive "
+            f"{file}: states a scan size of {_text(scan.size)} um, which is not two positive "
             "lengths; correct the file"
         )
     x, y = scan.size

@@ -41,7 +41,7 @@ def read_numpy(path: Path) -> Scan:
 def _load_arrays(
     path: Path,
 ) -> tuple[NDArray[np.generic], tuple[float | None, float | None], dict[str, str | float]]:
-    # Unpickling would run code from the file, so both branches forbid it.
+    # Unpickling would run code from the file, so it is forbidden for both formats.
     try:
         _check_headers(path)
         if path.suffix.lower() == ".npy":

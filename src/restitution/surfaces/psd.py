@@ -87,7 +87,7 @@ def radial_spectrum(surface: Surface, density: Array | None = None) -> RadialSpe
 
 
 def directed_spectra(surface: Surface) -> list[DirectedSpectrum]:
-    """The radial spectra over all directions, over those within 15° of x and within 15° of y."""
+    """The radial spectra over all directions, within 15° of x, and within 15° of y."""
     C = power_spectral_density(surface)
     qx, qy = (
         2 * math.pi * np.fft.fftfreq(n, h)

@@ -177,7 +177,7 @@ def _read_header(
         elif key == "channel":
             if "channel_name" in details:
                 raise NotAMatrixError(
-                    f"{path}: holds several channels; save the heights in a file of their own"
+                    f"{path}: holds several channels; save the heights in a separate file"
                 )
             details["channel_name"] = value
         elif length is not None or _FOREIGN_KEY.search(key):
@@ -202,7 +202,7 @@ def _statement(comment: str) -> tuple[str, str]:
 
 
 def _counts(key: str, value: str) -> _Counts:
-    """The numbers of values and lines that a header entry gives."""
+    """The number of values per line or of lines that a header entry states, if any."""
     if key in _COLUMNS | _LINES and value.isdecimal() and len(value) < 10:
         return {"values" if key in _COLUMNS else "lines": int(value)}
     if key in ("pixels", "resolution", "shape") and (both := _BOTH.fullmatch(value)):

@@ -24,7 +24,7 @@ _CORE = 0.4  # range of the material ratio that the secant through the core span
 
 
 class Autocorrelation(NamedTuple):
-    """Autocorrelation `values`, 1 at lag zero, at the lags `x` and `y` (m), from −size/2 up."""
+    """Autocorrelation `values` (1 at lag zero) at the lags `x` and `y` (m), both increasing."""
 
     x: Array
     y: Array

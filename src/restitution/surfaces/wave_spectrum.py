@@ -48,7 +48,7 @@ class WaveSpectrum:
     steep: float = 0.0  # b in this factor
 
     def power(self, m: NDArray[np.int64], n: NDArray[np.int64]) -> Array:
-        """Mean square height (m²) of the waves (m, n), shape (m.size, n.size)."""
+        """Mean square height (m²) of each wave (m, n), shape (m.size, n.size)."""
         C, k2 = self._raw(m, n)
         return np.maximum(C * (self.flat + self.steep / np.maximum(k2, 1.0)), 0.0)
 

@@ -63,7 +63,7 @@ class JacksonGreen:
 
     def __post_init__(self) -> None:
         keep_positive(self, "radius", "contact_modulus", "yield_strength")
-        yield_coefficient(self.poissons_ratio)  # raises CaseError outside its range
+        yield_coefficient(self.poissons_ratio)  # raises CaseError for an impossible value
         keep(self, "poissons_ratio", self.poissons_ratio)
 
     @cached_property

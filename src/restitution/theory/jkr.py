@@ -218,7 +218,7 @@ class JKR:
 
     @property
     def adhesive_length(self) -> Array:
-        """Height (w²R*/E*²)^{1/3} (m) of the neck; `break_indentation` is −1.61 times this."""
+        """Height (w²R*/E*²)^{1/3} (m) of the neck; `break_indentation` is −1.61 times it."""
         R, E_star, w = self.radius, self.contact_modulus, self.work_of_adhesion
         return scalar_or_array((w * w * R / E_star**2) ** (1 / 3))
 
@@ -253,11 +253,11 @@ class JKR:
 
     @property
     def hysteresis_loss(self) -> Array:
-        """Energy W_s = 7.092 (w⁵R*⁴/E*²)^{1/3} (J) dissipated per contact, at any depth."""
+        """Energy W_s = 7.092 (w⁵R*⁴/E*²)^{1/3} (J) dissipated per impact, at any depth."""
         return (_AT_BREAK - _AT_JUMP_IN) * self._energy_unit
 
     def impact_velocity(self, maximum_indentation: Values, mass: Values) -> Array:
-        """Impact velocity that reaches an indentation: ½ m* V² = W_l.
+        """Impact velocity at which an impact reaches an indentation: ½ m* V² = W_l.
 
         Args:
             maximum_indentation: Largest indentation of the impact δ_max (m).

@@ -116,6 +116,6 @@ class Johnson:
         return (COEFFICIENT**2 * self.yield_strength / self.contact_modulus) ** 4
 
     def _velocity(self, reduced: Values, mass: Values) -> Array:
-        """V (m/s) at a reduced energy ½m*V²/YR*³."""
+        """Impact velocity V (m/s) at a reduced energy ½m*V²/YR*³."""
         (m,) = positive(mass=mass)
         return scalar_or_array(np.sqrt(2 * reduced * self.yield_strength * self.radius**3 / m))

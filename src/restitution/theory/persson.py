@@ -1,8 +1,8 @@
 """Persson (2001): contact area of nominally flat elastic bodies with random roughness.
 
 B. N. J. Persson, J. Chem. Phys. 115 (2001) 3840–3861, doi 10.1063/1.1388626. The distribution of
-the contact pressure obeys a diffusion equation in which the magnification acts as time. It gives
-the relative contact area
+the contact pressure obeys a diffusion equation in which the magnification acts as time. The
+solution gives the relative contact area
 
     A/A₀ = erf(√2 p/(E* h′)),
 

@@ -7,8 +7,8 @@ f = F/F_y and W in units of F_y δ_y:
 
     loading     f = x^{3/2} for x ≤ 1, then the tangent  f = (3x − 1)/2,  F = F_y + πp_yR*(δ − δ_y)
                 W_l = ⅖ x^{5/2} for x ≤ 1, then  W_l = ⅖ + (x − 1) + ¾ (x − 1)²
-    unloading   Hertz with the flattened radius R_p of the same contact radius at the same force,
-                R_p F = R* F_Hertz(δ):  R_p/R* = x^{3/2}/f,  and a residual depth δ_p:
+    unloading   Hertz with a flattened radius R_p, which keeps the contact radius at the same force
+                (R_p F = R* F_Hertz(δ):  R_p/R* = x^{3/2}/f),  and a residual depth δ_p:
                 F = 4/3 E* R_p^½ (δ − δ_p)^{3/2},  (δ_max − δ_p)/δ_y = f/x^½,  W_u = ⅖ f²/x^½
     impact      ½ m* V² = W_l, e² = W_u/W_l; the contact ends where F returns to zero.
 
@@ -173,7 +173,7 @@ class ThorntonNing:
         return scalar_or_array(np.where(d <= first.indentation, elastic, plastic))
 
     def impact_velocity(self, maximum_indentation: Values, mass: Values) -> Array:
-        """Impact velocity that reaches an indentation: ½ m* V² = W_l.
+        """Impact velocity at which an impact reaches an indentation: ½ m* V² = W_l.
 
         Args:
             maximum_indentation: Largest indentation of the impact δ_max (m).

@@ -8,8 +8,9 @@ and reloading have a larger stiffness k₂, which may grow with the largest forc
     impact      δ_max = V (m*/k₁)^½,  e² = W_u/W_l = k₁/k₂
 
 The paper uses two special cases. With S = 0 the unloading stiffness is constant and
-e = (k₁/k_u)^½ at any velocity. With k_u = k₁ it is variable and e = (1 + S V (m*/k₁)^½)^{−½}; the
-paper writes (m*/k₁)^½ as 1/ω₀ with ω₀ = (2k₁/m)^½, for two equal spheres of mass m.
+e = (k₁/k_u)^½ at any velocity. With k_u = k₁ the stiffness varies and
+e = (1 + S V (m*/k₁)^½)^{−½}; the paper writes (m*/k₁)^½ as 1/ω₀ with ω₀ = (2k₁/m)^½, for two equal
+spheres of mass m.
 
 The contact ends where F returns to zero, at δ₀ > 0, not at δ = 0. There is no adhesion. The
 stiffnesses are parameters to be fitted; R* and E* do not enter.

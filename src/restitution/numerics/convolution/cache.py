@@ -13,7 +13,7 @@ class HasBytes(Protocol):
 
     @property
     def nbytes(self) -> int:
-        """Size of its arrays (bytes)."""
+        """Size of the arrays of this object (bytes)."""
 
 
 class OperatorCache:
@@ -30,7 +30,7 @@ class OperatorCache:
 
     @property
     def max_bytes(self) -> int:
-        """Largest total size of all values (bytes). Setting it drops values that no longer fit."""
+        """Largest total size of all values (bytes). Setting a lower limit drops values."""
         return self._max_bytes
 
     @max_bytes.setter

@@ -243,12 +243,12 @@ def _gpu() -> Device:
         cupy.cuda.Device().use()  # raises without a GPU
     except ImportError as error:
         raise CaseError(
-            f"device: gpu needs CuPy ({error}); install the extra gpu, from a checkout with "
-            '`pip install ".[gpu]"`, or use the device cpu'
+            f"device: gpu needs CuPy ({error}); install the extra gpu (in a checkout: "
+            '`pip install ".[gpu]"`), or use the device cpu'
         ) from error
     except Exception as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise CaseError(
-            f"device: no usable GPU ({reason}); check its driver, or use the device cpu"
+            f"device: no usable GPU ({reason}); check the GPU driver, or use the device cpu"
         ) from error
     return accelerator("gpu", cupy, cupyx.scipy.fft)

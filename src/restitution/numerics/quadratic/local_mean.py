@@ -37,7 +37,7 @@ def subtract_local_mean(r: Array, share: float, sums: Array, nodes: Array, out: 
 
 
 def _hat_weights(r: Array, places: Array) -> list[Array]:
-    """Linear weights of the rows, and of the columns, of `r` at each of the places."""
+    """Linear weights of the rows of `r` at each place along x, and of the columns along y."""
     hats = []
     for n, m in zip(r.shape, places.shape, strict=True):
         node, place = (np.cumsum(np.ones_like(places, shape=k)) for k in (n, m))

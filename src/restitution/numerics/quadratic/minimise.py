@@ -107,8 +107,8 @@ def minimise_quadratic(
     falls. (2) The direction is not reset when nodes reach or leave a bound. Polak–Ribière's β is
     limited to the range from zero to the β of Fletcher and Reeves (Gilbert and Nocedal 1992, SIAM
     J. Optim. 2, 21–42). It decreases after a step that ends at a bound, because such a step is not
-    optimal. (3) The projected gradient is preconditioned by an approximate inverse of K, which need
-    not be symmetric and need not give a descent direction.
+    optimal. (3) The projected gradient is preconditioned by an approximate inverse of K. This
+    inverse need not be symmetric and need not give a descent direction.
 
     `start` is the initial point, shape (nx, ny), and is overwritten. `precondition` is an
     approximate inverse of K. `tolerance` limits the violation and has the units of `b`. `K_start`

@@ -56,8 +56,8 @@ _MAX_WINDOW_FRACTION = 0.7
 _PLACES = 8  # points along each axis around which local means are taken (see `local_mean`)
 # The gradient corrects the contact edge of a guess if at most this fraction of the contact nodes
 # (first number) is strictly between the bounds. The second number is the size of the correction, as
-# a fraction of the pressure at a node that would close the gap there (0.15 to 0.5 work nearly as
-# well).
+# a fraction of the pressure at one node alone that would close the gap at this node (0.15 to 0.5
+# work nearly as well).
 _MAX_FREE_FRACTION, _GAP_FRACTION = 0.05, 0.3
 # The mean is damped if the Rayleigh quotient of K·M on the free nodes exceeds the first number (M
 # is the approximate inverse). The second number is the largest damping factor that still saves
@@ -80,8 +80,8 @@ def solve_multilevel(
     an array of this shape. `tolerance` limits the violation of the optimality conditions and has
     the units of `b`. If the operators are `periodic`, the fine problem is solved on the whole grid,
     and only grids of even size are coarsened. The approximate inverse of a periodic operator is
-    nearly exact, so its mean is not damped. Return the result and the number of products with K on
-    the finest grid. If the solve does not converge, `converged` of the result is False; no
+    nearly exact, so it is used without damping. Return the result and the number of products with K
+    on the finest grid. If the solve does not converge, `converged` of the result is False; no
     exception is raised.
     """
     whole_grid: Box = (slice(0, b.shape[0]), slice(0, b.shape[1]))
@@ -120,7 +120,7 @@ def solve_multilevel(
             return found, products + whole_K.count
         products += K.count
         iterations, converged = found.iterations, found.converged
-        del K, inverse, found  # free their arrays before the check allocates more
+        del K, inverse, found  # free the arrays of the window before the check allocates more
         g = whole_K(p, out=Kp)
         residual = violation(p, g, b, 0.0, upper)
         if residual <= tolerance or not converged:
@@ -128,7 +128,7 @@ def solve_multilevel(
             return checked, products + whole_K.count
         wider = union(window, bounding_box(g < -tolerance))
         Kp = np.add(g, b, out=g)
-        # If no violation is outside the window, it comes from rounding errors, and the problem is
+        # If the window would not grow, the violation is due to rounding errors. The problem is then
         # solved on the whole grid.
         window = whole_grid if wider is None or wider == window else widen(wider, _MARGIN, size)
 
