@@ -154,8 +154,8 @@ class State:
     @property
     def separation_indentation(self) -> float:
         """Indentation min(h₀ + u_p) at which bodies without adhesion separate (m)."""
-        # It suffices to search the box, because nodes in contact have a smaller gap than nodes
-        # outside the box.
+        # It suffices to search the box, because the sum h₀ + u_p of nodes in contact is below that
+        # of nodes outside the box.
         box = self.box if self.contact_nodes else ...
         return float((self.contact.gap[box] + self.plastic_displacement[box]).min())
 

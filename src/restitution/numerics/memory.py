@@ -57,9 +57,9 @@ def _of_control_groups(groups: str = "/proc/self/cgroup") -> float:
         controllers, second, path = rest.partition(":")
         if not (first and second):
             continue
-        if controllers == "":  # version 2
+        if controllers == "":  # control groups of version 2
             root, file = _GROUPS, "memory.max"
-        elif "memory" in controllers.split(","):  # version 1
+        elif "memory" in controllers.split(","):  # control groups of version 1
             root, file = _GROUPS / "memory", "memory.limit_in_bytes"
         else:
             continue

@@ -31,7 +31,7 @@ def refine(surface: Surface, factor: int) -> Surface:
         SurfaceError: The factor is below 1.
     """
     if factor < 1:
-        raise SurfaceError(f"factor: {factor} must be a positive integer")
+        raise SurfaceError(f"factor: {factor} is not a positive integer")
     if factor == 1:
         return surface
     how = "periodic" if is_periodic(surface) else "mirrored"
@@ -52,7 +52,7 @@ def coarsen(surface: Surface, factor: int = 2) -> Surface:
     that a whole number of cells covers the domain. Raises `SurfaceError` for a factor below 1.
     """
     if factor < 1:
-        raise SurfaceError(f"factor: {factor} must be a positive integer")
+        raise SurfaceError(f"factor: {factor} is not a positive integer")
     nx, ny = (-(-n // factor) for n in surface.grid.nodes)
     wide, long = surface.grid.size
     grid = Grid((nx, ny), (wide / nx, long / ny))

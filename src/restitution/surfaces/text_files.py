@@ -202,7 +202,7 @@ def _statement(comment: str) -> tuple[str, str]:
 
 
 def _counts(key: str, value: str) -> _Counts:
-    """The number of values per line or of lines that a header entry states, if any."""
+    """Numbers of values per line and of lines, as far as a header entry states them."""
     if key in _COLUMNS | _LINES and value.isdecimal() and len(value) < 10:
         return {"values" if key in _COLUMNS else "lines": int(value)}
     if key in ("pixels", "resolution", "shape") and (both := _BOTH.fullmatch(value)):

@@ -29,7 +29,7 @@ from ._roots import increasing_root
 
 _LARGEST_RADIUS = 2.0  # upper limit of the search for ā at pull-off, which is below 1.15 (JKR)
 _GOLDEN = 0.5 * (5**0.5 - 1)
-_SECTIONS = 60  # golden sections in the search for ā at pull-off
+_SECTIONS = 60  # number of golden sections in the search for ā at pull-off
 
 
 @dataclass(frozen=True, eq=False)

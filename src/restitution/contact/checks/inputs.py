@@ -130,7 +130,7 @@ def _closed_gap(contact: Contact, indentation: float, distance: float) -> float:
     """
     pair, p_y, w = contact.pair, contact.hardness, contact.work_of_adhesion
     E_star, deeper = pair.contact_modulus, indentation
-    for _ in range(10):  # fixed-point iteration; it contracts because `deeper` grows with √radius
+    for _ in range(10):  # fixed-point iteration, which converges as `deeper` grows with √radius
         radius = predicted_radius(pair, deeper, p_y)
         if not contact.adhesive:
             break

@@ -114,7 +114,8 @@ def solve_multilevel(
             tolerance=tolerance,
             max_iterations=max_iterations,
             K_start=None if Kp is None else Kp[window],
-            accept_estimated_gradient=window != whole_grid,  # the full-grid check below decides
+            # A window is followed by the check of all nodes, which computes the exact gradient.
+            accept_estimated_gradient=window != whole_grid,
         )
         if window == whole_grid:
             return found, products + whole_K.count
