@@ -146,7 +146,7 @@ class Contact:
                 f"below Young's modulus, {softest:g} Pa"
             )
         if self.tangent_modulus and not grows:
-            raise CaseError("tangent_modulus: requires a yield_strength")
+            raise CaseError("tangent_modulus: hardening needs a yield_strength")
         if not 0 <= self.work_of_adhesion < math.inf:
             raise CaseError(
                 f"work_of_adhesion: {self.work_of_adhesion} J/m2 is negative or not finite"
