@@ -1,9 +1,9 @@
-"""Restitution, impact velocity and sticking of a collision from the works of its contact.
+"""Restitution, impact velocity and sticking of a collision from the works of loading and unloading.
 
 The impact is quasi-static and normal, without waves, friction or rate effects. The contact ends at
-separation. Without adhesion, separation is where the force returns to zero. Unloading is then
-elastic and reversible, so it returns the stored energy. With adhesion, separation is where the last
-node detaches, and unloading is simulated step by step or estimated.
+separation. Without adhesion, the bodies separate where the force returns to zero; unloading is
+elastic and reversible, so it returns the stored energy. With adhesion, the bodies separate where
+the last node detaches; unloading is simulated step by step, or its work is estimated.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ from restitution.contact.state import State
 from restitution.display import quantity, summary_html, summary_text
 
 UnloadingMethod = Literal["path", "energy-estimate"]
-# Error of each detachment criterion on a grid, as a fraction of w times the contact area. Smaller
-# unloading steps do not reduce this error. With crack closure, nodes detach at an energy release
-# rate of 0.985 to 0.99 w; with the tension limit, at 1.0 w (kink in the contact edge) to 1.8 w
-# (straight edge).
+# Error of the unloading work that each detachment criterion causes on a grid, as a fraction of the
+# work of adhesion w times the contact area. Smaller unloading steps do not reduce this error. With
+# crack closure, nodes detach at an energy release rate of 0.985 to 0.99 w. With the tension limit,
+# nodes detach at 1.0 w (kink in the contact edge) to 1.8 w (straight edge).
 _RELEASE_ERROR = {"crack-closure": 0.015, "pohrt-popov": 0.4}
 
 
 @dataclass(frozen=True)
 class Collision:
-    """Works of one collision and the quantities that follow from them.
+    """Works of loading and unloading of one collision, and the quantities that follow from them.
 
     Attributes:
         loading_work: Work of loading W_l (J).
@@ -55,7 +55,7 @@ class Collision:
 
     @property
     def sticks(self) -> bool:
-        """Whether the pair sticks: it returns no work, so it does not separate by itself."""
+        """Whether the bodies stick: unloading returns no work, so they do not rebound."""
         return self.unloading_work <= 0 or self.loading_work <= 0
 
     @property
@@ -78,8 +78,8 @@ class Collision:
     def impact_velocity(self) -> float | None:
         """Approach velocity V (m/s) from ½ m* V² = W_l.
 
-        None if a density is missing. Also None if W_l < 0, because adhesion then draws every impact
-        deeper than the deepest state of this collision.
+        None if a density is missing. Also None if W_l < 0, because adhesion then pulls the bodies
+        deeper than this collision at any impact velocity.
         """
         if self.mass is None or self.loading_work < 0:
             return None
@@ -112,17 +112,19 @@ def collide(
 ) -> Collision:
     """Compute the collision whose deepest point is `state`.
 
-    Without adhesion, the work of unloading is the stored energy, whatever the method. With
-    adhesion, `method="path"` simulates unloading. `method="energy-estimate"` uses W_u = E_el − wA
-    with an error of wA (W_u is the potential energy of cohesive contacts) and does not compute the
-    pull-off force or the separation (NaN). In all cases compared with a simulation, wA exceeded the
-    sum of the energy dissipated at detachment and the grid error of detachment.
+    Without adhesion, the work of unloading is the stored energy, and `method` has no effect. With
+    adhesion, `method="path"` simulates unloading. `method="energy-estimate"` subtracts the surface
+    energy from the elastic energy, W_u = E_el − wA, with an error of wA, where w is the work of
+    adhesion and A the contact area. For cohesive contacts it uses the computed interaction energy
+    in place of −wA. It does not compute the pull-off force and the indentation at separation (NaN).
+    In all cases compared with a simulation, wA exceeded the sum of the energy dissipated at
+    detachment and the grid error of detachment.
 
     Args:
         state: Deepest state of the collision, reached by loading.
         unloading: States from `separate`, if they are known; only used with adhesion.
-        method: How to compute the work of unloading with adhesion.
-        tolerance: Error of the restitution (1) to which unloading is refined.
+        method: Method for the work of unloading with adhesion.
+        tolerance: Error of the restitution (1) that the unloading steps may cause.
 
     Returns:
         Works of loading and unloading, and restitution.
@@ -170,5 +172,5 @@ def collide(
 def _restitution(unloading_work: float, loading_work: float) -> float:
     if unloading_work <= 0 or loading_work <= 0:
         return 0.0
-    # W_u cannot exceed W_l, except by numerical errors, which restitution_error covers.
+    # W_u exceeds W_l only by numerical errors, which restitution_error includes.
     return min(1.0, math.sqrt(unloading_work / loading_work))

@@ -32,7 +32,7 @@ def test_a_run_without_compiled_kernels_says_so_once(case, tmp_path, more):
     case.write_text(case.read_text().replace("[roughness]\n", more or "[roughness]\n"))
     done = call("run", case, "-o", tmp_path / "out", RESTITUTION_KERNELS="numpy")
     assert done.returncode == 0, done.stderr
-    assert done.stderr.count("Hint: NumPy does the work of compiled kernels") == 1
+    assert done.stderr.count("Hint: NumPy replaces the compiled kernels") == 1
     assert "RESTITUTION_KERNELS is numpy; unset it" in done.stderr
     assert json.loads((tmp_path / "out" / "summary.json").read_text())["kernels"] == "none"
 

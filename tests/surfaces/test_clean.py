@@ -63,5 +63,5 @@ def test_a_threshold_that_takes_the_surface_is_refused():
     with pytest.raises(SurfaceError, match=r"^threshold: \d\d% of the pixels .* too many"):
         remove_outliers(ROUGH, 0.5)
     for bad in (0.0, -1.0, float("nan")):
-        with pytest.raises(SurfaceError, match=r"^threshold: .* must be positive"):
+        with pytest.raises(SurfaceError, match=r"^threshold: .* is not a positive number"):
             remove_outliers(ROUGH, bad)

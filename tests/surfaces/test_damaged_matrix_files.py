@@ -47,8 +47,8 @@ def test_a_damaged_scan_line_is_not_left_out(write, refusal, tmp_path, number, d
 @pytest.mark.parametrize(
     ("header", "words"),
     [
-        ("# ny: 10\n", "its header states 10 lines, but it has 9 lines of 6 values"),
-        ("# nx = 7\n", "its header states 7 values, but it has 9 lines of 6 values"),
+        ("# ny: 10\n", "its header states 10 lines, but the file has 9 lines of 6 values"),
+        ("# nx = 7\n", "its header states 7 values, but the file has 9 lines of 6 values"),
         ("# Pixels: 6 x 12\n", "its header states 12 lines"),
     ],
 )

@@ -275,7 +275,7 @@ def test_other_comments_are_only_comments(write, tmp_path):
     [
         ("# only a comment\n", "holds no numbers"),
         ("   \n\n", "holds no numbers"),
-        ("1e-9 2e-9 3e-9 4e-9\n1e-9 2e-9\n", "line 2 has 2 values where the first has 4"),
+        ("1e-9 2e-9 3e-9 4e-9\n1e-9 2e-9\n", "line 2 has 2 values, but the first line has 4"),
         ("1e-9\n2e-9\n3e-9\n", "3 lines of 1 values are a profile or a list of coordinates"),
         ("0 0 1e-9\n0 1 2e-9\n1 0 1e-9\n1 1 2e-9\n", "list of coordinates"),
         ("1e-9 2e-9 3e-9 4e-9 5e-9\n", "a profile"),

@@ -1,1 +1,1 @@
-"""One quasi-static contact: its bodies and gap, its elastic equilibrium, yield and adhesion."""
+"""One quasi-static contact: bodies, gap, elastic equilibrium, yield and adhesion."""

@@ -17,7 +17,7 @@ class Body:
         radius: Radius of the sphere (m); inf for a wall.
         youngs_modulus: Young's modulus (Pa), positive.
         poissons_ratio: Poisson's ratio (1), above −1 and at most 0.5.
-        density: Density (kg/m³), positive. Only needed for velocities, and never for a wall.
+        density: Density (kg/m³), positive. Needed only for velocities, and never for a wall.
 
     Raises:
         CaseError: A value lies outside its range.
@@ -34,7 +34,9 @@ class Body:
         if not (math.isfinite(self.youngs_modulus) and self.youngs_modulus > 0):
             raise CaseError(f"youngs_modulus: {self.youngs_modulus} Pa is not a positive modulus")
         if not -1 < self.poissons_ratio <= 0.5:
-            raise CaseError(f"poissons_ratio: {self.poissons_ratio} is not in (-1, 0.5]")
+            raise CaseError(
+                f"poissons_ratio: {self.poissons_ratio} is not above -1 and at most 0.5"
+            )
         if self.density is not None and not (math.isfinite(self.density) and self.density > 0):
             raise CaseError(f"density: {self.density} kg/m³ is not a positive density")
 
@@ -71,7 +73,7 @@ class Pair:
 
     @property
     def flat(self) -> bool:
-        """Whether both bodies are flat, as a periodic contact needs."""
+        """Whether both bodies are flat, which a periodic contact requires."""
         return math.isinf(self.first.radius) and math.isinf(self.second.radius)
 
     @property
@@ -98,11 +100,12 @@ class Pair:
 
     @property
     def shear_compliances(self) -> tuple[float, float]:
-        """Compliances of the surfaces under a tangential force, across and along it (SI, 1/Pa).
+        """Compliances α and β of the surfaces under a tangential point force Q (SI, 1/Pa).
 
-        At the distance r from a tangential force Q, the two surfaces move relative to each other by
-        α Q/r if the direction from the force is perpendicular to Q, and by β Q/r if it is parallel:
-        α = Σ (1 − ν)/(2πG) and β = Σ 1/(2πG). Their mean is 1/(πG*).
+        At the distance r from the force, the two surfaces move relative to each other by α Q/r at
+        points on the line through the force perpendicular to Q, and by β Q/r at points on the line
+        along Q. α = Σ (1 − ν)/(2πG) and β = Σ 1/(2πG), with sums over the bodies. The mean of α and
+        β is 1/(πG*).
         """
         across, along = 0.0, 0.0
         for body in (self.first, self.second):
@@ -112,9 +115,9 @@ class Pair:
 
     @property
     def mass(self) -> float | None:
-        """Reduced mass m* (kg): 1/m* = 1/m₁ + 1/m₂; None if a sphere's density is not given.
+        """Reduced mass m* (kg): 1/m* = 1/m₁ + 1/m₂.
 
-        It is inf if both bodies are flat.
+        The result is inf if both bodies are flat, and None if the density of a sphere is missing.
         """
         if self.flat:
             return math.inf

@@ -1,10 +1,10 @@
 """The contact before loading: bodies, surface, yield model, and the gap between the bodies.
 
-Conventions: a gap above 0 is open, a pressure above 0 is compressive. The indentation (approach of
-the bodies) is 0 at the first touch of the undeformed bodies and grows as they approach. In a
-periodic contact, it is the approach of the mean planes of the two surfaces since first touch, which
-is the decrease of the mean gap. Arrays are indexed `[i, j]` along x and y and hold values at cell
-centres.
+Conventions: a gap above 0 is open, and a pressure above 0 is compressive. The indentation (approach
+of the bodies) is 0 at the first touch of the undeformed bodies and grows as the bodies approach. In
+a periodic contact, the indentation is the approach of the mean planes of the two surfaces since
+first touch, which equals the decrease of the mean gap. Arrays are indexed `[i, j]` along x and y
+and hold values at cell centres.
 """
 
 from __future__ import annotations
@@ -41,8 +41,8 @@ _OFF_NODE = 0.31, 0.17
 class Contact:
     """A pair of bodies whose composite roughness is `surface`.
 
-    At most one of `yield_strength` and `yield_pressure` is finite; elastic bodies have neither.
-    The models of `plasticity` are
+    At most one of `yield_strength` and `yield_pressure` is finite; for elastic bodies both are
+    infinite. The models of `plasticity` are
 
     * `expanding-cavity`: needs a yield strength. The pressure bound grows with deformation, see
       `contact.cavity`.
@@ -51,8 +51,8 @@ class Contact:
     * `truncated`: needs a yield pressure. The elastic pressure is truncated at the yield pressure
       (Thornton and Ning 1998, Powder Technol. 99, 154–162).
 
-    Contacts are equal (and have equal hashes) if their values are equal and their surface is the
-    same object. `gap`, `elongation` and `crest_gap` are computed once and are read-only.
+    Contacts are equal (and have equal hashes) if their attributes are equal and their surface is
+    the same object. `gap`, `elongation` and `crest_gap` are computed once and are read-only.
 
     Attributes:
         pair: The two bodies.
@@ -69,12 +69,13 @@ class Contact:
         yield_strength: Yield strength of a tensile test (Pa); inf if unused.
         tangent_modulus: Slope of tensile stress over strain after yield (Pa), for
             `expanding-cavity`.
-        adhesion: Range of the attraction. `jkr` has no range (the limit of soft bodies); `cohesive`
-            has the Lennard-Jones law of `theory.LennardJones`, see `contact.cohesive`.
-        equilibrium_separation: Gap z₀ without traction (m), the range of `cohesive`.
-        periodic: Whether the surface repeats in both directions without end, between two flat
-            bodies. A periodic contact is elastic or has a constant bound (`equilibrium`). It
-            attracts over a finite range (`cohesive`) or not at all.
+        adhesion: Range of the attraction. With `jkr` the range is zero (the limit of soft bodies).
+            `cohesive` uses the Lennard-Jones law of `theory.LennardJones`, see `contact.cohesive`.
+        equilibrium_separation: Gap z₀ (m) at which the traction of `cohesive` is zero. It sets the
+            range of the attraction.
+        periodic: Whether the surface repeats without end along x and y, between two flat bodies. A
+            periodic contact is elastic or has a constant pressure bound (`equilibrium`). The bodies
+            attract each other over a finite range (`cohesive`) or not at all.
 
     Raises:
         CaseError: A value is invalid, two values exclude each other, or `pair` or `surface` has a
@@ -103,7 +104,7 @@ class Contact:
         if not isinstance(self.surface, Surface):
             raise CaseError(
                 f"surface: {_kind(self.surface)} is not a surface; give Surface(height, grid), or "
-                "what generate_surface and read_surface return"
+                "the result of generate_surface or read_surface"
             )
         for name, value, known in (
             ("plasticity", self.plasticity, (None, *get_args(Plasticity))),
@@ -114,7 +115,8 @@ class Contact:
             if value not in known:
                 names = ", ".join(filter(None, known))
                 raise CaseError(f'{name}: "{value}" is not one of {names}')
-        # Convert numbers of other types, because the compiled loops accept double precision only.
+        # Numbers of other types are converted, because the compiled loops accept only double
+        # precision.
         for name in (
             "yield_pressure",
             "work_of_adhesion",
@@ -137,17 +139,19 @@ class Contact:
                 + ("yield_pressure, not a yield_strength" if grows else "yield_strength")
             )
         if grows and math.isfinite(self.yield_pressure):
-            raise CaseError("yield_strength, yield_pressure: only one of them can be given")
+            raise CaseError("yield_strength, yield_pressure: both are given; give only one of them")
         softest = min(body.youngs_modulus for body in (self.pair.first, self.pair.second))
         if not 0 <= self.tangent_modulus < softest:
             raise CaseError(
-                f"tangent_modulus: {self.tangent_modulus:g} Pa is not zero or more and below "
-                f"Young's modulus, {softest:g} Pa"
+                f"tangent_modulus: {self.tangent_modulus:g} Pa must not be negative and must be "
+                f"below Young's modulus, {softest:g} Pa"
             )
         if self.tangent_modulus and not grows:
             raise CaseError("tangent_modulus: hardening needs a yield_strength")
         if not 0 <= self.work_of_adhesion < math.inf:
-            raise CaseError(f"work_of_adhesion: {self.work_of_adhesion} J/m2 is not zero or more")
+            raise CaseError(
+                f"work_of_adhesion: {self.work_of_adhesion} J/m2 is negative or not finite"
+            )
         if not 0 < self.equilibrium_separation < math.inf:
             raise CaseError(
                 f"equilibrium_separation: {self.equilibrium_separation} m is not a positive length"
@@ -161,12 +165,13 @@ class Contact:
             if self.pair.flat:
                 raise CaseError(
                     "first.radius, second.radius: both are flat; one must be a sphere, or the "
-                    "contact periodic"
+                    "contact must be periodic"
                 )
             return
         if not self.pair.flat:
             raise CaseError(
-                "periodic: needs two flat bodies (radius inf); the surface alone may be curved"
+                "periodic: needs two flat bodies (radius inf); describe any curvature by the "
+                "heights of the surface"
             )
         if np.ptp(self.surface.height) == 0:
             raise CaseError("surface: is flat; a periodic contact needs roughness")
@@ -177,8 +182,8 @@ class Contact:
             )
         if self.plasticity != "equilibrium":
             raise CaseError(
-                "plasticity: a periodic contact is elastic or has a constant bound; give a "
-                'yield_pressure and plasticity "equilibrium"'
+                "plasticity: a periodic contact is elastic or has a constant pressure bound; give "
+                'a yield_pressure and plasticity "equilibrium"'
             )
 
     @property
@@ -211,12 +216,12 @@ class Contact:
 
     @property
     def truncates(self) -> bool:
-        """Whether the elastic pressure is truncated at the yield pressure (`truncated`)."""
+        """Whether the model `truncated` is used with a finite yield pressure."""
         return self.plasticity == "truncated" and math.isfinite(self.yield_pressure)
 
     @property
     def adhesive(self) -> bool:
-        """Whether nodes in contact can carry tension."""
+        """Whether the bodies adhere, that is, the work of adhesion is positive."""
         return self.work_of_adhesion > 0
 
     @property
@@ -234,9 +239,9 @@ class Contact:
 
     @property
     def crack_opening(self) -> float:
-        """Opening one cell outside a straight contact edge that is about to recede (m).
+        """Gap (m) one cell outside a straight contact edge that is about to recede.
 
-        It is 1.86 sqrt(w h/E*); see `contact.detachment`.
+        It is 1.86 sqrt(w h/E*) with the cell size h; see `contact.detachment`.
         """
         h = math.sqrt(self.grid.cell_area)
         return 1.86 * math.sqrt(self.work_of_adhesion * h / self.pair.contact_modulus)
@@ -248,8 +253,8 @@ class Contact:
             indentation: Approach of the bodies (m).
 
         Returns:
-            The indentation or the length scale of adhesion, whichever is larger (m). The length
-            scale between flat bodies is z₀.
+            The magnitude of the indentation or the length scale of adhesion, whichever is larger
+            (m). The length scale between flat bodies is z₀.
         """
         return max(abs(indentation), self.adhesive_length or self.equilibrium_separation)
 
@@ -277,9 +282,9 @@ class Contact:
     def apex(self) -> tuple[float, float]:
         """Coordinates x and y of the lowest point of the smooth bodies (m).
 
-        The point is the origin, a node. But in an adhesive contact without roughness (`smooth`) the
-        point lies between nodes. If it were a node, whole rings of nodes would attach and release
-        at once, which doubles the error of restitution.
+        In general the apex is the origin, which is a node. But in an adhesive contact without
+        roughness (`smooth`) the apex lies between nodes. If it were a node, whole rings of nodes
+        would attach and detach at once, which doubles the error of restitution.
         """
         if not self.adhesive or self.surface.provenance.get("source") != "smooth":
             return 0.0, 0.0
@@ -306,7 +311,10 @@ class Contact:
 
     @cached_property
     def mean_offset(self) -> float:
-        """Mean gap at first touch between the rough surface and the smooth bodies (m)."""
+        """Gap (m) that the smooth bodies have at first touch of the rough bodies.
+
+        The rough surface is replaced by its mean height, and the gap is taken at the apex.
+        """
         at = tuple(n // 2 for n in self.grid.nodes)  # the origin
         r2 = sum(along**2 for along in self.apex)
         height = self.surface.height
@@ -329,17 +337,17 @@ def require_cohesive(approach: str, detachment: str, plasticity: str | None) -> 
     if detachment != "crack-closure":
         raise CaseError(
             f'detachment: "{detachment}" belongs to adhesion = "jkr"; a cohesive contact has no '
-            "detachment criterion, so remove the key"
+            "detachment criterion, so leave detachment out"
         )
     if approach != "equilibrium":
         raise CaseError(
-            f'approach: "{approach}" belongs to adhesion = "jkr"; a cohesive contact attracts on '
-            "approach, so remove the key"
+            f'approach: "{approach}" belongs to adhesion = "jkr"; cohesive bodies always attract '
+            "each other on approach, so leave approach out"
         )
     if plasticity == "truncated":
         raise CaseError(
-            'plasticity: "truncated" defines no pressure with adhesion = "cohesive"; use '
-            '"equilibrium", or adhesion = "jkr"'
+            'plasticity: "truncated" is not defined with adhesion = "cohesive"; use "equilibrium", '
+            'or adhesion = "jkr"'
         )
 
 

@@ -30,16 +30,17 @@ Array = NDArray[np.float64]
 Operator = TypeVar("Operator", FreeConvolution, PeriodicConvolution, SpectralFilter)
 Moduli = TypeVar("Moduli", float, tuple[float, float])
 
-# Distance (in cell diagonals) beyond which the series of `far_displacement` is used. Its relative
-# error there is under 2e-12. In Love's formula, cancellation makes the error grow as (r/h)².
+# Distance (in cell diagonals) beyond which the series of `far_displacement` is used. Beyond this
+# distance the relative error of the series is under 2e-12. In Love's formula, cancellation makes
+# the error grow as (r/h)².
 _FAR = 32.0
 
 
 def love_displacement(x: Array, y: Array, hx: float, hy: float, contact_modulus: float) -> Array:
-    """Displacement at (x, y) per unit pressure on the cell hx × hy at the origin, m/Pa.
+    """Displacement (m/Pa) at (x, y) per unit pressure on a cell hx × hy at the origin.
 
-    Love (1929), Phil. Trans. R. Soc. A 228, 377; the form of Johnson (1985), *Contact Mechanics*,
-    eq. 3.25. `x` and `y` (m) broadcast together.
+    Source: Love (1929), Phil. Trans. R. Soc. A 228, 377, in the form of Johnson (1985), *Contact
+    Mechanics*, eq. 3.25. `x` and `y` (m) broadcast together.
     """
     a, b = 0.5 * hx, 0.5 * hy
     pp, pm = np.hypot(x + a, y + b), np.hypot(x + a, y - b)
@@ -55,7 +56,7 @@ def love_displacement(x: Array, y: Array, hx: float, hy: float, contact_modulus:
 
 
 def far_displacement(x: Array, y: Array, hx: float, hy: float, contact_modulus: float) -> Array:
-    """Displacement as in `love_displacement`, but far from the cell and by a series.
+    """Displacement (m/Pa) as in `love_displacement`, by a series that holds far from the cell.
 
     The Taylor series of the displacement due to a point load is averaged over the cell:
     u πE*/(p hx hy) = [1 + (hx²∂x² + hy²∂y²)/24 + hx⁴∂x⁴/1920 + hx²hy²∂x²∂y²/576 + hy⁴∂y⁴/1920] 1/r.
@@ -78,7 +79,9 @@ def far_displacement(x: Array, y: Array, hx: float, hy: float, contact_modulus: 
 def cerruti_displacement(
     x: Array, y: Array, hx: float, hy: float, compliances: tuple[float, float]
 ) -> Array:
-    """Displacement along x at (x, y) per unit traction along x on the cell hx × hy, m/Pa.
+    """Displacement (m/Pa) along x at (x, y) per unit traction along x on a cell hx × hy.
+
+    The cell is at the origin.
 
     A tangential force Q along x moves the surface of a half-space by u = Q [(1 − ν)/r + ν x²/r³]/
     (2πG) along x (Cerruti 1882; Johnson 1985, *Contact Mechanics*, eq. 3.75). With y²/r³ = ∂²r/∂x²
@@ -110,8 +113,8 @@ def influence_coefficients(
 
     `i` is a column and `j` a row; both start at 0.
     """
-    # u/h depends only on the aspect ratio of the cells and on the lag. So the coefficients are
-    # computed for cells of unit width and scaled.
+    # For given E*, u/h depends only on the aspect ratio of the cells and on the lag. So the
+    # coefficients are computed for E* = 1 and cells of unit width, and then scaled.
     hx, hy = spacing
     lags, aspect, scale = (i.size, j.size), hy / hx, hx / contact_modulus
     if i.size * j.size <= _most_coefficients():
@@ -125,9 +128,9 @@ def influence_coefficients(
 def half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
 ) -> FreeConvolution:
-    """Make the operator p ↦ u on a block of `shape` nodes of the free (non-periodic) half-space.
+    """Make the operator from pressure to displacement on a free (non-periodic) half-space.
 
-    The operator takes and returns arrays of this shape on the current device.
+    The operator takes and returns arrays of this shape (nodes) on the current device.
     """
     return _operator(_half_space, shape, spacing, contact_modulus)
 
@@ -135,16 +138,21 @@ def half_space(
 def inverse_half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
 ) -> SpectralFilter:
-    """Make the approximate inverse u ↦ |q| E*/2 u, exact if periodic (Johnson 1985)."""
+    """Make the operator from displacement to pressure, an approximate inverse of `half_space`.
+
+    It multiplies displacement waves of the wave number |q| by |q| E*/2, which is exact for a
+    periodic half-space (Johnson 1985).
+    """
     return _operator(_inverse_half_space, shape, spacing, contact_modulus)
 
 
 def shear_half_space(
     shape: tuple[int, int], spacing: tuple[float, float], compliances: tuple[float, float]
 ) -> FreeConvolution:
-    """Make the operator q ↦ u along x on a block of `shape` nodes of the free half-space.
+    """Make the operator from traction to displacement, both along x, on a free half-space.
 
-    `compliances` (1/Pa) are those of `Pair.shear_compliances`.
+    The operator takes and returns arrays of this shape (nodes). `compliances` (1/Pa) are those of
+    `Pair.shear_compliances`.
     """
     return _operator(_shear_half_space, shape, spacing, compliances)
 
@@ -152,9 +160,10 @@ def shear_half_space(
 def periodic_half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
 ) -> PeriodicConvolution:
-    """Make the operator p ↦ u on one period of a half-space; a mean pressure displaces nothing.
+    """Make the operator from pressure to displacement on one period of a half-space.
 
-    The displacement is therefore measured from its mean, and its mean is zero.
+    Displacement is measured from its mean, so its mean is zero, and a uniform pressure causes no
+    displacement.
     """
     return _operator(_periodic_half_space, shape, spacing, contact_modulus)
 
@@ -164,9 +173,9 @@ def sprung_half_space(
 ) -> PeriodicConvolution:
     """Make the operator of a periodic half-space on an elastic foundation.
 
-    It is `periodic_half_space` plus `foundation_compliance` times the mean pressure. The inverse of
-    `inverse_half_space` is exact for it. In contrast to `periodic_half_space` it is positive
-    definite.
+    The displacement is that of `periodic_half_space` plus `foundation_compliance` times the mean
+    pressure. In contrast to `periodic_half_space`, this operator is positive definite.
+    `inverse_half_space` is its inverse if the FFT of this shape needs no padding.
     """
     return _operator(_sprung_half_space, shape, spacing, contact_modulus)
 
@@ -174,17 +183,17 @@ def sprung_half_space(
 def foundation_compliance(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
 ) -> float:
-    """Displacement of `sprung_half_space` per mean pressure (m/Pa).
+    """Displacement of the elastic foundation of `sprung_half_space` per mean pressure (m/Pa).
 
-    It is the compliance for a wave that is twice as long as the longer edge of the period.
+    It is the compliance of a half-space for a wave twice as long as the longer edge of the period.
     """
     q = math.pi / max(n * h for n, h in zip(shape, spacing, strict=True))
     return 2 / (contact_modulus * q)
 
 
-# Largest operator and largest block of coefficients that are cached, as fractions of the cache. As
-# a contact grows, larger operators would fill the cache. With the default size of the cache, the
-# limit is 1400² nodes.
+# Largest operator and largest block of coefficients that are cached, as fractions of the size of
+# the cache. As a contact grows, larger operators would fill the cache. With the default size of the
+# cache, operators of up to 1400² nodes are cached.
 _MAX_OPERATOR, _MAX_COEFFICIENTS = 1 / 15, 2 / 3
 
 
@@ -194,7 +203,7 @@ def _operator(
     spacing: tuple[float, float],
     moduli: Moduli,
 ) -> Operator:
-    """Take the operator from the cache or build it; give it a separate workspace."""
+    """Take the operator from the cache or build it; return it with a separate workspace."""
     key = build, shape, spacing, moduli, current()
     operator: Operator | None = operator_cache.get(key)
     if operator is None:
@@ -207,8 +216,8 @@ def _operator(
 def _unit_coefficients(lags: tuple[int, int], aspect: float, device: Device) -> Array:
     """Coefficients for cells 1 × `aspect` and E* = 1, as a view that callers must not change.
 
-    The block size follows the contact and differs between most solves. The cache keeps the largest
-    block so far; smaller blocks are parts of the largest block.
+    The number of lags follows the size of the contact and differs between most solves. The cache
+    keeps the largest block so far, and smaller blocks are views of it.
     """
     key = _compute_coefficients, aspect, device
     known: Array | None = operator_cache.get(key)
@@ -274,8 +283,8 @@ def _inverse_half_space(
 
     def symbol(qx: Array, qy: Array) -> Array:
         q = _wave_numbers(qx, qy, spacing)
-        # On a periodic half-space a mean pressure has no finite displacement, so the mean has no
-        # inverse. Use half the wave number of the longest wave for the mean.
+        # The displacement due to a mean pressure is not defined on a periodic half-space. For the
+        # mean, half the wave number of the longest wave is used.
         longest = [2 * np.pi / min(spacing)]
         longest += [float(q[1, 0])] if q.shape[0] > 1 else []
         longest += [float(q[0, 1])] if q.shape[1] > 1 else []
@@ -306,7 +315,7 @@ def _with_mean(
     contact_modulus: float,
     device: Device,
 ) -> PeriodicConvolution:
-    """Periodic half-space in which a mean pressure displaces the surface by `compliance`."""
+    """Periodic half-space with a mean displacement of `compliance` (m/Pa) times mean pressure."""
 
     def symbol(qx: Array, qy: Array) -> Array:
         q = _wave_numbers(qx, qy, spacing)
@@ -319,6 +328,6 @@ def _with_mean(
 
 
 def _wave_numbers(qx: Array, qy: Array, spacing: tuple[float, float]) -> Array:
-    """Magnitude of the wave vector (rad/m) for wave numbers in rad per cell."""
+    """Magnitude of the wave vector (rad/m) for wave numbers `qx` and `qy` in rad per cell."""
     q: Array = np.sqrt((qx / spacing[0]) ** 2 + (qy / spacing[1]) ** 2)
     return q

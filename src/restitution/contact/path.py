@@ -24,7 +24,7 @@ def loading_path(
     velocities: Iterable[float] | None = None,
     residual: float = RESIDUAL,
 ) -> Iterator[State]:
-    """Load the undeformed bodies to each of several depths.
+    """Load the undeformed bodies to each of several indentations, forces or impact velocities.
 
     Give exactly one of `indentations`, `forces` and `velocities`. If the work has to be integrated,
     each integral starts from the previous state.
@@ -38,11 +38,11 @@ def loading_path(
             `indentations`.
 
     Yields:
-        State at each depth, in the order given.
+        State at each given value, in the given order.
 
     Raises:
-        CaseError: None or more than one of the three is given, or a value is not positive, or a
-            velocity is given for bodies without density.
+        CaseError: Not exactly one of the three is given, a value is not positive, or velocities are
+            given for bodies without density.
         NotConvergedError: A tolerance was not reached.
         DomainError: The contact reaches the edge of the grid.
     """
@@ -68,20 +68,22 @@ def unloading_path(
     residual: float = RESIDUAL,
     known: Sequence[State] = (),
 ) -> Iterator[State]:
-    """Unload a contact to separation, where the force returns to zero.
+    """Unload a contact step by step to separation.
 
-    Steps become shorter towards separation as (1 − t)², because the force of a Hertzian unloading,
-    (δ − δ_s)^1.5, is then a cubic in t.
+    Without adhesion, the bodies separate at the indentation δ_s where the force returns to zero.
+    After step k of n, δ − δ_s is (1 − k/n)² times the initial value. The force of a Hertzian
+    unloading, which is proportional to (δ − δ_s)^1.5, is then a cubic in k.
 
     Args:
         state: State to unload.
         steps: Number of steps (1) without adhesion.
-        tolerance: Allowed error of the coefficient of restitution (1). It determines the number of
-            steps with adhesion, see `contact.separation`.
+        tolerance: Error of the coefficient of restitution (1) that the steps may cause. It
+            determines the number of steps with adhesion, see `contact.separation`.
         residual: Tolerance on the violation of the contact conditions (1), as in `solve`; only
             without adhesion.
         known: States of unloading from a shallower depth of the same contact. Adhesive unloading of
-            elastic bodies then ends with these states, because it is the same from any depth.
+            elastic bodies then ends with these states, because its path below that depth does not
+            depend on the largest depth.
 
     Yields:
         `state`, then the state after each step.

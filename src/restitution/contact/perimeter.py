@@ -1,9 +1,9 @@
-"""Contact area without the error of its staircase edge.
+"""Contact area with a correction for the staircase edge of a contact on a grid.
 
-A node counts as in contact with its whole cell. On average, this adds a strip along the edge of the
-contact to the area. The edge of a contact on a grid is longer than the true edge by 4/π on average,
-and the excess area is (π − 1 + ln 2)/24 times the length S_d of the staircase edge times the
-spacing (Yastrebov, Anciaux and Molinari 2017, Tribol. Int. 114, 161–171).
+If a node is in contact, its whole cell counts as contact. On average, this adds a strip along the
+contact edge to the area. The excess area is (π − 1 + ln 2)/24 times the length of the staircase
+edge times the spacing. This includes that the staircase edge is longer than the true edge by the
+factor 4/π on average (Yastrebov, Anciaux and Molinari 2017, Tribol. Int. 114, 161–171).
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ def corrected_area(state: State) -> float:
     rows, columns = (slice(0, n) for n in state.contact.grid.nodes)
     touching = reframe(state.box_touching, state.box, (rows, columns))
     hx, hy = state.contact.grid.spacing
-    # Faces across x have the length hy and belong to cells of the width hx, and vice versa.
+    # A face of the staircase edge has the length hy and separates cells of the width hx, or the
+    # other way round. So length times spacing is hx hy for each face.
     faces = sum(np.count_nonzero(touching != np.roll(touching, 1, axis)) for axis in (0, 1))
     return state.contact_area - _EXCESS * int(faces) * hx * hy

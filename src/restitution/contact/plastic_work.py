@@ -1,4 +1,4 @@
-"""Plastic work under a bound that grows with deformation."""
+"""Plastic work under a pressure bound that grows with deformation."""
 
 from __future__ import annotations
 
@@ -12,21 +12,22 @@ from restitution.numerics.box import Box
 
 Array = NDArray[np.float64]
 
-# Errors are fractions of the part of the plastic work that the growth of the bound adds:
-# _RULE_ERROR for nodes that had yielded before the step, and _NEW_ERROR for nodes that begin to
-# yield in the step. Both come from a comparison with 11 times as many depths. _NEW is the weight of
-# the growth of the bound in the work of nodes that begin to yield.
+# The error of the plastic work is a fraction of the part that the growth of the bound adds. The
+# fraction is _RULE_ERROR for nodes that had yielded before the step, and _NEW_ERROR for nodes that
+# begin to yield in the step. Both come from a comparison with 11 times as many depths. _NEW is the
+# weight of the growth of the bound in the work of nodes that begin to yield.
 _RULE_ERROR, _NEW, _NEW_ERROR = 0.1, 0.8, 0.25
 
 
 def plastic_work(before: State | None, after: State) -> tuple[float, float]:
-    """Plastic work (J) between two states, and its error (J).
+    """Plastic work (J) between two states of loading, and its error (J).
 
-    `after` may be at most 1.42 times as deep as `before`. Each node yields by Δu while its bound
-    grows from b₁ to b₂. If u is linear in the indentation δ and b is linear in ln δ, the work per
-    area is Δu [b₁ + (b₂ − b₁) (δ₂/(δ₂ − δ₁) − 1/ln(δ₂/δ₁))]. A node that begins to yield in this
-    step yields under bounds nearer to b₂, so the factor of b₂ − b₁ is then `_NEW`. The error is the
-    fraction `_RULE_ERROR` or `_NEW_ERROR` of the term with b₂ − b₁.
+    `after` may be at most 1.42 times as deep as `before`. Between the indentations δ₁ and δ₂, each
+    node yields by the displacement Δu while its pressure bound grows from b₁ to b₂. If the plastic
+    displacement is linear in δ and the bound is linear in ln δ, the work per area is
+    Δu [b₁ + (b₂ − b₁) (δ₂/(δ₂ − δ₁) − 1/ln(δ₂/δ₁))]. A node that begins to yield in this step
+    yields under bounds nearer to b₂, so the factor of b₂ − b₁ is then `_NEW`. The error is the
+    fraction `_RULE_ERROR` or `_NEW_ERROR` of the product Δu (b₂ − b₁).
     """
     contact, box = after.contact, after.box
     given, begun = after.plastic_displacement[box], np.asarray(contact.first_yield_pressure)
@@ -46,5 +47,5 @@ def plastic_work(before: State | None, after: State) -> tuple[float, float]:
 
 
 def _on(bound: Array | float, box: Box) -> Array:
-    """Return `bound`, a number or an array of the shape of the grid, on a box."""
+    """Return the part of `bound` on `box`, or `bound` itself if it is a number."""
     return np.asarray(bound) if np.ndim(bound) == 0 else np.asarray(bound)[box]

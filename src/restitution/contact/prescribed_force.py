@@ -35,8 +35,9 @@ def solve_at_force(contact: Contact, force: float, *, start: State | None = None
 
     Raises:
         CaseError: The force is not positive.
-        DomainError: The grid cannot carry the force, or the contact reaches its edge.
-        NotConvergedError: The force jumps at this indentation, or a solve did not converge.
+        DomainError: The whole grid cannot carry the force at the yield pressure, or the contact
+            reaches the edge of the grid.
+        NotConvergedError: The force jumps from below to above `force`, or a solve did not converge.
     """
     from scipy.optimize import brentq
 
@@ -65,7 +66,7 @@ def solve_at_force(contact: Contact, force: float, *, start: State | None = None
 
     hertz = float(Hertz(contact.pair.radius, contact.pair.contact_modulus).indentation(force))
     low, high = 0.0, max(hertz, start.indentation if start is not None else 0.0)
-    if contact.cohesive:  # one path of loading brackets the force
+    if contact.cohesive:  # the last two states of one path of loading bracket the force
         start, reached = load_until(
             contact, lambda state: state.force >= force, start=start, residual=RESIDUAL
         )
@@ -76,8 +77,8 @@ def solve_at_force(contact: Contact, force: float, *, start: State | None = None
     state = solve(contact, indentation, start=start, residual=_SOLVE_RESIDUAL)
     if abs(state.force / force - 1) > FORCE_TOLERANCE:
         raise NotConvergedError(
-            f"force: {force:.6g} N was met only within {abs(state.force / force - 1):.1e} at an "
-            f"indentation of {1e9 * indentation:.6g} nm, where the force jumps (too few nodes in "
-            "contact); refine the grid or change the force"
+            f"force: {force:.6g} N was reached only within {abs(state.force / force - 1):.1e} at "
+            f"an indentation of {1e9 * indentation:.6g} nm, where the force jumps (too few nodes "
+            "in contact); refine the grid or change the force"
         )
     return replace(state, convolutions=state.convolutions + convolutions)

@@ -23,10 +23,9 @@ PRESSURE_TOLERANCE = 1e-8
 def solve_at_pressure(contact: Contact, pressure: float, *, residual: float = RESIDUAL) -> State:
     """Load a periodic contact to a nominal pressure, within a relative error of 1e-8.
 
-    The two bodies are pressed together through an elastic foundation, whose compression depends on
-    the mean pressure alone. With the foundation the problem is positive definite even in complete
-    contact, where the indentation does not depend on the pressure. The compression is subtracted at
-    the end.
+    For the solve, an elastic foundation is added, whose compression is proportional to the mean
+    pressure. It makes the problem positive definite even in complete contact, where the indentation
+    does not depend on the pressure. The compression of the foundation is subtracted at the end.
 
     Args:
         contact: Periodic contact to load.
@@ -38,14 +37,17 @@ def solve_at_pressure(contact: Contact, pressure: float, *, residual: float = RE
         State under `pressure`.
 
     Raises:
-        CaseError: The contact is not periodic, or it attracts, or the pressure is not positive.
+        CaseError: The contact is not periodic or is adhesive, or the pressure is not positive.
         DomainError: The pressure is not below the yield pressure.
         NotConvergedError: A tolerance was not reached.
     """
     if not contact.periodic:
         raise CaseError("contact: only a periodic contact has a nominal pressure; use solve")
     if contact.adhesive:
-        raise CaseError("contact: attracts, so its pressure jumps; prescribe the indentation")
+        raise CaseError(
+            "contact: the bodies attract each other, so the pressure jumps on approach; prescribe "
+            "the indentation"
+        )
     if not 0 < pressure < math.inf:
         raise CaseError(f"pressure: {pressure} Pa is not positive")
     if pressure >= contact.yield_pressure:

@@ -1,7 +1,7 @@
 """One state of a contact: a solve returns it, and the next step starts from it.
 
-States are immutable and their arrays read-only. Fields hold the solution; force, area, energies and
-maps are properties.
+States are immutable, and their arrays are read-only. Fields hold the solution; force, area,
+energies and maps are properties.
 """
 
 from __future__ import annotations
@@ -40,16 +40,17 @@ class State:
             shape `grid.nodes`.
         plastic_work: Work dissipated by yielding so far (J).
         adhesive_work: Work done by adhesion so far (J).
-        work_error: Error of the two works together (J).
-        residual: Largest violation of the contact conditions (1), relative to the overlap or, with
-            adhesion, to `Contact.residual_length`.
+        work_error: Error of plastic work and adhesive work together (J).
+        residual: Largest violation of the contact conditions (1), relative to the largest overlap
+            of the undeformed surfaces or, with adhesion, to `Contact.residual_length`.
         convolutions: Number of convolutions (1) that the solve took.
         force_before_release: Force before nodes were released in this step of adhesive unloading
             (N); None after loading.
-        balance: Indentation (m) and force (N) at which G = w on average along the edge of the
-            previous contact area, if this step of unloading released nodes of it; otherwise None.
-            None with `pohrt-popov` as well.
-        is_first_loading: Whether the undeformed bodies were loaded to this state directly (bool).
+        balance: Indentation (m) and force (N) at which the energy release rate, averaged along the
+            edge of the previous contact area, equals the work of adhesion. None if this step did
+            not release nodes on unloading, and with `pohrt-popov`.
+        is_first_loading: Whether the state was computed by loading the undeformed bodies, not by a
+            step from another state (bool).
     """
 
     contact: Contact
@@ -98,7 +99,7 @@ class State:
 
     @property
     def box_touching(self) -> NDArray[np.bool_]:
-        """Whether each node of the box has a pressure other than zero (bool): contact."""
+        """Whether each node of `box` is in contact (bool), that is, its pressure is not 0."""
         touching: NDArray[np.bool_] = self.box_pressure != 0
         return touching
 
@@ -130,7 +131,7 @@ class State:
             CaseError: The contact is not periodic.
         """
         if not self.contact.periodic:
-            raise CaseError("mean_gap: only a periodic contact has one")
+            raise CaseError("mean_gap: is defined only for a periodic contact")
         gap = self.contact.gap.mean() + self.plastic_displacement.mean() - self.indentation
         return float(gap)
 
@@ -153,7 +154,8 @@ class State:
     @property
     def separation_indentation(self) -> float:
         """Indentation min(h₀ + u_p) at which bodies without adhesion separate (m)."""
-        # The box is enough, because nodes in contact have a smaller gap than nodes outside the box.
+        # It suffices to search the box, because the sum h₀ + u_p of nodes in contact is below that
+        # of nodes outside the box.
         box = self.box if self.contact_nodes else ...
         return float((self.contact.gap[box] + self.plastic_displacement[box]).min())
 
@@ -170,7 +172,7 @@ class State:
     _repr_html_ = summary_html
 
     def patch_sizes(self) -> NDArray[np.int64]:
-        """Sizes of the contact patches, which are sets of nodes connected by cell edges.
+        """Sizes of the contact patches, which are sets of contact nodes connected by cell edges.
 
         Patches of a periodic contact continue across the edges of the grid.
 
@@ -187,7 +189,7 @@ class State:
 
 
 def _joined(labels: NDArray[np.int32], count: int) -> NDArray[np.int32]:
-    """Return the number of the patch of each label, if patches continue across the edges."""
+    """Return, for each label, the number of its patch if patches continue across grid edges."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 

@@ -1,20 +1,21 @@
 """Tangential contact at a fixed normal pressure: stick, slip and friction loss at every node.
 
-The bodies move by the tangential displacement U along x. The traction q along x moves their
-surfaces by C q relative to each other (`influence.cerruti_displacement`), and the slip of a node is
-s = U − C q. Coulomb's law limits |q| to µ p. Where |q| is below this limit, the slip does not
-change. From one state to the next, the traction minimises
+The bodies move relative to each other by the tangential displacement U along x. The traction q
+along x moves their surfaces by C q relative to each other (`influence.cerruti_displacement`), and
+the slip of a node is s = U − C q. Coulomb's law limits |q| to µ p. Where |q| is below this limit,
+the slip does not change. From one state to the next, the traction minimises
 
-    ½ qᵀC q − qᵀ(U − s₀),   −µ p ≤ q ≤ µ p,
+    ½ qᵀC q − qᵀ(U − s₀)   subject to   −µ p ≤ q ≤ µ p,
 
-where s₀ is the slip before the step. The gradient is s₀ − s: zero in stick, and of the sign of −q
-in slip. Nodes without pressure carry no traction and slip freely. A node that comes into contact
-sticks where it touches. Because s₀ = U₀ − C q₀, the traction q₀ and the displacement U₀ before the
-step are the whole history, and the normal states of a path may follow one another in any order.
+where s₀ is the slip before the step. The gradient is s₀ − s: it is zero in stick and has the sign
+of −q in slip. Nodes without pressure carry no traction and slip freely. A node that comes into
+contact sticks where it touches. Because s₀ = U₀ − C q₀, the traction q₀ and the displacement U₀
+before the step are the whole history, and the normal states of a path may follow one another in any
+order.
 
-Neglected, as by Cattaneo (1938) and Mindlin (1949): the traction along y, and the influence of
-tangential traction on the pressure. The second is exact for bodies of like materials. Yielding
-limits the pressure alone; the traction adds nothing to it.
+Like Cattaneo (1938) and Mindlin (1949), this module neglects the traction along y and the influence
+of tangential traction on the pressure. This influence is zero for bodies of like materials. Yield
+limits only the pressure; the tangential traction does not contribute to yield.
 """
 
 from __future__ import annotations
@@ -114,17 +115,17 @@ def shear(
 ) -> TangentialState:
     """Move the bodies of a contact tangentially, along x, to a displacement.
 
-    The energy lost to friction is the mean traction before and after the step times the slip of
-    each node. So the mean force before and after the step, times the change of U, is exactly the
-    change of the stored energy plus the loss. For a path that changes direction or pressure, both
-    are those of the path in the limit of small steps.
+    The energy lost to friction is the slip of each node times the mean of its tractions before and
+    after the step. So the mean of the forces before and after the step, times the change of U, is
+    exactly the change of the stored energy plus the loss. If a path changes direction or pressure,
+    stored energy and loss approach the values of the continuous path as the steps become shorter.
 
     Args:
         normal: Normal state after the step, without adhesion.
         displacement: Tangential displacement U after the step (m).
         friction: Coefficient of friction µ (1), not negative.
-        history: State before the step, on the same grid. None stands for bodies without tangential
-            traction at U = 0.
+        history: State before the step, on the same grid. None means U = 0 without tangential
+            traction.
         residual: Tolerance on the violation of the conditions of stick and slip (1), relative to
             the largest displacement.
 
@@ -142,7 +143,7 @@ def shear(
     if not math.isfinite(displacement):
         raise CaseError(f"displacement: {displacement} m is not a finite length")
     if contact.adhesive:
-        raise CaseError("normal: is adhesive; Coulomb's law is solved without adhesion only")
+        raise CaseError("normal: is adhesive; Coulomb's law is solved only without adhesion")
     if history is not None and history.normal.contact.grid != contact.grid:
         raise CaseError("history: is on another grid; give a state on the grid of this contact")
     box = union(
@@ -196,5 +197,5 @@ def shear(
 
 
 def _limit(normal: State, friction: float, box: Box) -> Array:
-    """The largest traction µ p (Pa) on `box`."""
+    """Limit µ p of the traction (Pa) on `box`."""
     return friction * normal.pressure_on(box)

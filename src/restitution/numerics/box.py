@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 Box = tuple[slice, slice]
 Scalar = TypeVar("Scalar", bound=np.generic)
 
-NOWHERE: Box = (slice(0, 0), slice(0, 0))
+NOWHERE: Box = (slice(0, 0), slice(0, 0))  # an empty box
 
 
 def shape_of(box: Box) -> tuple[int, int]:
@@ -43,7 +43,7 @@ def widen(box: Box, cells: int, nodes: tuple[int, int]) -> Box:
 
 
 def union(first: Box | None, second: Box | None) -> Box | None:
-    """Return the smallest box that contains both; None stands for an empty box."""
+    """Return the smallest box that contains both boxes; None stands for an empty box."""
     if first is None or second is None:
         return second if first is None else first
     rows, columns = (
@@ -54,7 +54,10 @@ def union(first: Box | None, second: Box | None) -> Box | None:
 
 
 def reframe(values: NDArray[Scalar], box: Box, wanted: Box) -> NDArray[Scalar]:
-    """Copy `values` on `box` to the box `wanted`, with zeros outside `box`."""
+    """Return `values`, given on `box`, as an array on the box `wanted`, with zeros outside `box`.
+
+    If the boxes are equal, the result is `values` itself.
+    """
     if box == wanted:
         return values
     framed: NDArray[Any] = np.zeros(shape_of(wanted), dtype=values.dtype)

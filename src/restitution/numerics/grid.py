@@ -43,7 +43,7 @@ class Grid:
     def __init__(self, nodes: int | tuple[int, int], spacing: float | tuple[float, float]) -> None:
         nx, ny = _both("nodes", nodes, "a whole number, or two (nx, ny)")
         if not all(isinstance(n, Integral) or n == math.floor(n) for n in (nx, ny)):
-            raise CaseError(f"nodes: {nodes!r} are not whole numbers")
+            raise CaseError(f"nodes: {nodes!r} is not possible; give whole numbers of nodes")
         if min(nx, ny) < 1:
             raise CaseError(f"nodes: {(nx, ny)} is too small; give at least 1 x 1 nodes")
         hx, hy = _both("spacing", spacing, "a length in m, or two (hx, hy)")
@@ -59,7 +59,7 @@ class Grid:
 
     @property
     def size(self) -> tuple[float, float]:
-        """Edge lengths of the domain, nodes times spacing (m)."""
+        """Edge lengths of the domain (m): number of nodes times spacing."""
         return self.nodes[0] * self.spacing[0], self.nodes[1] * self.spacing[1]
 
     @property
@@ -85,7 +85,10 @@ def _sides(edges: tuple[float, float]) -> str:
 
 
 def _both(name: str, value: Any, wanted: str) -> tuple[Any, Any]:
-    """Return `value` for both axes if it is one number; raise `CaseError` if it is invalid."""
+    """Return the two values of `value` along x and y, or `value` twice if it is one number.
+
+    Raises `CaseError`, with the expected input `wanted`, if `value` is neither.
+    """
     along = (value, value) if isinstance(value, Real) else value
     try:
         first, second = along
@@ -97,4 +100,5 @@ def _both(name: str, value: Any, wanted: str) -> tuple[Any, Any]:
 
 
 def _centres(n: int, h: float) -> NDArray[np.float64]:
+    """Centres of `n` cells of width `h`, zero at index n // 2."""
     return np.asarray((np.arange(n) - n // 2) * h, dtype=np.float64)

@@ -1,13 +1,13 @@
-"""Loading of the compiled kernels: whether this process uses them, and for which instruction set.
+"""Choice between compiled kernels and NumPy, and of the instruction set of the kernels.
 
-Each time-critical operation is written twice: as an expression of whole arrays, which works on any
-device, and as a C++ loop that does the same in one pass over memory. Tests compare the two. The
-loops form the module `restitution.numerics.loops`. If this module was not compiled or cannot be
-loaded, NumPy does the same work several times more slowly.
+Each time-critical operation is written twice: as a NumPy expression of whole arrays, which works on
+any device, and as a C++ loop that computes the same in one pass over memory. Tests compare the two.
+The loops form the module `restitution.numerics.loops`. If this module was not compiled or cannot be
+loaded, the NumPy expressions are used, which are several times slower.
 
-The environment variable RESTITUTION_KERNELS, read once, selects "avx512", "avx2" or "plain"
-kernels, or "numpy" for no kernels. By default the process uses the kernels with the widest vectors
-that the processor supports.
+The environment variable RESTITUTION_KERNELS is read once. The values "avx512", "avx2" and "plain"
+select the kernels for this instruction set; "numpy" selects the NumPy expressions. By default the
+process uses the kernels with the widest vectors that the processor supports.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ Result = TypeVar("Result")
 
 
 def _load() -> tuple[Any, str]:
-    """Return the compiled module; or None, the reason why it is not used, and the remedy.
+    """Return the compiled module and an empty text, or None and a text with reason and remedy.
 
     Raises `CaseError` if RESTITUTION_KERNELS names unknown kernels or kernels that cannot be
     loaded.
@@ -60,14 +60,17 @@ instruction_set: str = INSTRUCTION_SETS[loops.instruction_set] if loops else "no
 
 
 def missing() -> str | None:
-    """Say in one sentence why no compiled kernels are used, and the remedy; None if they are."""
+    """Message with the reason and the remedy if no compiled kernels are used, otherwise None."""
     if loops is not None:
         return None
-    return f"NumPy does the work of compiled kernels, which takes 3 to 6 times as long: {_reason}"
+    return f"NumPy replaces the compiled kernels and takes 3 to 6 times as long: {_reason}"
 
 
 def use_loop(expression: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
-    """Decorate `expression` to call its compiled loop if `loop_takes` the first argument."""
+    """Make `expression` call the compiled loop of the same name, if there is one.
+
+    The loop is called if `loop_takes` the first argument, and the expression otherwise.
+    """
     if loops is None:
         return expression
     loop = getattr(loops, expression.__name__)
@@ -80,7 +83,7 @@ def use_loop(expression: Callable[Arguments, Result]) -> Callable[Arguments, Res
 
 
 def loop_takes(values: Any) -> bool:
-    """Whether `values` is a 2D NumPy array with contiguous rows, as the loops require."""
+    """Whether loops are loaded and `values` is a 2D NumPy array with contiguous rows."""
     if loops is None or type(values) is not np.ndarray or values.ndim != 2:
         return False
     return values.strides[1] == values.itemsize or values.shape[1] < 2

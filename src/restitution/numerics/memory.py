@@ -8,7 +8,8 @@ from pathlib import Path
 
 from restitution.errors import CaseError
 
-# Size of a memory page (bytes). Control groups report "no limit" as 2**63 rounded down to pages.
+# Size of a memory page (bytes). Control groups of version 1 report "no limit" as 2**63 − 1 rounded
+# down to whole pages.
 _PAGE = 2**12
 _GROUPS = Path("/sys/fs/cgroup")
 
@@ -16,8 +17,8 @@ _GROUPS = Path("/sys/fs/cgroup")
 def available() -> float:
     """Memory limit of this process (bytes); infinite if the system does not report any limit.
 
-    It is the smallest of three limits: the memory of the machine, the limits of the control groups,
-    and the address space.
+    It is the smallest of three values: the memory of the machine, the limit of the control groups
+    and the limit of the address space.
     """
     return min(_of_machine(), _of_control_groups(), _of_address_space())
 
@@ -56,9 +57,9 @@ def _of_control_groups(groups: str = "/proc/self/cgroup") -> float:
         controllers, second, path = rest.partition(":")
         if not (first and second):
             continue
-        if controllers == "":  # version 2
+        if controllers == "":  # control groups of version 2
             root, file = _GROUPS, "memory.max"
-        elif "memory" in controllers.split(","):  # version 1
+        elif "memory" in controllers.split(","):  # control groups of version 1
             root, file = _GROUPS / "memory", "memory.limit_in_bytes"
         else:
             continue

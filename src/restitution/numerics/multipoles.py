@@ -1,4 +1,4 @@
-"""Multipole series of an even source, on a grid."""
+"""Multipole series on a grid, for a source that is even along both axes."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ Array = NDArray[np.float64]
 def multipoles(x: Array, y: Array, moments: Array, out: Array) -> None:
     """Write Σ_kl moments[k, l] c^l / r^(2k + 1) into `out`, shape (nx, ny).
 
-    `x` has shape (nx, 1) and `y` shape (1, ny). c = x²/r² is the squared direction cosine along x.
-    `moments` has shape (3, 3).
+    The coordinates `x` and `y` of the nodes have shapes (nx, 1) and (1, ny), and r² = x² + y².
+    c = x²/r² is the squared direction cosine along x. `moments` has shape (3, 3).
     """
     s = 1.0 / (x * x + y * y)
     c = x * x * s

@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike
 def integrate_curve(x: ArrayLike, f: ArrayLike) -> float:
     """Integral of the monotone cubic interpolant (PCHIP) of the points (x, f).
 
-    `x` may increase or decrease. The trapezoidal rule is biased on a convex curve. PCHIP is not
-    biased, and it never overshoots.
+    `x` may increase or decrease. Unlike the trapezoidal rule, PCHIP is not biased on a convex
+    curve, and it never overshoots.
     """
     from scipy.interpolate import PchipInterpolator
 
@@ -38,14 +38,15 @@ def integrate_adaptively(
 ) -> tuple[float, float]:
     """Adaptive Simpson integral of `f` over [a, b], and an estimate of its error.
 
-    The method suits integrands that are expensive to evaluate and whose end values `f_a`, `f_b` are
-    known. Intervals are processed from left to right, so that `f` may start from its previous
-    result. `tolerance` is absolute. After `depth` bisections an interval is accepted even if its
-    error is too large. The total error is the sum of the errors of the intervals (Lyness 1969).
+    The method suits integrands that are expensive to evaluate and whose end values `f_a` and `f_b`
+    are known. Intervals are processed from left to right, so that `f` may use its previous result
+    as a first guess. `tolerance` is absolute. After `depth` bisections an interval is accepted even
+    if its error is too large. The total error is the sum of the errors of the intervals (Lyness
+    1969).
 
-    The error estimate compares two rules on the same interval. So it is wrongly zero if the
-    integrand is zero at all five nodes but not between them. A larger number of initial intervals,
-    `panels`, reduces this risk, for example for a force that is truncated at yield.
+    The error estimate compares two rules on the same interval. If the integrand is zero at all five
+    nodes but not between them, the estimate is wrongly zero. A larger number of initial intervals
+    (`panels`) reduces this risk, for example for a force that is truncated at yield.
     """
     edges = [*(a + (b - a) * k / panels for k in range(panels)), b]
     value, error, left = 0.0, 0.0, f_a
@@ -71,7 +72,8 @@ def _refine(
     f_l, f_r = f(0.5 * (a + m)), f(0.5 * (m + b))
     whole = h / 6 * (f_a + 4 * f_m + f_b)
     halves = h / 12 * (f_a + 4 * f_l + 2 * f_m + 4 * f_r + f_b)
-    error = abs(halves - whole)  # 15 times the error of smooth integrands, to allow for kinks
+    # This is 15 times the error for a smooth integrand, to allow for kinks.
+    error = abs(halves - whole)
     if error <= tolerance or depth == 0:
         return halves + (halves - whole) / 15, error
     left = _refine(f, a, m, f_a, f_l, f_m, tolerance / 2, depth - 1)

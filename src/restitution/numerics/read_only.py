@@ -11,7 +11,7 @@ Scalar = TypeVar("Scalar", bound=np.generic)
 
 
 def freeze(values: NDArray[Scalar]) -> NDArray[Scalar]:
-    """Make `values` itself read-only and return it; for arrays that the caller has just created."""
+    """Make `values` itself read-only and return it. Use it only for arrays without other owners."""
     values.flags.writeable = False
     return values
 

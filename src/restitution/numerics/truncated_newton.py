@@ -1,4 +1,4 @@
-"""Minimisation of an energy that is not convex: a quadratic plus a sum over single nodes.
+"""Minimisation of an energy that is not convex: a quadratic plus one potential per node.
 
     minimise  ½ uᵀK⁻¹u + Σ_i φ_i(u_i)
 
@@ -6,14 +6,14 @@ K is symmetric positive definite and known only through its product with an arra
 needed. The point is stored twice, as u and as p = K⁻¹u. The gradient is r = p + φ′, and the Hessian
 is K⁻¹ + diag(φ″).
 
-Newton's method with conjugate gradients that stop at the boundary of a trust region or at negative
-curvature (Steihaug 1983, SIAM J. Numer. Anal. 20, 626–637). K preconditions the conjugate
-gradients. Then K⁻¹ of each direction is a sum of residuals that are already known, so an iteration
-takes one product with K. The energy falls in every step. So from a point that is no longer a
-minimum, the method descends into the next one.
+Each step of Newton's method is solved by conjugate gradients that stop at the boundary of a trust
+region or at negative curvature (Steihaug 1983, SIAM J. Numer. Anal. 20, 626–637). K preconditions
+the conjugate gradients. Therefore K⁻¹ of each direction is a sum of residuals that are already
+known, and an iteration takes one product with K. The energy falls in every step. If the start is no
+longer a minimum, the method therefore descends to a neighbouring minimum.
 
-K may also annihilate the mean of an array (`zero_mean`). The minimum is then over all u of mean
-zero, the gradient is known except for its mean, and the mean of p is chosen so that it vanishes.
+With `zero_mean`, K maps constant arrays to zero. Then the minimum is over all u of mean zero. The
+mean of p has no effect on u, and it is chosen so that the mean of the gradient is zero.
 """
 
 from __future__ import annotations
@@ -28,24 +28,27 @@ from numpy.typing import NDArray
 from restitution.numerics.convolution.operators import Convolution
 
 Array = NDArray[np.float64]
-# φ, φ′ and φ″ of all nodes at u
+# Function that returns φ, φ′ and φ″ of all nodes at u.
 NodePotential = Callable[[Array], tuple[Array, Array, Array]]
 
-MOST_STEPS = 300  # of Newton's method, after which the solve counts as not converged
-_MOST_ITERATIONS = 500  # conjugate gradients of one step
-_FORCING = 0.1  # largest residual of the linear system over the gradient
-# Ratio of the actual to the predicted decrease of the energy: a step is taken above the first, the
-# trust region grows above the third and shrinks below the second.
+MOST_STEPS = 300  # Newton steps after which the solve counts as not converged
+_MOST_ITERATIONS = 500  # limit on the conjugate-gradient iterations of one Newton step
+_FORCING = 0.1  # largest residual of the linear system of a step, relative to the gradient
+# Limits of the ratio of the actual to the predicted decrease of the energy. A step is accepted
+# above _TAKEN. The trust region shrinks below _POOR and may grow above _GOOD.
 _TAKEN, _POOR, _GOOD = 0.05, 0.25, 0.75
-_ROUNDING = 1e-13  # predicted decreases below this fraction of the energy are rounding
+# If the predicted decrease is below this fraction of the energy, rounding errors may hide it, and
+# the step is accepted without a test.
+_ROUNDING = 1e-13
 
 
 @dataclass(frozen=True)
 class LocalMinimum:
-    """The point at which the method ended.
+    """Final point of `minimise_locally`: u and p = K⁻¹u.
 
-    `residual` is the largest |r|/(φ″ + 1/K₀₀), a length like u, where K₀₀ is the diagonal of K.
-    `negative_curvature` is True if the method met a direction of negative curvature.
+    `residual` is the largest |r|/(|φ″| + 1/K₀₀), in the units of u, where r is the gradient, φ″ the
+    second derivative of the potential of a node and K₀₀ the diagonal of K. `steps` counts Newton
+    steps. `negative_curvature` is True if the method met a direction of negative curvature.
     """
 
     p: Array
@@ -67,12 +70,13 @@ def minimise_locally(
     tolerance: float,
     zero_mean: bool = False,
 ) -> LocalMinimum:
-    """Descend from (p, u) to a local minimum.
+    """Descend from (p, u) to a local minimum of ½ uᵀK⁻¹u + Σ φ(u), where `potential` returns φ.
 
-    `p` and `u` = K p are the start, and are not changed. `length` (a value of u over which φ″
-    changes) limits the first step along a direction of negative curvature. `tolerance` limits the
-    residual. `zero_mean` tells that K is zero for a constant array, and positive for every other.
-    If the method does not converge, the result says so; no exception is raised.
+    `p` and `u` = K p are the start and are not changed. `length` is the change of u over which φ″
+    changes. It sets the size of a step along negative curvature while there is no trust region.
+    `tolerance` limits `LocalMinimum.residual`. `zero_mean` states that K maps constant arrays to
+    zero and is positive definite for arrays of mean zero. If the method does not converge,
+    `converged` of the result is False; no exception is raised.
     """
     phi, slope, k = potential(u)
     energy = 0.5 * _dot(p, u) + float(phi.sum())
@@ -91,7 +95,7 @@ def minimise_locally(
         predicted = _dot(r, x) + 0.5 * _dot(x, Sx + k * x)
         size = math.sqrt(max(_dot(x, Sx), 0.0))
         new_p = p + Sx
-        new_u = K(new_p)  # the products along the step are in single precision
+        new_u = K(new_p)  # in double precision; the products within a step are in single precision
         phi, new_slope, new_k = potential(new_u)
         new_energy = 0.5 * _dot(new_p, new_u) + float(phi.sum())
         change = new_energy - energy
@@ -118,11 +122,12 @@ def _newton_step(
     *,
     zero_mean: bool,
 ) -> tuple[Array, Array, bool, bool]:
-    """Solve (K⁻¹ + k) x = −r approximately.
+    """Solve (K⁻¹ + k) x = −r approximately, with the gradient r and k = φ″.
 
-    Returns x and K⁻¹x, whether the step ended at the trust region, and whether it met a direction
-    of negative curvature. The norm of the trust region is (xᵀK⁻¹x)^½. `limits` are its radius and
-    the length of a first step along negative curvature.
+    Returns x, K⁻¹x, whether a limit truncated the step, and whether the step met a direction of
+    negative curvature. The norm of the trust region is (xᵀK⁻¹x)^½. `limits` are the radius of the
+    trust region and the largest change of u in a step along negative curvature without a trust
+    region (infinite radius).
     """
     radius, length = limits
     x, Sx, Hd, scaled = (np.zeros_like(r) for _ in range(4))
@@ -130,7 +135,7 @@ def _newton_step(
     d = K(rest)
     z, Sd = np.empty_like(r), rest.copy()
     rz = first = _dot(rest, d)
-    # Solve more accurately towards the end, for superlinear convergence.
+    # Solve more accurately as the gradient falls, for superlinear convergence.
     forcing = min(_FORCING, (first / max(abs(energy), 1e-300)) ** 0.25)
     inside = math.isinf(radius)  # no trust region yet
     xSd = xSx = dSd = 0.0
@@ -153,7 +158,7 @@ def _newton_step(
         x += np.multiply(d, a, out=scaled)
         Sx += np.multiply(Sd, a, out=scaled)
         rest -= np.multiply(Hd, a, out=scaled)
-        if zero_mean:  # K ignores the mean; without it, single precision keeps the rest
+        if zero_mean:  # K ignores the mean, which would worsen the rounding in single precision
             rest -= rest.mean()
         K.single_precision(rest, out=z)
         before, rz = rz, _dot(rest, z)

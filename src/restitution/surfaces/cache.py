@@ -23,14 +23,17 @@ import numpy as np
 from restitution.numerics.grid import Grid
 from restitution.surfaces.surface import Surface
 
-_LONG = 1.0  # shortest time (s) to make a surface that is cached
+_LONG = 1.0  # a surface that took less time (s) to make is not cached
 _MOST = 2**30  # largest size of all files together (bytes)
-_LARGEST = 2**28  # largest size of one surface (bytes)
+_LARGEST = 2**28  # largest size of the heights of one cached surface (bytes)
 _REST = 2**12  # allowance for the content of a file besides the heights (bytes)
 
 
 def kept(parameters: Mapping[str, Any], make: Callable[[], Surface]) -> Surface:
-    """Return the surface from the cache, or make it; `parameters` (JSON types) determine it."""
+    """Return the surface that `parameters` (JSON types) determine, from the cache or from `make`.
+
+    A surface that took long to make is then stored in the cache.
+    """
     key = json.dumps({"version": version("restitution"), **parameters}, sort_keys=True)
     file = _folder() / f"{hashlib.sha256(key.encode()).hexdigest()}.npz"
     found = _read(file, key)
@@ -86,7 +89,7 @@ def _write(file: Path, key: str, surface: Surface) -> None:
 
 
 def _free_space(folder: Path, size: int) -> None:
-    """Delete abandoned temporary files, and the oldest surfaces until `size` bytes fit."""
+    """Delete abandoned temporary files, and the least recently used ones until `size` bytes fit."""
     files = [(entry.stat(), entry) for entry in folder.iterdir() if entry.is_file()]
     files.sort(key=lambda item: item[0].st_mtime)
     total = size + sum(stat.st_size for stat, _ in files)

@@ -14,24 +14,24 @@ from restitution.surfaces.surface import Surface
 
 Range = tuple[float, float]
 
-_NEIGHBOURHOOD = 5  # edge of the square whose median a pixel is compared with (pixels)
+_NEIGHBOURHOOD = 5  # edge (pixels) of the square around a pixel over which the median is taken
 _SIGMA = 1.4826  # standard deviation over median absolute deviation of a normal distribution
-_MOST = 0.1  # largest fraction of pixels that may be outliers; more would not be exceptions
+_MOST = 0.1  # largest fraction of pixels that may be outliers
 
 
 def crop(surface: Surface, *, x: Range | None = None, y: Range | None = None) -> Surface:
-    """Cut out the pixels whose centres lie within ranges of x and y.
+    """Keep only the pixels whose centres lie within ranges of x and y.
 
     The ranges are in the coordinates of `surface.grid`, with zero in the middle. The coordinates of
     the new surface are zero in the middle of the cropped area.
 
     Args:
         surface: Surface to crop.
-        x: Lowest and highest x (m); None keeps all.
-        y: Lowest and highest y (m); None keeps all.
+        x: Lowest and highest x (m); None keeps the whole range.
+        y: Lowest and highest y (m); None keeps the whole range.
 
     Returns:
-        Surface of the pixels inside.
+        Surface of the remaining pixels.
 
     Raises:
         SurfaceError: No pixel lies within a range.
@@ -65,10 +65,10 @@ def crop(surface: Surface, *, x: Range | None = None, y: Range | None = None) ->
 def remove_outliers(surface: Surface, threshold: float) -> Surface:
     """Replace outliers by harmonic interpolation of the pixels around them.
 
-    A pixel is an outlier if it differs from the median of the 5 x 5 pixels around it by more than
-    `threshold` standard deviations of such differences. The standard deviation is estimated from
-    the median absolute difference, which is robust against outliers. The provenance gains the
-    number of outliers and the largest difference.
+    A pixel is an outlier if its height differs from the median of the 5 x 5 pixels around it by
+    more than `threshold` standard deviations. This is the standard deviation of the differences of
+    all pixels. It is estimated from their median absolute value, which is robust against outliers.
+    The number of outliers and the largest difference are added to the provenance.
 
     Args:
         surface: Surface to clean.
@@ -84,19 +84,19 @@ def remove_outliers(surface: Surface, threshold: float) -> Surface:
     from scipy.ndimage import median_filter
 
     if not (math.isfinite(threshold) and threshold > 0):
-        raise SurfaceError(f"threshold: {threshold:g} must be positive")
+        raise SurfaceError(f"threshold: {threshold:g} is not a positive number")
     height = surface.height
     step = np.abs(height - median_filter(height, _NEIGHBOURHOOD, mode="reflect"))
     deviation = _SIGMA * float(np.median(step))
-    # A deviation of zero means that most pixels equal the median of their neighbours. There is then
-    # no scale to compare with, and no pixel counts as an outlier.
+    # A deviation of zero means that most pixels equal the median of their neighbours. Differences
+    # then have no scale, and no pixel counts as an outlier.
     out = step > threshold * deviation if deviation > 0 else np.zeros(height.shape, bool)
     count = int(np.count_nonzero(out))
     if count > _MOST * out.size:
         raise SurfaceError(
-            f"threshold: {count / out.size:.0%} of the pixels differ from their neighbourhood by "
-            f"more than {threshold:g} standard deviations, too many to be outliers; give a larger "
-            "threshold, or keep the outliers"
+            f"threshold: {count / out.size:.0%} of the pixels differ from the median of their "
+            f"neighbours by more than {threshold:g} standard deviations, too many to be outliers; "
+            "give a larger threshold, or do not remove outliers"
         )
     return replace(
         surface,

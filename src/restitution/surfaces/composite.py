@@ -10,14 +10,17 @@ from restitution.surfaces.surface import Surface, is_periodic
 
 
 def composite(surfaces: Sequence[Surface]) -> Surface:
-    """Add the heights of surfaces, because the gap between rough bodies depends only on their sum.
+    """Add the heights of surfaces to one surface.
 
-    All surfaces have their summits up and share the axes of the contact. If the relative
-    orientation of two scans matters, rotate or mirror one of them first.
+    The gap between rough bodies depends only on the sum of their heights.
 
-    The provenance of the sum contains the provenance of each part, with keys numbered from 1. It
-    also states the files, the coarsest pixel, the waves that the grid does not carry, and whether
-    all parts are periodic.
+    Positive heights of each surface point towards the other body, and all surfaces share the axes
+    of the contact. If the relative orientation of two scans matters, rotate or mirror one of them
+    first.
+
+    The provenance of the sum contains the provenance of each part, with the prefixes `part_1_`,
+    `part_2_`, … It also states the files, the coarsest pixel, the waves that the grid does not
+    carry, and whether all parts are periodic.
 
     Args:
         surfaces: Surfaces on one grid.
@@ -61,7 +64,8 @@ def composite(surfaces: Sequence[Surface]) -> Surface:
 def _removed(provenances: Sequence[Mapping[str, str | float]]) -> dict[str, float]:
     """Provenance of the waves that the grid does not carry.
 
-    The rms heights of the parts are combined; of all other values, the largest is taken.
+    The rms heights of the parts are added in quadrature. For the other entries, the largest value
+    of all parts is taken.
     """
     known = [p for p in provenances if "removed_slope" in p]
     if not known:

@@ -1,8 +1,8 @@
 """Height, slope and correlation parameters of a rough surface, after ISO 25178-2.
 
-z is the height minus its mean, and ⟨ ⟩ is the mean over all cells. The standard defines its
-parameters for the scale-limited surface, so subtract tilt and form first (`level`). Clause numbers
-refer to ISO 25178-2:2012.
+z is the height minus its mean, and ⟨ ⟩ is the mean over all cells. The standard defines the
+parameters for a surface without tilt and form (the scale-limited surface), so subtract these first
+(`level`). Clause numbers refer to ISO 25178-2:2012.
 """
 
 from __future__ import annotations
@@ -22,6 +22,8 @@ _CORRELATION_LEVEL = 0.1
 def describe(surface: Surface) -> dict[str, float | None]:
     """Compute height, slope and correlation parameters, after ISO 25178-2:2012.
 
+    z is the height minus its mean, and ⟨ ⟩ is the mean over all cells.
+
     - `Sq_m`: root mean square height, ⟨z²⟩^½ (4.1.1)
     - `Ssk`: skewness, ⟨z³⟩/Sq³ (4.1.2)
     - `Sku`: kurtosis, ⟨z⁴⟩/Sq⁴; 3 for normally distributed heights (4.1.3)
@@ -32,7 +34,7 @@ def describe(surface: Surface) -> dict[str, float | None]:
     - `Sdq`: root mean square gradient, ⟨(∂z/∂x)² + (∂z/∂y)²⟩^½ (4.3.1), from differences between
       neighbouring cells. (Central differences do not detect the shortest waves.)
     - `rms_curvature_per_m`: half the root mean square Laplacian, ½⟨(∇²z)²⟩^½, from second
-      differences. For isotropic asperities this is their rms curvature.
+      differences. For isotropic asperities this is the rms curvature.
     - `correlation_length_x_m`, `correlation_length_y_m`: lag along x or y at which the
       autocorrelation of z first falls to 10 % of its value at lag zero (Hu and Tonder 1992). The
       biased estimate of the autocorrelation is interpolated linearly between lags.
@@ -41,8 +43,8 @@ def describe(surface: Surface) -> dict[str, float | None]:
         surface: Surface to describe; subtract its tilt and form first (`level`).
 
     Returns:
-        Parameters by name (SI). `Ssk`, `Sku` and the correlation lengths of a flat surface
-        are None, as is a correlation length that exceeds the domain.
+        Parameters by name (SI). `Ssk`, `Sku` and the correlation lengths of a flat surface are
+        None. A correlation length is also None if it exceeds the domain.
     """
     height = surface.height
     z = height - height.mean()
@@ -62,7 +64,7 @@ def describe(surface: Surface) -> dict[str, float | None]:
         "correlation_length_x_m": None,
         "correlation_length_y_m": None,
     }
-    # Rounding can make the heights of a flat surface differ from their mean.
+    # Because of rounding, the heights of a flat surface can differ from their mean.
     if Sq > 8 * np.finfo(np.float64).eps * float(np.abs(height).max()):
         unit = z / Sq
         values["Ssk"] = float(np.mean(unit**3))
@@ -73,7 +75,7 @@ def describe(surface: Surface) -> dict[str, float | None]:
 
 
 def rms_slope(surface: Surface) -> float:
-    """Root mean square gradient `Sdq`, as in `describe`."""
+    """Root mean square gradient (1), the parameter `Sdq` of `describe`."""
     hx, hy = surface.grid.spacing
     z = surface.height - surface.height.mean()
     return math.sqrt(_mean_square_slope(z, hx) + _mean_square_slope(z.T, hy))
@@ -85,7 +87,7 @@ def _mean_square_slope(z: NDArray[np.float64], h: float) -> float:
 
 
 def _rms_curvature(z: NDArray[np.float64], hx: float, hy: float) -> float:
-    """½⟨(∇²z)²⟩^½ over the inner nodes; an axis with fewer than three nodes adds no curvature."""
+    """Half the rms Laplacian (1/m) of the inner nodes; axes with fewer than 3 nodes add nothing."""
     laplacian = np.zeros([n - 2 if n > 2 else n for n in z.shape])
     inner = tuple(slice(1, -1) if n > 2 else slice(None) for n in z.shape)
     if z.shape[0] > 2:

@@ -1,6 +1,6 @@
 """Extend a scan beyond the measured area, by tiles of mirror images or by a statistical twin.
 
-In both cases the result is not the measured surface, as the `notice` in its provenance states.
+In both cases the result is not the measured surface, and the `notice` in its provenance says so.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ def extend(
 
     Args:
         surface: Scan to extend.
-        to: Grid of the new surface, or its edge lengths (m). With edge lengths, the cells have the
-            size of the pixels of the scan.
+        to: Grid of the new surface, or the edge lengths along x and y (m). With edge lengths, the
+            cells have the size of the pixels of the scan.
         how: Method, `twin` or `mirror`.
         seed: Seed of the random phases (1); for a twin only.
 
@@ -57,7 +57,7 @@ def extend(
 
 def _with_pixels_of(surface: Surface, size: tuple[float, float]) -> Grid:
     if not all(math.isfinite(edge) and edge > 0 for edge in size):
-        raise SurfaceError(f"to: {size} m must be two positive lengths")
+        raise SurfaceError(f"to: {size} m are not two positive lengths")
     nx, ny = (
         math.ceil(edge / h * (1 - 1e-9)) for edge, h in zip(size, surface.grid.spacing, strict=True)
     )

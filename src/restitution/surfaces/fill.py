@@ -25,7 +25,8 @@ def fill_harmonically(
     number = np.full(height.shape, -1)
     number[unknown] = np.arange(count)
 
-    # Five-point Laplacian, one row for each unknown pixel: Σ weight (z_here − z_neighbour) = 0.
+    # The matrix is the five-point Laplacian, with one row for each unknown pixel:
+    # Σ weight (z_here − z_neighbour) = 0.
     diagonal, right_side = np.zeros(count), np.zeros(count)
     rows, columns, values = [np.arange(count)], [np.arange(count)], [diagonal]
     for axis, h in enumerate(spacing):

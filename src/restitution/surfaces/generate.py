@@ -26,13 +26,13 @@ from restitution.surfaces.surface import Surface
 Array = NDArray[np.float64]
 RoughnessKind = Literal["exponential", "gaussian", "self-affine"]
 
-# A non-periodic surface is cut from a periodic one that is larger by this margin (in correlation
-# lengths), so that its opposite edges are uncorrelated.
+# A non-periodic surface is cut from a periodic surface that is larger by this margin (in units of
+# `Spectrum.longest`), so that opposite edges are uncorrelated.
 _MARGIN = 2.0
 
 
 class Waves(TypedDict, total=False):
-    """Arguments that describe the waves: lengths in m, `lay` in rad."""
+    """Arguments of `generate_surface` that describe the waves: lengths in m, `lay` in rad."""
 
     correlation_length: float | tuple[float, float] | None
     lay: float | None
@@ -66,13 +66,13 @@ def generate_surface(
     surface. Use `refine` to get the same surface on a finer grid.
 
     For heights that are not normally distributed, the noise is transformed before it is filtered.
-    If filtering cannot give the skewness and kurtosis asked for, heights and amplitudes are
-    adjusted alternately, and the provenance states the misfit of the amplitudes.
+    If the filtered noise cannot have the required skewness and kurtosis, heights and wave
+    amplitudes are adjusted alternately, and the provenance states the misfit of the amplitudes.
 
     Args:
         grid: Grid of the surface.
         kind: Autocorrelation `exponential` or `gaussian`, or a `self-affine` power spectrum.
-        rms: Root mean square height Rq (m), exact.
+        rms: Root mean square height Rq (m), reached exactly.
         seed: Seed of the noise (1), not negative.
         skewness: Skewness of the heights (1).
         kurtosis: Kurtosis of the heights (1), 3 for a normal distribution; at least
@@ -92,9 +92,9 @@ def generate_surface(
         Surface on `grid`.
 
     Raises:
-        SurfaceError: The kind is unknown, an argument does not belong to it or is out of range, the
-            grid cannot carry the waves, or the moments are impossible.
-        TypeError: An argument belongs to no kind.
+        SurfaceError: The kind is unknown, an argument does not belong to this kind or is out of
+            range, the grid cannot carry the waves, or the skewness and kurtosis are impossible.
+        TypeError: An argument is unknown.
     """
     spectrum = _spectrum(kind, waves)
     if not (math.isfinite(rms) and rms > 0):
@@ -105,7 +105,7 @@ def generate_surface(
         raise SurfaceError(f"seed: {seed} is negative; give a whole number from 0 up")
     if not possible(skewness, kurtosis):
         raise SurfaceError(
-            f"kurtosis: no heights have a skewness of {skewness:g} and a kurtosis of "
+            f"kurtosis: no surface can be made with a skewness of {skewness:g} and a kurtosis of "
             f"{kurtosis:g}; kurtosis must be at least skewness² + {LEAST_KURTOSIS:g} = "
             f"{skewness**2 + LEAST_KURTOSIS:g}"
         )
@@ -132,14 +132,14 @@ def _spectrum(kind: str, waves: Waves) -> Spectrum:
     for name, value in waves.items():
         if name not in Waves.__annotations__:
             raise TypeError(f"generate_surface() got an unexpected keyword argument {name!r}")
-        # A lay of 0 is the default and allowed for every kind.
+        # A lay of 0 is the default, so it is allowed for every kind.
         if name not in _WAVES[kind] and value is not None and (name, value) != ("lay", 0):
             raise SurfaceError(f"{name}: does not belong to kind = {kind!r}; leave it out")
     shortest = waves.get("shortest")
     if kind == "self-affine":
         hurst = waves.get("hurst")
         if hurst is None:
-            raise SurfaceError("hurst: missing; a self-affine surface needs it, say 0.8")
+            raise SurfaceError("hurst: missing; a self-affine surface needs one, such as 0.8")
         return SelfAffine(hurst, waves.get("rolloff"), shortest)
     beta = waves.get("correlation_length")
     if beta is None:
@@ -156,7 +156,10 @@ def _spectrum(kind: str, waves: Waves) -> Spectrum:
 def _heights(
     grid: Grid, spectrum: Spectrum, seed: int, wanted: tuple[float, float], periodic: bool
 ) -> tuple[Array, dict[str, str | float]]:
-    """Generate heights of arbitrary scale; return them and provenance entries naming the method."""
+    """Generate heights of arbitrary scale with the moments `wanted` (skewness, kurtosis).
+
+    Also return provenance entries that name the method.
+    """
     from scipy.fft import irfft2, rfft2
 
     larger = grid if periodic else _enlarged(grid, spectrum.longest)
@@ -191,7 +194,7 @@ def _heights(
 
 
 def _enlarged(grid: Grid, longest: float) -> Grid:
-    """Larger grid, so that a part as large as `grid` has uncorrelated opposite edges."""
+    """Grid on which a part as large as `grid` has uncorrelated opposite edges."""
     from scipy.fft import next_fast_len
 
     nx, ny = (

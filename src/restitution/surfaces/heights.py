@@ -1,7 +1,7 @@
 """Rough surfaces with given wave amplitudes and given skewness and kurtosis of the heights.
 
-There are two methods. `filtered` gives white noise η a skewness and kurtosis before it is filtered
-(Johnson's translation). They are chosen so that the filter turns them into those of the heights z:
+There are two methods. `filtered` gives white noise η a skewness Sk_η and a kurtosis K_η (Johnson's
+translation) and then filters it. The heights z obtain the skewness and kurtosis
 
     Sk_z = Sk_η Σθ³/(Σθ²)^{3/2},   K_z − 3 = (K_η − 3) Σθ⁴/(Σθ²)²,
 
@@ -32,12 +32,15 @@ _STRONGEST = 3.0, 40.0  # largest skewness and kurtosis of the noise in `filtere
 _CLOSE = 0.02  # tolerance on skewness (absolute) and kurtosis (relative) in `filtered`
 _CORRECTIONS = 12  # largest number of corrections of the moments of the noise in `filtered`
 _ADJUSTMENTS = 60  # largest number of adjustments of heights and amplitudes in `adjusted`
-_NEGLIGIBLE = 1e-3  # misfit of amplitudes at which the adjustment ends
-_STANDSTILL = 0.05  # relative decrease of the misfit, per adjustment, below which it ends
+_NEGLIGIBLE = 1e-3  # misfit of amplitudes below which the adjustment ends
+_STANDSTILL = 0.05  # the adjustment ends if the misfit decreases by less than this fraction
 
 
 def filtered(noise: Array, H: Array, skewness: float, kurtosis: float) -> Array | None:
-    """Filter transformed `noise` with `H`; None if the heights do not reach these moments."""
+    """Transform `noise` and filter it with the amplitudes `H`, to heights with these moments.
+
+    Return None if the heights do not reach the moments.
+    """
     from scipy.fft import irfft2, rfft2
 
     theta = irfft2(H, s=noise.shape)
@@ -57,8 +60,8 @@ def filtered(noise: Array, H: Array, skewness: float, kurtosis: float) -> Array 
         skew, kurt = moments(z)
         if abs(skew - skewness) < _CLOSE and abs(kurt - kurtosis) < _CLOSE * kurtosis:
             return z
-        # The moments of one realisation differ from their expectation. Correct the moments of the
-        # noise by this difference.
+        # The moments of one realisation differ from their expected values. The moments of the noise
+        # are corrected by this difference.
         asked = (
             asked[0] + (skewness - skew) / skewing if skewing else 0.0,
             asked[1] + (kurtosis - kurt) / peaking,
@@ -70,8 +73,8 @@ def adjusted(z: Array, heights: Array) -> tuple[Array, float]:
     """Arrange the sorted `heights` so that their Fourier amplitudes are nearly those of `z`.
 
     Also return the misfit. The target amplitudes are the Fourier amplitudes of `z`, scaled to the
-    mean square of `heights`. The misfit is the root mean square difference from the target
-    amplitudes, relative to their root mean square.
+    mean square of `heights`. The misfit is the root mean square deviation from the target
+    amplitudes, relative to the root mean square of the target amplitudes.
     """
     from scipy.fft import irfft2, rfft2
 
@@ -91,14 +94,17 @@ def adjusted(z: Array, heights: Array) -> tuple[Array, float]:
 
 
 def in_order(heights: Array, z: Array) -> Array:
-    """Place the sorted `heights` in the rank order of `z`."""
+    """Arrange the sorted `heights` in the rank order of `z`, with the shape of `z`."""
     placed = np.empty(z.size)
     placed[np.argsort(z, axis=None, kind="stable")] = heights
     return placed.reshape(z.shape)
 
 
 def distribution(n: int, skewness: float, kurtosis: float) -> Array | None:
-    """Return n sorted heights with mean 0, variance 1 and these moments; None if not found."""
+    """Return n sorted heights with mean 0, variance 1 and nearly these moments.
+
+    Return None if no distribution with these moments is found.
+    """
     from scipy.special import ndtri
 
     translate = translation(skewness, kurtosis)

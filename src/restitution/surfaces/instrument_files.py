@@ -1,8 +1,9 @@
 """Read the file formats of instruments with the SurfaceTopography package.
 
 SurfaceTopography indexes heights `[i, j]` along x and y, as this package does. Its y axis points
-down the picture: `imshow(heights.T)` shows the picture of the instrument. Its physical size is the
-number of pixels times the pixel size. SurfaceTopography is an optional extra and imported on use.
+down the picture: `imshow(heights.T)` shows the picture of the instrument. The physical size of a
+scan is the number of pixels times the pixel size. SurfaceTopography is optional and imported on
+first use.
 """
 
 from __future__ import annotations
@@ -21,10 +22,10 @@ import numpy as np
 from restitution.errors import SurfaceError
 from restitution.surfaces.scan import Y_DOWN, Scan, in_metres
 
-# Earlier versions misread some files without an error. Version 1.25.0 reads .tmd files a thousand
-# times too small along all axes, and undefined pixels of .sur files as heights.
+# Earlier versions misread some files without an error. For example, version 1.25.0 reads .tmd files
+# a thousand times too small along all axes, and it reads undefined pixels of .sur files as heights.
 _OLDEST_VERSION = (1, 27)
-_LARGEST_UNPACKED = 2**31  # bytes of all files in an archive
+_LARGEST_UNPACKED = 2**31  # largest total size of the files in an archive (bytes)
 INSTALL_READERS = (
     'install the readers with `pip install "SurfaceTopography>=1.27"` (the extra "measured")'
 )
@@ -39,7 +40,7 @@ class NoReadersError(SurfaceError):
 
 
 def read_instrument(path: Path, channel: int | None) -> Scan:
-    """Read height channel `channel`, or the default channel of the reader.
+    """Read the height channel with the number `channel`; None selects the default height channel.
 
     Raises `NoReadersError` if the readers are missing or too old, `UnrecognisedError` if no reader
     can open the file, and `SurfaceError` if the channel does not exist or is not a height map in a
@@ -62,29 +63,29 @@ def read_instrument(path: Path, channel: int | None) -> Scan:
             raise
         except Exception as error:
             raise SurfaceError(
-                f"{path}: its heights cannot be read ({_first_line(error)}); export the file "
-                "again, or as a text matrix of heights"
+                f"{path}: its heights cannot be read ({_first_line(error)}); export it again, or "
+                "export it as a text matrix of heights"
             ) from error
 
 
 def _check_archive(path: Path) -> None:
-    """Refuse an archive (such as X3P) whose content would fill the memory when it is unpacked."""
+    """Raise `SurfaceError` for an archive (such as X3P) whose unpacked content is too large."""
     if not zipfile.is_zipfile(path):
         return
     try:
         with zipfile.ZipFile(path) as archive:
             size = sum(each.file_size for each in archive.infolist())
     except (zipfile.BadZipFile, ValueError, NotImplementedError):
-        return  # the reader says what is wrong
+        return  # the reader reports the error
     if size > _LARGEST_UNPACKED:
         raise SurfaceError(
-            f"{path}: unpacks to {size} bytes, more than the {_LARGEST_UNPACKED} a scan may have; "
-            "save fewer pixels"
+            f"{path}: unpacks to {size} bytes, more than the {_LARGEST_UNPACKED} bytes that a scan "
+            "may have; save fewer pixels"
         )
 
 
 def _import_readers(path: Path) -> Callable[[str], Any]:
-    """Import SurfaceTopography's function that opens a file."""
+    """Import SurfaceTopography and return the function that opens a file."""
     try:
         import SurfaceTopography
     except ImportError as error:
@@ -122,7 +123,7 @@ def _read_channel(path: Path, reader: Any, channel: int | None) -> Scan:
             f"{_value_unit(chosen) or 'no stated unit'}) is not a height map that can be converted "
             f"to metres; {remedy}"
         )
-    # If the file has no size, the reader requires one: pass the pixel count as a placeholder.
+    # If the file contains no size, the reader requires one. The number of pixels is a placeholder.
     sized = chosen.physical_sizes is not None
     topography = chosen.topography(physical_sizes=None if sized else chosen.nb_grid_pts)
     x, y = (in_metres(float(side), topography.unit) for side in topography.physical_sizes)
@@ -150,7 +151,7 @@ def _default_index(reader: Any, channels: list[Any]) -> int:
 
 
 def _is_height(channel: Any) -> bool:
-    # The unit alone is ambiguous: A is ampere or ångström.
+    # The unit alone is ambiguous, because A is ampere or ångström.
     is_length = in_metres(1.0, _value_unit(channel)) is not None
     return bool(channel.is_height_channel and is_length and channel.dim == 2)
 
@@ -175,7 +176,7 @@ def _list(some: list[Any], channels: list[Any]) -> str:
 
 
 def _why_unreadable(error: Exception, suffix: str) -> str:
-    """Describe the error; prefer the message of the reader that is named after `suffix`."""
+    """Describe the error, with the message of the reader that is named after `suffix`, if any."""
     named_after_suffix = rf"tried {re.escape(suffix.removeprefix('.'))}reader:\s*(.+)"
     reason = re.search(named_after_suffix, str(error), re.IGNORECASE)
     if reason is None:

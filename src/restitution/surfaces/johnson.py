@@ -1,9 +1,10 @@
 """Johnson's translations: transform a standard normal variable z to a given skewness and kurtosis.
 
-    unbounded (SU):  x = sinh((z − γ)/δ)        bounded (SB):  x = 1/(1 + exp(−(z − γ)/δ))
+    unbounded (SU):  x = sinh((z + γ)/δ)        bounded (SB):  x = 1/(1 + exp(−(z − γ)/δ))
 
 In the plane of skewness and kurtosis, each form covers one region. The line between the regions
-belongs to the lognormal distribution, the limit of both forms. Source: Johnson (1949), Biometrika
+belongs to the lognormal distribution, which is the limit of both forms. Source: Johnson (1949),
+Biometrika
 36, 149–176; fit of the parameters: Hill, Hill and Holder (1976), Applied Statistics 25, 180–189
 (AS 99). The kurtosis of a normal variable is 3, as in ISO 25178.
 """
@@ -19,12 +20,12 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-# Smallest allowed value of kurtosis − skewness². For any distribution this value is at least 1, and
-# near this limit nearly all heights take one of two values.
+# Smallest allowed value of kurtosis − skewness². For any distribution this difference is at least
+# 1. Near 1, nearly all heights take one of two values.
 LEAST_KURTOSIS = 1.1
 _ABSCISSAE, _WEIGHTS = np.polynomial.hermite_e.hermegauss(201)
 # A misfit of the moments below the first value ends the search. The best fit is accepted up to the
-# second value, which moments on the lognormal line need.
+# second value, because neither form meets moments on the lognormal line exactly.
 _EXACT, _CLOSE = 1e-6, 2e-3
 _STARTS = ((0.0, 0.0), (0.5, 0.3), (1.5, 0.5), (3.0, 0.8), (0.5, -0.7), (1.2, -1.2), (2.5, -1.5))
 
@@ -39,15 +40,15 @@ class _Fit:
 
 
 def possible(skewness: float, kurtosis: float) -> bool:
-    """Whether a distribution with these moments can be constructed."""
+    """Whether this package can construct a distribution with these moments."""
     return math.isfinite(skewness) and skewness**2 + LEAST_KURTOSIS <= kurtosis < math.inf
 
 
 def translation(skewness: float, kurtosis: float) -> Callable[[Array], Array] | None:
     """Return an increasing function of a standard normal variable that gives these moments.
 
-    The result of the function has mean 0 and variance 1. Return None if no parameters are found
-    that give the moments within 0.2 %.
+    The function values have mean 0 and variance 1. Return None if no parameters are found that give
+    the skewness within 0.002 and the kurtosis within 0.2 %.
     """
     if skewness == 0 and kurtosis == 3:
         return np.array
@@ -99,7 +100,7 @@ def _fitted(form: Callable[..., Array], skewness: float, kurtosis: float) -> _Fi
 
     def miss(shape: Array) -> Array:
         _, _, skew, kurt = _moments(form, shape)
-        # The logarithm keeps the very large kurtosis of lognormal tails in range.
+        # The logarithm limits the effect of the very large kurtosis of lognormal tails.
         return np.array([skew - skewness, math.log(kurt / kurtosis)])
 
     best: _Fit | None = None

@@ -16,9 +16,10 @@ _DEGREE = {"center": 0, "tilt": 1, "curvature": 2}
 
 
 def level(surface: Surface, how: Levelling) -> Surface:
-    """Subtract the least-squares mean, plane or paraboloid (1, x, y, x², xy, y²) of the heights.
+    """Subtract the mean, or the least-squares plane or paraboloid, from the heights.
 
-    The provenance entry `levelling` lists the forms subtracted, in order.
+    The paraboloid has the terms 1, x, y, x², xy and y². The provenance entry `levelling` lists the
+    values of `how` of all levellings so far, in order.
 
     Args:
         surface: Surface to level.
@@ -49,8 +50,8 @@ def level(surface: Surface, how: Levelling) -> Surface:
 def _least_squares_form(height: NDArray[np.float64], degree: int) -> NDArray[np.float64]:
     """Least-squares polynomial of total degree `degree` through the heights, shape (nx, ny).
 
-    On a regular grid the products of orthonormal polynomials along x and y are orthonormal, so the
-    fit is a projection and needs no matrix with a row for each pixel.
+    On a regular grid the products of orthonormal polynomials along x and y are orthonormal. So the
+    fit is a projection, without a matrix that has a row for each pixel.
     """
     P, Q = (_orthonormal_polynomials(n, degree) for n in height.shape)
     coefficients = P.T @ height @ Q

@@ -32,7 +32,8 @@ UndefinedPixels = Literal["error", "interpolate"]
 # Largest fraction of undefined pixels that is filled. A larger smooth fill would distort the
 # statistics of the surface.
 _LARGEST_FILL = 0.2
-# Largest relative difference between the sizes in the file and in the argument.
+# Largest relative difference between the size in the file and the argument `size` that is treated
+# as rounding.
 _SIZE_ROUNDING = 1e-6
 # Largest ratio of the height range to the longer edge. Heights that are not in metres exceed this
 # ratio by far.
@@ -52,8 +53,8 @@ def read_surface(
     - `.npy`, `.npz`: a 2-D array in metres, `array[i, j]` at x_i, y_j.
     - `.txt`, `.csv`, `.dat`, `.asc`: a matrix in metres, with a scan line (constant y) on each
       line.
-    - All other files, and text that is not a plain matrix: the readers of SurfaceTopography, from
-      the extra `measured`.
+    - All other files, and text that is not a plain matrix: any format that SurfaceTopography reads
+      (the extra `measured`).
 
     The provenance contains the file, its SHA-256, format and channel, the size, and the number of
     undefined pixels.
@@ -62,8 +63,8 @@ def read_surface(
         path: File to read.
         channel: Number of the channel (1), from 0; None selects the reader's default height
             channel.
-        size: Lengths of the x and y edges (m), pixels times pixel size. Required if the file does
-            not contain the lengths; otherwise both must agree.
+        size: Lengths of the x and y edges (m): number of pixels times pixel size. Required if the
+            file does not contain the lengths. Otherwise `size` must agree with the file.
         undefined: `interpolate` fills undefined pixels harmonically from their neighbours, if at
             most 20 % of all pixels are undefined. `error` rejects a scan with undefined pixels.
 
@@ -71,7 +72,8 @@ def read_surface(
         Surface with heights (m), shape (nx, ny).
 
     Raises:
-        SurfaceError: The file cannot be used, for any reason, or an argument is invalid.
+        SurfaceError: The file cannot be read or its content cannot be used, or an argument is
+            invalid.
     """
     if undefined not in get_args(UndefinedPixels):
         raise SurfaceError(
@@ -161,30 +163,31 @@ def _read_scan(file: Path, channel: int | None) -> Scan:
         try:
             scan = read_text(file)
         except NotAMatrixError as not_a_matrix:
-            # Files of instruments can have these suffixes, too. If no instrument reader knows the
-            # file, report the error of the matrix reader.
+            # Files of instruments can have these suffixes, too. If no reader of instrument files
+            # can open the file, the error of the matrix reader is reported.
             try:
                 return read_instrument(file, channel)
             except UnrecognisedError:
                 raise not_a_matrix from None
             except NoReadersError as no_readers:
                 raise SurfaceError(
-                    f"{not_a_matrix}; if it is an instrument's own format, {INSTALL_READERS}"
+                    f"{not_a_matrix}; if the file has an instrument's own format, {INSTALL_READERS}"
                 ) from no_readers
     else:
         return read_instrument(file, channel)
     if channel not in (None, 0):
         raise SurfaceError(
-            f"{file}: there is no channel {channel}; this format holds one, so leave channel out"
+            f"{file}: there is no channel {channel}; this format holds one channel, so leave "
+            "channel out"
         )
     return scan
 
 
 def _agreed_size(file: Path, scan: Scan, given: tuple[float, float] | None) -> tuple[float, float]:
-    """Edge lengths (m) from the file and the argument, which must not contradict each other."""
+    """Edge lengths (m) from the file or from `given`; raise `SurfaceError` if they disagree."""
     if not all(side is None or (math.isfinite(side) and side > 0) for side in scan.size):
         raise SurfaceError(
-            f"{file}: the size of the scan in the file, {_text(scan.size)} um, is not two positive "
+            f"{file}: states a scan size of {_text(scan.size)} um, which is not two positive "
             "lengths; correct the file"
         )
     x, y = scan.size
@@ -202,7 +205,7 @@ def _agreed_size(file: Path, scan: Scan, given: tuple[float, float] | None) -> t
                 f"{file}: the scan is {_text(scan.size)} um according to the file, but "
                 f"{_text(given)} um according to size; leave size out, or correct it"
             )
-    # Prefer the size in the file, because the argument may be rounded.
+    # The size in the file is preferred, because the argument may be rounded.
     return given[0] if x is None else x, given[1] if y is None else y
 
 

@@ -21,8 +21,9 @@ Array = NDArray[np.float64]
 def mirrored(scan: Surface, grid: Grid) -> Surface:
     """Cover `grid` with tiles: the scan in the middle, surrounded by its mirror images.
 
-    If the scan is at least as large as the grid, there is only one tile. Waves that the cells of
-    `grid` cannot carry are removed. A cubic spline interpolates the heights between pixels.
+    If the scan is at least as large as the grid, the surface is part of the scan. Waves that the
+    cells of `grid` cannot carry are removed. A cubic spline interpolates the heights between
+    pixels.
     """
     if all(g <= s * (1 + 1e-9) for g, s in zip(grid.size, scan.grid.size, strict=True)):
         return place_on_grid(scan, grid)
@@ -46,18 +47,22 @@ def mirrored(scan: Surface, grid: Grid) -> Surface:
             "extension": f"mirrored tiling, {tiles} times the scan",
             "placement": "tiles of the scan, with the waves that the grid carries",
             **left_out(scan, kept, grid.spacing),
-            "notice": f"{scan.provenance.get('file', 'the scan')}: the surface is {tiles} "
-            "tiles of the scan and its mirror images, and repeats itself",
+            "notice": f"{scan.provenance.get('file', 'the scan')}: the surface consists of {tiles} "
+            "tiles of the scan and its mirror images, so it repeats itself",
         },
     )
 
 
 def _axes(grid: Grid) -> tuple[tuple[int, float], tuple[int, float]]:
+    """Number of nodes and spacing (m) of each axis."""
     return (grid.nodes[0], grid.spacing[0]), (grid.nodes[1], grid.spacing[1])
 
 
 def _pixel(along: Array, axis: tuple[int, float]) -> Array:
-    """Fractional index of the scan pixel for each coordinate `along` an axis (m) of the tiling."""
+    """Fractional pixel index in the scan of each coordinate `along` (m) of the tiling.
+
+    `axis` is the number of pixels of the scan along this axis and their spacing (m).
+    """
     n, h = axis
     from_edge = np.mod(along / h + n // 2 + 0.5, 2 * n)
     folded: Array = np.minimum(from_edge, 2 * n - from_edge) - 0.5

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 
 def white_noise(shape: tuple[int, int], seed: int) -> NDArray[np.float64]:
-    """Independent standard normal numbers."""
+    """Return independent standard normal numbers in an array of this shape."""
     from scipy.special import ndtri
 
     # NumPy never changes the raw stream of a bit generator, but the methods of Generator (such as
@@ -21,15 +21,16 @@ def white_noise(shape: tuple[int, int], seed: int) -> NDArray[np.float64]:
 
 
 def wave_phases(seed: int, numbers: NDArray[np.int64], count: int) -> NDArray[np.float64]:
-    """Phases (rad) of the waves with numbers (m, n), m in `numbers` and n in 0 … count − 1.
+    """Random phases (rad) of the waves (m, n) with m in `numbers` and n in 0 … `count` − 1.
 
     The shape is (numbers.size, count). A phase depends only on `seed`, m and n. So a finer grid
-    keeps the phases of a coarser grid and adds phases of shorter waves. Waves with n = 0 come in
-    conjugate pairs, m and −m.
+    keeps the phases of a coarser grid and adds phases of shorter waves. Waves (m, 0) and (−m, 0)
+    are complex conjugates.
     """
     phases = np.empty((numbers.size, count))
     for row, m in enumerate(numbers.tolist()):
-        # One random stream for each m. The raw stream of Philox is the same in all NumPy versions.
+        # Each m has its own random stream. The raw stream of Philox is the same in all NumPy
+        # versions.
         key = np.array([seed, m % 2**64], dtype=np.uint64)
         raw = np.random.Philox(key=key).random_raw(count)
         phases[row] = (raw >> np.uint64(12)).astype(np.float64)

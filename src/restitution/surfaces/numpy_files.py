@@ -41,12 +41,12 @@ def read_numpy(path: Path) -> Scan:
 def _load_arrays(
     path: Path,
 ) -> tuple[NDArray[np.generic], tuple[float | None, float | None], dict[str, str | float]]:
-    # Unpickling would run code from the file, so both branches forbid it.
+    # Unpickling would run code from the file, so it is forbidden for both formats.
     try:
         _check_headers(path)
         if path.suffix.lower() == ".npy":
             # Memory mapping compares the shape in the header with the length of the file. Loading
-            # would first allocate the memory for this shape, which a damaged header can make huge.
+            # would first allocate memory for this shape, which can be huge in a damaged header.
             return np.lib.format.open_memmap(path, mode="r"), (None, None), {"format": "npy"}
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as archive:
             key = _height_key(path, archive.files)
@@ -77,14 +77,14 @@ def _size_entry(path: Path, entry: NDArray[np.generic]) -> tuple[float, float]:
     if entry.shape != (2,) or entry.dtype.kind not in "iuf":
         raise SurfaceError(
             f"{path}: its array 'size' has shape {entry.shape} and type {entry.dtype}; store the "
-            "two edge lengths in metres there, or leave it out"
+            "two edge lengths in metres in 'size', or leave it out"
         )
     x, y = entry.astype(np.float64)
     return float(x), float(y)
 
 
 def _check_headers(path: Path) -> None:
-    """Raise `SurfaceError` if an array would unpack to more pixels than a scan may have."""
+    """Raise `SurfaceError` if a header states more pixels than a scan may have."""
     if path.suffix.lower() == ".npy":
         with path.open("rb") as stream:
             _check_header(path, stream)

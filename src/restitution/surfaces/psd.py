@@ -2,12 +2,12 @@
 
     C(q) = |∫ z exp(−iq·r) d²r|²/A,   Sq² = (2π)⁻² ∫ C d²q,   (Surf. Topogr. 5, 013001, eqs 2, 6)
 
-C is in m⁴, and A is the area of the surface. A scan is not periodic, so the jump between its
-opposite edges would dominate the spectrum. The scan is therefore multiplied by each of nine sine
-tapers, and the nine spectra are averaged (Riedel and Sidorenko 1995, IEEE Trans. Signal Process.
-43, 188–195). Together the tapers cover all of the scan except its rim. The leakage from long waves
-to short waves decreases with the fourth power of the wave number. The resolution in frequency is
-±1.5/size.
+C is in m⁴, z is the height minus its mean, and A is the area of the surface. A scan is not
+periodic, so the jump between opposite edges would dominate the spectrum. The scan is therefore
+multiplied by each of nine sine tapers, and the nine spectra are averaged (Riedel and Sidorenko
+1995, IEEE Trans. Signal Process. 43, 188–195). Together the tapers cover all of the scan except the
+rim. The leakage from long waves to short waves decreases with the fourth power of the wave number.
+The resolution in frequency is ±1.5/size.
 """
 
 from __future__ import annotations
@@ -28,23 +28,27 @@ _SECTOR = 15  # half the width of the sectors around the x and y axes (°)
 
 
 class RadialSpectrum(NamedTuple):
-    """`wave_number` q (rad/m) and `density` C (m⁴), averaged over directions and bands of q."""
+    """Power spectral density averaged over directions, in bands of the wave number.
+
+    `wave_number` is the mean wave number q of each band (rad/m), and `density` the mean C (m⁴).
+    """
 
     wave_number: Array
     density: Array
 
 
 class DirectedSpectrum(NamedTuple):
-    """A `spectrum` averaged over `directions`, a description in words."""
+    """A radial spectrum, and a description in words of the directions over which it is averaged."""
 
     directions: str
     spectrum: RadialSpectrum
 
 
 def power_spectral_density(surface: Surface) -> Array:
-    """C (m⁴), shape `grid.nodes`, at the wave vectors of `numpy.fft.fftfreq` times 2π.
+    """Power spectral density C (m⁴) at the wave vectors of `numpy.fft.fftfreq` times 2π.
 
-    C is exact for a periodic surface; otherwise it is estimated with tapers.
+    The shape is `grid.nodes`. C is exact for a periodic surface; otherwise it is estimated with
+    tapers.
     """
     from scipy.fft import fft2
 
@@ -62,11 +66,11 @@ def power_spectral_density(surface: Surface) -> Array:
 
 
 def radial_spectrum(surface: Surface, density: Array | None = None) -> RadialSpectrum:
-    """The power spectral density, averaged over directions.
+    """The power spectral density, averaged over directions and in bands of the wave number.
 
     `density` is the `power_spectral_density` of `surface`, if it is already known. Wave vectors at
-    which it is NaN are left out. Bands are a quarter of an octave wide, up to the shortest wave
-    that both axes carry.
+    which `density` is NaN are left out. Bands are about a quarter of an octave wide, up to the
+    shortest wave that both axes carry.
     """
     C = power_spectral_density(surface) if density is None else density
     q = wave_numbers(C.shape, surface.grid.spacing)
@@ -83,7 +87,7 @@ def radial_spectrum(surface: Surface, density: Array | None = None) -> RadialSpe
 
 
 def directed_spectra(surface: Surface) -> list[DirectedSpectrum]:
-    """The radial spectrum over all directions, and over those within 15° of x and of y."""
+    """The radial spectra over all directions, within 15° of x, and within 15° of y."""
     C = power_spectral_density(surface)
     qx, qy = (
         2 * math.pi * np.fft.fftfreq(n, h)

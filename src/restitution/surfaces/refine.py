@@ -1,4 +1,4 @@
-"""Resample a surface to a finer or coarser grid over the same domain by means of its spectrum."""
+"""Resample a surface to a finer or coarser grid over the same domain, by Fourier interpolation."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ Array = NDArray[np.float64]
 
 
 def refine(surface: Surface, factor: int) -> Surface:
-    """Divide the cells of a surface, over the same domain.
+    """Resample a surface to smaller cells over the same domain.
 
     Heights at the new nodes are values of the trigonometric polynomial through the old heights
-    (zero padding of the spectrum). So no wave is added. A surface that is not periodic is first
+    (zero padding of the spectrum), so no wave is added. A surface that is not periodic is first
     extended by its mirror image, to avoid ringing at its edges. The origins of the two grids
     coincide (see `Grid`).
 
     Args:
         surface: Surface to refine.
-        factor: Number of new cells (1) per old cell along either axis, at least 1.
+        factor: Number of new cells (1) per old cell along each axis, at least 1.
 
     Returns:
         Surface on the finer grid.
@@ -31,7 +31,7 @@ def refine(surface: Surface, factor: int) -> Surface:
         SurfaceError: The factor is below 1.
     """
     if factor < 1:
-        raise SurfaceError(f"factor: {factor} must be a positive integer")
+        raise SurfaceError(f"factor: {factor} is not a positive integer")
     if factor == 1:
         return surface
     how = "periodic" if is_periodic(surface) else "mirrored"
@@ -48,11 +48,11 @@ def coarsen(surface: Surface, factor: int = 2) -> Surface:
 
     Waves shorter than two new cells are removed; other waves do not change.
 
-    If `factor` does not divide the number of nodes, the cells are slightly smaller, so that a whole
-    number of them covers the domain. Raises `SurfaceError` for a factor below 1.
+    If the number of nodes is not a multiple of `factor`, the new cells are slightly smaller, so
+    that a whole number of cells covers the domain. Raises `SurfaceError` for a factor below 1.
     """
     if factor < 1:
-        raise SurfaceError(f"factor: {factor} must be a positive integer")
+        raise SurfaceError(f"factor: {factor} is not a positive integer")
     nx, ny = (-(-n // factor) for n in surface.grid.nodes)
     wide, long = surface.grid.size
     grid = Grid((nx, ny), (wide / nx, long / ny))
@@ -86,10 +86,10 @@ def _at_nodes(height: Array, nodes: int, *, periodic: bool) -> Array:
     new_period = nodes * period // n
     modes = rfft(values, axis=0)
     if period % 2 == 0:
-        modes[-1] *= 0.5  # the old Nyquist mode now stands for two conjugate modes
+        modes[-1] *= 0.5  # on a finer grid, the old Nyquist mode becomes two conjugate modes
     if new_period < period:
-        # The phase of the new Nyquist mode (a wave of two cells) is ambiguous, so this mode is also
-        # removed.
+        # The new Nyquist mode (a wave of two cells) is also removed, because the new grid cannot
+        # represent its phase.
         modes = modes[: (new_period + 1) // 2]
     number = np.arange(modes.shape[0])[:, None]
     modes *= new_period / period * np.exp(2j * np.pi * number * first / period)

@@ -1,4 +1,4 @@
-"""Errors that store the remedy separately, so that `case` can reword it in terms of file keys."""
+"""Errors that store the remedy separately, so that `case` can replace it by one with file keys."""
 
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ Code = Literal[
 class RefusedSurfaceError(SurfaceError):
     """The surface cannot be made.
 
-    `fact` says why, and `code` identifies this reason. `remedy` addresses callers of the functions.
+    `fact` states the reason, and `code` identifies it. `remedy` names the Python arguments to
+    change.
     """
 
     def __init__(self, code: Code, fact: str, remedy: str) -> None:

@@ -19,19 +19,19 @@ _ROUNDING = 1e-9  # largest relative difference of two lengths that count as equ
 
 
 def place_on_grid(surface: Surface, grid: Grid) -> Surface:
-    """Resample the centred part of a surface to the cells of a grid.
+    """Resample the middle of a surface to the cells of a grid.
 
-    The origins coincide (see `Grid`). With equal spacings the cells coincide with pixels: the
-    surface is cropped, and heights do not change. Otherwise a cubic spline through the pixel
+    The origins coincide (see `Grid`). If the spacings are equal, the cells coincide with pixels,
+    the surface is cropped, and heights do not change. Otherwise a cubic spline through the pixel
     centres is evaluated at the cell centres. Along an axis with coarser cells, waves shorter than
-    two cells are removed first, because they would be aliased to longer ones. Beyond the outermost
-    pixel centres (less than a pixel) the height is constant, not extrapolated.
+    two cells are removed first, because they would be aliased to longer waves. Beyond the outermost
+    pixel centres (by less than a pixel) the height is constant, not extrapolated.
 
-    The provenance gains `placement` (the method) and the entries of `left_out`.
+    The method (`placement`) and the waves that were removed are added to the provenance.
 
     Args:
         surface: Surface to resample, such as a scan.
-        grid: Grid to place it on, at most as large as the surface.
+        grid: Grid of the new surface, at most as large as `surface`.
 
     Returns:
         Surface on `grid`.
@@ -67,10 +67,10 @@ def place_on_grid(surface: Surface, grid: Grid) -> Surface:
 def carried(surface: Surface, spacing: tuple[float, float], *, mirrored: bool = False) -> Array:
     """Return the heights of `surface` without the waves that cells of `spacing` (m) cannot carry.
 
-    Waves shorter than two cells along either axis are removed. To filter a finite surface, it is
-    continued beyond its edges. If `mirrored`, it is continued by its mirror image. Otherwise the
-    straight line between the ends of each line of heights is subtracted, and the rest is continued
-    antisymmetrically.
+    Waves shorter than two cells along either axis are removed. The filter continues the surface
+    beyond its edges. If `mirrored`, the surface is continued by its mirror image. Otherwise the
+    straight line between the ends of each line of heights is subtracted, and the remainder is
+    continued antisymmetrically.
     """
     height = surface.height
     keep = _carried_mirrored if mirrored else _carried
@@ -106,7 +106,7 @@ def left_out(surface: Surface, kept: Array, spacing: tuple[float, float]) -> dic
         "shortest_carried_m": 2 * max(*spacing, *pixel),
         "removed_rms_m": math.hypot(had_rms, rms),
         # Earlier resampling removed the fraction had_slope² of the mean square slope. `slope` is
-        # relative to the slope that was left.
+        # relative to the remaining slope.
         "removed_slope": math.sqrt(had_slope**2 + max(1 - had_slope**2, 0.0) * slope**2),
     }
 
@@ -130,7 +130,7 @@ def same_spacing(scan: Grid, grid: Grid) -> bool:
 
 
 def crop_to(height: Array, nodes: tuple[int, int]) -> Array:
-    """Return the part of `height` with `nodes` (nx, ny) nodes around the same origin."""
+    """Return the part of `height` that has `nodes` (nx, ny) nodes and the same origin."""
     # The origin of a `Grid` is node n // 2.
     i, j = (have // 2 - want // 2 for have, want in zip(height.shape, nodes, strict=True))
     return height[i : i + nodes[0], j : j + nodes[1]]
@@ -141,9 +141,9 @@ def _carried(height: Array, ratio: float) -> Array:
     from scipy.fft import dst, idst
 
     n = height.shape[0]
-    # The straight line between the ends is subtracted, and the rest is continued antisymmetrically.
-    # So there are neither steps nor kinks at the ends. Sine k then has a wavelength of 2(n − 1)/k
-    # pixels.
+    # The straight line between the ends is subtracted, and the remainder is continued
+    # antisymmetrically. So there are neither steps nor kinks at the ends. Sine k has a wavelength
+    # of 2(n − 1)/k pixels.
     line = height[:1] + (height[-1:] - height[:1]) * np.linspace(0.0, 1.0, n)[:, None]
     modes = dst((height - line)[1:-1], type=1, axis=0)
     modes[math.floor((n - 1) * ratio) :] = 0.0
@@ -152,7 +152,7 @@ def _carried(height: Array, ratio: float) -> Array:
 
 
 def _carried_mirrored(height: Array, ratio: float) -> Array:
-    """`_carried` for heights that are continued by their mirror image."""
+    """Heights like those of `_carried`, but continued by their mirror image for the filter."""
     from scipy.fft import dct, idct
 
     modes = dct(height, type=2, axis=0)  # cosine k has a wavelength of 2n/k pixels

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-# Units per metre. Values are divided by these numbers because 10/1e6 is exactly 1e-05, but 10 times
-# 1e-6 is not.
+# Number of units per metre. Values are divided by these numbers, because 10/1e6 is exactly 1e-05,
+# but 10 times 1e-6 is not.
 _PER_METRE = {
     "km": 1e-3,
     "m": 1.0,
@@ -25,7 +25,8 @@ _PER_METRE = {
     "fm": 1e15,
 }
 
-MOST_PIXELS = 2**26  # limit for a scan; more pixels would take gigabytes before any check
+# Largest number of pixels of a scan. More pixels would take gigabytes of memory before any check.
+MOST_PIXELS = 2**26
 
 # Provenance entry for files whose first scan line is at the top of the picture.
 Y_DOWN = {"y_axis": "down"}
@@ -33,11 +34,12 @@ Y_DOWN = {"y_axis": "down"}
 
 @dataclass(frozen=True)
 class Scan:
-    """Heights (m), shape (nx, ny), NaN where undefined, and further content of the file.
+    """Content of a topography file: the heights, the size of the scan, and further details.
 
-    `size` contains the lengths of the x and y edges (m), or None for a length that is not in the
-    file. `details` become part of the provenance; they include `Y_DOWN` if the first line of the
-    file is at the top of the picture.
+    `height` is in m, has shape (nx, ny) and is NaN where undefined. `size` contains the lengths of
+    the x and y edges (m), or None for a length that is not in the file. `details` become part of
+    the provenance; they include `Y_DOWN` if the first line of the file is at the top of the
+    picture.
     """
 
     height: NDArray[np.float64]

@@ -15,10 +15,11 @@ _STEPS = 1 / 1.324717957244746, 1 / 1.324717957244746**2
 
 
 def place_of(surface: Surface, number: int) -> Surface:
-    """Move `surface` so that its point `number` is in the middle; point 0 is the middle itself.
+    """Move `surface` so that point `number` of a fixed sequence is in the middle.
 
-    The points fill the scan evenly, however many are used. Beyond its edges the surface is
-    continued periodically if it is periodic, and by its mirror image otherwise.
+    Point 0 is the middle itself. The first N points of the sequence fill the surface evenly for any
+    N. Beyond its edges a periodic surface is continued periodically, and any other surface by its
+    mirror image.
     """
     if number == 0:
         return surface

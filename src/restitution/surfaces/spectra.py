@@ -5,15 +5,16 @@
     R(τ) = Rq² exp(−2.3 ρ)   (exponential)     R(τ) = Rq² exp(−2.3 ρ²)   (Gaussian)
     ρ = sqrt((τ₁/β₁)² + (τ₂/β₂)²),
 
-with lags τ₁ along the lay and τ₂ across it. At the correlation lengths β the autocorrelation has
-fallen to 10 % (e^−2.3 = 0.100). Hu and Tonder (1992), Int. J. Mach. Tools Manufact. 32, 83–90.
+with the rms height Rq, the lags τ₁ along the lay and τ₂ across it, and the correlation lengths β₁
+and β₂, at which the autocorrelation has fallen to 10 % (e^−2.3 = 0.100). Source: Hu and Tonder
+(1992), Int. J. Mach. Tools Manufact. 32, 83–90.
 
 `SelfAffine` surfaces have the power spectral density
 
-    C(q) = const. for q < q_r,   (q/q_r)^−2(H+1) up to q_s,   0 beyond,
+    C(q) = C₀ for q < q_r,   C₀ (q/q_r)^−2(H+1) for q_r ≤ q ≤ q_s,   0 for q > q_s,
 
-where H is the Hurst exponent, 2π/q_r the roll-off and 2π/q_s the shortest wavelength. Persson et
-al. (2005), J. Phys.: Condens. Matter 17, R1–R62.
+where H is the Hurst exponent, 2π/q_r the roll-off wavelength and 2π/q_s the shortest wavelength.
+Source: Persson et al. (2005), J. Phys.: Condens. Matter 17, R1–R62.
 """
 
 from __future__ import annotations
@@ -33,7 +34,11 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Autocorrelated:
-    """Exponential or Gaussian autocorrelation; lengths in m, `lay` in rad from the x axis."""
+    """Waves of an exponential or Gaussian autocorrelation.
+
+    `correlation_length` (m) is given along and across the lay. `lay` is the angle of the lay from
+    the x axis (rad), and `shortest` the shortest wavelength (m).
+    """
 
     kind: Literal["exponential", "gaussian"]
     correlation_length: tuple[float, float]
@@ -42,11 +47,11 @@ class Autocorrelated:
 
     @property
     def longest(self) -> float:
-        """The distance (m) beyond which heights are uncorrelated."""
+        """The longest correlation length (m)."""
         return max(self.correlation_length)
 
     def check(self, grid: Grid) -> None:
-        """Raise `SurfaceError` if `grid` cannot carry these waves."""
+        """Raise `SurfaceError` if a parameter is invalid or `grid` cannot carry these waves."""
         for axis, beta in enumerate(self.correlation_length):
             where = (
                 f"along {'xy'[axis]}" if self.lay == 0 else ("along", "across")[axis] + " the lay"
@@ -77,7 +82,7 @@ class Autocorrelated:
         rho2 = (along / self.correlation_length[0]) ** 2
         rho2 = rho2 + (across / self.correlation_length[1]) ** 2
         R = np.exp(-2.3 * (np.sqrt(rho2) if self.kind == "exponential" else rho2))
-        # Periodic wrapping makes a kink in R at half the domain, so the spectrum of R can be
+        # Periodic continuation causes a kink in R at half the domain, so the spectrum of R can be
         # negative.
         H: Array = np.sqrt(np.maximum(rfft2(R).real, 0.0))
         return _without_short_waves(H, grid, self.shortest)
@@ -96,9 +101,10 @@ class Autocorrelated:
 
 @dataclass(frozen=True)
 class SelfAffine:
-    """Power law between the wavelengths `shortest` and `rolloff` (m), constant above `rolloff`.
+    """Waves of a self-affine surface, with the Hurst exponent `hurst`.
 
-    Without `rolloff` the power law extends to the size of the domain.
+    The power spectral density is a power law between the wavelengths `shortest` and `rolloff` (m)
+    and constant above `rolloff`. Without `rolloff` the power law extends to the size of the domain.
     """
 
     hurst: float
@@ -107,15 +113,15 @@ class SelfAffine:
 
     @property
     def longest(self) -> float:
-        """The distance (m) beyond which heights are uncorrelated."""
+        """The distance (m) beyond which heights are uncorrelated; infinite without `rolloff`."""
         return math.inf if self.rolloff is None else self.rolloff
 
     def check(self, grid: Grid) -> None:
-        """Raise `SurfaceError` if `grid` cannot carry these waves."""
+        """Raise `SurfaceError` if a parameter is invalid or `grid` cannot carry these waves."""
         if not 0 < self.hurst <= 1:
             raise SurfaceError(
-                f"hurst: {self.hurst:g} is not an exponent above 0 and up to 1; real "
-                "surfaces often have 0.8"
+                f"hurst: {self.hurst:g} is not above 0 and at most 1; real surfaces often have a "
+                "Hurst exponent of 0.8"
             )
         _check_shortest(self.shortest, grid)
         rolloff, shortest = self.rolloff, self.shortest or 2 * max(grid.spacing)
@@ -125,8 +131,8 @@ class SelfAffine:
         if not shortest < rolloff <= max(grid.size):
             raise SurfaceError(
                 f"rolloff: {rolloff * 1e6:g} um is not between the shortest wavelength, "
-                f"{shortest * 1e6:g} um, and the domain, {max(grid.size) * 1e6:g} um; change it, "
-                "or leave it out for a power law up to the size of the domain"
+                f"{shortest * 1e6:g} um, and the size of the domain, {max(grid.size) * 1e6:g} um; "
+                "change rolloff, or leave it out for a power law up to the size of the domain"
             )
 
     def amplitude(self, grid: Grid) -> Array:
@@ -167,7 +173,7 @@ def _check_correlation_length(where: str, beta: float, spacing: float, size: flo
     if not (math.isfinite(beta) and beta > 0):
         raise SurfaceError(
             f"correlation_length: {beta:g} m {where} is not a positive length; "
-            "give one such as 5 um"
+            "give a length such as 5 um"
         )
     if beta < spacing:
         raise SurfaceError(
@@ -198,6 +204,6 @@ def _check_shortest(shortest: float | None, grid: Grid) -> None:
 def _check_positive(name: str, wavelength: float) -> None:
     if not (math.isfinite(wavelength) and wavelength > 0):
         raise SurfaceError(
-            f"{name}: {wavelength:g} m is not a positive wavelength; give one such as 10 um, or "
-            f"leave {name} out"
+            f"{name}: {wavelength:g} m is not a positive wavelength; give a wavelength such as "
+            f"10 um, or leave {name} out"
         )

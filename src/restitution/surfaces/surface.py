@@ -1,4 +1,4 @@
-"""The height map of a rough surface: the result of all sources of roughness, input of a contact."""
+"""The height map of a rough surface, which every source of roughness returns and a contact uses."""
 
 from __future__ import annotations
 
@@ -60,5 +60,5 @@ class Surface:
 
 
 def is_periodic(surface: Surface) -> bool:
-    """Whether opposite edges of the surface match."""
+    """Whether the provenance states that opposite edges of the surface match."""
     return str(surface.provenance.get("periodicity", "")).startswith("periodic")

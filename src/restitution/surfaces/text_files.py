@@ -19,7 +19,7 @@ from restitution.surfaces.scan import Y_DOWN, Scan, in_metres
 
 TEXT_SUFFIXES = frozenset({".txt", ".csv", ".dat", ".asc"})
 
-_LEAST_VALUES = 4  # fewest values of a scan line; fewer are coordinates or a profile
+_LEAST_VALUES = 4  # smallest number of values of a scan line; fewer are coordinates or a profile
 _LONGEST = 200  # longest header value that is read as a number with a unit (characters)
 _NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?"
 _QUANTITY = re.compile(rf"(?P<number>{_NUMBER})\s*(?P<unit>\S+)")
@@ -60,8 +60,8 @@ def read_text(path: Path) -> Scan:
     for (n, _), row in zip(data, rows, strict=True):
         if len(row) != width:
             raise SurfaceError(
-                f"{path}: line {n} has {len(row)} values where the first has {width}, so the file "
-                "is incomplete or not a matrix; export it again"
+                f"{path}: line {n} has {len(row)} values, but the first line has {width}, so the "
+                "file is incomplete or not a matrix; export it again"
             )
     if width < _LEAST_VALUES or len(rows) < 2:
         raise NotAMatrixError(
@@ -85,8 +85,9 @@ def _decode(path: Path) -> str:
 def _parse_rows(path: Path, data: list[tuple[int, str]], *, plain: bool) -> list[list[float]]:
     """Parse all lines. Raise `NotAMatrixError` for text and `SurfaceError` for damaged lines.
 
-    Text between scan lines counts as a damaged line; other readers would skip that line. Text above
-    the scan lines also counts as damaged if the comments show that the file is a `plain` matrix.
+    Text between scan lines counts as a damaged line, because other readers would skip it. Text
+    above the scan lines also counts as damaged if the comments show that the file is a `plain`
+    matrix.
     """
     rows: list[list[float] | None] = []
     first: NotAMatrixError | None = None
@@ -176,11 +177,11 @@ def _read_header(
         elif key == "channel":
             if "channel_name" in details:
                 raise NotAMatrixError(
-                    f"{path}: holds several channels; save the heights in a file of their own"
+                    f"{path}: holds several channels; save the heights in a separate file"
                 )
             details["channel_name"] = value
         elif length is not None or _FOREIGN_KEY.search(key):
-            # A wrong guess could scale heights by a factor of a million unnoticed.
+            # A wrong guess of the unit could scale heights by a factor of a million unnoticed.
             raise NotAMatrixError(
                 f"{path}: its header line {comment[:60]!a} may set an unknown unit or scale; give "
                 "only '# Width:', '# Height:' and '# Value units:'"
@@ -189,7 +190,10 @@ def _read_header(
 
 
 def _statement(comment: str) -> tuple[str, str]:
-    """Split `# key: value` or `# key = value` into key (lower case) and value; else empty texts."""
+    """Split `# key: value` or `# key = value` into key (lower case) and value.
+
+    For any other comment, return two empty texts.
+    """
     text = comment[1:]
     ends = [at for at in (text.find(":"), text.find("=")) if at >= 0]
     if not ends:
@@ -198,7 +202,7 @@ def _statement(comment: str) -> tuple[str, str]:
 
 
 def _counts(key: str, value: str) -> _Counts:
-    """The numbers of values and lines that a header entry gives."""
+    """Numbers of values per line and of lines, as far as a header entry states them."""
     if key in _COLUMNS | _LINES and value.isdecimal() and len(value) < 10:
         return {"values" if key in _COLUMNS else "lines": int(value)}
     if key in ("pixels", "resolution", "shape") and (both := _BOTH.fullmatch(value)):
@@ -210,6 +214,6 @@ def _check_counts(path: Path, stated: _Counts, found: tuple[int, int]) -> None:
     for what, there in zip(("values", "lines"), found, strict=True):
         if stated.get(what, there) != there:
             raise SurfaceError(
-                f"{path}: its header states {stated[what]} {what}, but it has {found[1]} lines of "
-                f"{found[0]} values, so a part is missing; export it again"
+                f"{path}: its header states {stated[what]} {what}, but the file has {found[1]} "
+                f"lines of {found[0]} values, so a part is missing; export it again"
             )

@@ -1,7 +1,8 @@
 """Texture and material ratio parameters after ISO 25178-2.
 
-Unlike the parameters of `describe`, these parameters need the whole autocorrelation or the material
-ratio curve. Clause numbers refer to ISO 25178-2:2012. Subtract tilt and form first (`level`).
+Unlike the parameters of `describe`, these parameters are derived from the autocorrelation in all
+directions or from the material ratio curve. Clause numbers refer to ISO 25178-2:2012. Subtract tilt
+and form first (`level`).
 """
 
 from __future__ import annotations
@@ -19,11 +20,11 @@ Array = NDArray[np.float64]
 _BINS = 80  # number of bins of the density of heights
 _DECAY = 0.2  # value of the autocorrelation that defines Sal and Str (4.2)
 _DIRECTIONS = 180  # number of directions over a half turn
-_CORE = 0.4  # range of material ratio that the secant of the core spans (5.2)
+_CORE = 0.4  # range of the material ratio that the secant through the core spans (5.2)
 
 
 class Autocorrelation(NamedTuple):
-    """Lags (m) along x and y, from −size/2, and the autocorrelation at them (1 at lag zero)."""
+    """Autocorrelation `values` (1 at lag zero) at the lags `x` and `y` (m), both increasing."""
 
     x: Array
     y: Array
@@ -31,7 +32,7 @@ class Autocorrelation(NamedTuple):
 
 
 class MaterialRatio(NamedTuple):
-    """Abbott curve: decreasing heights (m) above the mean at material ratios from 0 to 1."""
+    """Abbott curve: material ratios from 0 to 1 and the heights (m) above the mean, decreasing."""
 
     ratio: Array
     height: Array
@@ -50,12 +51,13 @@ def texture(surface: Surface) -> dict[str, float | None]:
 
     - `Sal_m`: autocorrelation length, the shortest lag at which the autocorrelation falls to 0.2
       (4.2.1)
-    - `Str`: texture aspect ratio, the shortest over the longest such lag; near 1 without a lay and
-      near 0 with one; None if the autocorrelation stays above 0.2 in some direction up to half of
-      the domain (4.2.2)
-    - `lay_deg`: direction of the longest lag, from the x axis, 0 to 180: the lay if Str is small
-    - `Sdr`: developed interfacial area ratio, the area of triangles between nodes over their
-      projection, less 1 (4.3.2)
+    - `Str`: texture aspect ratio, the shortest over the longest lag at which the autocorrelation
+      falls to 0.2; near 1 without a lay and near 0 with a lay; None if the autocorrelation stays
+      above 0.2 in some direction up to half of the domain (4.2.2)
+    - `lay_deg`: direction (°) of this longest lag from the x axis, 0 to 180; it is the direction of
+      the lay if Str is small
+    - `Sdr`: developed interfacial area ratio, the area of triangles between nodes over the area of
+      their projection, minus 1 (4.3.2)
     - `Sk_m`, `Spk_m`, `Svk_m`: core, reduced peak and reduced dale height; `Smr1`, `Smr2`: material
       ratios where peaks and dales begin (5.2 to 5.4, after ISO 13565-2)
     """
@@ -114,14 +116,14 @@ def autocorrelation(surface: Surface) -> Autocorrelation:
 
 
 def material_ratio(surface: Surface, points: int = 1001) -> MaterialRatio:
-    """The Abbott curve: the fraction of the surface above each height."""
+    """The Abbott curve: the fraction of the surface above each height, at `points` points."""
     ratio = np.linspace(0.0, 1.0, points)
     z = surface.height - surface.height.mean()
     return MaterialRatio(ratio, np.quantile(z, 1 - ratio))
 
 
 def _decay_lags(R: Autocorrelation) -> Array:
-    """Lag (m) in each direction at which the autocorrelation first falls to 0.2; NaN if none."""
+    """Lag (m) at which the autocorrelation first falls to 0.2, in each direction; NaN if never."""
     from scipy.ndimage import map_coordinates
 
     reach = min(-R.x[0], -R.y[0])
@@ -146,7 +148,7 @@ def _decay_lags(R: Autocorrelation) -> Array:
 
 
 def _developed_area(surface: Surface) -> float:
-    """Sdr: the area of two triangles per cell over its projection, less 1."""
+    """Sdr: the area of two triangles per cell over the area of their projection, minus 1."""
     z, (hx, hy) = surface.height, surface.grid.spacing
     if min(z.shape) < 2:
         return 0.0
@@ -157,7 +159,7 @@ def _developed_area(surface: Surface) -> float:
 
 
 def _core(curve: MaterialRatio) -> dict[str, float | None]:
-    """Parameters of the straight line through the flattest 40 % of the Abbott curve."""
+    """Parameters Sk, Spk, Svk, Smr1 and Smr2, from the secant of the flattest 40 % of the curve."""
     from scipy.integrate import trapezoid
 
     ratio, height = curve
@@ -167,8 +169,9 @@ def _core(curve: MaterialRatio) -> dict[str, float | None]:
     top = float(height[start] - slope * ratio[start])
     bottom = top + float(slope)
     above, below = np.maximum(height - top, 0.0), np.maximum(bottom - height, 0.0)
-    # Spk is the height of a triangle over the length Smr1, with the area between the curve and the
-    # core line above the core. Svk is that of a triangle over 1 − Smr2, with the area below it.
+    # Spk is the height of a triangle with the base Smr1 and the area of the curve above the core.
+    # Svk is the height of a triangle with the base 1 − Smr2 and the area of the curve below the
+    # core.
     Smr1, Smr2 = float(np.mean(height > top)), float(np.mean(height >= bottom))
     peaks, dales = (float(trapezoid(part, ratio)) for part in (above, below))
     return {

@@ -3,17 +3,17 @@
 The waves of a twin (`wave_spectrum`) first get random phases. Then heights and amplitudes are
 adjusted alternately (Schreiber and Schmitz 1996, Phys. Rev. Lett. 77, 635–638), because the
 skewness and kurtosis of the heights depend on the phases of all waves together. Phases and
-adjustment depend on the scan, the period and the seed, but not on the grid. So a grid twice as fine
-gets the same surface with shorter waves added.
+adjustment depend on the scan, the period and the seed, but not on the grid. So on a grid with half
+the spacing, the surface is the same with shorter waves added.
 
 To make the result independent of the grid, the adjustment proceeds from long to short waves:
 
-* Longest band: all its waves are adjusted together, on the fewest nodes that carry them. The target
-  is the distribution of heights of the scan without its shorter waves. The last step adjusts the
-  amplitudes, so the amplitudes are exact.
+* The longest band: all its waves are adjusted together, on the coarsest grid that carries them. The
+  target is the distribution of heights of the scan without the shorter waves. The last step adjusts
+  the amplitudes, so the amplitudes are exact.
 * Each further band halves the shortest wavelength. Only the phases of the new waves are adjusted.
-* The bands end where the remaining waves have 1 % of the scan's mean square height. These waves
-  hardly affect the distribution of heights and keep their random phases.
+* The bands end where the remaining waves have about 1 % of the scan's mean square height. These
+  waves hardly affect the distribution of heights and keep their random phases.
 
 A coarse grid takes its waves from the first band that contains all of them.
 """
@@ -35,7 +35,7 @@ from restitution.surfaces.wave_spectrum import Modes, WaveSpectrum, spectrum_of
 
 Array = NDArray[np.float64]
 
-LEAST_PIXELS = 16  # fewest pixels of a scan along each axis that determine its spectrum
+LEAST_PIXELS = 16  # smallest number of pixels of a scan along each axis
 _UNADJUSTED = 0.01  # fraction of the mean square height in waves that are not adjusted
 _FIRST_BAND = 2**20  # largest number of nodes of the longest band
 # Smallest number of pixels along an edge of the scan after coarsening to the longest band.
@@ -48,20 +48,21 @@ _STANDSTILL = 0.05  # the adjustment ends if the misfit decreases by less than t
 _PARTS = 16
 _COMPARED = 2**23  # largest number of nodes of these parts together, if there is more than one part
 _UNLIKE = 0.5  # misfit of the spectrum above which the notice contains a warning
-_PROBABILITIES = 0.5 * (1 - np.cos(np.linspace(0, np.pi, 4097)))  # denser in the tails
-_TABLE = 2**14  # steps between the lowest and the highest node
+# Probabilities of the quantiles that represent a distribution of heights, denser in the tails.
+_PROBABILITIES = 0.5 * (1 - np.cos(np.linspace(0, np.pi, 4097)))
+_TABLE = 2**14  # number of steps of the table that maps heights (see `_with_heights`)
 
 
 def twin(scan: Surface, grid: Grid, seed: int) -> Surface:
     """Make a twin of `scan` on `grid`.
 
-    The twin is periodic over `grid` or, if the scan is larger, over a multiple of it. Its Rq is
-    that of the scan, and its skewness and kurtosis are nearly those of the scan. Then the waves
-    that the cells of `grid` cannot carry are left out (`removed_…` in the provenance). The
-    provenance also contains the statistics of the scan (`scan_…`) and `spectrum_misfit`, the root
-    mean square of the relative difference of the two spectra. The spectra are compared on parts as
-    large as the scan, in bands of a quarter octave. The weights of the bands are their shares of
-    the mean squares of height and slope.
+    The twin is periodic over `grid` or, if the scan is larger, over a multiple of `grid`. Before
+    the waves that the cells of `grid` cannot carry are left out, Rq is that of the scan, and the
+    skewness and kurtosis are nearly those of the scan. The provenance describes the waves left out
+    (`removed_…`) and contains the statistics of the scan (`scan_…`) and `spectrum_misfit`, the root
+    mean square of the relative difference between the spectra of twin and scan. The spectra are
+    compared on parts as large as the scan, in bands of a quarter octave. The weight of a band is
+    the sum of its fractions of the mean square height and of the mean square slope.
 
     Raises `SurfaceError` for a scan that is flat or has fewer than 16 pixels along an axis, and for
     cells that are too large for any wave of the scan.
@@ -150,9 +151,10 @@ def _band(
     known: Modes | None,
     kept: tuple[int, int],
 ) -> tuple[Modes, tuple[int, int]]:
-    """Adjust the waves that cells of size `cell` carry; do not change `known` waves up to `kept`.
+    """Adjust the phases of the waves that cells of size `cell` (m) carry.
 
-    `kept` are wave numbers along the two axes.
+    The waves `known`, up to the numbers `kept` along the two axes, do not change. Return the waves
+    and their largest numbers.
     """
     from scipy.fft import irfft2, rfft2
 
@@ -187,7 +189,7 @@ def _with_heights(z: Array, heights: Array) -> Array:
     low, high = float(have[0]), float(have[-1])
     if not low < high:
         return z
-    # A table with equal steps is faster, because it needs no search.
+    # A table with equal steps is faster, because finding an interval needs no search.
     table = np.interp(np.linspace(low, high, _TABLE + 1), _quantiles(have), _quantiles(heights))
     return _between(table, (z - low) * (_TABLE / (high - low)))
 
@@ -205,7 +207,7 @@ def _between(table: Array, at: Array) -> Array:
 
 
 def _nodes(most: tuple[int, int]) -> tuple[int, int]:
-    """Smallest numbers of nodes that carry waves up to `most` and have a fast transform."""
+    """Smallest numbers of nodes that carry waves up to the numbers `most` and have a fast FFT."""
     from scipy.fft import next_fast_len
 
     return (
@@ -223,7 +225,7 @@ def _copy(source: Modes, target: Modes, most: tuple[int, int]) -> None:
 
 
 def _heights(modes: Modes, nodes: tuple[int, int]) -> Array:
-    """The sum of the waves, with phases relative to the origin of `Grid`, node n // 2."""
+    """The sum of the waves, whose phases are relative to the origin of `Grid` (node n // 2)."""
     from scipy.fft import irfft2
 
     number = np.fft.fftfreq(nodes[0], 1 / nodes[0]), np.arange(modes.shape[1])
@@ -258,8 +260,8 @@ def _provenance(
         )
     if misfit > _UNLIKE:
         notice += (
-            "; one spectrum does not describe this scan (steps, scratches, single particles, or "
-            "residual form?): crop it, remove outliers or level it"
+            "; one spectrum does not describe this scan, perhaps because of steps, scratches, "
+            "single particles or residual form: crop the scan, remove outliers or level it"
         )
     return {
         **scan.provenance,
@@ -303,8 +305,8 @@ def _misfit(made: Surface, scan: Surface) -> float:
     q, C = of_scan.wave_number[both], of_scan.density[both]
     if not q.size or not C.max() > 0:
         return 0.0
-    # The weight of a band is the sum of its shares of the mean squares of height and slope, which
-    # are ∫ C q² d(ln q) and ∫ C q⁴ d(ln q).
+    # The weight of a band is the sum of its fractions of the mean squares of height and slope,
+    # which are proportional to ∫ C q² d(ln q) and ∫ C q⁴ d(ln q).
     share = sum(power / power.sum() for power in (C * q**k for k in (2, 4)))
     off = (of_twin.density[both] / np.maximum(C, 1e-12 * C.max()) - 1) ** 2
     return float(np.sqrt(np.average(off, weights=share)))

@@ -3,11 +3,11 @@
 1. The scan's power spectrum C (`psd`) is interpolated linearly to the wave vectors of the twin.
    Waves longer than the scan have not been measured and are left out.
 2. The result is multiplied by a + b/k², where k is the number of waves per scan, so that height and
-   slope have the mean squares of the scan. C alone does not give them, because its tapers give the
-   rim of the scan less weight than its middle.
+   slope have the mean squares of the scan. C alone does not give these values, because the tapers
+   in the estimate of C give the rim of the scan less weight than the middle.
 
-Both steps depend on the scan and the period of the twin, but not on the grid, so grids of all
-spacings get the same waves.
+Both steps depend on the scan and the period of the twin, but not on the grid. So the waves are the
+same for grids of any spacing.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ Array = NDArray[np.float64]
 Modes = NDArray[np.complex128]
 
 _SUMMED = 2**20  # largest number of waves summed one by one in mean squares (see `_moments`)
-_LEAST = 2  # waves with at most this number of waves per scan are always summed one by one
-_ROWS = 2**20  # number of waves computed at a time, which limits the memory
+_LEAST = 2  # waves that fit at most this many times into the scan are always summed one by one
+_ROWS = 2**20  # number of waves computed at a time, to limit the memory
 _ROUNDING = 1e-9
 
 
@@ -44,16 +44,16 @@ class WaveSpectrum:
     waves: tuple[float, float]  # wave numbers of the twin per wave number of the scan, along x, y
     pixel: tuple[float, float]  # pixel of the scan (m)
     period: tuple[float, float]
-    flat: float = 1.0  # a
-    steep: float = 0.0  # b, for k in waves per scan
+    flat: float = 1.0  # a in the factor a + b/k², where k is the number of waves per scan
+    steep: float = 0.0  # b in this factor
 
     def power(self, m: NDArray[np.int64], n: NDArray[np.int64]) -> Array:
-        """Mean square height (m²) of the waves (m, n), shape (m.size, n.size)."""
+        """Mean square height (m²) of each wave (m, n), shape (m.size, n.size)."""
         C, k2 = self._raw(m, n)
         return np.maximum(C * (self.flat + self.steep / np.maximum(k2, 1.0)), 0.0)
 
     def _raw(self, m: NDArray[np.int64], n: NDArray[np.int64]) -> tuple[Array, Array]:
-        """Interpolated density, and k², where k is the number of waves per scan."""
+        """Interpolated density without the factor a + b/k², and k² (k: waves per scan)."""
         from scipy.ndimage import map_coordinates
 
         kx, ky = m / self.waves[0], n / self.waves[1]
@@ -89,7 +89,7 @@ class WaveSpectrum:
 
 
 def spectrum_of(scan: Surface, period: tuple[float, float]) -> WaveSpectrum:
-    """The waves of twins of `scan` with edges `period` (m)."""
+    """Mean square heights of the waves of a twin of `scan` with edges `period` (m)."""
     C = np.fft.fftshift(power_spectral_density(scan))
     waves = tuple(p / s for p, s in zip(period, scan.grid.size, strict=True))
     C *= 1 / (scan.grid.size[0] * scan.grid.size[1] * waves[0] * waves[1])
@@ -100,17 +100,18 @@ def spectrum_of(scan: Surface, period: tuple[float, float]) -> WaveSpectrum:
     if abs(np.linalg.det(moments)) > 1e-9 * abs(moments[0, 0] * moments[1, 1]):
         a, b = (float(value) for value in np.linalg.solve(moments, wanted))
     spectrum = WaveSpectrum(C, raw.waves, raw.pixel, period, a, b)
-    # Clipping negative power to zero changes the mean square height, so rescale the power.
+    # Negative power is set to zero, which changes the mean square height. So the power is rescaled.
     excess = _moments(spectrum, raw=False)[0, 0] / wanted[0]
     return WaveSpectrum(C, raw.waves, raw.pixel, period, a / excess, b / excess)
 
 
 def _moments(spectrum: WaveSpectrum, *, raw: bool = True) -> Array:
-    """Mean squares of height and slope (rows) for C and for C/k² (columns).
+    """Mean squares of height and slope (rows) for the powers C and C/k² (columns).
 
-    If not `raw`, the first column is for the corrected power and the second is 0. Slopes are
-    differences between neighbouring pixels, as in `rms_slope`. Long waves are summed one by one.
-    For short waves, the density is summed over the wave vectors of the scan instead.
+    If `raw` is False, the first column is for the power with the factor a + b/k², and the second
+    column is 0. Slopes are differences between neighbouring pixels, as in `rms_slope`. Long waves
+    are summed one by one. For short waves, the density is summed over the wave vectors of the scan
+    instead.
     """
     wx, wy = spectrum.waves
     (mx, my), (hx, hy) = spectrum.density.shape, spectrum.pixel

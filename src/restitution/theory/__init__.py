@@ -2,14 +2,16 @@
 
 A law is a frozen object. Its parameters are fields, checked on construction, and its quantities are
 properties and methods: `Hertz(radius, contact_modulus).force(indentation)`. Laws that predict an
-impact follow `ImpactLaw`: `restitution(velocity, mass)`.
+impact follow `ImpactLaw`: `restitution(velocity, mass)`. Only `Brilliantov.restitution` takes no
+mass, because the parameter of this law includes the mass.
 
 These conventions hold for every law:
 
 - **Units** are SI: m, Pa, N, J, kg, m/s. `radius` is the reduced radius R*, `contact_modulus` is
   E*, and `mass` is the reduced mass m*: 1/R* = 1/R₁ + 1/R₂, 1/m* = 1/m₁ + 1/m₂,
-  1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂. The indentation δ is the rigid-body approach, zero at first
-  touch and positive when the contact is compressed.
+  1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂. Only `MDR` uses the radius and mass of one sphere. The
+  indentation δ is the rigid-body approach, zero at first touch and positive when the contact is
+  compressed.
 - **Shapes**: every argument and field may be a number or an array. They broadcast, and the result
   has the broadcast shape (a NumPy scalar if all are numbers).
 - **Separated spheres**: at zero or negative indentation, force or velocity every force, pressure,

@@ -62,7 +62,7 @@ def keep_between(law: object, name: str, low: Values, high: Values = np.inf) -> 
 
 
 def touching(value: Values) -> Array:
-    """Return an indentation, force or velocity with negative values set to zero."""
+    """Return `value` (indentation, force, radius or velocity) with negative values set to zero."""
     return scalar_or_array(np.maximum(np.asarray(value, dtype=np.float64), 0.0))
 
 

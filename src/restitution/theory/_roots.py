@@ -1,7 +1,8 @@
 """Roots of increasing functions, for whole arrays at once.
 
-T. R. Chandrupatla, Advances in Engineering Software 28 (1997) 145–149: inverse quadratic
-interpolation where it is safe, bisection elsewhere. Every element keeps its own bracket.
+The method of T. R. Chandrupatla, Advances in Engineering Software 28 (1997) 145–149, uses inverse
+quadratic interpolation where this is safe and bisection elsewhere. Every element of an array has
+its own bracket.
 """
 
 from __future__ import annotations
@@ -47,8 +48,8 @@ def _chandrupatla(
 ) -> Array:
     """Return the roots of the elements where the mask `inside` is true.
 
-    Point 1 is the newest point, point 2 the other end of the bracket, and point 3 the point before
-    the newest.
+    Point 1 (`x1`, `f1`) is the newest point, point 2 the other end of the bracket, and point 3 the
+    end that point 1 replaced.
     """
     x1, f1, x2, f2 = high, above, low, below
     root, share = np.full_like(x1, np.nan), np.full_like(x1, 0.5)

@@ -1,4 +1,4 @@
-"""Viscoelastic Hertz contact (Brilliantov, Pöschel): restitution as a Padé form.
+"""Viscoelastic Hertz contact (Brilliantov, Pöschel): restitution as a Padé approximant.
 
 N. V. Brilliantov, F. Spahn, J.-M. Hertzsch, T. Pöschel, Phys. Rev. E 53 (1996) 5382–5392; R.
 Ramírez, T. Pöschel, N. V. Brilliantov, T. Schwager, Phys. Rev. E 60 (1999) 4465–4472; P. Müller, T.
@@ -6,19 +6,20 @@ Pöschel, Phys. Rev. E 84 (2011) 021302, arXiv:1102.5247. The equation of motion
 
     ẍ + k x^{3/2} + γ x^½ ẋ = 0,   ẋ(0) = V,   until the force returns to zero (ẍ = 0, x > 0)
 
-depends on one number, v = β^½ V^{1/10} with β = γ/k^{3/5}:
+contains, after scaling, one parameter: v = β^½ V^{1/10} with β = γ/k^{3/5}. With the dissipative
+constant A, which is a time:
 
-    k = 4E*R*^½/3m*,  γ = 3/2 A k,  β = 3/2 A k^{2/5}   (A: the dissipative constant, a time)
+    k = 4E*R*^½/3m*,  γ = 3/2 A k,  β = 3/2 A k^{2/5}
     series   e = 1 − 1.153449 v² + 0.798267 v⁴ + 0.266666 v⁵ − …
     Padé     e = (1 + 0.501086 v)/(1 + 0.501086 v + 1.15345 v² + 0.577977 v³ + 0.532178 v⁴)
 
-Compared with a numerical solution of the equation, the error of the Padé form in e is at most 10⁻⁵
-up to v = 0.2 (e ≥ 0.95), 10⁻³ up to v = 0.6 (e ≥ 0.68) and 0.009 for any v. For e < 0.2 the last
-bound is more than 5 % of e.
+Compared with a numerical solution of the equation, the error of the Padé approximant in e is at
+most 10⁻⁵ up to v = 0.2 (e ≥ 0.95), 10⁻³ up to v = 0.6 (e ≥ 0.68) and 0.009 for any v. If e < 0.2,
+an error of 0.009 is more than 4.5 % of e.
 
-Valid for smooth spheres with a ≪ R*, without yield or adhesion, of a material that relaxes faster
-than the impact lasts. The contact ends when the force returns to zero, at x > 0; ending it at x = 0
-would give a lower e.
+Valid for smooth spheres with contact radius a ≪ R*, without yield or adhesion, if the relaxation
+time of the material is shorter than the impact. The contact ends when the force returns to zero, at
+x > 0. If it ended at x = 0, e would be lower.
 Units, shapes and errors are those of `restitution.theory`.
 """
 
@@ -43,7 +44,8 @@ class Brilliantov:
     The field and arguments may be arrays and broadcast (see `restitution.theory`).
 
     Attributes:
-        dissipation: Dissipation β = γ/k^{3/5} (SI, s^{1/5}·m^{−1/5}).
+        dissipation: Dissipation parameter β = γ/k^{3/5} (SI, s^{1/5}·m^{−1/5}), where γ and k are
+            the damping and the stiffness of the contact, both divided by the reduced mass.
 
     Raises:
         CaseError: The dissipation is not positive and finite.
@@ -61,7 +63,7 @@ class Brilliantov:
     def from_material(
         cls, radius: Values, contact_modulus: Values, dissipative_time: Values, mass: Values
     ) -> Self:
-        """Make the law from the dissipative constant: β = 3/2 A (4E*R*^½/3m*)^{2/5}.
+        """Make the law from the dissipative constant A: β = 3/2 A (4E*R*^½/3m*)^{2/5}.
 
         Args:
             radius: Reduced radius R* (m).

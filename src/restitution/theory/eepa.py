@@ -1,24 +1,25 @@
 """EEPA, the Edinburgh elasto-plastic adhesive model: power-law springs and a constant attraction.
 
 J. P. Morrissey, thesis, University of Edinburgh (2013); S. C. Thakur, J. P. Morrissey, J. Sun, J.
-F. Chen, J. Y. Ooi, Granular Matter 16 (2014) 383–400. With the springs k₁ (loading), k₂ (unloading)
-and k_adh (adhesion), one exponent n for all (1: linear, 3/2: Hertz-like), the constant f₀ ≤ 0 and
-d = δ_max:
+F. Chen, J. Y. Ooi, Granular Matter 16 (2014) 383–400. The stiffnesses are k₁ (loading), k₂
+(unloading) and k_adh (adhesion). The exponent n is the same for all branches (1: linear, 3/2:
+Hertz-like). With the constant force f₀ ≤ 0 and the largest indentation d = δ_max:
 
     loading     F = f₀ + k₁δⁿ
     unloading   F = f₀ + k₂(δⁿ − δ_pⁿ),  δ_p = (1 − k₁/k₂)^{1/n} d
     adhesion    F ≥ f₀ − k_adhδⁿ, reached at δ_min = μd,  μⁿ = (k₂ − k₁)/(k₂ + k_adh)
     work        W_l = f₀d + k₁d^{n+1}/(n + 1)
                 W_u = f₀d + [k₂ − (n + 1)(k₂ − k₁) + n(k₂ + k_adh) μ^{n+1}] d^{n+1}/(n + 1)
-    impact      ½ m* V² = W_l, e² = W_u/W_l, 0 where W_u ≤ 0: stuck, in contact at δ > 0
+    impact      ½ m* V² = W_l, e² = W_u/W_l; if W_u ≤ 0, e = 0: the bodies stick at some δ > 0
 
 The contact begins and ends at δ = 0, where the force jumps between f₀ and zero. Without adhesion
-(f₀ = 0, k_adh = 0) it ends at δ_p, where F = 0, and e does not depend on velocity:
+(f₀ = 0, k_adh = 0) the contact ends at δ_p, where F = 0, and e does not depend on velocity:
 e² = [1 − (n + 1)q + n q^{1+1/n}] k₂/k₁ with q = 1 − k₁/k₂, which is k₁/k₂ for n = 1.
 
-k_adh is a constant here. Codes that derive it from a surface energy (EDEM, PFC, LIGGGHTS' default)
-make it a function of δ_p, and the exponent of their adhesive branch (Morrissey's χ) may differ from
-n. The dashpot is left out. The springs are parameters to be fitted; R* and E* do not enter.
+k_adh is a constant here. Codes that derive k_adh from a surface energy (EDEM, PFC, LIGGGHTS'
+default) make it a function of δ_p, and the exponent of their adhesive branch (Morrissey's χ) may
+differ from n. The dashpot of the model is left out. The stiffnesses are parameters to be fitted; R*
+and E* do not enter.
 Units, shapes and errors are those of `restitution.theory`, with stiffness in N/mⁿ.
 """
 
@@ -82,7 +83,7 @@ class EEPA:
             indentation: Approach of the spheres δ (m).
 
         Returns:
-            Normal force F (N); it jumps from 0 to f₀ at first touch.
+            Normal force F (N). It jumps from 0 to f₀ at first touch.
         """
         d = touching(indentation)
         F = self.constant_force + self.loading_stiffness * d**self.exponent
@@ -126,7 +127,7 @@ class EEPA:
             maximum_indentation: Indentation at which unloading began, δ_max (m).
 
         Returns:
-            Magnitude of the force k_adhδ_minⁿ − f₀ (N); 0 without any indentation.
+            Magnitude k_adhδ_minⁿ − f₀ of the force (N); 0 if `maximum_indentation` ≤ 0.
         """
         d, (k1, k2, k_adh) = touching(maximum_indentation), self._springs
         F_c = k_adh * (k2 - k1) / (k2 + k_adh) * d**self.exponent - self.constant_force
@@ -162,9 +163,9 @@ class EEPA:
     def indentation_from_velocity(self, velocity: Values, mass: Values) -> Array:
         """Largest indentation of an impact.
 
-        With K = ½m*V², a = ((n + 1) K/k₁)^{1/(n+1)} is the indentation without f₀, and
-        b = (−(n + 1) f₀/k₁)^{1/n} the indentation that f₀ alone causes. The root lies between
-        max(a, b) and a + b.
+        The indentation is the root of W_l(δ) = K with K = ½m*V². Without f₀ it would be
+        a = ((n + 1) K/k₁)^{1/(n+1)}, and f₀ alone (K = 0) would cause b = (−(n + 1) f₀/k₁)^{1/n}.
+        The root lies between max(a, b) and a + b.
 
         Args:
             velocity: Relative normal impact velocity V (m/s).

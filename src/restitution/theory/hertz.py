@@ -1,6 +1,7 @@
 """Hertz (1882): smooth, frictionless, linear elastic spheres.
 
-With the contact radius a, a² = R*δ (Johnson 1985, *Contact Mechanics*, section 4.2):
+With the contact radius a, where a² = R*δ, the force F, the elastic energy W and the pressure p are
+(Johnson 1985, *Contact Mechanics*, section 4.2):
 
     F = 4/3 E* R*^½ δ^{3/2},   W = 8/15 E* R*^½ δ^{5/2},
     p(r) = p₀ (1 − r²/a²)^½,   p₀ = 2E*a/(πR*).
@@ -101,7 +102,7 @@ class Hertz:
         return scalar_or_array(np.sqrt(self.radius * touching(indentation)))
 
     def contact_area(self, indentation: Values) -> Array:
-        """Contact area at an indentation, half the area of overlap of the undeformed spheres.
+        """Contact area at an indentation: half the area in which undeformed spheres would overlap.
 
         Args:
             indentation: Approach of the spheres δ (m).
@@ -123,7 +124,7 @@ class Hertz:
         return 8 / 15 * self.contact_modulus * self.radius**0.5 * touching(indentation) ** 2.5
 
     def impact_velocity(self, indentation: Values, mass: Values) -> Array:
-        """Impact velocity that reaches an indentation: ½ m* V² = W.
+        """Impact velocity at which an impact reaches an indentation: ½ m* V² = W.
 
         Args:
             indentation: Approach of the spheres δ (m).
@@ -147,7 +148,7 @@ class Hertz:
         Returns:
             Peak pressure p₀ = 2E*a/(πR*) (Pa).
         """
-        d = touching(indentation)  # 2E*a/(πR*) with a = (R*δ)^½
+        d = touching(indentation)  # p₀ = 2E*a/(πR*) with a = (R*δ)^½
         return 2 * self.contact_modulus / np.pi * (d / self.radius) ** 0.5
 
     def pressure(self, radial_distance: Values, indentation: Values) -> Array:
@@ -164,5 +165,5 @@ class Hertz:
             Pressure p(r) = p₀ (1 − r²/a²)^½ (Pa), zero outside the contact.
         """
         r, R = np.asarray(radial_distance, dtype=np.float64), self.radius
-        d = touching(indentation)  # p₀(1 − r²/a²)^½, a² = R*δ
+        d = touching(indentation)  # p = p₀ (1 − r²/a²)^½ with a² = R*δ
         return 2 * self.contact_modulus / (np.pi * R) * touching(R * d - r**2) ** 0.5

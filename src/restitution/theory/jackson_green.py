@@ -1,22 +1,23 @@
 """Jackson & Green (2005): finite-element fit of an elastic, perfectly plastic sphere on a flat.
 
 R. L. Jackson, I. Green, J. Tribology 127 (2005) 343–354, doi 10.1115/1.1866166. With the contact
-modulus E* (their E′), the yield strength Y of a tensile test (their S_y) and ω* = ω/ω_c:
+modulus E* (their E′), the yield strength Y of a tensile test (their S_y), the indentation ω and
+ω* = ω/ω_c, the force P and the contact area A = πa² are:
 
     C = 1.295 exp(0.736 ν),  ω_c = (πCY/2E*)² R*,  P_c = 4/3 (R*/E*)² (πCY/2)³,  A_c = πR*ω_c
-    ω* ≤ 1.9    P/P_c = ω*^{3/2},  A/A_c = ω*: Hertz, although yielding began inside at ω* = 1
+    ω* ≤ 1.9    P/P_c = ω*^{3/2},  A/A_c = ω*: Hertz, although yield begins inside at ω* = 1
     ω* > 1.9    P/P_c = exp(−ω*^{5/12}/4) ω*^{3/2} + 4H_G/(CY) [1 − exp(−ω*^{5/9}/25)] ω*
                 A/A_c = ω* (ω*/1.9)^B,  B = 0.14 exp(23 Y/E*)
-                H_G/Y = 2.84 [1 − exp(−0.82 (a/R*)^{−0.7})],  πa² = A
+                H_G/Y = 2.84 [1 − exp(−0.82 (a/R*)^{−0.7})]
 
 CY is the peak pressure at first yield: ω_c is `FirstYield.indentation` with p_y = CY.
 
-The fit covers only loading against a rigid frictionless flat. It is a fit to five steel-like
-materials (Y/E* from 0.001 to 0.007, ν = 0.32; von Mises, no hardening) up to a/R* = 0.412. In this
-range the force is within 1 % of the finite elements on average and 3.5 % at worst, the area within
-1.3 % and 4.3 %. Elsewhere it extrapolates: the branches of the force meet within 0.1 % at ν = 0.32,
-but the force jumps at ω* = 1.9 by +7.5 % at ν = 0, +1.5 % at ν = 0.25 and −3.4 % at ν = 0.5. For
-two deformable bodies use Y and ν of the one with the smaller CY.
+The fit covers only loading against a rigid frictionless flat. Its data are finite-element results
+for five steel-like materials (Y/E* from 0.001 to 0.007, ν = 0.32; von Mises, no hardening) up to
+a/R* = 0.412. The force deviates from these results by 1 % on average and by at most 3.5 %, the area
+by 1.3 % and 4.3 %. Outside these ranges the fit extrapolates. At ω* = 1.9 the force of the two
+branches agrees within 0.1 % for ν = 0.32, but it jumps by +7.5 % for ν = 0, +1.5 % for ν = 0.25 and
+−3.4 % for ν = 0.5. For two deformable bodies use Y and ν of the body with the smaller CY.
 Units, shapes and errors are those of `restitution.theory`.
 """
 
@@ -32,7 +33,7 @@ from .hertz import Hertz
 from .yielding import FirstYield, yield_coefficient
 
 TRANSITION = 1.9
-"""ω* up to which the fit equals Hertz."""
+"""Normalised indentation ω* = ω/ω_c up to which the fit equals Hertz."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,17 +63,17 @@ class JacksonGreen:
 
     def __post_init__(self) -> None:
         keep_positive(self, "radius", "contact_modulus", "yield_strength")
-        yield_coefficient(self.poissons_ratio)  # raises CaseError outside its range
+        yield_coefficient(self.poissons_ratio)  # raises CaseError for an impossible value
         keep(self, "poissons_ratio", self.poissons_ratio)
 
     @cached_property
     def elastic(self) -> Hertz:
-        """Hertz contact that the fit follows up to ω* = 1.9."""
+        """Hertz contact that the fit follows up to the normalised indentation ω* = 1.9."""
         return Hertz(self.radius, self.contact_modulus)
 
     @cached_property
     def first_yield(self) -> FirstYield:
-        """First yield (ω_c and P_c), below the surface: p_y = CY."""
+        """First yield, below the surface: indentation ω_c and force P_c at the peak pressure CY."""
         p_c = yield_coefficient(self.poissons_ratio) * self.yield_strength
         return FirstYield(self.radius, self.contact_modulus, p_c)
 
@@ -133,5 +134,5 @@ class JacksonGreen:
         return scalar_or_array(first.force * np.where(w <= TRANSITION, w**1.5, fit))
 
     def _normalised(self, indentation: Values) -> Array:
-        """ω* = ω/ω_c, zero for separated bodies."""
+        """Normalised indentation ω* = ω/ω_c, zero for separated bodies."""
         return touching(indentation) / self.first_yield.indentation

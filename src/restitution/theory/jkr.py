@@ -2,12 +2,14 @@
 
 K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. Lond. A 324 (1971) 301–313, doi
 10.1098/rspa.1971.0141; D. Maugis, *Contact, Adhesion and Rupture of Elastic Solids*, Springer 2000.
-With the work of adhesion w, Hertz minus a flat punch (`kendall`) of the same contact radius a:
+With the work of adhesion w, the contact is a Hertz contact minus an adhering flat punch (`kendall`)
+of the same contact radius a:
 
     F = 4E*a³/(3R*) − (8πE*wa³)^½,   δ = a²/R* − (2πwa/E*)^½
 
-Forces are positive in compression and δ closes the contact; only `pull_off_force` is a magnitude.
-With a_b = (πwR*²/8E*)^{1/3}, F_c = 3/2 πwR* and U = E*a_b⁵/R*², all quantities are polynomials in
+Forces are positive in compression, and δ is positive when the contact is compressed; only
+`pull_off_force` is a magnitude. With a_b = (πwR*²/8E*)^{1/3}, F_c = 3/2 πwR* and U = E*a_b⁵/R*²,
+the indentation δ, the force F, the elastic energy U_el and the total energy U_T are polynomials in
 s = (a/a_b)^½:
 
     δ = (s⁴ − 4s) a_b²/R*,   F = (s⁶ − 6s³) F_c/9
@@ -15,21 +17,22 @@ s = (a/a_b)^½:
 
     s³ = 1    break at fixed grips, the smallest possible δ:  δ_b = −3a_b²/R*,  F = −5/9 F_c
     s³ = 3    pull-off at fixed load, the smallest F:  a_c = (9πwR*²/8E*)^{1/3},  F = −F_c
-    s³ = 4    δ = 0, where an approaching pair jumps in:  F = −8/9 F_c
+    s³ = 4    δ = 0, where approaching spheres jump into contact:  F = −8/9 F_c
     s³ = 6    no load:  a = (9πwR*²/2E*)^{1/3}
 
-The branch s ≥ 1 is stable at fixed grips, s < 1 is unstable. Methods that take the contact radius
-hold on both branches, methods that take the indentation on the stable one. The stable branch exists
-for δ ≥ δ_b. On approach the pair jumps into it at δ = 0 (F = 0 before), and on separation it leaves
-it at δ_b; below δ_b all quantities are 0. A full cycle of contact dissipates the same energy from
-any depth, in the jump in and in the break:
+At fixed grips (prescribed δ) the branch s ≥ 1 is stable and the branch s < 1 unstable. Methods that
+take the contact radius hold on both branches; methods that take the indentation hold on the stable
+branch. The stable branch exists for δ ≥ δ_b. Approaching spheres jump onto this branch at δ = 0
+(F = 0 before the jump), and separating spheres leave it at δ_b; below δ_b all quantities are 0. The
+jump into contact and the break together dissipate the same energy for any largest indentation:
 
     W_s = −∫ F dδ from δ_b to 0 = U_T(δ_b) − U_T(0) = 8/5 (2 + 3·4^{4/3}) U
         = 7.092 (w⁵R*⁴/E*²)^{1/3},
 
 printed as 7.09 by Thornton & Ning, Powder Technology 99 (1998) 154–162.
 
-With the velocity V before the jump in, an elastic impact of reduced mass m* sticks up to V_s:
+If V is the velocity before the jump into contact, an elastic impact of reduced mass m* sticks up to
+the sticking velocity V_s:
 
     ½ m* V_s² = W_s:  V_s = (14.18/m*)^½ (w⁵R*⁴/E*²)^{1/6},   e² = 1 − (V_s/V)², 0 for V ≤ V_s
 
@@ -41,11 +44,12 @@ Valid for quasi-static normal impacts in the range of Hertz (a ≪ R*, no yield:
     μ = (R*w²/(E*²z₀³))^{1/3}
 
 (D. Tabor, J. Colloid Interface Sci. 58 (1977) 2–13), the ratio of the height of the JKR neck to the
-range z₀ of the forces. μ > 5 is JKR, μ < 0.1 is DMT or rigid (Johnson & Greenwood, J. Colloid
-Interface Sci. 192 (1997) 326–333). With growing μ the pull-off force approaches its JKR value long
-before the jump in does, because forces of finite range act before first touch. So W_s needs a
-larger μ (Ciavarella, Greenwood & Barber, J. Mech. Phys. Solids 98 (2017) 236–244). Small hard
-particles have a small μ, and then stick less than V_s predicts.
+range z₀ of the forces. JKR holds for μ > 5; for μ < 0.1 the contact follows DMT or the spheres are
+rigid (Johnson & Greenwood, J. Colloid Interface Sci. 192 (1997) 326–333). As μ grows, the pull-off
+force approaches its JKR value long before the jump into contact does, because forces of finite
+range act before first touch. So W_s requires a larger μ than the pull-off force (Ciavarella,
+Greenwood & Barber, J. Mech. Phys. Solids 98 (2017) 236–244). Small hard particles have a small μ,
+and their sticking velocity is below V_s.
 Units, shapes and errors are those of `restitution.theory`.
 """
 
@@ -61,8 +65,8 @@ from ._inputs import Array, Values, keep_positive, positive, scalar_or_array, to
 from .hertz import Hertz
 from .kendall import Kendall
 
-_AT_BREAK = 16 / 5  # U_T/U at s = 1
-_AT_JUMP_IN = -24 / 5 * 4 * math.cbrt(4)  # U_T/U at s³ = 4
+_AT_BREAK = 16 / 5  # normalised total energy U_T/U at s = 1
+_AT_JUMP_IN = -24 / 5 * 4 * math.cbrt(4)  # normalised total energy U_T/U at s³ = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,33 +95,34 @@ class JKR:
         keep_positive(self, "radius", "contact_modulus", "work_of_adhesion")
 
     def force(self, indentation: Values) -> Array:
-        """Normal force on the stable branch.
+        """Normal force of spheres in contact, on the branch that is stable at fixed grips.
 
-        F is −5/9 F_c at δ_b and −8/9 F_c at δ = 0, with a minimum of −F_c between them. The force
-        before the jump in at δ = 0 is not included; `loading_work` starts there.
+        F is −5/9 F_c at δ_b and −8/9 F_c at δ = 0, with a minimum of −F_c between them. For δ < 0
+        this is the force on separation; approaching spheres have no force before they jump into
+        contact at δ = 0.
 
         Args:
             indentation: Approach of the spheres δ (m).
 
         Returns:
-            Normal force F (N), positive in compression; 0 below the break δ_b.
+            Normal force F (N), positive in compression; 0 below the indentation δ_b of the break.
         """
         s = self._root(indentation)
         return self.pull_off_force / 9 * s**3 * (s**3 - 6)
 
     def contact_radius(self, indentation: Values) -> Array:
-        """Contact radius on the stable branch.
+        """Contact radius at an indentation, on the branch that is stable at fixed grips.
 
         Args:
             indentation: Approach of the spheres δ (m).
 
         Returns:
-            Contact radius a ≥ a_b (m); 0 below the break δ_b.
+            Contact radius a ≥ a_b (m); 0 below the indentation δ_b of the break.
         """
         return self.break_radius * self._root(indentation) ** 2
 
     def force_at_contact_radius(self, contact_radius: Values) -> Array:
-        """Normal force at a contact radius, on both branches.
+        """Normal force at a contact radius, on the stable and the unstable branch.
 
         Args:
             contact_radius: Contact radius a (m).
@@ -129,7 +134,7 @@ class JKR:
         return pressed - self._drawn.pull_off_force(contact_radius)
 
     def indentation_at_contact_radius(self, contact_radius: Values) -> Array:
-        """Indentation at a contact radius, on both branches.
+        """Indentation at a contact radius, on the stable and the unstable branch.
 
         Args:
             contact_radius: Contact radius a (m).
@@ -141,10 +146,10 @@ class JKR:
         return a**2 / self.radius - self._drawn.pull_off_displacement(a)
 
     def stored_energy_at_contact_radius(self, contact_radius: Values) -> Array:
-        """Elastic energy at a contact radius, on both branches.
+        """Elastic energy at a contact radius, on the stable and the unstable branch.
 
-        Hertz loading to a, then unloading of a punch of stiffness 2E*a by δ′ = (2πwa/E*)^½ at fixed
-        contact gives U_el = 8E*a⁵/(15R*²) − 4E*a³δ′/(3R*) + E*aδ′².
+        Hertz loading to the contact radius a, followed by unloading by δ′ = (2πwa/E*)^½ at fixed a
+        (stiffness 2E*a), gives U_el = 8E*a⁵/(15R*²) − 4E*a³δ′/(3R*) + E*aδ′².
 
         Args:
             contact_radius: Contact radius a (m).
@@ -157,7 +162,9 @@ class JKR:
         return E_star * a * (8 * a**4 / (15 * R**2) - 4 * a**2 * drawn / (3 * R) + drawn**2)
 
     def total_energy_at_contact_radius(self, contact_radius: Values) -> Array:
-        """Elastic plus surface energy at a contact radius, on both branches; dU_T/dδ = F.
+        """Elastic plus surface energy at a contact radius, on the stable and the unstable branch.
+
+        Its derivative with respect to the indentation is the force: dU_T/dδ = F.
 
         Args:
             contact_radius: Contact radius a (m).
@@ -211,12 +218,12 @@ class JKR:
 
     @property
     def adhesive_length(self) -> Array:
-        """Height of the neck (w²R*/E*²)^{1/3} (m); δ_b is −1.61 times this length."""
+        """Height (w²R*/E*²)^{1/3} (m) of the neck; `break_indentation` is −1.61 times it."""
         R, E_star, w = self.radius, self.contact_modulus, self.work_of_adhesion
         return scalar_or_array((w * w * R / E_star**2) ** (1 / 3))
 
     def loading_work(self, indentation: Values) -> Array:
-        """Work from the jump in at δ = 0 to an indentation.
+        """Work from the jump into contact at δ = 0 to an indentation.
 
         Args:
             indentation: Approach of the spheres δ (m).
@@ -229,14 +236,16 @@ class JKR:
         return scalar_or_array(np.where(np.asarray(indentation) <= 0, 0.0, W_l))
 
     def unloading_work(self, indentation: Values) -> Array:
-        """Work returned on separation, from an indentation to the break: W_u = W_l − W_s.
+        """Work returned on unloading from an indentation to the break.
+
+        For δ ≥ 0 it equals W_l − W_s, that is `loading_work` minus `hysteresis_loss`.
 
         Args:
             indentation: Approach of the spheres δ (m).
 
         Returns:
-            Unloading work W_u = ∫F dδ (J), negative if separation takes more work than was stored;
-            0 below the break.
+            Unloading work W_u = ∫F dδ from the break to δ (J), negative if separation consumes
+            work; 0 below the break.
         """
         s = self._root(indentation)
         W_u = self._energy_unit * (_total_energy(s) - _AT_BREAK)
@@ -244,11 +253,11 @@ class JKR:
 
     @property
     def hysteresis_loss(self) -> Array:
-        """Energy W_s = 7.092 (w⁵R*⁴/E*²)^{1/3} (J) dissipated per cycle at any depth."""
+        """Energy W_s = 7.092 (w⁵R*⁴/E*²)^{1/3} (J) dissipated per impact, at any depth."""
         return (_AT_BREAK - _AT_JUMP_IN) * self._energy_unit
 
     def impact_velocity(self, maximum_indentation: Values, mass: Values) -> Array:
-        """Impact velocity that reaches an indentation: ½ m* V² = W_l.
+        """Impact velocity at which an impact reaches an indentation: ½ m* V² = W_l.
 
         Args:
             maximum_indentation: Largest indentation of the impact δ_max (m).
@@ -264,7 +273,7 @@ class JKR:
         return scalar_or_array(np.where(W_l < 0, np.nan, (2 * np.abs(W_l) / m) ** 0.5))
 
     def sticking_velocity(self, mass: Values) -> Array:
-        """Relative normal velocity of the fastest elastic impact that sticks.
+        """Largest relative normal velocity at which an elastic impact sticks.
 
         Args:
             mass: Reduced mass m* (kg).
@@ -335,11 +344,12 @@ class JKR:
         return Kendall(self.contact_modulus, self.work_of_adhesion)
 
     def _root(self, indentation: Values) -> Array:
-        """s = (a/a_b)^½ on the stable branch: the root s ≥ 1 of s⁴ − 4s = 3k; 0 below the break.
+        """s = (a/a_b)^½ on the stable branch; 0 below the break.
 
-        With k = δ/|δ_b| ≥ −1 and y = 2p² the positive root of Ferrari's cubic y³ + 3ky = 2,
-        s = p + (1/p − p²)^½. Cardano's formula is y = t − k/t with t³ = 1 + (1 + k³)^½. It is
-        evaluated as 2/(t² + k + k²/t²), which has no cancellation at any depth.
+        s ≥ 1 is the larger root of s⁴ − 4s = 3k with k = δ/|δ_b| ≥ −1. Ferrari's method gives
+        s = p + (1/p − p²)^½, where y = 2p² is the positive root of the cubic y³ + 3ky = 2.
+        Cardano's formula for this root, y = t − k/t with t³ = 1 + (1 + k³)^½, is evaluated as
+        y = 2/(t² + k + k²/t²), which has no cancellation at any depth.
         """
         d, d_b = np.asarray(indentation, dtype=np.float64), self.break_indentation
         above = np.maximum((d - d_b) / -d_b, 0.0)  # 1 + k, exactly 0 at the break
@@ -351,10 +361,10 @@ class JKR:
 
     @property
     def _energy_unit(self) -> Array:
-        """U = E*a_b⁵/R*² (J)."""
+        """Unit of energy U = E*a_b⁵/R*² (J)."""
         return self.contact_modulus * self.break_radius**5 / self.radius**2
 
 
 def _total_energy(s: Array) -> Array:
-    """Total energy U_T/U."""
+    """Total energy U_T/U in units of U = E*a_b⁵/R*², for s = (a/a_b)^½."""
     return s**4 * (8 / 15 * s**6 - 16 / 3 * s**3 + 8)

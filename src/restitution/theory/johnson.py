@@ -1,8 +1,8 @@
 """Johnson (1985): fully plastic impact of a sphere, elastic rebound, no adhesion.
 
 K. L. Johnson, Contact Mechanics (Cambridge, 1985), section 11.5. The contact of radius a flows at a
-constant pressure p_d and keeps δ = a²/2R*. The rebound is that of a Hertz contact with the
-flattened surface:
+constant pressure p_d, and δ = a²/2R*. W is the work of loading to the force F. The rebound is that
+of a Hertz contact with the flattened surface and returns the work W_u:
 
     ½ m* V² = W = πp_da⁴/4R*,   W_u = 3F²/10E*a,  F = πa²p_d
     e² = W_u/W = (3π^{5/4} 4^{3/4}/10) (p_d/E*) (W/p_dR*³)^{−1/4}
@@ -95,7 +95,9 @@ class Johnson:
         return self._velocity(self._energy_of_unity / e**8, mass)
 
     def velocity_at_full_radius(self, mass: Values) -> Array:
-        """Impact velocity at which a reaches R*: W = π 3Y a⁴/4R*.
+        """Impact velocity at which the contact radius a reaches R*.
+
+        The loading work W = π 3Y a⁴/4R* with a = R* equals ½m*V².
 
         Args:
             mass: Reduced mass m* (kg).
@@ -114,6 +116,6 @@ class Johnson:
         return (COEFFICIENT**2 * self.yield_strength / self.contact_modulus) ** 4
 
     def _velocity(self, reduced: Values, mass: Values) -> Array:
-        """V (m/s) at a reduced energy ½m*V²/YR*³."""
+        """Impact velocity V (m/s) at a reduced energy ½m*V²/YR*³."""
         (m,) = positive(mass=mass)
         return scalar_or_array(np.sqrt(2 * reduced * self.yield_strength * self.radius**3 / m))

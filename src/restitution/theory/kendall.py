@@ -7,14 +7,18 @@ release rate F²/(8πE*a³). The punch detaches when this rate reaches the work 
     F = (8πE*wa³)^½,   displacement F/(2E*a) = (2πwa/E*)^½.
 
 The whole contact detaches at once, because crack growth raises the energy release rate. F grows as
-a^{3/2}, so the mean pressure F/(πa²) at detachment falls with size. The work ½F²/(2E*a) = 2πwa² is
-twice the surface energy; the other half is dissipated. JKR theory is Hertz theory minus this force
-and this displacement at the same contact radius (`jkr`).
+a^{3/2}, so the mean tension F/(πa²) at detachment decreases with a. The work ½F²/(2E*a) = 2πwa² is
+twice the surface energy πwa²; the other half is dissipated. JKR theory is Hertz theory minus this
+force and this displacement at the same contact radius (`jkr`).
 
-Valid under three conditions. The contact is frictionless, or the half-space is incompressible. The
-range of the surface forces is much shorter than the displacement (2πwa/E*)^½. The radius a is much
-smaller than the bodies. The punch is rigid, or it is elastic, its compliance is part of E* and the
-influence of its side walls is negligible.
+Valid under four conditions:
+
+- The contact is frictionless, or the half-space is incompressible.
+- The range of the surface forces is much shorter than the displacement (2πwa/E*)^½.
+- The radius a is much smaller than the bodies.
+- The punch is rigid; or it is elastic, E* includes its compliance, and the influence of its side
+  walls is negligible.
+
 Units, shapes and errors are those of `restitution.theory`.
 """
 
@@ -51,7 +55,7 @@ class Kendall:
         keep_positive(self, "contact_modulus", "work_of_adhesion")
 
     def pull_off_force(self, contact_radius: Values) -> Array:
-        """Tension that detaches a punch.
+        """Tensile force that detaches the punch.
 
         Args:
             contact_radius: Radius a of the punch (m).

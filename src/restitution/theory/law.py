@@ -29,10 +29,10 @@ class ImpactLaw(Protocol):
 
 
 def restitution_of_work(unloading_work: Values, velocity: Values, mass: Values) -> Array:
-    """Coefficient of restitution e = (W_u/½m*V²)^½, at most 1, and 0 where W_u ≤ 0.
+    """Coefficient of restitution e = (W_u/½m*V²)^½, limited to 1; 0 where W_u ≤ 0.
 
-    `unloading_work` W_u (J) is the work that the contact returns. The result is 1 at zero or
-    negative `velocity` (m/s).
+    `unloading_work` W_u (J) is the work that the contact returns, `velocity` V (m/s) the impact
+    velocity and `mass` m* (kg) the reduced mass. The result is 1 at zero or negative velocity.
     """
     (m,) = positive(mass=mass)
     W_l = 0.5 * m * touching(velocity) ** 2

@@ -1,4 +1,4 @@
-"""Attraction of finite range: the Lennard-Jones law between half-spaces.
+"""Surface forces of finite range: the Lennard-Jones law between half-spaces and rigid spheres.
 
 Integrating the Lennard-Jones potential of atoms over two half-spaces gives the traction
 
@@ -9,12 +9,13 @@ equilibrium separation z₀ (V. M. Muller, V. S. Yushchenko, B. V. Derjaguin, J.
 Sci. 77 (1980) 91–101; J. A. Greenwood, Proc. R. Soc. Lond. A 453 (1997) 1277–1297). The traction is
 largest, σ₀ = 16w/(9√3 z₀), at g = 3^{1/6} z₀.
 
-Integrated over rigid spheres (a paraboloid of reduced radius R*) at the smallest gap g,
+Integrating this traction over rigid spheres (a paraboloid of reduced radius R*) gives the force
 
-    F = −(8/3) πwR* [(z₀/g)² − ¼ (z₀/g)⁸],
+    F = −(8/3) πwR* [(z₀/g)² − ¼ (z₀/g)⁸]
 
-with the pull-off force 2πwR* at g = z₀ (R. S. Bradley, Phil. Mag. 13 (1932) 853–862). This is the
-limit of hard spheres, for which the Tabor parameter tends to zero.
+at the smallest gap g between the spheres, with the pull-off force 2πwR* at g = z₀ (R. S. Bradley,
+Phil. Mag. 13 (1932) 853–862). This is the limit of hard spheres, in which the Tabor parameter tends
+to zero.
 Units, shapes and errors are those of `restitution.theory`.
 """
 
@@ -30,11 +31,11 @@ from ._inputs import Array, Values, keep_positive, positive, scalar_or_array
 
 @dataclass(frozen=True, eq=False)
 class LennardJones:
-    """Traction between two surfaces, and the force between rigid spheres.
+    """Lennard-Jones traction between two surfaces, and the force between rigid spheres.
 
     Attributes:
         work_of_adhesion: Work of adhesion w (J/m²).
-        equilibrium_separation: Gap z₀ without traction (m).
+        equilibrium_separation: Gap z₀ at which the traction is zero (m).
 
     Raises:
         CaseError: A field is not positive and finite.
@@ -50,7 +51,7 @@ class LennardJones:
         keep_positive(self, "work_of_adhesion", "equilibrium_separation")
 
     def traction(self, gap: Values) -> Array:
-        """Attraction per area.
+        """Attractive force per area between two surfaces.
 
         Args:
             gap: Gap g between the surfaces (m), positive.
@@ -85,8 +86,9 @@ class LennardJones:
     def dugdale_traction(self) -> Array:
         """Constant traction 0.548 w/z₀ (Pa) of a Dugdale law with the same w and the same ∫σ² dg.
 
-        With this traction the pull-off force of `MaugisDugdale` is that of the Lennard-Jones law
-        within 1.5 %; with the largest traction σ₀ it is up to 5.4 % too small (docs/adhesion.md).
+        With this traction the pull-off force of `MaugisDugdale` agrees with that of the
+        Lennard-Jones law within 1.5 %. With the largest traction σ₀ the pull-off force is up to
+        5.4 % too small (docs/adhesion.md).
         """
         factor = 64 / 9 * (1 / 5 - 2 / 11 + 1 / 17)
         return scalar_or_array(factor * self.work_of_adhesion / self.equilibrium_separation)
@@ -139,7 +141,7 @@ class LennardJones:
             radius: Reduced radius R* (m).
 
         Returns:
-            Pull-off force 2πwR* (N).
+            Magnitude 2πwR* of the pull-off force (N).
 
         Raises:
             CaseError: `radius` is not positive and finite.
@@ -148,4 +150,5 @@ class LennardJones:
         return scalar_or_array(2 * math.pi * self.work_of_adhesion * R)
 
     def _ratio(self, gap: Values) -> Array:
+        """Ratio z₀/g."""
         return scalar_or_array(self.equilibrium_separation / np.asarray(gap, dtype=np.float64))

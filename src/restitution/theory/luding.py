@@ -1,22 +1,23 @@
 """Luding (2008): linear springs with plastic loading, an elastic limit and linear adhesion.
 
 S. Luding, Granular Matter 10 (2008) 235–246, eqs. 6–8; the limit branch as given by A. Singh, V.
-Magnanimo, S. Luding, arXiv:1503.03720. The springs are k₁ (plastic loading), k̂₂ (the elastic
-limit) and k_c (adhesion), and φ_f is the plasticity depth. With d = δ_max and x = d/δ*:
+Magnanimo, S. Luding, arXiv:1503.03720. The stiffnesses are k₁ (plastic loading), k̂₂ (the elastic
+limit) and k_c (adhesion), and φ_f is the plasticity depth. With the largest indentation d = δ_max
+and x = d/δ*:
 
-    limit       δ* = k̂₂/(k̂₂ − k₁) φ_f 2R*,  and there δ₀* = φ_f 2R*
+    limit       δ* = k̂₂/(k̂₂ − k₁) φ_f 2R*,  with the residual indentation δ₀* = φ_f 2R*
     unloading   F = k₂(δ − δ₀),  k₂ = k₁ + (k̂₂ − k₁) min(x, 1),  δ₀ = min((1 − k₁/k₂) d, δ₀*)
     loading     F = k₁δ up to δ*, then the limit F = k̂₂(δ − δ₀*): both are k₂(δ − δ₀) at δ = d
     adhesion    F ≥ −k_cδ, reached at δ_min = k₂δ₀/(k₂ + k_c); from there F = −k_cδ to δ = 0
     work        W_l = ½k₂(d − δ₀)² + ½k₁ min(d, δ*) δ₀,  W_u = ½k₂(d − δ₀)² − ½ k_cδ_minδ₀
-    impact      ½ m* V² = W_l, e² = W_u/W_l, 0 where W_u ≤ 0: stuck, in contact at δ > 0
+    impact      ½ m* V² = W_l, e² = W_u/W_l; if W_u ≤ 0, e = 0: the bodies stick at some δ > 0
 
 2R* is Luding's 2a₁a₂/(a₁ + a₂): the radius of each of two equal spheres, or twice the radius of a
-sphere on a wall. Without adhesion e = (k₁/k₂)^½ falls to its minimum (k₁/k̂₂)^½ at δ* and rises
-beyond, where the limit branch is elastic.
+sphere on a wall. Without adhesion e = (k₁/k₂)^½ falls with growing d to its minimum (k₁/k̂₂)^½ at
+d = δ*. Beyond δ* it rises, because the limit branch is elastic.
 
-With k_c > 0 the contact ends at δ = 0. With k_c = 0 it ends at δ₀, where F = 0. The law is
-quasi-static: the viscous term γ₀v of the paper is left out. The springs are parameters to be
+With k_c > 0 the contact ends at δ = 0; with k_c = 0 it ends at δ₀, where F = 0. The law is
+quasi-static: the viscous term γ₀v of the paper is left out. The stiffnesses are parameters to be
 fitted; φ_f 2R* is the only length scale.
 Units, shapes and errors are those of `restitution.theory`.
 """
@@ -48,10 +49,10 @@ class Luding:
     Attributes:
         radius: Reduced radius R* (m).
         loading_stiffness: Stiffness k₁ of plastic loading (N/m).
-        limit_stiffness: Stiffness k̂₂ of the elastic limit (N/m), at least k₁; the law is elastic
-            if equal.
+        limit_stiffness: Stiffness k̂₂ of the elastic limit (N/m), at least k₁. If both are equal,
+            the law is elastic.
         adhesive_stiffness: Stiffness k_c of the adhesive branch (N/m), at least 0.
-        plasticity_depth: Plasticity depth φ_f (1).
+        plasticity_depth: Plasticity depth φ_f (1): the largest residual indentation over 2R*.
 
     Raises:
         CaseError: A field is not finite or not in its range.
@@ -127,7 +128,7 @@ class Luding:
             maximum_indentation: Indentation at which unloading began, δ_max (m).
 
         Returns:
-            Magnitude of the force k_cδ_min (N).
+            Magnitude k_cδ_min of the force (N).
         """
         k_c, (k2, d0) = self.adhesive_stiffness, self._unloading_line(maximum_indentation)
         return k_c * k2 / (k2 + k_c) * d0
@@ -135,7 +136,7 @@ class Luding:
     def loading_work(self, indentation: Values) -> Array:
         """Work done from first touch to an indentation on first loading.
 
-        ½k₂(δ − δ₀)² of it is elastic and ½k₁ min(δ, δ*) δ₀ is dissipated.
+        The part ½k₂(δ − δ₀)² is elastic, and the part ½k₁ min(δ, δ*) δ₀ is dissipated.
 
         Args:
             indentation: Approach of the spheres δ (m).
@@ -164,7 +165,8 @@ class Luding:
     def indentation_from_velocity(self, velocity: Values, mass: Values) -> Array:
         """Largest indentation of an impact.
 
-        d₁ = V (m*/k₁)^½ up to δ*; beyond, the root of k̂₂(δ − δ₀*)² = k₁(d₁² − δ*δ₀*).
+        The indentation is d₁ = V (m*/k₁)^½ if d₁ ≤ δ*. Otherwise it is the root δ > δ* of
+        k̂₂(δ − δ₀*)² = k₁(d₁² − δ*δ₀*).
 
         Args:
             velocity: Relative normal impact velocity V (m/s).
@@ -203,11 +205,11 @@ class Luding:
 
     @property
     def _limit_residual(self) -> Values:
-        """Residual indentation δ₀* at the limit (m)."""
+        """Residual indentation δ₀* (m) after loading to the elastic limit δ* or deeper."""
         return self.plasticity_depth * 2 * self.radius
 
     def _depth(self, indentation: Values) -> Array:
-        """x = δ/δ*, zero where k̂₂ = k₁."""
+        """Indentation relative to the elastic limit, x = δ/δ*; zero where k̂₂ = k₁."""
         rise = 1 - self.loading_stiffness / self.limit_stiffness
         return touching(indentation) * rise / self._limit_residual
 

@@ -1,8 +1,9 @@
 """Maugis (1992): elastic spheres with a constant attraction of finite range (Dugdale).
 
 D. Maugis, J. Colloid Interface Sci. 150 (1992) 243–269; K. L. Johnson, J. A. Greenwood, J. Colloid
-Interface Sci. 192 (1997) 326–333. The traction σ₀ acts in a ring a < r < c up to the gap w/σ₀. With
-K = 4/3 E*, the parameter λ = 2σ₀ (R*/(πwK²))^{1/3} and the dimensionless
+Interface Sci. 192 (1997) 326–333. The attraction σ₀ acts in the ring a < r < c around the contact
+area of radius a, where the gap is below w/σ₀. With K = 4/3 E*, the parameter
+λ = 2σ₀ (R*/(πwK²))^{1/3} and the dimensionless quantities
 
     ā = a (K/(πwR*²))^{1/3},   F̄ = F/(πwR*),   m = c/a,
 
@@ -11,9 +12,9 @@ the contact radius ā determines m and the force:
     1 = λā²/2 [(m² − 1)^½ + (m² − 2) arcsec m] + 4λ²ā/3 [(m² − 1)^½ arcsec m − m + 1]
     F̄ = ā³ − λā² [(m² − 1)^½ + m² arcsec m]
 
-The pull-off force goes from 2πwR* (λ → 0, rigid spheres) to 3/2 πwR* (λ → ∞, JKR). With the largest
-traction of the Lennard-Jones law, σ₀ = 1.03 w/z₀, λ = 1.16 µ for the Tabor parameter µ (Johnson and
-Greenwood); with that of `LennardJones.dugdale_traction`, λ = 0.62 µ.
+The pull-off force goes from 2πwR* (λ → 0, rigid spheres) to 3/2 πwR* (λ → ∞, JKR). If σ₀ is the
+largest traction of the Lennard-Jones law, 1.03 w/z₀, then λ = 1.16 µ with the Tabor parameter µ
+(Johnson and Greenwood). If σ₀ is `LennardJones.dugdale_traction`, then λ = 0.62 µ.
 Units, shapes and errors are those of `restitution.theory`.
 """
 
@@ -26,9 +27,9 @@ import numpy as np
 from ._inputs import Array, Values, keep_positive, scalar_or_array
 from ._roots import increasing_root
 
-_LARGEST_RADIUS = 2.0  # ā at pull-off is below 1.15, its value for JKR
+_LARGEST_RADIUS = 2.0  # upper limit of the search for ā at pull-off, which is below 1.15 (JKR)
 _GOLDEN = 0.5 * (5**0.5 - 1)
-_SECTIONS = 60  # of the bracket of the radius at pull-off
+_SECTIONS = 60  # number of golden sections in the search for ā at pull-off
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +61,7 @@ class MaugisDugdale:
 
     @property
     def transition_parameter(self) -> Array:
-        """Maugis' parameter λ (1)."""
+        """Maugis' transition parameter λ = 2σ₀ (R*/(πwK²))^{1/3} with K = 4/3 E* (1)."""
         w, K = self.work_of_adhesion, 4 / 3 * np.asarray(self.contact_modulus)
         return scalar_or_array(2 * self.traction * np.cbrt(self.radius / (np.pi * w * K**2)))
 
@@ -80,7 +81,7 @@ class MaugisDugdale:
 
     @property
     def pull_off_force(self) -> Array:
-        """Magnitude of the largest tension (N)."""
+        """Magnitude of the largest tensile force (N)."""
         parameter = np.asarray(self.transition_parameter)
         low = np.full_like(parameter, 1e-4)
         high = np.full_like(parameter, _LARGEST_RADIUS)
@@ -93,7 +94,7 @@ class MaugisDugdale:
 
 
 def _force(a: Array, parameter: Array) -> Array:
-    """Normalised force F̄ at the normalised contact radius."""
+    """Normalised force F̄ at the normalised contact radius ā = `a`, for λ = `parameter`."""
     a, parameter = np.broadcast_arrays(a, parameter)
 
     def excess(log_width: Array) -> Array:
@@ -103,7 +104,7 @@ def _force(a: Array, parameter: Array) -> Array:
         found: Array = parameter * a**2 / 2 * inner + 4 / 3 * parameter**2 * a * outer - 1
         return found
 
-    # m − 1 grows from 0 (JKR) without limit (rigid spheres).
+    # The unknown is ln(m − 1), because m − 1 ranges from 0 (JKR) to infinity (rigid spheres).
     width = increasing_root(excess, np.full_like(a, -40.0), np.full_like(a, 40.0))
     root, angle, m = _ring(width)
     force: Array = a**3 - parameter * a**2 * (root + m * m * angle)
@@ -111,7 +112,7 @@ def _force(a: Array, parameter: Array) -> Array:
 
 
 def _ring(log_width: Array) -> tuple[Array, Array, Array]:
-    """(m² − 1)^½, arcsec m and m, for ln(m − 1)."""
+    """Return (m² − 1)^½, arcsec m and m for `log_width` = ln(m − 1)."""
     width = np.exp(log_width)
     root = np.sqrt(width * (2 + width))
     return root, np.arctan(root), 1 + width

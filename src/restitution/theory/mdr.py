@@ -1,33 +1,38 @@
 """MDR, the law of LAMMPS' `pair_style granular mdr`, for one elastic, perfectly plastic contact.
 
 W. Zunker, K. Kamrin, J. Mech. Phys. Solids 183 (2024) 105492, as implemented in the source of
-LAMMPS (release 22Jul2025): one sphere of radius R on a rigid flat, here without adhesion (`dgamma`
-0) and damping. With x = δ_max/R, E* = E/(1 − ν²) and G = E/(2 + 2ν):
+LAMMPS (release 22Jul2025): one sphere of radius R on a rigid flat, here without adhesion
+(`dgamma` = 0) and without damping. With x = δ_max/R, E* = E/(1 − ν²) and G = E/(2 + 2ν):
 
     pressure    p_Y = Y (1 + 1.75 exp(−4.4x)), the mean pressure of the yielded contact
     yield       at δ_Y, where Hertz's mean pressure 4E*(δ/R)^½/3π reaches p_Y
     loading     Hertz up to δ_Y, then  F = πp_Ya²,  a² = 2Rδ − δ² + δ_Y² − δ_YR
     unloading   an elliptical indenter of width 2a and height A = 4p_Ya/E* leaves the transformed
-                half-space; with its depth at full load d = A/2 and its depth δ_e = ½A(1 − cos θ),
+                half-space. The depth of the indenter is d = A/2 at full load and
+                δ_e = ½A(1 − cos θ) later:
                 F = ½E*Aa (θ − sin θ cos θ),  δ_e = d [1 − (δ_max − δ)/(d + δ_R)]
+                The term δ_R < 0 corrects the recovery d for the finite size of the sphere:
                 δ_R = F_max [(1 − 2ν) z (s − z) − 2 (1 − ν) a²]/(2πGa²s),  z = R − δ_max + d,
-                s² = a² + z²: the recovery of the sphere's finite body, negative
+                s² = a² + z²
     work        W_u = (1 + δ_R/d) 8p_Y²a³/3E*;  W_l = ∫F dδ by quadrature
-    impact      ½ m V² = W_l, e² = W_u/W_l; separation is where F returns to zero
+    impact      ½ m V² = W_l, e² = W_u/W_l; the contact ends where F returns to zero
 
 Y is the yield strength of a tensile test. The contact stays elastic up to a mean pressure of almost
-2.75 Y (a peak of 4.1 Y) and is then fully plastic at once. δ, R and m are those of the one sphere.
-LAMMPS puts a flat between two spheres: the impact of two equal spheres at relative velocity V is
-two impacts on a flat at V/2, each with the radius and mass of one sphere. The law has no flat that
-yields or deforms.
+2.75 Y (a peak of 4.1 Y) and is then fully plastic at once. δ, R and m are those of one sphere.
+LAMMPS puts a rigid flat between two spheres: the impact of two equal spheres at relative velocity V
+is two impacts on a flat at V/2, each with the radius and mass of one sphere. The law cannot
+describe a flat that yields or deforms.
 
 At yield the rebound changes abruptly from Hertz to the elliptical indenter: e drops from 1 by at
 least 5 % (more for a larger Y/E*), rises a little, and then decreases with V. LAMMPS does the same.
 
-These parts of LAMMPS are left out: the growth of the apparent radius by the displaced volume and
-the ellipse in place of Hertz's parabola below δ_Y, both of relative order δ/R (they change e by
-10⁻⁴ at δ = 0.01 R), and the bulk response of spheres confined on all sides. The result is NaN for
-δ > R.
+These parts of the LAMMPS implementation are left out:
+
+- the growth of the apparent radius by the displaced volume and the ellipse in place of Hertz's
+  parabola below δ_Y. Both have relative order δ/R; they change e by 10⁻⁴ at δ = 0.01 R.
+- the bulk response of spheres confined on all sides.
+
+The result is NaN for δ > R.
 Units, shapes and errors are those of `restitution.theory`.
 """
 
@@ -50,7 +55,7 @@ from ._inputs import (
 from ._roots import increasing_root
 from .hertz import Hertz
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)  # exact within rounding
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)  # 16 nodes: error of W_l within rounding
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,7 +128,8 @@ class MDR:
     def loading_work(self, indentation: Values) -> Array:
         """Work done from first touch to an indentation on first loading.
 
-        It is Hertz's up to δ_Y and a Gauss–Legendre quadrature beyond.
+        The work is that of Hertz up to δ_Y; beyond, the force is integrated by Gauss–Legendre
+        quadrature.
 
         Args:
             indentation: Indentation of the sphere δ (m).
@@ -147,7 +153,7 @@ class MDR:
         """
         d, d_max = self._inside(indentation), self._inside(maximum_indentation)
         left = np.clip((d_max - d) / self._recovery(d_max), 0.0, 1.0)
-        theta = np.arccos(left)  # δ_e/d = 1 − cos θ
+        theta = np.arccos(left)  # because δ_e/d = 1 − cos θ
         relative = (theta - np.sin(theta) * np.cos(theta)) * 2 / np.pi
         onwards = (d > d_max) | (d_max <= self.yield_indentation)
         return scalar_or_array(np.where(onwards, self._force(d), relative * self._force(d_max)))
@@ -159,7 +165,8 @@ class MDR:
             maximum_indentation: Indentation at which unloading began, δ_max (m).
 
         Returns:
-            Residual indentation δ_max − (d + δ_R) (m); 0 up to yield.
+            Residual indentation δ_max − (d + δ_R) (m), where d + δ_R is the elastic recovery; 0 up
+            to yield.
         """
         d = self._inside(maximum_indentation)
         return scalar_or_array(np.where(d <= self.yield_indentation, 0.0, d - self._recovery(d)))
@@ -214,24 +221,24 @@ class MDR:
         return scalar_or_array(np.where(d <= d_Y, 1.0, np.minimum(e, 1.0)))
 
     def _inside(self, indentation: Values) -> Array:
-        """δ (m), zero for separated bodies and NaN beyond R."""
+        """Indentation δ (m) with negative values set to zero and values above R set to NaN."""
         d = touching(indentation)
         return np.where(d > self.radius, np.nan, d)
 
     def _contact_radius(self, d: Values) -> Array:
-        """Contact radius a (m) of the yielded contact; below yield its value at yield."""
+        """Contact radius a (m) of the yielded contact; up to δ_Y the value at δ_Y."""
         R, d_Y = self.radius, self.yield_indentation
         t = touching(d - d_Y)
         a: Array = (R * d_Y + t * (2 * (R - d_Y) - t)) ** 0.5
         return a
 
     def _force(self, d: Values) -> Array:
-        """Normal force F (N) on first loading."""
+        """Normal force F (N) at the indentation `d` on first loading."""
         plastic = np.pi * self._contact_radius(d) ** 2 * self.yield_pressure(d)
         return np.where(d <= self.yield_indentation, self.elastic.force(d), plastic)
 
     def _work(self, d: Values) -> Array:
-        """Loading work W_l (J)."""
+        """Loading work W_l (J) to the indentation `d`."""
         d_Y = self.yield_indentation
         half = touching(d - d_Y) / 2
         forces = sum(
@@ -241,11 +248,14 @@ class MDR:
         return self.elastic.stored_energy(np.minimum(d, d_Y)) + half * forces
 
     def _elastic_depth(self, d: Values) -> Array:
-        """Transformed depth d = A/2 (m) at full load."""
+        """Depth A/2 (m) of the indenter in the transformed half-space at full load."""
         return 2 * self.yield_pressure(d) * self._contact_radius(d) / self.elastic.contact_modulus
 
     def _recovery(self, d: Values) -> Array:
-        """Total recovery d + δ_R (m), with F_max/(2πGa²d) = E*/(4Ga) = 1/(2a(1 − ν))."""
+        """Elastic recovery d + δ_R (m) of an indentation, with the depth d = A/2 of the indenter.
+
+        δ_R is rewritten with F_max/(2πGa²d) = E*/(4Ga) = 1/(2a(1 − ν)).
+        """
         a, d_e, nu = self._contact_radius(d), self._elastic_depth(d), self.poissons_ratio
         z = self.radius - d + d_e
         s = (a**2 + z**2) ** 0.5
@@ -254,7 +264,7 @@ class MDR:
         return recovery
 
     def _returned(self, d: Values) -> Array:
-        """Unloading work W_u (J): (1 + δ_R/d) E*A²B/12, with height A = 2d and width B = 2a."""
+        """Unloading work W_u (J): beyond yield (1 + δ_R/d) E*A²B/12 with the width B = 2a."""
         E_star = self.elastic.contact_modulus
         plastic = 2 / 3 * E_star * self._elastic_depth(d) * self._contact_radius(d)
         elastic = self.elastic.stored_energy(d)

@@ -1,17 +1,18 @@
 """Persson (2001): contact area of nominally flat elastic bodies with random roughness.
 
 B. N. J. Persson, J. Chem. Phys. 115 (2001) 3840–3861, doi 10.1063/1.1388626. The distribution of
-the contact pressure obeys a diffusion equation in which the magnification acts as time. It gives
-the relative contact area
+the contact pressure obeys a diffusion equation in which the magnification acts as time. The
+solution gives the relative contact area
 
     A/A₀ = erf(√2 p/(E* h′)),
 
 with the nominal pressure p and the rms slope h′. At low pressure A/A₀ = κ p/(E* h′) with
 κ = √(8/π) = 1.60. The theory of Bush, Gibson and Thomas (1975, Wear 35, 87–111), which sums over
-asperities, has κ = √(2π) = 2.51 at vanishing pressure. Numerical solutions lie between both, with κ
-slightly above 2 (Prodanov, Dapp and Müser 2014, Tribol. Lett. 53, 433–448).
+asperities, gives κ = √(2π) = 2.51 in the limit of zero pressure. Numerical solutions lie between
+these values, with κ slightly above 2 (Prodanov, Dapp and Müser 2014, Tribol. Lett. 53, 433–448).
 
-Valid for elastic contact without adhesion and friction, small slopes and many waves.
+Valid for elastic contact without adhesion and friction, for small slopes and for roughness that
+spans many wavelengths.
 Units, shapes and errors are those of `restitution.theory`.
 """
 
@@ -29,7 +30,7 @@ _erf = np.vectorize(math.erf, otypes=[np.float64])
 
 @dataclass(frozen=True, eq=False)
 class Persson:
-    """Nominally flat elastic bodies with random roughness.
+    """Contact of nominally flat elastic bodies with random roughness.
 
     The fields and arguments may be arrays and broadcast (see `restitution.theory`).
 
@@ -51,7 +52,7 @@ class Persson:
         keep_positive(self, "rms_slope", "contact_modulus")
 
     def relative_area(self, pressure: Values) -> Array:
-        """Real contact area over nominal area.
+        """Ratio of the real contact area to the nominal area.
 
         Args:
             pressure: Nominal pressure p (Pa).

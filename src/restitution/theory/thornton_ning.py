@@ -7,18 +7,19 @@ f = F/F_y and W in units of F_y δ_y:
 
     loading     f = x^{3/2} for x ≤ 1, then the tangent  f = (3x − 1)/2,  F = F_y + πp_yR*(δ − δ_y)
                 W_l = ⅖ x^{5/2} for x ≤ 1, then  W_l = ⅖ + (x − 1) + ¾ (x − 1)²
-    unloading   Hertz with the flattened radius R_p of the same contact radius at the same force,
-                R_p F = R* F_Hertz(δ):  R_p/R* = x^{3/2}/f,  and a residual depth δ_p:
+    unloading   Hertz with a flattened radius R_p, which keeps the contact radius at the same force
+                (R_p F = R* F_Hertz(δ):  R_p/R* = x^{3/2}/f),  and a residual depth δ_p:
                 F = 4/3 E* R_p^½ (δ − δ_p)^{3/2},  (δ_max − δ_p)/δ_y = f/x^½,  W_u = ⅖ f²/x^½
-    impact      ½ m* V² = W_l, e² = W_u/W_l; separation is where F returns to zero.
+    impact      ½ m* V² = W_l, e² = W_u/W_l; the contact ends where F returns to zero.
 
-Restitution depends on x alone, or equivalently on v = V/V_y alone. The two methods below are the
-same function: f² = (6v² − 1)/5 relates x to v exactly.
+Restitution depends on x alone, or equivalently on v = V/V_y alone, because f² = (6v² − 1)/5 relates
+x to v exactly.
 
 Valid for quasi-static, normal, frictionless impacts of smooth spheres with a ≪ R*. Up to yield the
-law is Hertz. Beyond yield it carries less load than a contact in equilibrium at the same p_y, and
-the difference grows with depth, because the area of a yielded contact tends to 2πR*δ but this one
-keeps πR*δ. Its p_y is that of `FirstYield`: a contact pressure, not the yield strength.
+law is Hertz. Beyond yield its force is smaller than that of a contact in equilibrium at the same
+p_y. The difference grows with depth, because the area of a yielded contact tends to 2πR*δ whereas
+this law keeps the area πR*δ. p_y is a contact pressure, as in `FirstYield`, and not the yield
+strength.
 Units, shapes and errors are those of `restitution.theory`.
 """
 
@@ -62,7 +63,7 @@ class ThorntonNing:
 
     @cached_property
     def elastic(self) -> Hertz:
-        """Hertz contact that the law follows up to yield."""
+        """Hertz contact, which the law follows up to yield."""
         return Hertz(self.radius, self.contact_modulus)
 
     @cached_property
@@ -112,8 +113,8 @@ class ThorntonNing:
     def unloading_radius(self, maximum_indentation: Values) -> Array:
         """Reduced radius of the flattened spheres on unloading.
 
-        R_p = R* x^{3/2}/f equals the published (4E*/3F) [(2F + F_y)/(2πp_y)]^{3/2}, whose bracket
-        is a².
+        With x = δ_max/δ_y and f = F/F_y, R_p = R* x^{3/2}/f equals the published formula
+        (4E*/3F) [(2F + F_y)/(2πp_y)]^{3/2}, in which the bracket is a².
 
         Args:
             maximum_indentation: Indentation at which unloading began, δ_max (m).
@@ -135,7 +136,7 @@ class ThorntonNing:
         """
         x = self._yielded(maximum_indentation)
         s = x**0.5
-        # x − f/s with f = (3s² − 1)/2, factored to avoid cancellation near yield
+        # This equals x − f/s with f = (3s² − 1)/2; the factors avoid cancellation near yield.
         return self.first_yield.indentation * ((x - 1) / (s + 1)) ** 2 * (s + 0.5) / s
 
     def unloading_force(self, indentation: Values, maximum_indentation: Values) -> Array:
@@ -172,7 +173,7 @@ class ThorntonNing:
         return scalar_or_array(np.where(d <= first.indentation, elastic, plastic))
 
     def impact_velocity(self, maximum_indentation: Values, mass: Values) -> Array:
-        """Impact velocity that reaches an indentation: ½ m* V² = W_l.
+        """Impact velocity at which an impact reaches an indentation: ½ m* V² = W_l.
 
         Args:
             maximum_indentation: Largest indentation of the impact δ_max (m).
@@ -190,7 +191,7 @@ class ThorntonNing:
     def indentation_from_velocity(self, velocity: Values, mass: Values) -> Array:
         """Largest indentation of an impact; the inverse of `impact_velocity`.
 
-        x = (V/V_y)^{4/5} up to yield and x = (1 + 2f)/3 beyond, with f² = (6 (V/V_y)² − 1)/5.
+        δ/δ_y = (V/V_y)^{4/5} up to yield and (1 + 2f)/3 beyond, with f² = (6 (V/V_y)² − 1)/5.
 
         Args:
             velocity: Relative normal impact velocity V (m/s).
@@ -235,7 +236,7 @@ class ThorntonNing:
     def restitution_at_indentation(self, maximum_indentation: Values) -> Array:
         """Coefficient of restitution e = (W_u/W_l)^½ after loading to `maximum_indentation`.
 
-        It equals `restitution` at `impact_velocity(maximum_indentation, …)`.
+        The result equals `restitution` at the velocity `impact_velocity(maximum_indentation, …)`.
 
         Args:
             maximum_indentation: Indentation at which unloading began, δ_max (m).
@@ -248,11 +249,11 @@ class ThorntonNing:
         return (0.4 * _line(x) ** 2 / x**0.5 / W_l) ** 0.5
 
     def _yielded(self, maximum_indentation: Values) -> Array:
-        """x = δ/δ_y, set to 1 below yield, where every ratio to Hertz is 1."""
+        """x = δ/δ_y, set to 1 below yield, because there all ratios to Hertz values are 1."""
         x: Array = np.maximum(touching(maximum_indentation) / self.first_yield.indentation, 1.0)
         return x
 
 
 def _line(x: Array) -> Array:
-    """f = F/F_y on the tangent beyond yield, 1 at x = 1."""
+    """Force f = F/F_y beyond yield, on the tangent, at the indentation x = δ/δ_y."""
     return (3 * x - 1) / 2

@@ -1,18 +1,19 @@
-"""Walton & Braun (1986): partially latched springs; unloading is stiffer than loading.
+"""Walton & Braun (1986): linear, partially latched springs; unloading is stiffer than loading.
 
 O. R. Walton, R. L. Braun, J. Rheology 30 (1986) 949–980. First loading has stiffness k₁. Unloading
-and reloading have a larger stiffness k₂, which may grow with the largest force so far, F_max:
+and reloading have a larger stiffness k₂, which may grow with the largest force F_max so far:
 
     loading     F = k₁δ
     unloading   F = k₂(δ − δ₀),  δ₀ = δ_max (1 − k₁/k₂),  k₂ = k_u + S F_max,  F_max = k₁δ_max
     impact      δ_max = V (m*/k₁)^½,  e² = W_u/W_l = k₁/k₂
 
-The paper has two special cases. S = 0 is its constant law, e = (k₁/k_u)^½ at any velocity. k_u = k₁
-is its variable law, e = (1 + S V (m*/k₁)^½)^{−½}; the paper writes the square root with
-ω₀ = (2k₁/m)^½, which equals (k₁/m*)^½ for two equal spheres of mass m.
+The paper uses two special cases. With S = 0 the unloading stiffness is constant and
+e = (k₁/k_u)^½ at any velocity. With k_u = k₁ the stiffness varies and
+e = (1 + S V (m*/k₁)^½)^{−½}; the paper writes (m*/k₁)^½ as 1/ω₀ with ω₀ = (2k₁/m)^½, for two equal
+spheres of mass m.
 
-The contact ends where F returns to zero, at δ₀ > 0, not at δ = 0. There is no adhesion and no
-length scale: the springs are parameters to be fitted, and R* and E* do not enter.
+The contact ends where F returns to zero, at δ₀ > 0, not at δ = 0. There is no adhesion. The
+stiffnesses are parameters to be fitted; R* and E* do not enter.
 Units, shapes and errors are those of `restitution.theory`.
 """
 
@@ -119,6 +120,6 @@ class WaltonBraun:
         return scalar_or_array(np.where(np.asarray(velocity) <= 0, 1.0, e))
 
     def _stiffness(self, maximum_indentation: Values) -> Array:
-        """Unloading stiffness k₂ (N/m)."""
+        """Unloading stiffness k₂ (N/m) after first loading to `maximum_indentation`."""
         d = touching(maximum_indentation)
         return self.unloading_stiffness + self.hardening * self.loading_stiffness * d

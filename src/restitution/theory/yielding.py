@@ -1,13 +1,14 @@
 """First yield of a Hertz contact: the peak pressure reaches the yield pressure p_y.
 
 `yield_pressure` p_y is a contact pressure, not the yield strength Y of a tensile test: p_y ≈ 1.6 Y
-at first yield below the surface, and 2.8–3 Y (the hardness) for fully plastic flow (Johnson 1985,
-sections 6.1 and 6.3). Setting p₀ = 2E*a/(πR*) = p_y with a² = R*δ gives
+at first yield below the surface, and p_y ≈ 2.8–3 Y (the hardness) for fully plastic flow (Johnson
+1985, sections 6.1 and 6.3). Setting the peak pressure p₀ = 2E*a/(πR*) with a² = R*δ equal to p_y
+gives the indentation, the force and the impact velocity at first yield (W is the Hertz energy):
 
     δ_y = (πp_y/2E*)² R*,   F_y = π³R*²p_y³/(6E*²),   ½ m* V_y² = W(δ_y) = ⅖ F_y δ_y.
 
-These relations are exact within Hertz theory and valid in its range: δ_y ≪ R*, which holds if
-p_y ≪ E*. They neglect adhesion.
+These relations are exact within Hertz theory, which requires δ_y ≪ R* and so p_y ≪ E*. They neglect
+adhesion.
 Units, shapes and errors are those of `restitution.theory`.
 """
 
@@ -22,7 +23,7 @@ from restitution.errors import CaseError
 
 from ._inputs import Array, Values, keep_positive, positive, scalar_or_array
 
-_COEFFICIENT = math.sqrt(math.pi**5 / 30)  # 3.19385, V_y in units of (p_y⁵R*³/(E*⁴m*))^½
+_COEFFICIENT = math.sqrt(math.pi**5 / 30)  # 3.19385: V_y in units of (p_y⁵R*³/(E*⁴m*))^½
 _EXP = np.vectorize(math.exp, otypes=[np.float64])  # same result on every processor, unlike np.exp
 
 
@@ -65,10 +66,11 @@ class FirstYield:
         return scalar_or_array(np.pi**3 / 6 * (R / E_star) ** 2 * p_y**3)
 
     def velocity(self, mass: Values) -> Array:
-        """Relative normal velocity of the fastest impact that stays elastic.
+        """Largest relative normal velocity at which an impact stays elastic.
 
-        ½ m* V_y² = W(δ_y) gives V_y = (π⁵/30)^½ (p_y⁵R*³/(E*⁴m*))^½. Thornton & Ning (1998) round
-        the coefficient to 3.194; the exact value is used here.
+        Equating ½ m* V_y² with the Hertz energy at δ_y gives V_y = (π⁵/30)^½ (p_y⁵R*³/(E*⁴m*))^½.
+        Thornton & Ning (1998) round the coefficient (π⁵/30)^½ to 3.194; the exact value is used
+        here.
 
         Args:
             mass: Reduced mass m* (kg).
@@ -87,7 +89,7 @@ class FirstYield:
 def yield_coefficient(poissons_ratio: Values) -> Array:
     """Ratio C = 1.295 exp(0.736 ν) of the peak Hertz pressure at first yield to the yield strength.
 
-    The fit to the largest von Mises stress below a Hertz contact is accurate within ½ % for
+    C is a fit to the largest von Mises stress below a Hertz contact, accurate within ½ % for
     0 ≤ ν ≤ ½. C = 1.61 at ν = 0.3.
 
     Args:

@@ -13,7 +13,7 @@ from restitution.contact.state import State
 from restitution.errors import DomainError
 
 _MARGIN = 1.2  # width of the recommended grid over the largest possible width of the contact
-_OFF_CENTRE = 0.25  # least distance from the centre that counts as off-centre (widths of the grid)
+_OFF_CENTRE = 0.25  # a larger distance from the centre counts as off-centre (widths of the grid)
 
 
 class EdgeReachedError(DomainError):
@@ -35,7 +35,7 @@ class EdgeReachedError(DomainError):
 def require_inside_grid(state: State) -> None:
     """Raise `EdgeReachedError` if a node on the edge of the grid is in contact.
 
-    A periodic contact has no edge.
+    The edge of a periodic contact is not checked.
     """
     if state.contact.periodic:
         return
@@ -60,10 +60,12 @@ def require_inside_grid(state: State) -> None:
 def edge_values(contact: Contact, indentation: float) -> dict[str, Any]:
     """Return the values of a finding about the edge of the grid (lengths in m).
 
-    The values are `indentation`; `size`, the edge lengths of the grid; `needed`, the edge lengths
-    of a grid that is large enough; `first_touch`, the coordinates of first touch; `off_centre`,
-    whether first touch is far from the centre; and for a measured surface `levelling` and the size
-    of the `scan`, otherwise None.
+    * `indentation`;
+    * `size`, the edge lengths of the grid;
+    * `needed`, the edge lengths of a grid that is large enough;
+    * `first_touch`, the coordinates of first touch;
+    * `off_centre`, whether first touch is far from the centre;
+    * `levelling` and `scan`, the levelling and the size of a measured surface, otherwise None.
     """
     provenance, size = contact.surface.provenance, contact.grid.size
     touch = first_touch(contact)
@@ -95,15 +97,15 @@ def first_touch(contact: Contact) -> tuple[float, float]:
 def needed_edges(contact: Contact, indentation: float) -> tuple[float, float]:
     """Edge lengths (m) of a grid that contains the contact; never below the present lengths.
 
-    Contact is possible only where the initial gap h₀ is below the indentation δ. With heights up to
-    z_max and h₀ = r²/(2R*) − z − c, this means r² < 2R*(δ + z_max + c), or r < sqrt(2R*δ) for
-    smooth bodies.
+    Contact is possible only where the initial gap h₀ is below the indentation δ. With heights
+    z ≤ z_max and h₀ = r²/(2R*) − z − c, where the constant c makes min h₀ = 0, contact is possible
+    only for r² < 2R*(δ + z_max + c). For smooth bodies this is r < sqrt(2R*δ).
     """
     R, x, y = contact.pair.radius, contact.grid.x[:, None], contact.grid.y[None, :]
     height = contact.surface.height
     shift = float(((x * x + y * y) / (2 * R) - height).min())
     reach = math.sqrt(2 * R * (indentation + float(height.max()) + shift))
     wide, long = contact.grid.size
-    # Even if the shorter edge already exceeds twice the reach, recommend a larger grid.
+    # A larger grid is recommended even if the shorter edge already exceeds twice the reach.
     needed = max(2 * reach, min(wide, long)) * _MARGIN
     return max(wide, needed), max(long, needed)

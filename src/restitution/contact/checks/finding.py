@@ -1,4 +1,4 @@
-"""A finding: the result of a check, as data. `runs.messages` makes messages of findings."""
+"""A finding: the result of a check, as data. `runs.messages` turns findings into messages."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from types import MappingProxyType
 from typing import Any, Literal
 
 Code = Literal[
-    # The contact cannot be solved, or the result would be meaningless.
+    # Codes of contacts that cannot be solved or would give meaningless results:
     "roughness-above-radius",
     "contact-beyond-radius",
     "pixel-above-contact",
     "edge-reached",
     "range-unresolved",
-    # The input may be wrong, or the grid too small or too coarse.
+    # Codes of contacts whose input may be wrong, or whose grid may be too small or too coarse:
     "contact-beyond-grid",
     "few-nodes",
     "no-half-space",
@@ -26,7 +26,7 @@ Code = Literal[
     "oblong-pixels",
     "coarser-than-scan",
     "surface-notice",
-    # The grid does not resolve the solution.
+    # Codes of results that the grid does not resolve:
     "patches-unresolved",
     "adhesion-unresolved",
 ]
@@ -36,7 +36,7 @@ Code = Literal[
 class Finding:
     """The result of a check: its code and its values by name (SI units).
 
-    The function that makes a finding documents its values. `values` is read-only.
+    The function that returns a finding documents the values. `values` is read-only.
     """
 
     code: Code

@@ -24,20 +24,22 @@ _OBLONG = 0.01  # relative difference of the edges of a pixel
 _STEEP = 0.5  # rms slope, beyond which small-slope theory is inaccurate
 _PRESSURES = (1e-5, 0.3)  # p_y/E*, from soft polymers to the ideal strength
 _NEAR_EDGE = 0.1  # distance of first touch from the edge (widths of the grid)
-# Factor on the displacement outside a contact, because a rough contact carries less force.
+# Factor on the displacement outside a smooth contact, because a rough contact carries less force.
 _DISPLACED = 0.7
 
 
 def impossible(contact: Contact, indentation: float) -> Finding | None:
-    """Return why loading `contact` to `indentation` (m) is meaningless; None if it is not.
+    """Return a finding if loading `contact` to `indentation` (m) is meaningless, otherwise None.
+
+    The findings and their values are:
 
     * `roughness-above-radius`: `radius` of the smaller particle, `peak` above the mean (m);
     * `contact-beyond-radius`: predicted `radius`, `indentation`, `reduced_radius` (m);
     * `pixel-above-contact`, see `coarse_scan`;
     * `range-unresolved`: `spacing` and `needed` spacing (m) of a cohesive contact, and whether
-      it is `periodic`.
+      the contact is `periodic`.
 
-    A periodic contact has no radius; only the last of these applies to it.
+    A periodic contact has no radius, so only `range-unresolved` applies to it.
     """
     if contact.periodic:
         return _coarse_range(contact)
@@ -60,12 +62,13 @@ def doubtful(contact: Contact, indentation: float) -> list[Finding]:
     * `tilted-scan`: `file`, `explained`, the fraction of the variance that a plane explains;
     * `edge-predicted`: `gap` at the edge at first touch (m), and the values of `edge_values`;
     * `steep-surface`: rms `slope`, `limit`;
-    * `unusual-yield-pressure`: its `ratio` to E*, and the range of materials, `low` to `high`;
+    * `unusual-yield-pressure`: `ratio` of the pressure of a fully plastic contact to E*, and the
+      usual range of this ratio, `low` to `high`;
     * `oblong-pixels`: `file`, edges `x` and `y` of a pixel (m);
     * `coarser-than-scan`: `spacing`, `pixel` (m), `axis`;
     * `surface-notice`: `notice` from the provenance of a surface that differs from its scan.
 
-    The findings that depend on the radius of the bodies are left out for a periodic contact.
+    For a periodic contact, the findings that depend on the radius of the bodies are left out.
     """
     periodic = contact.periodic
     checks = (
@@ -91,7 +94,7 @@ def _coarse_range(contact: Contact) -> Finding | None:
 
 def _tilt(contact: Contact) -> Finding | None:
     surface = contact.surface
-    # A composite has one entry for each part.
+    # The provenance of a composite has one entry for each part.
     levelled = {value for key, value in surface.provenance.items() if key.endswith("levelling")}
     if not levelled & {"none", "center"}:
         return None
@@ -103,7 +106,7 @@ def _tilt(contact: Contact) -> Finding | None:
 
 
 def _edge(contact: Contact, indentation: float) -> Finding | None:
-    """Find out whether contact at the edge of the grid is expected, with a margin for roughness."""
+    """Find whether contact at the edge of the grid is expected, with a margin for roughness."""
     radius = predicted_radius(contact.pair, indentation, contact.hardness)
     gap, grid = contact.gap, contact.grid
     half_width = 0.5 * min(grid.size)
@@ -127,7 +130,7 @@ def _closed_gap(contact: Contact, indentation: float, distance: float) -> float:
     """
     pair, p_y, w = contact.pair, contact.hardness, contact.work_of_adhesion
     E_star, deeper = pair.contact_modulus, indentation
-    for _ in range(10):  # fixed-point iteration; it contracts because `deeper` grows with √radius
+    for _ in range(10):  # fixed-point iteration, which converges as `deeper` grows with √radius
         radius = predicted_radius(pair, deeper, p_y)
         if not contact.adhesive:
             break

@@ -21,9 +21,9 @@ from restitution.numerics.box import widen
 from restitution.theory import JKR, FirstYield, Hertz
 
 # With eight or more nodes per contact radius, results for smooth spheres are within 0.3 % of
-# tabulated values. For rough surfaces, restitution is within 2 % (root mean square; 5 % at worst)
-# of the value on the finest grid if half of the contact lies in patches of at least 20 nodes
-# (docs/resolution.md).
+# tabulated values. For rough surfaces, if half of the contact lies in patches of at least 20 nodes,
+# the rms deviation of restitution from the value on the finest grid is 2 %, and the largest
+# deviation 5 % (docs/resolution.md).
 NODES_PER_RADIUS = 8
 NODES_PER_PATCH = 20
 # With four or more nodes per pull-off radius and `crack-closure`, the pull-off force of smooth
@@ -47,8 +47,8 @@ def predicted_radius(pair: Pair, indentation: float, yield_pressure: float = mat
 def adhesive_nodes(state: State) -> float:
     """Number of nodes per pull-off radius of an asperity, a_c/h; inf without adhesion.
 
-    a_c = (9πw/(8E*κ²))^⅓ (JKR), where 1/κ is the `radius_of_asperities`. Cohesive contacts resolve
-    the range of the attraction instead; the result is inf if they do and 0 if not.
+    a_c = (9πw/(8E*κ²))^⅓ (JKR), where 1/κ is the `radius_of_asperities`. For a cohesive contact,
+    the result is inf if the grid resolves the range of the attraction, and 0 otherwise.
     """
     contact = state.contact
     if not contact.adhesive:
@@ -61,7 +61,7 @@ def adhesive_nodes(state: State) -> float:
 
 
 def tabor_parameter(state: State) -> float:
-    """Tabor parameter µ of the contact, at the `radius_of_asperities`."""
+    """Tabor parameter µ of the contact, for spheres of radius `radius_of_asperities`."""
     contact = state.contact
     asperity = JKR(
         radius_of_asperities(state), contact.pair.contact_modulus, contact.work_of_adhesion
@@ -70,9 +70,10 @@ def tabor_parameter(state: State) -> float:
 
 
 def radius_of_asperities(state: State) -> float:
-    """Radius (m) from the mean curvature of the undeformed gap over the contact.
+    """Radius of curvature (m) of the asperities in contact.
 
-    It is R* for smooth spheres, and never more.
+    It is the inverse of the mean curvature of the undeformed gap over the nodes in contact, and at
+    most R*, its value for smooth spheres.
     """
     contact, box = state.contact, state.box
     hx, hy = contact.grid.spacing
@@ -90,7 +91,7 @@ def radius_of_asperities(state: State) -> float:
 
 
 def pull_off_radius(contact: Contact, radius: float) -> float:
-    """Contact radius a_c (m) at pull-off of a sphere of `radius` (JKR)."""
+    """Contact radius a_c (m) at pull-off of a sphere of reduced radius `radius` (m), after JKR."""
     sphere = JKR(radius, contact.pair.contact_modulus, contact.work_of_adhesion)
     return float(sphere.pull_off_radius)
 
@@ -104,9 +105,10 @@ def expected_pull_off_error(contact: Contact) -> float:
 
 
 def coarse_scan(contact: Contact, indentation: float) -> Finding | None:
-    """Finding `pixel-above-contact`: a pixel of a scan exceeds the contact radius.
+    """Return the finding `pixel-above-contact` if a pixel of a scan exceeds the contact radius.
 
-    Values of the finding: `file`; `pixel` (m); the contact `radius` (m) at `indentation` (m).
+    The values of the finding are `file`, `pixel` (m), and the contact `radius` (m) at the
+    `indentation` (m).
     """
     provenance = contact.surface.provenance
     if "file" not in provenance:
@@ -127,7 +129,7 @@ def coarse_scan(contact: Contact, indentation: float) -> Finding | None:
 
 
 def resolution_findings(contact: Contact, indentation: float) -> list[Finding]:
-    """Find faults of the grid from the contact of the smooth bodies at `indentation` (m).
+    """Find faults of the grid from the contact radius of the smooth bodies at `indentation` (m).
 
     The findings and their values are:
 
@@ -166,7 +168,8 @@ def resolution_findings(contact: Contact, indentation: float) -> list[Finding]:
 def median_patch(patches: NDArray[np.int64]) -> int:
     """Size in nodes of the patch that contains the median contact node.
 
-    `patches` are the sizes of `State.patch_sizes`, largest first.
+    Nodes are ordered by the size of their patches. `patches` are the sizes (nodes) from
+    `State.patch_sizes`, largest first.
     """
     if patches.size == 0:
         return 0
@@ -175,15 +178,15 @@ def median_patch(patches: NDArray[np.int64]) -> int:
 
 
 def resolves(median_patch_nodes: float) -> bool:
-    """Whether the grid resolves a contact with this size of its median patch."""
+    """Whether the grid resolves a contact with this number of nodes in the median patch."""
     return median_patch_nodes >= NODES_PER_PATCH
 
 
 def unresolved_patches(depths: Sequence[float], median_patches: Sequence[float]) -> list[Finding]:
-    """Finding `patches-unresolved`: contact patches have too few nodes at some `depths` (m).
+    """Return the finding `patches-unresolved` if patches have too few nodes at some `depths` (m).
 
-    Values of the finding: `few`, the number of these depths; `depths`, the number of all depths;
-    `deepest`, the deepest of these depths (m).
+    The values of the finding are `few`, the number of these depths; `depths`, the number of all
+    depths; and `deepest`, the deepest of these depths (m).
     """
     few = [depth for depth, n in zip(depths, median_patches, strict=True) if not resolves(n)]
     if not few:
@@ -193,10 +196,11 @@ def unresolved_patches(depths: Sequence[float], median_patches: Sequence[float])
 
 
 def unresolved_adhesion(depths: Sequence[float], nodes: Sequence[float]) -> list[Finding]:
-    """Finding `adhesion-unresolved`: the pull-off radius has too few `nodes` at some `depths` (m).
+    """Return the finding `adhesion-unresolved` if the pull-off radius has too few nodes.
 
-    Values: `few`, the number of such depths; `depths`, the number of all depths; `nodes`, the
-    smallest number of nodes per pull-off radius.
+    `nodes` are the numbers of nodes per pull-off radius at the `depths` (m). The values of the
+    finding are `few`, the number of depths with too few nodes; `depths`, the number of all depths;
+    and `nodes`, the smallest number of nodes per pull-off radius.
     """
     few = sum(n < ADHESIVE_NODES for _, n in zip(depths, nodes, strict=True))
     if not few:
@@ -206,7 +210,7 @@ def unresolved_adhesion(depths: Sequence[float], nodes: Sequence[float]) -> list
 
 
 def grid_of_a_scan(contact: Contact) -> bool:
-    """Whether the grid covers a whole scan. If so, only a larger scan allows a larger grid."""
+    """Whether the grid covers a whole scan, so that a larger grid needs a larger scan."""
     provenance = contact.surface.provenance
     if provenance.get("source") != "measured":
         return False
@@ -215,6 +219,6 @@ def grid_of_a_scan(contact: Contact) -> bool:
 
 
 def _coarsest_pixel(contact: Contact) -> float:
-    """The coarsest pixel (m) in the provenance of the surface; 0 if it is not from a scan."""
+    """The coarsest pixel (m) in the provenance of the surface; 0 for a surface without pixels."""
     provenance = contact.surface.provenance
     return max(float(provenance.get(key, 0.0)) for key in ("pixel_x_m", "pixel_y_m"))

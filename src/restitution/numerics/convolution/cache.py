@@ -13,7 +13,7 @@ class HasBytes(Protocol):
 
     @property
     def nbytes(self) -> int:
-        """Size of its arrays (bytes)."""
+        """Size of the arrays of this object (bytes)."""
 
 
 class OperatorCache:
@@ -30,7 +30,7 @@ class OperatorCache:
 
     @property
     def max_bytes(self) -> int:
-        """Largest total size of all values (bytes). Setting it drops values that no longer fit."""
+        """Largest total size of all values (bytes). Setting a lower limit drops values."""
         return self._max_bytes
 
     @max_bytes.setter
@@ -66,7 +66,7 @@ class OperatorCache:
             self._shrink()
 
     def clear(self) -> None:
-        """Drop all values. Solves that use one of them are not affected."""
+        """Drop all values. A running solve that uses a dropped value keeps it."""
         with self._lock:
             self._values.clear()
 
@@ -80,6 +80,6 @@ class OperatorCache:
             self._values.popitem(last=False)
 
 
-# Cache of operators and kernels for the whole process. Boxes grow with the contact, so older
-# operators are rarely used again.
+# Cache of operators and kernels for the whole process. The box of a solve grows with the contact,
+# so older operators are rarely used again.
 operator_cache = OperatorCache(max_bytes=384 * 2**20, max_items=17)

@@ -1,8 +1,8 @@
-"""Devices: where arrays are stored and convolved, in compiled loops on the CPU or by CuPy on a GPU.
+"""Devices that store and convolve arrays: the CPU with compiled loops, or a GPU with CuPy.
 
 The solver accepts any arrays that follow NumPy's protocols (`__array_ufunc__`, NEP 13, and
-`__array_function__`, NEP 18), as CuPy's do. The protocols do not cover the creation and convolution
-of arrays, so these are methods of a `Device`. Solves run on the `current` device:
+`__array_function__`, NEP 18), such as CuPy arrays. The protocols do not cover the creation and
+convolution of arrays, so these are methods of a `Device`. Solves run on the `current` device:
 
     with on_device("gpu"):
         state = solve(contact, 1e-6)
@@ -47,14 +47,14 @@ class Device(Protocol):
         """Return the integers 0 … n − 1."""
 
     def even_spectrum(self, quadrant: Array) -> Array:
-        """Spectrum of a real array that is even along both axes, from one quadrant of it.
+        """One quadrant of the spectrum of a real array that is even along both axes.
 
-        The spectrum is divided by the number of values, so that the inverse transform needs no
-        factor. The quadrant may be overwritten.
+        `quadrant` is one quadrant of the array and may be overwritten. The spectrum is divided by
+        the number of values, so that the inverse transform needs no factor.
         """
 
     def workspace(self, shape: tuple[int, int], periods: tuple[int, int]) -> Array:
-        """Return a work array for `convolve` with arrays of this shape."""
+        """Return a work array for `convolve` with arrays of this shape and padded size."""
 
     def convolve(
         self,
@@ -67,20 +67,20 @@ class Device(Protocol):
     ) -> None:
         """Multiply the Fourier modes of `values` by a real, even spectrum; write to `out`.
 
-        `values` and `out` have shape (nx, ny); `values` is padded with zeros to `periods`.
-        `spectrum` is the transpose of a quadrant made by `even_spectrum`. The computation has the
-        precision of `spectrum`. `values` is divided by `scale` before the transform, and the result
-        is multiplied by `scale`.
+        `values` and `out` have shape (nx, ny); `values` is padded with zeros to the shape
+        `periods`. `spectrum` is the transposed quadrant from `even_spectrum`. The computation has
+        the precision of `spectrum`. `values` is divided by `scale` before the transform, and the
+        result is multiplied by `scale`.
         """
 
 
 class _Compiled:
-    """NumPy arrays, convolved by the compiled loops."""
+    """CPU device: NumPy arrays, convolved by the compiled loops."""
 
     name = "cpu"
 
     def __init__(self, loops: Any, library: Device) -> None:
-        # `library` convolves arrays whose periods have other prime factors than 2, 3, 5 and 7.
+        # `library` convolves if a period has other prime factors than 2, 3, 5 and 7.
         self._loops, self._library = loops, library
         # Use as many threads as ducc0; the environment variable DUCC0_NUM_THREADS sets the number.
         loops.use_threads(ducc0.misc.thread_pool_size())
@@ -120,7 +120,7 @@ class _Compiled:
 
 
 class _Arrays:
-    """Arrays of a library like NumPy (`arrays`), transformed by one like scipy.fft (`fft`)."""
+    """Device with a NumPy-like library (`arrays`) and a library like scipy.fft (`fft`)."""
 
     def __init__(self, name: str, arrays: Any, fft: Any) -> None:
         self.name = name
@@ -137,7 +137,7 @@ class _Arrays:
         return self._arrays.arange(n)  # type: ignore[no-any-return]
 
     def even_spectrum(self, quadrant: Array) -> Array:
-        # CuPy has no DCT-I: transform the whole even array; the result is real.
+        # CuPy has no DCT-I, so the whole even array is transformed. The result is real.
         columns = np.concatenate([quadrant, quadrant[:, -2:0:-1]], axis=1)
         modes = self._fft.rfft(columns, axis=1, norm="forward").real
         rows = np.concatenate([modes, modes[-2:0:-1]], axis=0)
@@ -160,13 +160,13 @@ class _Arrays:
         nx, ny = values.shape
         px, py = periods
         scaled = np.divide(values, scale, dtype=np.float64)
-        # Transform one axis after the other, so that padding rows are not transformed.
+        # Each axis is transformed separately, so that padding rows are not transformed.
         modes = self._fft.rfft(scaled.astype(spectrum.dtype), n=py, axis=1)
         modes = self._fft.fft(modes, n=px, axis=0)
         weights, last = spectrum.T, px // 2
         modes[: last + 1] *= weights
-        # Modes of negative wave number. If the period is odd, the largest wave number also has a
-        # negative counterpart.
+        # These are the modes of negative wave number. If the period is odd, the largest wave number
+        # also has a negative counterpart.
         modes[last + 1 :] *= weights[px - last - 1 : 0 : -1]
         modes = self._fft.ifft(modes, axis=0, norm="forward", overwrite_x=True)[:nx]
         padded = self._fft.irfft(modes, n=py, axis=1, norm="forward")
@@ -174,7 +174,7 @@ class _Arrays:
 
 
 def accelerator(name: str, arrays: Any, fft: Any) -> Device:
-    """Make a device of a library like CuPy (`arrays`) and its counterpart of scipy.fft (`fft`)."""
+    """Make a device from a library like CuPy (`arrays`) and its version of scipy.fft (`fft`)."""
     return _Arrays(name, arrays, fft)
 
 
@@ -243,12 +243,12 @@ def _gpu() -> Device:
         cupy.cuda.Device().use()  # raises without a GPU
     except ImportError as error:
         raise CaseError(
-            f"device: gpu needs CuPy ({error}); install the extra gpu, from a checkout with "
-            '`pip install ".[gpu]"`, or use the device cpu'
+            f"device: gpu needs CuPy ({error}); install the extra gpu (in a checkout: "
+            '`pip install ".[gpu]"`), or use the device cpu'
         ) from error
     except Exception as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise CaseError(
-            f"device: no usable GPU ({reason}); check its driver, or use the device cpu"
+            f"device: no usable GPU ({reason}); check the GPU driver, or use the device cpu"
         ) from error
     return accelerator("gpu", cupy, cupyx.scipy.fft)

@@ -4,12 +4,12 @@ For nodes (i, j) of a grid of shape (nx, ny), the linear convolution is
 
     u[i, j] = Σ_kl  K[|i − k|, |j − l|] p[k, l].
 
-Zero padding to any size ≥ 2n − 1 makes the circular convolution equal to the linear one (Liu, Wang
-and Liu 2000, Wear 243, 101–111, "DC-FFT"); kernel values at lags beyond n − 1 have no effect. The
-kernel is even along both axes. So its spectrum is real and equals the DCT-I of one quadrant, which
-takes a quarter of the storage.
+Along an axis of n nodes, zero padding to any size ≥ 2n − 1 makes the circular convolution equal to
+the linear one (Liu, Wang and Liu 2000, Wear 243, 101–111, "DC-FFT"); kernel values at lags beyond
+n − 1 have no effect. The kernel is even along both axes. So its spectrum is real and equals the
+DCT-I of one quadrant, which takes a quarter of the storage.
 
-A periodic convolution needs no padding. Its kernel is given by its spectrum, the `symbol`.
+A periodic convolution needs no padding. Its kernel is given by the spectrum (`symbol`).
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ from restitution.numerics.reductions import max_magnitude
 
 Array = NDArray[np.float64]
 # Function that returns the kernel at integer lags i and j, two arrays that broadcast. The operator
-# may overwrite the array that it returns.
+# may overwrite the returned array.
 Kernel = Callable[[NDArray[np.int64], NDArray[np.int64]], Array]
 
 
 # Function that returns the spectrum of a kernel at the angular wave numbers qx and qy (rad per
-# cell, ≥ 0), two arrays that broadcast. It returns a new array.
+# cell, ≥ 0), two arrays that broadcast. The operator may overwrite the returned array.
 Symbol = Callable[[Array, Array], Array]
 
 
@@ -45,11 +45,11 @@ def fast_size(minimum: int) -> int:
 class _Spectral:
     """Multiplication of the Fourier modes of a zero-padded array by a real, even spectrum.
 
-    `count` is the number of products so far.
+    `count` is the number of multiplications so far.
 
     Several threads may use one operator, but a lock on its workspace lets only one of them compute
-    at a time. To compute products in parallel, each thread uses its own copy `with_own_workspace`.
-    The workspace is allocated on first use and kept.
+    at a time. To compute in parallel, each thread uses its own copy from `with_own_workspace`. The
+    workspace is allocated on first use and kept.
     """
 
     def __init__(self, shape: tuple[int, int], periods: tuple[int, int], device: Device) -> None:
@@ -77,7 +77,7 @@ class _Spectral:
 
 
 class Convolution(_Spectral):
-    """Convolution of arrays with one kernel.
+    """Convolution of arrays with a kernel K.
 
     `diagonal` is the kernel at lag (0, 0): the response of a node to its own value.
     """
@@ -96,7 +96,7 @@ class Convolution(_Spectral):
         return self._convolve(p, self._spectrum, out, 1.0)
 
     def single_precision(self, p: Array, out: Array | None = None) -> Array:
-        """Return K ∗ p computed in single precision; errors are up to 9e-7 of the largest value."""
+        """Return K ∗ p computed in single precision; errors reach 9e-7 of the largest value."""
         return self._convolve(p, self._single_spectrum, out, 1.0)
 
 
@@ -106,7 +106,7 @@ class FreeConvolution(Convolution):
     def __init__(self, kernel: Kernel, shape: tuple[int, int], device: Device = CPU) -> None:
         px, py = (2 * fast_size(n) for n in shape)
         super().__init__(shape, (px, py), device)
-        # Transposed, as `Device.convolve` expects.
+        # The kernel is transposed, as `Device.convolve` expects.
         lags = kernel(device.arange(px // 2 + 1)[None, :], device.arange(py // 2 + 1)[:, None])
         self.diagonal = float(lags[0, 0])
         self._spectrum = device.even_spectrum(lags)
@@ -114,7 +114,10 @@ class FreeConvolution(Convolution):
 
 
 class PeriodicConvolution(Convolution):
-    """Circular convolution: the array is one period. The kernel is given by its spectrum."""
+    """Circular convolution: the array is one period. The kernel is given by its spectrum.
+
+    Arguments are the spectrum `symbol`, the shape of the arrays and the device.
+    """
 
     def __init__(self, symbol: Symbol, shape: tuple[int, int], device: Device = CPU) -> None:
         super().__init__(shape, shape, device)
@@ -127,9 +130,9 @@ class PeriodicConvolution(Convolution):
 
 
 class SpectralFilter(_Spectral):
-    """Multiplication by a real, even symbol in Fourier space; a cheap approximate operator.
+    """Multiplication by a real, even symbol in Fourier space: a cheap approximate convolution.
 
-    Arrays are padded only to a fast size, so the filter is periodic. The
+    Arrays are padded only to the next fast size of the transform, so the filter is periodic. The
     filter computes in single precision, which is accurate enough for a preconditioner.
     """
 
@@ -150,7 +153,7 @@ class SpectralFilter(_Spectral):
 
     def __call__(self, r: Array, out: Array | None = None) -> Array:
         """Return the filtered `r`, with the shape of `r`, in a new array or in `out`."""
-        # Scale the values to about one: single precision has a limited range.
+        # Values are scaled to about one, because single precision has a limited range.
         scale = max_magnitude(r)
         return self._convolve(r, self._symbol, out, scale if scale != 0 else 1.0)
 

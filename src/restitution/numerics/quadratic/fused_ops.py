@@ -1,9 +1,9 @@
 """Steps of the minimiser. A compiled loop fuses the array operations of each step into one pass.
 
-All functions share the notation of `minimise`: the point p, its gradient g, the lower and the upper
-bound (numbers, or arrays of the shape of p), the projected gradient r, the preconditioned gradient
-z, the step d and its product Kd. p, g and the bounds are in double precision; r, z, d and Kd are in
-double or single precision.
+All functions share the notation of `minimise`: the point p, the gradient g at p, the lower and the
+upper bound (numbers, or arrays of the shape of p), the projected gradient r, the preconditioned
+gradient z, the step d and the product Kd of K with d. p, g and the bounds are in double precision;
+r, z, d and Kd are in double or single precision.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ Bounds = tuple[Bound, Bound]  # lower, upper
 
 
 def as_rows(lower: Bound, upper: Bound, p: Array) -> Bounds:
-    """Convert number bounds to arrays that repeat one row, as the loops require."""
+    """Convert bounds that are numbers to arrays that repeat one row, as the loops require."""
 
     def rows(bound: Bound) -> Bound:
         if isinstance(bound, np.ndarray) or not loop_takes(p):
@@ -36,8 +36,9 @@ def as_rows(lower: Bound, upper: Bound, p: Array) -> Bounds:
 def projected_gradient(p: Array, g: Array, b: Array, bounds: Bounds, out: Array) -> float:
     """Turn the product K p in `g` into the gradient K p − b, and write its projection to `out`.
 
-    The projected gradient is zero at the nodes on a bound that a descent step would move out of
-    their bounds. Return its largest magnitude, the violation of the optimality conditions.
+    The projected gradient is zero at nodes that lie on a bound and that a descent step would move
+    out of bounds. At the other nodes it equals the gradient. Return its largest magnitude, which is
+    the violation of the optimality conditions.
     """
     g -= b
     free = g * _free(p, g, bounds)
@@ -95,10 +96,8 @@ def take_step(
     """Update p to p + `step` d and g to g + `step` Kd.
 
     Write the projected gradient at the new point to `out` and return its largest magnitude, as
-    `projected_gradient` does.
-
-    After a full step (1), nodes truncated at a bound lie exactly on the bound, without rounding
-    error.
+    `projected_gradient` does. After a full step (`step` = 1), nodes where d was truncated at a
+    bound lie on the bound without rounding error.
     """
     lower, upper = bounds
     low, high = ((step == 1) & (d == (bound - p).astype(d.dtype, copy=False)) for bound in bounds)
@@ -110,7 +109,7 @@ def take_step(
 
 
 def _free(p: Array, g: Array, bounds: Bounds) -> NDArray[np.bool_]:
-    """Mask of free nodes: p is between the bounds, or −g points from the bound into the range."""
+    """Mask of free nodes: p is between the bounds, or −g points from a bound to the inside."""
     lower, upper = bounds
     free = p > lower
     free |= g < 0

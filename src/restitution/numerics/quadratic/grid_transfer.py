@@ -1,6 +1,7 @@
 """Restriction to a grid with cells twice as wide, and prolongation back to the finer grid.
 
-Cells are merged in pairs along each axis, starting with the first; an odd last cell stays alone.
+Along each axis, cells are merged in pairs, starting with the first cell. If the number of cells is
+odd, the last cell is not merged.
 """
 
 from __future__ import annotations
@@ -15,7 +16,10 @@ Array = NDArray[np.float64]
 
 @use_loop
 def restrict(fine: Array, coarse: Array) -> None:
-    """Write the means over 2 × 2 nodes into `coarse`; an odd last row or column counts twice."""
+    """Write the means of `fine` over 2 × 2 nodes into `coarse`.
+
+    If the number of rows or columns is odd, the last one counts twice.
+    """
     rows, columns = (n % 2 for n in fine.shape)
     fine = np.pad(fine, [(0, rows), (0, columns)], mode="edge")
     np.add(fine[::2, ::2], fine[1::2, ::2], out=coarse)
@@ -26,7 +30,10 @@ def restrict(fine: Array, coarse: Array) -> None:
 
 @use_loop
 def prolong(coarse: Array, fine: Array) -> None:
-    """Interpolate `coarse` linearly into `fine`; values are constant beyond the outer centres."""
+    """Interpolate `coarse` linearly to the nodes of `fine`.
+
+    Beyond the outermost coarse nodes the values are constant.
+    """
     rows, columns = fine.shape
     taller = _doubled_rows(coarse)[:rows].T
     fine[...] = _doubled_rows(taller)[:columns].T

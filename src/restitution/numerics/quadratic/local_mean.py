@@ -1,4 +1,4 @@
-"""Local means of an array over its nonzero nodes, around points ("places") of a coarse lattice."""
+"""Local means of an array over its nonzero nodes, around points of a coarse lattice ("places")."""
 
 from __future__ import annotations
 
@@ -26,9 +26,10 @@ def local_sums(r: Array, sums: Array, nodes: Array) -> None:
 
 @use_loop
 def subtract_local_mean(r: Array, share: float, sums: Array, nodes: Array, out: Array) -> None:
-    """Write r minus `share` times its local mean into `out`, and zero where r = 0.
+    """Write r minus `share` times the local mean of r into `out`, and zero where r = 0.
 
-    `sums` and `nodes` are those of `local_sums`, interpolated between the places.
+    `sums` and `nodes` are the results of `local_sums`. They are interpolated between the places,
+    and the local mean is their ratio.
     """
     over_x, over_y = _hat_weights(r, sums)
     total, count = (over_x @ at_places @ over_y.T for at_places in (sums, nodes))
@@ -36,7 +37,7 @@ def subtract_local_mean(r: Array, share: float, sums: Array, nodes: Array, out: 
 
 
 def _hat_weights(r: Array, places: Array) -> list[Array]:
-    """Weights of each row and of each column of `r` at each of the places."""
+    """Linear weights of the rows of `r` at each place along x, and of the columns along y."""
     hats = []
     for n, m in zip(r.shape, places.shape, strict=True):
         node, place = (np.cumsum(np.ones_like(places, shape=k)) for k in (n, m))

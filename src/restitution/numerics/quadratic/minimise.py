@@ -1,6 +1,6 @@
 """Minimisation of a convex quadratic within bounds. All contact problems use this solver.
 
-    minimise  ½ pᵀK p − pᵀb   subject to   lower ≤ p ≤ upper,
+    minimise  ½ pᵀK p − pᵀb   subject to   lower ≤ p ≤ upper
 
 K is symmetric positive definite and known only through its product with an array. With the
 gradient g = K p − b, the solution satisfies the conditions of Karush, Kuhn and Tucker:
@@ -40,12 +40,13 @@ _ROUNDING = 10.0
 # The gradient updated along the steps is used while the violation is at least this multiple of the
 # estimated error of the gradient.
 _CLEAR = 3.0
-# If the optimal step exceeds this fraction of the projected step, take the full step.
+# If a bound truncates the projected step and the optimal step exceeds this fraction of it, take the
+# full step, so that nodes reach the bound.
 _FULL_STEP_FRACTION = 0.8
 # Initial trial length. It is near the typical accepted length, because bounds truncate early steps.
 _INITIAL_STEP = 0.3
-# Smallest and largest trial length, and the exponent that damps its changes. Damping is needed
-# because the optimal length oscillates from step to step.
+# Smallest and largest factor by which the trial length changes (before damping), and the exponent
+# that damps the change. Damping is needed because the optimal length oscillates from step to step.
 _MIN_STEP, _MAX_STEP, _STEP_DAMPING = 0.1, 3.0, 0.5
 
 
@@ -58,11 +59,11 @@ class Operator(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class BoundedQuadratic:
-    """The problem: ½ pᵀK p − pᵀb with lower ≤ p ≤ upper.
+    """The problem: minimise ½ pᵀK p − pᵀb with lower ≤ p ≤ upper.
 
     `K` computes in double precision. `b` has shape (nx, ny), and a bound is a number or an array of
-    this shape. `K_single` is K in single precision, for the products along the steps. If it is
-    None, K is used there too.
+    this shape. `K_single` is K in single precision, for the products of K with steps. If `K_single`
+    is None, K is used for them too.
     """
 
     K: Operator
@@ -74,9 +75,10 @@ class BoundedQuadratic:
 
 @dataclass(frozen=True)
 class Minimum:
-    """Final point of the minimiser, its gradient and the accuracy of both.
+    """Final point of the minimiser, the gradient at this point, and their accuracy.
 
-    `residual` is the violation plus the estimated error of the gradient.
+    `residual` is the violation of the optimality conditions plus the estimated error of the
+    gradient.
     """
 
     point: Array
@@ -96,30 +98,31 @@ def minimise_quadratic(
     K_start: Array | None = None,
     accept_estimated_gradient: bool = False,
 ) -> Minimum:
-    """Projected conjugate gradients, Polak–Ribière+, preconditioned on the free nodes.
+    """Solve `problem` by projected, preconditioned conjugate gradients (Polak–Ribière+).
 
     The search on the free nodes follows Polonsky and Keer (1999, Wear 231, 206–219) with bounds on
     both sides and three changes. (1) The direction, with a trial length suggested by earlier steps,
     is projected onto the bounds before the product with K, not after it. The step is the optimal
     fraction of the projected direction, so an iteration takes one product and the energy always
-    falls. (2) The direction is not reset when nodes reach or leave a bound. Polak–Ribière's β,
-    limited to between zero and the β of Fletcher and Reeves (Gilbert and Nocedal 1992, SIAM J.
-    Optim. 2, 21–42), decreases after steps that end at a bound, because they are not optimal.
-    (3) The projected gradient is preconditioned by an approximate inverse of K, which need not be
-    symmetric and need not give a descent direction.
+    falls. (2) The direction is not reset when nodes reach or leave a bound. Polak–Ribière's β is
+    limited to the range from zero to the β of Fletcher and Reeves (Gilbert and Nocedal 1992, SIAM
+    J. Optim. 2, 21–42). It decreases after a step that ends at a bound, because such a step is not
+    optimal. (3) The projected gradient is preconditioned by an approximate inverse of K. This
+    inverse need not be symmetric and need not give a descent direction.
 
     `start` is the initial point, shape (nx, ny), and is overwritten. `precondition` is an
     approximate inverse of K. `tolerance` limits the violation and has the units of `b`. `K_start`
-    is the product of `K_single` and `start`, if it is known and `start` is within the bounds;
-    `K_start` is overwritten. With `accept_estimated_gradient`, the final gradient may be the one
-    updated along the steps, provided that the violation plus the estimated error of this gradient
-    is within `tolerance`. Otherwise the final gradient is computed with K at the final point.
+    is the product of `K_single` and `start`, if this product is known and `start` is within the
+    bounds; `K_start` is overwritten. With `accept_estimated_gradient`, the final gradient may be
+    the one updated along the steps, provided that the violation plus the estimated error of this
+    gradient is within `tolerance`. Otherwise the final gradient is computed with K at the final
+    point.
 
-    The first gradient is computed with K, unless `K_start` is given or the estimate is accepted.
-    The products along the steps then update the gradient. Their rounding errors are added up as
-    independent errors. When the violation is no longer well above this error, the gradient is
-    computed with K again. If the solve does not converge, the result says so; no exception is
-    raised.
+    The first gradient is computed with K, or with `K_single` if `K_start` is given or the estimate
+    is accepted. Each step updates the gradient by the product of K and the step. The rounding
+    errors of these products are added up as independent errors. When the violation is no longer
+    well above the sum of these errors, the gradient is computed with K again. If the solve does not
+    converge, `converged` of the result is False; no exception is raised.
     """
     # Work arrays that only determine the direction have the same precision as the products.
     work_type: Any = np.float64 if problem.K_single is None else np.float32

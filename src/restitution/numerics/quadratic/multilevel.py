@@ -1,12 +1,13 @@
 """Minimisation within bounds, first on coarser grids and then on a window of the finest grid.
 
-The problem is that of `minimise` with lower = 0 on a uniform grid. Restricting b to means over
-2 × 2 nodes gives the same problem on a grid with half as many nodes along each axis. The solution
-on this coarser grid is a good first guess of all but the shortest waves (nested iteration; Venner
-and Lubrecht 2000, *Multilevel Methods in Lubrication*). The guess also shows where the pressure is
-nonzero, so the fine problem is solved on a window around this region. The optimality conditions are
-then checked on all nodes. If nodes outside the window violate them, the window is widened to
-include these nodes and the problem is solved again.
+The problem is that of `minimise` with lower = 0 on a uniform grid: minimise ½ pᵀK p − pᵀb. The
+unknown p is a pressure. Restricting b to means over 2 × 2 nodes gives the same problem on a grid
+with half as many nodes along each axis. The solution on this coarser grid is a good first guess of
+all but the shortest waves (nested iteration; Venner and Lubrecht 2000, *Multilevel Methods in
+Lubrication*). The guess also shows where the pressure is nonzero, so the fine problem is solved on
+a window around this region. The optimality conditions are then checked on all nodes. If nodes
+outside the window violate them, the window is widened to include these nodes and the problem is
+solved again.
 """
 
 from __future__ import annotations
@@ -39,25 +40,28 @@ Mask = NDArray[np.bool_]
 # At level n the spacing is 2ⁿ times the spacing of the finest grid.
 Operators = Callable[[tuple[int, int], int], tuple[Convolution, SpectralFilter]]
 
-# Smallest numbers of nodes along the shorter edge for which the finest grid, and a coarser grid,
-# are given a first guess from the next coarser grid. On smaller grids a guess costs more time than
-# it saves.
+# A grid starts from a guess on the next coarser grid if its shorter edge has at least this number
+# of nodes: the first number for the finest grid, the second for coarser grids. On smaller grids the
+# guess costs more time than it saves.
 _MIN_NODES_FOR_GUESS, _MIN_NODES_TO_COARSEN = 120, 80
 # Tolerance on coarser grids, as a fraction of the largest b. In general a smaller tolerance gains
-# nothing, because prolongation errors are larger. Only in `solve_near_guess`, the second, smaller
-# value saves a tenth of the time.
+# nothing, because prolongation errors are larger. Only `solve_near_guess` uses the second, smaller
+# value, because this saves a tenth of its time.
 _COARSE_ACCURACY, _FINER_COARSE_ACCURACY = 1e-2, 3e-3
 _COARSE_ITERATIONS = 60
 _MARGIN = 3  # nodes by which the window exceeds the guessed contact on each side
-# Largest window, as a fraction of all nodes. A larger window saves less than its check costs.
+# Largest window, as a fraction of all nodes. A larger window saves less time than the check of all
+# nodes takes.
 _MAX_WINDOW_FRACTION = 0.7
 _PLACES = 8  # points along each axis around which local means are taken (see `local_mean`)
-# The gradient corrects the contact edge of a guess if at most this fraction of the contact nodes is
-# strictly between the bounds. The second number is the size of the correction, as a fraction of the
-# pressure that would close the gap at one node alone (0.15 to 0.5 work nearly as well).
+# The gradient corrects the contact edge of a guess if at most this fraction of the contact nodes
+# (first number) is strictly between the bounds. The second number is the size of the correction, as
+# a fraction of the pressure at one node alone that would close the gap at this node (0.15 to 0.5
+# work nearly as well).
 _MAX_FREE_FRACTION, _GAP_FRACTION = 0.05, 0.3
-# The mean is damped if the Rayleigh quotient of K·M on the free nodes exceeds this value (M is the
-# approximate inverse). The second number is the largest damping factor that still saves time.
+# The mean is damped if the Rayleigh quotient of K·M on the free nodes exceeds the first number (M
+# is the approximate inverse). The second number is the largest damping factor that still saves
+# time.
 _USUAL_STIFFNESS, _MAX_DAMPING_FACTOR = 3.5, 0.7
 
 
@@ -70,24 +74,27 @@ def solve_multilevel(
     max_iterations: int,
     periodic: bool = False,
 ) -> tuple[Minimum, int]:
-    """Minimise with 0 ≤ p ≤ `upper` from a multilevel start.
+    """Minimise ½ pᵀK p − pᵀb with 0 ≤ p ≤ `upper`, starting from solutions on coarser grids.
 
-    `b` has shape (nx, ny); `upper` is a number or an array of this shape. `tolerance` limits the
-    violation and has the units of `b`. If the operators are `periodic`, the fine problem is solved
-    on the whole grid, and only grids of even size are coarsened. Their inverse is nearly exact and
-    is not damped. Return the result and the number of products with K on the finest grid. If the
-    solve does not converge, the result says so; no exception is raised.
+    `operators` builds K and its approximate inverse. `b` has shape (nx, ny); `upper` is a number or
+    an array of this shape. `tolerance` limits the violation of the optimality conditions and has
+    the units of `b`. If the operators are `periodic`, the fine problem is solved on the whole grid,
+    and only grids of even size are coarsened. The approximate inverse of a periodic operator is
+    nearly exact, so it is used without damping. Return the result and the number of products with K
+    on the finest grid. If the solve does not converge, `converged` of the result is False; no
+    exception is raised.
     """
     whole_grid: Box = (slice(0, b.shape[0]), slice(0, b.shape[1]))
     size = shape_of(whole_grid)
     p, Kp, products = np.zeros_like(b), None, 0
-    whole_K, whole_inverse = operators(size, 0)  # smaller blocks reuse its coefficients
+    # The operator of the whole grid is built first, because smaller windows reuse its coefficients.
+    whole_K, whole_inverse = operators(size, 0)
     if min(size) >= _MIN_NODES_FOR_GUESS:
         p, _ = _first_guess(operators, b, upper, 1, _COARSE_ACCURACY, periodic)
     window = None if periodic else bounding_box(p > 0)
     if window is not None and _is_worth_its_check(window, size):
-        # Coarse grids miss some contact. The window also includes the nodes where the guess has no
-        # pressure but the bodies overlap.
+        # Coarse grids miss some contact. Therefore the window also includes the nodes where the
+        # guess has no pressure but the bodies overlap.
         Kp = whole_K.single_precision(p)
         window = bounding_box((p > 0) | (Kp < b))
     window = whole_grid if window is None else widen(window, _MARGIN, size)
@@ -107,13 +114,14 @@ def solve_multilevel(
             tolerance=tolerance,
             max_iterations=max_iterations,
             K_start=None if Kp is None else Kp[window],
-            accept_estimated_gradient=window != whole_grid,  # the full-grid check below decides
+            # A window is followed by the check of all nodes, which computes the exact gradient.
+            accept_estimated_gradient=window != whole_grid,
         )
         if window == whole_grid:
             return found, products + whole_K.count
         products += K.count
         iterations, converged = found.iterations, found.converged
-        del K, inverse, found  # free their arrays before the check allocates more
+        del K, inverse, found  # free the arrays of the window before the check allocates more
         g = whole_K(p, out=Kp)
         residual = violation(p, g, b, 0.0, upper)
         if residual <= tolerance or not converged:
@@ -121,18 +129,20 @@ def solve_multilevel(
             return checked, products + whole_K.count
         wider = union(window, bounding_box(g < -tolerance))
         Kp = np.add(g, b, out=g)
-        # If the window did not grow, the violation comes from rounding: solve on the whole grid.
+        # If the window would not grow, the violation is due to rounding errors. The problem is then
+        # solved on the whole grid.
         window = whole_grid if wider is None or wider == window else widen(wider, _MARGIN, size)
 
 
 def solve_near_guess(
     operators: Operators, b: Array, *, tolerance: float, max_iterations: int
 ) -> tuple[Minimum, Box, int]:
-    """Minimise with 0 ≤ p to a large tolerance, on a window around the guess from coarser grids.
+    """Minimise ½ pᵀK p − pᵀb with 0 ≤ p approximately, on a window around a guess.
 
-    The window also includes the nodes that overlap under the displacement of the coarser grid. The
-    other nodes are neither solved nor checked. Return the result on the window, the window, and the
-    number of products with K.
+    The guess comes from coarser grids. The window includes the nodes where the guess has pressure
+    and the nodes that would overlap under the displacement of the coarser grid. The other nodes are
+    neither solved nor checked. Return the result on the window, the window, and the number of
+    products with K.
     """
     size = b.shape[0], b.shape[1]
     p, window = np.zeros_like(b), None
@@ -157,14 +167,17 @@ def solve_near_guess(
 
 
 def mean_damped_preconditioner(inverse: Operator, p: Array, b: Array, upper: Bound) -> Operator:
-    """Return `inverse` with the local mean of its argument damped where `inverse` overestimates it.
+    """Return `inverse` with a damped response to the local mean of its argument.
 
-    The mean of a residual is constant on the contact nodes and drops to zero at their edge. The
-    inverse of a smoothing operator amplifies the short waves of this drop, more so on finer grids
-    (McLean and Steinbach 1999, Adv. Comput. Math. 11, 271–286). So `inverse` overestimates the
-    constant part, by up to 30 times on rough contacts. Conjugate gradients would have to correct
-    this part again whenever nodes reach or leave a bound. The guess `p` gives the damping factor,
-    because K p = b on the free nodes. Means around 8 × 8 places represent the nearly constant part.
+    If `inverse` does not overestimate the response to a mean, it is returned without damping.
+
+    The mean part of a residual is constant on the contact nodes and drops to zero at the contact
+    edge. The inverse of a smoothing operator amplifies the short waves of this drop, more so on
+    finer grids (McLean and Steinbach 1999, Adv. Comput. Math. 11, 271–286). So `inverse`
+    overestimates the response to the constant part, by up to 30 times on rough contacts. Conjugate
+    gradients would have to correct this part again whenever nodes reach or leave a bound. The guess
+    `p` gives the damping factor, because K p = b on the free nodes. Means around 8 × 8 places
+    represent the nearly constant part.
     """
     free, free_nodes, contact_nodes = _between_the_bounds(p, upper)
     if free_nodes <= 0.5 * contact_nodes:  # no guess, or most contact nodes yield
@@ -187,7 +200,7 @@ def mean_damped_preconditioner(inverse: Operator, p: Array, b: Array, upper: Bou
 
 
 def may_coarsen(shape: tuple[int, ...], periodic: bool) -> bool:
-    """Whether a coarser grid saves time, and has the same period if it must."""
+    """Whether a grid of this shape is large enough to be coarsened; if periodic, also even."""
     even = all(n % 2 == 0 for n in shape)
     return min(shape) >= _MIN_NODES_TO_COARSEN and (even or not periodic)
 
@@ -201,7 +214,7 @@ def coarsened(values: Array) -> Array:
 
 
 def _is_array(bound: Bound) -> TypeGuard[Array]:
-    """Whether each node has its own bound."""
+    """Whether `bound` is an array, with one value for each node."""
     return np.ndim(bound) > 0
 
 
@@ -213,7 +226,7 @@ def _between_the_bounds(p: Array, upper: Bound) -> tuple[Mask, int, int]:
 
 
 def _is_worth_its_check(window: Box, size: tuple[int, int]) -> bool:
-    """Whether a window on a grid of this size saves more than the check of all nodes costs."""
+    """Whether a window on a grid of this size saves more time than the check of all nodes takes."""
     rows, columns = shape_of(window)
     return rows * columns <= _MAX_WINDOW_FRACTION * size[0] * size[1]
 
@@ -253,7 +266,8 @@ def _first_guess(
     if free_nodes > _MAX_FREE_FRACTION * contact_nodes:
         prolong(found.point, guess)
         return guess, displacement
-    # In a nearly fully plastic contact, the pressure jumps to zero between two nodes. The gradients
-    # at these nodes (plastic displacement at one, gap at the other) locate the jump.
+    # In a nearly fully plastic contact, the pressure jumps from the upper bound to zero between two
+    # nodes. The gradients at these nodes (plastic displacement at one, gap at the other) locate the
+    # jump.
     prolong(found.point - _GAP_FRACTION / K.diagonal * found.gradient, guess)
     return np.clip(guess, 0.0, upper, out=guess), displacement

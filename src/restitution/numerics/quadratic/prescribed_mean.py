@@ -2,10 +2,10 @@
 
     minimise  ½ pᵀK p + pᵀh   subject to   0 ≤ p ≤ upper,   mean(p) = `mean`.
 
-The multiplier of the mean is a scalar D, with which p minimises ½ pᵀK p − pᵀ(D − h). The mean of p
-increases with D, so a bracketed secant method finds D. Every solve starts from the previous p, and
-its tolerance follows the current error of D. The first D, p and slope of the secant method come
-from the same problem on the next coarser grid.
+With the Lagrange multiplier D of the prescribed mean, a scalar, p minimises ½ pᵀK p − pᵀ(D − h).
+The mean of p increases with D, so a bracketed secant method finds D. Every solve for p starts from
+the previous p, with a tolerance that is proportional to the current error of D. The first D, p and
+slope of the secant method come from the same problem on the next coarser grid.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ _COARSE_RESIDUAL, _COARSE_MEAN = 1e-2, 0.02
 
 @dataclass(frozen=True)
 class MeanTarget:
-    """The prescribed mean of p, and the tolerances.
+    """The prescribed mean of p, and the tolerances of `minimise_at_mean`.
 
-    `mean` is the prescribed mean and `precision` its relative tolerance. `compliance` is the
-    product with K of a constant p = 1. `residual` limits the violation as a fraction of
-    D − `compliance` · `mean`.
+    `mean` is the prescribed mean and `precision` its relative tolerance. `compliance` is the value
+    of K p for a constant p = 1. `residual` limits the violation of the optimality conditions as a
+    fraction of D − `compliance` · `mean`, where D is the multiplier.
     """
 
     mean: float
@@ -46,10 +46,10 @@ class MeanTarget:
     residual: float
 
     def tolerance(self, multiplier: float, slope: float) -> float:
-        """The limit of the violation, in the units of h.
+        """The limit of the violation of the optimality conditions, in the units of h.
 
-        A violation changes the mean by at most as much as an equal change of the multiplier does.
-        `slope` is dD/dmean.
+        A violation changes the mean by at most as much as an equal change of the `multiplier` D
+        does. `slope` is dD/dmean.
         """
         by_residual = self.residual * abs(multiplier - self.compliance * self.mean)
         return min(by_residual, _MEAN_SHARE * self.precision * self.mean * slope)
@@ -57,7 +57,10 @@ class MeanTarget:
 
 @dataclass(frozen=True)
 class MeanSolution:
-    """The minimum, the multiplier D, the slope dD/dmean, and the products on the finest grid."""
+    """The minimum, the multiplier D, the slope dD/dmean, and the number of products with K.
+
+    `products` counts only the products on the grid of the minimum, not those on coarser grids.
+    """
 
     minimum: Minimum
     multiplier: float
@@ -74,11 +77,12 @@ def minimise_at_mean(
     max_iterations: int,
     level: int = 0,
 ) -> MeanSolution:
-    """Solve at a prescribed mean of p, which must be below `upper`.
+    """Minimise ½ pᵀK p + pᵀh with 0 ≤ p ≤ `upper` at a prescribed mean of p.
 
-    `h` has shape (nx, ny) and is not negative. The operators are periodic and positive definite.
-    `max_iterations` limits each solve. `level` is that of the grid of `h`. If the search does not
-    converge, the result says so; no exception is raised.
+    The mean must be below `upper`. `h` has shape (nx, ny) and is not negative. The operators are
+    periodic and positive definite. `max_iterations` limits each solve. `level` is the level of the
+    grid of `h` (0: finest). If the search does not converge, `converged` of the minimum is False;
+    no exception is raised.
     """
     p = np.zeros_like(h)
     multiplier = target.compliance * target.mean + 0.5 * float(h.mean())
@@ -97,7 +101,8 @@ def minimise_at_mean(
         multiplier, slope = coarse.multiplier, coarse.slope
     K, inverse = operators((h.shape[0], h.shape[1]), level)
     bracket = _Bracket(slope, target.compliance)
-    error = _COARSE_RESIDUAL * abs(multiplier - target.compliance * target.mean)  # of D
+    # Estimated error of the multiplier D.
+    error = _COARSE_RESIDUAL * abs(multiplier - target.compliance * target.mean)
     for _ in range(_MAX_SOLVES):
         b = multiplier - h
         tolerance = target.tolerance(multiplier, bracket.slope)
@@ -114,7 +119,7 @@ def minimise_at_mean(
         done = meets and found.residual <= tolerance
         if done or not found.converged:
             break
-        if meets:  # only the solve was not accurate enough
+        if meets:  # D is accurate enough; repeat the solve with a smaller tolerance
             error = 0.0
             continue
         following = bracket.following(multiplier, mean - target.mean, 2 * found.residual)
@@ -127,14 +132,17 @@ class _Bracket:
     """Secant steps to the root of an increasing function that is negative at zero."""
 
     def __init__(self, slope: float, least_slope: float) -> None:
-        """Begin with a guess of the `slope` dx/dy, which is at least `least_slope`."""
+        """Begin with a guess of the inverse slope dx/dy, which is at least `least_slope`."""
         self.slope = slope
         self._least_slope = least_slope
         self._low, self._high = 0.0, math.inf
         self._before: tuple[float, float] | None = None
 
     def following(self, x: float, y: float, uncertainty: float) -> float:
-        """Return the next x, after the value y at a point within `uncertainty` of x."""
+        """Return the next x, given that y is the function value at a point near x.
+
+        The distance of this point from x is at most `uncertainty`.
+        """
         if y > 0:
             self._high = min(self._high, x + uncertainty)
         else:
