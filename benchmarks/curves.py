@@ -147,12 +147,12 @@ def main() -> None:
             lambda: curve([example], case.depths()),
             options.repeats,
         ),
-        "one restitution at 600 nm, Rq = 0.1 µm, w = 0.09 J/m²": (
+        "one COR at 600 nm, Rq = 0.1 µm, w = 0.09 J/m²": (
             lambda: one(rough, 600e-9),
             options.repeats,
         ),
-        "120 restitutions of Fig. 10, one after the other": (lambda: curve(figure, DEPTHS), 1),
-        f"the same as a study, {os.cpu_count()} processes": (study, 1),
+        "120 values of COR for Fig. 10, computed in sequence": (lambda: curve(figure, DEPTHS), 1),
+        f"the same by `restitution study`, {os.cpu_count()} processes": (study, 1),
     }
     units: list[float] = []
     found: dict[str, tuple[list[float], Tally]] = {}

@@ -49,10 +49,10 @@ zero padding its spectrum. Each row was measured in a process of its own.
 * time: the median of {fewest} to {most} solutions, including the set-up and the kernel.
 * U: the time divided by that of one zero-padded convolution (forward and inverse) on the whole grid
   with scipy.fft, two workers and float64, measured just before.
-* least: the fastest of these solutions.
-* first: the solution before these, which touches its memory for the first time. On a virtual
-  machine whose host reclaims idle memory, like this one, any program may need 1 to 2 s per GiB for
-  this.
+* least: the shortest of these times.
+* first: the time of the first solution of the process, which accesses its memory for the first
+  time. On a virtual machine whose host reclaims idle memory, like this one, the first access may
+  cost any program 1 to 2 s per GiB.
 * memory: the largest memory of the process, including Python and the surface, in GiB.
 * arrays per node: the same memory, divided by that of one float64 array of the whole grid.
 

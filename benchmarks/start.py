@@ -31,7 +31,7 @@ The table shows the time of whole Python processes, measured in turns: the media
 (smallest and largest). The times include the start of Python itself, which takes {bare:.3f} s
 without any import.
 
-| what | time, s | over {base} |
+| process | time, s | ratio to {base} |
 |---|---|---|
 {rows}
 """
