@@ -106,8 +106,10 @@ def pointless(operator: str, line: str) -> bool:
 
     A mutated `|` is nearly always in a type hint, which is not evaluated. Arithmetic on floats that
     becomes a bit operation raises a TypeError at once. `strict` of `zip` guards against lengths
-    that differ, which they never do.
+    that differ, which they never do. A lone `*` or `/` marks keyword-only arguments.
     """
+    if line.strip() in ("*,", "/,"):
+        return True
     if "ReplaceBinaryOperator" in operator:
         before, after = operator.split("_")[1:]
         return before == "BitOr" or (after in BITS and before not in BITS)
