@@ -66,8 +66,9 @@ def reference(tabor):
 
 @pytest.mark.parametrize("tabor", [0.1, 0.5, 1.0, 2.0])
 def test_the_axisymmetric_reference(tabor):
-    contact = sphere(tabor, 3 * tabor)
-    state = solve(contact, 3 * tabor * Z0)
+    depth = min(3 * tabor, 2.0)  # in contact; deeper ones take much longer
+    contact = sphere(tabor, depth)
+    state = solve(contact, depth * Z0)
     path = list(unloading_path(state))
     jkr = JKR(contact.pair.radius, E_STAR, W)
     exact = reference(tabor)
@@ -105,12 +106,12 @@ def solve_far(contact, indentation):
 
 def test_without_attraction_it_is_hertz():
     # A weak law of short range: force and area of Hertz, shifted by the compressed range.
-    contact = sphere(0.5, 100.0, work_of_adhesion=0.05 * W, cells=2.0)
+    contact = sphere(0.5, 50.0, work_of_adhesion=0.05 * W, cells=2.0)
     contact = replace(contact, pair=pair_of(0.5))
-    state = solve(contact, 100 * Z0)
+    state = solve(contact, 50 * Z0)
     hertz = Hertz(contact.pair.radius, E_STAR)
-    assert state.force == approx(hertz.force(100 * Z0), rel=0.02)
-    assert state.contact_area == approx(math.pi * contact.pair.radius * 100 * Z0, rel=0.05)
+    assert state.force == approx(hertz.force((50 - 0.33) * Z0), rel=1e-3)
+    assert state.contact_area == approx(math.pi * contact.pair.radius * (50 + 3.7) * Z0, rel=0.02)
 
 
 def test_a_cycle_without_jump_costs_nothing():
