@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from restitution.collision import collide
+from restitution.contact import cohesive_path
 from restitution.contact.bodies import Body, Pair
 from restitution.contact.cohesive import cohesive_length, needed_spacing
 from restitution.contact.cohesive_path import follow, load_cohesive
@@ -248,3 +249,60 @@ def test_bad_input(options, words):
     with pytest.raises(CaseError, match=words) as refusal:
         Contact(pair_of(1.0), smooth(Grid(8, 1e-8)), **{**valid, **options})
     assert "\n" not in str(refusal.value)
+
+
+def test_each_step_adds_its_error(monkeypatch):
+    """Smooth steps add what they leave unaccounted for, jumps their uncertainty."""
+    steps, accounted = [], cohesive_path._accounted
+
+    def watched(state, trial, is_smooth):
+        new = accounted(state, trial, is_smooth)
+        steps.append((state, trial, is_smooth, new))
+        return new
+
+    monkeypatch.setattr(cohesive_path, "_accounted", watched)
+    [*approach(sphere(1.0, 1.0))]
+    assert {is_smooth for _, _, is_smooth, _ in steps} == {False, True}
+    for state, trial, is_smooth, new in steps:
+        added = new.work_error - state.work_error
+        left = state.unaccounted + trial.by_parabola - trial.change
+        if is_smooth:
+            assert new.unaccounted == approx(left, rel=1e-9)
+            assert added == approx(abs(left) - abs(state.unaccounted), rel=1e-6)
+        else:
+            lost = max(trial.by_trapezium - trial.change, 0.0)
+            assert added == approx(min(trial.uncertainty, max(lost, abs(trial.change))), rel=1e-9)
+            assert added > 0
+
+
+def test_increments_of_plastic_work_add_their_error(monkeypatch):
+    monkeypatch.setattr(cohesive_path, "plastic_work", lambda *_: (0.0, 1e-20))
+    tried, make = [], cohesive_path._try
+
+    def watched(previous, state, at, residual):
+        tried.append((state, make(previous, state, at, residual)))
+        return tried[-1][1]
+
+    monkeypatch.setattr(cohesive_path, "_try", watched)
+    contact = sphere(0.5, 2.0, yield_strength=0.02 * E_STAR)
+    begin = load_cohesive(contact, -math.inf, start=None, residual=1e-8)
+    for _ in zip(follow(begin, 0.5 * Z0, residual=1e-8), range(5), strict=False):
+        pass
+    assert all(
+        trial.state.work_error == approx(state.work_error + 1e-20, rel=1e-9)
+        for state, trial in tried
+        if trial.state.indentation > state.indentation
+    )
+
+
+def test_the_error_of_unloading_is_that_of_the_steps_and_of_the_grid():
+    path = list(unloading_path(solve(sphere(1.0, 2.0), 2 * Z0)))
+    found, end = separation_of(path), path[-1]
+    lost = end.adhesive_loss - path[0].adhesive_loss
+    depth, force = ([getattr(state, key) for state in path] for key in ("indentation", "force"))
+    by_force = end.potential_energy - integrate_curve(depth, force)
+    steps = max(end.work_error - path[0].work_error, abs(by_force - found.unloading_work))
+    spacing = path[0].contact.grid.spacing[0] / needed_spacing(path[0].contact)
+    assert steps > 0
+    assert lost > 0
+    assert found.error == approx(steps + 0.05 * spacing**2 * lost, rel=1e-6)
