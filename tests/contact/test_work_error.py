@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from restitution import Body, Contact, Grid, Pair, generate_surface, smooth, solve, step
+from restitution import Body, Contact, Grid, Pair, generate_surface, smooth, solve
 from restitution.contact import adhesive_work, loading
 from tolerance import approx
 
@@ -130,7 +130,7 @@ def test_the_error_of_a_start_counts_once(monkeypatch):
     monkeypatch.setattr(adhesive_work, "integrate_adaptively", lambda *_, **__: (0.0, 3e-16))
     contact = adhesive(1, "pull-increments")
     first = solve(contact, 0.5 * DEPTH)
-    second = step(first, DEPTH)
+    second = solve(contact, DEPTH, start=first)
     pinned = [0.006 * state.contact_area for state in (first, second)]
     assert first.work_error == approx(3e-16 + pinned[0], rel=1e-9)
     assert second.work_error == approx(6e-16 + pinned[1], rel=1e-9)

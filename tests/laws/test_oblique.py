@@ -417,3 +417,33 @@ def test_a_contact_has_yielded_if_it_separates_a_thousandth_of_its_depth_above_t
     for share, expected in ((0.9e-3, False), (1.1e-3, True)):
         changed = replace(law, separation=lambda x, share=share: share * x)
         assert has_yielded(changed, law.deepest) is expected
+
+
+def test_the_error_of_the_impulse_is_the_largest_change_by_the_error_of_the_stiffness(
+    wall, monkeypatch
+):
+    from restitution.laws import oblique
+    from restitution.laws.tangential_error import TangentialError
+
+    angle, make = math.radians(12), Foundation.of.__func__
+
+    def rebound(factor, error):
+        def changed(cls, law, deepest):
+            springs = make(cls, law, deepest)
+            E, G = springs.moduli
+            return replace(springs, moduli=(E, factor * G))
+
+        monkeypatch.setattr(Foundation, "of", classmethod(changed))
+        monkeypatch.setattr(
+            oblique, "tangential_error", lambda *_: TangentialError(error, 0.0, 0.0)
+        )
+        return collide_obliquely(wall, 2.0, angle, 0.2)
+
+    for error in (0.1, 0.4):
+        found = rebound(1.0, error)
+        changes = [
+            abs(rebound(factor, 0.0).tangential_restitution - found.tangential_restitution)
+            for factor in (1 + error, 1 / (1 + error))
+        ]
+        assert found.tangential_restitution_error == approx(max(changes), rel=1e-6)
+        assert found.tangential_restitution_error > 1e-3
