@@ -18,11 +18,14 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parents[1]
 TESTS = {
+    "contact/adhesive_work.py": "contact/test_work_error.py contact/test_balance.py "
+    "contact/test_loading.py",
     "contact/loading.py": "contact/test_work_error.py contact/test_loading.py "
     "contact/test_cavity.py contact/test_separation.py verification/test_adhesive_restitution.py",
     "contact/plastic_work.py": "contact/test_work_error.py contact/test_cavity.py",
-    "contact/separation.py": "contact/test_separation.py contact/test_energy_account.py "
+    "contact/separation.py": "contact/test_separation.py contact/test_cohesive.py contact/test_energy_account.py "
     "test_collision.py verification/test_adhesive_restitution.py",
+    "contact/cohesive_path.py": "contact/test_cohesive.py contact/test_periodic_cohesive.py",
     "contact/model_error.py": "contact/test_model_error.py",
     "collision.py": "test_collision.py contact/test_energy_account.py contact/test_separation.py "
     "verification/test_adhesive_restitution.py",
@@ -30,7 +33,14 @@ TESTS = {
     "runs/error_budget.py": "runs/test_error_budget.py",
     "runs/convergence.py": "runs/test_convergence.py",
     "runs/ensemble.py": "runs/test_ensemble.py",
+    "runs/oblique.py": "runs/test_oblique_impacts.py",
     "results/compare.py": "cli/test_compare.py",
+    "results/total_error.py": "results/test_total_error.py runs/test_error_budget.py",
+    "calibration/uncertainty.py": "calibration/test_uncertainty.py calibration/test_fit.py",
+    "mixtures/scaling.py": "mixtures/test_mixture.py",
+    "laws/law.py": "laws/test_interpolation.py laws/test_law.py",
+    "laws/oblique.py": "laws/test_oblique.py",
+    "laws/tangential_error.py": "laws/test_tangential_error.py laws/test_oblique.py",
     "laws/interpolation.py": "laws/test_interpolation.py",
     "laws/compact_fit.py": "laws/test_compact_fit.py",
 }

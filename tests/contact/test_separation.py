@@ -1,5 +1,6 @@
 """Unloading to separation: its end, and the error raised without separation."""
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -125,3 +126,31 @@ def test_energy_that_is_not_accounted_for_is_an_error(pressed):
     wrong = [*path[:-1], replace(path[-1], adhesive_work=path[-1].adhesive_work + missing)]
     after = separation.separation_of(wrong)
     assert after.error == approx(before.error + abs(missing), rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("detachment", "late_share"), [("crack-closure", 0.15), ("pohrt-popov", 0.5)]
+)
+def test_the_error_of_unloading_is_the_sum_of_its_parts(detachment, late_share, monkeypatch):
+    """Steps, late release and what the energies of the states leave unaccounted for."""
+    path = list(separation.separate(loaded(detachment)))
+    depth = np.array([state.indentation for state in path])
+    force = np.array([state.force for state in path])
+    by_trapezoids = -np.trapezoid(force, depth)
+    late = -sum(
+        separation._late_force(state) * (state.indentation - before.indentation)
+        for before, state in itertools.pairwise(path)
+    )
+    given = path[0].loading_work - path[-1].loading_work
+    unaccounted = abs(given - (by_trapezoids - late))
+    curve = separation.unloading_curve(path)
+    steps = abs(curve.work() - curve.halved().work())
+    expected = steps + unaccounted + (0.0 if curve.balanced else late_share * abs(late))
+    found = separation.separation_of(path)
+    assert min(steps, unaccounted) > 1e-3 * expected
+    if found.unloading_work < path[0].stored_energy:
+        assert found.error == approx(expected, rel=1e-6)
+
+    monkeypatch.setattr(type(path[0]), "stored_energy", property(lambda _: 0.5 * curve.work()))
+    if curve.balanced:
+        assert separation.separation_of(path).unloading_work == 0.5 * curve.work()

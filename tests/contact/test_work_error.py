@@ -1,7 +1,10 @@
 """The error of the loading work of an adhesive contact."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
+from scipy.interpolate import CubicSpline
 
 from restitution import Body, Contact, Grid, Pair, generate_surface, smooth, solve
 from restitution.contact import adhesive_work, loading
@@ -86,3 +89,48 @@ def test_increments_add_parts_of_what_the_growth_of_the_bound_adds():
     added = 0.1 * abs(growth[old].sum()) + 0.25 * abs(growth[~old].sum())
     assert growth[old].sum() > 0 < growth[~old].sum()
     assert after.work_error - before.work_error == approx(added, rel=1e-9)
+
+
+@pytest.mark.parametrize("after", [None, 0.4])
+def test_a_quadrature_of_balances_adds_half_as_much_again_as_every_second_depth_changes(
+    monkeypatch, after
+):
+    """A force with a kink. The depths are first + (last − first) t^1.5, in twice as many parts."""
+    asked = []
+
+    def at(depth):
+        force = max(depth, 2 * depth - 0.5)
+        state = SimpleNamespace(indentation=depth, force=force, loading_work=0.25)
+        state.contact, state.convolutions = None, 1
+        return state
+
+    def load(_, depth):
+        asked.append(depth)
+        return at(depth)
+
+    monkeypatch.setattr(adhesive_work, "balance_of", lambda state: (state.indentation, state.force))
+    start = None if after is None else at(after)
+    work, error, solves = adhesive_work.work_by_balance(at(1.0), start, load, 2e-3)
+    first = after or 0.0
+    depths = np.array(sorted({*asked, first, 1.0}))
+    parts = depths.size - 1
+    assert parts in (2, 4, 8, 16)
+    assert solves == len(asked)
+    assert depths == approx(first + (1 - first) * (np.arange(parts + 1) / parts) ** 1.5)
+    value, coarse = (
+        CubicSpline(x, np.maximum(x, 2 * x - 0.5)).integrate(first, 1.0)
+        for x in (depths, depths[::2])
+    )
+    assert work == approx(value + (0.25 if after else 0.0))
+    assert error == approx(1.5 * abs(value - coarse), rel=1e-6)
+
+
+def test_the_error_of_a_start_counts_once(monkeypatch):
+    """Pinning counts at the last depth only, and the quadrature from the start on."""
+    monkeypatch.setattr(adhesive_work, "integrate_adaptively", lambda *_, **__: (0.0, 3e-16))
+    contact = adhesive(1, "pull-increments")
+    first = solve(contact, 0.5 * DEPTH)
+    second = solve(contact, DEPTH, start=first)
+    pinned = [0.006 * state.contact_area for state in (first, second)]
+    assert first.work_error == approx(3e-16 + pinned[0], rel=1e-9)
+    assert second.work_error == approx(6e-16 + pinned[1], rel=1e-9)

@@ -199,3 +199,56 @@ def test_the_loss_that_counts_for_lossless_is_a_thousandth(with_ratios):
     for loss, last in ((0.9e-3, 3), (1.1e-3, 2)):
         ratio = np.concatenate([np.ones(3), [1 - loss], np.linspace(0.9, 0.4, 8)])
         assert compact_fit(with_ratios(V, ratio)).elastic_below == V[last]
+
+
+def test_the_degree_is_at_most_eight(with_ratios):
+    V = np.geomspace(0.2, 20, 16)
+    L = np.log(V / 2) / (0.5 * math.log(100))
+    for degree in (8, 9):
+        ratio = 0.5 + 0.4 * np.polynomial.chebyshev.Chebyshev.basis(degree)(L)
+        fit = compact_fit(with_ratios(V, ratio))
+        assert (fit.between < 1e-9) == (degree == 8)
+        assert len(fit.coefficients) <= 9
+
+
+def test_of_n_points_at_most_n_minus_two_coefficients_are_fitted(with_ratios):
+    for n in (4, 5, 6):
+        V = np.geomspace(1, 8, n)
+        L = np.log(V / math.sqrt(8)) / (0.5 * math.log(8))
+        fit = compact_fit(with_ratios(V, 0.5 + 0.3 * L ** (n - 3)))
+        assert len(fit.coefficients) == n - 2
+        assert fit.between < 1e-9
+
+
+def test_a_gain_by_adhesion_is_not_fitted(with_ratios):
+    """e² = 0.5 + 0.01/V² would need a negative loss."""
+    V = np.geomspace(0.3, 10, 12)
+    fit = compact_fit(with_ratios(V, 0.5 + 0.01 / V**2, work_of_adhesion=0.1))
+    assert (fit.adhesion, fit.adhesive_below) == (0.0, None)
+
+
+def test_a_loss_by_adhesion_is_fitted_only_to_adhesive_pairs(with_ratios):
+    V = np.geomspace(0.3, 10, 12)
+    assert compact_fit(with_ratios(V, 0.5 - 0.01 / V**2)).adhesion == 0.0
+    fit = compact_fit(with_ratios(V, 0.5 - 0.01 / V**2, work_of_adhesion=0.1))
+    assert fit.adhesion == approx(0.01, rel=1e-6)
+
+
+def test_a_lower_degree_is_enough_if_its_error_is_below_a_thousandth(with_ratios):
+    """A parabola of height c changes e = √½ by up to c/√2, at the middle by c/2√2."""
+    V = np.geomspace(0.2, 20, 15)
+    L = np.log(V / 2) / (0.5 * math.log(100))
+    degrees = {
+        c: len(compact_fit(with_ratios(V, 0.5 + c * (L**2 - 0.5))).coefficients) - 1
+        for c in (1e-3, 1e-2)
+    }
+    assert degrees == {1e-3: 0, 1e-2: 2}
+
+
+def test_the_worst_of_the_fit_includes_points_that_take_no_part(with_ratios):
+    V = np.geomspace(0.1, 10, 12)
+    ratio = np.concatenate([np.full(3, 0.99**2), np.linspace(0.9, 0.4, 9) ** 2])
+    fit = compact_fit(with_ratios(V, ratio))
+    miss = np.abs(fit.restitution(V) - np.sqrt(ratio))
+    assert fit.worst == approx(miss.max(), rel=1e-9)
+    assert fit.between >= fit.worst

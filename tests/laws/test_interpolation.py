@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
 from restitution.laws.interpolation import RatioCurve
@@ -164,3 +165,49 @@ def test_the_error_is_at_least_the_distance_from_a_straight_line():
         middle = math.sqrt(below * above)
         line = 0.5 * (curve.at(below) + curve.at(above))
         assert curve.error(middle) >= abs(curve.at(middle) - line) * (1 - 1e-9) > 0
+
+
+def test_the_error_is_half_as_large_again_as_the_point_that_was_left_out():
+    """Without its middle point the curve is a line from 0.2 to 0.4, which is 0.6 off."""
+    curve = RatioCurve(np.exp([0.0, 1.0, 2.0]), np.array([0.2, 0.9, 0.4]), adhesive=False)
+    for L in (0.5, 1.5):
+        assert curve.error(math.exp(L)) == approx(1.5 * 0.6)
+    assert curve.error(math.exp(0.25)) == approx(1.5 * 0.6 * 2 * math.sqrt(0.25 * 0.75))
+
+
+def test_each_point_has_its_own_residual_and_an_end_that_of_its_neighbour():
+    L, ratio = np.arange(5.0), np.array([0.1, 0.1, 0.4, 0.1, 0.1])
+    curve = RatioCurve(np.exp(L), ratio, adhesive=False)
+    beside = float(PchipInterpolator(L[[0, 2, 3, 4]], ratio[[0, 2, 3, 4]])(1.0)) - 0.1
+    assert curve._left_out == approx([beside, beside, 0.3, beside, beside])
+
+
+def test_an_adhesive_pair_whose_ratio_falls_has_no_loss_by_adhesion():
+    V = np.array([1.0, 2.0, 4.0])
+    assert RatioCurve(V, np.array([0.9, 0.5, 0.2]), adhesive=True).adhesion == 0.0
+    rising = RatioCurve(V, np.array([0.2, 0.5, 0.6]), adhesive=True)
+    assert rising.adhesion == approx(0.3 / (1 - 1 / 4))
+    assert RatioCurve(V, np.array([0.2, 0.5, 0.6]), adhesive=False).adhesion == 0.0
+
+
+def test_velocities_that_rounding_puts_beyond_an_end_belong_to_the_interval_there():
+    curve = RatioCurve(np.array([1.0, 2.0, 4.0]), np.array([0.9, 0.5, 0.2]), adhesive=False)
+    assert curve.interval(1.0 - 1e-12) == (1, 0.0)
+    assert curve.interval(4.0 + 1e-12) == (2, 1.0)
+    assert curve.interval(math.sqrt(8)) == (2, approx(0.5))
+
+
+def test_the_error_of_restitution_is_that_of_the_points_and_that_of_the_ratio(law):
+    values = ((0.01, 0.81), (0.03, 0.25))
+    ends = [
+        point.model_copy(update={"error": error, "ratio": ratio, "restitution": math.sqrt(ratio)})
+        for point, (error, ratio) in zip(law().points, values, strict=False)
+    ]
+    found = law(points=tuple(ends))
+    curve = found.curve()
+    for t in (0.2, 0.5):
+        V = ends[0].velocity ** (1 - t) * ends[1].velocity ** t
+        e, off = math.sqrt(curve.at(V)), curve.error(V)
+        between = e - math.sqrt(max(curve.at(V) - off, 0.0))
+        assert found.at(V).restitution == approx(e)
+        assert found.at(V).error == approx(0.01 * (1 - t) + 0.03 * t + between)

@@ -2,6 +2,7 @@
 
 import math
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ import pytest
 from elastic_force import elastic
 from restitution import Body, Pair
 from restitution.errors import CaseError, DomainError
-from restitution.laws.foundation import Foundation
+from restitution.laws.foundation import Foundation, has_yielded
 from restitution.laws.oblique import collide_obliquely, course
 from restitution.laws.time_integration import stored_force
 from restitution.theory import Hertz
@@ -333,3 +334,116 @@ def test_the_command_line(cli, refused, computed_yielding, tmp_path):
     assert "--angle" in refused(*given, "--friction", "0.2")
     assert "is not an angle" in refused(*given, "--friction", "0.2", "--angle", "30 m")
     assert "below 90 degrees" in refused(*given, "--friction", "0.2", "--angle", "95 deg")
+
+
+def test_the_course_of_a_sliding_impact_is_that_of_coulomb(wall):
+    """T = µF, and the contact point loses 7/2 of the velocity that the centre loses."""
+    angle, friction = math.radians(60), 0.092
+    found = collide_obliquely(wall, 3.9, angle, friction)
+    assert found.sticking.max() == 0.0
+    assert found.tangential_force[1:-1] == approx(friction * found.normal_force[1:-1], rel=1e-6)
+    V_t = 3.9 * math.sin(angle)
+    assert found.slip_velocity[0] == approx(V_t)
+    end = V_t * (1 - 3.5 * (1 - found.tangential_restitution))
+    assert found.slip_velocity[-1] == approx(end, rel=1e-4)
+    assert (found.time[0], found.time.size) == (0.0, 4001)
+    largest = wall.loading(
+        float(
+            Hertz(wall.pair.radius, wall.pair.contact_modulus).indentation_from_energy(
+                0.5 * wall.pair.mass * (3.9 * math.cos(angle)) ** 2
+            )
+        )
+    )
+    assert found.normal_force.max() == approx(largest, rel=1e-5)
+    assert found.normal_loss == approx(
+        0.5 * wall.pair.mass * (3.9 * math.cos(angle)) ** 2 * (1 - found.normal_restitution**2)
+    )
+
+
+def test_an_impact_whose_contact_point_moves_backwards_has_the_same_errors(wall):
+    """The spin 2 V_t/R reverses the velocity of the contact point, and so the impulse."""
+    angle = math.radians(20)
+    spin = 2 * 3.9 * math.sin(angle) / ALUMINA.radius
+    there = collide_obliquely(wall, 3.9, angle, 0.15)
+    back = collide_obliquely(wall, 3.9, angle, 0.15, (spin, 0.0))
+    assert back.tangential_restitution - 1 == approx(1 - there.tangential_restitution, rel=1e-9)
+    assert back.tangential_restitution_error == approx(there.tangential_restitution_error, rel=1e-9)
+    assert back.spin_errors == approx(there.spin_errors, rel=1e-9)
+    assert back.spins[0] == approx(spin - there.spins[0], rel=1e-9)
+    assert back.rebound_angle_error > 0
+
+
+def test_after_yield_the_error_has_a_part_that_vanishes_in_full_slip(yielded, monkeypatch):
+    from restitution.laws import oblique
+    from restitution.laws.tangential_error import TangentialError
+
+    def errors(degrees, friction, **parts):
+        stated = TangentialError(**{"stiffness": 0.0, "impulse": 0.0, "sliding": 0.0} | parts)
+        monkeypatch.setattr(oblique, "tangential_error", lambda *_: stated)
+        return collide_obliquely(yielded, 0.9 * yielded.highest, math.radians(degrees), friction)
+
+    for degrees, friction in ((10, 0.3), (30, 0.1)):
+        found = errors(degrees, friction, impulse=0.2)
+        change = 1 - found.tangential_restitution  # the impulse over m V_t
+        slip = friction * (1 + found.normal_restitution) / math.tan(math.radians(degrees))
+        expected = 0.2 * change * (1 - change / slip)
+        assert found.tangential_restitution_error == approx(expected, rel=1e-6)
+        assert errors(degrees, friction, sliding=0.2).tangential_restitution_error == approx(
+            0.2 * change, rel=1e-9
+        )
+        assert errors(degrees, friction).tangential_restitution_error == 0.0
+    full = errors(75, 0.05, impulse=0.2)
+    assert full.sliding
+    assert full.tangential_restitution_error < 1e-4 * (1 - full.tangential_restitution)
+
+
+def test_below_the_first_depth_of_loading_the_loads_grow_in_proportion(wall):
+    springs = Foundation.of(wall, wall.deepest)
+    first = springs.depths[0]
+    assert springs.depths.size == 200
+    assert springs.depths[-1] == wall.deepest
+    assert springs.load(first, first) == approx(springs.loads[0] * springs.width)
+    assert springs.load(0.5 * first, 0.5 * first) == approx(0.5 * springs.loads[0] * springs.width)
+    between = springs.load(1.25 * springs.depths[9], 1.25 * springs.depths[9])
+    share = 12.5 - 12
+    assert between == approx(
+        ((1 - share) * springs.loads[11] + share * springs.loads[12]) * springs.width
+    )
+
+
+def test_a_contact_has_yielded_if_it_separates_a_thousandth_of_its_depth_above_touch():
+
+    law = elastic(Pair(ALUMINA, ALUMINA), 1.0)
+    for share, expected in ((0.9e-3, False), (1.1e-3, True)):
+        changed = replace(law, separation=lambda x, share=share: share * x)
+        assert has_yielded(changed, law.deepest) is expected
+
+
+def test_the_error_of_the_impulse_is_the_largest_change_by_the_error_of_the_stiffness(
+    wall, monkeypatch
+):
+    from restitution.laws import oblique
+    from restitution.laws.tangential_error import TangentialError
+
+    angle, make = math.radians(12), Foundation.of.__func__
+
+    def rebound(factor, error):
+        def changed(cls, law, deepest):
+            springs = make(cls, law, deepest)
+            E, G = springs.moduli
+            return replace(springs, moduli=(E, factor * G))
+
+        monkeypatch.setattr(Foundation, "of", classmethod(changed))
+        monkeypatch.setattr(
+            oblique, "tangential_error", lambda *_: TangentialError(error, 0.0, 0.0)
+        )
+        return collide_obliquely(wall, 2.0, angle, 0.2)
+
+    for error in (0.1, 0.4):
+        found = rebound(1.0, error)
+        changes = [
+            abs(rebound(factor, 0.0).tangential_restitution - found.tangential_restitution)
+            for factor in (1 + error, 1 / (1 + error))
+        ]
+        assert found.tangential_restitution_error == approx(max(changes), rel=1e-6)
+        assert found.tangential_restitution_error > 1e-3

@@ -377,3 +377,89 @@ def test_the_table(points, tmp_path):
     assert rows[0]["johnson"] == ""
     with pytest.raises(OutputError, match="not empty"):
         write_theories(V, found, tmp_path / "out")
+
+
+def test_the_softer_body_gives_its_name_whichever_it_is():
+    soft, hard = (f'yield_strength = "{Y} MPa"\n' for Y in (150, 400))
+    for first, second, name in ((soft, hard, "first"), (hard, soft, "second")):
+        case = case_of(first=SPHERE + LIGHT + first, second=SPHERE + LIGHT + second)
+        assert f"Y = 150 MPa, the yield_strength of {name}" in by_name(case)["johnson"].holds
+
+
+def test_a_small_tabor_parameter_is_said_to_lower_the_sticking_velocity():
+    bare = case_of(interface=ELASTIC + 'work_of_adhesion = "1 J/m^2"\n')
+    R, E, _ = bodies(bare)
+    z0 = bare.interface.equilibrium_separation
+    for mu, lower in ((4.9, True), (5.1, False)):
+        w = math.sqrt(mu**3 * E**2 * z0**3 / R)
+        case = case_of(interface=ELASTIC + f'work_of_adhesion = "{w!r} J/m^2"\n')
+        said = by_name(case)["sticking"].holds
+        assert f"here {mu:.2g}" in said
+        assert ("so the true V_s is lower" in said) == lower
+
+
+def test_a_negative_poissons_ratio_leaves_mdr_out_and_zero_does_not():
+    for nu, left in ((-0.1, True), (0.0, False)):
+        case = case_of(first=SPHERE.replace("0.25", str(nu)) + LIGHT, second=WALL)
+        assert ("mdr" in room.left_out(case)) == left
+        assert ("mdr" in by_name(case)) != left
+
+
+def test_mdr_takes_the_poissons_ratio_of_the_sphere_in_either_order():
+    V = np.array([0.1, 1.0])
+    one, other = (by_name(case_of(*pair), V)["mdr"] for pair in PAIRS)
+    assert one.parameters["poissons_ratio"] == other.parameters["poissons_ratio"] == 0.25
+    assert one.restitution.tolist() == approx(other.restitution.tolist())
+
+
+PAIRS = ((SPHERE + LIGHT, WALL), (WALL, SPHERE + LIGHT))
+
+
+@pytest.mark.parametrize("second", [WALL, None])
+@pytest.mark.parametrize("name", ["mdr", "johnson", "thornton-ning"])
+def test_the_end_of_a_theory_that_is_said_is_the_one_of_its_values(name, second):
+    case = case_of(second=second)
+    holds = by_name(case)[name].holds
+    last = float(holds.split("up to " if name == "mdr" else "on, ")[-1].split(" m/s")[0])
+    below, above = by_name(case, last * np.array([0.99, 1.01]))[name].restitution
+    assert np.isfinite(below)
+    assert np.isnan(above)
+
+
+def test_johnsons_range_may_be_empty():
+    hard = case_of(second=WALL, interface='yield_pressure = "60 GPa"\n')
+    found = by_name(hard)["johnson"]
+    assert "so at no velocity here" in found.holds
+    assert np.isnan(found.restitution).all()
+    assert "at no velocity" not in by_name(case_of(second=WALL))["johnson"].holds
+
+
+def test_the_largest_contact_is_that_of_the_velocities_asked_for():
+    case = case_of(second=WALL)
+    R, E, m = bodies(case)
+    V = np.array([0.1, 3.0])
+    a = math.sqrt(ThorntonNing(R, E, 560e6).indentation_from_velocity(3.0, m) / R)
+    assert f"here a/R* up to {a:.2g};" in by_name(case, V)["thornton-ning"].holds
+
+
+def test_with_a_constant_alone_the_other_fits_are_left_out(law):
+    stuck = tuple(
+        point.model_copy(update={"restitution": 0.0, "ratio": -0.1}) for point in law().points
+    )
+    found = law(points=stuck, work_of_adhesion=0.1)
+    found = found.model_copy(update={"laws": fitted_laws(found)})
+    reasons = room.left_out(case_of(), found)
+    assert [name for name in room._FITTED if name not in reasons] == ["constant"]
+    assert "e = 0 at every velocity of the law" in reasons["brilliantov"]
+    bare = found.model_copy(update={"laws": ()})
+    assert set(room._FITTED) <= set(room.left_out(case_of(), bare))
+    assert "constant" not in room.left_out(case_of(), law())
+
+
+def test_a_law_of_elastic_bodies_and_its_unresolved_points_are_told(law):
+    coarse = tuple(
+        point.model_copy(update={"resolved": k > 1}) for k, point in enumerate(law().points)
+    )
+    said = by_name(case_of(), V, law(points=coarse, yield_pressure=None))["computed"].holds
+    assert said.startswith("at its 13 velocities, 2 of them not resolved by the grid; computed for")
+    assert said.endswith("differs from the case: elastic")

@@ -10,6 +10,7 @@ import pytest
 
 from restitution.case.case_file import parse_case
 from restitution.laws.from_results import bare_law
+from restitution.laws.interpolation import RatioCurve
 from restitution.laws.law_files import read_laws
 from restitution.mixtures.family import families
 from restitution.mixtures.mixture_file import parse_mixture
@@ -184,3 +185,36 @@ def test_the_stored_blind_check_holds():
     ]
     assert len(held) >= 60
     assert sum(held) >= 0.95 * len(held)
+
+
+def test_the_error_of_an_interpolated_law_is_the_sum_of_its_parts(mixture_text, tmp_path):
+    """Errors of the two computed laws beside it, and of the interpolation at three velocities."""
+    family = families(parse_mixture(mixture_text()))[0]
+    laws = tuple(law_at(family, radius, tmp_path) for radius in (25e-6, 40e-6, 75e-6))
+    computed = Computed(family, laws)
+    meeting = next(each for each in family.meetings if not computed.has(each.radius))
+    curves = [
+        RatioCurve(
+            np.array([law.radius for law in laws]),
+            np.array([law.curve().at(scaled(law, V, meeting)) for law in laws]),
+            adhesive=False,
+        )
+        for V in family.mixture.velocities
+    ]
+    points = computed.law(meeting).points
+    assert len(points) == len(curves) > 2
+    for k, (point, V) in enumerate(zip(points, family.mixture.velocities, strict=True)):
+        after, t = curves[k].interval(meeting.radius)
+        beside = [law.at(scaled(law, V, meeting)).error for law in laws[after - 1 : after + 1]]
+        ratio = curves[k].at(meeting.radius)
+        off = max(curve.error(meeting.radius) for curve in curves[max(k - 1, 0) : k + 2])
+        ends = np.sqrt(np.clip([ratio - off, ratio, ratio + off], 0, 1))
+        between = np.diff(ends).max()
+        assert point.error == approx((1 - t) * beside[0] + t * beside[1] + between, rel=1e-9)
+        assert computed.interpolation_errors(meeting)[k] == approx(between, rel=1e-9)
+
+
+def scaled(law, V, meeting):
+    """The velocity at which `law` has the work over R*³ of the pair, within its range."""
+    velocity = V * np.sqrt(meeting.mass / meeting.radius**3 / (law.mass / law.radius**3))
+    return min(max(velocity, law.lowest), law.highest)

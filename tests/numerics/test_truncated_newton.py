@@ -96,3 +96,35 @@ def test_it_says_when_it_has_not_converged(K):
     found = minimise(K, edge)
     assert not found.converged
     assert found.residual > 1e-3
+
+
+def steep(u):
+    """φ = √(1 + (40 (u − 1))²)/5: Newton's steps from far away overshoot more and more."""
+    root = np.sqrt(1 + (40 * (u - 1)) ** 2)
+    return 0.2 * root, 320 * (u - 1) / root, 320 / root**3
+
+
+def test_the_trust_region_saves_steps_and_products():
+    """Sums over problems that need it, and 3 % more: a step is refused if the energy rises."""
+    near = [1e-3 * np.random.default_rng(seed).normal(size=SHAPE) for seed in range(6)]
+    far = 2 * np.random.default_rng(9).normal(size=SHAPE)
+    problems = [(steep, np.zeros(SHAPE)), (steep, np.full(SHAPE, -3.0))]
+    problems += [(wells, start) for start in (*near, far)]
+    steps = products = 0
+    for potential, start in problems:
+        K = half_space(SHAPE, (1.0, 1.2), 1.0)
+        energy = 0.5 * np.vdot(start, K(start)) + potential(K(start))[0].sum()
+        K = half_space(SHAPE, (1.0, 1.2), 1.0)
+        found = minimise(K, potential, start)
+        assert found.converged
+        assert found.energy < energy
+        steps, products = steps + found.steps, products + K.count
+    assert steps <= 139
+    assert products <= 627
+
+
+def test_from_far_away_both_starts_end_in_the_only_minimum(K):
+    one, other = (minimise(K, steep, np.full(SHAPE, start)) for start in (0.0, -3.0))
+    assert not one.negative_curvature
+    assert one.energy == approx(other.energy, rel=1e-9)
+    assert one.u == approx(other.u, rel=1e-6)

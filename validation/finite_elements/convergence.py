@@ -12,7 +12,7 @@ import itertools
 import json
 from pathlib import Path
 
-from cases import convergence_cases, crest_cases
+from case_list import convergence_cases, crest_cases
 
 HERE = Path(__file__).parent
 TABLE = HERE / "data" / "convergence.csv"

@@ -76,11 +76,11 @@ def _best(v: Array, e2: Array, centre: float, width: float, adhesive: bool) -> t
             _misfit(v, e2, centre, width, degree, adhesion),
         )
         for degree in range(min(_HIGHEST_DEGREE, v.size - 3) + 1)
-        for adhesion in ({False, adhesive} if degree + 2 < v.size else {False})
+        for adhesion in {False, adhesive}
         if _solve(v, e2, centre, width, degree, adhesion)[-1] >= 0 or not adhesion
     }
     good = max(_SIMPLER * min(errors.values()), _GOOD)
-    return min((key for key, error in errors.items() if error <= good), key=lambda k: k)
+    return min(key for key, error in errors.items() if error <= good)
 
 
 def _basis(v: Array, centre: float, width: float, degree: int, adhesion: bool) -> Array:

@@ -1,0 +1,35 @@
+"""The total error of a row of results."""
+
+import math
+
+import pytest
+
+from restitution.results.total_error import total
+from tolerance import approx
+
+PARTS = {
+    "restitution_error": 0.01,
+    "discretisation_error": 0.02,
+    "surface_scatter": 0.04,
+    "material_error": 0.05,
+}
+
+
+def test_it_is_the_root_of_the_sum_of_the_squares_of_its_four_parts():
+    row = {"restitution": 0.6, **PARTS}
+    assert total(row) == approx(math.sqrt(0.01**2 + 0.02**2 + 0.04**2 + 0.05**2))
+    assert total({**row, "model_error": 0.3}) == total(row)
+
+
+@pytest.mark.parametrize("name", PARTS)
+def test_a_part_that_is_not_known_is_left_out(name):
+    rest = {key: value for key, value in PARTS.items() if key != name}
+    expected = math.hypot(*rest.values())
+    assert total({"restitution": 0.6, **rest}) == approx(expected)
+    assert total({"restitution": 0.6, **PARTS, name: math.nan}) == approx(expected)
+
+
+@pytest.mark.parametrize(("e", "most"), [(0.8, 0.8), (0.3, 0.7), (0.5, 0.5)])
+def test_it_is_at_most_the_distance_to_the_farther_end(e, most):
+    assert total({"restitution": e, "restitution_error": 0.9}) == most
+    assert total({"restitution": e, "restitution_error": 0.2}) == 0.2
