@@ -55,8 +55,8 @@ def interval_in_words(found: Fit, k: int) -> str:
 def combination(found: Fit) -> tuple[dict[str, float], float] | None:
     """Find the combination of parameters, a product of powers, that the data determine best.
 
-    Returns the exponents by key and half of the 95 % interval of the logarithm of the product. None
-    for a single parameter, and if no combination is identifiable.
+    Returns the exponents by key and half of the 95 % interval of the logarithm of the product.
+    Returns None for a single parameter, and if no combination is identifiable.
     """
     direction = found.uncertainty.best_direction
     half = found.uncertainty.half(direction)
@@ -77,7 +77,9 @@ def _not_identifiable(found: Fit) -> Iterator[str]:
             )
             continue
         half = found.uncertainty.halves[k]
-        spans = "has no end" if math.isinf(half) else f"spans a factor of {math.exp(2 * half):.2g}"
+        spans = (
+            "is unbounded" if math.isinf(half) else f"spans a factor of {math.exp(2 * half):.2g}"
+        )
         yield (
             f"{parameter.key} is not identifiable from these data: its 95 % interval {spans} "
             f"({interval_in_words(found, k)})"

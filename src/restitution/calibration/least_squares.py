@@ -154,5 +154,6 @@ def _scan(parameters: int) -> Sequence[Array]:
     """Return the first guess, and points spread evenly over the range of the search."""
     from scipy.stats.qmc import Halton
 
-    even = Halton(parameters, scramble=False).random(_SCANNED + 1)[1:]  # the first is at a corner
+    # Skip the first point of the sequence, which is at a corner of the range.
+    even = Halton(parameters, scramble=False).random(_SCANNED + 1)[1:]
     return [np.zeros(parameters), *(math.log(RANGE) * (2 * even - 1))]
