@@ -74,7 +74,7 @@ class Bodies:
                     f"{name}.density: is missing, and every theory of restitution needs it; write "
                     f'for example density = "2500 kg/m^3" in [{name}]'
                 )
-        assert pair.mass is not None  # checked above
+        assert pair.mass is not None  # the loop above checked both densities
         tables = case.first, case.second or case.first
         # A yield strength of the interface overrides those of the bodies.
         own = case.interface.yield_strength is None

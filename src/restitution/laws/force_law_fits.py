@@ -142,7 +142,7 @@ def _thornton_ning(law: Law) -> Iterator[FittedLaw]:
 
 
 def _adhesion_of(law: Law, V_s: float) -> Parameters:
-    """V_s, and the work of adhesion of smooth elastic bodies with this V_s; empty without V_s."""
+    """V_s, and the work of adhesion of smooth elastic bodies with this V_s; empty for V_s = 0."""
     if V_s <= 0:
         return {}
     unit = JKR(law.radius, law.contact_modulus, 1.0).sticking_velocity(law.mass)

@@ -82,7 +82,7 @@ class Point(_Stored):
     @model_validator(mode="after")
     def _one_number(self) -> Self:
         if abs(self.restitution - _root(self.ratio)) > 1e-6:
-            raise ValueError("restitution is not the root of ratio")
+            raise ValueError("restitution: is not the square root of ratio")
         return self
 
 

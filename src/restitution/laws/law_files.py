@@ -22,7 +22,7 @@ from restitution.results.interruption import hold_signals
 from restitution.results.writer import make_folder, replace_file, write_checksums, write_table
 
 LAW_FILE = "law.json"
-LAWS, MIXTURE_FILE = "laws", "mixture.toml"  # folder with the laws of a mixture, and its file
+LAWS, MIXTURE_FILE = "laws", "mixture.toml"  # in a mixture: folder of the laws, and its input file
 
 
 def write_law(law: Law, out: Path) -> list[Path]:

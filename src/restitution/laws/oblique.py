@@ -137,8 +137,8 @@ def collide_obliquely(
     """
     if not 0 <= angle < math.pi / 2:
         raise CaseError(
-            f"angle: {math.degrees(angle):.6g} degrees from the normal is not an impact; give 0 to "
-            "below 90 degrees"
+            f"angle: {math.degrees(angle):.6g} degrees from the normal is not an impact; give an "
+            "angle from 0 to below 90 degrees"
         )
     if not (math.isfinite(friction) and friction >= 0):
         raise CaseError(f"friction: {friction} is not a coefficient of friction; give 0 or more")
@@ -155,7 +155,7 @@ def collide_obliquely(
     arms = [0.0 if math.isinf(body.radius) else body.radius for body in bodies]
     rolling = sum(R * spin for R, spin in zip(arms, spins, strict=True))
     mass = law.pair.mass
-    assert mass is not None  # StoredForce
+    assert mass is not None  # checked by StoredForce
     error = tangential_error(law, min(normal.largest_indentation, law.deepest), friction)
     course = _slide(law, normal, V_t - rolling, friction, error.stiffness)
     J, e = course.impulse, normal.restitution

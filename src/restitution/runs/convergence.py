@@ -40,7 +40,8 @@ from restitution.runs.refinement import later_touches, settled, with_chosen_adhe
 from restitution.runs.run import run_case
 
 _Row = dict[str, float]
-_Runs = dict[int, tuple[float, list[_Row]]]  # refine → extra approach to first touch (m), rows
+# For each refinement factor: the extra approach to first touch (m), and the rows.
+_Runs = dict[int, tuple[float, list[_Row]]]
 
 
 def run_convergence(
@@ -107,7 +108,7 @@ def _add_errors(
     runs: _Runs,
     progress: Say,
 ) -> None:
-    """Compute the errors of surface and materials on the coarsest grid; add them to the finest."""
+    """Add the errors of surface and materials, from the coarsest grid, to the finest rows."""
     coarsest, finest = case.refined(min(runs)), runs[max(runs)][1]
     alone = [dict(row) for row in finest]
     add_errors(coarsest, folder, coarsest.surface(folder), alone, progress)
@@ -138,7 +139,7 @@ def _levels(case: Case, folder: Path, grids: int) -> dict[int, float]:
 def _pressed_less(case: Case, later: float) -> Case:
     """Reduce the indentations of `case` by `later` (m); leave out indentations without contact."""
     if case.indentation is None:
-        return case  # loads and velocities are the same on every grid
+        return case  # loads and velocities do not depend on where a grid touches first
     depths = [depth - later for depth in case.depths() if depth > later]
     table = case.indentation.model_construct(values=depths)
     return case.model_copy(update={"indentation": table})

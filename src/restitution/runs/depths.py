@@ -83,9 +83,9 @@ def collision_at(
 
 
 def _levels(case: Case, folder: Path, deepest: Contact) -> Iterator[_Level]:
-    """The grids of a case, from that of the shallowest depth to that of `deepest`."""
+    """Yield the grids of a case with their depths, from the shallowest to the deepest depths."""
     factors, depths = case.factors(), case.depths()
-    # Loads and velocities are the same on every grid, but their indentations are not.
+    # Also needed for loads and velocities, because indentations are stored.
     touches = later_touches(case, folder, set(factors)) if len(set(factors)) > 1 else {}
     for factor in sorted(set(factors), reverse=True):
         own = [depth for depth, its in zip(depths, factors, strict=True) if its == factor]

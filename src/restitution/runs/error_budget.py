@@ -47,8 +47,8 @@ _BAND = 1.5  # safety factor on the change of COR expected from waves that the g
 _SHARE_RESOLVED = 0.03
 _FEW_NODES, _SHARE_UNRESOLVED = (3, 7), (0.6, 0.1)
 # The error f of COR as a function of the number of nodes in the median patch. In about 90 % of the
-# contacts, the difference from the solution on a finer grid was below f. A single node yields late
-# and all at once, so its COR may have almost any error.
+# contacts, the difference from the solution on a finer grid was below f. A patch of one node yields
+# late and all at once, so its COR may have almost any error.
 _PATCH_NODES = (1, 3, 7, 14, 30, 100, 400)
 _PATCH_ERROR = (0.9, 0.4, 0.15, 0.08, 0.05, 0.024, 0.008)
 # Error due to the surface, in standard deviations of COR between surfaces. With eight surfaces, it
@@ -57,7 +57,7 @@ _SCATTER = 1.5
 # Lengths in ln W over which differences of COR are smoothed, because single differences may vanish
 # by chance.
 _NEAR_GRID, _NEAR_SURFACE = 2.0, 1.0
-MOST_AFFORDABLE = 2**24  # largest recommended number of nodes (some minutes and about 2 GB)
+MOST_AFFORDABLE = 2**24  # largest recommended number of nodes (takes some minutes and 2 GB)
 MISSING_BAND = 0.03  # a row counts as resolved up to this error of COR due to omitted waves
 
 NOT_INCLUDED = (
@@ -165,7 +165,7 @@ def _add_errors(
     *,
     scattered: bool,
 ) -> list[float]:
-    """Do `add_errors` for the rows of one grid, all with a positive loading work."""
+    """Add the errors to the rows of one grid, all with a positive loading work (`add_errors`)."""
     work = np.array([row["loading_work_J"] for row in reached])
     restitution = np.array([row["restitution"] for row in reached])
     companions = Companions(case, folder, sorted(row["max_indentation_m"] for row in reached))

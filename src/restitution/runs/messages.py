@@ -33,11 +33,11 @@ _ERRORS: dict[Code, type[RestitutionError]] = {
     "range-unresolved": CaseError,
 }
 _NEARLY_JKR = 0.9  # no warning if the energy lost by adhesion is above this fraction of JKR's loss
-_KEYS = {"force": "load", "velocity": "impact"}  # arguments of the solvers: keys of the case file
+_KEYS = {"force": "load", "velocity": "impact"}  # key of the case file for arguments of solvers
 
 
 def require_possible(contact: Contact, indentation: float) -> None:
-    """Raise `CaseError` or `SurfaceError` if loading to `indentation` (m) is meaningless."""
+    """Raise `CaseError` or `SurfaceError` if results at `indentation` (m) would be meaningless."""
     found = impossible(contact, indentation)
     if found is not None:
         raise _ERRORS[found.code](message(found))

@@ -37,8 +37,8 @@ def oblique_rows(case: Case, surface: Surface, out: ResultsFolder) -> tuple[list
     not be computed, or None.
     """
     impact, friction = case.impact, case.interface.friction
-    assert impact is not None  # is_oblique
-    assert friction is not None  # Case._check_oblique
+    assert impact is not None  # the case is oblique
+    assert friction is not None  # checked by Case._check_oblique
     try:
         law = _force(case, surface, out)
     except (CaseError, OutputError, ValueError) as error:
@@ -132,7 +132,7 @@ def _cells(
         "first_spin_before_rad_per_s": before[0],
         "second_spin_before_rad_per_s": before[1],
         "friction": found.friction,
-        "normal_restitution": min(found.normal_restitution, 1.0),  # above 1 by rounding
+        "normal_restitution": min(found.normal_restitution, 1.0),  # rounding may give 1 + 1e-16
         "normal_restitution_error": error,
         "tangential_restitution": found.tangential_restitution,
         "rebound_angle_rad": found.rebound_angle,

@@ -101,10 +101,10 @@ def _first_resolved(case: Case, contact: Contact, depths: list[float]) -> int:
         middle = (low + high) // 2
         try:
             patch = median_patch(load_to(case, contact, depths[middle]).patch_sizes())
-        except DomainError:  # contact at the edge, which the run will report
+        except DomainError:  # the contact reaches the edge; the run will report this
             high = middle
             continue
-        except NotConvergedError:  # the work jumps because of too few nodes
+        except NotConvergedError:  # the work jumps, because the contact has too few nodes
             low = middle + 1
             continue
         if patch >= _MARGIN * NODES_PER_PATCH:
