@@ -19,8 +19,8 @@ _CORRELATED = 0.99
 # A parameter has no effect if doubling it changes the residuals by less than this number of
 # standard deviations.
 _NO_EFFECT = 0.3
-# Another minimum explains the data equally well if its χ² is larger by at most this value, which is
-# two standard deviations.
+# Another minimum explains the data equally well if its χ² is larger by at most this value, which
+# corresponds to two standard deviations.
 _AS_GOOD = 4.0
 _SHARE = 0.1  # smallest exponent of a parameter that is named in a combination
 _UNLIKELY = 0.01  # probability of the residuals below which the case does not explain the data

@@ -73,7 +73,7 @@ def jacobian(
 
 
 def search(model: CaseModel, data: Data, start: Array, cost: Cost = "full") -> Minimum:
-    """Search a minimum from `start`. Raises `RestitutionError` if the case cannot be solved."""
+    """Search for a minimum from `start`. Raises `RestitutionError` if the case cannot be solved."""
     from scipy.optimize import least_squares
 
     def residuals(x: Array) -> Array:
