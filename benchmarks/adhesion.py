@@ -1,8 +1,9 @@
-"""Time of adhesive impacts near sticking and of `converge`, beside another version of the source.
+"""Time adhesive impacts near sticking, and `converge`, in two versions of the source.
 
-`python benchmarks/adhesion.py OTHER` measures this source and the one in the folder OTHER (for
-example `git archive COMMIT src | tar x -C OTHER`, with the compiled kernels copied; PYTHONPATH is
-OTHER/src) in one run, each in processes of its own. Numbers are in docs/benchmarks/adhesion.md.
+`python benchmarks/adhesion.py OTHER` measures this version and the version in the folder OTHER, in
+turn and in separate processes. To make OTHER, use `git archive COMMIT src | tar x -C OTHER` and
+copy the compiled kernels; its processes run with PYTHONPATH=OTHER/src. The results are in
+docs/benchmarks/adhesion.md.
 """
 
 from __future__ import annotations
@@ -60,7 +61,7 @@ def measure(name: str) -> dict[str, float]:
     from restitution.runs.run import run_case
 
     template, hardness, nodes, spacing, grids = CASES[name]
-    if "adhesion" in InterfaceTable.model_fields:  # older sources have no other model
+    if "adhesion" in InterfaceTable.model_fields:  # older versions only have the model "jkr"
         template = template.replace("[interface]\n", '[interface]\nadhesion = "jkr"\n')
     text = "total_error = false\n" + template.format(
         hardness=hardness, nodes=nodes, spacing=spacing

@@ -1,7 +1,8 @@
 """Time this program beside Tamaas, ContactMechanics and SlipPy on the same contacts.
 
-`make bench-peers` makes an environment for each program and runs this, which writes peers.csv,
-peers.md and peers.png into docs/benchmarks. `peers.md` (`REPORT` below) describes the method.
+`make bench-peers` makes an environment for each program and runs this script. The script writes
+peers.csv, peers.md and peers.png into docs/benchmarks. `peers.md` (`REPORT` below) describes the
+method.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ PROGRAMS = {
 }
 RESIDUAL = 1e-8  # residual divided by δ that every program must reach
 LADDER = [10.0**-k for k in range(4, 21)]  # tolerances tried, loosest first
-LEAST_SECONDS = 0.2  # quick solves are repeated for this time, and their median is used
+LEAST_SECONDS = 0.2  # quick solves are repeated for this time, and the median time is used
 
 REPORT = """\
 # Beside other programs
@@ -117,7 +118,7 @@ class Worker:
 
     @property
     def running(self) -> bool:
-        """Whether the process runs; it is ended at the time limit."""
+        """Whether the process runs; a process that exceeds the time limit is ended."""
         return self._process is not None
 
     def stop(self) -> None:
@@ -148,7 +149,7 @@ class Worker:
         if not line:
             self.stop()
             log = (self._folder / f"{self.name}.log").read_text().splitlines()
-            raise UnsolvedError(f"ended: {log[-1] if log else 'without a word'}")
+            raise UnsolvedError(f"ended: {log[-1] if log else 'without a message'}")
         return json.loads(line)
 
 
@@ -184,7 +185,7 @@ def power(number: float) -> str:
 def compare(
     problem: Problem, grid: str, workers: list[Worker], rounds: int, nodes: int
 ) -> tuple[list[dict], list[float]]:
-    """Make a row with the times of each program for this problem; return U at each turn, too."""
+    """Return a row with the times of each program for this problem, and U at each turn."""
     rows = {}
     for worker in workers:
         row = {

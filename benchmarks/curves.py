@@ -1,7 +1,7 @@
-"""Time of whole curves of restitution, in one run; writes docs/benchmarks/curves.md.
+"""Time complete curves of restitution; writes docs/benchmarks/curves.md.
 
-Times are also given in the unit U of `unit.py`, so that machines can be compared. `--repeats 1`
-is quicker.
+Times are also given in the unit U of `unit.py`, so that machines can be compared. `--repeats 1` is
+quicker.
 """
 
 from __future__ import annotations
@@ -110,7 +110,7 @@ def curve(contacts: list[Contact], depths) -> Tally:
 
 
 def study() -> Tally:
-    """Compute Fig. 10 by the whole command `restitution study`, as users run it."""
+    """Compute Fig. 10 by the command `restitution study`, as users run it."""
     case = tomllib.loads(FIG_10.read_text())  # it also has the larger depths of Fig. 12
     case["indentation"] = {"from": "10 nm", "to": "1 um", "steps": len(DEPTHS)}
     with tempfile.TemporaryDirectory() as folder:

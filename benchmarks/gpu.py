@@ -1,7 +1,7 @@
-"""Time of one large solve on a GPU, compared with this machine.
+"""Time one large solve on a GPU, and compare its pressure with that of the CPU.
 
-Needs CuPy and a GPU (`pip install "restitution[gpu]"`); `--device cpu` runs the same on this
-machine. `--nodes` makes it smaller.
+Needs CuPy and a GPU (`pip install "restitution[gpu]"`). `--device cpu` times the same solve on the
+CPU. `--nodes` sets the size of the grid.
 """
 
 from __future__ import annotations
@@ -33,17 +33,17 @@ def seconds(work, repeats: int) -> tuple[float, object]:
 def least_seconds(n: int, products: int) -> float:
     """Time (s) to move the arrays of a solve on n × n nodes at the bandwidth of the device.
 
-    In single precision the padded half-complex array has 16n² bytes. A product fills it, transforms
-    it twice and multiplies it by the kernel, and reads and writes it each time: 110n² bytes. The
-    rows and the converted arrays take 60n² bytes. The preconditioner is applied once for each
-    product and is not padded: 60n² bytes. An iteration reads or writes some 40 arrays of n² values
-    in double precision.
+    In single precision the padded half-complex array has 16n² bytes. A product K p fills this
+    array, transforms it twice and multiplies it by the kernel. Each of these steps reads and writes
+    the array: 110n² bytes. The rows and the converted arrays take 60n² bytes. The preconditioner is
+    applied once for each product and is not padded: 60n² bytes. An iteration reads or writes about
+    40 arrays of n² values in double precision.
     """
     return products * (110 + 60 + 60 + 40 * 8) * n**2 / BANDWIDTH
 
 
 def large(device: str, n: int) -> None:
-    """The elastic solve of `scaling.py` at a = 20 um."""
+    """Time the elastic solve of `scaling.py` at a = 20 um on n × n nodes; print the result."""
     contact = Contact(PAIR, surface_of(n))
     depth = indentation("a = 20 um")
     assert contact.gap.shape == (n, n)
@@ -57,7 +57,9 @@ def large(device: str, n: int) -> None:
     if device != "cpu":
         here = solve(contact, depth)
         off = np.abs(state.box_pressure - here.box_pressure).max() / here.box_pressure.max()
-        print(f"  largest difference of pressure from this machine's: {off:.1e} of the largest")
+        print(
+            f"  largest difference from the pressure of the CPU: {off:.1e} of the largest pressure"
+        )
 
 
 def main() -> None:

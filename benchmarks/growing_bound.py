@@ -1,4 +1,4 @@
-"""Time of a curve under the bound that grows, over the time under a constant bound.
+"""Time of a curve with a growing pressure bound, over the time with a constant bound.
 
 Writes docs/benchmarks/growing-bound.md. `--repeats 1` is quicker.
 """
@@ -89,7 +89,7 @@ def seconds(work: Curve, surface: Surface, strength: dict[str, float]) -> float:
 
 
 def row(name: str, curve: str, times: list[tuple[float, float]]) -> str:
-    """A line of the table."""
+    """Format a row of the table."""
     constant, growing = (statistics.median(each) for each in zip(*times, strict=True))
     ratios = [after / before for before, after in times]
     return (
@@ -106,7 +106,9 @@ def main() -> None:
     about, rows = machine(), []
     for name, surface in surfaces().items():
         for curve, work in {"loading": load, "and unloading": load_and_unload}.items():
-            work(surface, CONSTANT)  # not counted: it computes the influence coefficients
+            work(
+                surface, CONSTANT
+            )  # not timed, because it also computes the influence coefficients
             times = [
                 (seconds(work, surface, CONSTANT), seconds(work, surface, GROWING))
                 for _ in range(repeats)

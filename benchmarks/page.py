@@ -27,7 +27,7 @@ CASES = {
         'plasticity = "equilibrium"': "",
     },
 }
-# Moves the slider of Rq; returns the times (ms) of its curve when the next frame is painted.
+# Moves the slider of Rq, and returns the times (ms) of the new curve once it is painted.
 MOVE = """(position) => new Promise((done) => {
   const slider = document.getElementById("field-roughness-rms-slider");
   slider.value = position;
@@ -64,7 +64,7 @@ def times(page: Page, count: int) -> list[dict[str, float]]:
 
 
 def row(name: str, found: list[dict[str, float]]) -> str:
-    """A line of the table."""
+    """Format a row of the table."""
     parts = {
         "whole": [t["painted"] - t["began"] for t in found],
         "solve": [t["solve"] for t in found],
@@ -84,7 +84,10 @@ def memory(pid: int) -> float:
 
 
 def measured(case: Path, count: int) -> tuple[list[dict[str, float]], int, Any]:
-    """Yield a page of `case` whose first curves are drawn, and the process of its server."""
+    """Move the slider of the page of `case`; return the times, and the memory before and after.
+
+    The memory (MiB) of the server is measured after `CHANGES` moves, and after `count` more.
+    """
     command = [sys.executable, "-m", "restitution", "app", str(case), "--no-browser"]
     server = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     address = server.stdout.readline().split()[-1]

@@ -1,7 +1,7 @@
 """Time this program beside Tamaas and ContactMechanics on periodic contacts under a given pressure.
 
-`make bench-periodic` makes an environment for each program and runs this, which writes periodic.csv
-and periodic.md into docs/benchmarks. Times are measured as in `compare.py`.
+`make bench-periodic` makes an environment for each program and runs this script. The script writes
+periodic.csv and periodic.md into docs/benchmarks. Times are measured as in `compare.py`.
 """
 
 from __future__ import annotations
@@ -97,7 +97,7 @@ def problems(n: int) -> list[Problem]:
 
 
 def table(rows: list[dict], problems_of: dict[str, Problem]) -> str:
-    """The rows as Markdown."""
+    """Format the rows as a Markdown table."""
     lines = [
         "| problem | program | time, s | ratio | own tolerance | residual | force | nodes |",
         "|---|---|---|---|---|---|---|---|",

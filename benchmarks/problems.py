@@ -1,4 +1,4 @@
-"""The contacts that every program solves, and a check of the solutions that uses none of them.
+"""The contacts that every program solves, and an independent check of the solutions.
 
 A problem contains the numbers of a contact that a solver needs: the gap before the solve h₀
 (smallest value 0), the spacing, E*, the largest pressure p_y (inf: elastic) and the indentation δ.
@@ -67,7 +67,7 @@ class Problem:
 
 
 def all_problems(n: int) -> list[Problem]:
-    """Elastic smooth and rough (a = 10 um), plastic smooth (a = 20 um), on n × n nodes."""
+    """Contacts on n × n nodes: elastic smooth and rough (a = 10 um), and plastic smooth (20 um)."""
     grid = Grid((n, n), (SPACING, SPACING))
     flat = smooth(grid)
     rough = generate_surface(grid, kind="gaussian", rms=0.1e-6, correlation_length=2e-6, seed=1)
@@ -93,7 +93,7 @@ def _problem(name: str, contact: Contact, indentation: float) -> Problem:
 
 
 def _widened(inside: np.ndarray) -> slice:
-    """The range of the true values, widened to a length with factors 2, 3 and 5 only."""
+    """The range of the true values, widened to a length whose prime factors are small."""
     at = np.flatnonzero(inside)
     found = int(at[-1] - at[0]) + 1
     length = min(scipy.fft.next_fast_len(found, real=True), inside.size)
@@ -130,7 +130,7 @@ def residual(problem: Problem, pressure: np.ndarray) -> float:
 
 @lru_cache(maxsize=2)
 def _kernel(shape: tuple[int, int], spacing: float) -> tuple[np.ndarray, float]:
-    """Spectrum of E* K, wrapped round twice the shape, and E* K at lag 0 (Love 1929)."""
+    """Spectrum of E* K, wrapped to a period of twice the shape, and E* K at lag 0 (Love 1929)."""
     # u(x, y) is the double difference of F = x asinh(y/|x|) + y asinh(x/|y|) over the corners of
     # the cell. Extended precision compensates for the cancellation in these differences.
     x, y = (spacing * (np.arange(n + 2, dtype=np.longdouble) - 0.5) for n in shape)

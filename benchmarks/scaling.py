@@ -1,8 +1,8 @@
 """Time, convolutions and memory of one rough solve against the size of the grid.
 
-One band-limited surface on a domain of 64 um, made on 256² nodes and refined by zero padding its
-spectrum, is pressed by the same sphere at every size. Writes scaling.csv, scaling.md and
-scaling.png into docs/benchmarks; `--largest 8192` goes one size further.
+The contact is the same at every size: a sphere on a band-limited surface of 64 um, which is made on
+256² nodes and refined by zero padding its spectrum. Writes scaling.csv, scaling.md and scaling.png
+into docs/benchmarks; `--largest 8192` adds one size.
 """
 
 from __future__ import annotations
@@ -155,7 +155,7 @@ def table(rows: list[dict]) -> str:
 
 
 def draw(cases: dict[str, list[dict]], path: Path) -> None:
-    """Time and memory against nodes, both axes logarithmic."""
+    """Draw time and memory against the number of nodes, on logarithmic axes."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 

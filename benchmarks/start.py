@@ -38,14 +38,14 @@ without any import.
 
 
 def start(arguments: list[str]) -> float:
-    """Seconds of a process."""
+    """Time (s) of a Python process with `arguments`."""
     return seconds(
         lambda: subprocess.run([sys.executable, *arguments], check=True, stdout=subprocess.DEVNULL)
     )
 
 
 def main() -> None:
-    """Time them and write the report."""
+    """Time the commands and write the report."""
     where = machine()
     times: dict[str, list[float]] = {name: [] for name in COMMANDS}
     for arguments in COMMANDS.values():

@@ -45,7 +45,7 @@ ROUNDS = 2
 
 
 def seconds(folder: Path, *where: str) -> float:
-    """Time of the whole command."""
+    """Time (s) of the command `restitution study` with the options `where`."""
     began = time.perf_counter()
     subprocess.run(
         [
@@ -86,7 +86,7 @@ def cluster(workers: int) -> Iterator[str]:
         for line in process.stderr or ():
             if found := re.search(words, line):
                 return found[0]
-        raise RuntimeError(f"a process of the cluster ended without saying {words!r}")
+        raise RuntimeError(f"a process of the cluster ended without printing {words!r}")
 
     started = [start("dask_scheduler", "--host", "127.0.0.1", "--port", "0")]
     address = said(started[0], r"tcp://127\.0\.0\.1:\d+")
@@ -102,7 +102,7 @@ def cluster(workers: int) -> Iterator[str]:
 
 
 def main() -> None:
-    """Print medians and their ratio."""
+    """Print the median times with one and two workers, and their ratio."""
     taken: dict[tuple[str, int], list[float]] = {}
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)

@@ -1,8 +1,7 @@
 """Generate the two synthetic scans of the examples.
 
-Writes glass-bead.txt and lactose.x3p beside this file, or into the folder that is given:
-`python examples/generate_scans.py [FOLDER]`. The seeds are fixed, so every call writes the same
-scans.
+`python examples/generate_scans.py [FOLDER]` writes glass-bead.txt and lactose.x3p into FOLDER, or
+beside this file if there is no FOLDER. The seeds are fixed, so every call writes the same scans.
 """
 
 from __future__ import annotations
@@ -80,7 +79,7 @@ def glass_bead() -> tuple[np.ndarray, Grid]:
         rms=20e-9,
         hurst=0.8,
         rolloff=2e-6,
-        shortest=0.4e-6,  # the tip follows no shorter waves
+        shortest=0.4e-6,  # the tip of the AFM does not resolve shorter waves
         periodic=False,
         seed=11,
     ).height
@@ -113,7 +112,7 @@ def write_text(path: Path, height: np.ndarray, grid: Grid) -> None:
 
 
 def write_x3p(path: Path, height: np.ndarray, grid: Grid) -> None:
-    """Write heights as X3P (ISO 25178-72): 16-bit integers of 0.2 nm, and which are valid."""
+    """Write heights as X3P (ISO 25178-72): 16-bit integers of 0.2 nm, and a mask of the points."""
     step = 0.2e-9
     valid = np.isfinite(height).T
     values = np.where(valid, np.round(height.T / step), 0).astype("<i2")

@@ -4,7 +4,7 @@ Adhesion: from sticking to rebound
 
 A smooth elastic adhesive sphere sticks below the velocity :math:`V_s`. Above :math:`V_s` it
 rebounds with :math:`e = (1 - V_s^2/V^2)^{1/2}` (JKR; Thornton and Ning 1998). If the sphere also
-yields, COR has a maximum, because adhesion reduces COR of slow impacts and yield reduces COR of
+yields, COR has a maximum, because adhesion reduces COR of slow impacts and yielding reduces COR of
 fast impacts. The smaller the particle, the narrower the range of velocities with a high COR.
 """
 

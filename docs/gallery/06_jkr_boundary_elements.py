@@ -3,8 +3,8 @@ JKR against boundary elements
 =============================
 
 This figure compares a computed adhesive contact with the theory of Johnson, Kendall and Roberts
-(1971). A smooth sphere is unloaded step by step until it snaps off. Nodes are released by the
-crack-closure criterion, that is where the energy release rate exceeds the work of adhesion.
+(1971). A smooth sphere is unloaded step by step until it snaps off. By the crack-closure criterion,
+nodes are released where the energy release rate exceeds the work of adhesion.
 """
 
 import matplotlib.pyplot as plt

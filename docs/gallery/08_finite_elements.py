@@ -16,7 +16,7 @@ import matplotlib.pyplot as plt
 
 
 def table():
-    """The rows of validation/models.csv, looked up from the folder of this script."""
+    """The rows of validation/models.csv, found in the current folder or a folder above it."""
     here = Path.cwd().resolve()
     root = next(folder for folder in (here, *here.parents) if (folder / "validation").is_dir())
     with open(root / "validation" / "models.csv") as file:

@@ -3,8 +3,8 @@ Oblique impacts: computed and measured
 ======================================
 
 Alumina spheres of 5 mm hit glass at 3.9 m/s and several angles. Kharaz, Gorham and Salman (2001)
-measured the tangential restitution :math:`e_t`: the tangential velocity of the centres after the
-impact, divided by its value before. The coefficient of friction is 0.092, and nothing is fitted.
+measured the tangential restitution :math:`e_t`, the ratio of the tangential velocities of the
+centres after and before the impact. The coefficient of friction is 0.092, and nothing is fitted.
 Nearly normal impacts stick. From 28.3 degrees on the whole contact slides, and
 :math:`e_t = 1 - \mu (1 + e_n)/\tan\theta`.
 """

@@ -77,8 +77,8 @@ __all__ = [
     "unloading_path",
 ]
 
-# Modules and the public names that each defines. A name is imported on first use. The command line
-# is in the same package, so it can answer (and be interrupted) before NumPy is loaded.
+# Modules and the public names that each defines. A name is imported on first use, so that the
+# command line, which is in this package, can answer and be interrupted before NumPy is loaded.
 _MODULES = {
     "api": ("collide_obliquely", "export", "law_of", "open_results", "run"),
     "case.materials": ("material", "materials"),

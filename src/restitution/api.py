@@ -1,4 +1,4 @@
-"""Functions for whole tasks in Python: run a case, open its results, collide, export a law."""
+"""Python functions for complete tasks: run a case, open its results, collide, export a law."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ def run(
 ) -> RunResults | PeriodicResults:
     """Run a case, as `restitution run` does, and open its results.
 
-    `results.dataset` is an xarray Dataset with units; `results.curve` has the rows of `curve.csv`,
-    `results.summary` the content of `summary.json`. An interrupted or failed run leaves the depths
-    that were computed in `out`. No figures are drawn. Use `on_device` to run on a GPU.
+    `results.dataset` is an xarray Dataset with units, `results.curve` has the rows of `curve.csv`,
+    and `results.summary` has the content of `summary.json`. An interrupted or failed run keeps the
+    computed depths in `out`. No figures are drawn. Use `on_device` to run on a GPU.
 
     Args:
         case: Case file, or its tables: `{"first": {"material": "steel", "radius": "500 um"}, …}`.
@@ -88,8 +88,8 @@ def open_results(folder: Folder) -> RunResults | StudyResults | PeriodicResults:
     `results.dataset` is an xarray Dataset in SI units, with the attribute `units` on every
     variable. Its dimension is `indentation_max` for a run. For a study the dimensions are the swept
     keys and `depth`; swept quantities are numeric coordinates with units, so they can be selected:
-    `open_results("study").dataset.sel({"roughness.rms": 1e-7}, method="nearest")`. Their attribute
-    `as_written` holds the texts of the study file.
+    `open_results("study").dataset.sel({"roughness.rms": 1e-7}, method="nearest")`. The attribute
+    `as_written` of a coordinate holds its values as written in the study file.
 
     Args:
         folder: Results folder, the OUT of `restitution run`, `converge` or `study`.
@@ -162,16 +162,16 @@ def collide_obliquely(
             90 degrees.
         friction: Coefficient of friction µ (1); by default that of the case.
         spin: Spin of the first body before the impact, or of both: texts such as "100 rad/s" or
-            "20 rpm", or numbers (rad/s). Positive in the sense in which friction turns a body
-            without spin.
+            "20 rpm", or numbers (rad/s). A spin is positive in the direction in which friction
+            turns a body without spin.
 
     Returns:
-        The collision: normal and tangential restitution, angle of rebound, spins, losses, and its
-        course in time.
+        The collision: normal and tangential restitution, angle of rebound, spins, losses, and time
+        series.
 
     Raises:
         CaseError: An argument is missing or outside its range, or the pair has adhesion.
-        DomainError: The normal velocity lies outside the computed ones.
+        DomainError: The normal velocity lies outside the computed velocities.
         OutputError: The folder does not hold results with unloading curves, or a file is damaged.
     """
     from restitution.case.quantities import read_impact_angle, read_quantity
@@ -227,7 +227,8 @@ def export(
     Args:
         laws: One law for each pair of particles, folders of results or laws (`law_of`), or the
             folder of a mixture.
-        to: DEM code: "lammps", "liggghts", "yade", "mercurydpm", "edem", or "csv".
+        to: DEM code: "lammps", "liggghts", "yade", "mercurydpm", "edem", "mujoco" or "drake"; or
+            "csv" for one table.
         out: Folder for the files; existing files are never overwritten.
         velocity: Impact velocity, such as "1 m/s", or a number (m/s); "csv" does not need it.
 

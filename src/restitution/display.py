@@ -21,7 +21,7 @@ class _Summarised(Protocol):
 
 
 def summary_text(self: _Summarised) -> str:
-    """Return the class name and the lines of `_summary`, all but the first of them indented."""
+    """Return the class name and the lines of `_summary`; lines after the first are indented."""
     return f"{type(self).__name__}: " + "\n  ".join(self._summary())
 
 
@@ -52,12 +52,12 @@ def counted(number: int, noun: str) -> str:
 
 
 def without_numbers(text: str) -> str:
-    """Replace each number in `text` by a sign; texts that differ only in numbers become equal."""
+    """Replace each number in `text` by #, so that texts that differ only in numbers are equal."""
     return _NUMBER.sub("#", text)
 
 
 def some_of(names: Iterable[str], most: int = 6) -> str:
-    """List `names` without repetitions and empty ones: at most `most`, and how many others."""
+    """List up to `most` different non-empty `names`, and the number of further names."""
     each = list(dict.fromkeys(filter(None, names)))
     more = f" and {len(each) - most} more" if len(each) > most else ""
     return ", ".join(each[:most]) + more

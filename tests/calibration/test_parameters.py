@@ -58,7 +58,7 @@ def test_one_of_several_tables_is_named_by_its_number():
     ("names", "words"),
     [
         ([], "names no key"),
-        (["xyz"], "xyz is not a key of the case; write it there with a first guess"),
+        (["xyz"], "xyz is not a key of the case; add it to the case with a first guess"),
         (["interface.yield_strength"], "interface.yield_strength is not a key of the case"),
         (["yield_pressure"], '= "2.8 Y" is not a number or quantity'),
         (["work_of_adhesion"], '= "0 J/m^2" is not positive'),

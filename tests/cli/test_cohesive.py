@@ -65,7 +65,7 @@ def test_the_grid_chooses_the_model(run):
     assert "interface.adhesion" not in warned
     coarse, summary, warned = run((GIVEN, ""), ("0.08 um", "0.25 um"))
     assert summary["model"]["adhesion"] == "JKR limit"
-    assert "interface.adhesion is left out" in warned
+    assert "interface.adhesion is not given" in warned
     assert "needs a spacing of 82.16 nm" in warned
     # the model error of JKR covers the difference
     for with_range, without in zip(fine, coarse, strict=True):

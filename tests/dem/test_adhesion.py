@@ -35,7 +35,7 @@ def test_every_code_gets_the_force_and_the_reason(adhesive, law, code):
     # 3/2 π w R*
     assert f"smooth bodies: {1.5 * math.pi * 0.2 * adhesive.radius:.4g} N" in text
     assert "the pull-off force is not modelled below, because" in text.replace("// ", "")
-    assert ("jkr and dmt refuse coeff_restitution" in text) == (code == "lammps")
+    assert ("jkr and dmt do not accept coeff_restitution" in text) == (code == "lammps")
     unknown = export([law(work_of_adhesion=0.2)], code, 1.0)
     assert "not known (it needs" in next(iter(unknown.values()))
 

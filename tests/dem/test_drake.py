@@ -32,7 +32,7 @@ def test_unlike_spheres_and_walls_rebound_as_exported(mixed, drake, texts):
 
 def test_the_file_says_what_e_is_at_half_and_twice_the_velocity(equal, drake, texts):
     files = write(equal, 0.5)
-    said = re.search(r"at 0.5 m/s, (\S+) at half of it, (\S+) at", files["restitution_drake.py"])
+    said = re.search(r"at 0.5 m/s, (\S+) at half and (\S+) at", files["restitution_drake.py"])
     folder = texts(files)
     assert drake.ratios(folder, 0.25) == approx([float(said[1])], rel=1e-3)
     assert drake.ratios(folder, 1.0) == approx([float(said[2])], rel=1e-3)

@@ -78,7 +78,7 @@ def test_comments_tell_where_e_comes_from_and_how_far_to_trust_it(law):
     assert "glass (R = 0.001 m)" in said
     assert "R* = 0.0005 m, E* = 3.73333e+10 Pa" in said
     assert "yield pressure p_y: 1e+09 Pa; convention: mean pressure of a plastic contact" in said
-    assert "end of contact in e: the force is back to zero" in said
+    assert "end of contact assumed for e: the force is back to zero" in said
     assert "computed from 0.01 to 10 m/s" in said
     assert "End of a contact in LAMMPS: the overlap is back to zero" in said
     assert "Friction 0.5 is a placeholder" in said

@@ -9,7 +9,7 @@ from restitution.dem.pair_table import pair_table
 from tolerance import approx
 
 NAME = "restitution_kokkos.lmp"
-SAID = r"Pair {0} {1}: e = (\S+) at .*?, (\S+) at half of it, (\S+) at twice\."
+SAID = r"Pair {0} {1}: e = (\S+) at .*?, (\S+) at half and (\S+) at twice"
 
 
 def with_kokkos(files):

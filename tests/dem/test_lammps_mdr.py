@@ -53,7 +53,7 @@ def opened(laws):
 def test_one_type_is_offered_a_line_with_its_range(law):
     said = fragment([law(laws=(MDR,))])
     assert "# pair_coeff 1 1 mdr 7e+10 0.25 300000000 0.0 0.5 0.0 tangential" in said
-    assert "worst difference in e is 0.099, from 0.01 to 10 m/s; do not use it beyond" in said
+    assert "worst difference in e is 0.099, from 0.01 to 10 m/s; do not use it outside this range" in said
     assert "No mdr line" not in said
 
 
@@ -78,7 +78,7 @@ def test_the_line_of_a_wall_runs_beside_that_of_the_spheres(law, plate, lammps, 
 def test_a_wall_alone_is_told_what_its_line_needs(law, plate):
     said = without_breaks(fragment([law(law().first, plate, laws=(MDR,))]))
     assert "variable wall_1_2 string 'granular mdr" in said
-    assert "needs atom_style sphere 1, newton off and mdr in pair_style" in said.lower()
+    assert "needs atom_style sphere 1, newton off, and mdr in pair_style" in said.lower()
 
 
 def test_several_types_have_no_line_and_are_told_why(mixed, plate):

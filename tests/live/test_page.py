@@ -114,7 +114,7 @@ def test_pinned_curves_are_drawn_compared_and_removed(page):
     page.get_by_role("button", name="Pin this curve").click()
     change(page, RMS, "40 nm")
     page.get_by_role("button", name="Pin this curve").click()
-    assert [row[1] for row in table(page, "pins")] == ["the first one", "roughness.rms = 40 nm"]
+    assert [row[1] for row in table(page, "pins")] == ["the first pin", "roughness.rms = 40 nm"]
     expect(drawn).to_have_text(["pin 1", "pin 2"])
     page.get_by_role("button", name="Remove pin 2").click()
     expect(drawn).to_have_text(["pin 1"])

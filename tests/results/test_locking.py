@@ -12,7 +12,7 @@ def test_a_second_process_is_kept_out_and_no_lock_is_left(tmp_path):
     out = tmp_path / "new" / "out"
     with locked(out):
         with (
-            pytest.raises(OutputError, match=f"^{out}: another process is writing there"),
+            pytest.raises(OutputError, match=f"^{out}: another process is writing to this folder"),
             locked(out),
         ):
             pass
@@ -38,7 +38,7 @@ def test_the_verbs_refuse_a_folder_in_which_another_process_writes(
     (tmp_path / "case.toml").write_text(case_text)
     with locked(tmp_path / "out"):
         said = refused(verb, tmp_path / "case.toml", "-o", tmp_path / "out")
-        assert "another process is writing there" in said
+        assert "another process is writing to this folder" in said
         assert [path.name for path in (tmp_path / "out").iterdir()] == [LOCK]
 
 

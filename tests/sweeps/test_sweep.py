@@ -66,7 +66,7 @@ def test_one_of_several_tables_is_named_by_its_number(case_text):
     study = parse_study(two + '[sweep]\n"roughness.2.seed" = [8]\n')
     assert [part.seed for part in parse_case(study.cases[0].text).roughness] == [1, 8]
     for key, words in (
-        ("roughness.seed", "there are 2 tables; say which one by its number"),
+        ("roughness.seed", "there are 2 tables; select one by its number"),
         ("roughness.3.seed", "is not the number of a table"),
     ):
         with pytest.raises(CaseError, match=words):

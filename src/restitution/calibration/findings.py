@@ -19,8 +19,8 @@ _CORRELATED = 0.99
 # A parameter has no effect if doubling it changes the residuals by less than this number of
 # standard deviations.
 _NO_EFFECT = 0.3
-# Another minimum explains the data equally well if its χ² is larger by at most this value, which is
-# two standard deviations.
+# Another minimum explains the data equally well if its χ² is larger by at most this value, which
+# corresponds to two standard deviations.
 _AS_GOOD = 4.0
 _SHARE = 0.1  # smallest exponent of a parameter that is named in a combination
 _UNLIKELY = 0.01  # probability of the residuals below which the case does not explain the data
@@ -55,8 +55,8 @@ def interval_in_words(found: Fit, k: int) -> str:
 def combination(found: Fit) -> tuple[dict[str, float], float] | None:
     """Find the combination of parameters, a product of powers, that the data determine best.
 
-    Returns the exponents by key and half of the 95 % interval of the logarithm of the product. None
-    for a single parameter, and if no combination is identifiable.
+    Returns the exponents by key and half of the 95 % interval of the logarithm of the product.
+    Returns None for a single parameter, and if no combination is identifiable.
     """
     direction = found.uncertainty.best_direction
     half = found.uncertainty.half(direction)
@@ -77,7 +77,9 @@ def _not_identifiable(found: Fit) -> Iterator[str]:
             )
             continue
         half = found.uncertainty.halves[k]
-        spans = "has no end" if math.isinf(half) else f"spans a factor of {math.exp(2 * half):.2g}"
+        spans = (
+            "is unbounded" if math.isinf(half) else f"spans a factor of {math.exp(2 * half):.2g}"
+        )
         yield (
             f"{parameter.key} is not identifiable from these data: its 95 % interval {spans} "
             f"({interval_in_words(found, k)})"

@@ -94,7 +94,7 @@ def _summary(found: Fit, text: str) -> dict[str, Any]:
         "surfaces": found.model.surfaces,
         "intervals_include": _included(found),
         "measured_values_are": f"means over {found.model.surfaces} places of impact or more; "
-        "std_if_one_place: over one",
+        "std_if_one_place assumes one place",
         "intervals_do_not_include": "the model of plasticity (by_model_error), values that the "
         "case gives, rate effects, elastic waves",
         "largest_model_error": float(found.deviations.model.max()),

@@ -73,7 +73,7 @@ def jacobian(
 
 
 def search(model: CaseModel, data: Data, start: Array, cost: Cost = "full") -> Minimum:
-    """Search a minimum from `start`. Raises `RestitutionError` if the case cannot be solved."""
+    """Search for a minimum from `start`. Raises `RestitutionError` if the case cannot be solved."""
     from scipy.optimize import least_squares
 
     def residuals(x: Array) -> Array:
@@ -154,5 +154,6 @@ def _scan(parameters: int) -> Sequence[Array]:
     """Return the first guess, and points spread evenly over the range of the search."""
     from scipy.stats.qmc import Halton
 
-    even = Halton(parameters, scramble=False).random(_SCANNED + 1)[1:]  # the first is at a corner
+    # Skip the first point of the sequence, which is at a corner of the range.
+    even = Halton(parameters, scramble=False).random(_SCANNED + 1)[1:]
     return [np.zeros(parameters), *(math.log(RANGE) * (2 * even - 1))]

@@ -112,8 +112,8 @@ def curve_of(
     """Compute the curve of `contact` from velocity `low` to at least `high` (m/s).
 
     Returns the curve and its first depth (m). `near` is the first depth that this function returned
-    for another contact. With `near`, each depth is `near` times a power of the ratio (not for
-    adhesive contacts). Raises the errors of `solve` and `solve_at_velocity`.
+    for another contact. If `near` is given, each depth is `near` times a power of `_RATIO`.
+    Adhesive contacts ignore `near`. Raises the errors of `solve` and `solve_at_velocity`.
     """
     with naming_keys():
         if math.isnan(near) or contact.adhesive or low == high:
@@ -124,8 +124,8 @@ def curve_of(
                 state = solve(contact, state.indentation / _RATIO)
         rows = [_row(state, unloading)]
         depths = [state.indentation]
-        # If `low` equals `high`, the first depth is enough. It meets the velocity within a
-        # tolerance.
+        # If `low` equals `high`, the first depth is enough, although its velocity may be slightly
+        # lower than `high`.
         while rows[-1][0] < high and low < high:
             state = solve(contact, _RATIO * state.indentation, start=state)
             row = _row(state, unloading)
@@ -153,7 +153,7 @@ def _row(state: State, unloading: UnloadingTable) -> tuple[float, ...]:
 
 @dataclass
 class CaseModel:
-    """The case with tables `content` and free `parameters`, at velocities from `low` to `high`.
+    """The case with tables `content` and free `parameters`, from velocity `low` to `high` (m/s).
 
     COR is the mean over several random surfaces with the statistics of the case, because a single
     random surface does not reproduce the measured surface. Files are relative to `folder`. A point
@@ -194,7 +194,7 @@ class CaseModel:
     def surfaces(self) -> int:
         """Number of surfaces: the realisations of the case if there are several, else `SURFACES`.
 
-        It is 1 without roughness.
+        A case without roughness has one surface.
         """
         case = self.case(np.zeros(len(self.parameters)))
         if not case.roughness:
@@ -217,7 +217,7 @@ class CaseModel:
         return Mean(tuple(curves))
 
     def require_possible(self, x: Array) -> None:
-        """Raise `CaseError` or `SurfaceError` if the case at `x` is meaningless."""
+        """Raise `CaseError` or `SurfaceError` if results at `x` would be meaningless."""
         case = self.case(x)
         require_possible(case.contact(self.folder), deepest_indentation(case))
 

@@ -102,8 +102,8 @@ def _key(name: str, values: Mapping[str, Any]) -> str:
         )
     positive = [key for key, value in values.items() if _reason(key, value) is None]
     raise CaseError(
-        f"--free: {shown(name)[1:-1]} is not a key of the case; write it there with a first guess, "
-        f"or free one of {', '.join(positive)}"
+        f"--free: {shown(name)[1:-1]} is not a key of the case; add it to the case with a first "
+        f"guess, or free one of {', '.join(positive)}"
     )
 
 

@@ -7,10 +7,10 @@ contribute to the covariance C of the parameters:
     C = P diag(s²) Pᵀ + 2 S/n + (P Δ_grid)(P Δ_grid)ᵀ,  S = Σ (P Δ)(P Δ)ᵀ/(n − 1).
 
 In the first term, s are deviations that are independent between points. In the second term, Δ are
-the differences of n surfaces from their mean; the mean was fitted. This term is the variance of the
-difference between two means: the fitted mean, and the mean over n places of impact. If all impacts
-hit the same place, it would be (1 + 1/n) S. In the third term, Δ_grid is the deviation due to the
-grid.
+the differences of n surfaces from their mean, which is fitted to the data. This term is the
+variance of the difference between two means: the fitted mean, and the mean over n places of impact.
+If all impacts hit the same place, the term would be (1 + 1/n) S. In the third term, Δ_grid is the
+deviation due to the grid.
 
 Intervals use Student's t, with degrees of freedom after Welch and Satterthwaite (Satterthwaite
 1946).
@@ -82,7 +82,7 @@ class Uncertainty:
 
     @classmethod
     def of(cls, jacobian: Array, weights: Array, deviations: Deviations) -> Uncertainty:
-        """Compute it from ∂COR/∂x (`jacobian`) and the standard deviations σ of the points."""
+        """Compute the uncertainty from ∂COR/∂x (`jacobian`) and σ of the points (`weights`)."""
         scaled = jacobian / weights[:, None]
         U, s, Vt = np.linalg.svd(scaled, full_matrices=False)
         P = Vt.T @ np.diag(1 / np.maximum(s, _LEAST)) @ U.T / weights

@@ -192,7 +192,7 @@ class InterfaceTable(Table):
 
     @property
     def needs_jkr(self) -> bool:
-        """Whether another key is defined for `adhesion = "jkr"` only."""
+        """Whether the value of another key requires `adhesion = "jkr"`."""
         plain = self.approach == "equilibrium" and self.detachment == "crack-closure"
         return not plain or self.plasticity == "truncated"
 

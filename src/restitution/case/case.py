@@ -94,7 +94,7 @@ class Case(Table):
             )
         if "unloading" in self.model_fields_set:
             raise ValueError(
-                "[unloading]: a periodic case writes no unloading curves; leave it out"
+                "[unloading]: a periodic case writes no unloading curves; remove this table"
             )
         self._check_attraction()
         yielding = self.yielding()
@@ -103,14 +103,17 @@ class Case(Table):
                 "interface.yield_pressure: is missing; a periodic contact needs a constant "
                 'pressure (such as "2.8 Y" or "hardness"), or "elastic"'
             )
-        assert self.grid is not None  # it is periodic
+        assert self.grid is not None  # a periodic case has a table [grid]
         if not isinstance(self.grid.refine, int):
             raise ValueError("grid.refine: must be one number if the grid is periodic")
         if not self.roughness:
-            raise ValueError("roughness: is missing; two flat bodies without it touch everywhere")
+            raise ValueError(
+                "roughness: is missing; smooth flat bodies touch everywhere, so add a table "
+                "[roughness]"
+            )
         if self.realisations > 1:
             raise ValueError(
-                "roughness.realisations: a periodic case has one surface; leave it out"
+                "roughness.realisations: a periodic case has one surface; remove this key"
             )
         for part in self.roughness:
             if isinstance(part, GeneratedRoughness) and not part.periodic:
@@ -125,7 +128,7 @@ class Case(Table):
                 )
 
     def _check_attraction(self) -> None:
-        """Refuse what a periodic contact with adhesion excludes."""
+        """Refuse keys that a periodic contact with adhesion excludes."""
         if self.interface.adhesive_energy == 0:
             return
         if self.interface.adhesion == "jkr":
@@ -135,7 +138,7 @@ class Case(Table):
         if self.indentation is None:
             raise ValueError(
                 "interface.work_of_adhesion: a periodic contact with adhesion needs [indentation], "
-                "because its pressure jumps"
+                "because the contact jumps at a given load or pressure"
             )
 
     def _check_factors(self, factors: tuple[int, ...]) -> None:
@@ -228,7 +231,7 @@ class Case(Table):
         if self.periodic:
             raise CaseError(
                 "grid.periodic: a periodic contact has no restitution, and only `restitution run`, "
-                "`check` and `surface` take its case"
+                "`check` and `surface` accept a periodic case"
             )
 
     @property
@@ -264,18 +267,18 @@ class Case(Table):
         return composite([part.surface(grid, folder, factor) for part in self.roughness])
 
     def contact(self, folder: Path) -> Contact:
-        """Make the contact before loading; files are relative to `folder`.
+        """Make the unloaded contact of the case; files are relative to `folder`.
 
         Raises `CaseError` if a run needs more memory than is available.
         """
-        self.pair()  # two flat bodies are refused before a surface is made
+        self.pair()  # refuse two flat bodies before making a surface
         if grid := self._own_grid():
             fine = divided(grid, self.grid.factor if self.grid else 1)
             needs.require(self.run_bytes(fine), fine)
         return self.contact_on(self.surface(folder))
 
     def contact_on(self, surface: Surface) -> Contact:
-        """The contact on `surface`, as `self.surface` made it. Raises the errors of `contact`."""
+        """Make the contact on `surface` (from `surface()`). Raises the errors of `contact`."""
         needs.require(self.run_bytes(surface.grid), surface.grid)
         interface = self.interface
         return Contact(

@@ -77,7 +77,7 @@ def parse_toml(text: str) -> dict[str, Any]:
         content = tomllib.loads(text)
         _check_depth(content)
         return content
-    except CaseError:  # a CaseError is also a ValueError
+    except CaseError:  # skip the handler of ValueError below, because a CaseError is one
         raise
     except RecursionError:
         raise _too_deep() from None
@@ -92,7 +92,7 @@ def _too_deep() -> CaseError:
 
 
 def _check_dots(text: str) -> None:
-    """Reject dotted keys of very many parts, which `tomllib` takes minutes to parse."""
+    """Reject dotted keys with very many parts, which `tomllib` takes minutes to parse."""
     for word in re.split(r"[^\w.\-\"']+", text):
         if word.count(".") > _DEEPEST and ".." not in word.strip("."):
             raise _too_deep()

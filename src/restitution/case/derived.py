@@ -1,4 +1,4 @@
-"""Quantities that follow from a case without a solve."""
+"""Quantities computed from a case without solving the contact."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def deepest_indentation(case: Case) -> float:
 
 
 def derived_quantities(case: Case, contact: Contact) -> dict[str, float | None]:
-    """Return R*, E*, m*, yield and predicted contact; None if a quantity does not apply.
+    """Return R*, E*, m*, first yield and predicted contact; None if a quantity does not apply.
 
     The keys end with the SI units.
     """

@@ -78,7 +78,7 @@ def material(name: str) -> Material:
         name: Key or alias, in upper or lower case.
 
     Returns:
-        The material, its values in SI units with spread and source.
+        The material, with values in SI units and their spread and source.
 
     Raises:
         CaseError: The library has no material of this name.

@@ -27,7 +27,7 @@ _ADHESIVE = 150.0
 # A run with an attraction of finite range keeps pressure and displacement of some 100 states of
 # unloading (16 bytes each), besides the arrays of the solver.
 _COHESIVE = 1800.0
-# Largest factor by which the enlarged grid has more nodes than the grid.
+# Largest ratio of the number of nodes of the enlarged grid to that of the grid.
 _ENLARGED = 4.0
 
 

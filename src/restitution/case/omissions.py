@@ -10,8 +10,8 @@ from restitution.theory import JKR, Hertz
 
 # Typical work of adhesion (J/m²), within the range 0.01 to 0.09 of Ghanbarzadeh et al. (2019).
 TYPICAL_ADHESION = 0.05
-# Impact velocity, in sticking velocities V_s, below which adhesion matters. Adhesion lowers e² by
-# (V_s/V)² (Thornton and Ning 1998), so at V = 8.5 V_s it lowers e = 0.7 by 0.01.
+# Adhesion matters below this ratio of impact velocity V to sticking velocity V_s. Adhesion lowers
+# e² by (V_s/V)² (Thornton and Ning 1998), so at V = 8.5 V_s it lowers e = 0.7 by 0.01.
 _MATTERS = 8.5
 
 
@@ -39,12 +39,12 @@ def _default_yield(case: Case) -> str | None:
     if interface.yield_pressure is not None or interface.yield_strength is not None:
         return None
     yielding = case.yielding()
-    how = f"yields at {1e-6 * yielding.yield_pressure:.4g} MPa ({yielding.source})"
+    how = f"at the pressure {1e-6 * yielding.yield_pressure:.4g} MPa ({yielding.source})"
     if math.isfinite(yielding.yield_strength):
-        how = f"yields by {yielding.source}"
+        how = f"according to {yielding.source}"
     return (
-        f"interface.yield_strength is left out: the contact {how}; write a strength or a pressure, "
-        'or yield_pressure = "elastic" for bodies that do not yield'
+        f"interface.yield_strength is left out: the contact yields {how}; write a strength or a "
+        'pressure, or yield_pressure = "elastic" for bodies that do not yield'
     )
 
 
@@ -54,7 +54,7 @@ def _no_adhesion(case: Case) -> str | None:
         return None
     return (
         "interface.work_of_adhesion is left out, so there is no adhesion: a typical value of "
-        f"{TYPICAL_ADHESION} J/m2 changes COR by more than 0.01 below about {below:.2g} m/s "
+        f"{TYPICAL_ADHESION} J/m2 would change COR by more than 0.01 below about {below:.2g} m/s "
         '(smooth bodies); give it, or "0 J/m^2"'
     )
 

@@ -55,10 +55,10 @@ _USUAL = {
     "rad/s": ("rad/s", "deg/s", "rpm"),
     "m/s": ("m/s", "cm/s", "mm/s", "um/s", "km/h"),
 }
-# Names of units of angle, one of which must occur in a spin.
+# Names of units of angle; the unit of a spin must contain one of them.
 _TURNS = ("radian", "degree", "turn", "revolution")
-# Plausible ranges in SI units. A value outside almost certainly has a wrong unit, and formulas
-# would overflow or underflow.
+# Plausible ranges in SI units. A value outside its range almost certainly has a wrong unit, and
+# could make formulas overflow or underflow.
 _BOUNDS = {
     "m": (1e-12, 1e3),
     "Pa": (1.0, 1e15),
@@ -101,7 +101,7 @@ def read_quantity(value: object, unit: str) -> float:
         remedy = _other_case(match[2], unit) or example
         raise ValueError(f"{shown(value)} is not {_NAMES[unit]}; {remedy}") from None
     except (pint.PintError, ValueError, TypeError, AttributeError, AssertionError, KeyError):
-        # pint raises the last two for "¼" and "m⁰".
+        # pint raises AssertionError for "¼" and KeyError for "m⁰".
         remedy = _other_case(match[2], unit) or example
         raise ValueError(f"{shown(value)} has an unknown unit; {remedy}") from None
     if unit == "rad/s" and not any(word in str(quantity.units) for word in _TURNS):
@@ -116,12 +116,12 @@ def read_quantity(value: object, unit: str) -> float:
 def scaled(value: str, factor: float, digits: int = 17) -> str:
     """Multiply the quantity `value`, such as "500 um", by `factor`; keep its unit."""
     match = _QUANTITY.fullmatch(value)
-    assert match is not None  # `read_quantity` has read it
+    assert match is not None  # `read_quantity` accepted this value
     return f"{float(match[1]) * factor:.{digits}g} {match[2]}"
 
 
 def _other_case(name: str, unit: str) -> str | None:
-    """Advice if `name` differs from a usual unit only in upper and lower case ("gpa")."""
+    """Return advice if `name` differs from a usual unit only in upper and lower case ("gpa")."""
     for usual in _USUAL[unit]:
         if usual.lower() == name.lower() and usual != name:
             return f"did you mean {usual}?"

@@ -35,7 +35,7 @@ from restitution.surfaces.shift import place_of
 from restitution.surfaces.twin import LEAST_PIXELS
 
 MOST_REALISATIONS = 1000
-MOST_PLACES = 10_000  # largest number of a place of impact on a scan
+MOST_PLACES = 10_000  # largest value of `place`, the number of a place of impact on a scan
 
 # Key of the case file for each argument of `crop` and `remove_outliers`.
 _CLEANING_KEYS = {
@@ -79,7 +79,7 @@ Seed = Annotated[int, Field(ge=0, lt=2**63)]
 
 @contextmanager
 def _naming(keys: Mapping[str, str]) -> Iterator[None]:
-    """Reword errors of surfaces in terms of `keys` of the case file instead of arguments."""
+    """Reword errors of `surfaces`: replace names of arguments by `keys` of the case file."""
     try:
         yield
     except RefusedSurfaceError as error:
@@ -175,14 +175,15 @@ class MeasuredRoughness(Table):
                 scan = crop(scan, x=self.crop.x, y=self.crop.y)
             if self.outliers is not None:
                 scan = remove_outliers(scan, self.outliers)
-        # Level the whole scan before a part is cut out, because tilt and form belong to the whole.
+        # Level the whole scan before a part is cut out, because tilt and form are properties of
+        # the whole scan.
         return place_of(level(scan, self.detrend), self.place)
 
     def surface(self, grid: Grid | None, folder: Path, factor: int = 1) -> Surface:
         """Make the roughness on cells `factor` times smaller than those of `grid`.
 
-        If `grid` is None, the pixels of the scan are its cells. Smaller cells resolve shorter waves
-        of the scan, down to the pixel; cells smaller than the pixel add no waves.
+        If `grid` is None, the pixels of the scan are used as its cells. Smaller cells resolve
+        shorter waves of the scan, down to the pixel. Cells smaller than the pixel add no waves.
         """
         scan = self.scan(folder)
         grid = grid or scan.grid
@@ -217,7 +218,7 @@ class MeasuredRoughness(Table):
         return replace(finer, provenance={**finer.provenance, "refined": factor, "refinement": how})
 
     def _steps_to_pixel(self, grid: Grid, pixels: Grid, factor: int) -> int:
-        """Return the part of `factor` that makes cells of `grid` no larger than the pixel."""
+        """Return the divisor of `factor` that makes cells of `grid` no larger than the pixel."""
         steps = 1
         while factor % (2 * steps) == 0 and any(
             h / steps > pixel * (1 + 1e-9)

@@ -88,7 +88,7 @@ class GridTable(Table):
 
     @property
     def factor(self) -> int:
-        """Refinement factor of the deepest depth: parts of a cell along x and y; 1 for "auto"."""
+        """Refinement factor at the deepest depth: parts of a cell along each axis; 1 for "auto"."""
         if isinstance(self.refine, tuple):
             return self.refine[-1]
         return 1 if self.refine == "auto" else self.refine
@@ -152,7 +152,7 @@ class ImpactTable(Series[Velocity]):
     """The table `[impact]`: a span of velocities with steps, or the list `velocity`.
 
     With `angle` or `spin` there are oblique impacts: one for each velocity of the centres and each
-    angle from the normal. `spin` is that of the first body, or those of both.
+    angle from the normal. `spin` lists the spin of the first body, or of both bodies.
     """
 
     values: Annotated[
@@ -205,7 +205,7 @@ class ImpactTable(Series[Velocity]):
         return super().series()
 
     def series(self) -> list[float]:
-        """The normal velocities to compute (m/s), increasing: of all impacts, and head-on."""
+        """Normal velocities to compute (m/s), increasing: of the head-on and oblique impacts."""
         listed = self.velocities()
         normal = [V * math.cos(angle) for V in listed for angle in self.angles()]
         found: list[float] = []

@@ -1,4 +1,4 @@
-"""The command line: one module for each verb. A verb imports large modules only when it runs."""
+"""The command line: one module for each verb (subcommand); large modules are imported on use."""
 
 import errno
 import sys

@@ -29,7 +29,7 @@ from restitution.cli import (
 
 app = typer.Typer(
     name="restitution",
-    help="Coefficient of restitution (COR) of rough elastic-plastic particles from their surface.",
+    help="Compute the coefficient of restitution (COR) of rough elastic-plastic particles.",
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_enable=False,

@@ -45,5 +45,5 @@ def cases_progress(cases: int | None, out: object, resume: str) -> Iterator[Prog
             yield bar
     except KeyboardInterrupt as stop:
         errors.print("Interrupted.", style="red")
-        say(f"Cases that are done are kept; to resume: {resume}", errors)
+        say(f"Completed cases are kept; to resume: {resume}", errors)
         raise typer.Exit(stop.status if isinstance(stop, Stopped) else 130) from None

@@ -31,7 +31,7 @@ def compare_theory(
         typer.Option(
             "--law",
             metavar="LAW",
-            help="Folder of `restitution fit-law` for the same pair, to list its points as well.",
+            help="Folder of `restitution fit-law` for the same pair; adds its computed points.",
             readable=False,
         ),
     ] = None,
@@ -61,7 +61,7 @@ def compare_theory(
         figure = theory_figure(read.title, lines, theories.marks(read), points)
         written.append(write_figure(out / "theory", figure, figures.value))
 
-    say("COR of the smooth bodies at impact velocities (m/s); - is outside the range of a theory")
+    say("COR of the smooth bodies at impact velocities (m/s); - means: outside the theory's range")
     for table in _tables(velocities.tolist(), found, answers.width):
         answers.print(table)
     for each in found:

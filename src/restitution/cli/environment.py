@@ -1,4 +1,4 @@
-"""Check settings of the environment in advance, because they would make a command fail halfway."""
+"""Check the environment in advance, because wrong settings would make a command fail halfway."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def _current_folder() -> str:
     try:
         return os.getcwd()
     except OSError:
-        raise CaseError("the current folder was removed; change to another") from None
+        raise CaseError("the current folder was removed; change to another folder") from None
 
 
 def _check_threads() -> None:

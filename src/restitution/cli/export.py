@@ -46,7 +46,7 @@ def export(
         ),
     ] = None,
 ) -> None:
-    """Write the input of a DEM code to OUT: COR of every pair, and the velocity of its validity."""
+    """Write the input of a DEM code to OUT, with the COR of every pair at VELOCITY."""
     from restitution.cli.console import say, say_written
     from restitution.cli.warn_once import warn_once
     from restitution.dem.export import export as exported

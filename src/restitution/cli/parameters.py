@@ -49,6 +49,13 @@ Scheduler = Annotated[
 ]
 Workers = Annotated[
     int | None,
-    typer.Option(min=1, metavar="N", help="Processes on this machine.", show_default="all cores"),
+    typer.Option(
+        min=1,
+        metavar="N",
+        help="Number of processes on this machine.",
+        show_default="one for each core",
+    ),
 ]
-Resume = Annotated[bool, typer.Option("--resume", help="Compute what OUT does not hold yet.")]
+Resume = Annotated[
+    bool, typer.Option("--resume", help="Compute the cases that OUT does not hold yet.")
+]

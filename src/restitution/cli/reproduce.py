@@ -1,4 +1,4 @@
-"""`restitution reproduce`: the figures of Ghanbarzadeh et al. (2019), and its claims."""
+"""`restitution reproduce`: the figures and claims of the paper of Ghanbarzadeh et al. (2019)."""
 
 from pathlib import Path
 from typing import Annotated
@@ -38,7 +38,7 @@ def reproduce(
         raise CaseError("--quick, --refined: give only one of them")
     size: Size = "quick" if quick else "refined" if refined else "paper"
     if not resume:
-        make_folder(out, "go on with --resume")
+        make_folder(out, "continue with --resume")
     option = [] if size == "paper" else [f"--{size}"]
     again = command("reproduce", "-o", out, *option, "--resume")
     studies = {name: bundled(name, size) for name in NAMES}

@@ -113,7 +113,7 @@ def run_with_progress(
 
 
 def _draw_partial_results(folder: ResultsFolder, depths: int, figures: FigureFormat) -> None:
-    """Say how many depths a run had computed when it ended early, and draw them."""
+    """Print how many depths a run computed before it ended early, and draw them."""
     from contextlib import suppress
 
     from restitution.cli.console import errors, say

@@ -68,7 +68,7 @@ def stoppable() -> Iterator[None]:
 
 
 def _signal_main_thread(number: int) -> None:
-    if hasattr(signal, "pthread_kill"):  # also interrupts system calls that wait
+    if hasattr(signal, "pthread_kill"):  # pthread_kill also interrupts waiting system calls
         signal.pthread_kill(threading.main_thread().ident or 0, number)
     else:
         _thread.interrupt_main(signal.Signals(number))

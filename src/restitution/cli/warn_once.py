@@ -18,13 +18,13 @@ class Warn(Protocol):
 
 @contextmanager
 def warn_once() -> Iterator[Warn]:
-    """Print each warning once; at the end, say how often it was repeated, and for what."""
+    """Print each warning once; at the end, print how often and for which subjects it repeated."""
     from restitution.cli.console import warn
     from restitution.display import some_of, without_numbers
 
     first: dict[str, str] = {}
     repeated: dict[str, list[str]] = {}
-    differing: set[str] = set()  # kinds that were repeated with other numbers
+    differing: set[str] = set()  # kinds of warnings that were repeated with other numbers
 
     def warn_or_count(message: str, subject: str = "") -> None:
         kind = without_numbers(message)
@@ -45,4 +45,4 @@ def warn_once() -> Iterator[Warn]:
             named = some_of(subjects)
             numbers = " with other numbers" if kind in differing else ""
             which = f" ({named})" if named else ""
-            warn(f'the same{numbers} for {len(subjects)} more{which}: "{start}"')
+            warn(f'repeated{numbers} for {len(subjects)} more{which}: "{start}"')

@@ -14,10 +14,10 @@ _LEFT_OUT = (
     "pair: an adhesive contact model would dissipate additional energy and lower e"
 )
 _OBSTACLES = {
-    "LAMMPS": "jkr and dmt refuse coeff_restitution",
+    "LAMMPS": "jkr and dmt do not accept coeff_restitution",
     "LIGGGHTS": "cohesion sjkr takes an energy density instead of w",
-    "MuJoCo": "contact forces do not pull",
-    "Drake": "contact forces do not pull",
+    "MuJoCo": "contact forces are never attractive",
+    "Drake": "contact forces are never attractive",
 }
 
 

@@ -9,7 +9,7 @@ arccos and 1 − ζ².
 Source: T. Schwager, T. Pöschel, Granular Matter 9 (2007) 465, where the force must not attract.
 
 The law of Hunt and Crossley is F = f(x)(1 + d x′) with any f. Dividing m x′ dx′ by 1 + d x′ and
-integrating over the contact gives, with c = dV,
+integrating over the contact gives, with c = dV and the impact velocity V,
 
     c (1 + e) = ln((1 + c)/(1 − ec))
 
@@ -32,10 +32,10 @@ from scipy.optimize import brentq
 
 from restitution.laws.law import Law
 
-_NEARLY_ELASTIC = 1e-4  # if 1 − e is smaller, the leading terms are exact within rounding
+_NEARLY_ELASTIC = 1e-4  # if 1 − e is below this value, dV is computed from its leading terms
 _TOLERANCE = 1e-12  # tolerance of root finding
-# dV below which e = 1 − ⅔ dV, the first terms of its series. The next term is of the order (dV)²,
-# and the equation for e loses more digits to rounding.
+# Below this dV, the first terms of the series of e are used: e = 1 − ⅔ dV. The omitted terms are of
+# the order (dV)². Solving the equation for e would lose more digits to rounding.
 _SMALL = 1e-6
 # Largest ζ or g that is searched. e is below 0.001 for ζ = 20, and already for a much smaller g.
 _LARGEST_DAMPING = 20.0
@@ -61,8 +61,8 @@ def hunt_crossley_dissipation(restitution: float) -> float:
     if 1 - e < _NEARLY_ELASTIC:
         return 1.5 * (1 - e**2) / (1 + e**3)
 
-    # For small e, ec differs from 1 by rounding only. Solving for u with ec = 1 − exp(−u) keeps
-    # the difference.
+    # For small e, ec is so close to 1 that 1 − ec is lost to rounding. So solve for u, with
+    # ec = 1 − exp(−u).
     def excess(u: float) -> float:
         c = -math.expm1(-u) / e
         return c * (1 + e) - math.log1p(c) - u

@@ -23,11 +23,9 @@ from restitution.dem.pair_table import PairTable
 from restitution.errors import CaseError, one_line
 from restitution.laws.law import Law, Particle
 
-FRICTION = 0.5  # of pairs whose case has no friction: a placeholder
-STEPS = 5000
-TIME_STEP = (
-    "the elastic contact time t_c = 2.87 (m*^2/(R* E*^2 V))^(1/5); only e needs such a small step"
-)
+FRICTION = 0.5  # placeholder for the friction of pairs whose case states none
+STEPS = 5000  # number of time steps in a contact
+TIME_STEP = "the elastic contact time t_c = 2.87 (m*^2/(R* E*^2 V))^(1/5), for an accurate e"
 
 _WIDTH = 98
 _SIGNS = str.maketrans({'"': "'", "`": "'", "\\": "/", "&": "+", "{": "(", "}": ")", "$": "%"})
@@ -132,7 +130,7 @@ def header(
 ) -> list[str]:
     """Write the comment lines above the export for `code`.
 
-    `ends` says where `code` ends a contact. `constant` says whether e in `code` is the same at
+    `ends` describes where `code` ends a contact. `constant` says whether e in `code` is the same at
     every velocity.
     """
     lines = _origin(velocity, code, ends, constant)
@@ -166,12 +164,12 @@ def summary(
 
 
 def commented(lines: Iterable[str], sign: str) -> str:
-    """Make comments of `lines`; each begins with `sign`."""
+    """Turn `lines` into comments, which begin with `sign`."""
     return "\n".join(f"{sign} {line}".rstrip() for line in lines)
 
 
 def xml_comment(lines: Iterable[str]) -> str:
-    """Make one XML comment of `lines`; it must not contain two hyphens in a row."""
+    """Make one XML comment of `lines`, without double hyphens, which XML forbids in comments."""
     safe = (re.sub("-(?=-)", "- ", line).rstrip() for line in lines)
     return "\n".join(["<!--", *safe, "-->"])
 
@@ -200,7 +198,7 @@ def program_version() -> str:
     """The version of this program."""
     try:
         return version("restitution")
-    except PackageNotFoundError:  # run from the sources
+    except PackageNotFoundError:  # the program is not installed
         return "(version unknown)"
 
 
@@ -224,9 +222,9 @@ def _environment() -> Environment:
 
 
 def _origin(velocity: float, code: str, ends: str, constant: bool) -> list[str]:
-    reason = f"e is constant in {code}, but not for the pairs."
+    reason = f"e is constant in {code}, but the e of the pairs depends on the velocity."
     if not constant:
-        reason = f"at other velocities e in {code} differs from e of the pairs."
+        reason = f"at other velocities e in {code} differs from the e of the pairs."
     return [
         f"Coefficients of restitution for {code}, written by restitution {program_version()}.",
         f"They hold at the impact velocity {velocity:.6g} m/s only: {reason} Export again for "
@@ -246,10 +244,10 @@ def _about(pair: Pair, velocity: float, code: str) -> list[str]:
         + _elsewhere(law, velocity),
         f"  R* = {law.radius:.6g} m, E* = {law.contact_modulus:.6g} Pa, m* = {law.mass:.6g} kg",
         f"  yield pressure p_y: {p_y}; convention: {law.conventions.yield_pressure}",
-        f"  end of contact in e: {law.conventions.end_of_contact}",
+        f"  end of contact assumed for e: {law.conventions.end_of_contact}",
         f"  the error of e includes: {law.conventions.restitution_error}",
         f"  elastic contact time: {contact_time(law) * velocity**-0.2:.3g} s; a time step of 1/50 "
-        "of it keeps e within 1 % in LAMMPS",
+        "of this time keeps e within 1 % in LAMMPS",
         f"  computed from {law.lowest:.4g} to {law.highest:.4g} m/s; nothing is extrapolated",
     ]
     lines += adhesion_lines(law, velocity, code)

@@ -2,7 +2,7 @@
 
 DEM codes have one tangential spring per contact, with the stiffness of a contact that sticks
 (Mindlin 1949: 8 G* a, with 1/G* = Σ 2 (2 − ν)(1 + ν)/E). In a real contact the edge slides first,
-so its mean stiffness during an impact is smaller. With 0.8 times Mindlin's stiffness, the
+so the mean stiffness during an impact is smaller. With 0.8 times Mindlin's stiffness, the
 tangential restitution of elastic spheres in LAMMPS (`mindlin_rescale/force`) is within 0.03 of the
 law of `laws.oblique`, for ν from 0 to 0.45 and any angle; with the full stiffness it is up to 0.13
 too large (docs/studies/oblique_stiffness.py).
@@ -14,7 +14,7 @@ from collections.abc import Sequence
 
 from restitution.dem.export_common import FRICTION, Pair, commented, wrapped
 
-STIFFNESS_SHARE = 0.8  # of Mindlin's tangential stiffness; see the module's text
+STIFFNESS_SHARE = 0.8  # factor on Mindlin's tangential stiffness; see the top of this file
 
 
 def mindlin_stiffness(pair: Pair) -> float:

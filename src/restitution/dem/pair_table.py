@@ -24,7 +24,7 @@ class PairTable:
 
     @property
     def particles(self) -> tuple[Particle, ...]:
-        """Spheres, then walls."""
+        """All particles: the spheres, then the walls."""
         return self.spheres + self.walls
 
     @property

@@ -1,4 +1,4 @@
-"""Write a script for codes with a constant e that matches e to the velocities in a simulation."""
+"""Write a script that matches the constant e of a DEM code to the velocities in a simulation."""
 
 from __future__ import annotations
 
@@ -17,7 +17,11 @@ _SAMPLES = 4  # number of intervals of the table between two computed velocities
 
 @dataclass(frozen=True)
 class Target:
-    """A DEM code, the command that runs it, and the files of its export."""
+    """A DEM code, the command that runs it, and the files of its export.
+
+    `fragment` is the exported file, `matched` the file with the matched e, and `lowest` the
+    smallest e that the code accepts.
+    """
 
     code: str
     command: str

@@ -3,11 +3,11 @@
 The modules of `restitution.theory` state the ranges. Outside its range a theory gives NaN here,
 even if its formula gives a number. No theory includes roughness.
 
-Two quantities are called yield stress. Hertz, sticking and Thornton–Ning take the contact pressure
-p_y of the case. The other theories take the yield strength Y of a tensile test. If every body has a
-`yield_strength`, Y is that of the softer body; otherwise it is p_y/2.8.
+The theories describe yielding by one of two quantities. Hertz, sticking and Thornton–Ning use the
+contact pressure at yield p_y of the case. The other theories use the yield strength Y of a tensile
+test. If every body has a `yield_strength`, Y is that of the softer body; otherwise Y = p_y/2.8.
 
-All units are SI; arrays of velocities and of e have the same shape.
+All units are SI. Arrays of velocities and of the coefficient of restitution e have the same shape.
 """
 
 from __future__ import annotations
@@ -47,13 +47,14 @@ SOURCES = {
 class Bodies:
     """The smooth bodies of a case: the arguments of the theories, in SI units.
 
-    `R`, `E` and `m` are R*, E* and m*.
+    `R`, `E` and `m` are R*, E* and m*. `w` is the work of adhesion, and `walls` the number of flat
+    bodies.
     """
 
     R: float
     E: float
     m: float
-    p_y: float  # infinite for elastic bodies
+    p_y: float  # contact pressure at yield; infinite for elastic bodies
     w: float
     walls: int
     equal: bool  # two identical spheres
@@ -73,7 +74,7 @@ class Bodies:
                     f"{name}.density: is missing, and every theory of restitution needs it; write "
                     f'for example density = "2500 kg/m^3" in [{name}]'
                 )
-        assert pair.mass is not None  # checked above
+        assert pair.mass is not None  # the loop above checked both densities
         tables = case.first, case.second or case.first
         # A yield strength of the interface overrides those of the bodies.
         own = case.interface.yield_strength is None
@@ -130,7 +131,7 @@ class Bodies:
 
     @cached_property
     def small_velocity(self) -> float:
-        """Velocity V (m/s) up to which a Hertz contact is small compared with the spheres."""
+        """Impact velocity (m/s) at which the indentation of a Hertz contact is 0.01 R*."""
         return float(self.hertz.impact_velocity(_SMALL * self.R, self.m))
 
     @property
@@ -140,7 +141,7 @@ class Bodies:
 
     @property
     def convention(self) -> str:
-        """The origin of `strength`, in words."""
+        """Text with the value of `strength` and how it was obtained."""
         if self.strengths is None:
             return f"Y = p_y/{STRENGTHS:g} = {1e-6 * self.strength:.4g} MPa"
         softer = self.labels[int(self.strengths[1] < self.strengths[0])]
@@ -216,7 +217,8 @@ def _thornton_ning(b: Bodies, V: Array) -> Form | str:
         return Form(within(inside, e), f"quasi-static impacts, {small}", parameters)
     V_s, V_y = b.sticking_velocity, b.yield_velocity
     additive = (
-        f"sum of both losses, an upper bound, accurate for V_s << V_y ({speed(V_s)}, {speed(V_y)})"
+        "sum of the losses by adhesion and by yielding; e is an upper estimate, accurate for V_s "
+        f"<< V_y ({speed(V_s)}, {speed(V_y)})"
         if V_s <= V_y
         else f"only up to V_y = {speed(V_y)}, because V_s = {speed(V_s)} is higher"
     )
@@ -259,13 +261,13 @@ def _mdr(b: Bodies, V: Array) -> Form | str:
     sphere = MDR(n * b.R, E, nu, b.strength)
     limit = n * math.sqrt(2 * float(sphere.loading_work(n * b.R)) / (n * b.m))
     flat = (
-        "two equal spheres, a flat between them"
+        "two equal spheres with a rigid flat between them"
         if b.equal
-        else "a sphere on a rigid flat, E including the wall's compliance"
+        else "a sphere on a rigid flat, with the wall's compliance included in E"
     )
     return Form(
         sphere.restitution(V / n, n * b.m),
-        f"{flat}; up to {speed(limit)}, where the indentation is the radius",
+        f"{flat}; up to {speed(limit)}, where the indentation equals the radius",
         {"youngs_modulus_Pa": E, "poissons_ratio": nu},
         takes_strength=True,
     )
@@ -289,7 +291,7 @@ def _elastic_range(b: Bodies) -> str:
 def _tabor(b: Bodies) -> str:
     mu = float(b.sticking.tabor_parameter(b.separation))
     beside = f"here {mu:.2g}" + (", so the true V_s is lower" if mu < 5 else "")
-    return f"JKR, a Tabor parameter above 5 ({beside})"
+    return f"JKR holds for a Tabor parameter above 5 ({beside})"
 
 
 def within(inside: NDArray[np.bool_], e: Array) -> Array:

@@ -2,7 +2,8 @@
 
     e² = Σ c_k L^k − s/V²,   L = ln(V/V₀)/w in [−1, 1]
 
-The last term is the loss by adhesion, which is the same energy at every velocity (s = V_s² for an
+V₀ is the geometric mean of the lowest and highest velocity, and w scales ln V to the interval. The
+last term is the loss by adhesion, which is the same energy at every velocity (s = V_s² for an
 elastic pair: Thornton & Ning 1998). The polynomial describes the loss by yielding. Low velocities
 at which nothing is lost (e = 1) or the pair sticks (e = 0) are excluded.
 
@@ -25,7 +26,7 @@ Array = NDArray[np.float64]
 _HIGHEST_DEGREE = 8
 _FEWEST = 4  # smallest number of points for a fit
 _NO_LOSS = 1e-3  # a point counts as lossless if 1 − W_u/W_l is below this value
-_SIMPLER = 1.1  # a lower degree is preferred if its error is at most this multiple of the least
+_SIMPLER = 1.1  # a lower degree is preferred if its error is at most 1.1 times the smallest error
 _GOOD = 1e-3  # a lower degree is always preferred if its error of e is below this value
 _COUNTS = 0.01  # loss of e² by adhesion at the velocity `adhesive_below`
 
@@ -69,7 +70,7 @@ def compact_fit(law: Law) -> CompactFit | None:
 
 
 def _best(v: Array, e2: Array, centre: float, width: float, adhesive: bool) -> tuple[int, bool]:
-    """Choose degree and adhesion term (yes or no) with the smallest error between the points."""
+    """Choose the lowest degree with a small error, and whether to include the adhesion term."""
     errors = {
         (degree, adhesion): max(
             _left_out(v, e2, centre, width, degree, adhesion),

@@ -2,9 +2,8 @@
 
 Each force law is fitted to COR by least squares over the resolved points. COR does not determine
 the loading stiffness of spring models. This stiffness is chosen such that the maximum forces agree
-with the computed forces (geometric mean over the points). So the duration and depth of contacts
-agree with the computed contacts on average. The COR of the fitted law at every point is stored with
-its parameters.
+with the computed forces (geometric mean over the points). The duration and depth of contacts then
+agree on average, too. The COR of the fitted law at every point is stored with its parameters.
 """
 
 from __future__ import annotations
@@ -87,8 +86,8 @@ def _constant(law: Law) -> FittedLaw:
         "constant",
         lambda V: np.full_like(V, mean),
         {"restitution": mean},
-        source="one coefficient of restitution, as most models take it",
-        ends="as the code takes it",
+        source="one coefficient of restitution for all velocities, as in most contact models",
+        ends="as defined by the DEM code",
     )
 
 
@@ -143,7 +142,7 @@ def _thornton_ning(law: Law) -> Iterator[FittedLaw]:
 
 
 def _adhesion_of(law: Law, V_s: float) -> Parameters:
-    """V_s, and the work of adhesion of smooth elastic bodies with this V_s; empty without V_s."""
+    """V_s, and the work of adhesion of smooth elastic bodies with this V_s; empty for V_s = 0."""
     if V_s <= 0:
         return {}
     unit = JKR(law.radius, law.contact_modulus, 1.0).sticking_velocity(law.mass)
@@ -218,7 +217,7 @@ def _eepa(law: Law) -> FittedLaw:
         "eepa",
         lambda V: restitution(V, x),
         dict(zip(_EEPA, springs(x), strict=True)),
-        source="S. C. Thakur et al., Granular Matter 16 (2014) 383-400; exponent 3/2 given",
+        source="S. C. Thakur et al., Granular Matter 16 (2014) 383-400; exponent fixed at 3/2",
         ends="indentation zero" if adhesive else _AT_FORCE_ZERO,
         note="" if adhesive else "without adhesion e is the same at every velocity",
     )

@@ -1,19 +1,20 @@
 """A one-dimensional foundation with the normal and tangential response of a stored contact.
 
 Springs stand side by side on a line. The spring at the distance x from the middle touches at the
-indentation g(x), and carries the normal load 2E* (δ − g) and the tangential load 2G* u per unit
-length of the half line. g follows from the normal curve alone: the inverse of g(x) is the contact
-radius a(δ) = F′(δ)/2E*. In a spring that sticks, u follows the motion of the bodies; |2G* u| is at
-most µ times the normal load. For a sphere, g = x²/R*, and the foundation is exact: it gives Hertz's
+indentation g(x). At the indentation δ and its tangential displacement u, it carries the normal load
+2E* (δ − g) and the tangential load 2G* u per unit length of the half line. g follows from the
+normal curve F(δ) alone: the inverse of g(x) is the contact radius a(δ) = F′(δ)/2E*. A sticking
+spring is displaced with the bodies. The load |2G* u| is at most µ times the normal load, where µ is
+the coefficient of friction. For a sphere, g = x²/R*, and the foundation is exact: it gives Hertz's
 force, and Cattaneo's and Mindlin's tangential force for every history (Popov and Heß 2015, Method
 of Dimensionality Reduction, chapters 3 and 5). For other elastic contacts the rule "tangential is µ
 times the difference of two normal states" is a good approximation (Jäger 1995, Arch. Appl. Mech.
 65, 478–487; Ciavarella 1998, Int. J. Solids Struct. 35, 2349–2378).
 
-A contact that has yielded responds to small motions as on its unloading curve. At every depth of
-loading, the springs therefore get the loads of the unloading curve from this depth, and those that
-touch already keep their tangential displacement. This extension is not in the literature cited.
-`tangential_error` states the error of the law.
+A contact that has yielded responds to small motions elastically, as on its unloading curve. At
+every depth of loading, the normal loads of the springs are therefore those of the unloading curve
+from this depth. Springs that already touch keep their tangential displacement. This extension is
+not in the cited literature. `tangential_error` estimates the error of this law.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ Array = NDArray[np.float64]
 
 _SPRINGS = 400  # number of springs on each half line
 _DEPTHS = 200  # number of depths of loading at which the loads of the springs are tabulated
-_ELASTIC = 1e-3  # indentation at separation over depth below which a contact counts as elastic
+_ELASTIC = 1e-3  # a contact counts as elastic if its residual indentation/depth is below this value
 _POINTS = 400  # number of points of an unloading curve at which its slope is computed
 
 
@@ -37,9 +38,9 @@ _POINTS = 400  # number of points of an unloading curve at which its slope is co
 class Foundation:
     """Springs of a contact that is loaded up to `depths[-1]` (m).
 
-    `radius` (m, shape (n,)) are the distances of the springs from the middle, and `width` (m) their
-    spacing. `loads` (N/m, shape (depths, n)) are the normal loads on both half lines at each depth
-    of loading. `moduli` are E* and G* (Pa).
+    `radius` (m, shape (n,)) holds the distances of the springs from the middle, and `width` (m) is
+    their spacing. `loads` (N/m, shape (depths, n)) holds the normal loads, summed over both half
+    lines, at each depth of loading. `moduli` are E* and G* (Pa).
     """
 
     radius: Array
@@ -56,7 +57,8 @@ class Foundation:
         if has_yielded(law, deepest):
             curves = [_touching(law, float(depth), E) for depth in depths]
         else:
-            # An elastic contact unloads as it is loaded, so one curve holds for all depths.
+            # The loading and unloading curves of an elastic contact are the same, so one curve
+            # holds for all depths.
             curves = [_touching(law, deepest, E)] * _DEPTHS
         width = max(radii[-1] for _, radii in curves) / _SPRINGS
         x = (np.arange(_SPRINGS) + 0.5) * width
@@ -67,7 +69,7 @@ class Foundation:
         return cls(x, width, depths, loads, (E, G))
 
     def load(self, indentation: float, deepest: float) -> Array:
-        """Normal load (N) of every spring at an indentation (m), after the largest one so far."""
+        """Normal load (N) of every spring at `indentation`, after the maximum `deepest` (m)."""
         share = np.clip(deepest / self.depths[0] - 1, 0.0, len(self.depths) - 1.0)
         k = min(int(share), len(self.depths) - 2)
         at_deepest = self.loads[k] + (share - k) * (self.loads[k + 1] - self.loads[k])
@@ -82,10 +84,10 @@ class Foundation:
     ) -> tuple[Array, Array, Array]:
         """Move the bodies tangentially by `motion` (m).
 
-        `u` (m) are the tangential displacements of the springs, and `limit` (N) are the largest
-        tangential loads. `factor` multiplies the tangential modulus. `motion` and `factor` may have
-        several values, each with a row of `u`. Returns the new displacements, the tangential force
-        (N), and the work of friction (J).
+        `u` (m) holds the tangential displacements of the springs, and `limit` (N) the largest
+        tangential loads. `factor` multiplies the tangential modulus. `motion` and `factor` may be
+        arrays; each of their values belongs to a row of `u`. Returns the new displacements (m), the
+        tangential force (N), and the work of friction (J).
         """
         stiffness = 2 * self.moduli[1] * self.width * np.asarray(factor)
         largest = limit / stiffness[..., None]
@@ -96,15 +98,15 @@ class Foundation:
 
 
 def has_yielded(law: StoredForce, deepest: float) -> bool:
-    """Whether the contact separates above first touch after loading to the depth `deepest` (m)."""
+    """Whether unloading from the depth `deepest` (m) leaves a residual indentation."""
     return law.separation(deepest) > _ELASTIC * deepest
 
 
 def _touching(law: StoredForce, depth: float, contact_modulus: float) -> tuple[Array, Array]:
-    """Indentations (m) of the unloading curve from `depth`, and contact radii (m) there.
+    """Return indentations (m) on the unloading curve from `depth` (m), and their contact radii (m).
 
-    The radii increase with the indentation, so that every spring touches once. They are scaled so
-    that the loads of the springs add up to the force.
+    The radii increase with the indentation, so that every spring touches once. The radii are scaled
+    so that the loads of the springs add up to the force.
     """
     end, force = law.separation(depth), law.loading(depth)
     shape, _ = law.shape(depth)

@@ -69,8 +69,8 @@ def _law(out: Path, run: RunResults) -> Law:
         )
     if left := len(rows) - len(points):
         warnings.append(
-            f"{left} of {len(rows)} depths are left out: no impact reverses at these depths, "
-            "because adhesion did more work than the approach, or there is no force"
+            f"{left} of {len(rows)} depths are left out: no impact has its maximum indentation "
+            "there, because adhesion pulls the bodies together or they do not touch"
         )
     pair = case.pair()
     for name, value in (
@@ -138,7 +138,7 @@ def _read(out: Path) -> RunResults:
 
 
 def _error_includes(diagnostics: Mapping[str, object]) -> str:
-    """Describe which errors the error of a point includes, and which it does not."""
+    """Describe the parts that the error of a point includes, and those that it does not include."""
     includes = diagnostics.get("total_error_includes") or "solver"
     excludes = diagnostics.get("total_error_does_not_include") or "anything else"
     model = diagnostics.get("largest_model_error")
@@ -170,7 +170,7 @@ def _points(run: RunResults, asked: bool) -> list[Point]:
 
 
 def _ratio(row: _Row, work: float, *, means: bool) -> float:
-    """Ratio W_u/W_l of a row; e² if the columns are `means` over surfaces and the pair rebounds."""
+    """Ratio of unloading to loading work; e² if the row is a mean over surfaces and e > 0."""
     ratio, e = row["unloading_work_J"] / work, row["restitution"]
     return e * e if means and e > 0 else ratio
 
@@ -179,7 +179,7 @@ def _error(row: _Row, *, asked: bool) -> float:
     """Total error of a row.
 
     If the case `asked` for the total error but a part of it is unknown, return the largest possible
-    error of COR. If the case did not ask for it, return the sum of the known parts.
+    error of COR. If the case did not ask for the total error, return the sum of the known parts.
     """
     known = row.get("total_error", math.nan)
     if not math.isnan(known):

@@ -32,7 +32,7 @@ def full_slip_angle(friction: float, restitution: float, modulus_ratio: float) -
         Maw, Barber and Fawcett (1976) for e = 1; extended to e < 1 in the module's text.
     """
     least = 3.5 * (1 + restitution) - restitution / modulus_ratio
-    # A contact point that is slow at first sticks at first (Maw, Barber and Fawcett: ψ₁ < 1).
+    # For ψ₁ < 1 the contact sticks at first (Maw, Barber and Fawcett), so ψ₁ is at least 1.
     return math.atan(friction * max(least, 1 / modulus_ratio))
 
 

@@ -2,17 +2,18 @@
 
     W_u/W_l = q(ln V) − s/V²
 
-A monotone cubic (PCHIP) interpolates q. The term s/V² is the loss by adhesion, an energy that is
-about the same at every velocity (s = V_s² for an elastic pair: Thornton & Ning 1998). s is chosen
-such that q is nearly constant between the two lowest velocities. The interpolated ratio then
+W_u and W_l are the works of unloading and loading, V the impact velocity and V_s the sticking
+velocity. A monotone cubic (PCHIP) interpolates q. The term s/V² is the loss by adhesion, an energy
+that is about the same at every velocity (s = V_s² for an elastic pair: Thornton & Ning 1998). s is
+chosen such that q is nearly constant between the two lowest velocities. The interpolated ratio then
 changes sign at the velocity above which the pair rebounds. Without adhesion s = 0.
 
 The error estimate at the middle of an interval is 1.5 times the larger leave-one-out residual of
 the two end points, and at least the difference between the cubic and linear interpolation. With
 only two points, it is the difference between their values. Towards the points, the estimate falls
-to zero as 2 (t (1 − t))^½, where t is the fraction of the interval in ln V. The standard deviation
-of a random walk with both ends fixed has the same form. docs/dem.md says how often the error lies
-within the estimate on rough surfaces.
+to zero as 2 (t (1 − t))^½, where t (0 to 1) is the position in the interval of ln V. The standard
+deviation of a random walk with both ends fixed has the same form. docs/dem.md says how often the
+error lies within the estimate on rough surfaces.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ _SAFETY = 1.5  # ratio of the error estimate to the leave-one-out residual
 
 
 class RatioCurve:
-    """W_u/W_l as an interpolated function of the impact velocity.
+    """Ratio W_u/W_l of unloading to loading work, interpolated between impact velocities.
 
     `velocities` (m/s, increasing) and `ratios` have shape (points,).
     """
@@ -44,7 +45,7 @@ class RatioCurve:
         self._q = ratios + self.adhesion / velocities**2
 
     def at(self, velocity: float) -> float:
-        """Interpolate the ratio at `velocity` (m/s), which must lie between those of the points."""
+        """Interpolate the ratio at `velocity` (m/s), which must lie within `velocities`."""
         return _pchip(self._L, self._q, math.log(velocity)) - self.adhesion / velocity**2
 
     def error(self, velocity: float) -> float:
@@ -58,7 +59,7 @@ class RatioCurve:
         return max(middle * 2 * math.sqrt(t * (1 - t)), line)
 
     def interval(self, velocity: float) -> tuple[int, float]:
-        """Index of the point above `velocity`, and t (0 to 1) in the interval below this point."""
+        """Return the index of the point above `velocity` (m/s), and t in the interval below it."""
         L = math.log(velocity)
         after = min(max(int(np.searchsorted(self._L, L)), 1), self._L.size - 1)
         below, above = self._L[after - 1 : after + 1]

@@ -22,8 +22,8 @@ Array = NDArray[np.float64]
 
 LOSS = 1e-3
 """A law is not fitted if 1 − e, or e, is below this value at every velocity."""
-# Largest relative difference of velocities that count as equal. Where the loading work is
-# integrated, a run meets the velocities of its case within 1e-4 (`solve_at_velocity`).
+# Largest relative difference of velocities that count as equal. A run that integrates the loading
+# work reaches the velocities of its case to within 1e-4 (`solve_at_velocity`).
 _SAME = 1.01e-4
 
 
@@ -39,7 +39,8 @@ class _Stored(BaseModel):
 class Particle(_Stored):
     """One body of the pair, in SI units. `radius` is None for a flat wall.
 
-    `number_fraction` is the fraction of this size in its material, by number, in a mixture.
+    In a mixture, `number_fraction` is the fraction by number of this size among the particles of
+    the same material.
     """
 
     name: str
@@ -63,8 +64,9 @@ class Particle(_Stored):
 class Point(_Stored):
     """The result at one impact velocity, in SI units.
 
-    `ratio` is W_u/W_l, which is negative where the pair sticks; `error` is the error of
-    `restitution`; `indentation` and `force` are the maxima of the impact.
+    `ratio` is W_u/W_l, the unloading work over the loading work, which is negative if the pair
+    sticks. `error` is the error of `restitution`. `indentation` and `force` are the maxima of the
+    impact.
     """
 
     velocity: Positive
@@ -80,7 +82,7 @@ class Point(_Stored):
     @model_validator(mode="after")
     def _one_number(self) -> Self:
         if abs(self.restitution - _root(self.ratio)) > 1e-6:
-            raise ValueError("restitution is not the root of ratio")
+            raise ValueError("restitution: is not the square root of ratio")
         return self
 
 

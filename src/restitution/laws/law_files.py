@@ -1,6 +1,7 @@
-"""Read and write laws as files, and write theories as a table.
+"""Read and write the files of a restitution law, and write a table of theories.
 
-`law.json` holds a whole law; `table.csv` and `laws.csv` hold parts of it as tables.
+`law.json` holds the complete law. `table.csv` (the points) and `laws.csv` (the fitted force laws)
+hold parts of it as tables.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from restitution.results.interruption import hold_signals
 from restitution.results.writer import make_folder, replace_file, write_checksums, write_table
 
 LAW_FILE = "law.json"
-LAWS, MIXTURE_FILE = "laws", "mixture.toml"  # folder with the laws of a mixture, and its file
+LAWS, MIXTURE_FILE = "laws", "mixture.toml"  # in a mixture: folder of the laws, and its input file
 
 
 def write_law(law: Law, out: Path) -> list[Path]:
@@ -57,11 +58,11 @@ def read_law(folder: Path) -> Law:
         return Law.model_validate_json(text)
     except ValidationError as error:
         first = error.errors()[0]
-        where = ".".join(map(str, first["loc"])) or "the whole"
+        where = ".".join(map(str, first["loc"])) or "the whole file"
         why = first["msg"].removeprefix("Value error, ")
         raise CaseError(
-            f"{path}: is not a law of this version ({where}: {why}); make it again with "
-            "`restitution fit-law`"
+            f"{path}: is not a law of this version ({where}: {why}); run `restitution fit-law` "
+            "again"
         ) from None
 
 
@@ -82,7 +83,7 @@ def is_mixture(folder: Path) -> bool:
 
 
 def _of_mixture(folder: Path) -> list[Path]:
-    """The folders of the laws of a mixture. Raises `OutputError` if it is not complete."""
+    """Folders of the laws of the mixture in `folder`. Raises `OutputError` if it is incomplete."""
     if not (folder / LAWS).is_dir() or not (folder / "summary.json").is_file():
         raise OutputError(
             f"{folder}: the mixture is not complete; finish it with `restitution mixture MIXTURE "
@@ -106,7 +107,7 @@ def write_theories(velocities: NDArray[np.float64], found: list[Theory], out: Pa
 
 
 def law_rows(law: Law) -> list[dict[str, float | str]]:
-    """Make one row for each point; quantities of the whole law are repeated in every row."""
+    """Return a table row for each point of `law`; every row repeats the values of the whole law."""
     fit = [math.nan] * len(law.points)
     if law.fit is not None:
         fit = [float(e) for e in law.fit.restitution(law.column("velocity"))]

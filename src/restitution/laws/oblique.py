@@ -5,15 +5,15 @@ normal velocity (`time_integration`). The contact point slides with the velocity
 
     U = v_t − R₁ω₁ − R₂ω₂,   dU/dt = −(7/2) T/m*,   dv_t/dt = −T/m*,   dω_i/dt = (5/2) T/(m_i R_i)
 
-for solid spheres (I = 2/5 m R²). ω is positive in the sense of rolling, in which friction turns a
-sphere without spin. The tangential force T follows from a one-dimensional foundation with constant
-friction µ (`foundation`). If all springs slide to the end, the impulse of T is µ (1 + e) m* V_n for
-every law of force.
+for solid spheres (I = 2/5 m R²). ω is positive in the direction in which friction turns a sphere
+without spin. The tangential force T follows from a one-dimensional foundation of springs with
+constant friction µ (`foundation`). If all springs slide to the end, the impulse of T is
+µ (1 + e) m* V_n for every force law.
 
 The error of the tangential law (`tangential_error`) is converted to an error of the impulse of T.
-For this, the motion is integrated again with a larger and a smaller tangential modulus. After
-yield, a part of the impulse is added to the error. This part vanishes in full slip, where the
-impulse is exact for like bodies.
+To do so, the motion is integrated again with a larger and a smaller tangential modulus. If the
+contact has yielded, a fraction of the impulse is added to the error. This fraction vanishes in full
+slip, where the impulse is exact for like bodies.
 
 Neglected: the coupling of normal and tangential displacements of unlike materials, the torque about
 the normal, rolling friction, and elastic waves.
@@ -43,21 +43,21 @@ from restitution.results.reader import RunResults
 Array = NDArray[np.float64]
 
 _STEPS = 4000  # number of time steps of a collision
-_LEAST = 1e-3  # part of the largest normal force below which sticking is not evaluated
+_LEAST = 1e-3  # fraction of the largest normal force below which `sticking` is set to 0
 _INERTIA = 3.5  # 1 + m R²/I of a solid sphere
 
 
 @dataclass(frozen=True, eq=False)
 class ObliqueCollision:
-    """One oblique collision, in SI units; arrays are its course in time.
+    """One oblique collision, in SI units. The arrays are time series of equal length.
 
     Attributes:
         velocity: Impact velocity (m/s).
         angle: Angle of impact from the normal (rad).
         friction: Coefficient of friction µ (1).
-        normal_restitution: Normal velocity after over before the impact (1).
-        tangential_restitution: Tangential velocity of the centres after over before the impact (1);
-            NaN for a head-on impact.
+        normal_restitution: Ratio of the normal velocities after and before the impact (1).
+        tangential_restitution: Ratio of the tangential velocities of the centres after and before
+            the impact (1); NaN for a head-on impact.
         rebound_angle: Angle of rebound of the centres from the normal (rad).
         spins: Angular velocities of the two bodies after the impact (rad/s); 0 for a wall.
         tangential_restitution_error: Error of `tangential_restitution` due to the tangential law
@@ -71,7 +71,7 @@ class ObliqueCollision:
         normal_force: Normal force (N).
         tangential_force: Tangential force (N).
         slip_velocity: Velocity of the contact point (m/s).
-        sticking: Part of the normal force that is carried by springs that stick (1).
+        sticking: Fraction of the normal force that sticking springs carry (1).
     """
 
     velocity: float
@@ -127,7 +127,7 @@ def collide_obliquely(
             in which friction turns a body without spin.
 
     Returns:
-        The collision and its course.
+        The collision.
 
     Raises:
         CaseError: An argument lies outside its range, or the spin of a wall is not 0.
@@ -137,8 +137,8 @@ def collide_obliquely(
     """
     if not 0 <= angle < math.pi / 2:
         raise CaseError(
-            f"angle: {math.degrees(angle):.6g} degrees from the normal is not an impact; give 0 to "
-            "below 90 degrees"
+            f"angle: {math.degrees(angle):.6g} degrees from the normal is not an impact; give an "
+            "angle from 0 to below 90 degrees"
         )
     if not (math.isfinite(friction) and friction >= 0):
         raise CaseError(f"friction: {friction} is not a coefficient of friction; give 0 or more")
@@ -155,7 +155,7 @@ def collide_obliquely(
     arms = [0.0 if math.isinf(body.radius) else body.radius for body in bodies]
     rolling = sum(R * spin for R, spin in zip(arms, spins, strict=True))
     mass = law.pair.mass
-    assert mass is not None  # StoredForce
+    assert mass is not None  # checked by StoredForce
     error = tangential_error(law, min(normal.largest_indentation, law.deepest), friction)
     course = _slide(law, normal, V_t - rolling, friction, error.stiffness)
     J, e = course.impulse, normal.restitution
@@ -204,7 +204,7 @@ def oblique_force(run: RunResults, key: str = "angle") -> StoredForce:
 
     Args:
         run: Stored results of one surface.
-        key: The option or argument that asks for oblique impacts, for the message.
+        key: Name of the option or argument that requests oblique impacts, for error messages.
 
     Returns:
         The force law of `run`.
@@ -219,7 +219,7 @@ def oblique_force(run: RunResults, key: str = "angle") -> StoredForce:
 
 
 def course(collision: ObliqueCollision) -> list[dict[str, float | str]]:
-    """Convert the course of a collision to rows of a table."""
+    """Convert the time series of a collision to table rows."""
     columns = zip(
         collision.time,
         collision.normal_force,
@@ -244,7 +244,7 @@ def course(collision: ObliqueCollision) -> list[dict[str, float | str]]:
 
 @dataclass(frozen=True, eq=False)
 class _Course:
-    """Tangential motion in time, the impulse and its error (N s), and the work of friction (J)."""
+    """Time series of an oblique impact, impulse and its error (N s), and friction loss (J)."""
 
     time: Array
     normal: Array
@@ -274,7 +274,7 @@ def _slide(
     turn = float(t[int(np.argmax(delta))])
     F = np.array([(law.loading if s <= turn else back)(x) for s, x in zip(t, delta, strict=True)])
     T, U, stick = np.zeros(t.size), np.full(t.size, slip), np.zeros(t.size)
-    # Rows: the tangential modulus, and this modulus with the error subtracted and added.
+    # Factors of the tangential modulus: nominal, reduced by the error, and increased by the error.
     factors = np.array([1.0, 1 / (1 + error), 1 + error])
     u, speed, loss = np.zeros((3, springs.radius.size)), np.full(3, slip), 0.0
     slowing, least = _INERTIA / (law.pair.mass or math.nan) * dt, _LEAST * F.max()

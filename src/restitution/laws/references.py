@@ -1,4 +1,4 @@
-"""Closed forms for the smooth bodies of a stored run, for figures that show both."""
+"""Closed forms for the smooth bodies of a stored run, drawn beside the computed curves."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Reference:
 def force_references(results: xr.Dataset) -> list[Reference]:
     """Closed forms of the force (N) against indentation (m): elastic and, if bodies yield, plastic.
 
-    The laws begin below the smallest indentation that carries a force in loading or unloading.
+    The curves begin below the smallest indentation that carries a force in loading or unloading.
     """
     R, E_star, p_y, w = _parameters(results)
     deepest = float(results["indentation"].max())

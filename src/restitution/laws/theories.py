@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 STEPS = 25
 """Number of velocities in the table of a case that gives a span."""
 COMPUTED = "computed"
-"""The name of the computed points among the theories."""
+"""Name of the entry for the computed points in a list of theories."""
 
 _FINE = 600  # number of velocities at which a line in a figure is computed
 _SAME = 1e-6  # values of R*, E* or m* with at most this relative difference count as equal
@@ -45,9 +45,9 @@ class Theory:
 def velocities_of(case: Case, law: Law | None = None) -> Array:
     """Velocities (m/s) to tabulate: the velocities of the law, or the span of the case.
 
-    If the case gives indentations or loads, the span ends where smooth bodies reach the first and
-    the last of them, according to Thornton and Ning or, for elastic bodies, Hertz. Raises
-    `CaseError`.
+    If the case gives indentations or loads, the span is that of the velocities at which smooth
+    bodies reach the first and the last of them, according to Thornton and Ning or, for elastic
+    bodies, Hertz. Raises `CaseError`.
     """
     if law is not None:
         return law.column("velocity")
@@ -78,8 +78,8 @@ def theory_lines(
 ) -> list[tuple[str, bool, Array, Array]]:
     """Lines of a figure: name, whether fitted, velocities (m/s) and COR of each theory in `found`.
 
-    Closed forms are evaluated at many velocities from the first to the last. Fits are given at
-    `velocities`. The points that this program computed are not among the lines.
+    Closed forms are evaluated at many velocities between the first and the last of `velocities`,
+    fits only at `velocities`. The computed points are left out.
     """
     closed: dict[str, Array] = {}
     V = velocities
@@ -106,7 +106,7 @@ def left_out(case: Case, law: Law | None = None) -> dict[str, str]:
 
 
 def marks(case: Case) -> dict[str, float]:
-    """V_y and V_s (m/s) of the smooth bodies, if they yield or adhere."""
+    """Yield velocity V_y and sticking velocity V_s (m/s) of the smooth bodies, where they exist."""
     bodies = Bodies.of(case)
     found = {"V_y": bodies.yield_velocity, "V_s": bodies.sticking_velocity}
     return {name: value for name, value in found.items() if 0 < value < math.inf}
@@ -121,7 +121,7 @@ def check_same_pair(case: Case, law: Law) -> None:
         "m*": (law.mass, bodies.m, "kg"),
     }
     differing = [
-        f"{name} is {of_law:.7g} {unit} (the case's {of_case:.7g} {unit})"
+        f"{name} is {of_law:.7g} {unit} ({of_case:.7g} {unit} in the case)"
         for name, (of_law, of_case, unit) in quantities.items()
         if not abs(of_law / of_case - 1) <= _SAME
     ]

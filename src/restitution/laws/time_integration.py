@@ -3,12 +3,12 @@
     m₁ x₁'' = −F(δ),  m₂ x₂'' = F(δ),  δ = x₁ − x₂ (0 at first touch),  e = (v₂' − v₁')/(v₁ − v₂)
 
 F follows the loading curve until the particles stop approaching, and then the unloading curve from
-this depth. The resulting e checks two things: the unloading forces against the stored energy W_u,
-and the formula for e from energies against an equation of motion.
+the depth reached. The resulting e checks two things: the unloading forces against the stored
+unloading work, and the formula for e from energies against an equation of motion.
 
-The loading force is the derivative of a cubic Hermite spline through the stored works. The slopes
-of the spline at the stored depths are the stored forces, so the maximum indentation agrees with the
-energies. Where W resembles a power of δ, the spline interpolates ln W against ln δ.
+The loading force is the derivative of a cubic Hermite spline through the stored loading work W. The
+slopes of the spline at the stored depths are the stored forces, so the maximum indentation agrees
+with the energies. If W resembles a power of δ, the spline interpolates ln W against ln δ.
 
 Unloading curves are monotone cubics (PCHIP) and are stored for some depths only. Between two of
 these depths, F/F_max is interpolated against (δ − δ_s)/(δ_max − δ_s), with the separation δ_s and
@@ -51,7 +51,7 @@ _SAME = 1e-5  # largest relative difference of depths that count as equal
 
 @dataclass(frozen=True)
 class ReferenceCollision:
-    """One collision: its results, and its course in time (arrays of equal length), in SI units.
+    """One collision: its results, and time series (arrays of equal length), in SI units.
 
     `blended` says whether the unloading force was interpolated between two stored curves.
     """
@@ -72,10 +72,11 @@ class ReferenceCollision:
 
 @dataclass(frozen=True, eq=False)
 class StoredRoughness:
-    """What a stored contact tells about its roughness.
+    """Properties of the roughness of a stored contact.
 
-    `patches` are the numbers of contact patches at the indentations `depths` (m). `lay` is the
-    anisotropy of the slopes: 0 if they are equal in all directions, 1 if they have one direction.
+    `patches` holds the number of contact patches at each of the indentations `depths` (m). `lay` is
+    the anisotropy of the slopes: 0 if they are equal in all directions, 1 if all slopes are along
+    one direction.
     """
 
     depths: Array
@@ -116,9 +117,9 @@ class StoredForce:
         depths = self.unloading_from
         if not depths[0] * (1 - _SAME) <= deepest <= depths[-1] * (1 + _SAME):
             raise DomainError(
-                f"the particles turn at {1e9 * deepest:.4g} nm, but unloading curves are stored "
-                f"only from {1e9 * depths[0]:.4g} to {1e9 * depths[-1]:.4g} nm, and nothing is "
-                "extrapolated; raise unloading.curves, or choose another velocity"
+                f"the impact reaches a depth of {1e9 * deepest:.4g} nm, but unloading curves are "
+                f"stored only from {1e9 * depths[0]:.4g} to {1e9 * depths[-1]:.4g} nm, and nothing "
+                "is extrapolated; raise unloading.curves, or choose another velocity"
             )
         end, largest = self.separation(deepest), self.loading(deepest)
         shape, blended = self.shape(deepest)
@@ -128,8 +129,8 @@ class StoredForce:
         """Return the shape of the unloading curve from `deepest` (m), and a flag.
 
         The shape is F/F_max as a function of (δ − δ_s)/(δ_max − δ_s), for numbers and arrays. The
-        flag says whether it is interpolated between two stored curves. Beyond the first or the last
-        stored curve, the shape is that of this curve.
+        flag says whether the shape is interpolated between two stored curves. Beyond the first or
+        the last stored curve, the shape is that of the nearest curve.
         """
         depths = self.unloading_from
         near = np.flatnonzero(np.abs(depths / deepest - 1) < _SAME)
@@ -166,9 +167,9 @@ def stored_force(out: Path) -> StoredForce:
 def force_of(pair: Pair, results: xr.Dataset, unloading: Sequence[UnloadingCurve]) -> StoredForce:
     """Make the force law of `pair` from the variables of a curve and its unloading curves.
 
-    `results` has the variables of `results.nc`, with the height over x and y; `unloading` is sorted
-    by its starts. Raises `OutputError` if no unloading reaches separation, `CaseError` if `pair`
-    has no mass.
+    `results` has the variables of `results.nc`, including the height at x and y. `unloading` is
+    sorted by `start`. Raises `OutputError` if no unloading reaches separation, `CaseError` if
+    `pair` has no mass.
     """
     depth, force = results["indentation"].values, results["force"].values
     return StoredForce(
@@ -261,7 +262,7 @@ def collide_in_time(law: StoredForce, velocity: float) -> ReferenceCollision:
 
 
 def course(collision: ReferenceCollision) -> list[dict[str, float | str]]:
-    """Convert the course of a collision to rows of a table."""
+    """Convert the time series of a collision to table rows."""
     columns = zip(
         collision.time,
         collision.indentation,
@@ -339,8 +340,8 @@ def _loading(depth: Array, force: Array, work: Array) -> Force:
             return math.exp(value) / x * its_slope
 
         return pushing
-    # With adhesion, the force is assumed linear up to the first depth. The integral of the force
-    # is the work at this depth.
+    # With adhesion, the force is assumed linear up to the first depth, with an initial value for
+    # which its integral equals the stored work at this depth.
     jump_in = 2 * work[0] / depth[0] - force[0]
     curve = _hermite(np.append(0.0, depth), np.append(0.0, work), np.append(jump_in, force))
     return lambda x: curve(max(x, 0.0))[1]

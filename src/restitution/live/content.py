@@ -1,4 +1,4 @@
-"""The case that the page edits: the tables of a case file, always in the same form."""
+"""The case that the page edits: the tables of a case file, in a uniform form."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Content = dict[str, Any]
 def content_of(text: str) -> Content:
     """Parse the case file `text`; make every body a table, and `roughness` a list of tables.
 
-    Raises `CaseError` if `text` is not TOML, or has a value that JSON lacks.
+    Raises `CaseError` if `text` is not TOML, or has a value that JSON cannot represent.
     """
     content = parse_toml(text)
     try:
@@ -35,7 +35,10 @@ def content_of(text: str) -> Content:
 
 
 def text_of(content: Content) -> str:
-    """Write the tables `content` as a case file. Raises `CaseError` if TOML lacks such a value."""
+    """Write the tables `content` as a case file.
+
+    Raises `CaseError` if a value cannot be written as TOML.
+    """
     tables = dict(content)
     parts = tables.get("roughness")
     if isinstance(parts, list):

@@ -67,7 +67,7 @@ class LiveCurves:
             yield curve.maps.line(min(max(depth, 0), len(curve.maps) - 1))
 
     def beside(self, tab: str, shown: str, check: Callable[[], None]) -> Iterator[str]:
-        """Yield the smooth curve of the last case, and its surface unless it is `shown` already."""
+        """Yield the smooth curve of the last case, and its surface unless `shown` is its key."""
         curve = self._curves.get(tab)
         if curve is not None:
             yield from curve.with_smooth(check)
@@ -144,6 +144,6 @@ class _Curve:
 
 
 def _stamps(case: Case, folder: Path) -> list[tuple[int, int]]:
-    """Time and size of the scans of `case`; they change when a file is dropped again."""
+    """Modification times and sizes of the scans; they change when a file is dropped again."""
     found = [folder / part.file for part in case.roughness if part.kind == "measured"]
     return [(each.stat().st_mtime_ns, each.stat().st_size) for each in found]

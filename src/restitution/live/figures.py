@@ -33,7 +33,7 @@ _MOST_PIXELS = 200  # largest number of pixels of a map along either axis
 
 
 class Raw(str):
-    """JSON text that `as_json` inserts as it is."""
+    """JSON text that `as_json` inserts without encoding it."""
 
 
 def as_json(content: Mapping[str, Any]) -> str:
@@ -66,7 +66,7 @@ def live_dataset(case: Case, contact: Contact, rows: Sequence[Mapping[str, float
 
 
 def curve_figures(results: xr.Dataset) -> Raw:
-    """Draw COR against velocity and indentation, and the force, as JSON; null without data."""
+    """Draw COR against velocity and indentation, and the force, as JSON, if there are data."""
     found: dict[str, Figure] = {}
     if results.sizes["indentation_max"]:
         found["indentation"] = restitution_against_indentation(results)

@@ -147,13 +147,13 @@ _INTERFACE = (
         "Pa",
         1e6,
         1e11,
-        hint="of hardening",
+        hint="slope of the stress-strain curve after yield",
         more=True,
     ),
     Field(
         "interface.plasticity",
         "Plasticity",
-        choices=_named(get_args(Plasticity), "by the values above"),
+        choices=_named(get_args(Plasticity), "chosen from the values above"),
         more=True,
     ),
     Field(
@@ -171,13 +171,13 @@ _INTERFACE = (
         0.0,
         1.0,
         logarithmic=False,
-        hint="of oblique impacts and exports",
+        hint="for oblique impacts and exports",
         more=True,
     ),
     Field(
         "interface.adhesion",
         "Range of adhesion",
-        choices=_named(get_args(Adhesion), "by the grid"),
+        choices=_named(get_args(Adhesion), "chosen from the grid"),
         more=True,
     ),
     Field(
@@ -260,7 +260,7 @@ _SURFACE = (
         3,
         30,
         when=_READ,
-        hint="in deviations",
+        hint="in standard deviations",
         more=True,
     ),
     Field(
@@ -290,7 +290,7 @@ _SURFACE = (
         False,
         True,
         when=_ROUGH,
-        hint="the curve is their mean; only the first one while a slider moves",
+        hint="the curve is their mean; while a slider moves, only the first surface is computed",
     ),
 )
 
@@ -362,7 +362,7 @@ _RANGE = (
 _REST = (
     Field("title", "Title"),
     Field("unloading.curves", "Unloading curves", "", 0, 24, False, True),
-    Field("unloading.steps", "Steps of each", "", 4, 64, False, True),
+    Field("unloading.steps", "Steps of each curve", "", 4, 64, False, True),
     Field(
         "unloading.method",
         "Unloading with adhesion",

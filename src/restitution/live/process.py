@@ -1,7 +1,7 @@
 """A worker process and its requests, as the server sees them.
 
-The process starts with the first request. If it has ended, the next request starts it again. It is
-ended if an abandoned request does not stop by itself.
+The process starts with the first request. If it has ended, the next request starts it again. The
+process is terminated if an abandoned request does not stop by itself.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ from restitution.live.worker import Request, serve
 _PATIENCE = 1.5  # time (s) that a request may take to stop
 _LOST = as_json(
     {
-        "error": "the process that computes has ended unexpectedly (perhaps because the memory was "
+        "error": "the computing process has ended unexpectedly (perhaps because the memory was "
         "full); the next change starts it again",
         "lost": True,
     }
 )
 _CLOSED = as_json({"error": "the program has ended; start restitution app again", "lost": True})
-_AGAIN = "again"  # makes `ask` repeat a request whose process was ended because of another one
+_AGAIN = "again"  # makes `ask` repeat a request whose process was ended due to another request
 _Lines = asyncio.Queue[str | None]
 
 
@@ -41,7 +41,7 @@ class Process:
         self._running: _Running | None = None
 
     async def ask(self, tab: str, kind: str, **values: Any) -> AsyncGenerator[str]:
-        """Yield the lines of JSON that answer a request. Closing the generator gives it up."""
+        """Yield the lines of JSON that answer a request. Closing the generator cancels it."""
         asked = True
         while asked:
             asked = False

@@ -1,4 +1,4 @@
-"""Whole runs for the page, in folders of their own: the same as `restitution run` writes."""
+"""Complete runs for the page; each writes the results folder that `restitution run` writes."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Runs:
         self._folders: dict[str, Path] = {}
 
     def folder(self, text: str, folder: Path, check: Check, grids: int = 1) -> Path:
-        """Return the results folder of the case `text`, or of its convergence on `grids` grids."""
+        """Return the results folder of the case `text`; of a convergence study if `grids` > 1."""
         key = hashlib.blake2b(f"{grids}\n{text}".encode()).hexdigest()
         if key not in self._folders:
             self._folders[key] = self._compute(text, folder, check, grids)

@@ -1,7 +1,8 @@
 """The server of the page: static files, and requests as JSON that only this page can make.
 
 A request is a POST with the token of the address and, from a browser, the Origin of this page. The
-Host must be this machine, so that another site cannot reach the server under its own name.
+Host header must name this machine, so that a web site whose name points to this machine cannot
+reach the server.
 """
 
 from __future__ import annotations
@@ -49,7 +50,7 @@ Handler = Callable[[Request], Awaitable[Response]]
 class Server:
     """Receives the requests of the page and passes each of them to a worker process.
 
-    Live curves, whole runs and finer runs have a process each, so they do not delay each other.
+    Live curves, complete runs and finer runs have a process each, so they do not delay each other.
     """
 
     def __init__(self, session: Session, port: int) -> None:
@@ -120,7 +121,7 @@ class Server:
         policy = (
             "default-src 'none'; script-src 'self'; connect-src 'self'; "
             "img-src 'self' data: blob:; "
-            # The plotting library sets attributes of elements that it parses.
+            # The plotting library parses HTML with style attributes.
             f"style-src 'self' 'nonce-{nonce}'; style-src-attr 'unsafe-inline'; "
             "form-action 'none'; base-uri 'none'; frame-ancestors 'none'"
         )

@@ -19,11 +19,11 @@ _ODD = re.compile(r"[^\w.()+-]+")  # characters of a file name that are replaced
 class Session:
     """The folders, the token and the first case of a page.
 
-    Everything is removed by `close`.
+    `close` removes the folders.
     """
 
     def __init__(self, content: Content, folder: Path | None = None) -> None:
-        """Make the folders. Scans that `content` reads from `folder` are linked into them."""
+        """Make the folders. Scans of `content`, relative to `folder`, are linked into `scans`."""
         self.token = secrets.token_urlsafe(24)
         self.room = Path(mkdtemp(prefix="restitution-app-"))
         self.scans = self.room / "scans"
@@ -33,7 +33,7 @@ class Session:
             _bring_scans(content, folder, self.scans)
 
     def free_name(self, wanted: str) -> str:
-        """Make an unused name in `scans` from the name of a user's file, without odd characters."""
+        """Make an unused name in `scans` from the name `wanted`; replace unusual characters."""
         name = _ODD.sub("_", wanted.replace("\\", "/").rsplit("/", 1)[-1]).lstrip(".")[-80:]
         stem, dot, kind = (name or "scan").partition(".")
         numbers = ("", *(f"-{k}" for k in range(2, 1000)))

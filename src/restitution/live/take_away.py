@@ -23,7 +23,7 @@ CASE_FILE = "case.toml"
 
 
 def case_file(text: str, scans: Path, out: Path) -> Path:
-    """Write the case file into `out`; if the case has scans, as a zip archive with the scans."""
+    """Write the case file into `out`, or a zip archive of the case file and its scans."""
     names = scans_of(content_of(text))
     if not names:
         (out / CASE_FILE).write_text(text, encoding="utf-8")

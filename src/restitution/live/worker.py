@@ -1,8 +1,8 @@
 """The process that computes for the page: it answers one request after the other.
 
 A request is a `Request`; an answer is a series of lines of JSON, then None. Requests of the same
-kind from the same tab of the browser replace each other: the newest wins, and the one that is being
-computed stops at its next depth.
+kind from the same tab of the browser replace each other: only the newest is answered, and a request
+that is being computed stops at its next depth.
 """
 
 from __future__ import annotations
@@ -105,7 +105,7 @@ class Inbox:
         waits = [key for key, each in self._waiting.items() if each.number == number]
         for key in waits:
             self._drop(key)
-        if not waits:  # it is being computed, or answered already
+        if not waits:  # the request is being computed, or was answered already
             self._given_up.add(number)
 
     def _drop(self, key: tuple[str, str]) -> None:
@@ -117,7 +117,7 @@ class Inbox:
 
 
 class Worker:
-    """Answers requests: one method for each kind. Reads scans in `scans`, and writes to `room`."""
+    """Answers requests, with a method for each kind; reads scans in `scans`, writes to `room`."""
 
     def __init__(self, scans: Path, room: Path, check: Callable[[], None]) -> None:
         self._scans, self._room, self._check = scans, room, check
@@ -188,7 +188,7 @@ class Worker:
 
 def serve(connection: Connection, scans: Path, room: Path) -> None:
     """Answer requests until the parent closes the connection or ends."""
-    # Ctrl-C reaches every process of the terminal: the parent ends this one.
+    # Ctrl-C reaches every process of the terminal. Ignore it, because the parent ends this process.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.environ["MPLBACKEND"] = "agg"
     wire = Wire(connection)

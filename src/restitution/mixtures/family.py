@@ -75,7 +75,7 @@ class Family:
 
     @cached_property
     def radii(self) -> tuple[float, ...]:
-        """The reduced radii (m) that occur, increasing, distinct to a relative 1e-9."""
+        """The reduced radii (m) that occur, increasing; radii within a relative 1e-9 count once."""
         found: list[float] = []
         for radius in sorted(meeting.radius for meeting in self.meetings):
             if not found or radius > found[-1] * (1 + 1e-9):
@@ -85,7 +85,7 @@ class Family:
     def case(self, radius: float) -> str:
         """Write the text of the case for the reduced radius (m).
 
-        Its velocities give the W/R*³ of every pair of the family.
+        The velocities of the case cover the W/R*³ of every pair of the family.
         """
         return tomli_w.dumps(self._content(radius, self._grid))
 
@@ -158,7 +158,7 @@ def families(mixture: Mixture) -> list[Family]:
 
 
 def _steps(start: float, end: float, step: float) -> list[float]:
-    """Velocities beyond `start` up to `end` in equal steps of ln V; none if `end` is near."""
+    """Velocities beyond `start` up to `end` in equal steps of ln V; none if both are equal."""
     distance = math.log(end / start) / math.log(step)
     if distance < 1e-6:
         return []

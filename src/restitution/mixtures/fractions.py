@@ -13,11 +13,11 @@ _OFF = 0.02  # largest difference of the sum from 1, because fractions are often
 
 
 def number_fractions(key: str, table: dict[str, Any], radii: Sequence[float]) -> tuple[float, ...]:
-    """Take the fractions out of the `table` of a material; return them by number, with sum 1.
+    """Remove the fractions from the `table` of a material; return them by number, with sum 1.
 
     `radii` (m) are in the order of the file. Without fractions every size has the same number of
-    particles. All sizes have one density, so that a mass fraction is proportional to the number
-    times R³. Raises `CaseError` that names the key.
+    particles. All sizes have the same density, so a mass fraction is proportional to the number
+    times R³. Raises a `CaseError` that names the key.
     """
     given = [name for name in KEYS if name in table]
     if len(given) > 1:
@@ -26,12 +26,12 @@ def number_fractions(key: str, table: dict[str, Any], radii: Sequence[float]) ->
         return tuple(1 / len(radii) for _ in radii)
     where = f"{key}.{given[0]}"
     if not radii:
-        raise CaseError(f"{where}: a wall has no sizes; leave it out")
+        raise CaseError(f"{where}: a wall has no sizes; remove this key")
     sizes = table.get("radius")
     if isinstance(sizes, dict) and "median" in sizes:
         raise CaseError(
-            f"{where}: the bins of a log-normal distribution hold equal numbers already; leave "
-            "this key out, or give edges or bins instead of the distribution"
+            f"{where}: the bins of a log-normal distribution hold equal numbers already; remove "
+            "this key, or give edges or bins instead of the distribution"
         )
     fractions = _checked(where, table.pop(given[0]), len(radii))
     power = 3 if given[0] == "mass_fractions" else 0

@@ -46,7 +46,7 @@ class Sizes(Table):
             raise ValueError("edges: must increase")
         for low, high in self.bins or []:
             if not low < high:
-                raise ValueError("bins: the lower edge of each must be below the upper one")
+                raise ValueError("bins: the lower edge of each bin must be below its upper edge")
         ordered = sorted(self.bins or [])
         for (_, high), (low, _) in itertools.pairwise(ordered):
             if low < high * (1 - 1e-9):
@@ -126,14 +126,14 @@ class Mixture:
 
 
 def read_mixture(path: Path) -> Mixture:
-    """Read and check a mixture file. Raises `CaseError` that names the file and the key."""
+    """Read and check a mixture file. Raises a `CaseError` that names the file and the key."""
     text = read_text(path)
     with naming(path):
         return parse_mixture(text)
 
 
 def parse_mixture(text: str) -> Mixture:
-    """Check the text of a mixture file. Raises `CaseError` that names the key."""
+    """Check the text of a mixture file. Raises a `CaseError` that names the key."""
     content = parse_toml(text)
     materials, walls = content.pop("materials", None), content.pop("walls", {})
     if not isinstance(materials, dict) or not materials:
@@ -151,7 +151,9 @@ def parse_mixture(text: str) -> Mixture:
         components.append(_component(f"walls.{name}", name, table))
     if file.impact.oblique:
         key = "spin" if file.impact.angle is None else "angle"
-        raise CaseError(f"impact.{key}: the laws of a mixture are of head-on impacts; remove it")
+        raise CaseError(
+            f"impact.{key}: a mixture has laws of head-on impacts only; remove this key"
+        )
     names = [component.name for component in components]
     interface = content.get("interface", {})
     interfaces = {("", ""): interface}
@@ -196,7 +198,7 @@ def _component(key: str, name: str, table: Any) -> Component:
     radii: tuple[float, ...] = ()
     if key.startswith("walls."):
         if sizes not in (None, "flat"):
-            raise CaseError(f"{key}.radius: a wall is flat; leave radius out")
+            raise CaseError(f"{key}.radius: a wall is flat; remove this key")
     elif sizes is None:
         raise CaseError(f"{key}.radius: is missing; give one or more radii, or bins")
     else:
@@ -215,13 +217,13 @@ def _component(key: str, name: str, table: Any) -> Component:
 
 
 class _Rough(Table):
-    """The roughness of a component, for checks only."""
+    """A model to check the roughness of a component."""
 
     roughness: list[Roughness]
 
 
 class _Radii(Table):
-    """Radii as a list of lengths, for checks only."""
+    """A model to check a list of radii."""
 
     radius: Annotated[list[Length], Field(min_length=1, max_length=MOST_SIZES)]
 

@@ -1,4 +1,4 @@
-"""The folder of a mixture: its runs, the law of every pair, and one table of them."""
+"""The folder of a mixture: its runs, the law of every pair, and one table of all laws."""
 
 from __future__ import annotations
 

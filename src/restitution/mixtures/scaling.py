@@ -22,8 +22,8 @@ from restitution.mixtures.family import Family, Meeting
 
 Array = NDArray[np.float64]
 
-# Interpolation error that is always accepted: this fraction of the error of the computed laws, but
-# at most this error of COR.
+# An interpolation error of COR above the limit of the mixture is accepted if it is at most _SHARE
+# times the error of the computed laws, and at most _MOST.
 _SHARE, _MOST = 0.25, 0.05
 _SAME = 1e-9  # largest relative difference of radii that count as equal
 
@@ -45,9 +45,9 @@ class Computed:
         return bool((np.abs(self.radii / radius - 1) < _SAME).any())
 
     def is_good(self, meeting: Meeting) -> bool:
-        """Whether the law of the pair needs no further radius.
+        """Whether the law of the pair is accurate enough without a further radius.
 
-        At every velocity, the error by interpolation in R* must not exceed the limit of the
+        At every velocity, the error due to interpolation in R* must not exceed the limit of the
         mixture or a quarter of the error of the computed laws (at most `_MOST`), whichever is
         larger.
         """
@@ -153,7 +153,7 @@ def _of(law: Law, V: float, meeting: Meeting) -> float:
 
 
 def _near(velocity: float, law: Law) -> bool:
-    """Whether `velocity` is within the range of `law`, apart from a relative 1e-3."""
+    """Whether `velocity` is within the range of `law`, with a relative tolerance of 1e-3."""
     return law.lowest * (1 - 1e-3) <= velocity <= law.highest * (1 + 1e-3)
 
 

@@ -1,4 +1,4 @@
-"""The table at the end of every page: methods of the computation, with their sources."""
+"""The table of methods at the end of a page: methods of the computation, with their sources."""
 
 from __future__ import annotations
 

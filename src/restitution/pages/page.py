@@ -55,7 +55,7 @@ class Drawing:
 
 @dataclass(frozen=True)
 class Page:
-    """A title, introductory lines, warnings, and parts."""
+    """The content of a page: title, introductory lines, warnings and parts."""
 
     title: str
     intro: Sequence[str] = ()

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-Colours = Literal["viridis", "cividis", "magma"]  # of maps, from low to high
-Dash = tuple[float, ...]  # alternate lengths of dashes and gaps, in line widths
+Colours = Literal["viridis", "cividis", "magma"]  # colour maps, from low to high values
+Dash = tuple[float, ...]  # alternating lengths of dashes and gaps, in line widths
 Symbol = Literal["circle", "square", "diamond", "triangle-up", "triangle-down"]
 
 SOLID: Dash = ()
@@ -44,7 +44,7 @@ class Axis:
 
     @property
     def title(self) -> str:
-        """Label and unit."""
+        """The label, with the unit in brackets."""
         return f"{self.label} ({self.unit})" if self.unit else self.label
 
 
@@ -116,7 +116,7 @@ Series = Line | Points | Band | Mark
 
 @dataclass(frozen=True)
 class Chart:
-    """Series on two axes, and a third on the right for lines with `right`."""
+    """Series on the axes `x` and `y`; lines with `right` use a second y axis on the right."""
 
     x: Axis
     y: Axis
@@ -127,9 +127,9 @@ class Chart:
 
 @dataclass(frozen=True, eq=False)
 class Map:
-    """Values, shape (nx, ny), on nodes at `x` and `y` (µm) as colours; NaN is left blank.
+    """Values, shape (nx, ny), on nodes at `x` and `y` (µm), drawn as colours; NaN is left blank.
 
-    With `downwards` y increases towards the bottom of the map.
+    With `downwards`, y increases towards the bottom of the map.
     """
 
     x: Array
@@ -173,5 +173,5 @@ def has_open(points: Points) -> bool:
 
 
 def has_error(points: Points) -> bool:
-    """Whether any point has a bar."""
+    """Whether any point has an error bar."""
     return points.error is not None and bool(np.isfinite(points.error).any())

@@ -46,7 +46,7 @@ def draw(panel: Chart | Map, figure: Figure) -> Plot:
     }
     if isinstance(panel, Map):
         return Plot([_heatmap(panel)], layout | _map_axes(panel))
-    # Make the plot in one call, because Plotly checks it again after each change.
+    # Make the plot in one call, because Plotly validates the whole plot after each change.
     plot = Plot(_all_traces(panel), layout | _chart_axes(panel))
     for each in panel.series:
         if isinstance(each, Mark):
@@ -60,7 +60,7 @@ def shown_step(panel: Map) -> int:
 
 
 def _chart_axes(chart: Chart) -> dict[str, Any]:
-    """The axes of a chart, and a wider margin for one on the right."""
+    """The axes of a chart, with a wider margin if there is an axis on the right."""
     axes = {"xaxis": _axis(chart.x), "yaxis": _axis(chart.y)}
     if chart.right is None:
         return axes
@@ -218,7 +218,7 @@ def _axis(axis: Axis) -> dict[str, Any]:
     ]
     if None not in ends:
         found["range"] = ends
-    elif ends != [None, None]:  # a range with one end is lost when the page changes its size
+    elif ends != [None, None]:  # Plotly loses a range with one fixed end when the page is resized
         found["autorangeoptions"] = dict(zip(("minallowed", "maxallowed"), ends, strict=True))
     return found
 
@@ -234,5 +234,5 @@ def _faint(color: str) -> str:
 
 
 def _escaped(text: str) -> str:
-    """`text` with the characters of markup escaped."""
+    """Escape the characters of markup in `text`."""
     return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")

@@ -26,7 +26,7 @@ from restitution.plots.figure import (
 )
 
 _CURVE = 100  # number of points of a closed form
-_ROUNDS = 50  # of the fixed-point iteration for the angle of full slip
+_ROUNDS = 50  # number of fixed-point iterations for the angle of full slip
 
 
 def has_oblique(results: xr.Dataset) -> bool:
@@ -85,7 +85,7 @@ def _points(results: xr.Dataset, variable: str, scale: float) -> Iterator[Points
 def _full_slip(results: xr.Dataset) -> tuple[float, Array, Array] | None:
     """Angle of full slip (degrees), and the closed form beyond: angles (degrees) and e_t.
 
-    None with a spin before the impact, which the closed form does not include.
+    None if a body has a spin before the impact, which the closed form does not include.
     """
     if results["oblique_first_spin_before"].any() or results["oblique_second_spin_before"].any():
         return None

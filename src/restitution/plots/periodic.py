@@ -13,7 +13,7 @@ from restitution.theory import Persson
 
 
 def periodic_figures(results: xr.Dataset) -> Iterator[tuple[str, Figure]]:
-    """Yield the name and the content of every figure of the content of `results.nc`."""
+    """Yield the name and the content of every figure of `results` (from `results.nc`)."""
     if (results["nominal_pressure"].values > 0).any():
         yield "area-pressure", area_against_pressure(results)
     if results["pressure"].values.any():
@@ -21,9 +21,9 @@ def periodic_figures(results: xr.Dataset) -> Iterator[tuple[str, Figure]]:
 
 
 def area_against_pressure(results: xr.Dataset) -> Figure:
-    """Relative contact area and mean gap against nominal pressure, beside Persson's area."""
+    """Relative contact area (also after Persson) and mean gap against nominal pressure."""
     title = results.attrs.get("title", "")
-    # Attraction makes nominal pressures of weak contacts negative; the axis is logarithmic.
+    # Leave out negative nominal pressures (due to attraction), because the axis is logarithmic.
     results = results.isel(depth=results["nominal_pressure"].values > 0)
     pressure = results["nominal_pressure"].values
     p = 1e-6 * pressure

@@ -81,7 +81,7 @@ def spectrum_figure(spectra: list[DirectedSpectrum]) -> Figure:
     for each, color, dash in zip(spectra, PALETTE, (SOLID, DOTTED, DASHED), strict=False):
         q, C = 1e-6 * each.spectrum.wave_number, 1e24 * each.spectrum.density
         largest = max(largest, C.max(initial=0.0))
-        # A logarithmic axis has no zero.
+        # A logarithmic axis cannot show zero.
         series.append(Line(q, np.where(C > 0, C, np.nan), each.directions, color=color, dash=dash))
     drawn = np.concatenate([each.y[each.y > _ROUNDING * largest] for each in series])
     low, high = (0.3 * drawn.min(), 3 * drawn.max()) if drawn.size else (None, None)

@@ -1,7 +1,7 @@
 """Claims of the paper on each figure, compared with the results of the bundled studies.
 
-Each function in `CLAIMS` judges one claim. It takes the studies by name and returns a `Finding`. It
-also contains the threshold for agreement.
+Each function in `CLAIMS` judges one claim. The function takes the studies by name, contains the
+threshold for agreement, and returns a `Finding`.
 """
 
 from __future__ import annotations
@@ -135,9 +135,9 @@ def _figure_7(studies: Studies) -> Finding:
     return Finding(
         "7",
         "Adhesive elastic contact agrees with the JKR theory.",
-        f"Loading within {loading:.1%} in force; pull-off within {deepest:.1%} of 3/2 π w R* from "
-        f"the deepest point, {off.max():.1%} at worst: at shallow depths, small unloading steps "
-        "resolve the largest jumps that the grid causes.",
+        f"Force in loading within {loading:.1%}; pull-off force within {deepest:.1%} of 3/2 π w R* "
+        f"after the deepest indentation, and within {off.max():.1%} after any: at shallow depths, "
+        "small unloading steps resolve the largest jumps that the grid causes.",
         worst,
         verdict,
         _resolved(curve),
@@ -194,7 +194,7 @@ def _stages(studies: Studies) -> Finding:
         "COR of rough spheres has three stages: it falls as asperities yield, rises as the "
         "bulk takes over, and falls as the bulk yields.",
         f"All three stages within the depths computed for Rq = {names} ({sum(complete)} "
-        f"of {len(complete)}). The rougher the surface, the deeper the last begins.",
+        f"of {len(complete)}). The rougher the surface, the deeper the last stage begins.",
         sum(complete) / len(complete),
         _share(complete),
         _resolved(*rough),
@@ -227,7 +227,7 @@ def _shallow_trend(studies: Studies) -> Finding:
     return Finding(
         "10",
         "Below 50 nm COR follows the same trend for every roughness.",
-        f"Between 8 and 50 nm it differs between roughnesses by up to {off:.0%} of its mean."
+        f"Between 8 and 50 nm COR differs between roughnesses by up to {off:.0%} of its mean."
         + _single_nodes(flags),
         off,
         "agrees" if off < 0.1 else "does not agree",
@@ -247,7 +247,8 @@ def _single_nodes(flags: NDArray[np.bool_]) -> str:
 def critical_indentation(curve: Curve, smooth: Curve) -> float:
     """Depth (m) beyond which COR stays within 5 % of the smooth sphere's; NaN if not reached.
 
-    It is interpolated in the logarithm of depth between the last depth outside 5 % and the next.
+    The result is interpolated in the logarithm of depth between the last depth with a larger
+    difference and the next depth.
     """
     off = np.abs(curve.cor / smooth.cor - 1)
     apart = np.flatnonzero(off > _NEAR)
@@ -325,8 +326,8 @@ def _figure_13(studies: Studies) -> Finding:
     return Finding(
         "13",
         "Yield stress dramatically affects COR of rough spheres.",
-        f"At 150 MPa COR is {beyond:.0%} of that at 750 MPa beyond 50 nm (mean), and "
-        f"{float(np.nanmin(ratio[~deep])):.0%} to {float(np.nanmax(ratio[~deep])):.0%} below: "
+        f"Beyond 50 nm, COR at 150 MPa is on average {beyond:.0%} of COR at 750 MPa. Below 50 nm "
+        f"it is {float(np.nanmin(ratio[~deep])):.0%} to {float(np.nanmax(ratio[~deep])):.0%}, so "
         "the curves also differ there.",
         beyond,
         "agrees" if beyond < 0.8 else "does not agree",
@@ -337,7 +338,7 @@ def _figure_13(studies: Studies) -> Finding:
 def _figure_14(studies: Studies) -> Finding:
     rough = curves(studies["rough-energy"])
     smooth = curves(studies["smooth-energy"])
-    # Only depths that both studies have.
+    # Compare only depths that both studies have.
     depth = rough[0].depth
     depth = depth[(depth >= smooth[0].depth[0]) & (depth <= smooth[0].depth[-1])]
 
@@ -349,9 +350,9 @@ def _figure_14(studies: Studies) -> Finding:
     return Finding(
         "14",
         "Interface energy has less effect on COR of rough spheres than of smooth ones.",
-        f"From 0.01 to 0.09 J/m² COR changes by {of_rough.mean():.3f} on the average over the same "
-        f"depths (up to {of_rough.max():.2f}), for smooth spheres by {of_smooth.mean():.3f} (up to "
-        f"{of_smooth.max():.2f}).",
+        f"From 0.01 to 0.09 J/m² COR of rough spheres changes on average by {of_rough.mean():.3f} "
+        f"(up to {of_rough.max():.2f}), and COR of smooth spheres at the same depths by "
+        f"{of_smooth.mean():.3f} (up to {of_smooth.max():.2f}).",
         float(of_rough.mean() / of_smooth.mean()),
         "agrees" if of_rough.mean() < of_smooth.mean() else "does not agree",
         _resolved(*rough),

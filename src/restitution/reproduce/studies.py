@@ -24,7 +24,7 @@ NAMES = (
     "rough-energy",
 )
 
-# Changes that turn each study into its quick size: values by their keys in the study file.
+# Changes for the quick size of each study: new values for keys of the study file.
 _QUICK: dict[str, dict[str, Any]] = {
     "hertz": {"grid.nodes": 256, "indentation.to": "1 um", "indentation.steps": 6},
     "thornton-ning": {"grid.nodes": 256, "indentation.to": "1 um", "indentation.steps": 6},

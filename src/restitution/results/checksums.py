@@ -21,7 +21,7 @@ def checksums(folder: Path, names: Sequence[str]) -> str:
 
 
 def check_file(path: Path) -> None:
-    """Raise `OutputError` if `path` differs from its checksum."""
+    """Raise `OutputError` if the file `path` does not match its checksum."""
     known = _known(path.parent)
     try:
         damaged = path.name in known and known[path.name] != _checksum(path)

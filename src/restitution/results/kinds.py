@@ -1,4 +1,4 @@
-"""Which kind of results a folder holds."""
+"""Find out which kind of results a folder holds."""
 
 from __future__ import annotations
 

@@ -31,14 +31,15 @@ def locked(folder: Path) -> Iterator[None]:
         if not isinstance(error.__cause__, Timeout):
             raise
         raise OutputError(
-            f"{folder}: another process is writing there; wait for it or stop it, or name another "
-            "folder with -o"
+            f"{folder}: another process is writing to this folder; wait for it or stop it, or name "
+            "another folder with -o"
         ) from None
     try:
         yield
     finally:
         with hold_signals():
-            # Remove the file before its release, because filelock grants no lock on a removed file.
+            # Remove the lock file while the lock is held. Another process cannot lock the removed
+            # file, because filelock checks that the file still exists.
             with suppress(OSError):
                 (folder / LOCK).unlink()
             lock.release()

@@ -1,4 +1,4 @@
-"""Read the stored tables and files, compare them with their checksums, reject damaged ones."""
+"""Read stored tables and files, compare them with their checksums, and reject damaged ones."""
 
 from __future__ import annotations
 
@@ -334,16 +334,16 @@ def read_netcdf(path: Path) -> xr.Dataset:
 
 @contextmanager
 def _opened(path: Path) -> Iterator[xr.Dataset]:
-    """Open a netCDF file; delay signals, because they would leave the library's locks taken."""
+    """Open a netCDF file; delay signals, which could leave locks of the netCDF library held."""
     with reading(path):
         open(
             path, "rb"
-        ).close()  # raises the error of the operating system, which the library hides
+        ).close()  # raises errors of the operating system, which the netCDF library hides
     check_file(path)
     try:
         with hold_signals(), xr.open_dataset(path, engine="netcdf4") as stored:
             yield stored
     except MemoryError:
         raise
-    except Exception as error:  # a damaged file may raise anything
+    except Exception as error:  # a damaged file may cause any exception
         raise damaged(path, f"{type(error).__name__}: {error}") from None

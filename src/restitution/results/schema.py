@@ -142,7 +142,8 @@ SPREAD_COLUMNS = {
 }
 ALL_COLUMNS = COLUMNS | SPREAD_COLUMNS
 OBLIQUE_FILE = "oblique.csv"
-# Columns of the table of oblique impacts. "Tangential" and "rebound" are those of the centres.
+# Columns of the table of oblique impacts. The tangential restitution and the angle of rebound are
+# those of the centres.
 OBLIQUE_COLUMNS = {
     "impact_velocity_m_per_s": Column(
         "oblique_velocity", "m s-1", "velocity of the centres before the impact", low=0.0
@@ -207,5 +208,5 @@ OBLIQUE_SPREAD_COLUMNS = {
     ),
 }
 UNLOADING_COLUMNS = ("max_indentation_m", "indentation_m", "force_N")
-STATUS = ("complete", "failed", "missing")  # of a case in the table of a study
-LOCK = ".restitution-lock"  # held by the process that writes in a folder
+STATUS = ("complete", "failed", "missing")  # possible states of a case in the table of a study
+LOCK = ".restitution-lock"  # lock file, held by the process that writes to a folder

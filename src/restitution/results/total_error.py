@@ -1,4 +1,4 @@
-"""The total error of COR in a row of results: the sum of its parts."""
+"""The total error of COR in a row of results, combined from its parts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Write the results folder.
+"""Write a results folder.
 
 While a case runs, rows are appended to `curve.csv` and `unloading.csv` one by one, so that the rows
 survive if the run is stopped. `results.nc` and `summary.json` are written once, at the end or on
@@ -54,8 +54,8 @@ def curve_row(
 ) -> dict[str, float]:
     """Make the row of `curve.csv` for one state of loading, with NaN for undefined values.
 
-    `refine` is the refinement factor of the grid, and `touch` (m) the indentation at first touch on
-    this grid.
+    `refine` is the refinement factor of the grid, and `touch` (m) the additional approach to first
+    touch on this grid.
     """
     patches = state.patch_sizes()
     median = median_patch(patches)
@@ -97,7 +97,7 @@ def versions() -> dict[str, str]:
 
 
 class ResultsFolder:
-    """A folder for the results of one run and nothing else."""
+    """A folder that holds the results of one run."""
 
     def __init__(self, path: Path) -> None:
         """Make the folder. Raises `OutputError` if it is not empty or cannot be written."""
@@ -145,7 +145,7 @@ class ResultsFolder:
     def add_unloading(self, path: Sequence[State], touch: float = 0.0) -> None:
         """Append one unloading curve, from its deepest state to separation, to `unloading.csv`.
 
-        `touch` (m) is the indentation at the first touch on the grid of `path`.
+        `touch` (m) is the additional approach to first touch on the grid of `path`.
         """
         deepest = path[0].indentation + touch
         points = [(indentation + touch, force) for indentation, force in complete_curve(path)]
@@ -220,8 +220,8 @@ def write_netcdf(
         try:
             dataset.to_netcdf(to, engine="netcdf4", encoding=encoding or {})
         except (RuntimeError, OSError) as error:
-            # The library hides the reason, such as a full disk. Writing to the file again raises
-            # the error of the system.
+            # The netCDF library hides the reason, such as a full disk. Writing to the file again
+            # raises the error of the operating system.
             with open(to, "ab") as file:
                 file.write(bytes(_BLOCK))
             raise OSError(f"{path.name}: {error}") from error
@@ -317,7 +317,8 @@ def curve_variables(rows: Sequence[Mapping[str, float]]) -> dict[str, Any]:
 def oblique_variables(rows: Sequence[Mapping[str, float]]) -> dict[str, Any]:
     """Make the variables of `results.nc` for the rows of oblique impacts; none without rows.
 
-    They depend on the velocity and the angle of the impact, and are NaN for a missing impact.
+    The variables depend on the velocity and the angle of the impact. They are NaN for a missing
+    impact.
     """
     if not rows:
         return {}

@@ -1,8 +1,8 @@
-"""Companion curves of a run: additional curves that show how COR changes with other input.
+"""Companion curves of a run: additional curves that show how COR changes with the input.
 
-The grid, the surface or the materials are changed. Companion curves are computed on cells twice as
-large, so each of them costs a fifth of the run. They are compared with the run at equal loading
-work, that is, at equal impact velocity.
+Each curve has another grid, another surface or other materials. Companion curves are computed on
+cells twice as large, so each of them costs a fifth of the run. They are compared with the run at
+equal loading work, that is, at equal impact velocity.
 """
 
 from __future__ import annotations
@@ -96,7 +96,7 @@ class Companions:
     depths: Sequence[float]
 
     def own(self) -> Curve:
-        """Compute the curve of the case on cells twice as large, without its shortest waves."""
+        """Compute the curve of the case on cells twice as large, without the shortest waves."""
         return self._curve(self._coarse(self.case))
 
     def others(self, progress: Say = ignore) -> Iterator[Curve]:
@@ -108,9 +108,9 @@ class Companions:
     def materials(self, work: Array) -> list[Array]:
         """Changes of COR at `work` (J) due to the spread of library values.
 
-        There is one change each for elasticity, yield model and density. It is the larger of the
-        changes at the low and at the high end of the spread, with both bodies at the same end.
-        Empty if no value comes from the library.
+        There is one change each for elasticity, yield model and density. Each is the larger of the
+        changes at the low and at the high end of the spread, with both bodies at the same end. The
+        list is empty if no value comes from the library.
         """
         coarse = self._coarse(self.case)
         ends = [_spread(self.case, end) for end in ("low", "high")]
@@ -137,7 +137,7 @@ class Companions:
 
 
 def coarser_contact(contact: Contact) -> Contact:
-    """Return `contact` on cells twice as large, without its shortest waves."""
+    """Return `contact` on cells twice as large, without the shortest waves of its surface."""
     coarser = coarsen(contact.surface)
     if contact.surface.provenance.get("source") == "smooth":
         coarser = smooth(coarser.grid)

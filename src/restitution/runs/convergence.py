@@ -7,8 +7,8 @@ With COR f₁, f₂, f₃ on cells h, h/2, h/4 of the same surface,
 The COR of rough contacts oscillates with h more often than it follows a power of h. Richardson
 extrapolation (Roache 1994, J. Fluids Eng. 116, 405–413) would then mostly divide by random numbers.
 Instead, each of the two differences gives an error of f₃ by assuming first-order convergence:
-|f₃ − f₂|, multiplied by a safety factor of 1.5, and 0.5 |f₂ − f₁|. The larger value is used. It
-covered the true error in 95 % of the cases of docs/resolution.md. On two grids the error is
+|f₃ − f₂|, multiplied by a safety factor of 1.5, and 0.5 |f₂ − f₁|. The larger error is used. It
+exceeded the true error in 95 % of the cases of docs/resolution.md. On two grids the error is
 3 |f₂ − f₁|.
 """
 
@@ -40,7 +40,8 @@ from restitution.runs.refinement import later_touches, settled, with_chosen_adhe
 from restitution.runs.run import run_case
 
 _Row = dict[str, float]
-_Runs = dict[int, tuple[float, list[_Row]]]  # refine → extra approach to first touch (m), rows
+# For each refinement factor: the extra approach to first touch (m), and the rows.
+_Runs = dict[int, tuple[float, list[_Row]]]
 
 
 def run_convergence(
@@ -107,7 +108,7 @@ def _add_errors(
     runs: _Runs,
     progress: Say,
 ) -> None:
-    """Add the errors of surface and materials, found on the coarsest grid, to the finest rows."""
+    """Add the errors of surface and materials, from the coarsest grid, to the finest rows."""
     coarsest, finest = case.refined(min(runs)), runs[max(runs)][1]
     alone = [dict(row) for row in finest]
     add_errors(coarsest, folder, coarsest.surface(folder), alone, progress)
@@ -138,7 +139,7 @@ def _levels(case: Case, folder: Path, grids: int) -> dict[int, float]:
 def _pressed_less(case: Case, later: float) -> Case:
     """Reduce the indentations of `case` by `later` (m); leave out indentations without contact."""
     if case.indentation is None:
-        return case  # loads and velocities are the same on every grid
+        return case  # loads and velocities do not depend on where a grid touches first
     depths = [depth - later for depth in case.depths() if depth > later]
     table = case.indentation.model_construct(values=depths)
     return case.model_copy(update={"indentation": table})
@@ -218,11 +219,11 @@ def _write_results(
 
 
 def _with_grid_errors(case: Case, folder: Path, rows: list[_Row]) -> int:
-    """Add to the finest rows two parts of the discretisation error that differences do not show.
+    """Add two parts to the discretisation error of `rows`, the rows of the finest grid.
 
-    One part is a lower limit, because differences of COR may vanish by chance. The other part is
-    the effect of the waves that the finest grid leaves out of a scan. Returns the number of rows
-    that these waves leave unresolved.
+    One part is a lower limit, because differences of COR between grids may vanish by chance. The
+    other part is the effect of the waves that the finest grid leaves out of a scan. Returns the
+    number of rows that are unresolved because of these waves.
     """
     octaves = Band.of(case.refined(int(max(row["refine"] for row in rows))).surface(folder)).octaves
     lacking = 0
@@ -262,7 +263,7 @@ def _by_depth(case: Case, runs: _Runs) -> list[dict[int, _Row]]:
 def discretisation(values: Sequence[float]) -> tuple[float, float]:
     """Error of the last of `values`, and observed order (see the module docstring).
 
-    `values` are COR on successive grids, each with cells half as large as those of the grid before.
+    `values` are COR on successive grids, each with half the cell size of the grid before.
     Error and order are NaN for too few values. The observed order is also NaN if the last three
     values are not monotone.
     """

@@ -22,8 +22,8 @@ class Depth:
     """One depth of a case, after loading.
 
     `asked` is the prescribed value (m, N or m/s), and `refine` the refinement factor of the grid on
-    which the depth is solved. `touch` (m) is the indentation at which this grid touches first,
-    counted from the first touch of the finest grid. `state` is None if loading failed with `error`.
+    which the depth is solved. `touch` (m) is the additional approach to first touch on this grid,
+    compared with the finest grid. `state` is None if loading failed with `error`.
     """
 
     asked: float
@@ -54,8 +54,8 @@ class _Level:
 def loaded_depths(case: Case, folder: Path, contact: Contact) -> Iterator[Depth]:
     """Load to every depth of `case`, from the shallowest to the deepest.
 
-    `contact` is the one on the grid of the deepest depth, and files are relative to `folder`. Each
-    load starts from the previous state on the same grid.
+    `contact` is the contact on the grid of the deepest depth, and files are relative to `folder`.
+    Each load starts from the previous state on the same grid.
     """
     for level in _levels(case, folder, contact):
         before: State | None = None
@@ -68,7 +68,7 @@ def loaded_depths(case: Case, folder: Path, contact: Contact) -> Iterator[Depth]
 def collision_at(
     case: Case, state: State, *, unload: bool = False, known: Sequence[State] = ()
 ) -> tuple[Collision, Sequence[State]]:
-    """The collision whose deepest point is `state`, and its unloading curve.
+    """Return the collision with the maximum indentation of `state`, and its unloading curve.
 
     The curve is computed if `unload` is true or the collision needs it; otherwise it is empty.
     `known` is the unloading curve of a shallower depth (`unloading_path`).
@@ -83,9 +83,9 @@ def collision_at(
 
 
 def _levels(case: Case, folder: Path, deepest: Contact) -> Iterator[_Level]:
-    """The grids of a case, from that of the shallowest depth to that of `deepest`."""
+    """Yield the grids of a case with their depths, from the shallowest to the deepest depths."""
     factors, depths = case.factors(), case.depths()
-    # Loads and velocities are the same on every grid, but their indentations are not.
+    # Also needed for loads and velocities, because indentations are stored.
     touches = later_touches(case, folder, set(factors)) if len(set(factors)) > 1 else {}
     for factor in sorted(set(factors), reverse=True):
         own = [depth for depth, its in zip(depths, factors, strict=True) if its == factor]

@@ -1,4 +1,4 @@
-"""One case on several surfaces of the same statistics: mean curve and confidence interval."""
+"""One case on several surfaces with the same statistics: mean curve and confidence interval."""
 
 from __future__ import annotations
 
@@ -54,9 +54,9 @@ def run_realisations(
 
     A periodic case is run by `run_periodic`. A single surface is run by `run_case` alone. If there
     are several surfaces, the run of each is stored in a folder `realisation-<n>` (n from 1; n − 1
-    is added to the seed), and the curve of `out` contains the means (`mean_rows`). If a surface
-    fails, this is recorded and the others continue. If all surfaces fail, the first error is
-    raised. With `grid.refine = "auto"`, `refinement` selects one grid for all surfaces.
+    is added to the seed), and the curve of `out` contains the means (`mean_rows`). If the run of a
+    surface fails, its error is recorded and the other runs continue. If all runs fail, the first
+    error is raised. With `grid.refine = "auto"`, `refinement` selects one grid for all surfaces.
     """
     if case.periodic:
         return run_periodic(case, text, folder, out, progress, warn)
@@ -98,7 +98,8 @@ class _Ensemble:
         part = self.out.part(f"realisation-{number + 1}")
         reason = ""
         try:
-            # Most input warnings are the same for all surfaces, so pass on those of the first.
+            # Most input warnings are the same for all surfaces, so only those of the first
+            # surface are passed on.
             run_case(
                 case.model_copy(update={"title": title}),
                 self.text,
@@ -222,7 +223,9 @@ class _Ensemble:
 
 
 def mean_rows(curves: Sequence[Sequence[_Row]], errors: Sequence[_Row] = ()) -> list[_Row]:
-    """Make the curve of an ensemble: a row for each depth, over the surfaces that reached it.
+    """Make the curve of an ensemble: for each depth, a row of means over the surfaces.
+
+    A row is computed from the surfaces that reached its depth.
 
     Most columns are means over the surfaces. `residual`, `model_error` and `refine` are the largest
     values, `median_patch_nodes` the smallest value and `convolutions` the sum. Flags are true if

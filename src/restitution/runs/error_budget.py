@@ -13,10 +13,10 @@ S is the rms slope of the scan, and S_h and S_2h are the rms slopes on cells of 
 formula assumes that COR changes with ln S beyond the grid as in the last octave that the grid
 resolves. For generated surfaces n = 0, because the shortest wave belongs to their definition. f is
 the usual error of contacts with the same number of nodes in the median patch (docs/resolution.md),
-and s is the share of f that is added. s is large if the grid does not resolve the contact.
+and s is the fraction of f that is added. s is large if the grid does not resolve the contact.
 Otherwise s is small; it only keeps the error from vanishing by chance.
 
-The constants were chosen on some 260 random cases, 30 of them adhesive, and checked on others
+The constants were chosen on about 260 random cases, 30 of them adhesive, and checked on other cases
 (docs/error.md).
 """
 
@@ -42,22 +42,22 @@ Array = NDArray[np.float64]
 Row = dict[str, float]
 
 _BAND = 1.5  # safety factor on the change of COR expected from waves that the grid leaves out
-# The share s (see the top of this file), first for resolved contacts, then for unresolved ones. For
-# the latter it is interpolated between its values at 3 and at 7 nodes in the median patch.
+# The fraction s (see the top of this file) for resolved and for unresolved contacts. For unresolved
+# contacts it is interpolated between its values at 3 and at 7 nodes in the median patch.
 _SHARE_RESOLVED = 0.03
 _FEW_NODES, _SHARE_UNRESOLVED = (3, 7), (0.6, 0.1)
 # The error f of COR as a function of the number of nodes in the median patch. In about 90 % of the
-# contacts, the difference from the solution on a finer grid was below f. A single node yields late
-# and all at once, so its COR may have almost any error.
+# contacts, the difference from the solution on a finer grid was below f. A patch of one node yields
+# late and all at once, so its COR may have almost any error.
 _PATCH_NODES = (1, 3, 7, 14, 30, 100, 400)
 _PATCH_ERROR = (0.9, 0.4, 0.15, 0.08, 0.05, 0.024, 0.008)
 # Error due to the surface, in standard deviations of COR between surfaces. With eight surfaces, it
-# covers the true error in about 88 % of cases.
+# exceeds the true error in about 88 % of cases.
 _SCATTER = 1.5
 # Lengths in ln W over which differences of COR are smoothed, because single differences may vanish
 # by chance.
 _NEAR_GRID, _NEAR_SURFACE = 2.0, 1.0
-MOST_AFFORDABLE = 2**24  # largest recommended number of nodes (some minutes and about 2 GB)
+MOST_AFFORDABLE = 2**24  # largest recommended number of nodes (takes some minutes and 2 GB)
 MISSING_BAND = 0.03  # a row counts as resolved up to this error of COR due to omitted waves
 
 NOT_INCLUDED = (
@@ -141,9 +141,9 @@ def add_errors(
     """Add the errors of grid, surface and materials, and their total, to the rows of a run.
 
     `surface` is the surface of the deepest depth. Without `scattered`, the scatter between surfaces
-    is left out. If the loading work of a row is not positive, no impact reaches its depth, and the
-    row gets no errors. If a part of the error is unknown, the row gets no total. Returns the part
-    of the errors due to waves that the grid leaves out.
+    is left out. If the loading work of a row is not positive, no impact has its maximum at this
+    depth, and the row gets no errors. If a part of the error is unknown, the row gets no total.
+    Returns the errors due to waves that the grid leaves out, one for each row with errors.
     """
     band: list[float] = []
     for factor in dict.fromkeys(int(row["refine"]) for row in rows):
@@ -165,7 +165,7 @@ def _add_errors(
     *,
     scattered: bool,
 ) -> list[float]:
-    """Do `add_errors` for the rows of one grid, all with a positive loading work."""
+    """Add the errors to the rows of one grid, all with a positive loading work (`add_errors`)."""
     work = np.array([row["loading_work_J"] for row in reached])
     restitution = np.array([row["restitution"] for row in reached])
     companions = Companions(case, folder, sorted(row["max_indentation_m"] for row in reached))
@@ -191,7 +191,7 @@ def _add_errors(
 def band_warning(surface: Surface, band_errors: Sequence[float]) -> str | None:
     """Make a warning if waves that the grid leaves out of a scan change COR; otherwise None.
 
-    The warning names the grid that would resolve these waves, and says if this grid is too large.
+    The warning states the grid that would resolve these waves, and whether this grid is too large.
     """
     band = Band.of(surface)
     lacking = [error for error in band_errors if error > MISSING_BAND]

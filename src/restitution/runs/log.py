@@ -47,14 +47,14 @@ class RunLog:
         self.tell(warning)
 
     def progress_of(self, name: str) -> Say:
-        """Return a `progress` for one of several runs, which adds the `name` of the run."""
+        """Return a `progress` function for one of several runs; it adds the `name` of the run."""
         return lambda words: self.progress(f"{name}, {words}")
 
     def warnings_of(self, part: ResultsFolder) -> Say:
-        """Return a `warn` for one of several runs.
+        """Return a `warn` function for one of several runs.
 
-        It passes on warnings that are issued before the first row of the run. It drops warnings
-        about the results of the run, because the summary of all runs replaces them.
+        The function passes on warnings that are issued before the first row of the run. It drops
+        warnings about the results of the run, because the summary of all runs replaces them.
         """
 
         def say(warning: str) -> None:

@@ -32,12 +32,12 @@ _ERRORS: dict[Code, type[RestitutionError]] = {
     "pixel-above-contact": SurfaceError,
     "range-unresolved": CaseError,
 }
-_NEARLY_JKR = 0.9  # energy lost by adhesion over that of JKR, beyond which no warning is issued
-_KEYS = {"force": "load", "velocity": "impact"}  # arguments of the solvers: keys of the case file
+_NEARLY_JKR = 0.9  # no warning if the energy lost by adhesion is above this fraction of JKR's loss
+_KEYS = {"force": "load", "velocity": "impact"}  # key of the case file for arguments of solvers
 
 
 def require_possible(contact: Contact, indentation: float) -> None:
-    """Raise `CaseError` or `SurfaceError` if loading to `indentation` (m) is meaningless."""
+    """Raise `CaseError` or `SurfaceError` if results at `indentation` (m) would be meaningless."""
     found = impossible(contact, indentation)
     if found is not None:
         raise _ERRORS[found.code](message(found))
@@ -49,7 +49,7 @@ def input_warnings(contact: Contact, indentation: float) -> list[str]:
 
 
 def no_range(contact: Contact) -> list[str]:
-    """Make a warning if `contact` neglects the range of its attraction because of its grid."""
+    """Make a warning if `contact` neglects the range of the attraction because of a coarse grid."""
     if contact.cohesive:
         return []
     pair, w = contact.pair, contact.work_of_adhesion
@@ -59,17 +59,17 @@ def no_range(contact: Contact) -> list[str]:
     if lost > _NEARLY_JKR:
         return []
     return [
-        'interface.adhesion is left out, and the grid is too coarse for "cohesive" (it needs '
+        'interface.adhesion is not given, and the grid is too coarse for "cohesive" (it needs '
         f'a spacing of {_nm(needed_spacing(contact))}), so "jkr" is used, which neglects the range '
         f"of the attraction: smooth bodies with this Tabor parameter ({tabor:.2g}) dissipate "
         f"{lost:.2g} times the energy of JKR and have {math.sqrt(lost):.2g} times its sticking "
-        "velocity, and asperities dissipate less; model_error includes this"
+        "velocity, and rough bodies dissipate even less; model_error includes this"
     ]
 
 
 @contextmanager
 def naming_keys() -> Iterator[None]:
-    """Reword errors of a solve so that they refer to keys of the case file, not to arguments."""
+    """Reword errors of the solvers: replace the names of arguments by keys of the case file."""
     try:
         yield
     except EdgeReachedError as error:
@@ -82,7 +82,7 @@ def naming_keys() -> Iterator[None]:
 
 
 def message(found: Finding) -> str:
-    """Word the finding `found` as one line, with the remedy."""
+    """Write the finding `found` as one line that also says what to do."""
     match found.code:
         case "roughness-above-radius":
             return (
@@ -198,7 +198,7 @@ def message(found: Finding) -> str:
                 "the pull-off radius of its asperities is below "
                 f"{ADHESIVE_NODES} nodes, at worst {found['nodes']:.2g}"
             )
-            if found["nodes"] == 0:  # `adhesive_nodes` of a cohesive contact
+            if found["nodes"] == 0:  # `adhesive_nodes` returns 0 only for cohesive contacts
                 why = "the grid is too coarse for the range of the attraction at its asperities"
             return (
                 f"adhesion is not resolved at {found['few']} of {found['depths']} depths "
@@ -207,7 +207,7 @@ def message(found: Finding) -> str:
 
 
 def _edge_advice(found: Finding) -> str:
-    """Word advice that keeps the contact inside the grid, for the end of a sentence."""
+    """Advice on how to keep the contact inside the grid, for the end of a message."""
     x, y = found["first_touch"]
     where = (
         f"the bodies touch first at x = {1e6 * x:.3g} um, y = {1e6 * y:.3g} um, off the centre; "

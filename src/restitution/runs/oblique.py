@@ -1,7 +1,7 @@
 """The oblique impacts of a case, from the curves of its run (`laws.oblique`).
 
-The normal velocity V cos θ of each impact is a depth of the run, and every depth is unloaded. So
-each impact turns at a computed depth, and its unloading force is that of a computed curve.
+The run has a depth for the normal velocity V cos θ of each impact, and every depth is unloaded. So
+the maximum indentation of each impact is a computed depth, with a computed unloading curve.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ def oblique_rows(case: Case, surface: Surface, out: ResultsFolder) -> tuple[list
     not be computed, or None.
     """
     impact, friction = case.impact, case.interface.friction
-    assert impact is not None  # is_oblique
-    assert friction is not None  # Case._check_oblique
+    assert impact is not None  # the case is oblique
+    assert friction is not None  # checked by Case._check_oblique
     try:
         law = _force(case, surface, out)
     except (CaseError, OutputError, ValueError) as error:
@@ -58,7 +58,7 @@ def oblique_rows(case: Case, surface: Surface, out: ResultsFolder) -> tuple[list
 
 
 def mean_oblique(tables: Sequence[Sequence[_Row]]) -> list[_Row]:
-    """Means of the rows of `oblique.csv` over several surfaces, for each velocity and angle.
+    """Means of the rows of `oblique.csv` over several surfaces, one row per velocity and angle.
 
     `slides` is true if the contact slides on all surfaces. Additional columns are the number of
     surfaces and the standard deviation of the tangential restitution (NaN for one surface).
@@ -110,7 +110,7 @@ def _row(
     nearest = min(rows, key=lambda row: _apart(row, normal))
     error = math.nan
     if _apart(nearest, normal) < _SAME:
-        # A run meets its velocities within the error of the work.
+        # A run reaches the velocities of its case only within the error of the loading work.
         normal = nearest["impact_velocity_m_per_s"]
         error = nearest["total_error"]
     found = collide_obliquely(law, normal / math.cos(angle), angle, friction, impact.spins())
@@ -132,7 +132,7 @@ def _cells(
         "first_spin_before_rad_per_s": before[0],
         "second_spin_before_rad_per_s": before[1],
         "friction": found.friction,
-        "normal_restitution": min(found.normal_restitution, 1.0),  # above 1 by rounding
+        "normal_restitution": min(found.normal_restitution, 1.0),  # rounding may give 1 + 1e-16
         "normal_restitution_error": error,
         "tangential_restitution": found.tangential_restitution,
         "rebound_angle_rad": found.rebound_angle,
@@ -147,8 +147,8 @@ def _cells(
 def _errors(law: StoredForce, found: ObliqueCollision, error: float) -> _Row:
     """Errors of the tangential results, which include the `error` of the normal restitution.
 
-    A larger normal restitution by de increases the impulse of friction by at most µ m* V_n de, its
-    change in full slip.
+    If the normal restitution is larger by de, the friction impulse is larger by at most
+    µ m* V_n de, which is its change in full slip.
     """
     normal_velocity = found.velocity * math.cos(found.angle)
     impulse = found.friction * error * (law.pair.mass or math.nan) * normal_velocity

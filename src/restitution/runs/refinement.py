@@ -35,7 +35,7 @@ def settled(case: Case, folder: Path, warn: Say = ignore) -> Case:
     if case.grid is None or case.grid.refine != "auto":
         return case
     depths = case.depths()
-    factors: list[int] = []  # assigned so far, to the deepest depths; from shallow to deep
+    factors: list[int] = []  # factors of the deepest depths so far, from shallow to deep
     finest, why, nodes = 1, "", (1, 1)
     for factor in FACTORS:
         if factor > 1 and factor**2 * nodes[0] * nodes[1] > MOST_NODES:
@@ -68,9 +68,10 @@ def settled(case: Case, folder: Path, warn: Say = ignore) -> Case:
 
 
 def with_chosen_adhesion(case: Case, contact: Contact, warn: Say = ignore) -> Case:
-    """Return `case` with the model of adhesion of its `contact`, so that all its grids have it.
+    """Return `case` with the model of adhesion of `contact`, so that all its grids use this model.
 
-    If the case leaves the model out, and the grid is too coarse for a range, `warn` is called.
+    A case that states its model is returned unchanged. If the grid of `contact` is too coarse for
+    the range of the attraction, `warn` is called.
     """
     if not contact.adhesive or case.interface.adhesion is not None:
         return case
@@ -94,16 +95,16 @@ def later_touches(case: Case, folder: Path, factors: Iterable[int]) -> dict[int,
 
 
 def _first_resolved(case: Case, contact: Contact, depths: list[float]) -> int:
-    """Index of the shallowest of `depths` that the grid resolves; the number of depths if none."""
+    """Index of the shallowest of `depths` that the grid resolves; len(depths) if there is none."""
     low, high = 0, len(depths)
     while low < high:
         middle = (low + high) // 2
         try:
             patch = median_patch(load_to(case, contact, depths[middle]).patch_sizes())
-        except DomainError:  # contact at the edge, which the run will report
+        except DomainError:  # the contact reaches the edge; the run will report this
             high = middle
             continue
-        except NotConvergedError:  # the work jumps because of too few nodes
+        except NotConvergedError:  # the work jumps, because the contact has too few nodes
             low = middle + 1
             continue
         if patch >= _MARGIN * NODES_PER_PATCH:

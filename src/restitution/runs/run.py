@@ -83,8 +83,8 @@ def run_case(
     With `errors` (and unless the case has total_error = false), every row gets its total error
     (`error_budget`), and a depth that does not converge is left out. Without `errors`, a depth that
     does not converge ends the curve, because rows of several runs are compared by their number.
-    Contact at the edge of the grid always ends the curve. In each of these cases the run fails
-    after its last depth.
+    Contact at the edge of the grid always ends the curve. In each of these cases the first error is
+    raised at the end of the run.
 
     The case has one surface (see `ensemble`). `grid.refine = "auto"` is replaced first
     (`refinement`). Depths are measured from first touch on the finest grid. `progress` is called
@@ -148,14 +148,14 @@ def _load_and_unload(
     """Compute the depths one after the other; return the error of the first depth that failed."""
     count = len(case.depths())
     curves = count if is_oblique(case) else case.unloading.curves
-    # Numbers of the depths that are unloaded: evenly spaced, with the deepest depth.
+    # Numbers of the depths that are unloaded: evenly spaced, including the deepest depth.
     unloaded = {count - 1 - (k * count) // curves for k in range(curves)}
     began = time.perf_counter()
     failure: RestitutionError | None = None
     for number, depth in enumerate(depths):
         if depth.state is None:
             failure = failure or depth.error
-            # Deeper contacts reach the edge, too.
+            # A contact at the edge ends the curve, because deeper contacts reach the edge, too.
             if not go_on or isinstance(depth.error, DomainError):
                 break
         else:
@@ -213,7 +213,7 @@ def _check(state: State, back: Sequence[State], collision: Collision) -> dict[st
 
 
 def _unbalance(state: State, end: State, work: float, lost: float) -> float:
-    """The `work` (J) of unloading minus the energy that it should return, over that stored.
+    """The unloading `work` (J) minus its value by energy balance, over the stored energy (1).
 
     `lost` is the energy (J) lost by adhesion on the way from `state` to `end`.
     """
@@ -315,8 +315,9 @@ def _velocities_missed(out: ResultsFolder, case: Case, computed: list[float]) ->
         return None
     worst = max(missed, key=lambda asked: off[asked])
     return (
-        f"{len(missed)} of {len(off)} impact velocities are reached only within the error of the "
-        f"work, at worst {worst:g} m/s within {off[worst]:.1%}: use the velocities in curve.csv"
+        f"{len(missed)} of {len(off)} impact velocities differ from the requested values because "
+        f"of the error of the loading work, at worst by {off[worst]:.1%} at {worst:g} m/s: use the "
+        "velocities in curve.csv"
     )
 
 
@@ -351,7 +352,7 @@ def _unbalanced(checks: list[dict[str, float]]) -> str | None:
 
 
 def _attributes(summary: dict[str, Any], text: str) -> dict[str, str]:
-    """Attributes of results.nc, all texts."""
+    """Attributes of results.nc; all values are strings."""
     groups = ("model", "conventions", "derived", "surface", "surface_statistics", "versions")
     return {
         "title": summary["title"],

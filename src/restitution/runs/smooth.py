@@ -30,16 +30,16 @@ def smooth_curve(
 
     The curve spans the depths and velocities of `rows`. Up to yield it is Hertz's solution. Beyond
     yield, each depth is solved on a separate small grid. There are no variables for the `truncated`
-    model, because Thornton and Ning's formulas give its smooth contact. There are none with
-    adhesion either, because small grids do not resolve it. `check` is called before every solve,
-    and may raise an error to end the curve. Raises the errors of `solve`.
+    model, because Thornton and Ning's formulas give its smooth contact. There are no variables for
+    adhesive contacts either, because small grids do not resolve adhesion. `check` is called before
+    every solve, and may raise an error to end the curve. Raises the errors of `solve`.
     """
     pair, p_y = contact.pair, contact.hardness
     R, E_star = pair.radius, pair.contact_modulus
     if contact.plasticity == "truncated" or contact.adhesive or not rows:
         return {}
     last = max(row["max_indentation_m"] for row in rows)
-    # Smooth bodies reach the same work at a smaller depth.
+    # Smooth bodies reach the same work at a smaller depth, so the curve may begin at less depth.
     least = min(row["loading_work_J"] for row in rows)
     hertz = Hertz(R, E_star)
     same_work = float(hertz.indentation_from_energy(least))

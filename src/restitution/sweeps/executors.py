@@ -1,7 +1,7 @@
 """Processes that compute cases, on this machine or on a Dask cluster.
 
-In both cases `Workers` holds a `concurrent.futures.Executor`, the number of cases that it computes
-at a time, and a channel for progress. So `scheduler` need not distinguish the two cases.
+For both, `Workers` holds a `concurrent.futures.Executor`, the number of cases that it computes at a
+time, and a channel for progress. So `scheduler` need not distinguish local and cluster processes.
 """
 
 from __future__ import annotations
@@ -104,12 +104,12 @@ class _Pool(ProcessPoolExecutor):
 
 @contextmanager
 def _without_interrupts() -> Iterator[None]:
-    """Block SIGINT in processes that start here, until they ignore it (`_serve`).
+    """Block SIGINT in processes that start in the `with` body, until they ignore it (`_serve`).
 
     Ctrl-C reaches all processes of a terminal. Before `_serve` has run in a new process, Ctrl-C
     would end this process with a traceback.
     """
-    if not hasattr(signal, "pthread_sigmask"):  # Windows
+    if not hasattr(signal, "pthread_sigmask"):  # Windows lacks this function
         yield
         return
     from multiprocessing import resource_tracker

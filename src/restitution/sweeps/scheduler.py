@@ -41,8 +41,9 @@ def run_study(
     """Compute every case of `study` that `out` does not hold yet, and write its tables.
 
     Files of measured surfaces are relative to `folder`. A failed case is stored with its reason,
-    and computed again only with `retry_failed`. Completed cases are kept, whatever ends the study.
-    If the worker of a case dies, the case is computed again, alone; it fails after three deaths.
+    and computed again only with `retry_failed`. Completed cases are kept even if the study is
+    interrupted or fails. If the worker of a case dies, the case is computed again without other
+    cases beside it; a case whose worker died three times has failed.
     """
     out.clear()
     known = {case.number: out.reason(case) for case in study.cases}

@@ -39,9 +39,9 @@ FAILED, STUDY_FILE = "failed.json", "study.toml"
 def prepare_folder(path: Path, name: str, text: str, *, resume: bool, what: str) -> None:
     """Prepare the folder `path` for a study or mixture, whose file `name` holds `text`.
 
-    Messages call it `what`. Without `resume` the folder must be new or empty, and the file is
-    written. With `resume` the folder must hold a study or mixture with the same `text`. Raises
-    `OutputError` otherwise, or if the folder cannot be written.
+    `what` is the word "study" or "mixture", for messages. Without `resume` the folder must be new
+    or empty, and the file is written. With `resume` the folder must hold a study or mixture with
+    the same `text`. Raises `OutputError` otherwise, or if the folder cannot be written.
     """
     held = path / name
     if not resume:
@@ -52,7 +52,7 @@ def prepare_folder(path: Path, name: str, text: str, *, resume: bool, what: str)
     elif read_text(held) != text:
         raise OutputError(
             f"{path}: holds another {what} (its {name} differs); name another folder with -o, or "
-            "the file that it was started with"
+            f"give the file with which this {what} was started"
         )
 
 
@@ -136,7 +136,7 @@ class StudyFolder:
     def _rows(
         self, known: dict[int, str | None], curves: dict[int, list[dict[str, str]]]
     ) -> list[dict[str, str]]:
-        """Make rows of swept values and the columns of `curve.csv`; one row without a curve."""
+        """Make rows of swept values and columns of `curve.csv`; one row if there is no curve."""
         columns = next((list(rows[0]) for rows in curves.values() if rows), list(COLUMNS))
         rows = []
         for case in self.study.cases:

@@ -34,7 +34,7 @@ class SweptCase:
 
 @dataclass(frozen=True)
 class Study:
-    """A study file with only valid cases.
+    """A checked study file, expanded into valid cases.
 
     `swept` maps each dotted key ("roughness.rms") to its values as written in the file.
     """
@@ -87,7 +87,7 @@ def parse_study(text: str) -> Study:
 
 
 def _paths(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, list[Any]]]:
-    """Dotted keys and values: `"roughness.rms" = …` and `roughness.rms = …` are equivalent."""
+    """Yield dotted keys and their values, for `"roughness.rms" = …` and `roughness.rms = …`."""
     for key, value in table.items():
         if isinstance(value, dict):
             yield from _paths(value, f"{before}{key}.")
@@ -128,7 +128,7 @@ def _combinations(swept: Mapping[str, list[Any]], mode: str) -> Iterator[dict[st
 
 
 def put(case: dict[str, Any], path: str, value: Any) -> None:
-    """Set the key at the dotted `path`; a number (from 1) in it selects one of several tables."""
+    """Set the key at the dotted `path`, where a number (from 1) selects one of several tables."""
     table: Any = case
     *way, last = path.split(".")
     for step in way:
@@ -144,7 +144,6 @@ def put(case: dict[str, Any], path: str, value: Any) -> None:
             raise CaseError(f"sweep.{path}: {shown(step)} is a value, not a table")
     if isinstance(table, list):
         raise CaseError(
-            f"sweep.{path}: there are {len(table)} tables; say which one by its number, as in "
-            f"1.{last}"
+            f"sweep.{path}: there are {len(table)} tables; select one by its number, as in 1.{last}"
         )
     table[last] = value

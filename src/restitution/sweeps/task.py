@@ -35,7 +35,7 @@ def compute(text: str, folder: str, number: int, threads: int, channel: Channel 
     Results are returned instead of written to the study's folder. So workers need no shared disk,
     and only one process writes to the folder.
     """
-    # A process reads this variable once, before its first transform.
+    # DUCC0 reads this variable only once in a process, before its first transform.
     os.environ.setdefault("DUCC0_NUM_THREADS", str(threads))
     from restitution.case.case_file import parse_case
     from restitution.results.writer import ResultsFolder

@@ -37,13 +37,15 @@ CODE = "Drake"
 LOWEST = 0.05
 FRAGMENT, COLLISION = "restitution_drake.py", "collision_drake.py"
 NOTE = (
-    "Drake: e holds in a continuous plant (time_step=0). A discrete one lowers it, from 0.800 to "
-    "0.793 with 500 time steps in a contact and to 0.766 with 100; its SAP approximation has no e."
+    "Drake: e holds in a continuous plant (time_step=0). A discrete plant lowers e, from 0.800 to "
+    "0.793 with 500 time steps in a contact and to 0.766 with 100; its SAP approximation ignores "
+    "the dissipation, so e is close to 0."
 )
 _ENDS = (
-    "the overlap is back to zero; the force never pulls. In a continuous plant (time_step=0); a "
-    "discrete one (tamsi, similar, lagged) returns 0.793 instead of 0.8 with 500 time steps in a "
-    "contact, 0.766 with 100 and 0.653 with 20, and sap ignores the dissipation: e is close to 0."
+    "the overlap is back to zero; the force is never attractive. e holds in a continuous plant "
+    "(time_step=0). A discrete plant (tamsi, similar, lagged) returns 0.793 instead of 0.8 with "
+    "500 time steps in a contact, 0.766 with 100 and 0.653 with 20; sap ignores the dissipation, "
+    "so e is close to 0."
 )
 _STEPS = 200
 

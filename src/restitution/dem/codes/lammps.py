@@ -35,7 +35,7 @@ LOWEST = 0.001  # smallest e that is reproduced within 0.5 % with `STEPS` time s
 FRAGMENT, COLLISION, PACKING = "restitution.lmp", "collision.in", "packing.in"
 _PACKING_STEPS = 50  # time steps of the packing in the shortest contact
 _GRAINS = 500  # number of spheres of the packing
-_FALLS = 0.25  # duration of its run, over the time in which the highest sphere falls to the wall
+_FALLS = 0.25  # duration of the run over the time in which the highest sphere falls to the wall
 _FILLED = 0.12  # fraction of the initial volume that the spheres fill
 KOKKOS = "restitution_kokkos.lmp"
 _MATCHED = Target(CODE, "lmp -in my.in", FRAGMENT, "matched.lmp", LOWEST)
@@ -48,7 +48,10 @@ _TANGENTIAL = (
     "because the edge of a contact slides first. With this factor e_t of elastic spheres is within "
     "0.03 of the law (docs/oblique.md). For the full stiffness, replace the number by NULL."
 )
-_KOKKOS_ENDS = "the overlap is back to zero. The damping pulls before; do not add limit_damping."
+_KOKKOS_ENDS = (
+    "the overlap is back to zero. The force is tensile shortly before, due to damping; do not add "
+    "limit_damping."
+)
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
@@ -130,7 +133,7 @@ def _tangential(pair: Pair) -> str:
 
 
 def _counts(table: PairTable) -> list[int]:
-    """The spheres of each type, at least one, `_GRAINS` in all.
+    """Number of spheres of each type, at least one; `_GRAINS` in all.
 
     Every material of a mixture has the same number of spheres, divided by the fractions of its
     sizes; types without fractions have equal numbers.

@@ -2,8 +2,9 @@
 
 LAMMPS 22Jul2025 behaves as follows (`tests/dem/test_lammps_mdr.py`). pair_style granular accepts
 one mdr model, with the same values for every pair of types, and no other normal model beside it. A
-wall with mdr crashes LAMMPS unless pair_style has mdr as well. If it has, fix wall/gran accepts
-other values or another model, but fix wall/gran/region accepts only the values of pair_style.
+wall with mdr crashes LAMMPS unless pair_style has mdr as well. If pair_style has mdr, fix wall/gran
+accepts other values or another model, but fix wall/gran/region accepts only the values of
+pair_style.
 """
 
 from __future__ import annotations

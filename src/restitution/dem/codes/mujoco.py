@@ -39,12 +39,13 @@ CODE = "MuJoCo"
 LOWEST = 0.05  # smallest e that is reproduced within 2 % with `_STEPS` time steps in a contact
 FRAGMENT, COLLISION = "restitution_mujoco.xml", "collision_mujoco.py"
 NOTE = (
-    "MuJoCo: e is that of the export at every velocity, if the time step is at most 1/200 of the "
-    "contact (1/50 for e of 0.5 and more); the file states softer contacts for longer steps."
+    "MuJoCo: e is the exported e at every velocity, if the time step is at most 1/200 of the "
+    "contact (1/50 for e of 0.5 and more); the file lists softer contacts for longer time steps."
 )
 _ENDS = (
-    "the force is back to zero, before the overlap is: contact forces do not pull. e is within 2 % "
-    "with 200 time steps in a contact for e from 0.2, with 50 for e from 0.5."
+    "the force is back to zero, which is before the overlap is zero: contact forces are never "
+    "attractive. e is within 2 % with 200 time steps in a contact for e of 0.2 and more, and with "
+    "50 for e of 0.5 and more."
 )
 _STEPS = 500
 _LARGEST = 1e8  # largest acceleration (m/s²); MuJoCo resets a simulation above 1e10
@@ -54,9 +55,10 @@ _COARSE = 50  # number of time steps in a softened contact
 
 @dataclass(frozen=True)
 class Contact:
-    """The durations (s) of an elastic contact of a pair, and its damping ratio ζ (1).
+    """Durations (s) of a contact of a pair, and its damping ratio ζ (1).
 
-    `soft_duration` is that of a contact whose largest overlap is a fraction of the radius.
+    `duration` is that of an elastic Hertz contact. `soft_duration` is that of a softened contact,
+    whose largest overlap is the fraction `_DEEPEST` of the smaller radius.
     """
 
     pair: Pair

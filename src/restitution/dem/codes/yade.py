@@ -3,8 +3,8 @@
 YADE adds a damping 2β(m* dF/dδ)^½ dδ/dt to Hertz's F and does not let the sum become attractive: a
 contact ends when the force returns to zero. YADE converts its own `en` to β by a fit (Thornton et
 al., Powder Technol. 233 (2013) 30, eqs. B6, B7) that returns 0.979 for 0.99 and 0.948 for 0.95;
-other releases convert it differently. The export therefore writes β (`betan`), by a new fit to this
-equation of motion for e from 0.01:
+other releases convert it differently. The export therefore writes β (`betan`), computed by a new
+fit to this equation of motion for e of 0.01 and more:
 
     β = L exp(Σ c_k L^k),  L = −ln e,  within 10⁻⁵ of e
 

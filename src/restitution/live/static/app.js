@@ -1,11 +1,13 @@
 "use strict";
 // The page of `restitution app`. The case is a tree of tables, as in a case file; fields of the form
-// show its keys. Each change asks for a new curve; when the values rest, for the whole run.
+// show its keys. Each change requests a new curve. If no change follows, the complete run is
+// requested.
 
 const token = location.hash.slice(1);
 const tab = crypto.randomUUID();
 const $ = (id) => document.getElementById(id);
-// ms without a change before what is beside the curve is drawn, and the whole run is computed
+// Times (ms) without a change, after which the smooth curve and the surface are requested, and after
+// which the complete run is requested.
 const SHORT_REST = 100;
 const REST = 600;
 const DASHES = ["dash", "dot", "dashdot", "longdash", "solid"];
@@ -93,9 +95,9 @@ function set(key, value) {
 const fields = () => form.groups.flatMap((group) => group.fields);
 const shown = (field) => !field.when.length || field.when.slice(1).includes(get(field.when[0]));
 
-const lastValues = new Map(); // of fields, when a choice was made; they return with their fields
+const lastValues = new Map(); // values of the fields at the last choice, for fields that appear again
 
-// After a choice: keys of fields that vanish are left out, and those that appear get their last or first value.
+// After a choice: remove the keys of fields that vanish, and give fields that appear their last or initial value.
 function settle(before) {
   const now = new Set(fields().filter(shown).map((field) => field.key));
   for (const field of before) if (!now.has(field.key) && !TABLES.includes(field.key.split(".")[0])) set(field.key, "");
@@ -126,14 +128,14 @@ function single(field, text) {
   return isNumber && field.key !== "title" && field.key !== "roughness.file" ? Number(text) : text;
 }
 
-// The value that the library has for a key that is left out.
+// The library's value for a key that the case leaves out.
 function libraryValue(field) {
   const [name, inner] = field.key.split(".");
   const material = inner && form.library[get(`${name}.material`)];
   return (material && material[inner]) || "";
 }
 
-// The value of a field in its SI unit, or null if it is no single number.
+// The value of a field in its SI unit, or null if it is not a single number.
 function siValue(field) {
   let value = get(field.key);
   if (value === "") value = libraryValue(field);
@@ -197,7 +199,7 @@ function drawGroup(group) {
   }
   if (group.title === "Surface") {
     const others = (content.roughness || []).length - 1;
-    if (others > 0) parts.unshift(element("p", { class: "hint" }, `The fields show the first of ${others + 1} roughnesses, which are added; edit the others in the case file below.`));
+    if (others > 0) parts.unshift(element("p", { class: "hint" }, `The fields show the first of ${others + 1} roughness tables, whose heights are added; edit the others in the case file below.`));
     parts.push(drawUpload());
   }
   if (!group.closed) return element("fieldset", {}, element("legend", {}, group.title), ...parts);
@@ -273,7 +275,7 @@ function placeSlider(field, slider) {
   slider.setAttribute("aria-valuetext", value || "left out");
 }
 
-// The field that a message is about; of a message about a table, its first field that the message names.
+// The field that a message is about. For a message about a table: the first of its fields that the message names.
 function fieldOf(key, words) {
   const visible = fields().filter(shown);
   const inside = visible.filter((field) => field.key.startsWith(`${key}.`));
@@ -312,20 +314,20 @@ let asking = null; // the request under way: { abort, since, drawn }
 let waiting = null; // timer of a change that waits for the request under way
 let last = 300; // ms that the last curve took
 let resting = null;
-let running = null; // the request beside a curve, or of the whole run
+let running = null; // the request for smooth curve and surface, or for the complete run
 
 function changed() {
   clearTimeout(resting);
   if (running) running.abort();
   running = null;
   if (waiting) return;
-  // A curve under way is drawn if it is quick; a slow one gives way to the newest values.
+  // Wait for a curve under way if it is soon complete; otherwise replace it by the newest values.
   const patience = asking && !asking.drawn ? Math.min(2000, Math.max(500, 2 * last)) - (performance.now() - asking.since) : 0;
   if (patience > 0) waiting = setTimeout(ask, patience);
   else ask();
 }
 
-// Curves that belong to other values than those of the form are faint.
+// Draw curves faint if they belong to other values than those of the form.
 function mark(stale) {
   for (const id of ["cor", "force", "pressure", "plastic"]) $(id).classList.toggle("stale", stale);
 }
@@ -363,7 +365,7 @@ async function ask() {
   if (!failed && mine.drawn && !waiting) resting = setTimeout(drawBeside, SHORT_REST);
 }
 
-// Times (ms) of a curve, for the benchmark: asked, its solve, received, drawn.
+// Report times (ms) of a curve to the benchmark: requested, duration of the solve, received, drawn.
 function record(asked, seconds, received) {
   const detail = { asked, solve: 1000 * seconds, received, drawn: performance.now() };
   document.dispatchEvent(new CustomEvent("curve", { detail }));
@@ -442,7 +444,7 @@ function draw(id, spec, traces = [], shapes = []) {
   if (!spec) { Plotly.purge($(id)); $(id).dataset.drawn = ""; return; }
   const layout = themed(structuredClone(spec.layout));
   layout.shapes = [...(layout.shapes || []), ...shapes];
-  if (innerWidth < 600 || $(id).clientHeight < 300) { // the legend would take the place of the plot
+  if (innerWidth < 600 || $(id).clientHeight < 300) { // the legend would leave no room for the plot
     layout.showlegend = false;
     layout.margin = { l: 55, r: 10, t: 15, b: 45 };
   }
@@ -557,7 +559,7 @@ function pin() {
   const before = pins.length ? pins[pins.length - 1].content : null;
   pins.push({
     number, name: `pin ${number}`, rows: curve.rows, content: structuredClone(curve.content),
-    words: before ? differences(before, curve.content) : "the first one",
+    words: before ? differences(before, curve.content) : "the first pin",
     colour: PIN_COLOURS[(number - 1) % PIN_COLOURS.length], dash: DASHES[(number - 1) % DASHES.length],
   });
   drawPins();
@@ -627,7 +629,7 @@ async function upload(file) {
   content.roughness = [{ kind: "measured", file: found.name }];
   if (seeds.detrend) content.roughness[0].detrend = seeds.detrend;
   settle(before);
-  if (found.nodes && found.nodes[0] * found.nodes[1] <= 1.1e6) delete content.grid; // its own pixels
+  if (found.nodes && found.nodes[0] * found.nodes[1] <= 1.1e6) delete content.grid; // the pixels of the scan are the grid
   else if (found.nodes) content.grid = { nodes: 512, spacing: `${Number((1e9 * Math.max(...found.spacing_m)).toPrecision(4))} nm` };
   drawForm();
   if (found.needs_size) showProblems({ "roughness.size": `${found.needs_size}; give its edge lengths, such as 10 um, 10 um` });
@@ -636,13 +638,13 @@ async function upload(file) {
 
 // ---- the case as a file, finer runs, files to take away ---------------------------------------
 
-let textEdited = false; // the text holds changes of the reader that are not used yet
+let textEdited = false; // the user has edited the text and not used it yet
 
 async function updateText() {
   if (!$("case-file").open || textEdited) return;
   try {
     const found = await (await post("text", { content })).json();
-    if (!textEdited) $("case-text").value = found.text; // the reader may have begun to edit meanwhile
+    if (!textEdited) $("case-text").value = found.text; // the user may have begun to edit it meanwhile
   } catch (error) { $("text-problem").textContent = error.message; }
 }
 
