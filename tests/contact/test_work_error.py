@@ -134,3 +134,15 @@ def test_the_error_of_a_start_counts_once(monkeypatch):
     pinned = [0.006 * state.contact_area for state in (first, second)]
     assert first.work_error == approx(3e-16 + pinned[0], rel=1e-9)
     assert second.work_error == approx(6e-16 + pinned[1], rel=1e-9)
+
+
+def test_pinning_adds_to_the_quadrature_of_balances_once(monkeypatch):
+    monkeypatch.setattr(loading, "balances_are_reliable", lambda _: True)
+    monkeypatch.setattr(loading, "work_by_balance", lambda *_: (1e-12, 3e-16, 0))
+    contact = adhesive(1)
+    first = solve(contact, 0.5 * DEPTH)
+    second = solve(contact, DEPTH, start=first)
+    pinned = [0.02 * state.contact_area for state in (first, second)]
+    assert first.work_error == approx(3e-16 + pinned[0], rel=1e-9)
+    assert second.work_error == approx(6e-16 + pinned[1], rel=1e-9)
+    assert pinned[0] > 0
