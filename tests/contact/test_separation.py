@@ -183,4 +183,4 @@ def test_the_largest_tension_is_that_of_a_parabola(monkeypatch):
         assert separation._largest_tension(jumped) == approx(expected, rel=1e-9)
     for ends in (inside[2:], inside[:3]):
         assert separation._largest_tension(ends) == coarse
-    assert separation._largest_tension(path((0.34, 0.33, 0.32, 0.33))) == 0.0
+    assert separation._largest_tension(path((0.35, 0.34, 0.33, 0.32))) == 0.0
