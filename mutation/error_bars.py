@@ -1,13 +1,14 @@
 """Halve or drop every error bar, one at a time, and see that a test fails.
 
-    python mutation/error_bars.py [NAME ...]
+    python mutation/error_bars.py [--python PYTHON] [NAME ...]
 
 works on a copy of the repository, after `make test`. A bar that survives is printed, and the exit
-status is then 1.
+status is then 1. `--python` names another Python to run the tests with than that of `make test`.
 """
 
 from __future__ import annotations
 
+import argparse
 import os
 import shutil
 import subprocess
@@ -23,8 +24,8 @@ TESTS = {
     "contact/loading.py": "contact/test_work_error.py contact/test_loading.py "
     "contact/test_cavity.py contact/test_separation.py verification/test_adhesive_restitution.py",
     "contact/plastic_work.py": "contact/test_work_error.py contact/test_cavity.py",
-    "contact/separation.py": "contact/test_separation.py contact/test_cohesive.py contact/test_energy_account.py "
-    "test_collision.py verification/test_adhesive_restitution.py",
+    "contact/separation.py": "contact/test_separation.py contact/test_cohesive.py "
+    "contact/test_energy_account.py test_collision.py verification/test_adhesive_restitution.py",
     "contact/cohesive_path.py": "contact/test_cohesive.py contact/test_periodic_cohesive.py",
     "contact/model_error.py": "contact/test_model_error.py",
     "collision.py": "test_collision.py contact/test_energy_account.py contact/test_separation.py "
@@ -46,7 +47,7 @@ TESTS = {
 }
 
 
-def survives(copy: Path, bar: dict[str, str]) -> bool:
+def survives(copy: Path, python: Path, bar: dict[str, str]) -> bool:
     """Whether the tests of its module pass on the copy with this bar changed."""
     file, old, new = bar["file"], bar["stands"], bar["becomes"]
     path = copy / "src" / "restitution" / file
@@ -55,7 +56,7 @@ def survives(copy: Path, bar: dict[str, str]) -> bool:
         raise SystemExit(f"{file}: {text.count(old)} times, not once: {old}")
     path.write_text(text.replace(old, new), encoding="utf-8")
     environment = {**os.environ, "PYTHONPATH": str(copy / "src"), "DUCC0_NUM_THREADS": "1"}
-    command = [HERE / ".venv/bin/python", "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider"]
+    command = [python, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider"]
     try:
         ended = subprocess.run(
             [*command, *(f"tests/{test}" for test in TESTS[file].split())],
@@ -66,19 +67,25 @@ def survives(copy: Path, bar: dict[str, str]) -> bool:
         )
     finally:
         path.write_text(text, encoding="utf-8")
+    if ended.returncode not in (0, 1):
+        raise SystemExit(f"{file}: the tests cannot run\n{ended.stdout.decode()}")
     return ended.returncode == 0
 
 
 def main() -> None:
     """Change one bar after the other."""
     bars = tomllib.loads(Path(__file__).with_name("bars.toml").read_text(encoding="utf-8"))
-    names = sys.argv[1:] or list(bars)
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("names", nargs="*", metavar="NAME")
+    parser.add_argument("--python", type=Path, default=HERE / ".venv" / "bin" / "python")
+    options = parser.parse_args()
+    names = options.names or list(bars)
     survivors = []
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder) / "copy"
         shutil.copytree(HERE, copy, ignore=shutil.ignore_patterns(".git", ".venv*", "demo"))
         for name in names:
-            survived = survives(copy, bars[name])
+            survived = survives(copy, options.python, bars[name])
             print(f"{name}: {'SURVIVED' if survived else 'killed'}", flush=True)
             survivors += [name] * survived
     print(f"{len(names) - len(survivors)} of {len(names)} killed")

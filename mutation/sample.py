@@ -36,7 +36,7 @@ ROOMS = {
     "contact": "tests/contact tests/test_collision.py tests/runs/test_messages.py "
     "tests/test_house.py",
     "numerics": "tests/numerics tests/contact/test_equilibrium.py tests/contact/test_periodic.py "
-    "tests/contact/test_threads.py tests/test_house.py",
+    "tests/contact/test_threads.py tests/contact/test_device.py tests/test_house.py",
     "laws": "tests/laws tests/test_house.py",
 }
 BITS = ("BitOr", "BitAnd", "BitXor", "LShift", "RShift")

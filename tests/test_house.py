@@ -1,12 +1,14 @@
 """The shape of the source: short files and functions, few parameters, frozen data."""
 
 import ast
+import tomllib
 from pathlib import Path
 from statistics import median
 
 import pytest
 
-PACKAGE = Path(__file__).parents[1] / "src" / "restitution"
+ROOT = Path(__file__).parents[1]
+PACKAGE = ROOT / "src" / "restitution"
 SOURCES = {path: path.read_text(encoding="utf-8") for path in sorted(PACKAGE.rglob("*.py"))}
 
 
@@ -84,3 +86,21 @@ def test_lines_are_counted():
         4,
         1,
     ]
+
+
+def test_every_error_bar_of_the_mutation_tests_stands_once_in_the_source():
+    """Otherwise `make mutation` would stop at it, or test nothing."""
+    folder = ROOT / "mutation"
+    tree = ast.parse((folder / "error_bars.py").read_text())
+    (tests,) = (
+        ast.literal_eval(node.value)
+        for node in tree.body
+        if isinstance(node, ast.Assign) and node.targets[0].id == "TESTS"
+    )
+    bars = tomllib.loads((folder / "bars.toml").read_text())
+    for name, bar in bars.items():
+        text = (ROOT / "src" / "restitution" / bar["file"]).read_text()
+        assert text.count(bar["stands"]) == 1, name
+        assert bar["file"] in tests, name
+    named = {test for line in tests.values() for test in line.split()}
+    assert all((ROOT / "tests" / test).is_file() for test in named)

@@ -1,5 +1,7 @@
 """Count the lines of code of the source, without blank lines, comments and docstrings.
 
+Statements of Python are counted, too. Their number does not depend on the formatter.
+
 python docs/studies/source_lines.py            # of each room
 """
 
@@ -56,6 +58,15 @@ def python_lines(text):
     )
 
 
+def statements(text):
+    """How many statements Python code has, without docstrings."""
+    return sum(
+        isinstance(node, ast.stmt)
+        and not (isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant))
+        for node in ast.walk(ast.parse(text))
+    )
+
+
 def lines_of(path):
     """How many lines of code a file has; 0 if it is no source."""
     if path.suffix == ".py":
@@ -68,15 +79,17 @@ def lines_of(path):
 
 
 def main():
-    """Print the lines of Python and of all else, room by room."""
-    python, other = Counter(), Counter()
-    for path in sorted(PACKAGE.rglob("*")):
+    """Print the lines and statements of Python, and the lines of all else, room by room."""
+    python, count, other = Counter(), Counter(), Counter()
+    for path in filter(Path.is_file, sorted(PACKAGE.rglob("*"))):
         room = path.relative_to(PACKAGE).parts[0]
-        (python if path.suffix == ".py" else other)[room] += lines_of(path) if path.is_file() else 0
-    print(f"{'room':20}{'Python':>8}{'other':>8}")
+        (python if path.suffix == ".py" else other)[room] += lines_of(path)
+        if path.suffix == ".py":
+            count[room] += statements(path.read_text(encoding="utf-8"))
+    print(f"{'room':20}{'Python':>8}{'statements':>12}{'other':>8}")
     for room in sorted(python | other):
-        print(f"{room:20}{python[room]:8}{other[room]:8}")
-    print(f"{'all':20}{python.total():8}{other.total():8}")
+        print(f"{room:20}{python[room]:8}{count[room]:12}{other[room]:8}")
+    print(f"{'all':20}{python.total():8}{count.total():12}{other.total():8}")
 
 
 if __name__ == "__main__":

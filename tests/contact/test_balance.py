@@ -1,6 +1,7 @@
 """Balances of contact areas, and unloading that does not depend on the steps or the depth."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -116,3 +117,25 @@ def test_every_area_has_one_point():
     inside = curve.indentation > -0.95 * BREAK
     error = (curve.force - exact)[inside] / F_C
     assert math.sqrt(np.mean(error**2)) < 0.02
+
+
+def test_the_points_of_a_curve_are_the_balances_that_lie_below_those_before(monkeypatch):
+    """Areas: two states of 900 nodes, then 800, 700 and 600; the balance of 700 is too high."""
+    from restitution.contact import unloading_curve as module
+
+    monkeypatch.setattr(module, "balances_are_reliable", lambda _: True)
+    rows = (
+        (5.0, 9.0, 900, None),
+        (4.5, 8.0, 900, (4.8, 8.5)),
+        (4.0, 7.0, 800, (4.4, 7.5)),
+        (3.5, 6.0, 700, (4.2, 6.5)),
+        (3.0, 5.0, 600, (4.3, 5.5)),
+        (2.5, 4.0, 500, (3.1, 4.5)),
+    )
+    names = "indentation", "force", "contact_nodes", "balance"
+    path = [SimpleNamespace(**dict(zip(names, row, strict=True))) for row in rows]
+    found = unloading_curve(path)
+    assert found.balanced
+    assert found.fixed
+    assert found.indentation.tolist() == [5.0, 4.4, 4.2, 3.1]
+    assert found.force.tolist() == [9.0, 7.5, 6.5, 4.5]

@@ -165,3 +165,13 @@ def test_steeper_asperities_have_a_larger_error():
     assert errors == sorted(errors)
     assert errors[0] == approx(0.03, rel=0.1)
     assert errors[2] > 1.4 * errors[0]
+
+
+@pytest.mark.parametrize("model", ["equilibrium", "truncated"])
+def test_the_tables_reach_one_where_first_yield_may_be_missed(model):
+    state = solve(contact(yield_pressure=2.8e9, plasticity=model), 1e-7)
+    restitutions, errors = _CONSTANT[model]
+    assert list(restitutions) == sorted(set(restitutions))
+    assert largest_difference(state, 1.0) == 0.07
+    for e, error in zip(restitutions, errors, strict=True):
+        assert largest_difference(state, e) == approx(error)

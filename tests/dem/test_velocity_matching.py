@@ -150,7 +150,8 @@ def test_matched_e_dissipates_the_energy_of_the_law(script):
 
 def test_velocities_beyond_the_law_are_named(script, capsys):
     script["adjust"]({(1, 1): 0.5}, {(1, 1): [0.001, 0.5, 20.0]})
-    assert "warning: 2 of them are outside the velocities of the law (0.01 to 10 m/s)" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "warning: 2 of them are outside the velocities of the law (0.01 to 10 m/s)" in said
 
 
 def test_contacts_are_found_over_the_borders_of_a_periodic_box(script):

@@ -157,5 +157,5 @@ def test_friction_belongs_to_pairs_and_angles_are_refused(mixture_text):
     text = mixture_text()
     assert "[impact]" in text
     for key, value in (("angle", "30 deg"), ("spin", "5 rpm")):
-        with pytest.raises(CaseError, match=f"impact.{key}: a mixture has laws of head-on impacts only"):
+        with pytest.raises(CaseError, match=f"impact.{key}: a mixture has laws of head-on impacts"):
             parse_mixture(text.replace("[impact]", f'[impact]\n{key} = "{value}"'))

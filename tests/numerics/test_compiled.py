@@ -278,3 +278,11 @@ def test_a_neighbour_that_is_none_is_refused(stranger):
     neighbours = np.array([[0], [1], [stranger]])
     with pytest.raises(IndexError, match="not the index of a node"):
         diffuse(neighbours, np.ones((3, 1)), 1, np.ones((3, 2)))
+
+
+def test_loops_take_arrays_of_two_dimensions_with_contiguous_rows():
+    whole = np.zeros((4, 6))
+    assert all(map(kernels.loop_takes, (whole, whole[::2], whole[:, 1:4], whole[:, ::6])))
+    refused = whole.T, whole[:, ::2], whole[:, ::3], whole[:, ::-1], whole[0], [[0.0]]
+    assert not any(map(kernels.loop_takes, refused))
+    assert not kernels.loop_takes(np.ma.zeros((4, 6)))

@@ -128,3 +128,16 @@ def test_from_far_away_both_starts_end_in_the_only_minimum(K):
     assert not one.negative_curvature
     assert one.energy == approx(other.energy, rel=1e-9)
     assert one.u == approx(other.u, rel=1e-6)
+
+
+@pytest.mark.parametrize("length", [0.5, 0.2])
+def test_the_first_step_along_negative_curvature_has_the_given_length(K, length):
+    asked = []
+
+    def watched(u):
+        asked.append(u.copy())
+        return wells(u)
+
+    start = 1e-3 * np.random.default_rng(1).normal(size=SHAPE)
+    minimise_locally(K, watched, p=start, u=K(start), length=length, tolerance=1e-10)
+    assert np.abs(asked[1] - asked[0]).max() == approx(length, rel=1e-4)

@@ -140,6 +140,11 @@ def test_the_error_contains_that_of_the_normal_restitution(tmp_path):
         )
         shift = worst - row["rebound_angle_rad"]
         assert row["rebound_angle_error_rad"] == approx(shift, rel=0.1)
+        rebound = math.tan(row["rebound_angle_rad"])
+        parts = expected * math.tan(angle), rebound * normal
+        assert min(parts) > 0
+        linear = sum(parts) / row["normal_restitution"] / (1 + rebound**2)
+        assert row["rebound_angle_error_rad"] == approx(linear, rel=1e-4)
 
 
 def test_a_run_without_angles_has_no_oblique_impacts(run, tmp_path):

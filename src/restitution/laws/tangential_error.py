@@ -44,9 +44,8 @@ _SHAPE, _ALIGNED, _INDEPENDENT = 0.35, 4.0, 36.0
 # Relative errors of stiffness and impulse after yield. They are multiplied by the largest ratio of
 # the depths of neighbouring unloading curves.
 _YIELDED_STIFFNESS, _YIELDED_IMPULSE = 0.01, 0.1
-_TURNED = (
-    0.15  # error of the impulse in full slip, over the stiffness error due to β (both relative)
-)
+# Error of the impulse in full slip, over the stiffness error due to β (both relative).
+_TURNED = 0.15
 _SHALLOWEST = 0.2  # unloading curves below this fraction of the deepest depth do not matter
 
 

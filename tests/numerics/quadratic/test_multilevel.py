@@ -275,3 +275,31 @@ def test_a_guess_on_finer_cells_keeps_straight_lines(compiled):
     odd = np.zeros((3, 2))
     to_coarse(np.ones((5, 3)), odd)
     assert_allclose(odd, 1.0)
+
+
+@pytest.mark.parametrize(("solve", "accuracy"), [("multilevel", 1e-2), ("near guess", 3e-3)])
+def test_coarser_grids_have_wider_cells_and_larger_tolerances(solve, accuracy, monkeypatch):
+    asked, tolerances, limits = [], [], []
+
+    def operators(shape, level):
+        asked.append((shape, level))
+        return system(shape, level)
+
+    def watched(problem, **options):
+        tolerances.append(options["tolerance"] / problem.b.max())
+        limits.append(options["max_iterations"])
+        return minimise_quadratic(problem, **options)
+
+    monkeypatch.setattr(multilevel, "minimise_quadratic", watched)
+    b = bowl((330, 320))
+    if solve == "multilevel":
+        solve_multilevel(operators, b, np.inf, tolerance=TOLERANCE, max_iterations=500)
+    else:
+        solve_near_guess(operators, b, tolerance=1e-6, max_iterations=500)
+    assert sorted({one for one in asked if one[1] > 0}, key=lambda one: one[1]) == [
+        ((165, 160), 1),
+        ((83, 80), 2),
+        ((42, 40), 3),
+    ]
+    assert tolerances[:3] == approx([accuracy] * 3, rel=2e-3)  # means over nodes lower the peak
+    assert limits == [60] * 3 + [500] * (len(limits) - 3)
