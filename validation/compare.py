@@ -215,7 +215,7 @@ def draw(rows: list[dict]) -> None:
         "smooth": ("Smooth spheres", "indentation over that of first yield, ω"),
         "waves": (
             "Spheres on concentric waves",
-            "the same of the smooth sphere, ω",
+            "ω of the smooth sphere at the same indentation",
         ),
         "rough": ("Rough spheres in 3D, at the same force", "force (N)"),
     }
@@ -232,12 +232,13 @@ def draw(rows: list[dict]) -> None:
                 chosen = [each for each in of if each["model"] == name]
                 x = [float(r["omega"] or r["force_N_reference"]) for r in chosen]
                 y = [100 * float(r[f"{quantity}_off"]) for r in chosen]
-                ax.plot(x, y, style[2], color=style[:2], ms=5, alpha=0.75, label=name)
+                above = 3 if name == MODELS[0] else 2
+                ax.plot(x, y, style[2], color=style[:2], ms=5, alpha=0.75, label=name, zorder=above)
             ax.set_xscale("log")
             ax.set_xticks(sorted(set(x)), [f"{value:.3g}" for value in sorted(set(x))])
             ax.minorticks_off()
             what = {"restitution": "COR", "force_N": "force"}.get(quantity, "contact area")
-            ax.set(xlabel=label, ylabel=f"{what} off the reference (%)")
+            ax.set(xlabel=label, ylabel=f"error of {what} (%)")
             if row == 0:
                 ax.set_title(title)
             ax.grid(alpha=0.3)
