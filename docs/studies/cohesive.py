@@ -233,7 +233,7 @@ def rough():
             surface = generate_surface(
                 grid, kind="gaussian", rms=rms, correlation_length=0.25e-6, seed=7
             )
-            # The cells are 0.4 times the cohesive zone of glass, coarser than a case permits.
+            # The cells are 0.4 times the cohesive zone of glass; a case permits 0.3.
             surface = Surface(surface.height, grid, {**surface.provenance, COMPANION: 1.0})
             base = Contact(Pair(body, body), surface, p_y, work_of_adhesion=W)
             for depth in (2e-9, 6e-9):

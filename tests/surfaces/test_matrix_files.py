@@ -238,14 +238,14 @@ def test_size_may_repeat_but_not_contradict_the_header(write, refusal, tmp_path)
     path = write(tmp_path / "a.txt", HEADER.replace("{um}", "um") + MATRIX)
     assert read_surface(path, size=(10.000001e-6, 4e-6)).provenance["size_x_m"] == 1e-5
     message = refusal(path, size=(10.0001e-6, 4e-6))
-    assert "10 x 4 um according to the file, but 10.0001 x 4 um according to size" in message
+    assert "10 x 4 um according to the file, but 10.0001 x 4 um according to the arg" in message
 
 
 def test_header_with_one_side_only(write, refusal, tmp_path):
     path = write(tmp_path / "a.txt", "# Width: 10 um\n" + MATRIX_IN_METRES)
     assert "does not contain the size" in refusal(path)
     message = refusal(path, size=(20e-6, 4e-6))
-    assert "10 x ? um according to the file, but 20 x 4 um according to size" in message
+    assert "10 x ? um according to the file, but 20 x 4 um according to the argument" in message
     assert read_surface(path, size=SIZE).grid.spacing == approx((2e-6, 1e-6))
 
 

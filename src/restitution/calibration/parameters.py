@@ -88,7 +88,10 @@ def _values(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, A
 
 
 def _key(name: str, values: Mapping[str, Any]) -> str:
-    """Find the key of the case for `name`."""
+    """Find the key of the case file that `name` means.
+
+    `name` is a whole key, or only its last part if that is unambiguous. Raises `CaseError`.
+    """
     found = [key for key in values if name in (key, key.rpartition(".")[2])]
     if len(found) > 1:
         raise CaseError(f"--free: {name} may be {' or '.join(found)}; name the whole key")

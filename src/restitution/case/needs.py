@@ -27,7 +27,8 @@ _ADHESIVE = 150.0
 # A run with an attraction of finite range keeps pressure and displacement of some 100 states of
 # unloading (16 bytes each), besides the arrays of the solver.
 _COHESIVE = 1800.0
-# Largest ratio of the number of nodes of the enlarged grid to that of the grid.
+# A non-periodic surface is generated on an enlarged grid with at most about this many times the
+# nodes (`generate._enlarged`: twice the nodes along each axis, rounded up to a fast length).
 _ENLARGED = 4.0
 
 

@@ -233,8 +233,9 @@ def _balance(state: State, retracted: State) -> tuple[float, float] | None:
     `retracted` has the same contact area at a smaller indentation. On a grid, nodes are released
     late or early by a part of a node, so force and indentation of a state scatter about those of
     the continuum. This scatter disappears where G, averaged along the edge, is w. While the contact
-    area is fixed, sqrt(G) and the force are linear in the indentation, so the two states give the
-    indentation at which that is so. None without an edge that is about to move.
+    area is fixed, sqrt(G) and the force are linear in the indentation, so the indentation at which
+    G equals w follows from the two states. Returns None if no part of the edge is about to move, or
+    if G does not increase from `state` to `retracted`.
     """
     contact = state.contact
     touching = state.box_pressure != 0

@@ -268,7 +268,7 @@ def interacting_box(contact: Contact, indentation: float, history: State | None 
     reach = _REACH * contact.equilibrium_separation + contact.adhesive_length
     gap = contact.gap if history is None else contact.gap + history.plastic_displacement
     box = bounding_box(gap < max(indentation + reach, reach * 1e-3))
-    if box is None:  # the bodies are far apart: the nodes nearest to each other
+    if box is None:  # the bodies are far apart: take the nodes that are nearest to each other
         box = bounding_box(gap <= gap.min() + reach)
         assert box is not None
     return box
@@ -305,11 +305,13 @@ def on_box(state: CohesiveState, box: Box, *, residual: float) -> CohesiveState:
 
 
 def is_unique(state: CohesiveState) -> bool:
-    """Whether no other equilibrium can exist at this and at larger distances of the bodies.
+    """Whether the equilibrium is unique at this distance of the bodies and at every larger one.
 
-    This is so if the spectral radius of K diag(max(−φ″, 0)) is below 1. The largest row sum is a
-    bound for it. In a periodic contact, where the row sums vanish, the bound is the compliance of
-    the longest wave, λ/(πE*), times the largest −φ″ of all gaps from the smallest gap on.
+    This is so if the spectral radius of K diag(max(−φ″, 0)) is below 1, where K gives the elastic
+    displacement due to a pressure and φ is the interaction energy per area. The largest row sum
+    bounds this radius. In a periodic contact the row sums of K vanish; the bound is then the
+    compliance of the longest wave, λ/(πE*), times the largest −φ″ at any gap not smaller than the
+    present smallest gap.
     """
     contact = state.contact
     if contact.periodic:

@@ -28,7 +28,7 @@ def stiffness(contact: Contact, x: Array) -> Array:
 
 
 def largest_softening(contact: Contact, smallest_gap: float) -> float:
-    """Largest −φ″ (Pa/m) of all gaps from `smallest_gap` on."""
+    """Largest −φ″ (Pa/m) at any gap not smaller than `smallest_gap`."""
     x = np.minimum(contact.equilibrium_separation / np.asarray(smallest_gap), _SOFTEST)
     return max(0.0, -float(stiffness(contact, x)))
 

@@ -98,8 +98,8 @@ class Contact:
     def __post_init__(self) -> None:
         if not isinstance(self.pair, Pair):
             raise CaseError(
-                f"pair: {_kind(self.pair)} is not a pair of bodies; give Pair(first, second), the "
-                "same body twice for two equal spheres"
+                f"pair: {_kind(self.pair)} is not a pair of bodies; give Pair(first, second); for "
+                "two equal spheres give the same body twice"
             )
         if not isinstance(self.surface, Surface):
             raise CaseError(

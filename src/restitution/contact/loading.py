@@ -48,8 +48,9 @@ _TRUNCATION_TOLERANCE, _TRUNCATION_MARGIN, _TRUNCATION_PANELS = 3e-5, 10.0, 4
 # The force jumps as asperities attach, which limits the accuracy. An error of 1.5e-3 of the work is
 # an error of at most 0.00075 in restitution.
 _ADHESIVE_TOLERANCE = 1.5e-3
-# The plastic work is summed over depths that start at _SHALLOW times the indentation and grow by at
-# most the factor _RATIO, for which the errors of `plastic_work` hold.
+# The plastic work is a sum over depths. The first depth is _SHALLOW times the indentation, and each
+# next one is at most _RATIO times the last. The error estimate of `plastic_work` holds up to this
+# ratio.
 _RATIO, _SHALLOW = 1.42, 0.2
 _WORK_RESIDUAL = 1e-6  # tolerance of intermediate solves; the relative force error is far smaller
 
@@ -154,8 +155,9 @@ def solve_without_work(
         elif contact.detachment == "pohrt-popov":
             box, held = shallower.box, shallower.box_pressure != 0
         else:
-            # A contact that grows from a smaller one may stop before its balance, so nodes are
-            # released from all that overlap.
+            # A contact that grows from a smaller one may stop before it reaches its balance (G = w
+            # along the edge). So the search starts from all nodes that overlap at this indentation,
+            # and then releases nodes.
             inside = contact.gap <= indentation
             inside[shallower.box] |= shallower.box_pressure != 0
             box = bounding_box(inside)

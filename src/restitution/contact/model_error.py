@@ -2,11 +2,10 @@
 
 The error of plasticity comes from a comparison with finite elements (docs/validation.md). The
 largest relative differences of COR in this comparison are tabulated over the COR due to plasticity
-alone, e_p = sqrt(E_el/(E_el + W_p)). e_p decreases
-monotonically from first yield to full plasticity, for smooth bodies and for asperities. The
-differences of `expanding-cavity` also depend on the steepness of the asperities ψ = E* S/Y, where S
-is the rms slope. Outside the range of the finite element results, the nearest value is used and may
-be too small.
+alone, e_p = sqrt(E_el/(E_el + W_p)). This COR decreases monotonically from first yield to full
+plasticity, for smooth bodies and for asperities. The differences of `expanding-cavity` also depend
+on the steepness of the asperities ψ = E* S/Y, where S is the rms slope. Outside the range of the
+finite element results, the nearest value is used and may be too small.
 
 `adhesion = "jkr"` neglects the range of the attraction and therefore dissipates too much energy.
 This is the second part of the error. It follows from a table of the energy that smooth elastic
@@ -23,7 +22,8 @@ import numpy as np
 from restitution.contact.checks.resolution import tabor_parameter
 from restitution.contact.state import State
 
-# For each model: values of COR without adhesion, and the largest relative difference at each value.
+# For each model of plasticity: values of the COR due to plasticity alone, and the largest relative
+# difference from finite elements at each of them.
 _CONSTANT = {
     "equilibrium": (
         (0.34, 0.5, 0.56, 0.68, 0.77, 0.86, 0.9999, 1.0),

@@ -77,8 +77,9 @@ def solve_at_force(contact: Contact, force: float, *, start: State | None = None
     state = solve(contact, indentation, start=start, residual=_SOLVE_RESIDUAL)
     if abs(state.force / force - 1) > FORCE_TOLERANCE:
         raise NotConvergedError(
-            f"force: {force:.6g} N was reached only within {abs(state.force / force - 1):.1e} at "
-            f"an indentation of {1e9 * indentation:.6g} nm, where the force jumps (too few nodes "
-            "in contact); refine the grid or change the force"
+            f"force: {force:.6g} N could be reached only to a relative error of "
+            f"{abs(state.force / force - 1):.1e}, at an indentation of {1e9 * indentation:.6g} nm, "
+            "because the force jumps there (too few nodes in contact); refine the grid or change "
+            "the force"
         )
     return replace(state, convolutions=state.convolutions + convolutions)

@@ -69,9 +69,9 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
     miss = search.miss(state)
     if miss > max(tolerance, state.work_error / work):
         raise NotConvergedError(
-            f"velocity: {velocity:.6g} m/s was met only within {miss:.1e} at an indentation of "
-            f"{1e9 * depth:.6g} nm, where the work jumps (too few nodes in contact); refine the "
-            "grid or change the velocity"
+            f"velocity: {velocity:.6g} m/s could be reached only to a relative error of "
+            f"{miss:.1e}, at an indentation of {1e9 * depth:.6g} nm, because the work jumps there "
+            "(too few nodes in contact); refine the grid or change the velocity"
         )
     return replace(state, convolutions=sum(each.convolutions for each in search.found.values()))
 
@@ -120,7 +120,7 @@ class _Search:
         balanced = contact.approach == "equilibrium" and contact.detachment == "crack-closure"
         if contact.adhesive and balanced:
             return _adhesive_depth(contact, self._work)
-        # Yield and roughness make the contact deeper.
+        # Hertz's depth is only a first guess: yield and roughness make the contact deeper.
         smooth = Hertz(self._contact.pair.radius, self._contact.pair.contact_modulus)
         return float(smooth.indentation_from_energy(self._work))
 

@@ -100,7 +100,11 @@ def separate(
 def _unload(
     state: State, tolerance: float, finer: int, known: Sequence[State] = ()
 ) -> Iterator[State]:
-    """Yield `state` and the states to separation, in `finer` times as many steps or more."""
+    """Generate `state` and the states of unloading down to separation.
+
+    The steps are at most 1/`finer` of the standard steps. A cohesive contact chooses its steps by
+    `tolerance` alone.
+    """
     contact = state.contact
     if isinstance(state, CohesiveState):
         yield from separate_cohesive(state, accuracy=_UNACCOUNTED * tolerance)

@@ -2,8 +2,8 @@
 
 DEM codes take one coefficient of restitution e for each pair, so an export is valid at one impact
 velocity. The comments in an export give the origin of e, its error, and its values at other
-velocities. Comments are plain ASCII without quotes, braces and line continuation characters, so
-that a name or title given by the user cannot end a comment.
+velocities. Comments are plain ASCII without quotes, braces or line-continuation characters, so that
+a name or title given by the user cannot end a comment.
 """
 
 from __future__ import annotations

@@ -23,9 +23,10 @@ def mindlin_stiffness(pair: Pair) -> float:
 
 
 def friction_note(pairs: Sequence[Pair], sign: str = "", tangential: str = "") -> str:
-    """Write comments on the source of the coefficients of friction; each line begins with `sign`.
+    """Write comments on where the coefficients of friction come from.
 
-    `tangential` describes the tangential settings of the pairs whose cases state a friction.
+    Each line begins with the comment sign `sign`, if there is one. `tangential` describes the
+    tangential settings of the pairs whose cases state a friction.
     """
     missing = [f"{pair.i} {pair.j}" for pair in pairs if pair.law.friction is None]
     if len(missing) == len(pairs):

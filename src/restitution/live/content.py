@@ -24,7 +24,7 @@ def content_of(text: str) -> Content:
         json.dumps(content, allow_nan=False)
     except (TypeError, ValueError):
         raise CaseError(
-            "a value is a date, a time, infinite or not a number; no key of a case has such a value"
+            "a value is a date, a time, inf or nan; no key of a case takes such a value"
         ) from None
     for name in ("first", "second"):
         if isinstance(content.get(name), str):

@@ -30,8 +30,9 @@ def number_fractions(key: str, table: dict[str, Any], radii: Sequence[float]) ->
     sizes = table.get("radius")
     if isinstance(sizes, dict) and "median" in sizes:
         raise CaseError(
-            f"{where}: the bins of a log-normal distribution hold equal numbers already; remove "
-            "this key, or give edges or bins instead of the distribution"
+            f"{where}: each bin of a log-normal distribution holds the same number of particles, "
+            "so fractions cannot be given; remove this key, or replace median and geometric_std in "
+            "radius by edges or bins"
         )
     fractions = _checked(where, table.pop(given[0]), len(radii))
     power = 3 if given[0] == "mass_fractions" else 0

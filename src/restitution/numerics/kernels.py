@@ -51,7 +51,10 @@ def _load() -> tuple[Any, str]:
     except ImportError as error:
         reason = one_line(str(error))
     if wanted:
-        raise CaseError(f"{VARIABLE}: {wanted} kernels cannot be loaded ({reason}); unset it")
+        raise CaseError(
+            f"{VARIABLE}: {wanted} kernels cannot be loaded ({reason}); unset this environment "
+            "variable"
+        )
     return None, f"{reason}; {_COMPILE}"
 
 

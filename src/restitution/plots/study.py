@@ -16,7 +16,10 @@ MOST_LINES = 60  # largest number of lines in a figure; more cannot be distingui
 
 
 class Abscissa(NamedTuple):
-    """The x axis of a figure of COR: a column, and the factor `scale` to the unit of `axis`."""
+    """The x axis of a COR figure.
+
+    `column` is the column to plot, and `scale` converts its values to the unit of `axis`.
+    """
 
     column: str
     scale: float

@@ -19,7 +19,7 @@ def curve_lines(rows: Sequence[Mapping[str, float]]) -> list[str]:
 def run_lines(
     folder: Path, rows: Sequence[Mapping[str, float]], summary: Mapping[str, Any]
 ) -> list[str]:
-    """Describe a run by its title, status and warnings, and the ranges of its depths and COR."""
+    """Describe a run in lines: title, status, number of warnings, deepest depth, range of COR."""
     depths = [row["max_indentation_m"] for row in rows]
     e = [row["restitution"] for row in rows]
     span = f" to {quantity(max(depths), 'm')}, COR {min(e):.4f} to {max(e):.4f}" if e else ""
@@ -33,7 +33,7 @@ def run_lines(
 def study_lines(
     folder: Path, status: Sequence[str], swept: Sequence[Mapping[str, str]]
 ) -> list[str]:
-    """Describe a study by its numbers of cases of each status, and its swept keys."""
+    """Describe a study in lines: how many cases have each status, and which keys are swept."""
     count = ", ".join(f"{number} {ended}" for ended, number in Counter(status).items())
     values = {key: len({each[key] for each in swept}) for key in swept[0]}
     keys = ", ".join(f"{key} ({counted(n, 'value')})" for key, n in values.items())

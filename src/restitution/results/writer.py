@@ -121,7 +121,7 @@ class ResultsFolder:
             yield
 
     def add(self, state: State, collision: Collision, refine: int = 1, touch: float = 0.0) -> None:
-        """Append the row of a state of loading (`curve_row`) to `curve.csv`."""
+        """Append the row (`curve_row`) of one loading state to `curve.csv`."""
         row = curve_row(state, collision, refine, touch)
         with hold_signals():
             _write_row(self._curve, [format_cell(value) for value in row.values()])

@@ -123,7 +123,8 @@ def _read_channel(path: Path, reader: Any, channel: int | None) -> Scan:
             f"{_value_unit(chosen) or 'no stated unit'}) is not a height map that can be converted "
             f"to metres; {remedy}"
         )
-    # If the file contains no size, the reader requires one. The number of pixels is a placeholder.
+    # SurfaceTopography requires a physical size even if the file contains none. The number of
+    # pixels is then passed as a placeholder, and no size is returned.
     sized = chosen.physical_sizes is not None
     topography = chosen.topography(physical_sizes=None if sized else chosen.nb_grid_pts)
     x, y = (in_metres(float(side), topography.unit) for side in topography.physical_sizes)

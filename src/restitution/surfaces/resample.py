@@ -83,12 +83,12 @@ def carried(surface: Surface, spacing: tuple[float, float], *, mirrored: bool = 
 
 
 def left_out(surface: Surface, kept: Array, spacing: tuple[float, float]) -> dict[str, float]:
-    """Provenance entries on the waves that resampling to cells of `spacing` (m) removes.
+    """Provenance entries that describe the waves removed by resampling to cells of `spacing` (m).
 
     `kept` are the heights of `surface` without these waves. The entries are `removed_rms_m`, the
     rms height of the removed waves; `removed_slope`, their rms slope divided by the rms slope of
     the surface; `shortest_carried_m`, the shortest remaining wave; `pixel_x_m` and `pixel_y_m`, the
-    coarsest pixel to which the heights have been sampled.
+    largest pixel that the heights have had so far.
     """
     before = surface.provenance
     pixel = [

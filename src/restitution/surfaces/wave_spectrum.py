@@ -26,7 +26,7 @@ from restitution.surfaces.surface import Surface
 Array = NDArray[np.float64]
 Modes = NDArray[np.complex128]
 
-_SUMMED = 2**20  # largest number of waves summed one by one in mean squares (see `_moments`)
+_SUMMED = 2**20  # about the most waves that `_moments` sums one by one
 _LEAST = 2  # waves that fit at most this many times into the scan are always summed one by one
 _ROWS = 2**20  # number of waves computed at a time, to limit the memory
 _ROUNDING = 1e-9
@@ -106,12 +106,12 @@ def spectrum_of(scan: Surface, period: tuple[float, float]) -> WaveSpectrum:
 
 
 def _moments(spectrum: WaveSpectrum, *, raw: bool = True) -> Array:
-    """Mean squares of height and slope (rows) for the powers C and C/k² (columns).
+    """Mean square height and mean square slope (rows) for the powers C and C/k² (columns).
 
-    If `raw` is False, the first column is for the power with the factor a + b/k², and the second
-    column is 0. Slopes are differences between neighbouring pixels, as in `rms_slope`. Long waves
-    are summed one by one. For short waves, the density is summed over the wave vectors of the scan
-    instead.
+    k is the number of waves per scan. If `raw` is False, the first column is for the power
+    C(a + b/k²), and the second is 0. Slopes are differences between neighbouring pixels, as in
+    `rms_slope`. Long waves are summed one by one, over the wave vectors of the twin. Short waves
+    are summed over the wave vectors of the scan, which are fewer, because the twin is not smaller.
     """
     wx, wy = spectrum.waves
     (mx, my), (hx, hy) = spectrum.density.shape, spectrum.pixel

@@ -1,16 +1,17 @@
 """YADE: `Ip2_FrictMat_FrictMat_MindlinPhys` with a `betan` for each pair of materials, or e(V).
 
 YADE adds a damping 2β(m* dF/dδ)^½ dδ/dt to Hertz's F and does not let the sum become attractive: a
-contact ends when the force returns to zero. YADE converts its own `en` to β by a fit (Thornton et
-al., Powder Technol. 233 (2013) 30, eqs. B6, B7) that returns 0.979 for 0.99 and 0.948 for 0.95;
-other releases convert it differently. The export therefore writes β (`betan`), computed by a new
-fit to this equation of motion for e of 0.01 and more:
+contact ends when the force returns to zero. YADE 2023.02a converts `en` to β by a fit (Thornton et
+al., Powder Technol. 233 (2013) 30, eqs. B6, B7) that returns e = 0.979 for en = 0.99 and 0.948 for
+0.95; other releases convert it differently. The export therefore writes β (`betan`), computed by a
+new fit to this equation of motion. The fit is valid for e ≥ 0.01, and the resulting e differs by
+less than 10⁻⁵ from the required one:
 
-    β = L exp(Σ c_k L^k),  L = −ln e,  within 10⁻⁵ of e
+    β = L exp(Σ c_k L^k),  L = −ln e
 
 YADE computes E* from the two materials. On a wall it takes R/2 for R*, which makes the contact
-softer by √2 and does not change e. Each contact has a separate `betan`, so a simulation can follow
-the law: the export sets `betan` at first touch, from the velocity at first touch.
+softer by √2 and does not change e. Each contact has a separate `betan`: the export can set it at
+first touch from the velocity at first touch, so e can follow the law e(V).
 """
 
 from __future__ import annotations

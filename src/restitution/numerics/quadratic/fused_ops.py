@@ -22,7 +22,10 @@ Bounds = tuple[Bound, Bound]  # lower, upper
 
 
 def as_rows(lower: Bound, upper: Bound, p: Array) -> Bounds:
-    """Convert bounds that are numbers to arrays that repeat one row, as the loops require."""
+    """Convert bounds that are numbers to arrays of the shape of `p`, if a compiled loop takes `p`.
+
+    The compiled loops require arrays. Each array is one row, broadcast.
+    """
 
     def rows(bound: Bound) -> Bound:
         if isinstance(bound, np.ndarray) or not loop_takes(p):
