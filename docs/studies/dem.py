@@ -53,7 +53,7 @@ def run(text: str, folder: Path) -> Path:
 
 
 def fits(law: Law) -> None:
-    """The fitted laws, and the compact form."""
+    """The fitted laws, and the compact formula."""
     print("| law | parameters | COR: rms | worst |\n|---|---|---|---|")
     for each in law.laws:
         values = ", ".join(f"{name} {value:.3g}" for name, value in each.parameters.items())

@@ -168,8 +168,8 @@ class InterfaceTable(Table):
                     )
             if grows:
                 raise ValueError(
-                    'yield_pressure: plasticity = "expanding-cavity" takes a yield_strength (of a '
-                    "tensile test) instead"
+                    'yield_pressure: is not used with plasticity = "expanding-cavity"; give '
+                    "yield_strength (of a tensile test) instead"
                 )
         elif self.plasticity is not None and not grows:
             for key in ("yield_strength", "tangent_modulus"):

@@ -123,8 +123,9 @@ def _unload(
         if state.force < 0.1 * abs(_punch_force(state)):
             longest = min(longest, shortened)
         elif previous is not None:
-            # End the step near zero force, because tension requires shorter steps. Extrapolating
-            # the slope of a Hertz-like recovery covers two thirds of the way to zero force.
+            # End the step near zero force, because tension requires shorter steps. In a Hertz-like
+            # recovery, F ∝ δ^1.5, force over slope is two thirds of the way to zero force. The
+            # factor below extends the step to 87 % of the way.
             slope = (previous.force - state.force) / (previous.indentation - state.indentation)
             if slope > 0:
                 longest = min(longest, max(1.3 * state.force / slope, shortened))

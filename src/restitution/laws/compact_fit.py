@@ -32,7 +32,7 @@ _COUNTS = 0.01  # loss of e² by adhesion at the velocity `adhesive_below`
 
 
 def compact_fit(law: Law) -> CompactFit | None:
-    """Fit `law` in compact form; None if fewer than four resolved points remain."""
+    """Fit the compact formula to `law`; None if fewer than four resolved points remain."""
     V, ratio = law.column("velocity", resolved=True), law.column("ratio", resolved=True)
     lossless = law.work_of_adhesion == 0
     first = 0

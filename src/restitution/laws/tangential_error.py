@@ -41,8 +41,8 @@ from restitution.laws.time_integration import StoredForce
 # patches are parts of larger ones.
 _NUMERICAL, _ROUGH = 0.005, 0.04
 _SHAPE, _ALIGNED, _INDEPENDENT = 0.35, 4.0, 36.0
-# Relative errors of stiffness and impulse after yield. They are multiplied by the largest ratio of
-# the depths of neighbouring unloading curves.
+# Relative errors of stiffness and impulse after yield. On rough contacts they are multiplied by
+# the largest ratio between the depths of neighbouring unloading curves.
 _YIELDED_STIFFNESS, _YIELDED_IMPULSE = 0.01, 0.1
 # Error of the impulse in full slip, over the stiffness error due to β (both relative).
 _TURNED = 0.15

@@ -44,7 +44,7 @@ _UNIFORM = 0.01  # a pressure counts as the largest if its relative difference i
 # If at least this share of the contact carries the largest pressure, the pressure map is left out.
 _SATURATED = 0.95
 _SMOOTH = "smooth, same model"
-_DASHES = (DOTTED, DASH_DOTTED, DASHED, SOLID)  # lines of coarser grids, coarsest grid first
+_DASHES = (DOTTED, DASH_DOTTED, DASHED, SOLID)  # line styles of the coarser grids, coarsest first
 
 
 def run_figures(results: xr.Dataset) -> Iterator[tuple[str, Figure]]:

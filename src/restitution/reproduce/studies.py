@@ -24,7 +24,7 @@ NAMES = (
     "rough-energy",
 )
 
-# Changes for the quick size of each study: new values for keys of the study file.
+# Values of the study file that `--quick` replaces, for each study.
 _QUICK: dict[str, dict[str, Any]] = {
     "hertz": {"grid.nodes": 256, "indentation.to": "1 um", "indentation.steps": 6},
     "thornton-ning": {"grid.nodes": 256, "indentation.to": "1 um", "indentation.steps": 6},

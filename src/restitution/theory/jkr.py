@@ -65,8 +65,10 @@ from ._inputs import Array, Values, keep_positive, positive, scalar_or_array, to
 from .hertz import Hertz
 from .kendall import Kendall
 
-_AT_BREAK = 16 / 5  # normalised total energy U_T/U at s = 1
-_AT_JUMP_IN = -24 / 5 * 4 * math.cbrt(4)  # normalised total energy U_T/U at s³ = 4
+# Total energy U_T over its unit U where the contact breaks (s = 1) and where it jumps in (s³ = 4),
+# at fixed indentation. s and U are defined above.
+_AT_BREAK = 16 / 5
+_AT_JUMP_IN = -24 / 5 * 4 * math.cbrt(4)
 
 
 @dataclass(frozen=True, eq=False)
@@ -253,7 +255,10 @@ class JKR:
 
     @property
     def hysteresis_loss(self) -> Array:
-        """Energy W_s = 7.092 (w⁵R*⁴/E*²)^{1/3} (J) dissipated per impact, at any depth."""
+        """Energy W_s = 7.092 (w⁵R*⁴/E*²)^{1/3} (J) dissipated per impact.
+
+        It does not depend on the depth of the impact.
+        """
         return (_AT_BREAK - _AT_JUMP_IN) * self._energy_unit
 
     def impact_velocity(self, maximum_indentation: Values, mass: Values) -> Array:

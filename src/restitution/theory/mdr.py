@@ -153,7 +153,7 @@ class MDR:
         """
         d, d_max = self._inside(indentation), self._inside(maximum_indentation)
         left = np.clip((d_max - d) / self._recovery(d_max), 0.0, 1.0)
-        theta = np.arccos(left)  # because δ_e/d = 1 − cos θ
+        theta = np.arccos(left)  # `left` is cos θ: the recovery is proportional to 1 − cos θ
         relative = (theta - np.sin(theta) * np.cos(theta)) * 2 / np.pi
         onwards = (d > d_max) | (d_max <= self.yield_indentation)
         return scalar_or_array(np.where(onwards, self._force(d), relative * self._force(d_max)))

@@ -23,7 +23,7 @@ from restitution.numerics.quadratic.multilevel import Operators, coarsened, may_
 Array = NDArray[np.float64]
 
 _MAX_SOLVES = 60  # solves on one grid after which the search counts as not converged
-# Tolerance of a solve as a fraction of the expected error of D.
+# Tolerance of a solve as a fraction of the estimated error of the multiplier D.
 _ACCURACY = 0.05
 # Error of the mean that the violation may cause, as a fraction of the tolerance of the mean.
 _MEAN_SHARE = 0.5
