@@ -164,7 +164,7 @@ def test_a_yield_pressure_keeps_the_constant_bound():
         ),
         (
             'plasticity = "expanding-cavity"\nyield_pressure = "2 GPa"',
-            'plasticity = "expanding-cavity" takes a yield_strength',
+            'is not used with plasticity = "expanding-cavity"; give yield_strength',
         ),
         (
             'plasticity = "truncated"\nyield_strength = "2 GPa"',
