@@ -83,18 +83,17 @@ def unloading_curve(path: list[State]) -> UnloadingCurve:
     if not any(balances) or not balances_are_reliable(path[0]):
         indentation, force = np.array(states).T
         return UnloadingCurve(indentation, force, balanced=False)
-    points: list[tuple[float, float]] = []
+    points = states[:1]
     same_area: list[tuple[float, float]] = []
     for k, balance in enumerate(balances):
         same_area.append(states[k])
         if nodes[k + 1] == nodes[k]:
             continue
         found = same_area if balance is None or nodes[k] < _FEW_NODES else [balance]
-        points += [point for point in found if not points or point[0] < points[-1][0]]
+        points += [point for point in found if point[0] < points[-1][0]]
         same_area = []
-    fixed = points[0][0] < states[0][0]
-    points = [states[0], *points] if fixed else points
     indentation, force = np.array(points).T
+    fixed = points[1:2] == balances[:1]
     return UnloadingCurve(indentation, force, balanced=True, fixed=fixed)
 
 
