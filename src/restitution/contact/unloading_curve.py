@@ -83,7 +83,7 @@ def unloading_curve(path: list[State]) -> UnloadingCurve:
     if not any(balances) or not balances_are_reliable(path[0]):
         indentation, force = np.array(states).T
         return UnloadingCurve(indentation, force, balanced=False)
-    points = states[:1]
+    points, fixed = states[:1], None
     same_area: list[tuple[float, float]] = []
     for k, balance in enumerate(balances):
         same_area.append(states[k])
@@ -91,10 +91,10 @@ def unloading_curve(path: list[State]) -> UnloadingCurve:
             continue
         found = same_area if balance is None or nodes[k] < _FEW_NODES else [balance]
         points += [point for point in found if point[0] < points[-1][0]]
+        fixed = len(points) > 1 if fixed is None else fixed
         same_area = []
     indentation, force = np.array(points).T
-    fixed = points[1:2] == balances[:1]
-    return UnloadingCurve(indentation, force, balanced=True, fixed=fixed)
+    return UnloadingCurve(indentation, force, balanced=True, fixed=bool(fixed))
 
 
 def complete_curve(path: Sequence[State]) -> list[tuple[float, float]]:
