@@ -124,8 +124,10 @@ def grow_contact(
     """Grow the contact of the undeformed bodies from `held` by rings of nodes until it stops.
 
     The first ring is one cell wide. If nearly all of its nodes stay in contact, the next ring is
-    twice as wide. The contact stops growing when a ring of one cell lowers the energy no more.
+    twice as wide. The contact stops growing when a ring of one cell lowers the energy no more. With
+    `pohrt-popov` all rings are one cell wide.
     """
+    closure = contact.detachment == "crack-closure"
 
     def release(box: Box, held: Mask, first_guess: Array | None) -> State:
         _, state = release_nodes(
@@ -137,7 +139,7 @@ def grow_contact(
     convolutions = state.convolutions
     # At first touch, the node in contact carries no pressure yet, but its neighbours may attach.
     touching = state.box_pressure != 0 if state.contact_nodes else reframe(held, box, state.box)
-    tried = contact.detachment == "crack-closure" and state.contact_nodes > 0
+    tried = closure and state.contact_nodes > 0
     cells = 1
     while True:
         around = widen(state.box, cells, contact.grid.nodes)
@@ -153,9 +155,9 @@ def grow_contact(
             continue
         ring = np.count_nonzero(grown) - state.contact_nodes
         lost = np.count_nonzero(grown) - wider.contact_nodes
-        cells = 2 * cells if lost < _FEW * ring else 1
+        cells = 2 * cells if closure and lost < _FEW * ring else 1
         state, touching, held, box = wider, wider.box_pressure != 0, grown, around
-        tried = contact.detachment == "crack-closure"
+        tried = closure
     return replace(state, convolutions=convolutions)
 
 

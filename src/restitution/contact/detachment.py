@@ -56,14 +56,15 @@ _LARGEST_CURVATURE = 0.35
 # Smallest and largest distance (cells) that is kept between a node released alone and the next
 # released node.
 _RELEASE_RADIUS, _LARGEST_RADIUS = 3, 40
-# An edge moves by whole nodes, so G scatters along an edge at rest. A patch is at rest if the mean
-# of 1 − sqrt(w/G) over its edge is below _AT_REST, where nodes with G < w count as zero.
-_AT_REST = 0.002
+# An edge moves by whole nodes, so G scatters along an edge at rest. On coarse grids, the largest G
+# of an edge exceeds the mean by this factor, and only nodes with a larger G are released.
+_LARGEST_ON_COARSE_GRIDS = 1.04
+# On a fine grid the rim under tension is wider than _RESOLVED_RIM (cells), and the mean of G is
+# accurate. A patch is then at rest if the mean of 1 − sqrt(w/G) over its edge is below _AT_REST,
+# where nodes with G < w count as zero. The tension limit is not applied, because nodes at the kinks
+# of an edge reach it at G = w, and their release would roughen the edge.
+_RESOLVED_RIM, _AT_REST = 2.0, 0.002
 _LEAST_STRIP = 0.75  # smallest width (cells) of a strip; in narrower ones nodes are released singly
-# The tension limit is not applied if the rim under tension is wider than this (cells). On such a
-# fine grid the mean of G is accurate, and nodes at the kinks of an edge reach the limit at G = w.
-# Their release would roughen the edge.
-_RESOLVED_RIM = 4.0
 _SMOOTHED = 3  # standard deviation (cells) of the filter that smooths the outline of the contact
 # Tensions that differ by less than this fraction of the largest tension count as equal, because
 # the difference may be an error of the solve.
@@ -116,11 +117,9 @@ class CrackClosure:
         """
         edge = Edge.of(p, u, h, touching)
         tensile = touching & (p < 0)
-        if np.count_nonzero(tensile) > _RESOLVED_RIM * edge.G.size:
-            released = np.zeros_like(touching)
-        else:
-            released = touching & (p < -self.limit)
-        recession = self._recession(edge, tensile)
+        fine = bool(np.count_nonzero(tensile) > _RESOLVED_RIM * edge.G.size)
+        released = np.zeros_like(touching) if fine else touching & (p < -self.limit)
+        recession = self._recession(edge, tensile, fine)
         if not recession.any():
             return released
         if recession.max() > _LEAST_STRIP and (strip := edge.strip(recession) & tensile).any():
@@ -129,17 +128,19 @@ class CrackClosure:
         released[edge.nodes[0][alone], edge.nodes[1][alone]] = True
         return released
 
-    def _recession(self, edge: Edge, tensile: Mask) -> Array:
-        """Distance (cells) from each edge node to the place where G = w; zero if it is at rest.
+    def _recession(self, edge: Edge, tensile: Mask, fine: bool) -> Array:
+        """Distance (cells) by which each edge node must recede; zero if its patch is at rest.
 
         At a fixed indentation sqrt(G) falls linearly with the position of the edge, and its slope
         over sqrt(G) is 1/(2t) for a smooth contact (JKR), where t is the width of the rim under
         tension.
         """
-        moves = (self.work_of_adhesion < edge.G) & tensile[edge.nodes]
+        largest = (1.0 if fine else _LARGEST_ON_COARSE_GRIDS) * self.work_of_adhesion
+        moves = (largest < edge.G) & tensile[edge.nodes]
         excess = np.zeros(edge.G.size)
-        excess[moves] = 1 - np.sqrt(self.work_of_adhesion / edge.G[moves])
-        excess[edge.patch_mean(excess) < _AT_REST] = 0.0
+        excess[moves] = 1 - np.sqrt(largest / edge.G[moves])
+        if fine:
+            excess[edge.patch_mean(excess) < _AT_REST] = 0.0
         return 2 * edge.tensile_width(tensile) * excess if excess.any() else excess
 
 

@@ -101,13 +101,15 @@ def complete_curve(path: Sequence[State]) -> list[tuple[float, float]]:
     """Indentations (m) and forces (N) of a `path` from `separate`, with both of its ends.
 
     The points are those of `unloading_curve`, between the state at which unloading begins and the
-    separation. So their work is that of the curve, within its error.
+    separation. Scatter beyond the largest tension is removed, so the smallest force is the pull-off
+    force. The work of the points is that of the curve, within its error.
     """
     curve, begin, end = unloading_curve(list(path)), path[0], path[-1]
     if not curve.balanced:
         return [(state.indentation, state.force) for state in path]
     points = [(begin.indentation, begin.force)]
-    for x, force in zip(curve.indentation, curve.force, strict=True):
+    limited = np.maximum(curve.force, -curve.largest_tension())
+    for x, force in zip(curve.indentation, limited, strict=True):
         if x < points[-1][0]:
             points.append((float(x), float(force)))
     last = points[-1][0]
