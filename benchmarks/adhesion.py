@@ -45,6 +45,7 @@ CASES = {
     "velocities, elastic": (BODY + VELOCITIES, "elastic", 128, "44.2 nm", 1),
     "velocities, yields at 3 GPa": (BODY + VELOCITIES, "3 GPa", 128, "48 nm", 1),
     "converge to 256^2": (BODY + DEPTHS, "elastic", 64, "88.4 nm", 3),
+    "converge to 512^2": (BODY + DEPTHS, "elastic", 128, "44.2 nm", 3),
     "converge to 1024^2": (BODY + DEPTHS, "elastic", 256, "22.1 nm", 3),
 }
 

@@ -38,7 +38,7 @@ Point = tuple[float, float]  # indentation (m) and force (N)
 def work_by_balance(
     state: State,
     start: State | None,
-    load: Callable[[Contact, float], State],
+    load: Callable[[Contact, float, State | None], State],
     tolerance: float,
 ) -> tuple[float, float, int]:
     """Return the loading work (J), the error of the quadrature (J) and the convolutions.
@@ -49,7 +49,7 @@ def work_by_balance(
     contact, last = state.contact, state.indentation
     first, work, convolutions = 0.0, 0.0, 0
     if start is None:
-        begin = load(contact, 0.0)  # right after the jump into contact
+        begin = load(contact, 0.0, None)  # right after the jump into contact
         convolutions += begin.convolutions
     else:
         begin, first, work = start, start.indentation, start.loading_work
@@ -61,10 +61,11 @@ def work_by_balance(
     error = 0.5 * abs(points[1.0][1] - points[0.0][1]) * (last - first)
     while error > tolerance * scale and parts < _MOST:
         parts = max(2 * parts, _FROM_TOUCH if start is None else _FROM_STATE)
+        found = begin
         for k in range(1, parts):
             t = k / parts
             if t not in points:
-                found = load(contact, first + (last - first) * t**_CROWDING)
+                found = load(contact, first + (last - first) * t**_CROWDING, found)
                 convolutions += found.convolutions
                 points[t] = balance_of(found)
         ordered = [points[t] for t in sorted(points)]

@@ -56,10 +56,16 @@ _LARGEST_CURVATURE = 0.35
 # Smallest and largest distance (cells) that is kept between a node released alone and the next
 # released node.
 _RELEASE_RADIUS, _LARGEST_RADIUS = 3, 40
-# The edge is at rest where its mean G is w. Because an edge moves by whole nodes, the largest G (at
-# the nodes released next) exceeds the mean by this factor.
-_MAXIMUM_OVER_MEAN = 1.04
-_CAUTION = 0.6  # part of the expected recession that is released in a strip
+# An edge moves by whole nodes, so G scatters along an edge at rest. On coarse grids, the largest G
+# of an edge exceeds the mean by this factor, and only nodes with a larger G are released.
+_LARGEST_ON_COARSE_GRIDS = 1.04
+# On a fine grid the rim under tension is wider than _RESOLVED_RIM (cells), and the mean of G is
+# accurate. A patch is then at rest if the mean of 1 − sqrt(w/G) over its edge is below _AT_REST,
+# where nodes with G < w count as zero. The tension limit is not applied, because nodes at the kinks
+# of an edge reach it at G = w, and their release would roughen the edge.
+_RESOLVED_RIM, _AT_REST = 2.0, 0.002
+_LEAST_STRIP = 0.75  # smallest width (cells) of a strip; in narrower ones nodes are released singly
+_SMOOTHED = 3  # standard deviation (cells) of the filter that smooths the outline of the contact
 # Tensions that differ by less than this fraction of the largest tension count as equal, because
 # the difference may be an error of the solve.
 _TIE = 1e-3
@@ -97,7 +103,7 @@ class TensionLimit:
 
 @dataclass(frozen=True)
 class CrackClosure:
-    """The criterion `crack-closure`; nodes beyond the tension limit are released as well."""
+    """The criterion `crack-closure`; on coarse grids it also applies the tension limit."""
 
     work_of_adhesion: float
     limit: float
@@ -105,22 +111,37 @@ class CrackClosure:
     def releases(self, p: Array, u: Array, h: Array, touching: Mask) -> Mask:
         """Select nodes that the edge must pass to reach G = w.
 
-        Where the edge must recede by more than a cell, all nodes of a strip along it are released.
-        Along the whole edge, the nodes under the largest tension are released, as many as the
-        expected recession of less than a cell needs.
+        The distance to G = w is estimated for each edge node (`_recession`). All nodes of the strip
+        between the smoothed outline and this distance are released. If the strip is narrow or
+        contains no node, single nodes under the largest tension are released.
         """
         edge = Edge.of(p, u, h, touching)
-        enough = _MAXIMUM_OVER_MEAN * self.work_of_adhesion
-        ready = (enough <= edge.G) & (p[edge.nodes] < 0)
-        released = touching & (p < -self.limit)
-        if ready.any():
-            excess = 1 - np.sqrt(enough / np.maximum(edge.G, _TINY))
-            recession = np.where(ready, 2 * edge.tensile_width(p < 0) * excess, 0.0)
-            if recession.max() > 1:
-                released |= edge.strip(_CAUTION * recession) & (p < 0)
-            alone = _apart(edge.nodes, np.where(ready, p[edge.nodes], 0.0), recession)
-            released[edge.nodes[0][alone], edge.nodes[1][alone]] = True
+        tensile = touching & (p < 0)
+        fine = bool(np.count_nonzero(tensile) > _RESOLVED_RIM * edge.G.size)
+        released = np.zeros_like(touching) if fine else touching & (p < -self.limit)
+        recession = self._recession(edge, tensile, fine)
+        if not recession.any():
+            return released
+        if recession.max() > _LEAST_STRIP and (strip := edge.strip(recession) & tensile).any():
+            return released | strip
+        alone = _apart(edge.nodes, np.where(recession > 0, p[edge.nodes], 0.0), recession)
+        released[edge.nodes[0][alone], edge.nodes[1][alone]] = True
         return released
+
+    def _recession(self, edge: Edge, tensile: Mask, fine: bool) -> Array:
+        """Distance (cells) by which each edge node must recede; zero if its patch is at rest.
+
+        At a fixed indentation sqrt(G) falls linearly with the position of the edge, and its slope
+        over sqrt(G) is 1/(2t) for a smooth contact (JKR), where t is the width of the rim under
+        tension.
+        """
+        largest = (1.0 if fine else _LARGEST_ON_COARSE_GRIDS) * self.work_of_adhesion
+        moves = (largest < edge.G) & tensile[edge.nodes]
+        excess = np.zeros(edge.G.size)
+        excess[moves] = 1 - np.sqrt(largest / edge.G[moves])
+        if fine:
+            excess[edge.patch_mean(excess) < _AT_REST] = 0.0
+        return 2 * edge.tensile_width(tensile) * excess if excess.any() else excess
 
 
 def criterion(
@@ -196,9 +217,34 @@ class Edge:
 
     def strip(self, width: Array) -> Mask:
         """The nodes of the contact within a `width` (cells) of the edge; one width a node."""
-        distance, nearest = self._distance
-        near: Mask = distance + 0.5 <= width[nearest]
+        _, nearest = self._distance
+        near: Mask = self._depth <= width[nearest]
         return self.touching & near
+
+    def patch_mean(self, values: Array) -> Array:
+        """Mean of `values`, one for each edge node, over the edge nodes of the same patch."""
+        patch = _patch_numbers(self.touching, self.nodes)
+        means = np.bincount(patch, weights=values) / np.maximum(np.bincount(patch), 1)
+        return np.asarray(means[patch])
+
+    @cached_property
+    def _depth(self) -> Array:
+        """Distance (cells) of each node inwards of the smoothed outline of the contact.
+
+        Along the edge, the mean distance of the edge nodes is half a cell.
+        """
+        from scipy.ndimage import distance_transform_edt, gaussian_filter
+
+        inside = np.pad(self.touching, _SMOOTHED)
+        signed = distance_transform_edt(inside) - distance_transform_edt(~inside)
+        signed -= 0.5 * np.sign(signed)
+        smooth = gaussian_filter(signed, _SMOOTHED, truncate=2.0)
+        smooth = smooth[_SMOOTHED:-_SMOOTHED, _SMOOTHED:-_SMOOTHED]
+        sums = np.column_stack([smooth[self.nodes], np.ones(self.G.size)])
+        diffuse(*self.diffusion, _SMOOTHING_STEPS, sums)
+        _, nearest = self._distance
+        depth: Array = smooth - (sums[:, 0] / sums[:, 1] - 0.5)[nearest]
+        return depth
 
     @cached_property
     def _distance(self) -> tuple[Array, NDArray[np.intp]]:
@@ -218,13 +264,18 @@ def _curvature(touching: Mask, nodes: Nodes, faces: NDArray[np.intp]) -> Array:
 
     It is 2π over the perimeter, which is π/4 times the number of faces for any smooth outline.
     """
-    from scipy.ndimage import label
-
-    patches, count = label(touching, structure=np.ones((3, 3)))
-    patch = patches[nodes]
-    total = np.bincount(patch, weights=faces, minlength=count + 1)[patch]
+    patch = _patch_numbers(touching, nodes)
+    total = np.bincount(patch, weights=faces)[patch]
     curvature: Array = np.minimum(8 / total, _LARGEST_CURVATURE)
     return curvature
+
+
+def _patch_numbers(touching: Mask, nodes: Nodes) -> NDArray[np.intp]:
+    """Number of the patch of each edge node; patches are joined by sides or corners of cells."""
+    from scipy.ndimage import label
+
+    numbers: NDArray[np.intp] = label(touching, structure=np.ones((3, 3)))[0][nodes]
+    return numbers
 
 
 def _apart(nodes: Nodes, pressure: Array, recession: Array) -> NDArray[np.intp]:

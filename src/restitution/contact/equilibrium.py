@@ -136,6 +136,7 @@ def solve_pressure(
             precondition=inverse,
             tolerance=residual * scale,
             max_iterations=MAX_ITERATIONS,
+            accept_estimated_gradient=contact.detachment == "crack-closure",
         )
         convolutions = K.count
     _require_converged(found, indentation, residual, scale)

@@ -83,32 +83,33 @@ def unloading_curve(path: list[State]) -> UnloadingCurve:
     if not any(balances) or not balances_are_reliable(path[0]):
         indentation, force = np.array(states).T
         return UnloadingCurve(indentation, force, balanced=False)
-    points: list[tuple[float, float]] = []
+    points, fixed = states[:1], None
     same_area: list[tuple[float, float]] = []
     for k, balance in enumerate(balances):
         same_area.append(states[k])
         if nodes[k + 1] == nodes[k]:
             continue
         found = same_area if balance is None or nodes[k] < _FEW_NODES else [balance]
-        points += [point for point in found if not points or point[0] < points[-1][0]]
+        points += [point for point in found if point[0] < points[-1][0]]
+        fixed = len(points) > 1 if fixed is None else fixed
         same_area = []
-    fixed = points[0][0] < states[0][0]
-    points = [states[0], *points] if fixed else points
     indentation, force = np.array(points).T
-    return UnloadingCurve(indentation, force, balanced=True, fixed=fixed)
+    return UnloadingCurve(indentation, force, balanced=True, fixed=bool(fixed))
 
 
 def complete_curve(path: Sequence[State]) -> list[tuple[float, float]]:
     """Indentations (m) and forces (N) of a `path` from `separate`, with both of its ends.
 
     The points are those of `unloading_curve`, between the state at which unloading begins and the
-    separation. So their work is that of the curve, within its error.
+    separation. Scatter beyond the largest tension is removed, so the smallest force is the pull-off
+    force. The work of the points is that of the curve, within its error.
     """
     curve, begin, end = unloading_curve(list(path)), path[0], path[-1]
     if not curve.balanced:
         return [(state.indentation, state.force) for state in path]
     points = [(begin.indentation, begin.force)]
-    for x, force in zip(curve.indentation, curve.force, strict=True):
+    limited = np.maximum(curve.force, -curve.largest_tension())
+    for x, force in zip(curve.indentation, limited, strict=True):
         if x < points[-1][0]:
             points.append((float(x), float(force)))
     last = points[-1][0]
