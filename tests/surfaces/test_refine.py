@@ -50,5 +50,5 @@ def test_the_edges_of_a_surface_that_is_not_periodic_do_not_ring():
 def test_one_is_the_same_and_less_is_refused():
     surface = Surface(np.zeros((4, 4)), Grid((4, 4), (1.0, 1.0)))
     assert refine(surface, 1) is surface
-    with pytest.raises(SurfaceError, match=r"^factor: 0 must be"):
+    with pytest.raises(SurfaceError, match=r"^factor: 0 is not a positive integer"):
         refine(surface, 0)
