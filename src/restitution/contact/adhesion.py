@@ -77,7 +77,8 @@ def release_nodes(
     tension = 2 * tension_limit(pair.contact_modulus, contact.work_of_adhesion, grid.spacing)
     before_release: State | None = None
     convolutions = 0
-    # Few digits decide which nodes are released; only the last solve needs all of them.
+    # A coarse tolerance is enough to decide which nodes are released. Only the last solve needs the
+    # requested tolerance.
     accuracy = residual
     if contact.detachment == "crack-closure":
         opening = contact.crack_opening / contact.residual_length(indentation)
@@ -225,8 +226,9 @@ def balances_are_reliable(state: State) -> bool:
 def balance_of(state: State) -> tuple[float, float]:
     """Indentation (m) and force (N) at which the contact area of a loaded `state` has G = w.
 
-    It takes one more solve with this contact area, at an indentation that is smaller by a part of
-    the pull-off displacement of a punch. Without a balance the values of the state are returned.
+    The function solves once more with this contact area, at an indentation that is smaller by a
+    part of the pull-off displacement of a punch. If no balance exists, it returns the values of the
+    state.
     """
     contact = state.contact
     if state.contact_nodes == 0:
@@ -251,10 +253,10 @@ def _balance(state: State, retracted: State) -> tuple[float, float] | None:
 
     `retracted` has the same contact area at a smaller indentation. On a grid, nodes are released
     late or early by a part of a node, so force and indentation of a state scatter about those of
-    the continuum. This scatter disappears where G, averaged along the edge, is w. While the contact
-    area is fixed, sqrt(G) and the force are linear in the indentation, so the indentation at which
-    G equals w follows from the two states. Returns None if no part of the edge is about to move, or
-    if G does not increase from `state` to `retracted`.
+    the continuum. At the balance, where the mean of G along the edge is w, this scatter disappears.
+    While the contact area is fixed, sqrt(G) and the force are linear in the indentation, so the two
+    states determine the balance. Returns None if no edge is about to move, or if G does not
+    increase from `state` to `retracted`.
     """
     contact = state.contact
     touching = state.box_pressure != 0

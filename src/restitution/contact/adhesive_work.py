@@ -57,7 +57,8 @@ def work_by_balance(
     parts = 1
     value = _integral([points[0.0], points[1.0]], first, last)
     scale = abs(work) + 0.5 * (abs(begin.force) + abs(state.force)) * (last - first)
-    # The force grows, so the work differs from that of a straight line by at most this much.
+    # The force increases with the indentation. Therefore the work differs from the work of a linear
+    # force by at most this value.
     error = 0.5 * abs(points[1.0][1] - points[0.0][1]) * (last - first)
     while error > tolerance * scale and parts < _MOST:
         parts = max(2 * parts, _FROM_TOUCH if start is None else _FROM_STATE)

@@ -179,7 +179,7 @@ def separation_of(path: list[State]) -> Separation:
     found = curve.work()
     # Unloading returns at most the elastic energy.
     work = min(found, start.stored_energy) if curve.balanced else found
-    # The work of the curve without that of its states; zero to first order if they are the same.
+    # Difference between the works of the curve and of the states.
     scatter = work - trapezoid if curve.balanced else 0.0
     return Separation(
         unloading_work=work,

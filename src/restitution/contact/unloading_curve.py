@@ -1,4 +1,4 @@
-"""Curves of adhesive unloading: force over indentation, and where two of them are the same."""
+"""Curves of adhesive unloading (force over indentation), and where two curves coincide."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ _SMOOTHED = 11  # points through which a parabola smooths the force under tensio
 _JUMP = 0.1  # a larger change of force between two points, over the largest tension, is a jump
 # Fall of the indentation while the last contact snaps apart, over the range of the curve.
 _END = 1e-3
-# Largest difference between two forces at one indentation, over the largest tension, if they are
-# the same but for the scatter of the balances.
+# Two forces at one indentation count as equal if their difference over the largest tension is below
+# this value, which is the scatter of the balances.
 _SAME = 0.03
 
 
