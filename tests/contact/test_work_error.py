@@ -105,7 +105,7 @@ def test_a_quadrature_of_balances_adds_half_as_much_again_as_every_second_depth_
         state.contact, state.convolutions = None, 1
         return state
 
-    def load(_, depth):
+    def load(_, depth, _before):
         asked.append(depth)
         return at(depth)
 

@@ -43,8 +43,8 @@ def work_by_balance(
 ) -> tuple[float, float, int]:
     """Return the loading work (J), the error of the quadrature (J) and the convolutions.
 
-    The work is integrated from `start`, or from first touch. `load` solves at another depth (m).
-    `tolerance` is relative to the work.
+    The work is integrated from `start`, or from first touch. `load` solves at another depth (m),
+    with a shallower state (or None) as its initial guess. `tolerance` is relative to the work.
     """
     contact, last = state.contact, state.indentation
     first, work, convolutions = 0.0, 0.0, 0
