@@ -11,7 +11,7 @@ FAST_TESTS := tests/theory tests/numerics tests/test_collision.py
 KERNEL_TESTS := tests/numerics/test_compiled.py tests/numerics/convolution/test_operators.py
 WITHOUT_COMPILER := CC=/bin/false CXX=/bin/false
 
-.PHONY: help demo test test-fast test-kernels test-clang wheel test-wheel fuzz mutation lint docs docs-links bench bench-peers bench-periodic clean
+.PHONY: help demo test test-programs test-fast test-kernels test-clang wheel test-wheel fuzz mutation lint docs docs-links bench bench-peers bench-periodic clean
 
 .DEFAULT_GOAL := demo
 
@@ -23,8 +23,11 @@ demo: $(VENV)/demo.installed  ## run the bundled example
 	$(BIN)/restitution check examples/steel.toml
 	$(BIN)/restitution run examples/steel.toml -o demo
 
-test: $(VENV)/test.installed  ## run the tests
-	DUCC0_NUM_THREADS=1 $(BIN)/pytest -n auto --dist worksteal
+test: $(VENV)/test.installed  ## the tests of the package, under five minutes on two cores
+	DUCC0_NUM_THREADS=1 $(BIN)/pytest -n auto --dist worksteal -m "not programs"
+
+test-programs: $(VENV)/test.installed  ## the tests that start a browser or a DEM code, or run the blocks of a page
+	DUCC0_NUM_THREADS=1 $(BIN)/pytest -n auto --dist worksteal -m programs
 
 # CONTRIBUTING.md says what this leaves out.
 test-fast: $(VENV)/test.installed  ## the tests of single parts, under a minute on two cores

@@ -3,6 +3,7 @@
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -18,10 +19,21 @@ from restitution.laws.law import Law, Particle, Point
 from restitution.numerics import kernels
 
 SOURCES = Path(__file__).parents[1] / "src" / "restitution" / "numerics"
+# Fixtures that start another program: a browser, or a DEM code.
+PROGRAMS = {"browser", "opened", "lammps", "lammps_environment", "liggghts", "yade", "python_with"}
+
+
+def pytest_collection_modifyitems(items):
+    """Mark the tests that start another program; `make test` leaves them to `test-programs`."""
+    for item in items:
+        if PROGRAMS & set(item.fixturenames):
+            item.add_marker("programs")
 
 
 def pytest_sessionstart():
-    """Refuse to test compiled loops that are older than their sources."""
+    """Make Ctrl-C work in child processes; refuse compiled loops older than their sources."""
+    # A shell that starts the tests in the background ignores Ctrl-C, and children inherit this.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     if kernels.loops is None:
         return
     built = Path(kernels.loops.__file__).stat().st_mtime
@@ -241,7 +253,7 @@ def own_scan(tmp_path_factory):
 
 
 # A real browser without a window.
-PROGRAMS = ("chromium", "chromium-browser", "google-chrome")
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 
 
 @pytest.fixture
@@ -251,7 +263,7 @@ def opened():
 
 
 def _opened(page, *, width=1000):
-    program = next(filter(None, map(shutil.which, PROGRAMS)), None)
+    program = next(filter(None, map(shutil.which, BROWSERS)), None)
     if program is None:
         pytest.skip("no Chromium is installed (Debian: apt install chromium)")
     done = subprocess.run(

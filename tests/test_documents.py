@@ -62,6 +62,7 @@ def page_id(path):
     return path.relative_to(ROOT).as_posix()
 
 
+@pytest.mark.programs
 @pytest.mark.parametrize("path", RUN, ids=page_id)
 def test_the_blocks_of_a_page_run_and_print_what_it_shows(path, tmp_path):
     for block, printed in run_page(path.read_text(), tmp_path):
@@ -211,6 +212,7 @@ def test_the_readme_says_what_to_run_first_and_what_it_writes():
         assert f"`{name}`" in README
 
 
+@pytest.mark.programs
 def test_the_way_to_a_dem_code_gives_the_table_of_its_page(tmp_path):
     page = (ROOT / "docs" / "dem.md").read_text()
     for block, printed in run_page(page, tmp_path):
