@@ -85,8 +85,8 @@ class Foundation:
         """Move the bodies tangentially by `motion` (m).
 
         `u` (m) holds the tangential displacements of the springs, and `limit` (N) their friction
-        limits. `factor` multiplies the tangential modulus. `motion` and `factor` may be
-        arrays; each of their values belongs to a row of `u`. Returns the new displacements (m), the
+        limits. `factor` multiplies the tangential modulus. `motion` and `factor` may be arrays;
+        each of their values belongs to a row of `u`. Returns the new displacements (m), the
         tangential force (N), and the work of friction (J).
         """
         stiffness = 2 * self.moduli[1] * self.width * np.asarray(factor)

@@ -35,9 +35,8 @@ def bare_law(out: Path) -> Law:
 
     The law of an ensemble is that of its mean curve, and its errors include the confidence interval
     of the mean. The errors from a convergence study include the error of the grid. Depths with a
-    negative loading work (because of adhesion) have no impact velocity and are left out.
-    Raises `OutputError` if the folder holds no run, and `CaseError` if no depth has an impact
-    velocity.
+    negative loading work (because of adhesion) have no impact velocity and are left out. Raises
+    `OutputError` if the folder holds no run, and `CaseError` if no depth has an impact velocity.
     """
     run = _read(out)
     try:

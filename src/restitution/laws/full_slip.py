@@ -1,11 +1,12 @@
 """Closed forms for impacts in which the whole contact slides from the beginning to the end.
 
 The bodies meet at the angle θ from the normal, with the tangential and normal velocities V_t and
-V_n. In the foundation (`foundation`), a spring that slides has the displacement µ (E*/G*)(δ − g) at
-the indentation δ; it first touched at the indentation g. It continues to slide as long as the
-velocity U of the contact point exceeds the rate of this displacement, U > µ (E*/G*) dδ/dt. With
-full slip, the difference of the two sides decreases during the whole contact. So the condition is
-strictest at the end of contact, where dδ/dt = −e V_n and U = V_t − (7/2) µ (1 + e) V_n:
+V_n. In the foundation (`foundation`), a spring that slides has the displacement µ (E*/G*)(δ − g),
+where δ is the indentation and g the indentation at which this spring touches. It continues to slide
+as long as the velocity U of the contact point exceeds the rate of this displacement, U > µ (E*/G*)
+dδ/dt. With full slip, the difference of the two sides decreases during the whole contact. So the
+condition is strictest at the end of contact, where dδ/dt = −e V_n and U = V_t − (7/2) µ (1 + e)
+V_n:
 
     tan θ ≥ µ [(7/2)(1 + e) − e E*/G*].
 

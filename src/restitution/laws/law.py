@@ -132,8 +132,8 @@ class FittedLaw(_Stored):
 
     The keys of `parameters` carry the units. `restitution` is the COR of the force law at the
     velocities of the points; it is None where the force law has no solution, and outside the
-    resolved velocities (`Law.fitted_range`). `rms` and `worst` are the
-    differences from the computed COR at the resolved points.
+    resolved velocities (`Law.fitted_range`). `rms` and `worst` are the differences from the
+    computed COR at the resolved points.
     """
 
     name: str

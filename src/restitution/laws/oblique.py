@@ -8,13 +8,13 @@ normal velocity (`time_integration`). The contact point slides with the velocity
 for solid spheres (moment of inertia I = 2/5 m R²), where v_t is the tangential velocity of the
 centres and m* the reduced mass. The spin ω is positive in the direction in which friction turns a
 sphere without spin. The tangential force T follows from a one-dimensional foundation of springs
-with constant friction µ (`foundation`). If all springs slide to the end, the impulse of T is µ (1 +
-e) m* V_n for every force law.
+with constant friction µ (`foundation`). If all springs slide to the end, the impulse of T is
+µ (1 + e) m* V_n for every force law, with the normal impact velocity V_n.
 
 To convert the error of the tangential law (`tangential_error`) to an error of the impulse of T, the
-motion is integrated again with a larger and a smaller tangential modulus. If the
-contact has yielded, a fraction of the impulse is added to the error. This fraction vanishes in full
-slip, where the impulse is exact for like bodies.
+motion is integrated again with a larger and a smaller tangential modulus. If the contact has
+yielded, a fraction of the impulse is added to the error. This fraction vanishes in full slip, where
+the impulse is exact for like bodies.
 
 Neglected: the coupling of normal and tangential displacements of unlike materials, the torque about
 the normal, rolling friction, and elastic waves.

@@ -45,9 +45,9 @@ class Theory:
 def velocities_of(case: Case, law: Law | None = None) -> Array:
     """Velocities (m/s) of the table: those of the law if one is given, else the span of the case.
 
-    If the case gives indentations or loads, the velocities are those at which smooth bodies reach
-    the first and the last of these, by Thornton and Ning or, for elastic bodies, by Hertz. Raises
-    `CaseError`.
+    If the case gives indentations or loads, the span is between the velocities at which smooth
+    bodies reach the first and the last of these, by Thornton and Ning or, for elastic bodies, by
+    Hertz. Raises `CaseError`.
     """
     if law is not None:
         return law.column("velocity")

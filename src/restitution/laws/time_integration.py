@@ -7,10 +7,10 @@ loading curve until the particles stop approaching, and then the unloading curve
 reached. The resulting e is a check of the stored unloading work against the unloading forces, and
 of the formula for e from energies against an equation of motion.
 
-The loading force is the derivative of a cubic Hermite spline through the stored loading work W. The
-slopes of the spline at the stored depths are the stored forces. So the motion stops at the
-indentation at which the stored work equals the kinetic energy. If W resembles a power of δ, the
-spline interpolates ln W against ln δ.
+The loading force is the derivative of a cubic Hermite spline through the stored loading work W. At
+the stored depths, the slope of the spline is the stored force. The motion stops where W equals the
+initial kinetic energy, as in the formula from energies. If W resembles a power of δ, the spline
+interpolates ln W against ln δ.
 
 Unloading curves are monotone cubics (PCHIP) and are stored for some depths only. Between two of
 these depths, F/F_max is interpolated against (δ − δ_s)/(δ_max − δ_s), with the separation δ_s and
@@ -45,9 +45,7 @@ Force = Callable[[float], float]
 
 _RTOL = 1e-10
 _SLACK = 1e-3  # allowed excess over the deepest depth (relative), for errors of the integration
-# Largest exponent d ln W/d ln δ for which W is treated as a power of δ. A larger value means that
-# adhesion nearly cancels W.
-_STEEPEST = 6.0
+_STEEPEST = 6.0  # largest d ln W/d ln δ of a power law; above it, adhesion nearly cancels W
 _SAME = 1e-5  # largest relative difference of depths that count as equal
 
 
@@ -170,8 +168,8 @@ def force_of(pair: Pair, results: xr.Dataset, unloading: Sequence[UnloadingCurve
     """Make the force law of `pair` from the variables of a curve and its unloading curves.
 
     `results` has the variables of `results.nc`, including the height at x and y. `unloading` is
-    sorted by `start`. Raises `OutputError` if no unloading reaches separation, and `CaseError`
-    if `pair` has no mass.
+    sorted by `start`. Raises `OutputError` if no unloading reaches separation, and `CaseError` if
+    `pair` has no mass.
     """
     depth, force = results["indentation"].values, results["force"].values
     return StoredForce(
@@ -203,8 +201,8 @@ def collide_in_time(law: StoredForce, velocity: float) -> ReferenceCollision:
     """Integrate a head-on collision of the two particles of `law` at relative `velocity` (m/s).
 
     The particles start at first touch, in the frame of their centre of mass (with a wall, in the
-    frame of the wall). Raises `DomainError` if the collision is deeper than the stored forces,
-    and `NotConvergedError` if the integration fails.
+    frame of the wall). Raises `DomainError` if the collision is deeper than the stored forces, and
+    `NotConvergedError` if the integration fails.
     """
     if not 0 < velocity <= law.highest * (1 + 1e-9):
         raise DomainError(

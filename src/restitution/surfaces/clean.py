@@ -68,8 +68,7 @@ def remove_outliers(surface: Surface, threshold: float) -> Surface:
     A pixel is an outlier if its height differs from the median of the 5 x 5 pixels around it by
     more than `threshold` standard deviations. The standard deviation is that of these differences
     over all pixels. It is estimated from the median of their absolute values, which outliers hardly
-    change.
-    The number of outliers and the largest difference are added to the provenance.
+    change. The number of outliers and the largest difference are added to the provenance.
 
     Args:
         surface: Surface to clean.

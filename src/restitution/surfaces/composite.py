@@ -64,8 +64,8 @@ def composite(surfaces: Sequence[Surface]) -> Surface:
 def _removed(provenances: Sequence[Mapping[str, str | float]]) -> dict[str, float]:
     """Return the provenance entries on the waves that are too short for the grid.
 
-    The rms heights of the parts are added in quadrature. Each other entry is the
-    largest value of all parts.
+    The rms heights of the parts are added in quadrature. Each other entry is the largest value of
+    all parts.
     """
     known = [p for p in provenances if "removed_slope" in p]
     if not known:

@@ -3,12 +3,11 @@
     C(q) = |∫ z exp(−iq·r) d²r|²/A,   Sq² = (2π)⁻² ∫ C d²q,   (Surf. Topogr. 5, 013001, eqs 2, 6)
 
 C is in m⁴, q is the wave vector (rad/m), z the height minus its mean at the position r, and A the
-area of the surface. A scan is not
-periodic, so the jump between opposite edges would dominate the spectrum. The scan is therefore
-multiplied by each of nine sine tapers, and the nine spectra are averaged (Riedel and Sidorenko
-1995, IEEE Trans. Signal Process. 43, 188–195). Together the tapers cover all of the scan except the
-rim. The leakage from long waves to short waves decreases with the fourth power of the wave number.
-The resolution in frequency is ±1.5/size.
+area of the surface. A scan is not periodic, so the jump between opposite edges would dominate the
+spectrum. The scan is therefore multiplied by each of nine sine tapers, and the nine spectra are
+averaged (Riedel and Sidorenko 1995, IEEE Trans. Signal Process. 43, 188–195). Together the tapers
+cover all of the scan except the rim. The leakage from long waves to short waves decreases with the
+fourth power of the wave number. The resolution in frequency is ±1.5/size.
 """
 
 from __future__ import annotations
@@ -71,8 +70,8 @@ def radial_spectrum(surface: Surface, density: Array | None = None) -> RadialSpe
     """The power spectral density, averaged over directions and in bands of the wave number.
 
     `density` is the `power_spectral_density` of `surface`, if it is already known. Wave vectors at
-    which `density` is NaN are left out. Bands are about a quarter of an octave wide, up to the
-    wave number of the shortest wave that the grid resolves along both axes.
+    which `density` is NaN are left out. Bands are about a quarter of an octave wide, up to the wave
+    number of the shortest wave that the grid resolves along both axes.
     """
     C = power_spectral_density(surface) if density is None else density
     q = wave_numbers(C.shape, surface.grid.spacing)
