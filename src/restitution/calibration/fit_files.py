@@ -27,7 +27,7 @@ _NAMES = ("fit.json", "fit.csv", "case.toml")
 
 
 def write_fit(found: Fit, text: str, out: Path) -> list[Path]:
-    """Write the output files of a fit into `out`; `text` is the content of the fitted case file.
+    """Write the output files of a fit into `out`; `text` is the case file with the first guesses.
 
     Raises `OutputError`.
     """

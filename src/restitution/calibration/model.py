@@ -139,7 +139,7 @@ def curve_of(
 
 
 def _row(state: State, unloading: UnloadingTable) -> tuple[float, ...]:
-    """Impact velocity (m/s), W_u/W_l, solver and model error of COR, whether it is resolved."""
+    """Impact velocity (m/s), W_u/W_l, solver and model error, whether the contact is resolved."""
     collision = collide(state, method=unloading.method, tolerance=unloading.restitution_error)
     fine = adhesive_nodes(state) >= ADHESIVE_NODES
     return (
@@ -184,7 +184,7 @@ class CaseModel:
         return parse_case(self.text(x))
 
     def at(self, x: Array, cost: Cost = "full") -> Mean:
-        """Compute the mean curve over surfaces at parameters `x`. Raises as `curve_of`."""
+        """Compute the mean curve of the surfaces at `x`. Raises the errors of `curve_of`."""
         key = (x.tobytes(), cost)
         if key not in self._known:
             self._known[key] = self._computed(x, cost)

@@ -56,7 +56,7 @@ class Deviations:
         """Deviations of COR with covariance 2 S/n, shape (surfaces, points).
 
         2 S/n is the covariance of the difference between two means over n surfaces, where S is the
-        covariance of COR between single surfaces.
+        covariance of the COR of single surfaces.
         """
         n = len(self.surfaces)
         return self.surfaces * math.sqrt(2 / (n * max(n - 1, 1)))
@@ -122,7 +122,7 @@ class Uncertainty:
         return np.asarray(found)
 
     def half(self, direction: Array) -> float:
-        """Half of the 95 % interval along `direction`; inf if it exceeds ln 10⁶."""
+        """Half of the 95 % interval of the logarithms along `direction`; inf if above ln 10⁶."""
         from scipy.stats import t
 
         variances = {name: float(direction @ C @ direction) for name, C in self.parts.items()}

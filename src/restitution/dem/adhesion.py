@@ -33,7 +33,7 @@ def pull_off_force(law: Law, velocity: float) -> float:
 
 
 def adhesion_lines(law: Law, velocity: float, code: str) -> list[str]:
-    """Write comment lines on the adhesion of `law` for the export to `code`; none if it is 0."""
+    """Write comment lines on the adhesion of `law`, if any, for the export to `code`."""
     if law.work_of_adhesion == 0:
         return []
     force = pull_off_force(law, velocity)

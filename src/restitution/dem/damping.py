@@ -37,7 +37,7 @@ from scipy.optimize import brentq
 
 from restitution.laws.law import Law
 
-_NEARLY_ELASTIC = 1e-4  # below this value of 1 − e, dV is computed from its leading terms
+_NEARLY_ELASTIC = 1e-4  # below this value of 1 − e, only the leading terms of dV are used
 _TOLERANCE = 1e-12  # tolerance of root finding
 # Below this dV, the series e = 1 − ⅔ dV is used. The omitted terms are of the order (dV)², while
 # solving the equation for e would lose more digits to rounding.
@@ -47,7 +47,7 @@ _LARGEST_DAMPING = 20.0
 
 
 def dashpot_restitution(ratio: float) -> float:
-    """Return e for the damping ratio ζ (1) of a linear spring and dashpot without tension."""
+    """Return e of a linear spring and dashpot without tension, for its damping ratio ζ (1)."""
     if ratio == 1:
         return math.exp(-2)
     root = math.sqrt(abs(1 - ratio**2))
@@ -56,12 +56,12 @@ def dashpot_restitution(ratio: float) -> float:
 
 
 def dashpot_ratio(restitution: float) -> float:
-    """Return the damping ratio ζ (1) of a linear spring and dashpot without tension for e."""
+    """Return the damping ratio ζ (1) with which a spring and dashpot without tension has e."""
     return _root(dashpot_restitution, restitution, _LARGEST_DAMPING)
 
 
 def hunt_crossley_dissipation(restitution: float) -> float:
-    """Return the product dV (1) of dissipation and impact velocity for e > 0."""
+    """Return the product dV (1) of dissipation d and impact velocity V that gives e > 0."""
     e = restitution
     if 1 - e < _NEARLY_ELASTIC:
         return 1.5 * (1 - e**2) / (1 + e**3)
@@ -77,7 +77,7 @@ def hunt_crossley_dissipation(restitution: float) -> float:
 
 
 def hunt_crossley_restitution(dissipation: float) -> float:
-    """Return e for the product dV (1) of dissipation and impact velocity."""
+    """Return e for the product dV (1) of dissipation d and impact velocity V."""
     c = dissipation
     if c < _SMALL:
         return 1.0 - 2 / 3 * c
@@ -104,7 +104,7 @@ def hertz_restitution(damping: float) -> float:
 
 
 def hertz_damping(law: Law, velocity: float, restitution: float) -> float:
-    """Return the damping coefficient γ (kg/s) of a Hertz contact for e at `velocity` (m/s)."""
+    """Return the damping coefficient γ (kg/s) of a Hertz contact that has e at `velocity` (m/s)."""
     g = _root(hertz_restitution, restitution, 2.0)
     return g * law.mass * velocity / _length(law, velocity)
 

@@ -86,7 +86,7 @@ def pairs_at(table: PairTable, velocity: float, code: str, lowest: float) -> lis
         e = law.at(velocity).restitution
         if e < lowest:
             raise CaseError(
-                f"{law.pair} {_failure(law, e)} at {velocity:.6g} m/s, and {code} takes no "
+                f"{law.pair} {_failure(law, e)} at {velocity:.6g} m/s, but {code} accepts no "
                 f"coefficient of restitution below {lowest:g}; export at a higher velocity, or "
                 "use an adhesive contact model"
             )

@@ -58,7 +58,7 @@ class PairTable:
         if missing:
             more = f" (and {len(missing) - 1} more)" if len(missing) > 1 else ""
             raise CaseError(
-                f"{code} needs a law for every {what}, and there is none for "
+                f"{code} needs a law for every {what}, but there is none for "
                 f"{missing[0]}{more}; the law of another pair cannot replace it: compute this law "
                 "(`restitution run`, `restitution fit-law`) and give it, too"
             )
@@ -78,7 +78,7 @@ def pair_table(laws: Sequence[Law]) -> PairTable:
         i, j = sorted((number[law.first], number[law.second]))
         if (i, j) in found:
             raise CaseError(
-                f"two laws are given for {law.pair}; give one of them, or rename the particles"
+                f"two laws are given for {law.pair}; give only one of them, or rename the particles"
             )
         found[i, j] = law
     return PairTable(spheres, walls, found)

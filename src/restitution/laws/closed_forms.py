@@ -29,7 +29,7 @@ Array = NDArray[np.float64]
 STRENGTHS = 2.8
 """Ratio p_y/Y that is assumed for bodies without a yield strength."""
 
-_SMALL = 0.01  # largest δ/R* for which Hertz's theory is used
+_SMALL = 0.01  # largest ratio of indentation to R* for which Hertz's theory is used
 _JOHNSON = 0.6  # largest e for which Johnson's formula is used
 
 SOURCES = {
@@ -71,7 +71,7 @@ class Bodies:
         for name, body in (("first", pair.first), ("second", pair.second)):
             if body.mass is None:
                 raise CaseError(
-                    f"{name}.density: is missing, and every theory of restitution needs it; write "
+                    f"{name}.density: is missing, but every theory of restitution needs it; write "
                     f'for example density = "2500 kg/m^3" in [{name}]'
                 )
         assert pair.mass is not None  # the loop above checked both densities
@@ -97,17 +97,17 @@ class Bodies:
 
     @property
     def hertz(self) -> Hertz:
-        """Hertz contact of the bodies."""
+        """Elastic contact of the bodies, without adhesion (Hertz)."""
         return Hertz(self.R, self.E)
 
     @property
     def yielding(self) -> ThorntonNing:
-        """The elastic-plastic contact without adhesion."""
+        """Elastic-plastic contact of the bodies, without adhesion (Thornton and Ning)."""
         return ThorntonNing(self.R, self.E, self.p_y)
 
     @property
     def sticking(self) -> JKR:
-        """The elastic contact with adhesion."""
+        """Elastic contact of the bodies, with adhesion (JKR)."""
         return JKR(self.R, self.E, self.w)
 
     @property

@@ -9,8 +9,8 @@ yielding. Low velocities at which nothing is lost (e = 1) or the pair sticks (e 
 
 The fit is linear least squares in e². The error between the points is estimated by the larger of
 two values: the largest residual, and the largest leave-one-out residual (as in PRESS, Allen 1974,
-but with the maximum instead of the sum). The degree of the polynomial is the lowest whose error is
-small or near the minimum.
+but with the maximum instead of the sum). The polynomial has the lowest
+degree whose error is small, or near the smallest error of all degrees.
 """
 
 from __future__ import annotations

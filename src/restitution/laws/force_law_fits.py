@@ -284,7 +284,7 @@ def _fit(
     low: list[float],
     high: list[float] | None = None,
 ) -> Array:
-    """Find parameters x within `low` and `high` for which restitution(V, x) fits the points."""
+    """Fit restitution(V, x) to the points; the parameters x stay within `low` and `high`."""
     V, e = _seen(law, "velocity"), _seen(law, "restitution")
 
     def misfit(x: Array) -> Array:

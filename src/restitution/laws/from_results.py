@@ -118,7 +118,7 @@ def _law(out: Path, run: RunResults) -> Law:
 def _read(out: Path) -> RunResults:
     if (out / "study.toml").is_file():
         raise OutputError(
-            f"{out}: is a study of many cases, and a law describes one pair; run one case with "
+            f"{out}: is a study of many cases, but a law describes one pair; run one case with "
             "`restitution run` and give its folder"
         )
     if (out / LAW_FILE).is_file():

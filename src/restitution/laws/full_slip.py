@@ -3,10 +3,13 @@
 The bodies meet at the angle θ from the normal, with the tangential and normal velocities V_t and
 V_n. In the foundation (`foundation`), a spring that slides has the displacement µ (E*/G*)(δ − g),
 where δ is the indentation and g the indentation at which this spring touches. It continues to slide
-as long as the velocity U of the contact point exceeds the rate of this displacement, U > µ (E*/G*)
-dδ/dt. With full slip, the difference of the two sides decreases during the whole contact. So the
-condition is strictest at the end of contact, where dδ/dt = −e V_n and U = V_t − (7/2) µ (1 + e)
-V_n:
+as long as the velocity U of the contact point exceeds the rate of this displacement:
+
+    U > µ (E*/G*) dδ/dt.
+
+With full slip, the difference of the two sides decreases during the whole contact. So the condition
+is strictest at the end of contact, with dδ/dt = −e V_n and U = V_t − (7/2) µ (1 + e) V_n. There it
+is
 
     tan θ ≥ µ [(7/2)(1 + e) − e E*/G*].
 

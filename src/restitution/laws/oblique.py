@@ -45,7 +45,7 @@ Array = NDArray[np.float64]
 
 _STEPS = 4000  # number of time steps of a collision
 _LEAST = 1e-3  # fraction of the largest normal force below which `sticking` is set to 0
-_INERTIA = 3.5  # 1 + m R²/I of a solid sphere
+_INERTIA = 3.5  # 1 + m R²/I of a solid sphere with moment of inertia I
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,7 +149,7 @@ def collide_obliquely(
         math.isinf(body.radius) and spin != 0
         for body, spin in zip((law.pair.first, law.pair.second), spins, strict=True)
     ):
-        raise CaseError("spins: a wall does not turn; give 0 for it")
+        raise CaseError("spins: a wall does not rotate; give 0 for the wall")
     V_n, V_t = velocity * math.cos(angle), velocity * math.sin(angle)
     normal = collide_in_time(law, V_n)
     bodies = law.pair.first, law.pair.second

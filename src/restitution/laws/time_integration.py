@@ -207,7 +207,7 @@ def collide_in_time(law: StoredForce, velocity: float) -> ReferenceCollision:
     if not 0 < velocity <= law.highest * (1 + 1e-9):
         raise DomainError(
             f"velocity: {velocity:.6g} m/s is outside the computed velocities (above 0, up to "
-            f"{law.highest:.4g} m/s); choose one in this range, or compute higher velocities"
+            f"{law.highest:.4g} m/s); choose a velocity in this range, or compute higher velocities"
         )
     m1, m2 = law.pair.first.mass, law.pair.second.mass
     assert m1 is not None  # checked by StoredForce
@@ -324,8 +324,8 @@ def _loading(depth: Array, force: Array, work: Array) -> Force:
     with np.errstate(divide="ignore", invalid="ignore"):
         powers = force * depth / work
     if (work > 0).all() and (powers > 0.5).all() and (powers < _STEEPEST).all():
-        # ln W is interpolated against ln δ, and extrapolated to zero depth by a straight line,
-        # which is a power of δ.
+        # ln W is interpolated against ln δ. Below the first depth it is a straight line, so W is a
+        # power of δ there.
         L, slope = np.log(depth), powers
         log_work = _hermite(L, np.log(work), slope)
         first = float(L[0])

@@ -210,7 +210,7 @@ def _component(key: str, name: str, table: Any) -> Component:
     except ValidationError as error:
         raise CaseError(in_words(error, BodyTable, key)) from None
     if radii and checked.density is None:
-        raise CaseError(f"{key}.density: is missing; an impact velocity needs the mass")
+        raise CaseError(f"{key}.density: is missing; the impact velocity depends on it")
     order = sorted(range(len(radii)), key=radii.__getitem__)
     increasing, shares = (tuple(values[k] for k in order) for values in (radii, fractions))
     return Component(name, body, rough, increasing, shares)

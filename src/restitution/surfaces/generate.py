@@ -95,7 +95,7 @@ def generate_surface(
 
     Raises:
         SurfaceError: The kind is unknown, an argument does not belong to this kind or is out of
-            range, the grid cannot carry the waves, or the skewness and kurtosis are impossible.
+            range, the grid cannot represent the waves, or the skewness and kurtosis are impossible.
         TypeError: An argument is unknown.
     """
     spectrum = _spectrum(kind, waves)
@@ -198,7 +198,7 @@ def _heights(
 
 
 def _enlarged(grid: Grid, longest: float) -> Grid:
-    """Return a periodic grid so large that a part of the size of `grid` has uncorrelated edges."""
+    """Return a larger grid: surfaces cut from it to the size of `grid` have uncorrelated edges."""
     from scipy.fft import next_fast_len
 
     nx, ny = (

@@ -51,7 +51,7 @@ class Autocorrelated:
         return max(self.correlation_length)
 
     def check(self, grid: Grid) -> None:
-        """Raise `SurfaceError` if a parameter is invalid or `grid` cannot carry these waves."""
+        """Raise `SurfaceError` if a parameter is invalid or `grid` cannot represent these waves."""
         for axis, beta in enumerate(self.correlation_length):
             where = (
                 f"along {'xy'[axis]}" if self.lay == 0 else ("along", "across")[axis] + " the lay"
@@ -88,7 +88,7 @@ class Autocorrelated:
         return _without_short_waves(H, grid, self.shortest)
 
     def parameters(self, grid: Grid) -> dict[str, str | float]:
-        """Provenance entries on the waves on `grid`."""
+        """Provenance entries that describe these waves on `grid`."""
         axes = ("x", "y") if self.lay == 0 else ("along_lay", "across_lay")
         lengths = zip(axes, self.correlation_length, strict=True)
         return {
@@ -117,7 +117,7 @@ class SelfAffine:
         return math.inf if self.rolloff is None else self.rolloff
 
     def check(self, grid: Grid) -> None:
-        """Raise `SurfaceError` if a parameter is invalid or `grid` cannot carry these waves."""
+        """Raise `SurfaceError` if a parameter is invalid or `grid` cannot represent these waves."""
         if not 0 < self.hurst <= 1:
             raise SurfaceError(
                 f"hurst: {self.hurst:g} is outside the range above 0 and up to 1; real surfaces "
@@ -144,7 +144,7 @@ class SelfAffine:
         return _without_short_waves(H, grid, self.shortest)
 
     def parameters(self, grid: Grid) -> dict[str, str | float]:
-        """Provenance entries on the waves on `grid`."""
+        """Provenance entries that describe these waves on `grid`."""
         return {
             "hurst": float(self.hurst),
             "rolloff_m": float(self.rolloff or max(grid.size)),

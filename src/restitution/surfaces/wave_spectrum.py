@@ -41,7 +41,7 @@ class WaveSpectrum:
     """
 
     density: Array
-    waves: tuple[float, float]  # wave numbers of the twin per wave number of the scan, along x, y
+    waves: tuple[float, float]  # period of the twin over the size of the scan, along x and y
     pixel: tuple[float, float]  # pixel of the scan (m)
     period: tuple[float, float]
     flat: float = 1.0  # a in the factor a + b/k², where k is the number of waves per scan
@@ -101,7 +101,8 @@ def spectrum_of(scan: Surface, period: tuple[float, float]) -> WaveSpectrum:
     if abs(np.linalg.det(moments)) > 1e-9 * abs(moments[0, 0] * moments[1, 1]):
         a, b = (float(value) for value in np.linalg.solve(moments, wanted))
     spectrum = WaveSpectrum(C, raw.waves, raw.pixel, period, a, b)
-    # `power` sets negative values to zero, which changes the mean square height. So rescale.
+    # `power` sets negative values to zero, which changes the mean square height. The factors a and
+    # b are rescaled to correct this.
     excess = _moments(spectrum, raw=False)[0, 0] / wanted[0]
     return WaveSpectrum(C, raw.waves, raw.pixel, period, a / excess, b / excess)
 

@@ -6,9 +6,8 @@ LAMMPS uses the E and ν of a pair_coeff for both bodies, also at walls:
 
 So each pair gets values of E and ν that lead to its E* and G*. LAMMPS' mixing of two materials
 applies the factor ½ twice, so the export does not use it. Force and damping (Antypov & Elliott, EPL
-94 (2011) 50004) act until the overlap is zero, with tension at the end.
-`limit_damping` would cut off the tension and raise e. In released versions, `damping tsuji` is
-wrong by a factor of √2.
+94 (2011) 50004) act until the overlap is zero, with tension at the end. `limit_damping` would cut
+off the tension and raise e. In released versions, `damping tsuji` is wrong by a factor of √2.
 """
 
 from __future__ import annotations
