@@ -120,8 +120,8 @@ class SelfAffine:
         """Raise `SurfaceError` if a parameter is invalid or `grid` cannot represent these waves."""
         if not 0 < self.hurst <= 1:
             raise SurfaceError(
-                f"hurst: {self.hurst:g} is outside the range above 0 and up to 1; real surfaces "
-                "often have a Hurst exponent of 0.8"
+                f"hurst: {self.hurst:g} should be above 0 and at most 1; real surfaces often have "
+                "a Hurst exponent of 0.8"
             )
         _check_shortest(self.shortest, grid)
         rolloff, shortest = self.rolloff, self.shortest or 2 * max(grid.spacing)
