@@ -48,7 +48,7 @@ def test_one_of_several_tables_is_named_by_its_number():
     content = parse_toml(
         CASE.replace("[roughness]", "[[roughness]]") + '[[roughness]]\nrms = "1 um"'
     )
-    with pytest.raises(CaseError, match=r"rms may be roughness\.1\.rms or roughness\.2\.rms"):
+    with pytest.raises(CaseError, match=r"rms may mean roughness\.1\.rms or roughness\.2\.rms"):
         free_parameters(content, ["rms"])
     (second,) = free_parameters(content, ["roughness.2.rms"])
     assert with_factors(content, [second], np.array([3.0]))["roughness"][1]["rms"] == "3 um"

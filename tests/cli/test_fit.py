@@ -85,7 +85,11 @@ def test_files_belong_together_and_the_fitted_case_runs(cli, files):
         (",", MEASURED, "--free: names no key"),
         ("yield_pressure", "velocity,restitution\n1,0.5\n", "column velocity_m_per_s"),
         ("yield_pressure", MEASURED.replace("0.8", "1.8"), "is outside 0 to 1"),
-        ("yield_pressure", MEASURED[:38], "leave no residuals to estimate the noise from"),
+        (
+            "yield_pressure",
+            MEASURED[:38],
+            "leave no residuals from which the noise could be estimated",
+        ),
     ],
 )
 def test_bad_input_is_refused_in_one_line(refused, files, free, table, words):

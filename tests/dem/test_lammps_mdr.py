@@ -110,7 +110,10 @@ def test_lammps_refuses_several_mdr_or_mdr_beside_another_model(mixed, lammps, t
     ("fits", "reason"),
     [
         ((), "no law was fitted to it"),
-        ((MDR.model_copy(update={"name": "constant"}),), "one sphere on a wall and to two equal"),
+        (
+            (MDR.model_copy(update={"name": "constant"}),),
+            "only to a sphere on a wall and to two equal",
+        ),
         ((MDR.model_copy(update={"worst": 0.2}),), "is off by up to 0.2 in e"),
     ],
 )

@@ -108,7 +108,7 @@ def test_without_friction_the_reversed_impact_is_the_impact(equal):
 def test_a_wall_does_not_turn_and_its_spin_is_refused():
     force = elastic(Pair(BALL, Body(math.inf, 70e9, 0.3)), 2.0)
     assert collide_obliquely(force, 1.0, 0.5, MU, (50.0, 0.0)).spins[1] == 0.0
-    with pytest.raises(CaseError, match="a wall does not turn"):
+    with pytest.raises(CaseError, match="a wall does not rotate"):
         collide_obliquely(force, 1.0, 0.5, MU, (0.0, 50.0))
 
 

@@ -116,7 +116,7 @@ def test_another_height_channel_can_be_chosen():
             "nid-1.nid",
             {"size": (20e-6, 21e-6)},
             "the scan is 20 x 20 um according to the file, but 20 x 21 um according to the "
-            "argument 'size'; leave it out, or correct it",
+            "argument 'size'; leave 'size' out, or correct it",
         ),
         (
             "di_corrupted.di",

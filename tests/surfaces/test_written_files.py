@@ -53,7 +53,7 @@ def test_a_size_repeats_the_file_or_is_refused(write_scan, path, refusal):
     assert read_surface(path, size=(20.000001e-6, 7e-6)).grid.size == approx(SIZE, rel=1e-6)
     assert refusal(path, size=(20e-6, 8e-6)).startswith(
         "the scan is 20 x 7 um according to the file, but 20 x 8 um according to the argument "
-        "'size'; leave it out, or correct it"
+        "'size'; leave 'size' out, or correct it"
     )
 
 

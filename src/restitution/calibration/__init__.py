@@ -1,1 +1,1 @@
-"""Calibration: find parameters of a case from measured restitution, the inverse of a run."""
+"""Calibration: find parameters of a case from measured coefficients of restitution."""

@@ -1,4 +1,4 @@
-"""State in sentences whether a fit determines its parameters and whether it explains the data."""
+"""State in words whether a fit determines its parameters and explains the data."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ Array = NDArray[np.float64]
 
 WIDEST = 4.0
 """Ratio of the ends of a 95 % interval above which a parameter is not identifiable."""
-_CORRELATED = 0.99
+_CORRELATED = 0.99  # correlation above which two parameters cannot be told apart
 # A parameter has no effect if doubling it changes the residuals by less than this number of
 # standard deviations.
 _NO_EFFECT = 0.3
-# Another minimum explains the data equally well if its χ² is larger by at most this value, which
-# corresponds to two standard deviations.
+# Another minimum explains the data equally well if its χ² is larger by less than this value. A
+# parameter that is off by two standard deviations increases χ² by 4.
 _AS_GOOD = 4.0
-_SHARE = 0.1  # smallest exponent of a parameter that is named in a combination
-_UNLIKELY = 0.01  # probability of the residuals below which the case does not explain the data
+_SHARE = 0.1  # a combination leaves out parameters with a smaller exponent
+_UNLIKELY = 0.01  # with less probable residuals, the case does not explain the data
 
 
 def identifiable(found: Fit, parameter: int) -> bool:
@@ -32,7 +32,7 @@ def identifiable(found: Fit, parameter: int) -> bool:
 
 
 def findings(found: Fit) -> list[str]:
-    """Write one sentence for each objection to the fitted values, the most serious first."""
+    """Write one sentence for each problem of the fit, the most serious problem first."""
     return [
         *_not_identifiable(found),
         *_correlated(found),
@@ -53,10 +53,10 @@ def interval_in_words(found: Fit, k: int) -> str:
 
 
 def combination(found: Fit) -> tuple[dict[str, float], float] | None:
-    """Find the combination of parameters, a product of powers, that the data determine best.
+    """Find the product of powers of parameters that the data determine best.
 
-    Returns the exponents by key and half of the 95 % interval of the logarithm of the product.
-    Returns None for a single parameter, and if no combination is identifiable.
+    Returns the exponents by key, and half of the 95 % interval of the logarithm of the product.
+    Returns None for a single parameter, and if even this product is not identifiable.
     """
     direction = found.uncertainty.best_direction
     half = found.uncertainty.half(direction)
@@ -120,7 +120,7 @@ def _bounds(found: Fit) -> Iterator[str]:
 
 
 def _other_minima(found: Fit) -> Iterator[str]:
-    """Report other minima of the search with about the same sum of squares."""
+    """Report another minimum of the search that explains the data equally well."""
     best = found.minima[0]
     unit = max(best.squares / max(found.freedom, 1), 1.0)
     for other in found.minima[1:]:

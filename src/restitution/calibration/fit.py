@@ -1,4 +1,4 @@
-"""Find the parameters of a case that explain measured restitution."""
+"""Fit parameters of a case to measured coefficients of restitution."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ Array = NDArray[np.float64]
 
 _FINE = 60  # number of velocities of the fitted curve
 _EQUAL = 0.02  # initial standard deviation of COR if the table of measurements has none
-# Lower limit of the standard deviation of COR that is estimated from residuals. It is the accuracy
-# of the interpolation between velocities.
+# Lower limit of the standard deviation of COR estimated from residuals: the accuracy of the
+# interpolation between velocities.
 _LEAST_NOISE = 1e-4
 
 
 @dataclass(frozen=True)
 class FittedCurve:
-    """The fitted COR at velocities (m/s) that span the measured ones, with its 95 % band."""
+    """The fitted COR with half of its 95 % band, at velocities (m/s) over the measured range."""
 
     velocity: Array
     restitution: Array
@@ -52,8 +52,8 @@ class Fit:
     """The result of a fit.
 
     `x` holds ln(value/first guess) of each parameter. `fitted` and `deviations` are values at the
-    measured velocities. `weights` are the standard deviations that weight the points. `minima` are
-    the ends of searches from starts that are far apart, the best minimum first.
+    measured velocities. `weights` are the standard deviations by which residuals are divided.
+    `minima` are the minima found from several starts, the best first.
     """
 
     model: CaseModel
@@ -102,7 +102,7 @@ def fit(
 ) -> Fit:
     """Fit the keys `names` of the case file `text` to `measured` restitution.
 
-    Files are relative to `folder`. The impact velocities of `measured` replace the depths of the
+    Paths are relative to `folder`. The impact velocities of `measured` replace the depths of the
     case. The values of the free keys in the case are first guesses (`free_parameters`). `progress`
     is called with a few words after every curve. Raises `CaseError`, and the errors of
     `solve_at_velocity` if the fitted case cannot be solved.
@@ -139,8 +139,8 @@ def _check_points(measured: Measured, parameters: int) -> None:
         )
     if points == parameters and measured.deviation is None:
         raise CaseError(
-            f"--free: {parameters} keys and as many measured points leave no residuals to estimate "
-            "the noise from; add the column restitution_std, or measure more"
+            f"--free: {parameters} keys and as many measured points leave no residuals from which "
+            "the noise could be estimated; add the column restitution_std, or measure more"
         )
 
 
@@ -158,7 +158,7 @@ def _settle_grid(model: CaseModel, start: Array) -> None:
 def _best(model: CaseModel, data: Data, minima: Sequence[Minimum]) -> Minimum:
     """Search on the grid of the case, starting from the best minimum on cells twice as large.
 
-    If the case cannot be solved from this minimum, the search starts from the next one.
+    If the case cannot be solved there, the search starts from the next best minimum.
     """
     failure: RestitutionError | None = None
     for start in minima:
@@ -171,7 +171,7 @@ def _best(model: CaseModel, data: Data, minima: Sequence[Minimum]) -> Minimum:
 
 
 def _deviations(model: CaseModel, x: Array, velocity: Array) -> Deviations:
-    """Compute the deviations at `x`. The `random` part includes only the error of the solver."""
+    """Compute the deviations at `x`; here `random` includes only the error of the solver."""
     here = model.at(x)
     own = here.restitution(velocity)
     each = np.array([curve.restitution(velocity) for curve in here.curves])
@@ -189,7 +189,7 @@ def _deviations(model: CaseModel, x: Array, velocity: Array) -> Deviations:
 
 
 def _noise(measured: Measured, fitted: Array, parameters: int) -> Array:
-    """Standard deviations of the measured points: as given, or from the residuals."""
+    """Standard deviations of the measured points, as given or estimated from the residuals."""
     if measured.deviation is not None:
         return measured.deviation
     freedom = fitted.size - parameters

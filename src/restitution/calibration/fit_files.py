@@ -27,7 +27,7 @@ _NAMES = ("fit.json", "fit.csv", "case.toml")
 
 
 def write_fit(found: Fit, text: str, out: Path) -> list[Path]:
-    """Write the output files of a fit into `out`; `text` is the content of the fitted case file.
+    """Write the output files of a fit into `out`; `text` is the case file with the first guesses.
 
     Raises `OutputError`.
     """
@@ -41,7 +41,7 @@ def write_fit(found: Fit, text: str, out: Path) -> list[Path]:
 
 
 def fitted_case(found: Fit, out: Path) -> str:
-    """The text of a case file in `out` with the fitted values and the measured velocities."""
+    """Return the text of the case file for `out`, with fitted values and measured velocities."""
     import tomli_w
 
     content = parse_toml(
@@ -57,7 +57,7 @@ def fitted_case(found: Fit, out: Path) -> str:
 
 
 def fit_rows(found: Fit) -> list[dict[str, float | str]]:
-    """Make a row for each measured point."""
+    """Make a table row for each measured point."""
     measured, by = found.measured, found.deviations
     scatter = (by.by_surface**2).sum(axis=0) ** 0.5
     given = measured.deviation
@@ -134,7 +134,7 @@ def _parameter(found: Fit, k: int) -> dict[str, Any]:
 
 
 def _known(value: float) -> float | None:
-    """Return a standard deviation of a logarithm; None if the data do not limit the parameter."""
+    """Return the standard deviation of a logarithm; None if it is larger than ln 10⁶."""
     return float(value) if value < math.log(1e6) else None
 
 

@@ -15,27 +15,27 @@ from restitution.errors import CaseError, RestitutionError
 
 Array = NDArray[np.float64]
 
-RANGE = 30.0  # largest factor between the first guess and a searched value, in both directions
-# Step of finite differences in the logarithm of a parameter. The noise of the solver is only 1e-8.
-# But the COR of shallow contacts is not smooth over changes of about 1 %, because nodes begin to
-# yield one at a time.
+RANGE = 30.0  # values from 1/30 to 30 times the first guess are searched
+# Step of finite differences in the logarithm of a parameter. The noise of the solver (1e-8) would
+# allow a smaller step. But the COR of shallow contacts is not smooth over changes of about 1 %,
+# because nodes begin to yield one at a time.
 _STEP = 0.03
 _SCANNED, _STARTS = (
     15,
     2,
-)  # number of points scanned besides the first guess, and number of searches from the best of them
-DISTANCE = math.log(1.5)  # smallest distance in a parameter between two different minima
-_WORTH = 3.0  # a minimum is kept if its sum of squares is at most this multiple of the least sum
+)  # number of scanned points besides the first guess; number of searches from the best of them
+DISTANCE = math.log(1.5)  # minima count as different if a parameter differs by more
+_WORTH = 3.0  # a minimum is kept up to this multiple of the least sum of squares
 _FAILED = 1e3  # residual (standard deviations) that stands for a case that cannot be solved
 _EVALUATIONS = 40  # largest number of function evaluations of a search
-# Relative tolerances of the sum of squares and of x. A quick search provides the start of a full
-# search.
+# Relative tolerances of the sum of squares and of x. The result of a quick search is the start of a
+# full search.
 _TOLERANCE: dict[Cost, float] = {"full": 1e-4, "quick": 1e-3}
 
 
 @dataclass(frozen=True)
 class Data:
-    """Restitution at impact velocities (m/s), with the standard deviations that weight it."""
+    """Measured COR at impact velocities (m/s), with standard deviations that scale residuals."""
 
     velocity: Array
     restitution: Array
@@ -55,8 +55,8 @@ def jacobian(
 ) -> Array:
     """∂COR/∂x at `velocity` (m/s), shape (velocities, parameters), by finite differences.
 
-    The differences are `central` or one-sided. If the case cannot be solved on one side, the other
-    side is used.
+    The differences are `central` or one-sided. If the case cannot be solved on one side, only the
+    other side is used. If it cannot be solved on either side, the derivative is set to 0.
     """
     here = model.restitution(x, velocity, cost)
     columns = []
@@ -73,7 +73,7 @@ def jacobian(
 
 
 def search(model: CaseModel, data: Data, start: Array, cost: Cost = "full") -> Minimum:
-    """Search for a minimum from `start`. Raises `RestitutionError` if the case cannot be solved."""
+    """Search for a minimum from `start`; `RestitutionError` if the case cannot be solved there."""
     from scipy.optimize import least_squares
 
     def residuals(x: Array) -> Array:
@@ -125,7 +125,11 @@ def search_widely(model: CaseModel, data: Data) -> list[Minimum]:
 
 
 def distinct(minima: Sequence[Minimum]) -> list[Minimum]:
-    """Select the `minima` that are far from earlier ones and not much worse than the best."""
+    """Select minima that differ.
+
+    The first of `minima` is always kept. Another one is kept if it is far from all those kept
+    before, and not much worse than the best of the others.
+    """
     first, *others = minima
     least = min((other.squares for other in others), default=0.0)
     kept = [first]
@@ -146,12 +150,12 @@ def squares(model: CaseModel, data: Data, x: Array) -> float:
 
 
 def at_bound(x: float) -> bool:
-    """Whether a search ended at a limit of its range."""
+    """Whether x = ln(value/first guess) is at a limit of the search."""
     return abs(x) > 0.99 * math.log(RANGE)
 
 
 def _scan(parameters: int) -> Sequence[Array]:
-    """Return the first guess, and points spread evenly over the range of the search."""
+    """Return the first guess and `_SCANNED` points, spread evenly over the range of the search."""
     from scipy.stats.qmc import Halton
 
     # Skip the first point of the sequence, which is at a corner of the range.

@@ -16,16 +16,17 @@ from restitution.errors import CaseError, shown
 Array = NDArray[np.float64]
 
 VELOCITY, RESTITUTION = "velocity_m_per_s", "restitution"
-DEVIATIONS = ("restitution_std", "restitution_error")  # the first of these columns found is used
+DEVIATIONS = ("restitution_std", "restitution_error")  # the first one in the file is used
 _BOUNDS = 1e-9, 1e4  # range of velocities (m/s), as in a case file
 _LARGEST = 2**24  # largest size of a file (bytes)
 
 
 @dataclass(frozen=True)
 class Measured:
-    """Restitution at impact velocities (m/s, increasing), shape (points,).
+    """Measured COR at impact velocities (m/s, increasing), shape (points,).
 
-    `deviation` contains the standard deviations of `restitution`, or is None if the file has none.
+    `deviation` contains the standard deviations of `restitution`, or None if the file has no such
+    column.
     """
 
     velocity: Array
@@ -34,7 +35,7 @@ class Measured:
 
 
 def read_measured(path: Path) -> Measured:
-    """Read a table of measured restitution. Raises `CaseError`, naming the file, line and column.
+    """Read a table of measured COR. Raises a `CaseError` that names file, line and column.
 
     Columns that `Measured` does not need are ignored.
     """

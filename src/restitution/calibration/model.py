@@ -1,9 +1,9 @@
-"""The restitution of a case over a span of impact velocities, as a function of its parameters.
+"""COR of a case over a range of impact velocities, as a function of the free parameters.
 
 A curve is computed at depths that grow by a constant ratio, from the lowest velocity to the
-highest. Between these depths W_u/W_l is interpolated (`RatioCurve`). All curves of a surface take
-their depths from the same sequence, so that the interpolated restitution is smooth in the
-parameters.
+highest. Between these depths the ratio W_u/W_l of unloading to loading work is interpolated
+(`RatioCurve`). All curves of a surface take their depths from the same sequence, so that the
+interpolated COR is a smooth function of the parameters.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ Cost = Literal["full", "coarser", "quick"]
 """Cost of a curve: "full" uses the grid of the case and all surfaces, "coarser" uses cells twice as
 large, and "quick" uses cells twice as large and only `_FEW` surfaces."""
 
-_RATIO = 1.3  # ratio of each depth to the depth before
+_RATIO = 1.3  # ratio of each depth to the previous depth
 SURFACES = 8  # number of surfaces for a case with one realisation
 _FEW = 3  # number of surfaces of a quick curve
 MOST_VELOCITIES = 12  # largest number of velocities in the case file that is written
@@ -82,7 +82,7 @@ class Curve:
         return np.asarray(np.interp(np.log(velocity), np.log(self.velocity), known))
 
     def resolved_at(self, velocity: Array) -> NDArray[np.bool_]:
-        """Whether the grid resolves the contacts on both sides of `velocity` (m/s)."""
+        """Whether the grid resolves the computed contacts below and above `velocity` (m/s)."""
         known = self.resolved.astype(float)
         return np.asarray(np.interp(np.log(velocity), np.log(self.velocity), known) > 1 - 1e-9)
 
@@ -124,8 +124,8 @@ def curve_of(
                 state = solve(contact, state.indentation / _RATIO)
         rows = [_row(state, unloading)]
         depths = [state.indentation]
-        # If `low` equals `high`, the first depth is enough, although its velocity may be slightly
-        # lower than `high`.
+        # If `low` equals `high`, one depth is enough, although its velocity can be slightly below
+        # `high`.
         while rows[-1][0] < high and low < high:
             state = solve(contact, _RATIO * state.indentation, start=state)
             row = _row(state, unloading)
@@ -139,7 +139,7 @@ def curve_of(
 
 
 def _row(state: State, unloading: UnloadingTable) -> tuple[float, ...]:
-    """Impact velocity (m/s), W_u/W_l, the errors of COR and whether the contact is resolved."""
+    """Impact velocity (m/s), W_u/W_l, solver and model error, whether the contact is resolved."""
     collision = collide(state, method=unloading.method, tolerance=unloading.restitution_error)
     fine = adhesive_nodes(state) >= ADHESIVE_NODES
     return (
@@ -153,11 +153,11 @@ def _row(state: State, unloading: UnloadingTable) -> tuple[float, ...]:
 
 @dataclass
 class CaseModel:
-    """The case with tables `content` and free `parameters`, from velocity `low` to `high` (m/s).
+    """COR of the case with tables `content`, from velocity `low` to `high` (m/s).
 
-    COR is the mean over several random surfaces with the statistics of the case, because a single
-    random surface does not reproduce the measured surface. Files are relative to `folder`. A point
-    x holds ln(value/first guess) of each parameter.
+    COR is a function of x, which holds ln(value/first guess) of each of the free `parameters`. It
+    is the mean over several random surfaces with the statistics of the case, because a single
+    random surface does not reproduce the measured surface. Paths are relative to `folder`.
     """
 
     content: Mapping[str, Any]
@@ -171,7 +171,7 @@ class CaseModel:
     _first_depths: dict[tuple[int, Cost], float] = field(default_factory=dict)
 
     def text(self, x: Array, velocities: Sequence[float] | None = None, digits: int = 17) -> str:
-        """Write the case file at `x`, with `velocities` (m/s) instead of its depths."""
+        """Write the case file with the parameters `x`, and `velocities` (m/s) instead of depths."""
         tables = with_factors(self.content, self.parameters, np.exp(x), digits)
         for name in DEPTHS:
             tables.pop(name, None)
@@ -180,11 +180,11 @@ class CaseModel:
         return tomli_w.dumps(tables)
 
     def case(self, x: Array) -> Case:
-        """Make the case at `x`. Raises `CaseError`."""
+        """Make the case with the parameters `x`. Raises `CaseError`."""
         return parse_case(self.text(x))
 
     def at(self, x: Array, cost: Cost = "full") -> Mean:
-        """Compute the mean curve over the surfaces at `x`. Raises the errors of `curve_of`."""
+        """Compute the mean curve of the surfaces at `x`. Raises the errors of `curve_of`."""
         key = (x.tobytes(), cost)
         if key not in self._known:
             self._known[key] = self._computed(x, cost)
@@ -217,17 +217,17 @@ class CaseModel:
         return Mean(tuple(curves))
 
     def require_possible(self, x: Array) -> None:
-        """Raise `CaseError` or `SurfaceError` if results at `x` would be meaningless."""
+        """Raise `CaseError` or `SurfaceError` if results at parameters `x` would be meaningless."""
         case = self.case(x)
         require_possible(case.contact(self.folder), deepest_indentation(case))
 
     def restitution(self, x: Array, velocity: Array, cost: Cost = "full") -> Array:
-        """COR at `velocity` (m/s)."""
+        """Mean COR at `velocity` (m/s) for the parameters `x`."""
         return self.at(x, cost).restitution(velocity)
 
 
 def velocities_to_run(measured: Array) -> list[float]:
-    """Velocities (m/s) of the fitted case: all measured, or `MOST_VELOCITIES` over their range."""
+    """Velocities (m/s) of the fitted case: the measured ones or, if too many, over their range."""
     own = np.unique(measured)
     if own.size <= MOST_VELOCITIES:
         return [float(V) for V in own]

@@ -18,7 +18,7 @@ from restitution.sweeps.sweep import put
 Array = NDArray[np.float64]
 
 _TABLES = ("first", "second", "interface", "roughness")
-# Keys whose values are choices, not physical quantities, so that they cannot be fitted.
+# Keys whose values are choices, not physical quantities. They cannot be fitted.
 _CHOICES = {"seed", "realisations", "place", "channel", "crop", "outliers"}
 
 
@@ -76,7 +76,7 @@ def free_parameters(content: Mapping[str, Any], names: Sequence[str]) -> tuple[P
 
 
 def _values(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield keys and values; keys of several [[roughness]] tables contain their number, from 1."""
+    """Yield dotted keys and values; the keys of [[roughness]] tables contain a number, from 1."""
     for name, value in table.items():
         if isinstance(value, dict):
             yield from _values(value, f"{before}{name}.")
@@ -90,11 +90,11 @@ def _values(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, A
 def _key(name: str, values: Mapping[str, Any]) -> str:
     """Find the key of the case file that `name` means.
 
-    `name` is a whole key, or only its last part if that is unambiguous. Raises `CaseError`.
+    `name` is a whole key, or its last part if no other key ends with it. Raises `CaseError`.
     """
     found = [key for key in values if name in (key, key.rpartition(".")[2])]
     if len(found) > 1:
-        raise CaseError(f"--free: {name} may be {' or '.join(found)}; name the whole key")
+        raise CaseError(f"--free: {name} may mean {' or '.join(found)}; name the whole key")
     if found:
         return found[0]
     last = name.rpartition(".")[2]
@@ -118,7 +118,7 @@ def _parameter(key: str, written: Any) -> Parameter:
 
 
 def _reason(key: str, written: Any) -> str | None:
-    """Say why the value of `key` cannot be free; None if it can."""
+    """State why the value of `key` cannot be free; None if it can."""
     table, _, last = key.partition(".")
     if table not in _TABLES or _CHOICES & set(last.split(".")):
         return f"cannot be free; only values of {', '.join(f'[{name}]' for name in _TABLES)} can"

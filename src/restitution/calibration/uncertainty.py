@@ -1,16 +1,17 @@
-"""How well measured restitution determines parameters: covariance, intervals, combinations.
+"""Uncertainty of fitted parameters: covariance, intervals, and combinations.
 
-Parameters are logarithms. A deviation ΔCOR of data or model changes the parameters by P ΔCOR, where
-P = (AᵀA)⁻¹Aᵀ/σ is the pseudo-inverse of the scaled Jacobian A = J/σ. Three kinds of deviations
+Parameters are logarithms. With the Jacobian J = ∂COR/∂x and the standard deviations σ that weight
+the points, A = J/σ is the scaled Jacobian. A deviation ΔCOR of data or model changes the parameters
+by P ΔCOR, where P = (AᵀA)⁻¹Aᵀ/σ is the pseudo-inverse of A over σ. Three kinds of deviations
 contribute to the covariance C of the parameters:
 
     C = P diag(s²) Pᵀ + 2 S/n + (P Δ_grid)(P Δ_grid)ᵀ,  S = Σ (P Δ)(P Δ)ᵀ/(n − 1).
 
-In the first term, s are deviations that are independent between points. In the second term, Δ are
-the differences of n surfaces from their mean, which is fitted to the data. This term is the
-variance of the difference between two means: the fitted mean, and the mean over n places of impact.
-If all impacts hit the same place, the term would be (1 + 1/n) S. In the third term, Δ_grid is the
-deviation due to the grid.
+In the first term, s are standard deviations that are independent between points. In the second
+term, Δ are the differences of the COR of n surfaces from their mean, which is fitted to the data.
+This term is the variance of the difference between two means: the fitted mean, and the mean over n
+places of impact. If all impacts hit the same place, the term would be (1 + 1/n) S. In the third
+term, Δ_grid is the deviation due to the grid.
 
 Intervals use Student's t, with degrees of freedom after Welch and Satterthwaite (Satterthwaite
 1946).
@@ -28,8 +29,8 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 CONFIDENCE = 0.95
-# Smaller singular values of A are replaced by this value. A direction with this value is known only
-# within a factor of e^1000.
+# Smaller singular values of A are replaced by this value. It belongs to a combination of parameters
+# that is known only within a factor of e^1000.
 _LEAST = 1e-3
 _UNBOUNDED = math.log(1e6)  # half intervals of a logarithm above this value count as infinite
 
@@ -55,7 +56,7 @@ class Deviations:
         """Deviations of COR with covariance 2 S/n, shape (surfaces, points).
 
         2 S/n is the covariance of the difference between two means over n surfaces, where S is the
-        covariance of COR between single surfaces.
+        covariance of the COR of single surfaces.
         """
         n = len(self.surfaces)
         return self.surfaces * math.sqrt(2 / (n * max(n - 1, 1)))
@@ -74,7 +75,7 @@ class Deviations:
 
 @dataclass(frozen=True)
 class Uncertainty:
-    """The uncertainty of the logarithms of parameters; `scaled` is the Jacobian A."""
+    """Uncertainty of the logarithms of parameters, with A (`scaled`) and P (`sensitivity`)."""
 
     scaled: Array
     sensitivity: Array
@@ -90,7 +91,7 @@ class Uncertainty:
 
     @cached_property
     def parts(self) -> dict[str, Array]:
-        """The parts of the covariance due to noise, surface and grid."""
+        """The parts of the covariance C due to noise, surface and grid."""
         P, by = self.sensitivity, self.deviations
         surfaces = by.by_surface @ P.T
         return {
@@ -101,7 +102,7 @@ class Uncertainty:
 
     @cached_property
     def _unknown(self) -> Array:
-        """The covariance along directions in which COR does not change at all."""
+        """The covariance along directions in which COR hardly changes."""
         _, s, Vt = np.linalg.svd(self.scaled, full_matrices=False)
         lost = Vt[s < _LEAST]
         return np.asarray(lost.T @ lost / _LEAST**2)
@@ -121,7 +122,7 @@ class Uncertainty:
         return np.asarray(found)
 
     def half(self, direction: Array) -> float:
-        """Half of the 95 % interval along `direction`; inf beyond a factor of 1e6."""
+        """Half of the 95 % interval of the logarithms along `direction`; inf if above ln 10⁶."""
         from scipy.stats import t
 
         variances = {name: float(direction @ C @ direction) for name, C in self.parts.items()}
@@ -149,7 +150,7 @@ class Uncertainty:
 
     @cached_property
     def by_model(self) -> Array:
-        """Change of each logarithm if COR deviates by the error of the model at every point."""
+        """Change of each logarithm if COR deviates by the model error at every point."""
         return np.asarray(np.abs(self.sensitivity @ self.deviations.model))
 
     @cached_property
@@ -160,7 +161,7 @@ class Uncertainty:
 
     @cached_property
     def best_direction(self) -> Array:
-        """Direction in the logarithms that the data determine best; its largest entry is 1."""
+        """Direction in the space of logarithms that the data determine best; largest entry 1."""
         _, _, Vt = np.linalg.svd(self.scaled, full_matrices=False)
         direction: Array = Vt[0]
         return np.asarray(direction / direction[np.abs(direction).argmax()])
@@ -170,7 +171,7 @@ class Uncertainty:
         return math.log(2) * float(np.linalg.norm(self.scaled[:, parameter]))
 
     def band(self, jacobian: Array) -> Array:
-        """Half of the 95 % interval of the fitted COR at points with ∂COR/∂x `jacobian`."""
+        """Half of the 95 % interval of the fitted COR; `jacobian` is ∂COR/∂x at the velocities."""
         noise = (jacobian @ self.sensitivity * self.deviations.random) ** 2
         whole = noise.sum(axis=1)
         for each in (*self.deviations.by_surface, self.deviations.by_grid):

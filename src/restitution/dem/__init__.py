@@ -1,1 +1,1 @@
-"""Exports of laws to codes of the discrete element method (DEM)."""
+"""Export of restitution laws to codes of the discrete element method (DEM)."""

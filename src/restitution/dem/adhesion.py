@@ -24,8 +24,8 @@ _OBSTACLES = {
 def pull_off_force(law: Law, velocity: float) -> float:
     """Pull-off force (N) after an impact at `velocity` (m/s).
 
-    The force is interpolated linearly in ln V between the computed points. NaN if one of the two
-    neighbouring points has no pull-off force.
+    The force is interpolated between the computed points, linearly in the logarithm of the
+    velocity. NaN if one of the two neighbouring points has no pull-off force.
     """
     forces = [math.nan if p.pull_off_force is None else p.pull_off_force for p in law.points]
     V = law.column("velocity")
@@ -33,7 +33,7 @@ def pull_off_force(law: Law, velocity: float) -> float:
 
 
 def adhesion_lines(law: Law, velocity: float, code: str) -> list[str]:
-    """Write comments on the adhesion of `law` for the export to `code`; none without adhesion."""
+    """Write comment lines on the adhesion of `law`, if any, for the export to `code`."""
     if law.work_of_adhesion == 0:
         return []
     force = pull_off_force(law, velocity)

@@ -1,25 +1,30 @@
 """Damping parameters of simple contact laws that return a given coefficient of restitution e.
 
-A linear spring and dashpot without tension has the equation x″ = −max(ω²x + 2ζωx′, 0). The contact
-ends when the force is zero, after the phase 2 arccos ζ. For ζ > 1, arccosh and ζ² − 1 replace
-arccos and 1 − ζ².
+A linear spring and dashpot without tension has the equation x″ = −max(ω²x + 2ζωx′, 0) for the
+overlap x, with the natural frequency ω and the damping ratio ζ. The contact ends when the force is
+zero, after the phase 2 arccos ζ, with
 
-    e = exp(−2ζ arccos ζ/(1 − ζ²)^½)
+    e = exp(−2ζ arccos ζ/(1 − ζ²)^½).
 
-Source: T. Schwager, T. Pöschel, Granular Matter 9 (2007) 465, where the force must not attract.
+For ζ > 1, arccosh and ζ² − 1 replace arccos and 1 − ζ². Source: T. Schwager, T. Pöschel, Granular
+Matter 9 (2007) 465, for a force that must not attract.
 
-The law of Hunt and Crossley is F = f(x)(1 + d x′) with any f. Dividing m x′ dx′ by 1 + d x′ and
-integrating over the contact gives, with c = dV and the impact velocity V,
+The law of Hunt and Crossley is F = f(x)(1 + d x′) with any function f and the dissipation d.
+Dividing m x′ dx′ by 1 + d x′ and integrating over the contact gives, with c = dV and the impact
+velocity V,
 
     c (1 + e) = ln((1 + c)/(1 − ec))
 
 Source: K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440; the solution in the phase plane
 is that of D. W. Marhefka, D. E. Orin, IEEE Trans. Syst. Man Cybern. A 29 (1999) 566.
 
-A Hertz contact with a constant damping coefficient has the equation m x″ = −(4/3)E* R*^½ x^{3/2} −
-γx′ until x = 0. In units of the length L = (mV²/((4/3)E* R*^½))^⅖ and the time L/V the equation is
-x″ = −x^{3/2} − g x′ with g = γL/(mV). So e depends on g alone, and g ∝ V^{−⅕}. The equation is
-integrated numerically.
+A Hertz contact with a constant damping coefficient γ has the equation
+
+    m x″ = −(4/3)E* R*^½ x^{3/2} − γx′
+
+until x = 0. In units of the length L = (mV²/((4/3)E* R*^½))^⅖ and the time L/V the equation is
+x″ = −x^{3/2} − g x′ with g = γL/(mV). So e depends only on the dimensionless damping g, which is
+proportional to V^{−⅕}. The equation is integrated numerically.
 """
 
 from __future__ import annotations
@@ -32,17 +37,17 @@ from scipy.optimize import brentq
 
 from restitution.laws.law import Law
 
-_NEARLY_ELASTIC = 1e-4  # if 1 − e is below this value, dV is computed from its leading terms
+_NEARLY_ELASTIC = 1e-4  # below this value of 1 − e, only the leading terms of dV are used
 _TOLERANCE = 1e-12  # tolerance of root finding
-# Below this dV, the first terms of the series of e are used: e = 1 − ⅔ dV. The omitted terms are of
-# the order (dV)². Solving the equation for e would lose more digits to rounding.
+# Below this dV, the series e = 1 − ⅔ dV is used. The omitted terms are of the order (dV)², while
+# solving the equation for e would lose more digits to rounding.
 _SMALL = 1e-6
-# Largest ζ or g that is searched. e is below 0.001 for ζ = 20, and already for a much smaller g.
+# Largest ζ in the search for a given e; e is below 0.001 for ζ = 20.
 _LARGEST_DAMPING = 20.0
 
 
 def dashpot_restitution(ratio: float) -> float:
-    """Return e for the damping ratio ζ (1) of a linear spring and dashpot without tension."""
+    """Return e of a linear spring and dashpot without tension, for its damping ratio ζ (1)."""
     if ratio == 1:
         return math.exp(-2)
     root = math.sqrt(abs(1 - ratio**2))
@@ -51,18 +56,18 @@ def dashpot_restitution(ratio: float) -> float:
 
 
 def dashpot_ratio(restitution: float) -> float:
-    """Return the damping ratio ζ (1) of a linear spring and dashpot without tension for e."""
+    """Return the damping ratio ζ (1) with which a spring and dashpot without tension has e."""
     return _root(dashpot_restitution, restitution, _LARGEST_DAMPING)
 
 
 def hunt_crossley_dissipation(restitution: float) -> float:
-    """Return the product dV (1) of dissipation and impact velocity for e > 0."""
+    """Return the product dV (1) of dissipation d and impact velocity V that gives e > 0."""
     e = restitution
     if 1 - e < _NEARLY_ELASTIC:
         return 1.5 * (1 - e**2) / (1 + e**3)
 
-    # For small e, ec is so close to 1 that 1 − ec is lost to rounding. So solve for u, with
-    # ec = 1 − exp(−u).
+    # For small e, ec (with c = dV) is so close to 1 that rounding spoils 1 − ec. So solve for u
+    # with ec = 1 − exp(−u).
     def excess(u: float) -> float:
         c = -math.expm1(-u) / e
         return c * (1 + e) - math.log1p(c) - u
@@ -72,7 +77,7 @@ def hunt_crossley_dissipation(restitution: float) -> float:
 
 
 def hunt_crossley_restitution(dissipation: float) -> float:
-    """Return e for the product dV (1) of dissipation and impact velocity."""
+    """Return e for the product dV (1) of dissipation d and impact velocity V."""
     c = dissipation
     if c < _SMALL:
         return 1.0 - 2 / 3 * c
@@ -99,7 +104,7 @@ def hertz_restitution(damping: float) -> float:
 
 
 def hertz_damping(law: Law, velocity: float, restitution: float) -> float:
-    """Return the damping coefficient γ (kg/s) of a Hertz contact for e at `velocity` (m/s)."""
+    """Return the damping coefficient γ (kg/s) of a Hertz contact that has e at `velocity` (m/s)."""
     g = _root(hertz_restitution, restitution, 2.0)
     return g * law.mass * velocity / _length(law, velocity)
 

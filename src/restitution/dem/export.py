@@ -34,9 +34,10 @@ _WHOLE = (
 def export(laws: Sequence[Law], code: str, velocity: float | None) -> dict[str, str]:
     """Make the input of `code` (one of `CODES`) for the pairs of `laws`; return names and texts.
 
-    All codes but `csv` take one coefficient of restitution for each pair and need a `velocity`
-    (m/s). Raises `CaseError` if the velocity is missing, if a pair has no law, or if the code does
-    not accept a value. Raises `DomainError` for a velocity outside the computed velocities.
+    All codes except `csv` take one coefficient of restitution for each pair, so they need the
+    `velocity` (m/s) at which it holds. Raises `CaseError` if the velocity is missing, if a pair has
+    no law, or if the code does not accept a value. Raises `DomainError` for a velocity outside the
+    computed velocities.
     """
     table = pair_table(laws)
     if code == "csv":
@@ -53,7 +54,7 @@ def export(laws: Sequence[Law], code: str, velocity: float | None) -> dict[str, 
 
 
 def limit(code: str) -> str:
-    """State the condition under which `code` returns the exported e; empty if there is none."""
+    """State the conditions under which `code` returns the exported e; empty if there are none."""
     if code == "csv":
         return ""
     return str(getattr(import_module(f"restitution.dem.codes.{code}"), "NOTE", ""))
@@ -74,7 +75,7 @@ def write_export(texts: dict[str, str], out: Path) -> list[Path]:
 
 
 def _table(table: PairTable, velocity: float | None) -> str:
-    """Write one CSV text: the points of all pairs, or the estimates at `velocity` (m/s)."""
+    """Write a CSV text: the points of all pairs or, if given, the values at `velocity` (m/s)."""
     rows: list[dict[str, float | str]] = []
     for i, j, law in table.pairs():
         pair: dict[str, float | str] = {

@@ -36,7 +36,7 @@ _PLAIN = str.maketrans("–—−‐‑’‘“”·×≈→µ", "-----''''.x~>
 
 @dataclass(frozen=True)
 class Pair:
-    """Two particle types `i` ≤ `j`: bodies, law, and e at the velocity of the export."""
+    """A pair of particle types `i` ≤ `j`: bodies, law, and e at the velocity of the export."""
 
     i: int
     j: int
@@ -65,10 +65,10 @@ class Pair:
 
     @property
     def twin(self) -> tuple[float, float]:
-        """E (Pa) and ν of a material that, used for both bodies, gives E* and G* of this pair.
+        """E (Pa) and ν of a material that, used for both bodies, gives the E* and G* of this pair.
 
-        They follow from E* = E/2(1 − ν²) and G* = E/4(2 − ν)(1 + ν). ν lies between the values of
-        the two bodies.
+        E and ν follow from E* = E/2(1 − ν²) and G* = E/4(2 − ν)(1 + ν). ν lies between the values
+        of the two bodies.
         """
         k = self.shear_modulus / self.law.contact_modulus
         nu = min(max((1 - 4 * k) / (1 - 2 * k), 0.0), 0.5)
@@ -86,7 +86,7 @@ def pairs_at(table: PairTable, velocity: float, code: str, lowest: float) -> lis
         e = law.at(velocity).restitution
         if e < lowest:
             raise CaseError(
-                f"{law.pair} {_failure(law, e)} at {velocity:.6g} m/s, and {code} takes no "
+                f"{law.pair} {_failure(law, e)} at {velocity:.6g} m/s, but {code} accepts no "
                 f"coefficient of restitution below {lowest:g}; export at a higher velocity, or "
                 "use an adhesive contact model"
             )
@@ -101,14 +101,16 @@ def contact_time(law: Law, radius: float | None = None) -> float:
 
 
 def density_of(particle: Particle) -> float:
-    """The density of a sphere (kg/m³). Raises `CaseError` if the law has none."""
+    """The density of a sphere (kg/m³). Raises `CaseError` if the law states none."""
     if particle.density is None:
-        raise CaseError(f"{particle}: has no density, and DEM needs one; give it in the case")
+        raise CaseError(
+            f"{particle}: has no density, but DEM needs one; give the density in the case"
+        )
     return particle.density
 
 
 def identifier(particle: Particle, number: int) -> str:
-    """Make a name for `particle` that every code accepts: letters, digits and `_`, and `number`."""
+    """Make a name of letters, digits and `_`, ending in `number`, that every DEM code accepts."""
     word = (
         re.sub(r"[^A-Za-z0-9]+", "_", comment_text(particle.name))
         .strip("_")[:24]
@@ -150,9 +152,9 @@ def summary(
     fragment: str,
     constant: bool = True,
 ) -> list[str]:
-    """Write the comments above the script of a collision, which uses the file `fragment`.
+    """Write the comments at the top of a script that uses the file `fragment`.
 
-    They are shorter than those of `header`, but contain all warnings.
+    These comments are shorter than those of `header`, but contain all warnings.
     """
     lines = [
         *_origin(velocity, code, ends, constant),
@@ -164,12 +166,12 @@ def summary(
 
 
 def commented(lines: Iterable[str], sign: str) -> str:
-    """Turn `lines` into comments, which begin with `sign`."""
+    """Turn `lines` into comments that begin with `sign`."""
     return "\n".join(f"{sign} {line}".rstrip() for line in lines)
 
 
 def xml_comment(lines: Iterable[str]) -> str:
-    """Make one XML comment of `lines`, without double hyphens, which XML forbids in comments."""
+    """Make one XML comment of `lines`; double hyphens, which XML forbids there, are separated."""
     safe = (re.sub("-(?=-)", "- ", line).rstrip() for line in lines)
     return "\n".join(["<!--", *safe, "-->"])
 
@@ -183,7 +185,10 @@ def render(name: str, **values: object) -> str:
 
 
 def comment_text(text: str) -> str:
-    """Convert `text` to one line of ASCII that cannot end a comment; Greek letters become names."""
+    """Convert `text` to one line of ASCII that cannot end a comment.
+
+    Greek letters are replaced by their names.
+    """
     text = unicodedata.normalize("NFKD", one_line(text).translate(_PLAIN)).translate(_PLAIN)
     text = "".join(map(_ascii, text)).translate(_SIGNS)
     return text.replace("*/", "* /").replace("/*", "/ *").replace("??/", "?? /")

@@ -1,11 +1,11 @@
 """Friction in exports: the coefficient of each pair, and the tangential stiffness.
 
 DEM codes have one tangential spring per contact, with the stiffness of a contact that sticks
-(Mindlin 1949: 8 G* a, with 1/G* = Σ 2 (2 − ν)(1 + ν)/E). In a real contact the edge slides first,
-so the mean stiffness during an impact is smaller. With 0.8 times Mindlin's stiffness, the
-tangential restitution of elastic spheres in LAMMPS (`mindlin_rescale/force`) is within 0.03 of the
-law of `laws.oblique`, for ν from 0 to 0.45 and any angle; with the full stiffness it is up to 0.13
-too large (docs/studies/oblique_stiffness.py).
+(Mindlin 1949: 8 G* a, with the contact radius a and 1/G* = Σ 2 (2 − ν)(1 + ν)/E). In a real contact
+the edge slides first, so the mean stiffness during an impact is smaller. With 0.8 times Mindlin's
+stiffness, the tangential restitution of elastic spheres in LAMMPS (`mindlin_rescale/force`) is
+within 0.03 of the model `laws.oblique`, for ν from 0 to 0.45 and any angle. With the full
+stiffness, the tangential restitution is up to 0.13 too large (docs/studies/oblique_stiffness.py).
 """
 
 from __future__ import annotations
@@ -23,20 +23,20 @@ def mindlin_stiffness(pair: Pair) -> float:
 
 
 def friction_note(pairs: Sequence[Pair], sign: str = "", tangential: str = "") -> str:
-    """Write comments on where the coefficients of friction come from.
+    """Write comments on the origin of the coefficients of friction.
 
-    Each line begins with the comment sign `sign`, if there is one. `tangential` describes the
-    tangential settings of the pairs whose cases state a friction.
+    Each line begins with the comment sign `sign`, if one is given. `tangential` describes the
+    tangential settings of the pairs whose cases state a coefficient of friction.
     """
     missing = [f"{pair.i} {pair.j}" for pair in pairs if pair.law.friction is None]
     if len(missing) == len(pairs):
         said = (
-            f"Friction {FRICTION} is a placeholder: friction is not computed here, set your value."
+            f"Friction {FRICTION} is a placeholder: friction is not computed here; set your value."
         )
     elif missing:
         said = (
             f"Friction {FRICTION} of the pairs {', '.join(missing)} is a placeholder: their cases "
-            "have no interface.friction, set your value. The other coefficients of friction are "
+            "have no interface.friction; set your value. The other coefficients of friction are "
             f"those of the cases. {tangential}"
         )
     else:

@@ -1,4 +1,4 @@
-"""The pair table that most DEM codes need: one law for each pair of particle types."""
+"""Table of pairs that most DEM codes need: one law for each pair of particle types."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from restitution.laws.law import Law, Particle
 
 @dataclass(frozen=True)
 class PairTable:
-    """Particle types, walls, and the law of every given pair.
+    """Types of spheres and walls, and the law of every given pair.
 
-    Types are numbered from 1, as in DEM codes; walls follow the spheres. The keys of `laws` are
-    (i, j) with i ≤ j.
+    Types are numbered from 1, as in DEM codes; the numbers of walls follow those of spheres. The
+    keys of `laws` are (i, j) with i ≤ j.
     """
 
     spheres: tuple[Particle, ...]
@@ -38,12 +38,12 @@ class PairTable:
             yield i, j, law
 
     def require_spheres(self, code: str) -> None:
-        """Raise `CaseError` unless there is a law for every pair of spheres, as `code` needs."""
+        """Raise `CaseError` if a pair of types of spheres has no law; `code` needs all of them."""
         numbers = range(1, len(self.spheres) + 1)
         self._require(code, combinations_with_replacement(numbers, 2), "pair of particle types")
 
     def require_all(self, code: str) -> None:
-        """Raise `CaseError` unless every two spheres, and every sphere and wall, have a law."""
+        """Raise `CaseError` if a pair of two spheres, or of a sphere and a wall, has no law."""
         self.require_spheres(code)
         spheres, last = len(self.spheres), len(self.particles)
         pairs = product(range(1, spheres + 1), range(spheres + 1, last + 1))
@@ -58,14 +58,14 @@ class PairTable:
         if missing:
             more = f" (and {len(missing) - 1} more)" if len(missing) > 1 else ""
             raise CaseError(
-                f"{code} needs a law for every {what}, and there is none for "
+                f"{code} needs a law for every {what}, but there is none for "
                 f"{missing[0]}{more}; the law of another pair cannot replace it: compute this law "
                 "(`restitution run`, `restitution fit-law`) and give it, too"
             )
 
 
 def pair_table(laws: Sequence[Law]) -> PairTable:
-    """Make the table of `laws`. Bodies with equal values become one type.
+    """Make the table of pairs of `laws`. Bodies with equal values become one type.
 
     Raises `CaseError` for two laws of one pair.
     """
@@ -78,7 +78,7 @@ def pair_table(laws: Sequence[Law]) -> PairTable:
         i, j = sorted((number[law.first], number[law.second]))
         if (i, j) in found:
             raise CaseError(
-                f"two laws are given for {law.pair}; give one of them, or rename the particles"
+                f"two laws are given for {law.pair}; give only one of them, or rename the particles"
             )
         found[i, j] = law
     return PairTable(spheres, walls, found)

@@ -1,4 +1,4 @@
-"""Write a script that matches the constant e of a DEM code to the velocities in a simulation."""
+"""Write a script that matches the constant e of a DEM code to the velocities of a simulation."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from restitution.dem.export_common import Pair, render
 from restitution.laws.law import Law
 
 SCRIPT = "match_velocity.py"
-_ROUNDS = 6
+_ROUNDS = 6  # largest number of runs of the simulation
 _TOLERANCE = 0.005  # change of e below which the script stops
-_SAMPLES = 4  # number of intervals of the table between two computed velocities
+_SAMPLES = 4  # number of intervals of the exported table between two computed velocities
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ def matching_script(target: Target, pairs: list[Pair], comments: str) -> str:
 
 
 def law_points(law: Law, lowest: float) -> list[tuple[float, float]]:
-    """Tabulate V (m/s) and e (at least `lowest`), dense enough for linear interpolation."""
+    """Tabulate velocity (m/s) and e (at least `lowest`), finely enough for linear interpolation."""
     V = law.column("velocity")
     fine = np.interp(
         np.arange((V.size - 1) * _SAMPLES + 1) / _SAMPLES, np.arange(V.size), np.log(V)

@@ -1,1 +1,1 @@
-"""The restitution law of one pair: made from stored results, fitted, compared with closed forms."""
+"""Restitution laws: COR of one pair against impact velocity, with fits and closed forms."""

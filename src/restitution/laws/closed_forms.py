@@ -1,7 +1,7 @@
 """Published closed forms for the smooth bodies of a case, each within its range of validity.
 
-The modules of `restitution.theory` state the ranges. Outside its range a theory gives NaN here,
-even if its formula gives a number. No theory includes roughness.
+The modules of `restitution.theory` state the ranges. Outside the range of a theory, this module
+returns NaN, even if the formula gives a number. No theory includes roughness.
 
 The theories describe yielding by one of two quantities. Hertz, sticking and Thornton–Ning use the
 contact pressure at yield p_y of the case. The other theories use the yield strength Y of a tensile
@@ -29,7 +29,7 @@ Array = NDArray[np.float64]
 STRENGTHS = 2.8
 """Ratio p_y/Y that is assumed for bodies without a yield strength."""
 
-_SMALL = 0.01  # largest δ/R* for which Hertz's theory is used
+_SMALL = 0.01  # largest ratio of indentation to R* for which Hertz's theory is used
 _JOHNSON = 0.6  # largest e for which Johnson's formula is used
 
 SOURCES = {
@@ -47,8 +47,8 @@ SOURCES = {
 class Bodies:
     """The smooth bodies of a case: the arguments of the theories, in SI units.
 
-    `R`, `E` and `m` are R*, E* and m*. `w` is the work of adhesion, and `walls` the number of flat
-    bodies.
+    `R`, `E` and `m` are the reduced radius R*, the contact modulus E* and the reduced mass m*. `w`
+    is the work of adhesion, and `walls` the number of flat bodies.
     """
 
     R: float
@@ -71,7 +71,7 @@ class Bodies:
         for name, body in (("first", pair.first), ("second", pair.second)):
             if body.mass is None:
                 raise CaseError(
-                    f"{name}.density: is missing, and every theory of restitution needs it; write "
+                    f"{name}.density: is missing, but every theory of restitution needs it; write "
                     f'for example density = "2500 kg/m^3" in [{name}]'
                 )
         assert pair.mass is not None  # the loop above checked both densities
@@ -97,17 +97,17 @@ class Bodies:
 
     @property
     def hertz(self) -> Hertz:
-        """Hertz contact of the bodies."""
+        """Elastic contact of the bodies, without adhesion (Hertz)."""
         return Hertz(self.R, self.E)
 
     @property
     def yielding(self) -> ThorntonNing:
-        """The elastic-plastic contact without adhesion."""
+        """Elastic-plastic contact of the bodies, without adhesion (Thornton and Ning)."""
         return ThorntonNing(self.R, self.E, self.p_y)
 
     @property
     def sticking(self) -> JKR:
-        """The elastic contact with adhesion."""
+        """Elastic contact of the bodies, with adhesion (JKR)."""
         return JKR(self.R, self.E, self.w)
 
     @property
@@ -136,12 +136,12 @@ class Bodies:
 
     @property
     def strength(self) -> float:
-        """Yield strength Y (Pa): that of the softer body, or p_y/2.8."""
+        """Yield strength Y (Pa) of the softer body; p_y/2.8 if a body has no yield strength."""
         return self.p_y / STRENGTHS if self.strengths is None else min(self.strengths)
 
     @property
     def convention(self) -> str:
-        """Text with the value of `strength` and how it was obtained."""
+        """State the value of `strength` and its origin, in words."""
         if self.strengths is None:
             return f"Y = p_y/{STRENGTHS:g} = {1e-6 * self.strength:.4g} MPa"
         softer = self.labels[int(self.strengths[1] < self.strengths[0])]
@@ -155,19 +155,23 @@ class Bodies:
         return (self.strengths[1] < self.strengths[0]) == self.sphere_is_first
 
     def velocity(self, indentation: Array) -> Array:
-        """The impact velocity V (m/s) that reaches `indentation` (m)."""
+        """Impact velocity (m/s) that reaches `indentation` (m), by Thornton and Ning or Hertz."""
         if self.elastic:
             return self.hertz.impact_velocity(indentation, self.m)
         return self.yielding.impact_velocity(indentation, self.m)
 
     def depth_under(self, force: Array) -> Array:
-        """Indentation (m) under `force` (N), after Thornton and Ning, or Hertz if elastic."""
+        """Indentation (m) under `force` (N), by Thornton and Ning; by Hertz if elastic."""
         return (self.hertz if self.elastic else self.yielding).indentation(force)
 
 
 @dataclass(frozen=True)
 class Form:
-    """The result of one closed form: e, its range in words, and its parameters."""
+    """The result of one closed form.
+
+    `restitution` is e at the velocities, `holds` the range of validity in words. `takes_strength`
+    says whether the form uses the yield strength Y, `with_adhesion` whether it includes adhesion.
+    """
 
     restitution: Array
     holds: str

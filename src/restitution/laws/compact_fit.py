@@ -1,15 +1,16 @@
-"""The compact fit of a law: COR against velocity with a few coefficients.
+"""The compact fit of a law: COR (e) against velocity (V) with a few coefficients.
 
     e² = Σ c_k L^k − s/V²,   L = ln(V/V₀)/w in [−1, 1]
 
 V₀ is the geometric mean of the lowest and highest velocity, and w scales ln V to the interval. The
-last term is the loss by adhesion, which is the same energy at every velocity (s = V_s² for an
-elastic pair: Thornton & Ning 1998). The polynomial describes the loss by yielding. Low velocities
-at which nothing is lost (e = 1) or the pair sticks (e = 0) are excluded.
+last term is the loss by adhesion, which is the same energy at every velocity. For an elastic pair s
+is the square of the sticking velocity (Thornton & Ning 1998). The polynomial describes the loss by
+yielding. Low velocities at which nothing is lost (e = 1) or the pair sticks (e = 0) are excluded.
 
-The fit is linear least squares in e². The error between the points is the largest of the residuals
-at the points and the leave-one-out residuals (as in PRESS, Allen 1974, but with the maximum instead
-of the sum). The degree of the polynomial is the lowest whose error is small or near the minimum.
+The fit is linear least squares in e². The error between the points is estimated by the larger of
+two values: the largest residual, and the largest leave-one-out residual (as in PRESS, Allen 1974,
+but with the maximum instead of the sum). The polynomial has the lowest
+degree whose error is small, or near the smallest error of all degrees.
 """
 
 from __future__ import annotations
@@ -25,14 +26,14 @@ Array = NDArray[np.float64]
 
 _HIGHEST_DEGREE = 8
 _FEWEST = 4  # smallest number of points for a fit
-_NO_LOSS = 1e-3  # a point counts as lossless if 1 − W_u/W_l is below this value
+_NO_LOSS = 1e-3  # a point counts as lossless if 1 − e² is below this value
 _SIMPLER = 1.1  # a lower degree is preferred if its error is at most 1.1 times the smallest error
 _GOOD = 1e-3  # a lower degree is always preferred if its error of e is below this value
-_COUNTS = 0.01  # loss of e² by adhesion at the velocity `adhesive_below`
+_COUNTS = 0.01  # decrease of e² due to adhesion at the velocity `adhesive_below`
 
 
 def compact_fit(law: Law) -> CompactFit | None:
-    """Fit the compact formula to `law`; None if fewer than four resolved points remain."""
+    """Fit the compact formula to the resolved points of `law`; None if fewer than four are used."""
     V, ratio = law.column("velocity", resolved=True), law.column("ratio", resolved=True)
     lossless = law.work_of_adhesion == 0
     first = 0

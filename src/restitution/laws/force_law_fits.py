@@ -2,8 +2,9 @@
 
 Each force law is fitted to COR by least squares over the resolved points. COR does not determine
 the loading stiffness of spring models. This stiffness is chosen such that the maximum forces agree
-with the computed forces (geometric mean over the points). The duration and depth of contacts then
-agree on average, too. The COR of the fitted law at every point is stored with its parameters.
+with the computed maximum forces in the geometric mean over the points. The duration and depth of
+contacts then agree on average, too. The COR of the fitted law at every point is stored with its
+parameters.
 """
 
 from __future__ import annotations
@@ -54,7 +55,7 @@ _AT_FORCE_ZERO = "separation, where the force is back to zero"
 
 
 def fitted_laws(law: Law, begin: Begin | None = None) -> tuple[FittedLaw, ...]:
-    """Fit all applicable force laws to `law`; empty if `law` is lossless or unresolved."""
+    """Fit all applicable force laws to `law`; none if COR is 1 or no point is resolved."""
     if _seen(law, "restitution").min(initial=1.0) > 1 - LOSS:
         return ()
     fits, found = _all(law), []
@@ -70,7 +71,7 @@ def fitted_laws(law: Law, begin: Begin | None = None) -> tuple[FittedLaw, ...]:
 def _all(law: Law) -> Iterator[FittedLaw]:
     yield _constant(law)
     if _seen(law, "restitution").max() < LOSS or _seen(law, "force").max() <= 0:
-        return  # no force law fits if the pair sticks or only tension acts
+        return  # the other laws cannot fit a pair that sticks or forces that are only tensile
     yield from _thornton_ning(law)
     yield _walton_braun(law)
     yield _luding(law)
@@ -92,7 +93,7 @@ def _constant(law: Law) -> FittedLaw:
 
 
 def _thornton_ning(law: Law) -> Iterator[FittedLaw]:
-    """Fit p_y in two ways: to the maximum forces, and to COR."""
+    """Fit the yield pressure p_y in two ways: to the maximum forces, and to COR."""
     smooth = law.radius, law.contact_modulus
     V, force = _seen(law, "velocity"), _seen(law, "force")
 
@@ -142,7 +143,10 @@ def _thornton_ning(law: Law) -> Iterator[FittedLaw]:
 
 
 def _adhesion_of(law: Law, V_s: float) -> Parameters:
-    """V_s, and the work of adhesion of smooth elastic bodies with this V_s; empty for V_s = 0."""
+    """Sticking velocity V_s, and the work of adhesion of smooth elastic bodies with this V_s.
+
+    Empty if V_s is 0.
+    """
     if V_s <= 0:
         return {}
     unit = JKR(law.radius, law.contact_modulus, 1.0).sticking_velocity(law.mass)
@@ -154,7 +158,7 @@ def _adhesion_of(law: Law, V_s: float) -> Parameters:
 
 def _walton_braun(law: Law) -> FittedLaw:
     k1 = _stiffness(law, exponent=1.0)
-    # A hardening of this size gives k2 = 2 k1 at the highest velocity.
+    # At the highest velocity, a hardening of this size adds k1 to the unloading stiffness k2.
     scale = math.sqrt(k1 / law.mass) / law.highest
 
     def springs(x: Array) -> tuple[float, float, float]:
@@ -226,7 +230,8 @@ def _eepa(law: Law) -> FittedLaw:
 def _mdr(law: Law) -> FittedLaw | None:
     """Fit the model mdr of LAMMPS; None for two unlike spheres.
 
-    The model describes a sphere on a rigid flat. Two equal spheres are two such contacts.
+    The model describes a sphere on a rigid flat. Two equal spheres are like two such contacts in
+    series.
     """
     sphere = law.second if law.first.wall else law.first
     assert sphere.radius is not None  # a pair has at most one wall
@@ -261,9 +266,10 @@ def _seen(law: Law, name: str) -> Array:
 
 
 def _stiffness(law: Law, exponent: float) -> float:
-    """k₁ (N/mⁿ) of F = k₁δⁿ from the maximum forces of the points, as a geometric mean.
+    """Stiffness k₁ (N/mⁿ) of the spring F = k₁δⁿ: the geometric mean over the resolved points.
 
-    A spring that has stored the work W has F^{1+1/n} = (n + 1) k₁^{1/n} W.
+    Each point gives the k₁ with which the loading work W leads to the maximum force F:
+    F^{1+1/n} = (n + 1) k₁^{1/n} W.
     """
     force, work, n = _seen(law, "force"), _seen(law, "loading_work"), exponent
     some = (force > 0) & (work > 0)
@@ -278,7 +284,7 @@ def _fit(
     low: list[float],
     high: list[float] | None = None,
 ) -> Array:
-    """Find parameters x within `low` and `high` for which restitution(V, x) fits the points."""
+    """Fit restitution(V, x) to the points; the parameters x stay within `low` and `high`."""
     V, e = _seen(law, "velocity"), _seen(law, "restitution")
 
     def misfit(x: Array) -> Array:
@@ -293,9 +299,10 @@ def _least_squares(
     low: list[float] | None = None,
     high: list[float] | None = None,
 ) -> Array:
-    """Minimise the sum of squares of `misfit` from several starts, because `misfit` has kinks.
+    """Minimise the sum of squares of `misfit`, whose kinks can lead to several minima.
 
-    With a single parameter, one start is enough, because COR is monotone in this parameter.
+    The search runs from several starting points. With a single parameter, one is enough, because
+    COR is monotone in this parameter.
     """
     from scipy.optimize import least_squares
 

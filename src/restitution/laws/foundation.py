@@ -1,15 +1,15 @@
 """A one-dimensional foundation with the normal and tangential response of a stored contact.
 
 Springs stand side by side on a line. The spring at the distance x from the middle touches at the
-indentation g(x). At the indentation δ and its tangential displacement u, it carries the normal load
-2E* (δ − g) and the tangential load 2G* u per unit length of the half line. g follows from the
-normal curve F(δ) alone: the inverse of g(x) is the contact radius a(δ) = F′(δ)/2E*. A sticking
-spring is displaced with the bodies. The load |2G* u| is at most µ times the normal load, where µ is
-the coefficient of friction. For a sphere, g = x²/R*, and the foundation is exact: it gives Hertz's
-force, and Cattaneo's and Mindlin's tangential force for every history (Popov and Heß 2015, Method
-of Dimensionality Reduction, chapters 3 and 5). For other elastic contacts the rule "tangential is µ
-times the difference of two normal states" is a good approximation (Jäger 1995, Arch. Appl. Mech.
-65, 478–487; Ciavarella 1998, Int. J. Solids Struct. 35, 2349–2378).
+indentation g(x). At the indentation δ it carries the normal load 2E* (δ − g) per unit length of the
+half line. With the tangential displacement u, it also carries the tangential load 2G* u. g follows
+from the normal curve F(δ) alone: the inverse of g(x) is the contact radius a(δ) = F′(δ)/2E*. A
+sticking spring is displaced with the bodies. The load |2G* u| is at most µ times the normal load,
+where µ is the coefficient of friction. For a sphere, g = x²/R*, and the foundation is exact: it
+gives Hertz's force, and Cattaneo's and Mindlin's tangential force for every history (Popov and Heß
+2015, Method of Dimensionality Reduction, chapters 3 and 5). For other elastic contacts, µ times the
+difference of two normal forces is a good approximation of the tangential force (Jäger 1995, Arch.
+Appl. Mech. 65, 478–487; Ciavarella 1998, Int. J. Solids Struct. 35, 2349–2378).
 
 A contact that has yielded responds to small motions elastically, as on its unloading curve. At
 every depth of loading, the normal loads of the springs are therefore those of the unloading curve
@@ -30,7 +30,7 @@ Array = NDArray[np.float64]
 
 _SPRINGS = 400  # number of springs on each half line
 _DEPTHS = 200  # number of depths of loading at which the loads of the springs are tabulated
-_ELASTIC = 1e-3  # a contact counts as elastic if its residual indentation/depth is below this value
+_ELASTIC = 1e-3  # a contact counts as elastic below this ratio of residual to largest indentation
 _POINTS = 400  # number of points of an unloading curve at which its slope is computed
 
 
@@ -51,7 +51,7 @@ class Foundation:
 
     @classmethod
     def of(cls, law: StoredForce, deepest: float) -> Foundation:
-        """The foundation of the force `law`, loaded up to `deepest` (m)."""
+        """Make the foundation of the force `law`, loaded up to `deepest` (m)."""
         E, G = law.pair.contact_modulus, law.pair.tangential_modulus
         depths = np.linspace(0.0, deepest, _DEPTHS + 1)[1:]
         if has_yielded(law, deepest):
@@ -69,7 +69,7 @@ class Foundation:
         return cls(x, width, depths, loads, (E, G))
 
     def load(self, indentation: float, deepest: float) -> Array:
-        """Normal load (N) of every spring at `indentation`, after the maximum `deepest` (m)."""
+        """Normal load (N) of every spring at `indentation` (m), after loading to `deepest` (m)."""
         share = np.clip(deepest / self.depths[0] - 1, 0.0, len(self.depths) - 1.0)
         k = min(int(share), len(self.depths) - 2)
         at_deepest = self.loads[k] + (share - k) * (self.loads[k + 1] - self.loads[k])
@@ -84,9 +84,9 @@ class Foundation:
     ) -> tuple[Array, Array, Array]:
         """Move the bodies tangentially by `motion` (m).
 
-        `u` (m) holds the tangential displacements of the springs, and `limit` (N) the largest
-        tangential loads. `factor` multiplies the tangential modulus. `motion` and `factor` may be
-        arrays; each of their values belongs to a row of `u`. Returns the new displacements (m), the
+        `u` (m) holds the tangential displacements of the springs, and `limit` (N) their friction
+        limits. `factor` multiplies the tangential modulus. `motion` and `factor` may be arrays;
+        each of their values belongs to a row of `u`. Returns the new displacements (m), the
         tangential force (N), and the work of friction (J).
         """
         stiffness = 2 * self.moduli[1] * self.width * np.asarray(factor)
@@ -103,10 +103,10 @@ def has_yielded(law: StoredForce, deepest: float) -> bool:
 
 
 def _touching(law: StoredForce, depth: float, contact_modulus: float) -> tuple[Array, Array]:
-    """Return indentations (m) on the unloading curve from `depth` (m), and their contact radii (m).
+    """Return indentations (m) on the unloading curve from `depth` (m), and contact radii (m) there.
 
-    The radii increase with the indentation, so that every spring touches once. The radii are scaled
-    so that the loads of the springs add up to the force.
+    The radii are made to increase with the indentation, so that every spring touches once. The
+    radii are scaled so that the loads of the springs add up to the force.
     """
     end, force = law.separation(depth), law.loading(depth)
     shape, _ = law.shape(depth)

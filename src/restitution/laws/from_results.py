@@ -1,4 +1,4 @@
-"""A law from the stored results of a run, of an ensemble or of a convergence study."""
+"""Make a restitution law from the stored results of a run, ensemble or convergence study."""
 
 from __future__ import annotations
 
@@ -34,10 +34,9 @@ def bare_law(out: Path) -> Law:
     """Make the law of the results in the folder `out`, without fits.
 
     The law of an ensemble is that of its mean curve, and its errors include the confidence interval
-    of the mean. The errors from a convergence study include the error of the grid. Depths without
-    an impact velocity are left out: there the loading work is negative, because of adhesion.
-    Raises `OutputError` if the folder holds no run, and `CaseError` if no depth has an impact
-    velocity.
+    of the mean. The errors from a convergence study include the error of the grid. Depths with a
+    negative loading work (because of adhesion) have no impact velocity and are left out. Raises
+    `OutputError` if the folder holds no run, and `CaseError` if no depth has an impact velocity.
     """
     run = _read(out)
     try:
@@ -119,7 +118,7 @@ def _law(out: Path, run: RunResults) -> Law:
 def _read(out: Path) -> RunResults:
     if (out / "study.toml").is_file():
         raise OutputError(
-            f"{out}: is a study of many cases, and a law describes one pair; run one case with "
+            f"{out}: is a study of many cases, but a law describes one pair; run one case with "
             "`restitution run` and give its folder"
         )
     if (out / LAW_FILE).is_file():
@@ -138,7 +137,7 @@ def _read(out: Path) -> RunResults:
 
 
 def _error_includes(diagnostics: Mapping[str, object]) -> str:
-    """Describe the parts that the error of a point includes, and those that it does not include."""
+    """Describe which parts the error of a point includes, and which it excludes."""
     includes = diagnostics.get("total_error_includes") or "solver"
     excludes = diagnostics.get("total_error_does_not_include") or "anything else"
     model = diagnostics.get("largest_model_error")
@@ -176,10 +175,11 @@ def _ratio(row: _Row, work: float, *, means: bool) -> float:
 
 
 def _error(row: _Row, *, asked: bool) -> float:
-    """Total error of a row.
+    """Return the total error of a row.
 
-    If the case `asked` for the total error but a part of it is unknown, return the largest possible
-    error of COR. If the case did not ask for the total error, return the sum of the known parts.
+    If the total error is missing although the case `asked` for it, a part of it is unknown, and the
+    largest possible error of COR is returned. If the case did not ask for it, the sum of the known
+    parts is returned.
     """
     known = row.get("total_error", math.nan)
     if not math.isnan(known):

@@ -1,14 +1,20 @@
 """Closed forms for impacts in which the whole contact slides from the beginning to the end.
 
-In the foundation (`foundation`), a spring that slides has the displacement µ (E*/G*)(δ − g). It
-slides on as long as the contact point is faster than the rate of this displacement,
-U > µ (E*/G*) dδ/dt. With full slip, U − µ (E*/G*) dδ/dt falls as long as the bodies touch, so the
-end of contact decides, where dδ/dt = −e V_n and U = V_t − (7/2) µ (1 + e) V_n:
+The bodies meet at the angle θ from the normal, with the tangential and normal velocities V_t and
+V_n. In the foundation (`foundation`), a spring that slides has the displacement µ (E*/G*)(δ − g),
+where δ is the indentation and g the indentation at which this spring touches. It continues to slide
+as long as the velocity U of the contact point exceeds the rate of this displacement:
+
+    U > µ (E*/G*) dδ/dt.
+
+With full slip, the difference of the two sides decreases during the whole contact. So the condition
+is strictest at the end of contact, with dδ/dt = −e V_n and U = V_t − (7/2) µ (1 + e) V_n. There it
+is
 
     tan θ ≥ µ [(7/2)(1 + e) − e E*/G*].
 
 For e = 1 this is the condition ψ₁ ≥ 4χ − 1 of Maw, Barber and Fawcett (1976, Wear 38, 101–114),
-with ψ₁ = (G*/E*) tan θ/µ and χ = (7/4) G*/E*. It follows for e < 1 in the same way, because springs
+with ψ₁ = (G*/E*) tan θ/µ and χ = (7/4) G*/E*. The same derivation holds for e < 1, because springs
 unload with the stiffness E*, whether or not the contact has yielded.
 """
 
@@ -29,10 +35,10 @@ def full_slip_angle(friction: float, restitution: float, modulus_ratio: float) -
         The angle from the normal (rad).
 
     Source:
-        Maw, Barber and Fawcett (1976) for e = 1; extended to e < 1 in the module's text.
+        Maw, Barber and Fawcett (1976) for e = 1; extended to e < 1 at the top of this module.
     """
     least = 3.5 * (1 + restitution) - restitution / modulus_ratio
-    # For ψ₁ < 1 the contact sticks at first (Maw, Barber and Fawcett), so ψ₁ is at least 1.
+    # For ψ₁ < 1 the contact sticks at first (Maw, Barber and Fawcett), so full slip needs ψ₁ ≥ 1.
     return math.atan(friction * max(least, 1 / modulus_ratio))
 
 
@@ -45,7 +51,7 @@ def full_slip_restitution(friction: float, restitution: float, angle: float) -> 
         angle: Angle of impact from the normal (rad), above 0.
 
     Returns:
-        Tangential velocity of the centres after over before the impact (1).
+        Ratio of the tangential velocities of the centres after and before the impact (1).
 
     Source:
         The impulse of a sliding contact: µ times the normal impulse, (1 + e) m* V_n.

@@ -2,18 +2,18 @@
 
     W_u/W_l = q(ln V) − s/V²
 
-W_u and W_l are the works of unloading and loading, V the impact velocity and V_s the sticking
+W_u and W_l are the works of unloading and loading, V is the impact velocity and V_s the sticking
 velocity. A monotone cubic (PCHIP) interpolates q. The term s/V² is the loss by adhesion, an energy
 that is about the same at every velocity (s = V_s² for an elastic pair: Thornton & Ning 1998). s is
-chosen such that q is nearly constant between the two lowest velocities. The interpolated ratio then
-changes sign at the velocity above which the pair rebounds. Without adhesion s = 0.
+chosen such that q is constant between the two lowest velocities, but not negative. The pair
+rebounds above the velocity at which the interpolated ratio is zero. Without adhesion s = 0.
 
 The error estimate at the middle of an interval is 1.5 times the larger leave-one-out residual of
 the two end points, and at least the difference between the cubic and linear interpolation. With
-only two points, it is the difference between their values. Towards the points, the estimate falls
-to zero as 2 (t (1 − t))^½, where t (0 to 1) is the position in the interval of ln V. The standard
-deviation of a random walk with both ends fixed has the same form. docs/dem.md says how often the
-error lies within the estimate on rough surfaces.
+only two points, it is the difference between their values. Towards the end points, the estimate
+decreases to zero as 2 (t (1 − t))^½, where t (0 to 1) is the position in the interval of ln V. The
+standard deviation of a random walk with both ends fixed has the same form. docs/dem.md says how
+often the error is within the estimate for rough surfaces.
 """
 
 from __future__ import annotations
@@ -59,7 +59,10 @@ class RatioCurve:
         return max(middle * 2 * math.sqrt(t * (1 - t)), line)
 
     def interval(self, velocity: float) -> tuple[int, float]:
-        """Return the index of the point above `velocity` (m/s), and t in the interval below it."""
+        """Return the index of the first point above `velocity` (m/s), and t in the interval below.
+
+        t (0 to 1) is the position of ln V between the points on both sides of `velocity`.
+        """
         L = math.log(velocity)
         after = min(max(int(np.searchsorted(self._L, L)), 1), self._L.size - 1)
         below, above = self._L[after - 1 : after + 1]
@@ -68,7 +71,7 @@ class RatioCurve:
     def begins(self) -> float | None:
         """The velocity (m/s) above which the pair rebounds.
 
-        None if it rebounds at every computed velocity, or at none.
+        None if the pair rebounds at every computed velocity, or at none of them.
         """
         sticking = np.flatnonzero(self.ratios <= 0)
         if not sticking.size or sticking[-1] == self.ratios.size - 1:
@@ -78,7 +81,7 @@ class RatioCurve:
         below, above = self.velocities[sticking[-1] : sticking[-1] + 2]
         if self.ratios[sticking[-1]] == 0:
             return float(below)
-        # Rounding may change the sign of a ratio that is nearly zero.
+        # Rounding can change the sign of a nearly zero ratio, but `brentq` needs opposite signs.
         if self.at(above) <= 0 or self.at(below) >= 0:
             return float(above if self.at(above) <= 0 else below)
         return float(brentq(self.at, below, above))
@@ -100,5 +103,5 @@ class RatioCurve:
 def _pchip(x: Array, y: Array, at: float) -> float:
     from scipy.interpolate import PchipInterpolator
 
-    with np.errstate(over="ignore"):  # 1/slope overflows for slopes of 1e-308; PCHIP then takes 0
+    with np.errstate(over="ignore"):  # 1/slope overflows for slopes of 1e-308; PCHIP then uses 0
         return float(y[0]) if x.size == 1 else float(PchipInterpolator(x, y)(at))

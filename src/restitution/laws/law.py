@@ -21,9 +21,9 @@ from restitution.laws.interpolation import RatioCurve
 Array = NDArray[np.float64]
 
 LOSS = 1e-3
-"""A law is not fitted if 1 − e, or e, is below this value at every velocity."""
-# Largest relative difference of velocities that count as equal. A run that integrates the loading
-# work reaches the velocities of its case to within 1e-4 (`solve_at_velocity`).
+"""A law is not fitted if e is below this value at every velocity, or 1 − e at every velocity."""
+# Largest relative difference of velocities that count as equal. With integrated loading work, a run
+# reaches the velocities of its case only within 1e-4 (`solve_at_velocity`).
 _SAME = 1.01e-4
 
 
@@ -64,8 +64,8 @@ class Particle(_Stored):
 class Point(_Stored):
     """The result at one impact velocity, in SI units.
 
-    `ratio` is W_u/W_l, the unloading work over the loading work, which is negative if the pair
-    sticks. `error` is the error of `restitution`. `indentation` and `force` are the maxima of the
+    `ratio` is W_u/W_l, the unloading work over the loading work; it is negative if the pair sticks.
+    `error` is the error of `restitution`. `indentation` and `force` are the maxima during the
     impact.
     """
 
@@ -89,11 +89,12 @@ class Point(_Stored):
 class CompactFit(_Stored):
     """Fit e² = Σ c_k L^k − s/V², L = ln(V/V₀)/w, between `lowest` and `highest` velocity.
 
-    e = 0 where e² is negative and for V ≤ `sticks_below`; e = 1 for V ≤ `elastic_below`. The fit
-    uses the resolved points. `lowest` and `highest` (m/s) are the first and the last resolved
-    point, and the fit has no value outside. `worst` is the largest difference in e at the resolved
-    points; `between` is the largest difference at a point that was left out of the fit. Velocities
-    are in m/s, and `adhesion` is s in m²/s².
+    `coefficients` are c_k, `centre` is V₀ and `width` is w. e = 0 where e² is negative and for V ≤
+    `sticks_below`; e = 1 for V ≤ `elastic_below`. The fit uses the resolved points. `lowest` and
+    `highest` (m/s) are the first and the last resolved point, and the fit has no value outside.
+    `worst` is the largest difference in e at the resolved points; `between` is the largest
+    difference at a point that was left out of the fit. Velocities are in m/s, and `adhesion` is s
+    in m²/s².
     """
 
     coefficients: tuple[float, ...]
@@ -111,7 +112,8 @@ class CompactFit(_Stored):
     def restitution(self, velocity: ArrayLike) -> Array:
         """Coefficient of restitution at `velocity` (m/s, any shape).
 
-        NaN outside `lowest` to `highest`, even below `elastic_below` or `sticks_below`.
+        NaN outside `lowest` to `highest`, also if `velocity` is below `elastic_below` or
+        `sticks_below`.
         """
         V = np.asarray(velocity, dtype=float)
         L = np.log(V / self.centre) / self.width
@@ -129,9 +131,9 @@ class FittedLaw(_Stored):
     """A force law of DEM codes, fitted to the computed COR.
 
     The keys of `parameters` carry the units. `restitution` is the COR of the force law at the
-    velocities of the points; it is None where the force law has no solution and outside the
-    resolved velocities to which it was fitted (`Law.fitted_range`). `rms` and `worst` are the
-    differences from the computed COR at the resolved points.
+    velocities of the points; it is None where the force law has no solution, and outside the
+    resolved velocities (`Law.fitted_range`). `rms` and `worst` are the differences from the
+    computed COR at the resolved points.
     """
 
     name: str
@@ -168,9 +170,9 @@ class Law(_Stored):
     """Coefficient of restitution against impact velocity for one pair, in SI units.
 
     `radius`, `contact_modulus` and `mass` are R*, E* and m*. `friction` is the coefficient of
-    friction of the case, None if it has none; e does not depend on it. `yield_velocity` and
+    friction of the case, or None; e does not depend on friction. `yield_velocity` and
     `sticking_velocity` belong to the smooth bodies. `sticks_below` is the velocity above which this
-    pair rebounds; None if it rebounds at every computed velocity, or at none.
+    pair rebounds; None if the pair rebounds at every computed velocity, or at none of them.
     """
 
     title: str
@@ -238,7 +240,7 @@ class Law(_Stored):
         """Estimate COR at `velocity` (m/s).
 
         The error of the estimate is the sum of two parts: the error of the points, interpolated
-        linearly in ln V, and the interpolation error of W_u/W_l (`RatioCurve.error`). It is
+        linearly in ln V, and the interpolation error of W_u/W_l (`RatioCurve.error`). The sum is
         continuous in V. Raises `DomainError` outside the computed velocities.
         """
         if not self.lowest * (1 - _SAME) <= velocity <= self.highest * (1 + _SAME):
@@ -264,7 +266,7 @@ class Law(_Stored):
         )
 
     def curve(self) -> RatioCurve:
-        """W_u/W_l as a function of the velocity."""
+        """Ratio of unloading to loading work W_u/W_l, interpolated between the velocities."""
         return RatioCurve(
             self.column("velocity"), self.column("ratio"), adhesive=self.work_of_adhesion > 0
         )

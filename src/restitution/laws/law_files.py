@@ -22,7 +22,7 @@ from restitution.results.interruption import hold_signals
 from restitution.results.writer import make_folder, replace_file, write_checksums, write_table
 
 LAW_FILE = "law.json"
-LAWS, MIXTURE_FILE = "laws", "mixture.toml"  # in a mixture: folder of the laws, and its input file
+LAWS, MIXTURE_FILE = "laws", "mixture.toml"  # folder of the laws of a mixture, and its input file
 
 
 def write_law(law: Law, out: Path) -> list[Path]:
@@ -43,8 +43,8 @@ def write_law(law: Law, out: Path) -> list[Path]:
 def read_law(folder: Path) -> Law:
     """Read the law in `folder`, as `restitution fit-law` wrote it, or the file `law.json` itself.
 
-    Raises `OutputError` if there is no law or its checksum differs, `CaseError` if it is not a law
-    of this version.
+    Raises `OutputError` if there is no law or its checksum differs, and `CaseError` if the file is
+    not a law of this version.
     """
     path = folder / LAW_FILE if folder.is_dir() else folder
     try:

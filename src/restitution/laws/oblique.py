@@ -5,15 +5,16 @@ normal velocity (`time_integration`). The contact point slides with the velocity
 
     U = v_t − R₁ω₁ − R₂ω₂,   dU/dt = −(7/2) T/m*,   dv_t/dt = −T/m*,   dω_i/dt = (5/2) T/(m_i R_i)
 
-for solid spheres (I = 2/5 m R²). ω is positive in the direction in which friction turns a sphere
-without spin. The tangential force T follows from a one-dimensional foundation of springs with
-constant friction µ (`foundation`). If all springs slide to the end, the impulse of T is
-µ (1 + e) m* V_n for every force law.
+for solid spheres (moment of inertia I = 2/5 m R²), where v_t is the tangential velocity of the
+centres and m* the reduced mass. The spin ω is positive in the direction in which friction turns a
+sphere without spin. The tangential force T follows from a one-dimensional foundation of springs
+with constant friction µ (`foundation`). If all springs slide to the end, the impulse of T is
+µ (1 + e) m* V_n for every force law, with the normal impact velocity V_n.
 
-The error of the tangential law (`tangential_error`) is converted to an error of the impulse of T.
-To do so, the motion is integrated again with a larger and a smaller tangential modulus. If the
-contact has yielded, a fraction of the impulse is added to the error. This fraction vanishes in full
-slip, where the impulse is exact for like bodies.
+To convert the error of the tangential law (`tangential_error`) to an error of the impulse of T, the
+motion is integrated again with a larger and a smaller tangential modulus. If the contact has
+yielded, a fraction of the impulse is added to the error. This fraction vanishes in full slip, where
+the impulse is exact for like bodies.
 
 Neglected: the coupling of normal and tangential displacements of unlike materials, the torque about
 the normal, rolling friction, and elastic waves.
@@ -44,7 +45,7 @@ Array = NDArray[np.float64]
 
 _STEPS = 4000  # number of time steps of a collision
 _LEAST = 1e-3  # fraction of the largest normal force below which `sticking` is set to 0
-_INERTIA = 3.5  # 1 + m R²/I of a solid sphere
+_INERTIA = 3.5  # 1 + m R²/I of a solid sphere with moment of inertia I
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +122,7 @@ def collide_obliquely(
     Args:
         law: Stored normal force of the pair (`stored_force`), without adhesion.
         velocity: Relative velocity of the centres before the impact (m/s), positive.
-        angle: Angle between this velocity and the normal (rad), from 0 to below π/2.
+        angle: Angle between this velocity and the normal (rad), at least 0 and below π/2.
         friction: Coefficient of friction µ (1), not negative.
         spins: Angular velocities of the two bodies before the impact (rad/s), positive in the sense
             in which friction turns a body without spin.
@@ -131,8 +132,8 @@ def collide_obliquely(
 
     Raises:
         CaseError: An argument lies outside its range, or the spin of a wall is not 0.
-        DomainError: The normal velocity is above the computed ones, or the depth has no stored
-            unloading curve.
+        DomainError: The normal velocity is above the computed velocities, or no stored unloading
+            curves enclose the depth of the impact.
         NotConvergedError: The integration of the normal motion failed.
     """
     if not 0 <= angle < math.pi / 2:
@@ -148,7 +149,7 @@ def collide_obliquely(
         math.isinf(body.radius) and spin != 0
         for body, spin in zip((law.pair.first, law.pair.second), spins, strict=True)
     ):
-        raise CaseError("spins: a wall does not turn; give 0 for it")
+        raise CaseError("spins: a wall does not rotate; give 0 for the wall")
     V_n, V_t = velocity * math.cos(angle), velocity * math.sin(angle)
     normal = collide_in_time(law, V_n)
     bodies = law.pair.first, law.pair.second
@@ -244,7 +245,7 @@ def course(collision: ObliqueCollision) -> list[dict[str, float | str]]:
 
 @dataclass(frozen=True, eq=False)
 class _Course:
-    """Time series of an oblique impact, impulse and its error (N s), and friction loss (J)."""
+    """Time series of an oblique impact, tangential impulse with error (N s), friction loss (J)."""
 
     time: Array
     normal: Array
@@ -259,7 +260,7 @@ class _Course:
 def _slide(
     law: StoredForce, normal: ReferenceCollision, slip: float, friction: float, error: float
 ) -> _Course:
-    """Integrate the tangential motion from the velocity `slip` (m/s) of the contact point.
+    """Integrate the tangential motion; the contact point first slides with `slip` (m/s).
 
     `error` is the relative error of the tangential stiffness.
     """

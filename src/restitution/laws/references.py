@@ -28,7 +28,7 @@ class Reference:
 
 
 def force_references(results: xr.Dataset) -> list[Reference]:
-    """Closed forms of the force (N) against indentation (m): elastic and, if bodies yield, plastic.
+    """Closed forms of the force (N) against indentation (m), elastic and (if bodies yield) plastic.
 
     The curves begin below the smallest indentation that carries a force in loading or unloading.
     """
@@ -87,7 +87,7 @@ def least_indentation(results: xr.Dataset) -> float:
 
 
 def _parameters(results: xr.Dataset) -> tuple[float, float, float, float]:
-    """R* (m), E* (Pa), p_y (Pa; inf when elastic) and w (J/m²) of the stored case."""
+    """R* (m), E* (Pa), yield pressure (Pa; inf if elastic), work of adhesion (J/m²) of a run."""
     p_y = results.attrs["derived_yield_pressure_Pa"]
     return (
         float(results.attrs["derived_reduced_radius_m"]),

@@ -1,17 +1,17 @@
 """Error of the one-dimensional tangential law, from a comparison with boundary elements.
 
 docs/oblique.md describes the comparison (`docs/studies/tangential.py` and `unlike.py`). The law is
-exact for like bodies with ν = 0 and any roughness, as long as they do not yield. Four effects cause
-an error:
+exact for like bodies with Poisson's ratio 0 and any roughness, as long as they do not yield. Four
+effects cause an error:
 
 * Patches that are not round. Under a point load along x, the displacement at a given distance is
   1 + χ times the mean on the x axis and 1 − χ times the mean on the y axis, with χ = ν/(2 − ν) for
-  like bodies. The law uses the mean, so its stiffness has an error of up to χ for a line contact.
-  The patches of a rough contact are elongated in random directions, so the error decreases as one
-  over the square root of the number of patches. On a surface with a lay (a preferred direction) the
-  patches are aligned, and the error decreases less.
+  like bodies with Poisson's ratio ν. The law uses the mean, so its stiffness has an error of up to
+  χ for a line contact. The patches of a rough contact are elongated in random directions, so the
+  error is inversely proportional to the square root of the number of patches. On a surface with a
+  lay (a preferred direction) the patches are aligned, and the error decreases less.
 * Yield. At nodes that have reached the pressure bound, the friction limit stays constant during
-  further loading. In the law, the friction limit of every spring grows.
+  further loading. In the law, the friction limits of all springs increase.
 * Few unloading curves. Between two unloading curves, the stiffness is interpolated.
 * Unlike bodies. Pressure also moves the surfaces tangentially, in proportion to Dundurs' second
   constant β. Without slip this adds no tangential force by symmetry, and the stiffness grows only
@@ -36,17 +36,17 @@ from restitution.laws.time_integration import StoredForce
 
 # These numbers bound all differences found in the comparison. _NUMERICAL is the relative error of
 # the stiffness of smooth contacts for ν = 0, and _ROUGH the additional error of rough contacts.
-# _SHAPE is the relative error due to the shape of one patch, divided by χ. This error is the same
-# for up to _ALIGNED patches. It does not decrease beyond _INDEPENDENT patches, because small
+# _SHAPE is the relative error due to the shape of one patch, divided by χ. The error is the same
+# for up to _ALIGNED patches, and does not decrease beyond _INDEPENDENT patches, because small
 # patches are parts of larger ones.
 _NUMERICAL, _ROUGH = 0.005, 0.04
 _SHAPE, _ALIGNED, _INDEPENDENT = 0.35, 4.0, 36.0
 # Relative errors of stiffness and impulse after yield. On rough contacts they are multiplied by
 # the largest ratio between the depths of neighbouring unloading curves.
 _YIELDED_STIFFNESS, _YIELDED_IMPULSE = 0.01, 0.1
-# Error of the impulse in full slip, over the stiffness error due to β (both relative).
+# Ratio of the relative error of the impulse in full slip to the relative stiffness error due to β.
 _TURNED = 0.15
-_SHALLOWEST = 0.2  # unloading curves below this fraction of the deepest depth do not matter
+_SHALLOWEST = 0.2  # unloading curves below this fraction of the deepest depth are ignored
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from restitution.theory import Brilliantov
 Array = NDArray[np.float64]
 
 STEPS = 25
-"""Number of velocities in the table of a case that gives a span."""
+"""Number of velocities in a table over the span of a case."""
 COMPUTED = "computed"
 """Name of the entry for the computed points in a list of theories."""
 
@@ -43,11 +43,11 @@ class Theory:
 
 
 def velocities_of(case: Case, law: Law | None = None) -> Array:
-    """Velocities (m/s) to tabulate: the velocities of the law, or the span of the case.
+    """Velocities (m/s) of the table: those of the law if one is given, else the span of the case.
 
-    If the case gives indentations or loads, the span is that of the velocities at which smooth
-    bodies reach the first and the last of them, according to Thornton and Ning or, for elastic
-    bodies, Hertz. Raises `CaseError`.
+    If the case gives indentations or loads, the span is between the velocities at which smooth
+    bodies reach the first and the last of these, by Thornton and Ning or, for elastic bodies, by
+    Hertz. Raises `CaseError`.
     """
     if law is not None:
         return law.column("velocity")
@@ -59,11 +59,11 @@ def velocities_of(case: Case, law: Law | None = None) -> Array:
 
 
 def theories(case: Case, velocities: Array, law: Law | None = None) -> list[Theory]:
-    """Evaluate every theory that applies to `case` at `velocities` (m/s), and fits to `law`.
+    """Evaluate every theory that applies to `case`, and the fits to `law`, at `velocities` (m/s).
 
-    The computed COR has values only at the points of the law. The fits have values only between the
-    resolved points. Raises `CaseError` if a density is missing, or if the law belongs to another
-    pair.
+    The computed COR and the fits have values only at the velocities of the law. Outside its
+    resolved velocities, the fits are NaN. Raises `CaseError` if a density is missing, or if the law
+    belongs to another pair.
     """
     V = np.asarray(velocities, dtype=float)
     found = [answer for answer in _answers(case, V) if isinstance(answer, Theory)]
@@ -96,7 +96,7 @@ def theory_lines(
 
 
 def left_out(case: Case, law: Law | None = None) -> dict[str, str]:
-    """The names of the theories that do not apply to `case`, with the reasons."""
+    """Names of the theories that do not apply to `case`, with the reasons."""
     reasons = dict(
         answer for answer in _answers(case, np.ones(1)) if not isinstance(answer, Theory)
     )
@@ -113,7 +113,7 @@ def marks(case: Case) -> dict[str, float]:
 
 
 def check_same_pair(case: Case, law: Law) -> None:
-    """Raise `CaseError` with the differing values unless R*, E* and m* agree to 1e-6."""
+    """Raise `CaseError` with the differing values if R*, E* or m* differ by more than 1e-6."""
     bodies = Bodies.of(case)
     quantities = {
         "R*": (law.radius, bodies.R, "m"),
@@ -239,7 +239,7 @@ def _cannot_fit(law: Law) -> str:
 
 
 def _dissipation(law: Law) -> float:
-    """Fit β of `brilliantov` to the COR of the law by least squares."""
+    """Fit the dissipation β of `Brilliantov` to the COR of the law by least squares."""
     from scipy.optimize import minimize_scalar
 
     V, e = (law.column(name, resolved=True) for name in ("velocity", "restitution"))

@@ -2,13 +2,15 @@
 
     m₁ x₁'' = −F(δ),  m₂ x₂'' = F(δ),  δ = x₁ − x₂ (0 at first touch),  e = (v₂' − v₁')/(v₁ − v₂)
 
-F follows the loading curve until the particles stop approaching, and then the unloading curve from
-the depth reached. The resulting e checks two things: the unloading forces against the stored
-unloading work, and the formula for e from energies against an equation of motion.
+x'' is an acceleration; v and v' are the velocities before and after the impact. F follows the
+loading curve until the particles stop approaching, and then the unloading curve from the depth
+reached. The resulting e is a check of the stored unloading work against the unloading forces, and
+of the formula for e from energies against an equation of motion.
 
-The loading force is the derivative of a cubic Hermite spline through the stored loading work W. The
-slopes of the spline at the stored depths are the stored forces, so the maximum indentation agrees
-with the energies. If W resembles a power of δ, the spline interpolates ln W against ln δ.
+The loading force is the derivative of a cubic Hermite spline through the stored loading work W. At
+the stored depths, the slope of the spline is the stored force. The motion stops where W equals the
+initial kinetic energy, as in the formula from energies. If W resembles a power of δ, the spline
+interpolates ln W against ln δ.
 
 Unloading curves are monotone cubics (PCHIP) and are stored for some depths only. Between two of
 these depths, F/F_max is interpolated against (δ − δ_s)/(δ_max − δ_s), with the separation δ_s and
@@ -42,10 +44,8 @@ Array = NDArray[np.float64]
 Force = Callable[[float], float]
 
 _RTOL = 1e-10
-_SLACK = 1e-3  # relative overshoot of the deepest depth allowed for rounding and integration
-# Largest d ln W/d ln δ that is treated as a power law. A larger value means that adhesion nearly
-# cancels W.
-_STEEPEST = 6.0
+_SLACK = 1e-3  # allowed excess over the deepest depth (relative), for errors of the integration
+_STEEPEST = 6.0  # largest d ln W/d ln δ of a power law; above it, adhesion nearly cancels W
 _SAME = 1e-5  # largest relative difference of depths that count as equal
 
 
@@ -168,7 +168,7 @@ def force_of(pair: Pair, results: xr.Dataset, unloading: Sequence[UnloadingCurve
     """Make the force law of `pair` from the variables of a curve and its unloading curves.
 
     `results` has the variables of `results.nc`, including the height at x and y. `unloading` is
-    sorted by `start`. Raises `OutputError` if no unloading reaches separation, `CaseError` if
+    sorted by `start`. Raises `OutputError` if no unloading reaches separation, and `CaseError` if
     `pair` has no mass.
     """
     depth, force = results["indentation"].values, results["force"].values
@@ -201,13 +201,13 @@ def collide_in_time(law: StoredForce, velocity: float) -> ReferenceCollision:
     """Integrate a head-on collision of the two particles of `law` at relative `velocity` (m/s).
 
     The particles start at first touch, in the frame of their centre of mass (with a wall, in the
-    frame of the wall). Raises `DomainError` if the collision goes deeper than the stored forces,
+    frame of the wall). Raises `DomainError` if the collision is deeper than the stored forces, and
     `NotConvergedError` if the integration fails.
     """
     if not 0 < velocity <= law.highest * (1 + 1e-9):
         raise DomainError(
             f"velocity: {velocity:.6g} m/s is outside the computed velocities (above 0, up to "
-            f"{law.highest:.4g} m/s); choose one in this range, or compute higher velocities"
+            f"{law.highest:.4g} m/s); choose a velocity in this range, or compute higher velocities"
         )
     m1, m2 = law.pair.first.mass, law.pair.second.mass
     assert m1 is not None  # checked by StoredForce
@@ -226,7 +226,7 @@ def collide_in_time(law: StoredForce, velocity: float) -> ReferenceCollision:
     if down.t_events[1].size:
         raise NotConvergedError(
             f"velocity: at {velocity:.6g} m/s the stored loading curve ends before the particles "
-            "stop, so its forces contradict its velocities; run the case again"
+            "stop, so the stored forces contradict the stored impact velocities; run the case again"
         )
     turn = down.y[:, -1]
     deepest = float(turn[0] - turn[1])
@@ -320,12 +320,12 @@ def _integrate(
 
 
 def _loading(depth: Array, force: Array, work: Array) -> Force:
-    """Make the function of the loading force (m → N), the slope of the interpolated work."""
+    """Return the loading force (N) as a function of indentation (m): the slope of the work."""
     with np.errstate(divide="ignore", invalid="ignore"):
         powers = force * depth / work
     if (work > 0).all() and (powers > 0.5).all() and (powers < _STEEPEST).all():
-        # In logarithms, a power of the depth is a straight line, which is extrapolated to zero
-        # depth.
+        # ln W is interpolated against ln δ. Below the first depth it is a straight line, so W is a
+        # power of δ there.
         L, slope = np.log(depth), powers
         log_work = _hermite(L, np.log(work), slope)
         first = float(L[0])
@@ -340,15 +340,15 @@ def _loading(depth: Array, force: Array, work: Array) -> Force:
             return math.exp(value) / x * its_slope
 
         return pushing
-    # With adhesion, the force is assumed linear up to the first depth, with an initial value for
-    # which its integral equals the stored work at this depth.
+    # Adhesion: the force is assumed to be linear in δ up to the first depth. Its value at δ = 0 is
+    # chosen such that its integral equals the stored work at the first depth.
     jump_in = 2 * work[0] / depth[0] - force[0]
     curve = _hermite(np.append(0.0, depth), np.append(0.0, work), np.append(jump_in, force))
     return lambda x: curve(max(x, 0.0))[1]
 
 
 def _hermite(x: Array, y: Array, slope: Array) -> Callable[[float], tuple[float, float]]:
-    """Make a function for the cubic Hermite spline and its slope; linear beyond the last point."""
+    """Return a function that gives a cubic Hermite spline and its slope; linear beyond the end."""
     from scipy.interpolate import CubicHermiteSpline
 
     if x.size == 1:
@@ -381,7 +381,7 @@ def _separation(results: xr.Dataset, depth: Array) -> Callable[[float], float]:
 
 
 def _shape(x: Array, F: Array) -> Force:
-    """Make the function F/F_max of (δ − δ_s)/(δ_max − δ_s) for one unloading curve."""
+    """Return F/F_max as a function of (δ − δ_s)/(δ_max − δ_s) for one unloading curve."""
     return _pchip((x - x[0]) / (x[-1] - x[0]), F / F[-1])
 
 
@@ -392,7 +392,7 @@ def _pchip(x: Array, y: Array) -> Force:
         return lambda _: float(y[0])
     curve = PchipInterpolator(x, y)
     low, high = float(x[0]), float(x[-1])
-    # The integrator evaluates trial points slightly beyond the ends.
+    # The integrator also evaluates trial points slightly beyond the ends.
 
     def at(where: Any) -> Any:
         return curve(np.minimum(np.maximum(where, low), high))

@@ -1,1 +1,1 @@
-"""Mixtures: the laws of all pairs of several materials and sizes, from as few runs as possible."""
+"""Mixtures: laws of all pairs of particles of several materials and sizes, from few runs."""

@@ -1,9 +1,10 @@
-"""Pairs of two components: which particles meet, and the case that is run for one reduced radius.
+"""Pairs of two components: which particles can meet, and the case to run for a reduced radius.
 
-Smooth spheres without adhesion obey a scaling law. With lengths in units of R*, the contact depends
-only on W/R*³, where W is the loading work; the masses and the two radii have no other influence.
-Roughness and adhesion have lengths that do not scale with R*. So the laws of all pairs of two
-components are one family e(W/R*³, R*). The velocity V enters as W/R*³ = ½ κ V² with κ = m*/R*³.
+Smooth spheres without adhesion obey a scaling law. With lengths in units of the reduced radius R*,
+the contact depends only on W/R*³, where W is the loading work; the masses and the two radii have no
+other influence. Roughness and adhesion have lengths that do not scale with R*. So the laws of all
+pairs of two components are one family e(W/R*³, R*). With the reduced mass m* and the impact
+velocity V, W/R*³ is ½ κ V² with κ = m*/R*³.
 """
 
 from __future__ import annotations
@@ -27,11 +28,11 @@ from restitution.errors import CaseError, RestitutionError
 from restitution.laws.law import Particle
 from restitution.mixtures.mixture_file import Component, Mixture
 
-_WIDTH = 2.8  # width of the grid over the largest possible radius of the deepest contact
-_PEAKS = 4.0  # height of the highest peaks (rms heights)
+_WIDTH = 2.8  # ratio of the grid width to the largest possible radius of the deepest contact
+_PEAKS = 4.0  # height of the highest peaks, in units of the rms height
 _NODES = 256  # smallest number of nodes along the edge of the grid
 _MOST_NODES = 1024  # largest number of nodes along the edge of the grid
-_PER_WAVE = 5  # number of nodes in a correlation length, or in the shortest wave
+_PER_WAVE = 5  # number of nodes per correlation length, or per shortest wavelength
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,7 @@ class Family:
 
     @property
     def name(self) -> str:
-        """The names of both components, as in the key of a pair."""
+        """The names of both components, as in a key of the table [pairs]."""
         return f"{self.first.name}+{self.second.name}"
 
     @cached_property
@@ -75,7 +76,10 @@ class Family:
 
     @cached_property
     def radii(self) -> tuple[float, ...]:
-        """The reduced radii (m) that occur, increasing; radii within a relative 1e-9 count once."""
+        """The reduced radii (m) of all pairs, increasing.
+
+        Radii that differ by at most 1e-9 (relative) count as one.
+        """
         found: list[float] = []
         for radius in sorted(meeting.radius for meeting in self.meetings):
             if not found or radius > found[-1] * (1 + 1e-9):
@@ -83,15 +87,15 @@ class Family:
         return tuple(found)
 
     def case(self, radius: float) -> str:
-        """Write the text of the case for the reduced radius (m).
+        """Write the text of the case for the reduced `radius` (m).
 
-        The velocities of the case cover the W/R*³ of every pair of the family.
+        The velocities of the case cover the range of W/R*³ of all pairs of the family.
         """
         return tomli_w.dumps(self._content(radius, self._grid))
 
     @cached_property
     def _grid(self) -> dict[str, Any]:
-        """Make the table `[grid]`. Grid and surface are the same for all reduced radii."""
+        """Make the table `[grid]`, which is the same for all reduced radii, like the surface."""
         if self.mixture.grid is not None:
             return {"refine": "auto", **self.mixture.grid}
         probe = {"nodes": 64, "spacing": "1 um"}
@@ -103,8 +107,8 @@ class Family:
         if nodes > _MOST_NODES:
             raise CaseError(
                 f"grid: the waves of {self.name} need cells of {1e6 * spacing:.3g} um, and the "
-                f"contact a grid of {1e6 * width:.3g} um: {nodes} nodes along an edge; give the "
-                "table [grid], fewer velocities, or sizes that differ less"
+                f"contact needs a grid of {1e6 * width:.3g} um, so {nodes} nodes per edge; give "
+                "the table [grid], fewer velocities, or sizes that differ less"
             )
         return {"nodes": nodes, "spacing": f"{spacing!r} m", "refine": "auto"}
 
@@ -135,7 +139,7 @@ class Family:
         }
 
     def _velocities(self, radius: float) -> list[float]:
-        """Velocities (m/s) of the mixture, extended to the W/R*³ of every pair of the family."""
+        """Velocities (m/s) of the mixture, extended to cover W/R*³ of every pair of the family."""
         asked = self.mixture.velocities
         own = Particle(**_values(self.first), radius=radius if self.second.wall else 2 * radius)
         other = Particle(**_values(self.second), radius=None if self.second.wall else 2 * radius)
@@ -149,7 +153,7 @@ class Family:
 
 
 def families(mixture: Mixture) -> list[Family]:
-    """Make the families of a mixture; a pair without a valid case raises `CaseError`."""
+    """Make the families of a mixture. Raises `CaseError` if the case of a pair is invalid."""
     found = [Family(mixture, first, second) for first, second in mixture.families()]
     for family in found:
         for radius in (family.radii[0], family.radii[-1]):
@@ -158,7 +162,7 @@ def families(mixture: Mixture) -> list[Family]:
 
 
 def _steps(start: float, end: float, step: float) -> list[float]:
-    """Velocities beyond `start` up to `end` in equal steps of ln V; none if both are equal."""
+    """Velocities after `start` up to `end`, about `step` times apart; none if both are equal."""
     distance = math.log(end / start) / math.log(step)
     if distance < 1e-6:
         return []
@@ -167,10 +171,10 @@ def _steps(start: float, end: float, step: float) -> list[float]:
 
 
 def _another(table: dict[str, Any], others: list[dict[str, Any]]) -> dict[str, Any]:
-    """Make the table of another surface of the same kind as `table`, for the second body.
+    """Make the roughness table of the second body from `table`, for an independent surface.
 
-    Its seed, or its place in the scan, differs from those in `others`. Surfaces with the same seed
-    have the same phases, so their waves would add up instead of being independent.
+    The seed, or the place in the scan, differs from those in `others`. With the same seed, two
+    surfaces would have the same phases, and their waves would add up.
     """
     random = table.get("kind") != "measured" or table.get("extend") == "twin"
     key = "seed" if random else "place"
@@ -206,7 +210,7 @@ def _meeting(first: Particle, second: Particle) -> Meeting:
         for body in (first, second)
     ]
     pair = Pair(*bodies)
-    assert pair.mass is not None  # a material without density is refused
+    assert pair.mass is not None  # `parse_mixture` requires the density of every material
     return Meeting(first, second, pair.radius, pair.mass)
 
 
@@ -219,7 +223,7 @@ def _half_width(case: Case) -> float:
 
 
 def _spacing(part: Any) -> float:
-    """Largest spacing (m) that carries the waves of a generated roughness."""
+    """Largest grid spacing (m) that resolves the waves of a generated roughness."""
     waves = [getattr(part, name, None) for name in ("correlation_length", "shortest")]
     lengths = [min(wave) if isinstance(wave, tuple) else wave for wave in waves]
     return min((length / _PER_WAVE for length in lengths if length), default=math.inf)

@@ -9,13 +9,13 @@ from typing import Any
 from restitution.errors import CaseError
 
 KEYS = ("mass_fractions", "number_fractions")
-_OFF = 0.02  # largest difference of the sum from 1, because fractions are often rounded
+_OFF = 0.02  # largest accepted difference of the sum from 1 (fractions are often rounded)
 
 
 def number_fractions(key: str, table: dict[str, Any], radii: Sequence[float]) -> tuple[float, ...]:
-    """Remove the fractions from the `table` of a material; return them by number, with sum 1.
+    """Remove the fractions from the `table` of a material, and return them by number, with sum 1.
 
-    `radii` (m) are in the order of the file. Without fractions every size has the same number of
+    `radii` (m) are in the order of the file. Without fractions, every size has the same number of
     particles. All sizes have the same density, so a mass fraction is proportional to the number
     times R³. Raises a `CaseError` that names the key.
     """

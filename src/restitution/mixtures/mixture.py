@@ -1,7 +1,8 @@
 """Compute all laws of a mixture from as few runs as the error of interpolation allows.
 
-Every family starts with its smallest, a middle and its largest reduced radius. If the error of a
-pair exceeds the limit, a radius is added in the middle of its interval. This is repeated until no
+All pairs of two components are a family. Each family is first computed at its smallest, a middle
+and its largest reduced radius. If the interpolation error of a pair exceeds the limit, another
+radius is computed, in the middle between the neighbouring computed radii. This is repeated until no
 error exceeds the limit.
 """
 
@@ -29,7 +30,7 @@ Progress = Callable[[Tally], None]
 
 @dataclass(frozen=True)
 class PairLaw:
-    """The law of one pair of particles, and its interpolation error (0 if it was computed)."""
+    """The law of one pair of particles, and its interpolation error (0 if `computed`)."""
 
     meeting: Meeting
     law: Law
@@ -38,7 +39,7 @@ class PairLaw:
 
 
 def empty_study(mixture: Mixture) -> Study:
-    """Make the study of a mixture before its first round, when no case is known yet."""
+    """Make the study of a mixture before its first round, without cases."""
     return Study(mixture.title, mixture.text, {"pair": [], "reduced_radius": []}, "paired", ())
 
 
@@ -51,9 +52,9 @@ def run_mixture(
 ) -> list[PairLaw]:
     """Compute the law of every pair of `mixture`.
 
-    Files of scans are relative to `folder`. Runs are stored as the cases of a study in `out`, so
-    that an interrupted mixture can be resumed. Raises `OutputError` if a run fails, because its
-    pairs would have no law.
+    Paths of scans are relative to `folder`. Runs are stored as the cases of a study in `out`, so
+    that an interrupted mixture can be resumed. Raises `OutputError` if a run fails, because some
+    pairs would then have no law.
     """
     rounds = _Rounds(mixture, folder, out, workers, progress)
     found = families(mixture)
@@ -80,7 +81,7 @@ class _Rounds:
         self._cases: dict[tuple[str, float], SweptCase] = {}
 
     def compute(self, wanted: list[tuple[Family, float]]) -> None:
-        """Run the cases of families at reduced radii (m)."""
+        """Run the case of each family and reduced radius (m) in `wanted`."""
         for family, radius in wanted:
             values = {"pair": family.name, "reduced_radius": f"{1e6 * radius:.6g} um"}
             case = SweptCase(len(self._cases) + 1, values, family.case(radius))
@@ -98,7 +99,7 @@ class _Rounds:
                 )
 
     def computed(self, family: Family) -> Computed:
-        """Return the laws of `family` that have been computed."""
+        """Return the laws of `family` that have been computed so far."""
         radii = sorted(radius for name, radius in self._cases if name == family.name)
         folders = [self._out.folder_of(self._cases[family.name, radius]) for radius in radii]
         return Computed(family, tuple(map(bare_law, folders)))
@@ -111,7 +112,7 @@ def _first_radii(family: Family) -> list[float]:
 
 
 def _more_radii(computed: Computed) -> Iterator[float]:
-    """Radii (m) to compute next: one for each interval with a pair whose error is too large."""
+    """Radii (m) to compute next: one between two computed radii if an error there is too large."""
     family = computed.family
     poor = {meeting.radius for meeting in family.meetings if not computed.is_good(meeting)}
     for low, high in zip(computed.radii[:-1], computed.radii[1:], strict=True):

@@ -24,10 +24,10 @@ MOST_SIZES = 50  # largest number of sizes of one material
 
 
 class Sizes(Table):
-    """`radius` of a material as a table: bins with edges, or a distribution divided into bins.
+    """A table `radius` of a material: bins with edges, or a distribution divided into bins.
 
     Each bin counts as one size. Its radius is the geometric mean of its edges or, for a
-    distribution, its median. The bins of a distribution hold equal numbers of particles.
+    distribution, the median of the bin. The bins of a distribution hold equal numbers of particles.
     """
 
     edges: Annotated[list[Length] | None, Field(min_length=2, max_length=MOST_SIZES + 1)] = None
@@ -71,9 +71,9 @@ class Sizes(Table):
 class Component:
     """A material with its sizes, or a wall.
 
-    `body` has the keys of the table `[first]` of a case without `radius`. `roughness` contains the
-    tables of its roughness. A wall has no `radii` (m, increasing). `fractions` are the fractions of
-    the particles, by number, that have each size; their sum is 1.
+    `body` has the keys of the table `[first]` of a case, without `radius`. `roughness` contains the
+    roughness tables. `radii` (m) increase and are empty for a wall. `fractions` are the fractions
+    by number of the sizes; their sum is 1.
     """
 
     name: str
@@ -89,7 +89,7 @@ class Component:
 
 
 class _File(Table):
-    """The keys of a mixture file besides its materials and walls."""
+    """The keys of a mixture file, except those of materials and walls."""
 
     title: str = ""
     interpolation_error: Annotated[float, Field(gt=0, lt=1)] = 0.01
@@ -112,13 +112,13 @@ class Mixture:
     interpolation_error: float
 
     def families(self) -> Iterator[tuple[Component, Component]]:
-        """Yield the pairs of components that can meet; a wall is the second in its pair."""
+        """Yield the pairs of components that can meet; a wall is always the second component."""
         for first, second in itertools.combinations_with_replacement(self.components, 2):
             if not first.wall:
                 yield first, second
 
     def interface(self, first: Component, second: Component) -> dict[str, Any]:
-        """The table `[interface]` of the pair."""
+        """The table `[interface]` of the pair of components `first` and `second`."""
         for names in ((first.name, second.name), (second.name, first.name)):
             if names in self.interfaces:
                 return self.interfaces[names]
@@ -210,7 +210,7 @@ def _component(key: str, name: str, table: Any) -> Component:
     except ValidationError as error:
         raise CaseError(in_words(error, BodyTable, key)) from None
     if radii and checked.density is None:
-        raise CaseError(f"{key}.density: is missing; an impact velocity needs the mass")
+        raise CaseError(f"{key}.density: is missing; the impact velocity depends on it")
     order = sorted(range(len(radii)), key=radii.__getitem__)
     increasing, shares = (tuple(values[k] for k in order) for values in (radii, fractions))
     return Component(name, body, rough, increasing, shares)

@@ -17,7 +17,7 @@ RUNS, PAIRS = "runs", "pairs.csv"
 
 
 def open_mixture_folder(out: Path, mixture: Mixture, *, resume: bool) -> StudyFolder:
-    """Open the folder of the runs of `mixture` in `out`.
+    """Open the folder in `out` that holds the runs of `mixture`.
 
     Raises `OutputError` if `out` holds something else, if there is nothing to resume, or if `out`
     cannot be written.
@@ -32,7 +32,8 @@ def write_mixture(
 ) -> list[str]:
     """Write the laws of all `pairs`, their table and the summary; return the names in `out`.
 
-    `runs` is the number of curves that were computed, in `seconds`. Raises `OutputError`.
+    `runs` is the number of computed curves, `seconds` the time that they took. Raises
+    `OutputError`.
     """
     with writing(out):
         shutil.rmtree(out / LAWS, ignore_errors=True)
@@ -78,7 +79,7 @@ def write_mixture(
 
 
 def condensed_warnings(pairs: Sequence[PairLaw]) -> list[str]:
-    """List each warning once, with its pairs; texts that differ only in numbers count as one."""
+    """List each warning once, with its pairs; texts that differ only in numbers are the same."""
     found: dict[str, list[tuple[str, str]]] = {}
     for pair in pairs:
         family = f"{pair.law.first.name}+{pair.law.second.name}"

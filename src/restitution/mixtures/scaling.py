@@ -1,9 +1,9 @@
-"""Laws of all pairs of a family, from the laws at a few reduced radii.
+"""Laws of all pairs of a family, from the laws at a few reduced radii R*.
 
-At equal W/R*³ the ratio W_u/W_l is interpolated in ln R* by a monotone cubic. The error is
-estimated as in `RatioCurve`: 1.5 times the larger leave-one-out residual of the two neighbouring
-radii. Because a single residual may be zero by chance, the largest residual over neighbouring
-velocities is used.
+At equal W/R*³ (with the loading work W), the ratio W_u/W_l of unloading to loading work is
+interpolated in ln R* by a monotone cubic. The error is estimated as in `RatioCurve`: 1.5 times the
+larger leave-one-out residual of the two neighbouring radii. Because a single residual can be zero
+by chance, the largest estimate over neighbouring velocities is used.
 """
 
 from __future__ import annotations
@@ -30,22 +30,22 @@ _SAME = 1e-9  # largest relative difference of radii that count as equal
 
 @dataclass(frozen=True)
 class Computed:
-    """The laws of a family at the reduced radii `radii` (m, increasing) that were computed."""
+    """The laws of a family that were computed, at the reduced radii `radii` (m, increasing)."""
 
     family: Family
     laws: tuple[Law, ...]
 
     @cached_property
     def radii(self) -> Array:
-        """R* of the laws (m), shape (radii,)."""
+        """Reduced radii of the laws (m), shape (radii,)."""
         return np.array([law.radius for law in self.laws])
 
     def has(self, radius: float) -> bool:
-        """Whether the law at `radius` (m) was computed."""
+        """Whether a law was computed at the reduced `radius` (m)."""
         return bool((np.abs(self.radii / radius - 1) < _SAME).any())
 
     def is_good(self, meeting: Meeting) -> bool:
-        """Whether the law of the pair is accurate enough without a further radius.
+        """Whether the law of the pair is accurate enough without computing another radius.
 
         At every velocity, the error due to interpolation in R* must not exceed the limit of the
         mixture or a quarter of the error of the computed laws (at most `_MOST`), whichever is
@@ -68,8 +68,7 @@ class Computed:
     def law(self, meeting: Meeting) -> Law:
         """The law of one pair at the velocities of the mixture.
 
-        The error of a point is the sum of the error of the computed laws and the interpolation
-        error.
+        The error of a point is the error of the computed laws plus the interpolation error.
         """
         nearest = self.laws[int(np.abs(np.log(self.radii / meeting.radius)).argmin())]
         kappa = nearest.mass / nearest.radius**3
@@ -105,7 +104,7 @@ class Computed:
         )
 
     def _curves(self, meeting: Meeting) -> list[RatioCurve]:
-        """W_u/W_l as a function of R* at each velocity of the mixture, from all computed laws."""
+        """Make a curve of W_u/W_l against R* for each velocity of the mixture, from all laws."""
         found = []
         for V in self.family.mixture.velocities:
             ratios = np.array(
@@ -123,7 +122,7 @@ class Computed:
         used = [k for k, share in enumerate(shares) if share > _SAME]
 
         def mean(name: str, power: int) -> float:
-            """Interpolate the scaled quantity `name` of the two laws; multiply by R*^power."""
+            """Interpolate `name`, which scales as R*^power, between the two laws."""
             R = meeting.radius
             return R**power * sum(
                 shares[k]
@@ -147,7 +146,7 @@ class Computed:
 
 
 def _of(law: Law, V: float, meeting: Meeting) -> float:
-    """Velocity (m/s) at which `law` has the same W/R*³ as the pair at V."""
+    """Velocity (m/s) at which `law` has the same W/R*³ as the pair at V (m/s)."""
     velocity = V * math.sqrt(meeting.kappa / (law.mass / law.radius**3))
     return min(max(velocity, law.lowest), law.highest) if _near(velocity, law) else velocity
 
@@ -177,7 +176,10 @@ def _error_of(curve: RatioCurve, radius: float, near: list[RatioCurve]) -> float
 
 
 def _column_at(law: Law, name: str, velocity: float) -> float:
-    """The field `name` at `velocity` (m/s), interpolated between points by a power of V."""
+    """Interpolate the field `name` at `velocity` (m/s) between the points.
+
+    It is a power of the velocity, or linear in ln V if a value is not positive.
+    """
     L, values = np.log(law.column("velocity")), law.column(name)
     if (values <= 0).any():
         return float(np.interp(math.log(velocity), L, values))

@@ -26,13 +26,13 @@ from restitution.surfaces.surface import Surface
 _LONG = 1.0  # a surface that took less time (s) to make is not cached
 _MOST = 2**30  # largest size of all files together (bytes)
 _LARGEST = 2**28  # largest size of the heights of one cached surface (bytes)
-_REST = 2**12  # allowance for the content of a file besides the heights (bytes)
+_REST = 2**12  # upper estimate of what a file contains besides the heights (bytes)
 
 
 def kept(parameters: Mapping[str, Any], make: Callable[[], Surface]) -> Surface:
-    """Return the surface that `parameters` (JSON types) determine, from the cache or from `make`.
+    """Return the surface that `parameters` (JSON types) describe, from the cache if it is there.
 
-    A surface that took long to make is then stored in the cache.
+    Otherwise call `make`, and store the surface in the cache if making it took long.
     """
     key = json.dumps({"version": version("restitution"), **parameters}, sort_keys=True)
     file = _folder() / f"{hashlib.sha256(key.encode()).hexdigest()}.npz"
@@ -53,7 +53,7 @@ def _folder() -> Path:
 
 
 def _read(file: Path, key: str) -> Surface | None:
-    """Read the surface in `file`; None if the file is missing or damaged or has another key."""
+    """Read the surface in `file`; None if it is missing, damaged or has another key."""
     # A damaged file can raise any exception in NumPy's reader; the surface is then made again.
     with suppress(Exception):
         with file.open("rb") as stream, np.load(stream, allow_pickle=False) as content:
@@ -63,7 +63,7 @@ def _read(file: Path, key: str) -> Surface | None:
             nodes, spacing = told["nodes"], told["spacing"]
             grid = Grid((nodes[0], nodes[1]), (spacing[0], spacing[1]))
             surface = Surface(np.asarray(content["height"], np.float64), grid, told["provenance"])
-        os.utime(file)  # the modification time is the time of last use
+        os.utime(file)  # so that the modification time states the last use
         return surface
     return None
 
@@ -89,7 +89,10 @@ def _write(file: Path, key: str, surface: Surface) -> None:
 
 
 def _free_space(folder: Path, size: int) -> None:
-    """Delete abandoned temporary files, and the least recently used ones until `size` bytes fit."""
+    """Make space for a new file of `size` bytes in the cache folder.
+
+    Abandoned temporary files are deleted, and the least recently used files until `size` fits.
+    """
     files = [(entry.stat(), entry) for entry in folder.iterdir() if entry.is_file()]
     files.sort(key=lambda item: item[0].st_mtime)
     total = size + sum(stat.st_size for stat, _ in files)

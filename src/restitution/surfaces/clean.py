@@ -15,7 +15,7 @@ from restitution.surfaces.surface import Surface
 Range = tuple[float, float]
 
 _NEIGHBOURHOOD = 5  # edge (pixels) of the square around a pixel over which the median is taken
-_SIGMA = 1.4826  # standard deviation over median absolute deviation of a normal distribution
+_SIGMA = 1.4826  # ratio of standard deviation to median absolute deviation of a normal distribution
 _MOST = 0.1  # largest fraction of pixels that may be outliers
 
 
@@ -66,9 +66,9 @@ def remove_outliers(surface: Surface, threshold: float) -> Surface:
     """Replace outliers by harmonic interpolation of the pixels around them.
 
     A pixel is an outlier if its height differs from the median of the 5 x 5 pixels around it by
-    more than `threshold` standard deviations. This is the standard deviation of the differences of
-    all pixels. It is estimated from their median absolute value, which is robust against outliers.
-    The number of outliers and the largest difference are added to the provenance.
+    more than `threshold` standard deviations. The standard deviation is that of these differences
+    over all pixels. It is estimated from the median of their absolute values, which outliers hardly
+    change. The number of outliers and the largest difference are added to the provenance.
 
     Args:
         surface: Surface to clean.
@@ -88,8 +88,8 @@ def remove_outliers(surface: Surface, threshold: float) -> Surface:
     height = surface.height
     step = np.abs(height - median_filter(height, _NEIGHBOURHOOD, mode="reflect"))
     deviation = _SIGMA * float(np.median(step))
-    # A deviation of zero means that most pixels equal the median of their neighbours. Differences
-    # then have no scale, and no pixel counts as an outlier.
+    # If the estimate is zero, most pixels equal the median of their neighbours. There is then no
+    # measure for a large difference, so no pixel counts as an outlier.
     out = step > threshold * deviation if deviation > 0 else np.zeros(height.shape, bool)
     count = int(np.count_nonzero(out))
     if count > _MOST * out.size:

@@ -19,8 +19,8 @@ def composite(surfaces: Sequence[Surface]) -> Surface:
     first.
 
     The provenance of the sum contains the provenance of each part, with the prefixes `part_1_`,
-    `part_2_`, … It also states the files, the coarsest pixel, the waves that the grid does not
-    carry, and whether all parts are periodic.
+    `part_2_`, … It also states the files, the largest pixel size, the waves that are too short for
+    the grid, and whether all parts are periodic.
 
     Args:
         surfaces: Surfaces on one grid.
@@ -48,7 +48,7 @@ def composite(surfaces: Sequence[Surface]) -> Surface:
         if pixels:
             whole[f"pixel_{axis}_m"] = max(pixels)
     if "refined" in provenances[0]:
-        whole["refined"] = provenances[0]["refined"]  # equal for all parts, which share the grid
+        whole["refined"] = provenances[0]["refined"]  # the same for all parts
     whole.update(_removed(provenances))
     if all(is_periodic(surface) for surface in surfaces):
         whole["periodicity"] = "periodic over the domain"
@@ -62,10 +62,10 @@ def composite(surfaces: Sequence[Surface]) -> Surface:
 
 
 def _removed(provenances: Sequence[Mapping[str, str | float]]) -> dict[str, float]:
-    """Provenance of the waves that the grid does not carry.
+    """Return the provenance entries on the waves that are too short for the grid.
 
-    The rms heights of the parts are added in quadrature. For the other entries, the largest value
-    of all parts is taken.
+    The rms heights of the parts are added in quadrature. Each other entry is the largest value of
+    all parts.
     """
     known = [p for p in provenances if "removed_slope" in p]
     if not known:

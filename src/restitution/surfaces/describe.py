@@ -64,7 +64,7 @@ def describe(surface: Surface) -> dict[str, float | None]:
         "correlation_length_x_m": None,
         "correlation_length_y_m": None,
     }
-    # Because of rounding, the heights of a flat surface can differ from their mean.
+    # Rounding can make the heights of a flat surface differ from their mean.
     if Sq > 8 * np.finfo(np.float64).eps * float(np.abs(height).max()):
         unit = z / Sq
         values["Ssk"] = float(np.mean(unit**3))
@@ -101,7 +101,8 @@ def _correlation_length(z: NDArray[np.float64], h: float) -> float | None:
     """Lag (m) along the first axis where the autocorrelation first falls to 10 %, or None."""
     from scipy.fft import irfft, next_fast_len, rfft
 
-    # Padding with zeros to twice the length prevents correlations between the two ends.
+    # The FFT treats each line as periodic. Padding it with zeros to twice its length prevents a
+    # correlation between its two ends.
     n = z.shape[0]
     padded = next_fast_len(2 * n, real=True)
     power = np.sum(np.abs(rfft(z, n=padded, axis=0)) ** 2, axis=1)

@@ -22,12 +22,12 @@ def extend(
 ) -> Surface:
     """Extend a scan to a larger area.
 
-    - `twin`: a new random surface with the spectrum, the distribution of heights and the rms slope
+    - `twin`: a random surface with the spectrum, the distribution of heights and the rms slope
       of the scan. It has no waves longer than the scan.
     - `mirror`: the scan in the middle, surrounded by tiles that are its mirror images. The surface
       repeats every two tiles, and slopes jump where tiles meet.
 
-    Waves that the cells of the grid cannot carry are left out.
+    Waves that are too short for the cells of the grid are left out.
 
     Args:
         surface: Scan to extend.

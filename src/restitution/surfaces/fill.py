@@ -12,8 +12,8 @@ def fill_harmonically(
     """Fill NaN pixels with the solution of Laplace's equation between the defined pixels.
 
     `height` has shape (nx, ny) and at least one defined pixel; `spacing` is (hx, hy) in m. The
-    heights in each hole stay between the lowest and the highest height on its rim, so no summit is
-    added that could make contact. The normal slope at the edge of the scan is zero.
+    heights in each hole stay between the lowest and the highest height on its rim, so filling adds
+    no summit that could make contact. The normal slope at the edge of the scan is zero.
     """
     from scipy.sparse import coo_array
     from scipy.sparse.linalg import spsolve
@@ -30,7 +30,7 @@ def fill_harmonically(
     diagonal, right_side = np.zeros(count), np.zeros(count)
     rows, columns, values = [np.arange(count)], [np.arange(count)], [diagonal]
     for axis, h in enumerate(spacing):
-        # Only the ratio of the weights along x and y matters.
+        # The weights are proportional to 1/h²; a common factor has no effect.
         weight = (max(spacing) / h) ** 2
         for step in (1, -1):
             here, there = _neighbours(axis, step)

@@ -1,5 +1,7 @@
 """Random rough surfaces with prescribed wave amplitudes and height distribution.
 
+The heights are
+
     z = IFFT(H · FFT(white noise)),
 
 where the module `spectra` computes the amplitudes H (Hu and Tonder 1992, Int. J. Mach. Tools
@@ -32,7 +34,7 @@ _MARGIN = 2.0
 
 
 class Waves(TypedDict, total=False):
-    """Arguments of `generate_surface` that describe the waves: lengths in m, `lay` in rad."""
+    """Arguments of `generate_surface` that describe the waves; lengths in m, `lay` in rad."""
 
     correlation_length: float | tuple[float, float] | None
     lay: float | None
@@ -93,7 +95,7 @@ def generate_surface(
 
     Raises:
         SurfaceError: The kind is unknown, an argument does not belong to this kind or is out of
-            range, the grid cannot carry the waves, or the skewness and kurtosis are impossible.
+            range, the grid cannot represent the waves, or the skewness and kurtosis are impossible.
         TypeError: An argument is unknown.
     """
     spectrum = _spectrum(kind, waves)
@@ -124,7 +126,7 @@ def generate_surface(
 
 
 def _spectrum(kind: str, waves: Waves) -> Spectrum:
-    """The spectrum of `kind`. Raises `SurfaceError` for an argument of another kind."""
+    """Return the spectrum of `kind`. Raises `SurfaceError` for an argument of another kind."""
     if kind not in _WAVES:
         raise SurfaceError(
             f"kind: {kind!r} is unknown; choose 'exponential', 'gaussian' or 'self-affine'"
@@ -139,7 +141,9 @@ def _spectrum(kind: str, waves: Waves) -> Spectrum:
     if kind == "self-affine":
         hurst = waves.get("hurst")
         if hurst is None:
-            raise SurfaceError("hurst: missing; a self-affine surface needs one, such as 0.8")
+            raise SurfaceError(
+                "hurst: missing; a self-affine surface needs a Hurst exponent, such as 0.8"
+            )
         return SelfAffine(hurst, waves.get("rolloff"), shortest)
     beta = waves.get("correlation_length")
     if beta is None:
@@ -156,7 +160,7 @@ def _spectrum(kind: str, waves: Waves) -> Spectrum:
 def _heights(
     grid: Grid, spectrum: Spectrum, seed: int, wanted: tuple[float, float], periodic: bool
 ) -> tuple[Array, dict[str, str | float]]:
-    """Generate heights of arbitrary scale with the moments `wanted` (skewness, kurtosis).
+    """Generate heights with the skewness and kurtosis `wanted`; their rms value is arbitrary.
 
     Also return provenance entries that name the method.
     """
@@ -187,14 +191,14 @@ def _heights(
             z, made["amplitude_misfit"] = adjusted(z, heights)
             made["method"] = "Schreiber and Schmitz 1996, adjusted amplitudes"
     z = z[: grid.nodes[0], : grid.nodes[1]].copy()
-    if not periodic and wanted != (0.0, 3.0):  # cropping changed the moments
+    if not periodic and wanted != (0.0, 3.0):  # cropping changed skewness and kurtosis
         heights = distribution(z.size, *wanted)
         z = z if heights is None else in_order(heights, z)
     return z, made
 
 
 def _enlarged(grid: Grid, longest: float) -> Grid:
-    """Grid on which a part as large as `grid` has uncorrelated opposite edges."""
+    """Return a larger grid: surfaces cut from it to the size of `grid` have uncorrelated edges."""
     from scipy.fft import next_fast_len
 
     nx, ny = (

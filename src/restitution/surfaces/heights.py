@@ -6,8 +6,8 @@ translation) and then filters it. The heights z obtain the skewness and kurtosis
     Sk_z = Sk_η Σθ³/(Σθ²)^{3/2},   K_z − 3 = (K_η − 3) Σθ⁴/(Σθ²)²,
 
 where θ is the impulse response of the filter (Watson and Spedding 1982, Wear 83, 215–231; Manesh et
-al. 2010, Tribol. Int. 43, 2218–2225). Filtering sums over many nodes, so heights tend to the normal
-distribution, and only moderate moments can be reached.
+al. 2010, Tribol. Int. 43, 2218–2225). A filtered height is a sum over many nodes, so it tends to a
+normal distribution. Large skewness and kurtosis therefore cannot be reached.
 
 `adjusted` alternates two steps (Schreiber and Schmitz 1996, Phys. Rev. Lett. 77, 635–638). One step
 replaces the heights by heights of the desired distribution, in the same rank order. The other step
@@ -37,9 +37,9 @@ _STANDSTILL = 0.05  # the adjustment ends if the misfit decreases by less than t
 
 
 def filtered(noise: Array, H: Array, skewness: float, kurtosis: float) -> Array | None:
-    """Transform `noise` and filter it with the amplitudes `H`, to heights with these moments.
+    """Transform `noise` and filter it with the amplitudes `H`.
 
-    Return None if the heights do not reach the moments.
+    Return heights with the given `skewness` and `kurtosis`, or None if these cannot be reached.
     """
     from scipy.fft import irfft2, rfft2
 
@@ -60,8 +60,8 @@ def filtered(noise: Array, H: Array, skewness: float, kurtosis: float) -> Array 
         skew, kurt = moments(z)
         if abs(skew - skewness) < _CLOSE and abs(kurt - kurtosis) < _CLOSE * kurtosis:
             return z
-        # The moments of one realisation differ from their expected values. The moments of the noise
-        # are corrected by this difference.
+        # Skewness and kurtosis of one realisation differ from their expected values. So the values
+        # asked of the noise are corrected by the difference.
         asked = (
             asked[0] + (skewness - skew) / skewing if skewing else 0.0,
             asked[1] + (kurtosis - kurt) / peaking,
@@ -72,9 +72,9 @@ def filtered(noise: Array, H: Array, skewness: float, kurtosis: float) -> Array 
 def adjusted(z: Array, heights: Array) -> tuple[Array, float]:
     """Arrange the sorted `heights` so that their Fourier amplitudes are nearly those of `z`.
 
-    Also return the misfit. The target amplitudes are the Fourier amplitudes of `z`, scaled to the
-    mean square of `heights`. The misfit is the root mean square deviation from the target
-    amplitudes, relative to the root mean square of the target amplitudes.
+    Also return the misfit of the amplitudes. The target amplitudes are the Fourier amplitudes of
+    `z`, scaled to the mean square of `heights`. The misfit is the root mean square deviation from
+    the target amplitudes, relative to the root mean square of the target amplitudes.
     """
     from scipy.fft import irfft2, rfft2
 
@@ -101,9 +101,9 @@ def in_order(heights: Array, z: Array) -> Array:
 
 
 def distribution(n: int, skewness: float, kurtosis: float) -> Array | None:
-    """Return n sorted heights with mean 0, variance 1 and nearly these moments.
+    """Return n sorted heights with mean 0, variance 1 and nearly this skewness and kurtosis.
 
-    Return None if no distribution with these moments is found.
+    Return None if no such distribution is found.
     """
     from scipy.special import ndtri
 

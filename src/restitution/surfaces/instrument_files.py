@@ -1,8 +1,8 @@
 """Read the file formats of instruments with the SurfaceTopography package.
 
 SurfaceTopography indexes heights `[i, j]` along x and y, as this package does. Its y axis points
-down the picture: `imshow(heights.T)` shows the picture of the instrument. The physical size of a
-scan is the number of pixels times the pixel size. SurfaceTopography is optional and imported on
+down the picture, so `imshow(heights.T)` shows the scan as the instrument does. The physical size of
+a scan is the number of pixels times the pixel size. SurfaceTopography is optional and imported on
 first use.
 """
 
@@ -69,7 +69,7 @@ def read_instrument(path: Path, channel: int | None) -> Scan:
 
 
 def _check_archive(path: Path) -> None:
-    """Raise `SurfaceError` for an archive (such as X3P) whose unpacked content is too large."""
+    """Raise `SurfaceError` if the file is an archive (such as X3P) with too much content."""
     if not zipfile.is_zipfile(path):
         return
     try:
@@ -177,7 +177,10 @@ def _list(some: list[Any], channels: list[Any]) -> str:
 
 
 def _why_unreadable(error: Exception, suffix: str) -> str:
-    """Describe the error, with the message of the reader that is named after `suffix`, if any."""
+    """Describe the error in words.
+
+    If the package has a reader named after the `suffix` of the file, its message is included.
+    """
     named_after_suffix = rf"tried {re.escape(suffix.removeprefix('.'))}reader:\s*(.+)"
     reason = re.search(named_after_suffix, str(error), re.IGNORECASE)
     if reason is None:

@@ -2,11 +2,11 @@
 
     unbounded (SU):  x = sinh((z + γ)/δ)        bounded (SB):  x = 1/(1 + exp(−(z − γ)/δ))
 
-In the plane of skewness and kurtosis, each form covers one region. The line between the regions
-belongs to the lognormal distribution, which is the limit of both forms. Source: Johnson (1949),
-Biometrika
-36, 149–176; fit of the parameters: Hill, Hill and Holder (1976), Applied Statistics 25, 180–189
-(AS 99). The kurtosis of a normal variable is 3, as in ISO 25178.
+The parameters γ and δ determine the skewness and kurtosis of x. In the plane of skewness and
+kurtosis, each form covers one region. The line between the regions belongs to the lognormal
+distribution, which is the limit of both forms. The kurtosis of a normal variable is 3, as in ISO
+25178. Source: Johnson (1949), Biometrika 36, 149–176; fit of the parameters: Hill, Hill and Holder
+(1976), Applied Statistics 25, 180–189 (AS 99).
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ Array = NDArray[np.float64]
 # 1. Near 1, nearly all heights take one of two values.
 LEAST_KURTOSIS = 1.1
 _ABSCISSAE, _WEIGHTS = np.polynomial.hermite_e.hermegauss(201)
-# A misfit of the moments below the first value ends the search. The best fit is accepted up to the
-# second value, because neither form meets moments on the lognormal line exactly.
+# A misfit of skewness or kurtosis below _EXACT ends the search. The best fit is accepted if its
+# misfit is at most _CLOSE, because neither form fits a lognormal distribution exactly.
 _EXACT, _CLOSE = 1e-6, 2e-3
 _STARTS = ((0.0, 0.0), (0.5, 0.3), (1.5, 0.5), (3.0, 0.8), (0.5, -0.7), (1.2, -1.2), (2.5, -1.5))
 
@@ -40,15 +40,15 @@ class _Fit:
 
 
 def possible(skewness: float, kurtosis: float) -> bool:
-    """Whether this package can construct a distribution with these moments."""
+    """Whether this package can construct a distribution with this skewness and kurtosis."""
     return math.isfinite(skewness) and skewness**2 + LEAST_KURTOSIS <= kurtosis < math.inf
 
 
 def translation(skewness: float, kurtosis: float) -> Callable[[Array], Array] | None:
-    """Return an increasing function of a standard normal variable that gives these moments.
+    """Return an increasing function of a standard normal variable with the desired moments.
 
-    The function values have mean 0 and variance 1. Return None if no parameters are found that give
-    the skewness within 0.002 and the kurtosis within 0.2 %.
+    The function values have the given skewness and kurtosis, mean 0 and variance 1. Return None if
+    no parameters are found that give the skewness within 0.002 and the kurtosis within 0.2 %.
     """
     if skewness == 0 and kurtosis == 3:
         return np.array
@@ -80,7 +80,7 @@ def _bounded(z: Array, gamma: float, log_delta: float) -> Array:
 
 
 def _moments(form: Callable[..., Array], shape: Array) -> tuple[float, float, float, float]:
-    """Mean, standard deviation, skewness and kurtosis of x, by Gauss–Hermite quadrature."""
+    """Mean, standard deviation, skewness and kurtosis of a form, by Gauss–Hermite quadrature."""
     weight = _WEIGHTS / _WEIGHTS.sum()
     x = form(_ABSCISSAE, *shape)
     mean = float(weight @ x)
@@ -95,12 +95,12 @@ def _moments(form: Callable[..., Array], shape: Array) -> tuple[float, float, fl
 
 
 def _fitted(form: Callable[..., Array], skewness: float, kurtosis: float) -> _Fit:
-    """Fit the parameters (γ, ln δ) of a form to the moments."""
+    """Fit the parameters (γ, ln δ) of a form to the skewness and kurtosis."""
     from scipy.optimize import least_squares
 
     def miss(shape: Array) -> Array:
         _, _, skew, kurt = _moments(form, shape)
-        # The logarithm limits the effect of the very large kurtosis of lognormal tails.
+        # The logarithm limits the effect of kurtosis, which is very large for long tails.
         return np.array([skew - skewness, math.log(kurt / kurtosis)])
 
     best: _Fit | None = None

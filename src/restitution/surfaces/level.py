@@ -50,8 +50,8 @@ def level(surface: Surface, how: Levelling) -> Surface:
 def _least_squares_form(height: NDArray[np.float64], degree: int) -> NDArray[np.float64]:
     """Least-squares polynomial of total degree `degree` through the heights, shape (nx, ny).
 
-    On a regular grid the products of orthonormal polynomials along x and y are orthonormal. So the
-    fit is a projection, without a matrix that has a row for each pixel.
+    On a regular grid the products of orthonormal polynomials along x and y are orthonormal. So each
+    coefficient is a scalar product, and no least-squares matrix with a row per pixel is needed.
     """
     P, Q = (_orthonormal_polynomials(n, degree) for n in height.shape)
     coefficients = P.T @ height @ Q

@@ -76,9 +76,7 @@ def read_surface(
             invalid.
     """
     if undefined not in get_args(UndefinedPixels):
-        raise SurfaceError(
-            f"undefined: {undefined!r} is not a choice; give 'error' or 'interpolate'"
-        )
+        raise SurfaceError(f"undefined: {undefined!r} is unknown; choose 'error' or 'interpolate'")
     if size is not None and not all(math.isfinite(side) and side > 0 for side in size):
         raise SurfaceError(
             f"size: {_text(size)} um are not two positive lengths; give the edge lengths of the "
@@ -203,7 +201,8 @@ def _agreed_size(file: Path, scan: Scan, given: tuple[float, float] | None) -> t
         if stated is not None and not math.isclose(stated, wanted, rel_tol=_SIZE_ROUNDING):
             raise SurfaceError(
                 f"{file}: the scan is {_text(scan.size)} um according to the file, but "
-                f"{_text(given)} um according to the argument 'size'; leave it out, or correct it"
+                f"{_text(given)} um according to the argument 'size'; leave 'size' out, or correct "
+                "it"
             )
     # The size in the file is preferred, because the argument may be rounded.
     return given[0] if x is None else x, given[1] if y is None else y

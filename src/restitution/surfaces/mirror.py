@@ -21,8 +21,8 @@ Array = NDArray[np.float64]
 def mirrored(scan: Surface, grid: Grid) -> Surface:
     """Cover `grid` with tiles: the scan in the middle, surrounded by its mirror images.
 
-    If the scan is at least as large as the grid, the surface is part of the scan. Waves that the
-    cells of `grid` cannot carry are removed. A cubic spline interpolates the heights between
+    If the scan is at least as large as the grid, the surface is a part of the scan. Waves that are
+    too short for the cells of `grid` are removed. A cubic spline interpolates the heights between
     pixels.
     """
     if all(g <= s * (1 + 1e-9) for g, s in zip(grid.size, scan.grid.size, strict=True)):
@@ -59,7 +59,7 @@ def _axes(grid: Grid) -> tuple[tuple[int, float], tuple[int, float]]:
 
 
 def _pixel(along: Array, axis: tuple[int, float]) -> Array:
-    """Fractional pixel index in the scan of each coordinate `along` (m) of the tiling.
+    """Convert coordinates `along` (m) of the tiled surface to fractional pixel indices in the scan.
 
     `axis` is the number of pixels of the scan along this axis and their spacing (m).
     """

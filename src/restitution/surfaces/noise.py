@@ -24,8 +24,8 @@ def wave_phases(seed: int, numbers: NDArray[np.int64], count: int) -> NDArray[np
     """Random phases (rad) of the waves (m, n) with m in `numbers` and n in 0 … `count` − 1.
 
     The shape is (numbers.size, count). A phase depends only on `seed`, m and n. So a finer grid
-    keeps the phases of a coarser grid and adds phases of shorter waves. Waves (m, 0) and (−m, 0)
-    are complex conjugates.
+    keeps the phases of a coarser grid and adds phases of shorter waves. The phases of waves (m, 0)
+    and (−m, 0) have opposite signs, because heights are real.
     """
     phases = np.empty((numbers.size, count))
     for row, m in enumerate(numbers.tolist()):

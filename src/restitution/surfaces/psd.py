@@ -2,12 +2,12 @@
 
     C(q) = |∫ z exp(−iq·r) d²r|²/A,   Sq² = (2π)⁻² ∫ C d²q,   (Surf. Topogr. 5, 013001, eqs 2, 6)
 
-C is in m⁴, z is the height minus its mean, and A is the area of the surface. A scan is not
-periodic, so the jump between opposite edges would dominate the spectrum. The scan is therefore
-multiplied by each of nine sine tapers, and the nine spectra are averaged (Riedel and Sidorenko
-1995, IEEE Trans. Signal Process. 43, 188–195). Together the tapers cover all of the scan except the
-rim. The leakage from long waves to short waves decreases with the fourth power of the wave number.
-The resolution in frequency is ±1.5/size.
+C is in m⁴, q is the wave vector (rad/m), z the height minus its mean at the position r, and A the
+area of the surface. A scan is not periodic, so the jump between opposite edges would dominate the
+spectrum. The scan is therefore multiplied by each of nine sine tapers, and the nine spectra are
+averaged (Riedel and Sidorenko 1995, IEEE Trans. Signal Process. 43, 188–195). Together the tapers
+cover all of the scan except the rim. The leakage from long waves to short waves decreases with the
+fourth power of the wave number. The resolution in frequency is ±1.5/size.
 """
 
 from __future__ import annotations
@@ -30,7 +30,8 @@ _SECTOR = 15  # half the width of the sectors around the x and y axes (°)
 class RadialSpectrum(NamedTuple):
     """Power spectral density averaged over directions, in bands of the wave number.
 
-    `wave_number` is the mean wave number q of each band (rad/m), and `density` the mean C (m⁴).
+    `wave_number` is the mean wave number of each band (rad/m), and `density` the mean power
+    spectral density (m⁴).
     """
 
     wave_number: Array
@@ -69,8 +70,8 @@ def radial_spectrum(surface: Surface, density: Array | None = None) -> RadialSpe
     """The power spectral density, averaged over directions and in bands of the wave number.
 
     `density` is the `power_spectral_density` of `surface`, if it is already known. Wave vectors at
-    which `density` is NaN are left out. Bands are about a quarter of an octave wide, up to the
-    shortest wave that both axes carry.
+    which `density` is NaN are left out. Bands are about a quarter of an octave wide, up to the wave
+    number of the shortest wave that the grid resolves along both axes.
     """
     C = power_spectral_density(surface) if density is None else density
     q = wave_numbers(C.shape, surface.grid.spacing)
@@ -107,7 +108,7 @@ def directed_spectra(surface: Surface) -> list[DirectedSpectrum]:
 
 
 def wave_numbers(nodes: tuple[int, ...], spacing: tuple[float, float]) -> Array:
-    """Wave numbers |q| (rad/m) of the modes of `fft2`, shape `nodes`."""
+    """Wave numbers (rad/m) of the modes of `fft2`, shape `nodes`."""
     qx, qy = (2 * math.pi * np.fft.fftfreq(n, h) for n, h in zip(nodes, spacing, strict=True))
     return np.asarray(np.hypot(qx[:, None], qy[None, :]))
 

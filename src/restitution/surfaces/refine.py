@@ -46,7 +46,7 @@ def refine(surface: Surface, factor: int) -> Surface:
 def coarsen(surface: Surface, factor: int = 2) -> Surface:
     """Resample `surface` to cells `factor` times as large.
 
-    Waves shorter than two new cells are removed; other waves do not change.
+    Waves of two new cells or less are removed; longer waves do not change.
 
     If the number of nodes is not a multiple of `factor`, the new cells are slightly smaller, so
     that a whole number of cells covers the domain. Raises `SurfaceError` for a factor below 1.
@@ -86,10 +86,10 @@ def _at_nodes(height: Array, nodes: int, *, periodic: bool) -> Array:
     new_period = nodes * period // n
     modes = rfft(values, axis=0)
     if period % 2 == 0:
-        modes[-1] *= 0.5  # on a finer grid, the old Nyquist mode becomes two conjugate modes
+        modes[-1] *= 0.5  # a finer grid splits the old Nyquist mode into two conjugate modes
     if new_period < period:
-        # The new Nyquist mode (a wave of two cells) is also removed, because the new grid cannot
-        # represent its phase.
+        # The Nyquist mode of the new grid (a wave of two cells) is removed, too, because the grid
+        # cannot represent its phase.
         modes = modes[: (new_period + 1) // 2]
     number = np.arange(modes.shape[0])[:, None]
     modes *= new_period / period * np.exp(2j * np.pi * number * first / period)

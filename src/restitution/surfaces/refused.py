@@ -1,4 +1,8 @@
-"""Errors that store the remedy separately, so that `case` can replace it by one with file keys."""
+"""Errors of surfaces that store the reason and the remedy separately.
+
+The remedy names Python arguments. The package `case` replaces it by a remedy that names keys of the
+case file.
+"""
 
 from __future__ import annotations
 

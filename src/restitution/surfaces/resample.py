@@ -65,7 +65,7 @@ def place_on_grid(surface: Surface, grid: Grid) -> Surface:
 
 
 def carried(surface: Surface, spacing: tuple[float, float], *, mirrored: bool = False) -> Array:
-    """Return the heights of `surface` without the waves that cells of `spacing` (m) cannot carry.
+    """Return the heights of `surface` without the waves too short for cells of `spacing` (m).
 
     Waves shorter than two cells along either axis are removed. The filter continues the surface
     beyond its edges. If `mirrored`, the surface is continued by its mirror image. Otherwise the
@@ -88,7 +88,7 @@ def left_out(surface: Surface, kept: Array, spacing: tuple[float, float]) -> dic
     `kept` are the heights of `surface` without these waves. The entries are `removed_rms_m`, the
     rms height of the removed waves; `removed_slope`, their rms slope divided by the rms slope of
     the surface; `shortest_carried_m`, the shortest remaining wave; `pixel_x_m` and `pixel_y_m`, the
-    largest pixel that the heights have had so far.
+    largest pixel size before this or any earlier resampling.
     """
     before = surface.provenance
     pixel = [
@@ -105,8 +105,8 @@ def left_out(surface: Surface, kept: Array, spacing: tuple[float, float]) -> dic
         "pixel_y_m": pixel[1],
         "shortest_carried_m": 2 * max(*spacing, *pixel),
         "removed_rms_m": math.hypot(had_rms, rms),
-        # Earlier resampling removed the fraction had_slope² of the mean square slope. `slope` is
-        # relative to the remaining slope.
+        # Earlier resampling removed the fraction had_slope² of the original mean square slope. The
+        # new fraction `slope`² refers to the remaining mean square slope.
         "removed_slope": math.sqrt(had_slope**2 + max(1 - had_slope**2, 0.0) * slope**2),
     }
 
@@ -130,14 +130,17 @@ def same_spacing(scan: Grid, grid: Grid) -> bool:
 
 
 def crop_to(height: Array, nodes: tuple[int, int]) -> Array:
-    """Return the part of `height` that has `nodes` (nx, ny) nodes and the same origin."""
+    """Crop `height` to `nodes` (nx, ny) nodes around the same origin."""
     # The origin of a `Grid` is node n // 2.
     i, j = (have // 2 - want // 2 for have, want in zip(height.shape, nodes, strict=True))
     return height[i : i + nodes[0], j : j + nodes[1]]
 
 
 def _carried(height: Array, ratio: float) -> Array:
-    """Heights along the first axis without the waves shorter than 2/ratio pixels."""
+    """Remove waves shorter than 2/ratio pixels along the first axis.
+
+    `ratio` is the pixel size over the cell size of the new grid.
+    """
     from scipy.fft import dst, idst
 
     n = height.shape[0]
@@ -152,7 +155,7 @@ def _carried(height: Array, ratio: float) -> Array:
 
 
 def _carried_mirrored(height: Array, ratio: float) -> Array:
-    """Heights like those of `_carried`, but continued by their mirror image for the filter."""
+    """Remove short waves like `_carried`, but continue the heights by their mirror image."""
     from scipy.fft import dct, idct
 
     modes = dct(height, type=2, axis=0)  # cosine k has a wavelength of 2n/k pixels

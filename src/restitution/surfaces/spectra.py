@@ -34,7 +34,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Autocorrelated:
-    """Waves of an exponential or Gaussian autocorrelation.
+    """Waves of a surface with an exponential or Gaussian autocorrelation.
 
     `correlation_length` (m) is given along and across the lay. `lay` is the angle of the lay from
     the x axis (rad), and `shortest` the shortest wavelength (m).
@@ -51,12 +51,12 @@ class Autocorrelated:
         return max(self.correlation_length)
 
     def check(self, grid: Grid) -> None:
-        """Raise `SurfaceError` if a parameter is invalid or `grid` cannot carry these waves."""
+        """Raise `SurfaceError` if a parameter is invalid or `grid` cannot represent these waves."""
         for axis, beta in enumerate(self.correlation_length):
             where = (
                 f"along {'xy'[axis]}" if self.lay == 0 else ("along", "across")[axis] + " the lay"
             )
-            # If the lay is rotated, the grid must carry each length along both axes.
+            # If the lay is rotated, each correlation length must fit the grid along both axes.
             spacing, size = grid.spacing[axis], grid.size[axis]
             if self.lay != 0:
                 spacing, size = max(grid.spacing), min(grid.size)
@@ -88,7 +88,7 @@ class Autocorrelated:
         return _without_short_waves(H, grid, self.shortest)
 
     def parameters(self, grid: Grid) -> dict[str, str | float]:
-        """Provenance entries on the waves on `grid`."""
+        """Provenance entries that describe these waves on `grid`."""
         axes = ("x", "y") if self.lay == 0 else ("along_lay", "across_lay")
         lengths = zip(axes, self.correlation_length, strict=True)
         return {
@@ -117,11 +117,11 @@ class SelfAffine:
         return math.inf if self.rolloff is None else self.rolloff
 
     def check(self, grid: Grid) -> None:
-        """Raise `SurfaceError` if a parameter is invalid or `grid` cannot carry these waves."""
+        """Raise `SurfaceError` if a parameter is invalid or `grid` cannot represent these waves."""
         if not 0 < self.hurst <= 1:
             raise SurfaceError(
-                f"hurst: {self.hurst:g} is not above 0 and at most 1; real surfaces often have a "
-                "Hurst exponent of 0.8"
+                f"hurst: {self.hurst:g} should be above 0 and at most 1; real surfaces often have "
+                "a Hurst exponent of 0.8"
             )
         _check_shortest(self.shortest, grid)
         rolloff, shortest = self.rolloff, self.shortest or 2 * max(grid.spacing)
@@ -144,7 +144,7 @@ class SelfAffine:
         return _without_short_waves(H, grid, self.shortest)
 
     def parameters(self, grid: Grid) -> dict[str, str | float]:
-        """Provenance entries on the waves on `grid`."""
+        """Provenance entries that describe these waves on `grid`."""
         return {
             "hurst": float(self.hurst),
             "rolloff_m": float(self.rolloff or max(grid.size)),
@@ -156,14 +156,14 @@ Spectrum = Autocorrelated | SelfAffine
 
 
 def _without_short_waves(H: Array, grid: Grid, shortest: float | None) -> Array:
-    """The amplitudes `H`, set to zero for waves shorter than `shortest`."""
+    """Set the amplitudes `H` of waves shorter than `shortest` (m) to zero."""
     if shortest is not None:
         H[_wave_numbers(grid) > 2 * math.pi / shortest * (1 + 1e-9)] = 0.0
     return H
 
 
 def _wave_numbers(grid: Grid) -> Array:
-    """Wave numbers |q| (rad/m) of the modes of `rfft2`."""
+    """Wave numbers (rad/m) of the modes of `rfft2`."""
     (nx, ny), (hx, hy) = grid.nodes, grid.spacing
     qx, qy = np.fft.fftfreq(nx, hx)[:, None], np.fft.rfftfreq(ny, hy)[None, :]
     return np.asarray(2 * math.pi * np.hypot(qx, qy))

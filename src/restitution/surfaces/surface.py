@@ -1,4 +1,4 @@
-"""The height map of a rough surface, which every source of roughness returns and a contact uses."""
+"""The height map of a rough surface: the output of readers and generators."""
 
 from __future__ import annotations
 
@@ -24,7 +24,8 @@ class Surface:
     Attributes:
         height: Heights (m), positive towards the other body, shape `grid.nodes`; read-only.
         grid: Grid of the heights.
-        provenance: Text and numbers (SI) on the origin of the heights, stored with every result.
+        provenance: Texts and numbers (SI) that describe the origin of the heights; every result
+            stores them.
 
     Raises:
         SurfaceError: The shape does not fit the grid, or a height is undefined.

@@ -19,7 +19,7 @@ from restitution.surfaces.scan import Y_DOWN, Scan, in_metres
 
 TEXT_SUFFIXES = frozenset({".txt", ".csv", ".dat", ".asc"})
 
-_LEAST_VALUES = 4  # smallest number of values of a scan line; fewer are coordinates or a profile
+_LEAST_VALUES = 4  # smallest number of values of a scan line; shorter lines are coordinates
 _LONGEST = 200  # longest header value that is read as a number with a unit (characters)
 _NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?"
 _QUANTITY = re.compile(rf"(?P<number>{_NUMBER})\s*(?P<unit>\S+)")
@@ -181,7 +181,7 @@ def _read_header(
                 )
             details["channel_name"] = value
         elif length is not None or _FOREIGN_KEY.search(key):
-            # A wrong guess of the unit could scale heights by a factor of a million unnoticed.
+            # A wrong guess of the unit could change heights by a factor of a million unnoticed.
             raise NotAMatrixError(
                 f"{path}: its header line {comment[:60]!a} may set an unknown unit or scale; give "
                 "only '# Width:', '# Height:' and '# Value units:'"
@@ -202,7 +202,7 @@ def _statement(comment: str) -> tuple[str, str]:
 
 
 def _counts(key: str, value: str) -> _Counts:
-    """Numbers of values per line and of lines, as far as a header entry states them."""
+    """Read the numbers of values per line and of lines that a header entry states, if any."""
     if key in _COLUMNS | _LINES and value.isdecimal() and len(value) < 10:
         return {"values" if key in _COLUMNS else "lines": int(value)}
     if key in ("pixels", "resolution", "shape") and (both := _BOTH.fullmatch(value)):

@@ -3,15 +3,15 @@
 The waves of a twin (`wave_spectrum`) first get random phases. Then heights and amplitudes are
 adjusted alternately (Schreiber and Schmitz 1996, Phys. Rev. Lett. 77, 635–638), because the
 skewness and kurtosis of the heights depend on the phases of all waves together. Phases and
-adjustment depend on the scan, the period and the seed, but not on the grid. So on a grid with half
-the spacing, the surface is the same with shorter waves added.
+adjustment depend on the scan, the period and the seed, but not on the grid. So a grid with half the
+spacing gives the same surface with shorter waves added.
 
 To make the result independent of the grid, the adjustment proceeds from long to short waves:
 
-* The longest band: all its waves are adjusted together, on the coarsest grid that carries them. The
+* All waves of the longest band are adjusted together, on the coarsest grid that resolves them. The
   target is the distribution of heights of the scan without the shorter waves. The last step adjusts
   the amplitudes, so the amplitudes are exact.
-* Each further band halves the shortest wavelength. Only the phases of the new waves are adjusted.
+* Each further band halves the shortest wavelength. Only the phases of its new waves are adjusted.
 * The bands end where the remaining waves have about 1 % of the scan's mean square height. These
   waves hardly affect the distribution of heights and keep their random phases.
 
@@ -56,13 +56,15 @@ _TABLE = 2**14  # number of steps of the table that maps heights (see `_with_hei
 def twin(scan: Surface, grid: Grid, seed: int) -> Surface:
     """Make a twin of `scan` on `grid`.
 
-    The twin is periodic over `grid` or, if the scan is larger, over a multiple of `grid`. Before
-    the waves that the cells of `grid` cannot carry are left out, Rq is that of the scan, and the
-    skewness and kurtosis are nearly those of the scan. The provenance describes the waves left out
-    (`removed_…`) and contains the statistics of the scan (`scan_…`) and `spectrum_misfit`, the root
-    mean square of the relative difference between the spectra of twin and scan. The spectra are
-    compared on parts as large as the scan, in bands of a quarter octave. The weight of a band is
-    the sum of its fractions of the mean square height and of the mean square slope.
+    The twin is periodic over `grid` or, if the scan is larger, over a multiple of `grid`. The sum
+    of all its waves has the Rq of the scan, and nearly the skewness and kurtosis of the scan. From
+    this sum, the waves that are too short for the cells of `grid` are left out.
+
+    The provenance describes the waves left out (`removed_…`) and contains the statistics of the
+    scan (`scan_…`). It also contains `spectrum_misfit`, the root mean square of the relative
+    difference between the spectra of twin and scan. The spectra are compared on parts as large as
+    the scan, in bands of a quarter octave. The weight of a band is the sum of its fractions of the
+    mean square height and of the mean square slope.
 
     Raises `SurfaceError` for a scan that is flat or has fewer than 16 pixels along an axis, and for
     cells that are too large for any wave of the scan.
@@ -104,7 +106,7 @@ def _check(scan: Surface, grid: Grid) -> None:
 
 
 def _adjusted(spectrum: WaveSpectrum, scan: Surface, grid: Grid, seed: int) -> Modes:
-    """Return the waves of the twin that `grid` carries, in the order of `rfft2` on `grid`."""
+    """Return the waves of the twin that `grid` resolves, in the order of `rfft2` on `grid`."""
     cells = _bands(spectrum, scan)
     modes: Modes | None = None
     most = 0, 0
@@ -112,7 +114,7 @@ def _adjusted(spectrum: WaveSpectrum, scan: Surface, grid: Grid, seed: int) -> M
         modes, most = _band(spectrum, scan, cell, seed, modes, most)
         if all(c <= h for c, h in zip(cell, grid.spacing, strict=True)):
             break
-    assert modes is not None  # `_bands` returns at least one
+    assert modes is not None  # `_bands` returns at least one cell size
     wanted = spectrum.numbers(grid.spacing)
     common = min(wanted[0], most[0]), min(wanted[1], most[1])
     if wanted == common:
@@ -124,7 +126,7 @@ def _adjusted(spectrum: WaveSpectrum, scan: Surface, grid: Grid, seed: int) -> M
 
 
 def _bands(spectrum: WaveSpectrum, scan: Surface) -> list[tuple[float, float]]:
-    """Cell sizes (m) that carry the waves of each band, coarsest first."""
+    """Return the largest cell size (m) that resolves the waves of each band, coarsest first."""
     most = (1 - _UNADJUSTED) * float(np.var(scan.height))
 
     def cell(level: int) -> tuple[float, float]:
@@ -151,10 +153,10 @@ def _band(
     known: Modes | None,
     kept: tuple[int, int],
 ) -> tuple[Modes, tuple[int, int]]:
-    """Adjust the phases of the waves that cells of size `cell` (m) carry.
+    """Adjust the phases of the waves that cells of size `cell` (m) resolve.
 
-    The waves `known`, up to the numbers `kept` along the two axes, do not change. Return the waves
-    and their largest numbers.
+    The waves `known`, with wave numbers up to `kept` along the two axes, do not change. Return all
+    waves and their largest wave numbers.
     """
     from scipy.fft import irfft2, rfft2
 
@@ -189,7 +191,7 @@ def _with_heights(z: Array, heights: Array) -> Array:
     low, high = float(have[0]), float(have[-1])
     if not low < high:
         return z
-    # A table with equal steps is faster, because finding an interval needs no search.
+    # A table with equal steps is fast, because the interval of a value is found without a search.
     table = np.interp(np.linspace(low, high, _TABLE + 1), _quantiles(have), _quantiles(heights))
     return _between(table, (z - low) * (_TABLE / (high - low)))
 
@@ -207,7 +209,7 @@ def _between(table: Array, at: Array) -> Array:
 
 
 def _nodes(most: tuple[int, int]) -> tuple[int, int]:
-    """Smallest numbers of nodes that carry waves up to the numbers `most` and have a fast FFT."""
+    """Return the smallest grid with a fast FFT that resolves wave numbers up to `most`."""
     from scipy.fft import next_fast_len
 
     return (
@@ -217,7 +219,7 @@ def _nodes(most: tuple[int, int]) -> tuple[int, int]:
 
 
 def _copy(source: Modes, target: Modes, most: tuple[int, int]) -> None:
-    """Copy the waves of `source` up to the numbers `most` into `target`."""
+    """Copy the waves of `source` with wave numbers up to `most` into `target`."""
     M, N = most
     target[: M + 1, : N + 1] = source[: M + 1, : N + 1]
     if M:
@@ -225,7 +227,7 @@ def _copy(source: Modes, target: Modes, most: tuple[int, int]) -> None:
 
 
 def _heights(modes: Modes, nodes: tuple[int, int]) -> Array:
-    """The sum of the waves, whose phases are relative to the origin of `Grid` (node n // 2)."""
+    """Sum the waves; their phases are relative to the origin of `Grid` (node n // 2)."""
     from scipy.fft import irfft2
 
     number = np.fft.fftfreq(nodes[0], 1 / nodes[0]), np.arange(modes.shape[1])
@@ -282,7 +284,7 @@ def _provenance(
 def _misfit(made: Surface, scan: Surface) -> float:
     """Relative difference between the radial spectra of parts of `made` and of `scan`.
 
-    Only waves that both can carry are compared.
+    Only waves that both grids resolve are compared.
     """
     grid, pixel = made.grid, scan.grid.spacing
     nx, ny = (

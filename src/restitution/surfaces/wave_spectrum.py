@@ -26,8 +26,8 @@ from restitution.surfaces.surface import Surface
 Array = NDArray[np.float64]
 Modes = NDArray[np.complex128]
 
-_SUMMED = 2**20  # about the most waves that `_moments` sums one by one
-_LEAST = 2  # waves that fit at most this many times into the scan are always summed one by one
+_SUMMED = 2**20  # approximate largest number of waves that `_moments` sums one by one
+_LEAST = 2  # waves of at most this many wavelengths per scan are always summed one by one
 _ROWS = 2**20  # number of waves computed at a time, to limit the memory
 _ROUNDING = 1e-9
 
@@ -41,7 +41,7 @@ class WaveSpectrum:
     """
 
     density: Array
-    waves: tuple[float, float]  # wave numbers of the twin per wave number of the scan, along x, y
+    waves: tuple[float, float]  # period of the twin over the size of the scan, along x and y
     pixel: tuple[float, float]  # pixel of the scan (m)
     period: tuple[float, float]
     flat: float = 1.0  # a in the factor a + b/k², where k is the number of waves per scan
@@ -65,7 +65,7 @@ class WaveSpectrum:
         return C, k2
 
     def numbers(self, spacing: tuple[float, float]) -> tuple[int, int]:
-        """Largest wave numbers m and n that both the scan and cells of `spacing` (m) carry."""
+        """Largest wave numbers m and n that both the scan and cells of `spacing` (m) resolve."""
         most = [
             math.ceil(0.5 * edge / max(h, pixel) * (1 - _ROUNDING)) - 1
             for edge, h, pixel in zip(self.period, spacing, self.pixel, strict=True)
@@ -73,9 +73,10 @@ class WaveSpectrum:
         return most[0], most[1]
 
     def modes(self, most: tuple[int, int], nodes: tuple[int, int], seed: int) -> Modes:
-        """Waves up to the numbers `most` with random phases, in the order of `rfft2` on `nodes`.
+        """Waves with wave numbers up to `most` and random phases, in the order of `rfft2`.
 
-        The normalisation is "forward": heights are the sum of the modes.
+        `nodes` is the grid of the FFT. The normalisation is "forward": heights are the sum of the
+        modes.
         """
         M, N = most
         full: Modes = np.zeros((nodes[0], nodes[1] // 2 + 1), dtype=np.complex128)
@@ -100,7 +101,8 @@ def spectrum_of(scan: Surface, period: tuple[float, float]) -> WaveSpectrum:
     if abs(np.linalg.det(moments)) > 1e-9 * abs(moments[0, 0] * moments[1, 1]):
         a, b = (float(value) for value in np.linalg.solve(moments, wanted))
     spectrum = WaveSpectrum(C, raw.waves, raw.pixel, period, a, b)
-    # Negative power is set to zero, which changes the mean square height. So the power is rescaled.
+    # `power` sets negative values to zero, which changes the mean square height. The factors a and
+    # b are rescaled to correct this.
     excess = _moments(spectrum, raw=False)[0, 0] / wanted[0]
     return WaveSpectrum(C, raw.waves, raw.pixel, period, a / excess, b / excess)
 

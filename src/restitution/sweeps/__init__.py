@@ -1,1 +1,1 @@
-"""Studies: many cases that differ in swept values, computed in parallel processes."""
+"""Studies: cases that differ in the values of some keys, computed in parallel processes."""

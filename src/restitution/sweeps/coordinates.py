@@ -1,4 +1,4 @@
-"""Convert swept values to coordinates of `study.nc`; quantities become numbers in SI units."""
+"""Convert the swept values of a study to coordinates of `study.nc`, in SI units."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _UNITS = {
     "rad/s": "rad s-1",
 }
 AS_WRITTEN = "as_written"
-"""Name of the attribute with the values as written in the study file, a JSON list of texts."""
+"""Name of the attribute that lists the values as in the study file (a JSON list of texts)."""
 
 
 def as_text(value: Any) -> str:

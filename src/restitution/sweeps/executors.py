@@ -1,7 +1,7 @@
 """Processes that compute cases, on this machine or on a Dask cluster.
 
-For both, `Workers` holds a `concurrent.futures.Executor`, the number of cases that it computes at a
-time, and a channel for progress. So `scheduler` need not distinguish local and cluster processes.
+In both cases, `Workers` holds a `concurrent.futures.Executor`, the number of cases that it computes
+at a time, and a channel for progress. So `scheduler` treats local and cluster processes alike.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def chosen_workers(count: int | None, scheduler: str | None) -> AbstractContextM
 
 @contextmanager
 def local_workers(count: int | None) -> Iterator[Workers]:
-    """Provide `count` processes that share the cores of this machine; None: one for each core."""
+    """Provide `count` processes that share the cores of this machine; by default one per core."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     places = count or cores or 1
     threads = max(1, (cores or 1) // places)
@@ -104,7 +104,7 @@ class _Pool(ProcessPoolExecutor):
 
 @contextmanager
 def _without_interrupts() -> Iterator[None]:
-    """Block SIGINT in processes that start in the `with` body, until they ignore it (`_serve`).
+    """Block SIGINT in processes that start in the `with` body, until `_serve` lets them ignore it.
 
     Ctrl-C reaches all processes of a terminal. Before `_serve` has run in a new process, Ctrl-C
     would end this process with a traceback.
@@ -171,6 +171,7 @@ def cluster_workers(address: str) -> Iterator[Workers]:
             messages: list[tuple[int, int]] = queue.get(batch=True)
             return [(number, done) for number, done in messages]
 
-        # The cluster itself repeats the tasks of dead workers, a limited number of times.
+        # Dask itself repeats the tasks of dead workers (a limited number of times), so no new
+        # executor is needed.
         executor = client.get_executor(pure=False)
         yield Workers(executor, places, 1, queue, heard, lambda _: executor)

@@ -21,7 +21,7 @@ _DEATHS = 3  # a case has failed if its worker died this many times
 
 @dataclass
 class Tally:
-    """Progress of a study: numbers of cases done and failed, and depths done per running case."""
+    """Progress of a study: numbers of cases, and the depths done of each running case."""
 
     cases: int
     done: int = 0
@@ -38,12 +38,12 @@ def run_study(
     *,
     retry_failed: bool = False,
 ) -> Tally:
-    """Compute every case of `study` that `out` does not hold yet, and write its tables.
+    """Compute every case of `study` that `out` does not hold yet, and write the tables of `out`.
 
-    Files of measured surfaces are relative to `folder`. A failed case is stored with its reason,
-    and computed again only with `retry_failed`. Completed cases are kept even if the study is
-    interrupted or fails. If the worker of a case dies, the case is computed again without other
-    cases beside it; a case whose worker died three times has failed.
+    Paths of measured surfaces are relative to `folder`. A failed case is stored with the reason,
+    and is computed again only with `retry_failed`. Completed cases are kept even if the study is
+    interrupted or fails. If the worker of a case dies, the case is computed again, alone. A case
+    whose worker died three times has failed.
     """
     out.clear()
     known = {case.number: out.reason(case) for case in study.cases}
@@ -105,7 +105,7 @@ def _compute_all(
                     suspects.append(case)
                     continue
                 outcome = Outcome({}, f"its worker died {_DEATHS} times: killed, or out of memory")
-            except OutputError:  # the disk is full, which concerns all cases
+            except OutputError:  # such as a full disk, which concerns all cases
                 raise
             except Exception as error:  # a bug, or an error of the cluster: only this case fails
                 outcome = Outcome({}, one_line(f"{type(error).__name__}: {error}"))
@@ -113,7 +113,7 @@ def _compute_all(
             tally.done += 1
             tally.failed += bool(outcome.reason)
         if broken:
-            # All running cases ended with the executor.
+            # The other running cases were lost with the executor.
             for case in running.values():
                 suspects.append(case)
                 tally.in_flight.pop(case.number, None)

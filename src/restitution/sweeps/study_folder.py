@@ -1,7 +1,7 @@
 """The folder of a study: one folder for each case, and tables over all of them.
 
-A case is written to a temporary folder, which is then renamed. So a case is stored completely or
-not at all. The tables are made from the stored cases and replaced as a whole.
+A case is written to a temporary folder, which is then renamed, so a case is stored completely or
+not at all. The tables are always made anew from all stored cases.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ def prepare_folder(path: Path, name: str, text: str, *, resume: bool, what: str)
 
 
 class StudyFolder:
-    """The folder OUT: `study.toml`, `cases/case-00001/` etc., `table.csv` and `study.nc`."""
+    """The folder of a study: `study.toml`, `cases/case-00001/` etc., `table.csv`, `study.nc`."""
 
     def __init__(self, path: Path, study: Study, *, resume: bool) -> None:
         """Prepare the folder for `study`.
@@ -104,8 +104,8 @@ class StudyFolder:
     def reason(self, case: SweptCase) -> str | None:
         """Return why a case failed; "" if it is complete, None if it is missing or damaged.
 
-        A case is complete if its files pass the checks of `reader`. A stored case counts as missing
-        if its text differs.
+        A case is complete if its files pass the checks of `RunResults`. A stored case whose text
+        differs from `case` counts as missing.
         """
         folder = self._cases / case.name
         try:
@@ -136,7 +136,10 @@ class StudyFolder:
     def _rows(
         self, known: dict[int, str | None], curves: dict[int, list[dict[str, str]]]
     ) -> list[dict[str, str]]:
-        """Make rows of swept values and columns of `curve.csv`; one row if there is no curve."""
+        """Make the rows of `table.csv`.
+
+        Each row contains swept values and a row of `curve.csv`. A case without a curve has one row.
+        """
         columns = next((list(rows[0]) for rows in curves.values() if rows), list(COLUMNS))
         rows = []
         for case in self.study.cases:
@@ -150,7 +153,10 @@ class StudyFolder:
     def _dataset(
         self, known: dict[int, str | None], curves: dict[int, list[dict[str, float]]]
     ) -> xr.Dataset:
-        """Make a dataset of all curves, over the swept keys (or the cases) and the depth."""
+        """Make a dataset of all curves.
+
+        Its dimensions are the swept keys (or the cases, if paired) and the depth.
+        """
         study = self.study
         depths = max((len(rows) for rows in curves.values()), default=0)
         if study.mode == "paired":

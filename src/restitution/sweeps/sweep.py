@@ -20,7 +20,7 @@ _MODES = ("grid", "paired")
 
 @dataclass(frozen=True)
 class SweptCase:
-    """One case of a study: its number (from 1), its swept values, and its text."""
+    """One case of a study: its number (from 1), its swept values, and the text of its file."""
 
     number: int
     values: Mapping[str, Any]
@@ -47,14 +47,14 @@ class Study:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """The number of values of each swept key; (cases,) if they are paired."""
+        """The number of values of each swept key; (number of cases,) if the values are paired."""
         if self.mode == "paired":
             return (len(self.cases),)
         return tuple(len(values) for values in self.swept.values())
 
 
 def read_study(path: Path) -> Study:
-    """Read and check a study file. Raises `CaseError`, naming the file and the key."""
+    """Read and check a study file. Raises a `CaseError` that names the file and the key."""
     text = read_text(path)
     with naming(path):
         return parse_study(text)
@@ -117,7 +117,7 @@ def _check_values(swept: Mapping[str, Any], mode: str) -> None:
 
 
 def _combinations(swept: Mapping[str, list[Any]], mode: str) -> Iterator[dict[str, Any]]:
-    """Yield the swept values of each case; in a grid the last key varies fastest."""
+    """Yield the swept values of each case; in the mode "grid" the last key varies fastest."""
     rows = (
         zip(*swept.values(), strict=True)
         if mode == "paired"
@@ -128,7 +128,7 @@ def _combinations(swept: Mapping[str, list[Any]], mode: str) -> Iterator[dict[st
 
 
 def put(case: dict[str, Any], path: str, value: Any) -> None:
-    """Set the key at the dotted `path`, where a number (from 1) selects one of several tables."""
+    """Set the key at the dotted `path`; a number (from 1) in it selects one of several tables."""
     table: Any = case
     *way, last = path.split(".")
     for step in way:

@@ -20,9 +20,9 @@ class Channel(Protocol):
 
 @dataclass(frozen=True)
 class Outcome:
-    """The outcome of a case: the files of its results folder, and the reason if it failed.
+    """The outcome of a case: the files of its results folder, and the reason of a failure.
 
-    `reason` is empty if the case is complete. A failed case has the files written before it failed.
+    `reason` is empty if the case is complete. A failed case has only the files written before.
     """
 
     files: dict[str, bytes]
@@ -30,12 +30,12 @@ class Outcome:
 
 
 def compute(text: str, folder: str, number: int, threads: int, channel: Channel | None) -> Outcome:
-    """Run the case of `text`, with files relative to `folder`, in this process.
+    """Run the case file `text` in this process; paths in it are relative to `folder`.
 
-    Results are returned instead of written to the study's folder. So workers need no shared disk,
-    and only one process writes to the folder.
+    Results are returned, not written to the folder of the study. So workers need no shared disk,
+    and only one process writes to this folder.
     """
-    # DUCC0 reads this variable only once in a process, before its first transform.
+    # DUCC0 reads this variable only once per process, before its first transform.
     os.environ.setdefault("DUCC0_NUM_THREADS", str(threads))
     from restitution.case.case_file import parse_case
     from restitution.results.writer import ResultsFolder

@@ -1,18 +1,24 @@
 """Drake: `point_contact_stiffness` and `hunt_crossley_dissipation` of a pair of geometries.
 
-Drake's compliant point contact is F = kx (1 + d x′), never attractive (Drake documentation,
-Compliant point contact and Hydroelastic contact: Hunt & Crossley). Geometries a and b give k = k_a
-k_b/(k_a + k_b) and d = (k_b d_a + k_a d_b)/(k_a + k_b). So the export gives both geometries 2k and
-d to obtain a contact with k and d. e depends only on the product of d and the velocity V,
-and not on k or the mass (`damping.hunt_crossley_dissipation`). It decreases with V. k is chosen
-such that the contact lasts as long as a Hertz contact. The same relation holds for every elastic
-force that is multiplied by (1 + d x′), so it also holds for a hydroelastic contact whose surfaces
-approach at one velocity (not tested in Drake).
+Drake's compliant point contact has the force F = kx (1 + d x′) with the overlap x, the stiffness k
+and the dissipation d. F is never attractive (Drake documentation, Compliant point contact and
+Hydroelastic contact: Hunt & Crossley). Two geometries a and b in contact have
 
-A geometry has one k and one d, so a scene cannot contain all pairs of three types.
+    k = k_a k_b/(k_a + k_b),   d = (k_b d_a + k_a d_b)/(k_a + k_b).
 
-In Drake 1.51, a continuous plant (`time_step=0`) is exact. A discrete plant loses energy because of
-its time step. Its SAP approximation does not use the dissipation at all, so e is close to 0.
+So the export gives both geometries the values 2k and d to obtain a contact with k and d.
+
+The coefficient of restitution e depends only on the product of d and the impact velocity, not on k
+or the mass (`damping.hunt_crossley_dissipation`). e decreases with the velocity. k is chosen such
+that the contact lasts as long as a Hertz contact. The relation between e and d holds for every
+elastic force that is multiplied by (1 + d x′). So it also holds for a hydroelastic contact whose
+surfaces approach at one velocity (not tested in Drake).
+
+A geometry has only one k and one d, so one scene cannot contain all pairs of three types.
+
+In Drake 1.51, a continuous plant (`time_step=0`) returns the exported e. A discrete plant loses
+additional energy because of its time step. Its SAP approximation ignores the dissipation, and e is
+close to 0.
 """
 
 from __future__ import annotations
@@ -52,7 +58,7 @@ _STEPS = 200
 
 @dataclass(frozen=True)
 class Contact:
-    """Stiffness (N/m) and dissipation (s/m) of a pair, at the velocity (m/s) of the export."""
+    """The contact of a pair: velocity of the export (m/s), duration (s) and dissipation (s/m)."""
 
     pair: Pair
     velocity: float
@@ -65,12 +71,12 @@ class Contact:
         return self.pair.law.mass * (math.pi / self.duration) ** 2
 
     def restitution(self, share: float) -> float:
-        """Return e in Drake at the velocity of the export times `share`."""
+        """Return e in Drake at `share` times the velocity of the export."""
         return hunt_crossley_restitution(self.dissipation * self.velocity * share)
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """Write the module to import and a test collision that prints e; return file names and texts.
+    """Write a module to import and a test collision that prints e; return file names and texts.
 
     Raises `CaseError`, `DomainError`.
     """

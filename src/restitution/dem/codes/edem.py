@@ -2,8 +2,8 @@
 
 The tables were not tested in EDEM. EDEM's Hertz–Mindlin model has Tsuji's damping with the
 coefficient of Antypov & Elliott (Altair's documentation). Its hysteretic spring model is that of
-Walton & Braun with K1 = 5 R* min(Y1, Y2) and e = (K1/K2)^½ at every velocity. So the export gives
-K2 for the velocity of the export.
+Walton & Braun with K1 = 5 R* min(Y1, Y2), where Y1 and Y2 are the yield strengths. Its
+e = (K1/K2)^½ is the same at every velocity, so the K2 of the export holds at one velocity.
 """
 
 from __future__ import annotations
@@ -73,9 +73,10 @@ def _interaction(pair: Pair, velocity: float) -> dict[str, str]:
 
 
 def _springs(pair: Pair, velocity: float) -> tuple[float, float] | None:
-    """K1 and K2 (N/m) of the fitted Walton–Braun law: K2 = k_u + S V (m* K1)^½.
+    """K1 and K2 (N/m) of the fitted Walton–Braun law at `velocity` V (m/s).
 
-    None if there is no such fit, or if `velocity` is outside the fitted range.
+    K2 = k_u + S V (m* K1)^½ with the unloading stiffness k_u and the hardening S. None if there is
+    no such fit, or if `velocity` is outside the fitted range.
     """
     if not pair.law.fits_hold_at(velocity):
         return None

@@ -1,11 +1,13 @@
 """LAMMPS: `pair_style granular` with `hertz/material` and `damping coeff_restitution`.
 
-LAMMPS uses the E and ν of a pair_coeff for both bodies, also at walls: E* = E/2(1 − ν²),
-G* = E/4(2 − ν)(1 + ν). Each pair gets the E and ν that give the E* and G* of this pair. LAMMPS'
-mixing of two materials applies the factor ½ twice, so the export does not use it. Force and damping
-(Antypov & Elliott, EPL 94 (2011) 50004) act until δ = 0, with a tension at the end. `limit_damping`
-would cut the tension off and raise e. `damping tsuji` is wrong by a factor of √2 in released
-versions.
+LAMMPS uses the E and ν of a pair_coeff for both bodies, also at walls:
+
+    E* = E/2(1 − ν²),   G* = E/4(2 − ν)(1 + ν).
+
+So each pair gets values of E and ν that lead to its E* and G*. LAMMPS' mixing of two materials
+applies the factor ½ twice, so the export does not use it. Force and damping (Antypov & Elliott, EPL
+94 (2011) 50004) act until the overlap is zero, with tension at the end. `limit_damping` would cut
+off the tension and raise e. In released versions, `damping tsuji` is wrong by a factor of √2.
 """
 
 from __future__ import annotations
@@ -31,17 +33,17 @@ from restitution.dem.pair_table import PairTable
 from restitution.dem.velocity_matching import SCRIPT, Target, matching_script
 
 CODE = "LAMMPS"
-LOWEST = 0.001  # smallest e that is reproduced within 0.5 % with `STEPS` time steps in a contact
+LOWEST = 0.001  # smallest e that is reproduced within 0.5 %, with `STEPS` time steps in a contact
 FRAGMENT, COLLISION, PACKING = "restitution.lmp", "collision.in", "packing.in"
-_PACKING_STEPS = 50  # time steps of the packing in the shortest contact
+_PACKING_STEPS = 50  # number of time steps in the shortest contact of the packing
 _GRAINS = 500  # number of spheres of the packing
-_FALLS = 0.25  # duration of the run over the time in which the highest sphere falls to the wall
+_FALLS = 0.25  # ratio of the duration of the run to the falling time of the highest sphere
 _FILLED = 0.12  # fraction of the initial volume that the spheres fill
 KOKKOS = "restitution_kokkos.lmp"
 _MATCHED = Target(CODE, "lmp -in my.in", FRAGMENT, "matched.lmp", LOWEST)
 _ENDS = (
     "the overlap is back to zero. The force is tensile shortly before, due to damping; do not add "
-    "limit_damping, which cuts off the tension and raises e (0.808 for 0.8)."
+    "limit_damping, which cuts off the tension and raises e (from 0.8 to 0.808)."
 )
 _TANGENTIAL = (
     f"These pairs have {STIFFNESS_SHARE} times the tangential stiffness of a contact that sticks, "
@@ -55,11 +57,11 @@ _KOKKOS_ENDS = (
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """Write the fragment to include, a fragment for KOKKOS, a test collision, and a packing.
+    """Write a fragment to include, a fragment for KOKKOS, a test collision, and a packing.
 
-    In the packing, spheres of all types fall on the first wall that has a law with each type.
-    Without such a wall there is no packing. Returns file names and texts. Raises `CaseError`,
-    `DomainError`.
+    In the packing, spheres of all types fall on the first wall that has a law with every type of
+    sphere. Without such a wall there is no packing. Returns file names and texts. Raises
+    `CaseError`, `DomainError`.
     """
     walls_only = all(j > len(table.spheres) for _, j in table.laws)
     if not walls_only:
@@ -125,7 +127,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
 
 
 def _tangential(pair: Pair) -> str:
-    """The tangential model of a pair; LAMMPS' default stiffness if its case has no friction."""
+    """The tangential model of a pair; LAMMPS' default stiffness if the case has no friction."""
     if pair.law.friction is None:
         return f"mindlin NULL 1.0 {pair.friction}"
     stiffness = STIFFNESS_SHARE * mindlin_stiffness(pair)
@@ -133,10 +135,10 @@ def _tangential(pair: Pair) -> str:
 
 
 def _counts(table: PairTable) -> list[int]:
-    """Number of spheres of each type, at least one; `_GRAINS` in all.
+    """Number of spheres of each type, at least one; the sum is `_GRAINS`.
 
-    Every material of a mixture has the same number of spheres, divided by the fractions of its
-    sizes; types without fractions have equal numbers.
+    The numbers are proportional to the number fractions of the sizes. A type without a number
+    fraction counts as 1. So all materials of a mixture have the same number of spheres.
     """
     weights = [body.number_fraction or 1.0 for body in table.spheres]
     ends = [round(_GRAINS * part / sum(weights)) for part in itertools.accumulate(weights)]
@@ -146,7 +148,7 @@ def _counts(table: PairTable) -> list[int]:
 
 
 def _floor(table: PairTable) -> int | None:
-    """Type number of the first wall that has a law with every sphere."""
+    """Type number of the first wall that has a law with every type of sphere; None without one."""
     count = len(table.spheres)
     for wall in range(count + 1, len(table.particles) + 1):
         if all((k, wall) in table.laws for k in range(1, count + 1)):

@@ -1,15 +1,15 @@
 """Second fragment of the export to LAMMPS, with damping models that its package KOKKOS supports.
 
-LAMMPS 22Jul2025 has no KOKKOS variant of pair_style granular. The variant of pull request 5187 has
-hooke and hertz normal forces with velocity-based damping and linear and Mindlin tangential forces;
-it needs newton off. gran/hooke/history/kk is older; it has one set of values for all pairs of
-types.
+LAMMPS 22Jul2025 has no KOKKOS variant of pair_style granular. Pull request 5187 adds one with hooke
+and hertz normal forces, velocity-based damping, and linear and Mindlin tangential forces; it needs
+newton off. The older gran/hooke/history/kk has only one set of values for all pairs of types.
 
 Each pair gets a Hertz force with a constant damping coefficient (`damping velocity`,
-`damping.hertz_damping`). Its e increases with the velocity, because g ∝ V^{−⅕} decreases. If there
-is a single type of particle, the fragment also offers a linear spring, whose e is constant. Its
-contact lasts as long as Hertz's. LAMMPS lets the damping pull until the overlap is zero, so
-e = exp(−πζ/(1 − ζ²)^½) (Schäfer, Dippel, Wolf, J. Phys. I France 6 (1996) 5).
+`damping.hertz_damping`). Its coefficient of restitution e increases with the velocity V, because
+the dimensionless damping g (`damping`) decreases as V^{−⅕}. If there is a single type of particle,
+the fragment also offers a linear spring, whose e is constant. Its contact lasts as long as a Hertz
+contact. In LAMMPS the damping force may be tensile until the overlap is zero, so the damping ratio
+ζ gives e = exp(−πζ/(1 − ζ²)^½) (Schäfer, Dippel, Wolf, J. Phys. I France 6 (1996) 5).
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from restitution.dem.friction import mindlin_stiffness
 
 @dataclass(frozen=True)
 class VelocityDamping:
-    """Hertz with a constant damping coefficient (kg/s) for a pair, at `velocity` (m/s)."""
+    """Hertz force with a constant `damping` coefficient (kg/s), chosen at `velocity` (m/s)."""
 
     pair: Pair
     velocity: float
@@ -41,7 +41,7 @@ class VelocityDamping:
         return mindlin_stiffness(self.pair)
 
     def restitution(self, share: float) -> float:
-        """Return e at the velocity of the export times `share`."""
+        """Return e at `share` times the velocity of the export."""
         return hertz_restitution_at(self.pair.law, self.damping, share * self.velocity)
 
 
@@ -55,7 +55,7 @@ class LinearSpring:
 
 
 def velocity_damping(pairs: list[Pair], velocity: float) -> list[VelocityDamping]:
-    """Compute the damping of every pair that gives the e of the pair at `velocity` (m/s)."""
+    """Compute the damping with which every pair has the e of its law at `velocity` (m/s)."""
     return [
         VelocityDamping(pair, velocity, hertz_damping(pair.law, velocity, pair.restitution))
         for pair in pairs

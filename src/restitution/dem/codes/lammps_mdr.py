@@ -1,4 +1,4 @@
-"""The fitted `mdr` law as comments in the export to LAMMPS, for the pairs that can use it.
+"""Comments in the export to LAMMPS that offer the fitted `mdr` law to the pairs that can use it.
 
 LAMMPS 22Jul2025 behaves as follows (`tests/dem/test_lammps_mdr.py`). pair_style granular accepts
 one mdr model, with the same values for every pair of types, and no other normal model beside it. A
@@ -19,7 +19,7 @@ _FAR = 0.1  # a fitted law is offered if its largest difference in e is at most 
 
 
 def mdr_offers(pairs: list[Pair], velocity: float) -> list[tuple[Pair, FittedLaw | None, str]]:
-    """List every pair, its fitted mdr law, and the reason not to offer it (empty if offered)."""
+    """Return every pair with its fitted mdr law and the obstacle to offering it, empty if none."""
     return [(pair, _fit_of(pair), _obstacle(pairs, pair, velocity)) for pair in pairs]
 
 
@@ -28,7 +28,7 @@ def _fit_of(pair: Pair) -> FittedLaw | None:
 
 
 def _obstacle(pairs: list[Pair], pair: Pair, velocity: float) -> str:
-    """Return why `pair` gets no mdr line; empty if it gets a line."""
+    """Return why `pair` gets no mdr line; empty if it gets one."""
     spheres = [other for other in pairs if not other.wall]
     if not pair.wall and len(spheres) > 1:
         return (
@@ -44,12 +44,12 @@ def _obstacle(pairs: list[Pair], pair: Pair, velocity: float) -> str:
 
 
 def _unfit(pair: Pair, velocity: float) -> str:
-    """Return why the fit of `pair` cannot be offered; empty if it can."""
+    """Return why the mdr fit of `pair` itself cannot be offered; empty if it can."""
     fit = _fit_of(pair)
     if fit is None and not pair.law.laws:
         return "no law was fitted to it"
     if fit is None:
-        return "mdr is fitted to one sphere on a wall and to two equal spheres only"
+        return "mdr is fitted only to a sphere on a wall and to two equal spheres"
     if fit.worst > _FAR:
         return f"the fitted mdr is off by up to {fit.worst:.2g} in e"
     if not pair.law.fits_hold_at(velocity):

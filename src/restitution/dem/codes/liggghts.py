@@ -1,9 +1,9 @@
 """LIGGGHTS: `pair_style gran model hertz tangential history`, properties by type and pair of types.
 
-LIGGGHTS computes the E* of a pair from the E and ν of its types, including walls. So the types get
-the E and ν of the materials, and E*, m* and R* agree with the law. Force and damping (Tsuji's form
-with the coefficient of Antypov & Elliott) act until δ = 0, with a tension at the end. `limitForce
-on` would cut the tension off.
+LIGGGHTS computes the E* of a pair from the E and ν of its two types; walls are types, too. So the
+types get the E and ν of the materials, and E*, m* and R* agree with the law. Force and damping
+(Tsuji's form with the coefficient of Antypov & Elliott) act until the overlap is zero, with tension
+at the end. `limitForce on` would cut off the tension.
 """
 
 from __future__ import annotations
@@ -24,22 +24,22 @@ from restitution.dem.pair_table import PairTable
 from restitution.dem.velocity_matching import SCRIPT, Target, matching_script
 
 CODE = "LIGGGHTS"
-LOWEST = 0.0501  # LIGGGHTS demands "0.05 < coefficientRestitution <= 1 required"
+LOWEST = 0.0501  # LIGGGHTS stops with "0.05 < coefficientRestitution <= 1 required"
 FRAGMENT, COLLISION = "restitution.liggghts", "collision.in.liggghts"
 _MATCHED = Target(CODE, "liggghts -in my.in", FRAGMENT, "matched.liggghts", LOWEST)
 _ENDS = (
     "the overlap is back to zero. The force is tensile shortly before, due to damping; do not add "
-    "`limitForce on`, which cuts off the tension and raises e (0.397 for 0.3)."
+    "`limitForce on`, which cuts off the tension and raises e (from 0.3 to 0.397)."
 )
 _TANGENTIAL = (
     "LIGGGHTS uses the full tangential stiffness of a contact that sticks. Its impacts that slide "
     "are exact, and impacts that stick return too much tangential velocity (docs/oblique.md)."
 )
-_HARD, _SOFT = 1e9, 5e6  # range of E (Pa) outside which LIGGGHTS needs a command to accept E
+_HARD, _SOFT = 1e9, 5e6  # LIGGGHTS accepts E (Pa) outside this range only with a command
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """Write the fragment to include and a test collision that prints e; return names and texts.
+    """Write a fragment to include and a test collision that prints e; return names and texts.
 
     Raises `CaseError`, `DomainError`.
     """
@@ -73,7 +73,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
 
 
 def _hardness(table: PairTable) -> str:
-    """Return the command that makes LIGGGHTS accept these E; empty if none is needed."""
+    """Return the command with which LIGGGHTS accepts the E of `table`; empty if not needed."""
     E = [body.youngs_modulus for body in table.particles]
     if max(E) > _HARD:
         return "hard_particles yes"
@@ -81,7 +81,7 @@ def _hardness(table: PairTable) -> str:
 
 
 def _restitution(table: PairTable) -> list[list[str]]:
-    """Symmetric matrix, by types, of the variables that hold e; 1 for walls, which never meet."""
+    """Symmetric matrix, by types, of the variables with e; 1 for two walls, which never touch."""
     numbers = range(1, len(table.particles) + 1)
 
     def entry(i: int, j: int) -> str:
@@ -92,7 +92,7 @@ def _restitution(table: PairTable) -> list[list[str]]:
 
 
 def _friction(table: PairTable, pairs: list[Pair]) -> list[list[str]]:
-    """Symmetric matrix, by types, of the coefficients of friction; walls never meet."""
+    """Symmetric matrix, by types, of friction; two walls never touch and get the placeholder."""
     known = {(pair.i, pair.j): pair.friction for pair in pairs}
     numbers = range(1, len(table.particles) + 1)
     return [[number(known.get((min(i, j), max(i, j)), FRICTION)) for j in numbers] for i in numbers]

@@ -1,9 +1,9 @@
-"""MercuryDPM: `HertzianViscoelasticMindlinSpecies`, one for each type and one for each pair.
+"""MercuryDPM: a `HertzianViscoelasticMindlinSpecies` for each type and for each pair of types.
 
-`setEffectiveElasticModulusAndRestitutionCoefficient(E*, e)` takes the contact modulus and converts
-e to the damping of Antypov & Elliott (EPL 94 (2011) 50004). Force and damping act until δ = 0, with
-a tension at the end. This description follows the sources of MercuryDPM; the export was not tested
-in MercuryDPM.
+`setEffectiveElasticModulusAndRestitutionCoefficient(E*, e)` takes the contact modulus E* and
+converts e to the damping of Antypov & Elliott (EPL 94 (2011) 50004). Force and damping act until
+the overlap is zero, with tension at the end. This description follows the sources of MercuryDPM;
+the export was not tested in MercuryDPM.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _ENDS = "the overlap is back to zero. The force is tensile shortly before, due t
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """Write the header to include; return its name and text. Raises `CaseError`, `DomainError`."""
+    """Write a header to include; return its name and text. Raises `CaseError`, `DomainError`."""
     table.require_all(CODE)
     pairs = pairs_at(table, velocity, CODE, 0.0)
     head = header(table, pairs, velocity, code=CODE, ends=_ENDS)

@@ -1,19 +1,20 @@
 """MuJoCo: `solref` and `solimp` of a contact pair, in the direct format (−stiffness, −damping).
 
-MuJoCo solves a₁ = (1 − d) a₀ + d a_ref for the normal acceleration of a contact, with a_ref = −bv −
-kr, b = damping/d_max and k = stiffness d(r)/d_max² (MuJoCo documentation, Computation: Constraint
-model, and Modeling: Solver parameters). If the impedance d is constant, the equation of motion is
+With contact, MuJoCo sets the normal acceleration to a₁ = (1 − d) a₀ + d a_ref, where a₀ is the
+acceleration without contact, d the impedance, r the distance of the surfaces and v its rate. Here
+a_ref = −bv − kr, b = damping/d_max and k = stiffness d(r)/d_max² (MuJoCo documentation,
+Computation: Constraint model, and Modeling: Solver parameters). If the impedance d is constant, the
+equation of motion is
 
     r″ = −stiffness r − damping r′ + (1 − d) a₀,
 
 a linear spring and dashpot per unit of mass, whatever the masses. The contact force is never
-attractive, so `damping.dashpot_ratio` gives the relation between e and ζ. The formula
-e = exp(−πζ/(1 − ζ²)^½) does not apply: with its ζ for e = 0.6, MuJoCo returns 0.632. d = 0.9999,
-the largest value that MuJoCo accepts, makes e independent of the friction cone. With d = 0.9 and
-pyramidal cones, MuJoCo returns 0.79 for e = 0.8.
+attractive, so `damping.dashpot_ratio` gives the damping ratio ζ for e. The formula
+e = exp(−πζ/(1 − ζ²)^½) does not apply: with its ζ for e = 0.6, MuJoCo returns 0.632.
 
-The stiffness is chosen such that the contact lasts as long as a Hertz contact. e does not depend on
-the stiffness.
+d = 0.9999, the largest value that MuJoCo accepts, makes e independent of the friction cone.
+With d = 0.9 and pyramidal cones, MuJoCo returns 0.79 for e = 0.8. The stiffness is chosen such that
+the contact lasts as long as a Hertz contact. e does not depend on the stiffness.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ from restitution.dem.friction import friction_note
 from restitution.dem.pair_table import PairTable
 
 CODE = "MuJoCo"
-LOWEST = 0.05  # smallest e that is reproduced within 2 % with `_STEPS` time steps in a contact
+LOWEST = 0.05  # smallest e that is reproduced within 2 %, with `_STEPS` time steps in a contact
 FRAGMENT, COLLISION = "restitution_mujoco.xml", "collision_mujoco.py"
 NOTE = (
     "MuJoCo: e is the exported e at every velocity, if the time step is at most 1/200 of the "
@@ -48,14 +49,14 @@ _ENDS = (
     "50 for e of 0.5 and more."
 )
 _STEPS = 500
-_LARGEST = 1e8  # largest acceleration (m/s²); MuJoCo resets a simulation above 1e10
+_LARGEST = 1e8  # largest acceleration (m/s²), because MuJoCo resets a simulation above 1e10
 _DEEPEST = 0.05  # largest overlap in a softened contact, as a fraction of the smaller radius
 _COARSE = 50  # number of time steps in a softened contact
 
 
 @dataclass(frozen=True)
 class Contact:
-    """Durations (s) of a contact of a pair, and its damping ratio ζ (1).
+    """Durations (s) and damping ratio ζ (1) of the contact of a pair.
 
     `duration` is that of an elastic Hertz contact. `soft_duration` is that of a softened contact,
     whose largest overlap is the fraction `_DEEPEST` of the smaller radius.
@@ -88,7 +89,7 @@ class Contact:
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """Write the MJCF file to include and a test collision that prints e; return names and texts.
+    """Write an MJCF file to include and a test collision that prints e; return names and texts.
 
     Raises `CaseError`, `DomainError`.
     """

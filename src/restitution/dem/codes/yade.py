@@ -1,17 +1,17 @@
 """YADE: `Ip2_FrictMat_FrictMat_MindlinPhys` with a `betan` for each pair of materials, or e(V).
 
-YADE adds a damping 2β(m* dF/dδ)^½ dδ/dt to Hertz's F and does not let the sum become attractive: a
-contact ends when the force returns to zero. YADE 2023.02a converts `en` to β by a fit (Thornton et
-al., Powder Technol. 233 (2013) 30, eqs. B6, B7) that returns e = 0.979 for en = 0.99 and 0.948 for
-0.95; other releases convert it differently. The export therefore writes β (`betan`), computed by a
-new fit to this equation of motion. The fit is valid for e ≥ 0.01, and the resulting e differs by
-less than 10⁻⁵ from the required one:
+YADE adds the damping force 2β(m* dF/dδ)^½ dδ/dt to Hertz's force F at the overlap δ. The sum is
+never attractive, so a contact ends when the force returns to zero. YADE 2023.02a converts `en` to β
+by a fit (Thornton et al., Powder Technol. 233 (2013) 30, eqs. B6, B7). This fit returns e = 0.979
+for en = 0.99 and e = 0.948 for en = 0.95; other releases convert `en` differently. The export
+therefore writes β (`betan`), computed by a new fit to this equation of motion. The new fit is valid
+for e ≥ 0.01, and the resulting e differs by less than 10⁻⁵ from the required e:
 
     β = L exp(Σ c_k L^k),  L = −ln e
 
-YADE computes E* from the two materials. On a wall it takes R/2 for R*, which makes the contact
-softer by √2 and does not change e. Each contact has a separate `betan`: the export can set it at
-first touch from the velocity at first touch, so e can follow the law e(V).
+YADE computes E* from the two materials. On a wall, YADE uses R/2 for R*, which makes the contact
+softer by a factor of √2 and does not change e. Each contact has its own `betan`, which the export
+can set at first touch according to the velocity. So e can follow the law e(V).
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from restitution.dem.velocity_matching import law_points
 from restitution.laws.law import Law, Particle
 
 CODE = "YADE"
-LOWEST = 0.01  # lowest e of the fit
+LOWEST = 0.01  # lowest e for which the fit of betan is valid
 FRAGMENT, COLLISION = "restitution_yade.py", "collision_yade.py"
 _ENDS = (
     "the force is back to zero, which is before the overlap is zero: the force is never tensile. e "
@@ -44,13 +44,13 @@ _TANGENTIAL = (
     "contact slides first (docs/oblique.md)."
 )
 _STEPS = 2000
-_WALL_DENSITY = 1000.0  # density (kg/m³) for a wall without a density, because YADE needs a value
+_WALL_DENSITY = 1000.0  # density (kg/m³) for a wall without one: no effect, but needed by YADE
 
 _FIT = (-1.23589, 0.202669, 0.0108748, 0.000410051, -3.09169e-5, -1.19887e-6)
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """Write the module to import and a test collision that prints e; return file names and texts.
+    """Write a module to import and a test collision that prints e; return file names and texts.
 
     Raises `CaseError`, `DomainError`.
     """
@@ -90,15 +90,15 @@ def _tangential(pair: Pair) -> float:
 
 
 def _density(body: Particle) -> float:
-    """The density (kg/m³) of a body; a wall without a density gets a value without effect."""
+    """The density (kg/m³) of a body; `_WALL_DENSITY` for a wall without a density."""
     return _WALL_DENSITY if body.wall and body.density is None else density_of(body)
 
 
 def _points(law: Law) -> list[tuple[float, float]]:
-    """V (m/s) and e of `law`, for linear interpolation."""
+    """Velocities (m/s) and e of `law`, for linear interpolation."""
     return law_points(law, LOWEST)
 
 
 def _contact_time(pair: Pair) -> float:
-    """Elastic contact time (s) at 1 m/s, with YADE's R/2 on a wall."""
+    """Elastic contact time (s) at 1 m/s; on a wall with R/2 for R*, as in YADE."""
     return contact_time(pair.law, pair.law.radius / (2 if pair.wall else 1))
