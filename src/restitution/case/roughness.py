@@ -106,7 +106,7 @@ class GeneratedRoughness(Table):
     periodic: bool = True
 
     def variant(self, number: int) -> Self:
-        """Return the table of another surface with the same statistics; 0 is the surface itself."""
+        """Return the table of another surface with the same statistics; 0 returns this surface."""
         return self.model_copy(update={"seed": self.seed + number})
 
     def surface(self, grid: Grid, _: Path, factor: int = 1) -> Surface:
@@ -158,7 +158,7 @@ class MeasuredRoughness(Table):
         return self
 
     def variant(self, number: int) -> Self:
-        """Return the table of another twin or place of the scan; 0 is the surface itself."""
+        """Return the table with another twin, or another place on the scan; 0 changes nothing."""
         if self.extend == "twin":
             assert self.seed is not None  # checked by _twins
             return self.model_copy(update={"seed": self.seed + number})
@@ -182,8 +182,8 @@ class MeasuredRoughness(Table):
     def surface(self, grid: Grid | None, folder: Path, factor: int = 1) -> Surface:
         """Make the roughness on cells `factor` times smaller than those of `grid`.
 
-        If `grid` is None, the pixels of the scan are used as its cells. Smaller cells resolve
-        shorter waves of the scan, down to the pixel. Cells smaller than the pixel add no waves.
+        If `grid` is None, the pixels of the scan are the cells. Smaller cells resolve shorter waves
+        of the scan, down to the pixel. Cells smaller than the pixel add no waves.
         """
         scan = self.scan(folder)
         grid = grid or scan.grid
@@ -201,7 +201,7 @@ class MeasuredRoughness(Table):
             return kept(asked, lambda: self._placed(scan, grid, factor))
 
     def _placed(self, scan: Surface, grid: Grid, factor: int) -> Surface:
-        """Place the scan, extended if requested, on cells `factor` times smaller than in `grid`."""
+        """Place the scan on cells `factor` times smaller than in `grid`; extend it if requested."""
         if self.extend == "twin":
             # The waves of a twin do not depend on the grid, so evaluate them on the fine grid.
             placed, steps = extend(scan, divided(grid, factor), "twin", seed=self.seed), factor
@@ -218,7 +218,11 @@ class MeasuredRoughness(Table):
         return replace(finer, provenance={**finer.provenance, "refined": factor, "refinement": how})
 
     def _steps_to_pixel(self, grid: Grid, pixels: Grid, factor: int) -> int:
-        """Return the divisor of `factor` that makes cells of `grid` no larger than the pixel."""
+        """Return by how much to divide the cells of `grid` to make them no larger than the pixel.
+
+        The result is a power of two that divides `factor`. If `factor` is too small, the divided
+        cells may still be larger than the pixel.
+        """
         steps = 1
         while factor % (2 * steps) == 0 and any(
             h / steps > pixel * (1 + 1e-9)
