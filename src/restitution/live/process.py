@@ -1,4 +1,4 @@
-"""A worker process and its requests, as the server sees them.
+"""The server's side of a worker process: start it, send requests and receive the answers.
 
 The process starts with the first request. If it has ended, the next request starts it again. The
 process is terminated if an abandoned request does not stop by itself.
@@ -28,7 +28,7 @@ _LOST = as_json(
     }
 )
 _CLOSED = as_json({"error": "the program has ended; start restitution app again", "lost": True})
-_AGAIN = "again"  # makes `ask` repeat a request whose process was ended due to another request
+_AGAIN = "again"  # makes `ask` repeat a request, if another request was the reason to end a process
 _Lines = asyncio.Queue[str | None]
 
 
@@ -115,7 +115,7 @@ class _Running:
         task.add_done_callback(self._watching.discard)
 
     def end(self, last_words: str) -> None:
-        """End the process, with a last line for the requests that still wait."""
+        """End the process, and answer the requests that still wait with the line `last_words`."""
         self._last_words = last_words
         self.process.terminate()
         for task in self._watching - {asyncio.current_task()}:
