@@ -49,7 +49,7 @@ def _none_if_flat(value: Any) -> Any:
 class BodyTable(Table):
     """The tables `[first]` and `[second]`.
 
-    In the case file, the name of a material in place of the table means a flat wall of it.
+    In the case file, a material name in place of the table means a flat wall of this material.
     """
 
     material: str | None = None

@@ -42,7 +42,7 @@ class Property(Table, Generic[Quantity]):
 
 
 class Material(Table):
-    """A material: elasticity of the bulk (Pa), true density (kg/m³), and strength if known (Pa).
+    """A material: elasticity, true density and, if known, yield strength and hardness, in SI units.
 
     `yield_strength` is uniaxial. `hardness` is a mean contact pressure: force over projected area.
     `note` applies to all values of the material.

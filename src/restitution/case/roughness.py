@@ -43,7 +43,7 @@ _CLEANING_KEYS = {
     "y": "roughness.crop.y",
     "threshold": "roughness.outliers",
 }
-# Remedy in terms of the case file for each `RefusedSurfaceError.code`.
+# For each `RefusedSurfaceError.code`, the remedy in terms of the case file.
 _REMEDIES: dict[Code, str] = {
     "cells-above-scan": "use a smaller grid.spacing",
     "flat-scan": 'leave roughness.extend out, or set roughness.extend = "mirror"',
@@ -79,7 +79,7 @@ Seed = Annotated[int, Field(ge=0, lt=2**63)]
 
 @contextmanager
 def _naming(keys: Mapping[str, str]) -> Iterator[None]:
-    """Reword errors of `surfaces`: replace names of arguments by `keys` of the case file."""
+    """Reword errors of `surfaces` in terms of the case file; `keys` maps arguments to its keys."""
     try:
         yield
     except RefusedSurfaceError as error:
@@ -150,8 +150,8 @@ class MeasuredRoughness(Table):
             raise ValueError('extend = "twin" makes a random surface and needs a seed; give a seed')
         if self.seed is not None and self.extend != "twin":
             raise ValueError(
-                'seed applies only to extend = "twin"; remove seed, or give place to use another '
-                "place of the scan"
+                'seed applies only to extend = "twin"; remove seed, or set the key place to use '
+                "another part of the scan"
             )
         if self.place and self.extend == "twin":
             raise ValueError('place does not apply to extend = "twin"; remove place, or vary seed')

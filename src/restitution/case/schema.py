@@ -51,7 +51,7 @@ def _few_enough(nodes: tuple[int, int]) -> tuple[int, int]:
     if nodes[0] * nodes[1] > MOST_NODES:
         raise ValueError(
             f"{shown(nodes[0])} x {shown(nodes[1])} nodes are more than a grid may have "
-            f"({MOST_NODES} in all); give fewer, or a larger spacing"
+            f"({MOST_NODES} in all); give fewer nodes, and a larger spacing if needed"
         )
     return nodes
 
@@ -70,7 +70,7 @@ def _factors(value: Any) -> int | tuple[int, ...] | str:
 
 
 class GridTable(Table):
-    """The table `[grid]`. `nodes` and `spacing` may be omitted for a scan, which has its own."""
+    """The table `[grid]`. `nodes` and `spacing` may be omitted if a scan defines the grid."""
 
     nodes: Annotated[tuple[Nodes, Nodes], PairOf, AfterValidator(_few_enough)] | None = None
     spacing: Annotated[tuple[Length, Length], PairOf] | None = None

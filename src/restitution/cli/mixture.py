@@ -1,4 +1,4 @@
-"""`restitution mixture`: restitution laws of all pairs of particles of several materials, sizes."""
+"""`restitution mixture`: restitution laws of all pairs of particles in a mixture."""
 
 from pathlib import Path
 from typing import Annotated

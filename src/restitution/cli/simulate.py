@@ -62,7 +62,7 @@ def simulate(
         ),
     ] = None,
 ) -> None:
-    """Integrate collisions in time with the stored forces of RESULTS; check COR against energies.
+    """Integrate collisions in time with the stored forces of RESULTS; compare with stored COR.
 
     With an angle or a spin, here or in the case, the impacts are oblique: VELOCITY is the relative
     velocity of the centres, and the table contains the tangential restitution, the angle of rebound

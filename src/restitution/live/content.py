@@ -48,7 +48,7 @@ def text_of(content: Content) -> str:
     try:
         return tomli_w.dumps(tables)
     except (TypeError, ValueError) as error:
-        raise CaseError(f"{error}; a case file has texts, numbers, lists and tables") from None
+        raise CaseError(f"{error}; a case file holds texts, numbers, lists and tables") from None
 
 
 def problems_in(text: str, folder: Path) -> dict[str, str]:

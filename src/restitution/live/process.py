@@ -28,7 +28,7 @@ _LOST = as_json(
     }
 )
 _CLOSED = as_json({"error": "the program has ended; start restitution app again", "lost": True})
-_AGAIN = "again"  # makes `ask` repeat a request, if another request was the reason to end a process
+_AGAIN = "again"  # tells `ask` to repeat a request, because another request ended its process
 _Lines = asyncio.Queue[str | None]
 
 

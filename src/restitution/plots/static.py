@@ -43,8 +43,8 @@ _CHART, _MAP, _SECOND = (6.4, 4.0), (5.6, 4.6), 4.6
 _ROW, _SIDE = 0.2, 2.4
 # Largest number of entries of a legend below the axes; a longer legend is placed at the side.
 _MOST_BELOW = 8
-# Pairs of a number of decades, and of the digits that are labelled on a logarithmic axis that spans
-# no more decades.
+# Pairs (decades, digits): a logarithmic axis of at most this many decades is labelled at these
+# digits.
 _DIGITS: tuple[tuple[float, tuple[int, ...]], ...] = ((1.0, (1, 2, 3, 5, 7)), (3.0, (1, 2, 5)))
 _TICKS = 6  # approximate number of labels of a linear axis (at most one more)
 _LINEAR = 0.5  # a logarithmic axis of fewer decades has linear ticks

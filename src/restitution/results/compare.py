@@ -20,7 +20,7 @@ _SAME = 1e-9  # largest relative difference of two depths that count as equal
 
 @dataclass(frozen=True)
 class Comparison:
-    """Table of the values of two results a and b, the inputs that differ, and notes.
+    """The comparison of two results a and b: a table, the inputs that differ, and notes.
 
     A row contains the swept values of a study's case, `max_indentation_m`, `restitution_a`,
     `restitution_b`, `difference` (b − a), `error` (of the difference, from the errors of both),

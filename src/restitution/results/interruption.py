@@ -34,8 +34,8 @@ def hold_signals() -> Iterator[None]:
     if not _depth:
         _received.clear()
         _install()
-    # Python does not handle signals between `_depth += 1` and `try`, nor between `_depth -= 1` and
-    # `if`.
+    # Python handles no signal between `_depth += 1` and `try`, or between `_depth -= 1` and `if`.
+    # So no signal can leave a wrong `_depth` behind.
     _depth += 1
     try:
         yield

@@ -2,8 +2,8 @@
 
 While a case runs, rows are appended to `curve.csv` and `unloading.csv` one by one, so that the rows
 survive if the run is stopped. `results.nc` and `summary.json` are written once, at the end or on
-interruption: into a temporary file, which is then renamed. Signals are delayed while a file is
-written.
+interruption. Each of the two is written to a temporary file, which is then renamed. Signals are
+delayed while a file is written.
 """
 
 from __future__ import annotations

@@ -129,7 +129,7 @@ def _levels(case: Case, folder: Path, grids: int) -> dict[int, float]:
         raise CaseError(f"grids: {grids} cannot show convergence; give 2 or more")
     if case.realisations > 1:
         raise CaseError(
-            "roughness.realisations: a convergence study uses one surface; remove it, or give 1"
+            "roughness.realisations: a convergence study uses one surface; remove this key"
         )
     coarsest = case.grid.factor if case.grid else 1
     factors = [coarsest * 2**k for k in range(grids)]

@@ -10,8 +10,9 @@ COR is the mean over surfaces of the same kind, on a grid that resolves all wave
     discretisation_error² = ΔCOR² [1 + (1.5 n)²] + (s f)²,   n = ln(S/S_h)/ln(S_h/S_2h).
 
 S is the rms slope of the scan, and S_h and S_2h are the rms slopes on cells of h and 2h. The
-formula assumes that COR changes with ln S beyond the grid as in the last octave that the grid
-resolves. For generated surfaces n = 0, because the shortest wave belongs to their definition. f is
+formula assumes that the waves beyond the grid change COR with ln S at the same rate as the last
+octave that the grid resolves. For generated surfaces n = 0, because their definition includes the
+shortest wave. f is
 the usual error of contacts with the same number of nodes in the median patch, the contact patch of
 the median contact node (docs/resolution.md). s is the fraction of f that is added. s is large if
 the grid does not resolve the contact. Otherwise s is small; it only keeps the error from vanishing
@@ -259,7 +260,10 @@ def _floor(row: Row) -> float:
 
 
 def _smoothed(values: Array, work: Array, near: float) -> Array:
-    """Smooth `values` by weights exp(−|Δ ln work|/near); all NaN if any value is NaN."""
+    """Smooth `values` over the loading work (J); all NaN if any value is NaN.
+
+    The result is a mean with the weights exp(−|Δ ln work|/near).
+    """
     L = np.log(work)
     weights = np.exp(-np.abs(L[:, None] - L) / near)
     smoothed: Array = weights @ values / weights.sum(axis=1)

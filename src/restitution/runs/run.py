@@ -169,7 +169,7 @@ def _load_and_unload(
 def _keep(
     depth: Depth, state: State, case: Case, out: ResultsFolder, run: _Run, unload: bool
 ) -> None:
-    """Unload from a depth, and keep its row."""
+    """Unload from a depth, and write its row of the curve."""
     collision, back = collision_at(case, state, unload=unload, known=run.last_unloading)
     run.last_unloading = back
     with hold_signals():  # an interruption leaves a complete row or no row
