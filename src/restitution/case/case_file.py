@@ -77,7 +77,7 @@ def parse_toml(text: str) -> dict[str, Any]:
         content = tomllib.loads(text)
         _check_depth(content)
         return content
-    except CaseError:  # a CaseError is a ValueError, but must not reach the handler below
+    except CaseError:  # also a ValueError, but must not reach the handler of ValueError below
         raise
     except RecursionError:
         raise _too_deep() from None

@@ -28,7 +28,7 @@ _ADHESIVE = 150.0
 # unloading (16 bytes each), besides the arrays of the solver.
 _COHESIVE = 1800.0
 # A non-periodic surface is generated on an enlarged grid with at most about this many times the
-# nodes (`generate._enlarged`: twice the nodes along each axis, rounded up to a fast length).
+# nodes (`generate._enlarged`: twice the nodes along each axis, rounded up to a fast FFT length).
 _ENLARGED = 4.0
 
 

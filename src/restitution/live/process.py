@@ -19,7 +19,7 @@ from typing import Any
 from restitution.live.figures import as_json
 from restitution.live.worker import Request, serve
 
-_PATIENCE = 1.5  # time (s) that a request may take to stop
+_PATIENCE = 1.5  # time (s) that a cancelled request may take to stop
 _LOST = as_json(
     {
         "error": "the computing process has ended unexpectedly (perhaps because the memory was "
@@ -79,7 +79,7 @@ class _Running:
         self._connection, theirs = context.Pipe()
         self.process = context.Process(target=serve, args=(theirs, scans, room), daemon=True)
         self.process.start()
-        theirs.close()  # so that the end of the process closes the connection
+        theirs.close()  # otherwise the connection would stay open after the end of the process
         self.waiting: dict[int, _Lines] = {}
         self._last_words = ""  # last line for waiting requests, if the process is ended on purpose
         self._watching: set[asyncio.Task[None]] = set()

@@ -34,7 +34,7 @@ _TOLERANCE = 0.005  # allowed error of COR due to the steps of adhesive unloadin
 _SHALLOWER, _DEEPER = (
     0.5,
     1.3,
-)  # factors for additional depths, because other surfaces reach the same work at other depths
+)  # factors for one more depth at each end; other surfaces reach the same work at other depths
 
 
 @dataclass(frozen=True)

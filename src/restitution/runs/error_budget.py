@@ -12,11 +12,12 @@ COR is the mean over surfaces of the same kind, on a grid that resolves all wave
 S is the rms slope of the scan, and S_h and S_2h are the rms slopes on cells of h and 2h. The
 formula assumes that the waves beyond the grid change COR with ln S at the same rate as the last
 octave that the grid resolves. For generated surfaces n = 0, because their definition includes the
-shortest wave. f is
-the usual error of contacts with the same number of nodes in the median patch, the contact patch of
-the median contact node (docs/resolution.md). s is the fraction of f that is added. s is large if
-the grid does not resolve the contact. Otherwise s is small; it only keeps the error from vanishing
-by chance.
+shortest wave.
+
+f is the usual error of contacts with the same number of nodes in the median patch, the contact
+patch of the median contact node (docs/resolution.md). s is the fraction of f that is added. s is
+large if the grid does not resolve the contact. Otherwise s is small; it only keeps the error from
+vanishing by chance.
 
 The constants were chosen on about 260 random cases, 30 of them adhesive, and checked on other cases
 (docs/error.md).
