@@ -28,7 +28,8 @@ yield_pressure = "{hardness}"
 nodes = {nodes}
 spacing = "{spacing}"
 """
-# Twelve velocities from 0.8 to 20 sticking velocities (V_s = 0.29 mm/s): a_c/h = 12.7.
+# Twelve velocities from 0.8 to 20 times the sticking velocity (0.29 mm/s). The pull-off radius is
+# 12.7 cells.
 VELOCITIES = """
 [impact]
 from = "0.2326 mm/s"

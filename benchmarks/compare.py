@@ -166,7 +166,7 @@ def find_tolerance(worker: Worker, problem: Problem) -> float:
             _, pressure = worker.solve(tolerance)
         except UnsolvedError as unsolved:
             failure = f"{unsolved} at {power(tolerance)}"
-            if not worker.running:  # out of time, and smaller tolerances take longer
+            if not worker.running:  # the time limit was exceeded; smaller tolerances take longer
                 break
             continue
         found = residual(problem, pressure)
@@ -185,7 +185,7 @@ def power(number: float) -> str:
 def compare(
     problem: Problem, grid: str, workers: list[Worker], rounds: int, nodes: int
 ) -> tuple[list[dict], list[float]]:
-    """Return a row with the times of each program for this problem, and U at each turn."""
+    """Return a row of times for each program, and the unit of time U measured in every round."""
     rows = {}
     for worker in workers:
         row = {

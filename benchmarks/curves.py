@@ -44,7 +44,7 @@ FIG_10 = files("restitution.reproduce") / "studies" / "roughness.toml"
 NODES = 512
 STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25)
 GRID = Grid((NODES, NODES), (0.25e-6, 0.25e-6))
-ROUGHNESS = (0.0, 0.1e-6, 0.2e-6, 0.5e-6, 1e-6)  # of the paper's Fig. 10
+ROUGHNESS = (0.0, 0.1e-6, 0.2e-6, 0.5e-6, 1e-6)  # rms (m), of Ghanbarzadeh et al. (2019), Fig. 10
 DEPTHS = np.geomspace(10e-9, 1e-6, 24)
 
 REPORT = """\

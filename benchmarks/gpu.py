@@ -43,7 +43,7 @@ def least_seconds(n: int, products: int) -> float:
 
 
 def large(device: str, n: int) -> None:
-    """Time the elastic solve of `scaling.py` at a = 20 um on n × n nodes; print the result."""
+    """Time the elastic solve of `scaling.py` at a contact radius of 20 um on n × n nodes; print."""
     contact = Contact(PAIR, surface_of(n))
     depth = indentation("a = 20 um")
     assert contact.gap.shape == (n, n)

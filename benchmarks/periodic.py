@@ -24,7 +24,7 @@ from restitution.surfaces import rms_slope
 WALL = Body(radius=math.inf, youngs_modulus=210e9, poissons_ratio=0.25)
 FLAT = Pair(WALL, WALL)
 NAMES = (OURS, "contactmechanics", "tamaas")
-# Name, nominal pressure and yield pressure, both over E* h'.
+# Name, nominal pressure and yield pressure. Both pressures are over E* times the rms slope h'.
 CASES = (
     ("elastic, low pressure", 0.01, math.inf),
     ("elastic, high pressure", 0.1, math.inf),

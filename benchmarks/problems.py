@@ -67,7 +67,10 @@ class Problem:
 
 
 def all_problems(n: int) -> list[Problem]:
-    """Contacts on n × n nodes: elastic smooth and rough (a = 10 um), and plastic smooth (20 um)."""
+    """Contacts on n × n nodes: elastic smooth and rough, and plastic smooth.
+
+    The contact radius is 10 um in the elastic contacts, and 20 um in the plastic contact.
+    """
     grid = Grid((n, n), (SPACING, SPACING))
     flat = smooth(grid)
     rough = generate_surface(grid, kind="gaussian", rms=0.1e-6, correlation_length=2e-6, seed=1)
@@ -130,7 +133,10 @@ def residual(problem: Problem, pressure: np.ndarray) -> float:
 
 @lru_cache(maxsize=2)
 def _kernel(shape: tuple[int, int], spacing: float) -> tuple[np.ndarray, float]:
-    """Spectrum of E* K, wrapped to a period of twice the shape, and E* K at lag 0 (Love 1929)."""
+    """Spectrum of the kernel E* K (Love 1929), and its value at lag 0.
+
+    The kernel is wrapped to a period of twice the shape.
+    """
     # u(x, y) is the double difference of F = x asinh(y/|x|) + y asinh(x/|y|) over the corners of
     # the cell. Extended precision compensates for the cancellation in these differences.
     x, y = (spacing * (np.arange(n + 2, dtype=np.longdouble) - 0.5) for n in shape)
@@ -144,7 +150,7 @@ def _kernel(shape: tuple[int, int], spacing: float) -> tuple[np.ndarray, float]:
 
 @lru_cache(maxsize=2)
 def _periodic_kernel(shape: tuple[int, int], spacing: float) -> tuple[np.ndarray, float]:
-    """Spectrum 2/|q| of E* K on one period, without the mean, and E* K at lag 0."""
+    """Spectrum 2/|q| of the kernel E* K on one period, without the mean, and its value at lag 0."""
     qx, qy = (
         2 * np.pi * np.fft.fftfreq(shape[0], spacing),
         2 * np.pi * np.fft.rfftfreq(shape[1], spacing),

@@ -30,7 +30,7 @@ ROUGH_DEPTHS = np.geomspace(5e-9, 500e-9, 8)
 
 
 def smooth_rows():
-    """COR of smooth spheres, spacing a fifth of the pull-off radius at each work of adhesion."""
+    """COR of smooth spheres; the spacing is a fifth of the pull-off radius of each energy."""
     for w in ENERGIES:
         a_c = (9 * np.pi * w * PAIR.radius**2 / (8 * PAIR.contact_modulus)) ** (1 / 3)
         h = a_c / 5
@@ -69,7 +69,7 @@ def rows_of(surface, contact, depths):
 
 
 def draw(rows, name, title):
-    """COR against indentation, a line for each work of adhesion and yield pressure."""
+    """Draw COR against indentation, with a line for each work of adhesion and yield pressure."""
     keys = sorted({(r["yield_pressure_Pa"], r["work_of_adhesion_J_per_m2"]) for r in rows})
     series = []
     for p_y, w in keys:

@@ -27,7 +27,7 @@ import numpy as np
 
 TABLE = Path(__file__).with_suffix(".csv")
 FINER = 4
-SURFACES, ADHESIVE_SURFACES = 10, 4  # of the reference
+SURFACES, ADHESIVE_SURFACES = 10, 4  # number of surfaces of the reference
 SCANS = (
     # file, edge in um, detrend, what the file does not say
     ("di-3.di", 10, "tilt", ""),
@@ -185,7 +185,7 @@ def _reference(case, rows, seed):
     for number in range(surfaces):
         other = _with_drawn_materials(finer.variant(100 + number), rng)
         contact = other.contact(Path())
-        # If the masses differ, the same velocity corresponds to another work.
+        # If a reference surface has another mass, the same velocity means another loading work.
         mass = contact.pair.mass / case.pair().mass
         curve = curve_of(contact, list(between), case.unloading.method, tolerance=0.001)
         found.append(curve.at(work * mass))
@@ -211,7 +211,7 @@ def _with_drawn_materials(case, rng):
 
 
 def summary(path: Path) -> str:
-    """How often the errors held, and how much larger they are than needed."""
+    """Say how often the stated errors hold, and how much larger than needed they are."""
     with open(path, newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
 

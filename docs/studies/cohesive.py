@@ -55,7 +55,7 @@ def sphere(tabor, depth, cells=0.3, offset=(0.31, 0.17), **options):
 
 
 def cycle(contact, indentation):
-    """Energy lost in a cycle and pull-off force, over those of JKR."""
+    """Energy lost in a cycle, and pull-off force; both over their values by JKR."""
     state = solve(contact, indentation)
     path = list(unloading_path(state))
     jkr = JKR(contact.pair.radius, contact.pair.contact_modulus, contact.work_of_adhesion)
@@ -68,7 +68,7 @@ def cycle(contact, indentation):
 
 
 def reference():
-    """The finest rows of the axisymmetric reference by Tabor parameter."""
+    """The rows of the axisymmetric reference on its finest mesh, by Tabor parameter."""
     with open(REFERENCE) as file:
         return {float(row["tabor_parameter"]): row for row in csv.DictReader(file)}
 
@@ -183,7 +183,7 @@ def figure():
 
 
 def joined():
-    """COR at equal velocities with both models, and the model error of JKR."""
+    """COR at equal velocities with the models "cohesive" and "jkr", and the error of "jkr"."""
     rows = []
     for tabor in (1.0, 2.0):
         pair = pair_of(tabor)
@@ -225,7 +225,7 @@ MATERIALS = {
 
 
 def rough():
-    """Cohesive against JKR on three surfaces of two materials."""
+    """Compare the models "cohesive" and "jkr" on three surfaces of two materials."""
     rows = []
     grid = Grid(64, 26e-9)
     for material, (body, p_y) in MATERIALS.items():
@@ -262,7 +262,7 @@ def rough():
 
 
 def balance():
-    """Work of the force against the energies, in 200 random contacts."""
+    """Compare the work of the force with the change of the energies, in 200 random contacts."""
     rng = np.random.default_rng(11)
     rows = []
     for number in range(200):

@@ -21,7 +21,7 @@ from scipy.special import ellipe, ellipkm1
 
 TABOR = (0.1, 0.5, 1.0, 2.0, 3.0, 5.0)
 MESHES = (1, 2)  # factors on the number of rings
-JKR_HYSTERESIS = 7.0922  # of (w^5 R^4/E*^2)^(1/3)
+JKR_HYSTERESIS = 7.0922  # energy lost in a cycle, in units of (w^5 R^4/E*^2)^(1/3)
 
 
 def traction(g):
@@ -122,7 +122,7 @@ class Sphere:
 
 
 def energies(curve):
-    """Folds and the energy lost in a cycle of approach and separation."""
+    """Turning points of the curve, and the energy lost in a cycle of approach and separation."""
     delta, force = curve[:, 0], curve[:, 1]
     turn = np.sign(np.diff(delta))
     folds = np.flatnonzero(turn[1:] != turn[:-1]) + 1

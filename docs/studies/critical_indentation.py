@@ -25,7 +25,7 @@ from restitution.plots.figure import (
 
 GRID = Grid((960, 960), (0.25e-6, 0.25e-6))
 ROUGHNESS = (0.1e-6, 0.2e-6, 0.5e-6, 1e-6)
-LENGTHS = (2e-6, 5e-6)  # correlation lengths
+LENGTHS = (2e-6, 5e-6)  # correlation lengths (m)
 SEEDS = (1, 2, 3, 4, 5)
 DEPTHS = np.geomspace(0.1e-6, 20e-6, 28)
 WITHIN = 0.05
@@ -37,7 +37,10 @@ def restitutions(contact):
 
 
 def critical(off):
-    """Depth from which on |off| stays within 5 %, interpolated in log δ; NaN if it never does."""
+    """Depth beyond which |`off`| stays below 5 %, interpolated in the logarithm of depth, or NaN.
+
+    `off` is the relative difference of COR from that of the smooth sphere.
+    """
     outside = np.flatnonzero(np.abs(off) > WITHIN)
     if outside.size == 0 or outside[-1] == DEPTHS.size - 1:
         return np.nan

@@ -3,8 +3,8 @@
     python docs/studies/decades.py
 
 Writes decades.csv: the law has 17 velocities from 0.001 to 10 m/s, and twelve others are drawn at
-random for each of four contacts. `strict_error` leaves the errors of grid, surface and materials
-out, which both runs share. Takes about three minutes.
+random for each of four contacts. `strict_error` does not include the errors of grid, surface and
+materials, because law and direct run share them. Takes about three minutes.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ def law_at(contact: dict[str, object], velocities: np.ndarray, folder: Path, tot
 
 
 def checks(number: int, place: Path) -> list[dict]:
-    """The law of one contact and the direct runs, at velocities that no constant was chosen on."""
+    """Compare the law of one contact with direct runs, at velocities that set no constant."""
     contact = dict(zip(NAMES, CONTACTS[number], strict=True))
     law = law_at(contact, VELOCITIES, place / f"law-{number}", "true")
     bare = [

@@ -35,8 +35,8 @@ COMMANDS = {
     "liggghts": ["liggghts", "-in", "collision.in.liggghts", "-log", "none"],
     "yade": ["yade", "-n", "-x", "-j1", "collision_yade.py"],
 }
-SHARES = (0.02, 0.1, 0.25, 0.5, 0.75, 0.9, 0.98)  # of ln V between two velocities
-# Debian's programs want Debian's Python and MPI.
+SHARES = (0.02, 0.1, 0.25, 0.5, 0.75, 0.9, 0.98)  # places between two velocities, in ln V
+# Variables for programs of Debian, which need Debian's Python and MPI.
 CLEAN = {
     "PATH": "/usr/bin:/bin",
     "LANG": "C.UTF-8",
@@ -66,7 +66,7 @@ def fits(law: Law) -> None:
 
 
 def in_time(out: Path, law: Law) -> None:
-    """Collisions in time against the energies."""
+    """Compare COR of collisions in time with COR from energies."""
     force = stored_force(out)
     misses = [
         abs(collide_in_time(force, p.velocity).restitution - p.restitution) for p in law.points
@@ -131,7 +131,7 @@ def rebound(code: str, folder: Path) -> float:
 
 
 def in_codes(law: Law, place: Path) -> None:
-    """The e of the exported collision, at five velocities in three codes."""
+    """Print the COR of the exported collision, at five velocities in three codes."""
     print("| V (m/s) | law | " + " | ".join(COMMANDS) + " |\n|---|---|" + "---|" * len(COMMANDS))
     for k, V in enumerate(np.geomspace(1.001 * law.lowest, 0.999 * law.highest, 5)):
         said = []

@@ -54,7 +54,7 @@ def law_at(family: Family, radius: float, folder: Path) -> Law:
 
 
 def checks(values: tuple[object, ...], folder: Path) -> list[dict]:
-    """Every pair whose reduced radius is not one of the three, at every velocity."""
+    """Compare laws at every reduced radius other than the three, at every velocity."""
     text = MIXTURE.format(**dict(zip(NAMES, values, strict=True)))
     (family,) = families(parse_mixture(text))
     radii = family.radii

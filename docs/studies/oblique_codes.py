@@ -43,7 +43,7 @@ CONTACT = (
     / VELOCITY
 )
 STEP = CONTACT / 4000
-STEPS = 8000  # the slowest normal velocity has a contact 1.15 times as long
+STEPS = 8000  # time steps; the contact at the lowest normal velocity takes 1.15 times as long
 LAMMPS = {
     "mindlin": "mindlin NULL",
     "mindlin_rescale": "mindlin_rescale NULL",
@@ -53,7 +53,7 @@ LAMMPS = {
         f"mindlin_rescale/force {STIFFNESS_SHARE * 2 * PAIR.tangential_modulus}"
     ),
 }
-# Debian's programs want Debian's Python and MPI.
+# Variables for programs of Debian, which need Debian's Python and MPI.
 CLEAN = {
     "PATH": "/usr/bin:/bin",
     "LANG": "C.UTF-8",

@@ -1,4 +1,4 @@
-"""Factor on Mindlin's tangential stiffness with which LAMMPS has the oblique rebound of the law.
+"""Factor on Mindlin's tangential stiffness with which LAMMPS reproduces the rebound of the law.
 
     python docs/studies/oblique_stiffness.py
 

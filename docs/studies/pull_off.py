@@ -1,4 +1,4 @@
-"""Pull-off of a JKR sphere on coarse grids, both criteria: the tables in docs/adhesion.md.
+"""Pull-off of a JKR sphere on coarse grids by both criteria of detachment, for docs/adhesion.md.
 
 `python docs/studies/pull_off.py`; about three minutes. `pull_off.csv` has the pull-off force from
 40 depths and places of the apex, each reached directly and by two random sequences of steps.

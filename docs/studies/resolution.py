@@ -75,7 +75,7 @@ def errors(table):
 
 
 def estimates(table):
-    """Errors of the last but one grid: stated by `converge`, Richardson's, and the true one."""
+    """Errors of the last grid but one: as `converge` states it, by Richardson, and the true one."""
     cor = {}
     for row in table:
         case = row["surface"], row["seed"], row["depth_m"]

@@ -1,4 +1,4 @@
-"""What the studies share: two steel spheres, and how their numbers are kept."""
+"""Parts that the studies share: two steel spheres, and functions that write tables and figures."""
 
 from __future__ import annotations
 

@@ -2,7 +2,9 @@
 
 Statements of Python are counted, too. Their number does not depend on the formatter.
 
-python docs/studies/source_lines.py            # of each room
+    python docs/studies/source_lines.py
+
+prints the numbers for each folder of the package.
 """
 
 import ast
@@ -68,7 +70,7 @@ def statements(text):
 
 
 def lines_of(path):
-    """How many lines of code a file has; 0 if it is no source."""
+    """How many lines of code a file has; 0 if it is not source code."""
     if path.suffix == ".py":
         return python_lines(path.read_text(encoding="utf-8"))
     if path.suffix not in KINDS:
@@ -79,7 +81,7 @@ def lines_of(path):
 
 
 def main():
-    """Print the lines and statements of Python, and the lines of all else, room by room."""
+    """Print lines and statements of Python, and lines in other languages, for each folder."""
     python, count, other = Counter(), Counter(), Counter()
     for path in filter(Path.is_file, sorted(PACKAGE.rglob("*"))):
         room = path.relative_to(PACKAGE).parts[0]

@@ -37,7 +37,8 @@ from restitution.laws.tangential_error import TangentialError, tangential_error
 from restitution.laws.time_integration import StoredForce, collide_in_time, stored_force
 
 FRICTION = 0.3
-SHARES = (0.3, 0.6, 0.9)  # displacements over 3/2 of µN/stiffness, at which a sphere slides
+# Displacements over the displacement at which a smooth sphere slides, 3/2 of µN/stiffness.
+SHARES = (0.3, 0.6, 0.9)
 ANGLES = (0.7, 1.5, 3.0)  # tan θ/µ of the impacts
 STEPS = 40  # of an impact
 TOUCH = 1e-14  # displacement (m) without slip

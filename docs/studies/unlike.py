@@ -11,8 +11,9 @@ Dundurs, the surfaces move relative to each other by
 where H_x integrates x/r² over a cell (Johnson 1985, *Contact Mechanics*, §3.6). Pressure and
 traction are solved in turn until both are in equilibrium; the traction has both components, and
 |q| ≤ µ p. Under pressure alone, the sticking circle is that of Spence (1975, J. Elast. 5, 297–319)
-within a cell: ln[(a + c)/(a − c)] a/2c = (µ/β) K(√(1 − c²/a²)). In impacts, the impulse of the
-tangential force is compared with that for β = 0.
+within a cell: ln[(a + c)/(a − c)] a/2c = (µ/β) K(√(1 − c²/a²)), with the contact radius a, the
+radius c of the sticking circle and the complete elliptic integral K. In impacts, the impulse of
+the tangential force is compared with that for β = 0.
 """
 
 from __future__ import annotations
@@ -203,7 +204,8 @@ def main() -> None:
         alike, soft, stiff = (impact(0.0, 0.3, tangent, factor) for factor in (1.0, 0.9, 1.1))
         for friction, beta in itertools.product(FRICTION, BETA):
             impulse = impact(beta, friction, tangent)
-            # The relative change of stiffness that changes the impulse as much; none in full slip.
+            # The relative change of stiffness that changes the impulse as much as the coupling
+            # does. In full slip the impulse does not depend on the stiffness.
             spread = max(abs(soft - alike), abs(stiff - alike))
             change = 0.1 * abs(impulse - alike) / spread if alike < 0.999 else 0.0
             row = {"friction": friction, "tan_over_friction": tangent, "beta": beta,

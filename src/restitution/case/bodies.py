@@ -47,7 +47,10 @@ def _none_if_flat(value: Any) -> Any:
 
 
 class BodyTable(Table):
-    """The tables `[first]` and `[second]`. A material name instead of a table means a flat wall."""
+    """The tables `[first]` and `[second]`.
+
+    In the case file, a material name in place of the table means a flat wall of this material.
+    """
 
     material: str | None = None
     radius: Annotated[Length | None, BeforeValidator(_none_if_flat)]
@@ -78,7 +81,7 @@ class BodyTable(Table):
         return Body(radius, self.youngs_modulus, self.poissons_ratio, self.density)
 
     def from_library(self) -> dict[str, Property[Any]]:
-        """The values that come from the library, with their spread and source."""
+        """Return the values taken from the materials library, with their spread and source."""
         if self.material is None:
             return {}
         known = material(self.material)
@@ -89,7 +92,7 @@ class BodyTable(Table):
 
 
 YieldRule = tuple[float, Literal["yield_strength", "hardness"]]
-MOST_FRICTION = 10.0  # largest coefficient of friction; a larger one is a mistake
+MOST_FRICTION = 10.0  # largest accepted coefficient of friction; a larger value must be a mistake
 DEFAULT_RULE: YieldRule = (FULL_CONSTRAINT, "yield_strength")
 
 
@@ -111,14 +114,14 @@ def _pressure_or_rule(value: Any) -> float | YieldRule | None:
         return read_positive(value, "Pa")
     if not 0.5 <= (factor := float(match[1])) <= 10:
         raise ValueError(
-            f"{shown(value)} is not a contact pressure; correct the factor, usually 1.6 to 3"
+            f"{shown(value)} is not a contact pressure; correct the factor of Y (usually 1.6 to 3)"
         )
     return factor, "yield_strength"
 
 
 @dataclass(frozen=True)
 class Yielding:
-    """The yield model of a contact: arguments of `Contact` (Pa), and a text on their origin."""
+    """The yield model of a contact: arguments of `Contact` (Pa), and their `source` in words."""
 
     source: str
     plasticity: Plasticity = "equilibrium"
@@ -139,7 +142,7 @@ class Yielding:
 
 
 class InterfaceTable(Table):
-    """The table `[interface]`. By default, bodies of known strength yield and do not adhere.
+    """The table `[interface]`. By default, the softer body yields and the bodies do not adhere.
 
     `friction` is the coefficient of friction µ of oblique impacts.
     """
@@ -162,9 +165,9 @@ class InterfaceTable(Table):
             for key in ("yield_strength", "tangent_modulus"):
                 if getattr(self, key) is not None:
                     raise ValueError(
-                        f"yield_pressure, {key}: give only one of them; with yield_pressure the "
-                        "pressure bound is constant, with yield_strength (of a tensile test) the "
-                        "bound grows with deformation"
+                        f"yield_pressure, {key}: give only one of them; yield_pressure is a "
+                        "constant bound of the contact pressure, and with yield_strength (of a "
+                        "tensile test) the bound grows with deformation"
                     )
             if grows:
                 raise ValueError(
@@ -192,7 +195,7 @@ class InterfaceTable(Table):
 
     @property
     def needs_jkr(self) -> bool:
-        """Whether the value of another key requires `adhesion = "jkr"`."""
+        """Whether approach, detachment or plasticity has a value that only "jkr" allows."""
         plain = self.approach == "equilibrium" and self.detachment == "crack-closure"
         return not plain or self.plasticity == "truncated"
 
@@ -202,11 +205,11 @@ class InterfaceTable(Table):
         return self.work_of_adhesion or 0.0
 
     def yielding(self, first: BodyTable, second: BodyTable) -> Yielding:
-        """Choose the yield model of the contact of two bodies, of which the softer body yields.
+        """Choose the yield model of the contact between two bodies; the softer body yields.
 
         By default, a body of known yield strength has a pressure bound that grows with deformation.
-        A body without a yield strength (glass) yields at its hardness. Raises `CaseError` if a
-        value that the model needs is unknown.
+        A body for which only a hardness is known (such as glass) yields at its hardness. Raises
+        `CaseError` if a value that the model needs is unknown.
         """
         if self.plasticity in ("equilibrium", "truncated"):
             rule = DEFAULT_RULE if self.yield_pressure is None else self.yield_pressure
@@ -247,7 +250,10 @@ class InterfaceTable(Table):
     def _at_a_pressure(
         self, rule: float | YieldRule, first: BodyTable, second: BodyTable
     ) -> Yielding:
-        """Make the model for the pressure of `rule`; a body without Y yields at its hardness."""
+        """Make the model with the constant yield pressure that `rule` gives for the softer body.
+
+        A body without a yield strength Y yields at its hardness.
+        """
         model = self.plasticity or "equilibrium"
         if isinstance(rule, float):
             source = "elastic" if math.isinf(rule) else "given"

@@ -23,7 +23,7 @@ from restitution.surfaces.refine import divided
 
 
 def _one_or_more(value: Any) -> Any:
-    """Put a single table, or all tables of a list, into a tuple."""
+    """Return a tuple of the tables in a list, or of one single table."""
     return tuple(value) if isinstance(value, list) else (value,)
 
 
@@ -31,7 +31,7 @@ DEPTHS = ("indentation", "load", "impact", "pressure")  # tables that can prescr
 
 
 class Case(Table):
-    """A whole case file, in SI units."""
+    """The content of a case file, in SI units."""
 
     title: str = ""
     total_error: bool = True
@@ -83,7 +83,7 @@ class Case(Table):
         return self
 
     def _check_period(self) -> None:
-        """Refuse keys that a periodic grid excludes."""
+        """Raise `ValueError` for keys that cannot be combined with a periodic grid."""
         for name, body in (("first", self.first), ("second", self.second)):
             if body is not None and body.radius is not None:
                 raise ValueError(f'{name}.radius: must be "flat" if the grid is periodic')
@@ -128,7 +128,7 @@ class Case(Table):
                 )
 
     def _check_attraction(self) -> None:
-        """Refuse keys that a periodic contact with adhesion excludes."""
+        """Raise `ValueError` for keys that cannot be combined with periodic adhesion."""
         if self.interface.adhesive_energy == 0:
             return
         if self.interface.adhesion == "jkr":
@@ -191,7 +191,7 @@ class Case(Table):
 
     @property
     def realisations(self) -> int:
-        """Number of surfaces to compute."""
+        """Number of surfaces on which the case is computed."""
         return max((part.realisations for part in self.roughness), default=1)
 
     def realisation(self, number: int) -> Case:
@@ -205,14 +205,14 @@ class Case(Table):
         return self.model_copy(update={"roughness": parts})
 
     def variant(self, number: int) -> Case:
-        """Return this case with other surfaces: seeds and places are increased by `number`."""
+        """Return this case with other surfaces: add `number` to each seed or place on a scan."""
         parts = tuple(
             part.variant(number).model_copy(update={"realisations": 1}) for part in self.roughness
         )
         return self.model_copy(update={"roughness": parts})
 
     def has_library_values(self) -> bool:
-        """Whether a value of the bodies comes from the materials library, which has a spread."""
+        """Whether any value of the bodies comes from the materials library and has a spread."""
         return any(body.from_library() for body in (self.first, self.second) if body is not None)
 
     def refined(self, factor: int) -> Case:
@@ -257,7 +257,7 @@ class Case(Table):
         return self.interface.yielding(self.first, self.second or self.first)
 
     def surface(self, folder: Path) -> Surface:
-        """Make the composite roughness on the grid; files are relative to `folder`."""
+        """Make the composite roughness on the grid; file names are relative to `folder`."""
         grid, factor = self._own_grid(), 1 if self.grid is None else self.grid.factor
         if grid is None:
             (scan,) = cast(tuple[MeasuredRoughness], self.roughness)  # checked by _whole
@@ -267,7 +267,7 @@ class Case(Table):
         return composite([part.surface(grid, folder, factor) for part in self.roughness])
 
     def contact(self, folder: Path) -> Contact:
-        """Make the unloaded contact of the case; files are relative to `folder`.
+        """Make the unloaded contact of the case; file names are relative to `folder`.
 
         Raises `CaseError` if a run needs more memory than is available.
         """
@@ -278,7 +278,7 @@ class Case(Table):
         return self.contact_on(self.surface(folder))
 
     def contact_on(self, surface: Surface) -> Contact:
-        """Make the contact on `surface` (from `surface()`). Raises the errors of `contact`."""
+        """Make the unloaded contact with the given roughness. Raises the errors of `contact()`."""
         needs.require(self.run_bytes(surface.grid), surface.grid)
         interface = self.interface
         return Contact(
@@ -317,7 +317,7 @@ class Case(Table):
         return needs.run_bytes(grid, plasticity=plasticity, adhesive=adhesive, cohesive=cohesive)
 
     def depths(self) -> list[float]:
-        """The prescribed values, increasing.
+        """The values that prescribe the depths, in increasing order.
 
         They are indentations (m), loads (N), impact velocities (m/s) or nominal pressures (Pa).
         """

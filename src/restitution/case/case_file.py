@@ -77,7 +77,7 @@ def parse_toml(text: str) -> dict[str, Any]:
         content = tomllib.loads(text)
         _check_depth(content)
         return content
-    except CaseError:  # a CaseError is a ValueError, but must not reach the handler below
+    except CaseError:  # also a ValueError, but must not reach the handler of ValueError below
         raise
     except RecursionError:
         raise _too_deep() from None
@@ -119,9 +119,9 @@ def parse_case(text: str) -> Case:
 
 
 def problems_of(content: dict[str, Any]) -> dict[str, str]:
-    """Find the problems of the tables `content` of a case file; return messages by key.
+    """Check the parsed tables of a case file; return a message for each wrong key.
 
-    A message about the whole file has the key "". Empty if `content` is a case.
+    A message about the whole file has the key "". The result is empty if the case is valid.
     """
     try:
         Case.model_validate(content)
@@ -139,7 +139,7 @@ def _without_key(problem: Any) -> str:
 
 
 def in_words(error: ValidationError, root: type[Table] = Case, before: str = "") -> str:
-    """Describe the problems of a file in one line: the first problem, and the keys of others.
+    """Describe the problems of a file in one line: the first problem, and the other wrong keys.
 
     `root` is the table that was checked, and `before` the dotted path of its key in the file.
     """
@@ -177,7 +177,8 @@ _WORDS = {
 
 
 def _keys(problem: Any) -> list[str]:
-    # Union tags ("gaussian") and list indices are not keys of the file.
+    # The path of a pydantic error also has union tags ("gaussian") and list indices; leave them
+    # out, because they are not keys of the file.
     return [str(k) for k in problem["loc"] if isinstance(k, str) and k not in _KINDS]
 
 

@@ -11,11 +11,11 @@ from restitution.theory import JKR, FirstYield, Hertz, ThorntonNing
 
 
 def deepest_indentation(case: Case) -> float:
-    """The deepest indentation (m); an estimate unless the case prescribes it.
+    """The deepest indentation (m) of the case; an estimate if the case has no [indentation].
 
-    For a load, it is the indentation of smooth elastic bodies. For an impact velocity, it is the
-    indentation of smooth bodies that yield according to Thornton and Ning. It is NaN for a periodic
-    case that prescribes a load or a pressure.
+    For loads, the estimate is the indentation of smooth elastic bodies. For impact velocities, it
+    is the indentation of smooth bodies that yield according to Thornton and Ning. The result is NaN
+    for a periodic case that prescribes loads or pressures.
     """
     last, pair = case.depths()[-1], case.pair()
     if case.indentation is not None:
@@ -25,17 +25,17 @@ def deepest_indentation(case: Case) -> float:
     if case.load is not None:
         return float(Hertz(pair.radius, pair.contact_modulus).indentation(last))
     assert pair.mass is not None  # checked by Case._check_masses
-    # For elastic bodies p_y is infinite, but ThorntonNing needs a finite value. E* exceeds any
-    # contact pressure.
+    # ThorntonNing needs a finite yield pressure p_y, which is infinite for elastic bodies. They get
+    # E*, a pressure that no contact reaches.
     p_y = min(case.yielding().hardness, pair.contact_modulus)
     smooth = ThorntonNing(pair.radius, pair.contact_modulus, p_y)
     return float(smooth.indentation_from_velocity(last, pair.mass))
 
 
 def derived_quantities(case: Case, contact: Contact) -> dict[str, float | None]:
-    """Return R*, E*, m*, first yield and predicted contact; None if a quantity does not apply.
+    """Return reduced radius, contact modulus, reduced mass, first yield and predicted contact.
 
-    The keys end with the SI units.
+    The keys end with the SI units. A quantity that does not apply to the case is None.
     """
     pair, p_y = contact.pair, contact.hardness
     if contact.periodic:
@@ -67,7 +67,10 @@ def derived_quantities(case: Case, contact: Contact) -> dict[str, float | None]:
 
 
 def _of_period(contact: Contact) -> dict[str, float | None]:
-    """Quantities of a periodic contact; E* times the rms slope is the unit of its pressures."""
+    """Derived quantities of a periodic contact.
+
+    `reduced_pressure_Pa` is E* times the rms slope, the natural unit of its nominal pressure.
+    """
     elastic, (wide, long) = math.isinf(contact.hardness), contact.grid.size
     return {
         "contact_modulus_Pa": contact.pair.contact_modulus,

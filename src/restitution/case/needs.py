@@ -19,7 +19,7 @@ _SKEWED = 115.0  # a generated surface with skewness or kurtosis
 _MARGIN = 60.0  # per node of the enlarged grid from which a non-periodic surface is cut
 _SCAN = 60.0  # per pixel of a scan: reading, levelling and its spectrum
 _TWIN = 75.0  # a statistical twin of a scan
-_BAND = 90.0  # per node of the finest band of a twin whose heights are adjusted
+_BAND = 90.0  # per node of the finest band of waves that is adjusted to make a twin
 _DESCRIBED = 150.0  # autocorrelation, spectrum and page of `restitution surface`
 # A run without adhesion, for each model of plasticity; and a run with adhesion.
 _MODELS = {"none": 115.0, "equilibrium": 140.0, "expanding-cavity": 190.0, "truncated": 190.0}
@@ -28,7 +28,7 @@ _ADHESIVE = 150.0
 # unloading (16 bytes each), besides the arrays of the solver.
 _COHESIVE = 1800.0
 # A non-periodic surface is generated on an enlarged grid with at most about this many times the
-# nodes (`generate._enlarged`: twice the nodes along each axis, rounded up to a fast length).
+# nodes (`generate._enlarged`: twice the nodes along each axis, rounded up to a fast FFT length).
 _ENLARGED = 4.0
 
 
@@ -48,7 +48,10 @@ def require(needed: float, grid: Grid) -> None:
 
 
 def run_bytes(grid: Grid, *, plasticity: str, adhesive: bool, cohesive: bool = False) -> float:
-    """Memory (bytes) of a run on `grid` with a given surface; `plasticity` "none" is elastic."""
+    """Memory (bytes) of a run on `grid`, without making the surface.
+
+    `plasticity` is the model of plasticity, or "none" for elastic bodies.
+    """
     per_node = max(_MODELS[plasticity], _ADHESIVE if adhesive else 0.0)
     if cohesive:
         per_node = _COHESIVE
@@ -61,7 +64,7 @@ def described_bytes(grid: Grid) -> float:
 
 
 def generated_bytes(grid: Grid, *, normal: bool, periodic: bool) -> float:
-    """Memory (bytes) of generating a surface on `grid`."""
+    """Memory (bytes) of generating a surface on `grid`; `normal` means Gaussian heights."""
     per_node = _SURFACE if normal else _SKEWED
     if not periodic:
         per_node = max(per_node, _ENLARGED * (_MARGIN if normal else _SKEWED))
@@ -75,7 +78,7 @@ def measured_bytes(grid: Grid, scan: Grid, *, twin: bool) -> float:
 
 
 def _band_nodes(grid: Grid, scan: Grid) -> float:
-    """Largest number of nodes of the finest band that a twin adjusts (see `surfaces.twin`)."""
+    """Upper estimate of the nodes of the finest band of waves of a twin (see `surfaces.twin`)."""
     repeats = [max(1.0, s / g) for s, g in zip(scan.size, grid.size, strict=True)]
     ratio = min(h / pixel for h, pixel in zip(grid.spacing, scan.spacing, strict=True))
     coarser = 2.0 ** max(math.floor(math.log2(ratio)), 0)

@@ -10,13 +10,13 @@ from restitution.theory import JKR, Hertz
 
 # Typical work of adhesion (J/m²), within the range 0.01 to 0.09 of Ghanbarzadeh et al. (2019).
 TYPICAL_ADHESION = 0.05
-# Adhesion matters below this ratio of impact velocity V to sticking velocity V_s. Adhesion lowers
-# e² by (V_s/V)² (Thornton and Ning 1998), so at V = 8.5 V_s it lowers e = 0.7 by 0.01.
+# Ratio of impact velocity V to sticking velocity V_s below which adhesion matters. Adhesion lowers
+# e² by (V_s/V)² (Thornton and Ning 1998), so at V = 8.5 V_s it lowers a COR e of 0.7 by 0.01.
 _MATTERS = 8.5
 
 
 def omissions(case: Case) -> list[str]:
-    """Make one warning for each omitted key for which a default or ideal value is used."""
+    """Make a warning for each omitted key that is replaced by a default or ideal value."""
     lines = (_default_yield(case), _no_adhesion(case), _no_shortest_wave(case))
     return [line for line in lines if line]
 

@@ -43,7 +43,7 @@ _CLEANING_KEYS = {
     "y": "roughness.crop.y",
     "threshold": "roughness.outliers",
 }
-# Remedy in terms of the case file for each `RefusedSurfaceError.code`.
+# For each `RefusedSurfaceError.code`, the remedy in terms of the case file.
 _REMEDIES: dict[Code, str] = {
     "cells-above-scan": "use a smaller grid.spacing",
     "flat-scan": 'leave roughness.extend out, or set roughness.extend = "mirror"',
@@ -79,7 +79,7 @@ Seed = Annotated[int, Field(ge=0, lt=2**63)]
 
 @contextmanager
 def _naming(keys: Mapping[str, str]) -> Iterator[None]:
-    """Reword errors of `surfaces`: replace names of arguments by `keys` of the case file."""
+    """Reword errors of `surfaces` in terms of the case file; `keys` maps arguments to its keys."""
     try:
         yield
     except RefusedSurfaceError as error:
@@ -106,7 +106,7 @@ class GeneratedRoughness(Table):
     periodic: bool = True
 
     def variant(self, number: int) -> Self:
-        """Return the table of another surface with the same statistics; 0 is the surface itself."""
+        """Return the table of another surface with the same statistics; 0 returns this surface."""
         return self.model_copy(update={"seed": self.seed + number})
 
     def surface(self, grid: Grid, _: Path, factor: int = 1) -> Surface:
@@ -150,15 +150,15 @@ class MeasuredRoughness(Table):
             raise ValueError('extend = "twin" makes a random surface and needs a seed; give a seed')
         if self.seed is not None and self.extend != "twin":
             raise ValueError(
-                'seed applies only to extend = "twin"; remove seed, or give place to use another '
-                "place of the scan"
+                'seed applies only to extend = "twin"; remove seed, or set the key place to use '
+                "another part of the scan"
             )
         if self.place and self.extend == "twin":
             raise ValueError('place does not apply to extend = "twin"; remove place, or vary seed')
         return self
 
     def variant(self, number: int) -> Self:
-        """Return the table of another twin or place of the scan; 0 is the surface itself."""
+        """Return the table with another twin, or another place on the scan; 0 changes nothing."""
         if self.extend == "twin":
             assert self.seed is not None  # checked by _twins
             return self.model_copy(update={"seed": self.seed + number})
@@ -182,8 +182,8 @@ class MeasuredRoughness(Table):
     def surface(self, grid: Grid | None, folder: Path, factor: int = 1) -> Surface:
         """Make the roughness on cells `factor` times smaller than those of `grid`.
 
-        If `grid` is None, the pixels of the scan are used as its cells. Smaller cells resolve
-        shorter waves of the scan, down to the pixel. Cells smaller than the pixel add no waves.
+        If `grid` is None, the pixels of the scan are the cells. Smaller cells resolve shorter waves
+        of the scan, down to the pixel. Cells smaller than the pixel add no waves.
         """
         scan = self.scan(folder)
         grid = grid or scan.grid
@@ -201,7 +201,7 @@ class MeasuredRoughness(Table):
             return kept(asked, lambda: self._placed(scan, grid, factor))
 
     def _placed(self, scan: Surface, grid: Grid, factor: int) -> Surface:
-        """Place the scan, extended if requested, on cells `factor` times smaller than in `grid`."""
+        """Place the scan on cells `factor` times smaller than in `grid`; extend it if requested."""
         if self.extend == "twin":
             # The waves of a twin do not depend on the grid, so evaluate them on the fine grid.
             placed, steps = extend(scan, divided(grid, factor), "twin", seed=self.seed), factor
@@ -218,7 +218,11 @@ class MeasuredRoughness(Table):
         return replace(finer, provenance={**finer.provenance, "refined": factor, "refinement": how})
 
     def _steps_to_pixel(self, grid: Grid, pixels: Grid, factor: int) -> int:
-        """Return the divisor of `factor` that makes cells of `grid` no larger than the pixel."""
+        """Return by how much to divide the cells of `grid` to make them no larger than the pixel.
+
+        The result is a power of two that divides `factor`. If `factor` is too small, the divided
+        cells may still be larger than the pixel.
+        """
         steps = 1
         while factor % (2 * steps) == 0 and any(
             h / steps > pixel * (1 + 1e-9)

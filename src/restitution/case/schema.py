@@ -51,7 +51,7 @@ def _few_enough(nodes: tuple[int, int]) -> tuple[int, int]:
     if nodes[0] * nodes[1] > MOST_NODES:
         raise ValueError(
             f"{shown(nodes[0])} x {shown(nodes[1])} nodes are more than a grid may have "
-            f"({MOST_NODES} in all); give fewer, or a larger spacing"
+            f"({MOST_NODES} in all); give fewer nodes, and a larger spacing if needed"
         )
     return nodes
 
@@ -70,7 +70,7 @@ def _factors(value: Any) -> int | tuple[int, ...] | str:
 
 
 class GridTable(Table):
-    """The table `[grid]`. `nodes` and `spacing` may be omitted for a scan, which has a grid."""
+    """The table `[grid]`. `nodes` and `spacing` may be omitted if a scan defines the grid."""
 
     nodes: Annotated[tuple[Nodes, Nodes], PairOf, AfterValidator(_few_enough)] | None = None
     spacing: Annotated[tuple[Length, Length], PairOf] | None = None
@@ -88,7 +88,7 @@ class GridTable(Table):
 
     @property
     def factor(self) -> int:
-        """Refinement factor at the deepest depth: parts of a cell along each axis; 1 for "auto"."""
+        """Number of parts of a cell along each axis at the deepest depth; 1 for "auto"."""
         if isinstance(self.refine, tuple):
             return self.refine[-1]
         return 1 if self.refine == "auto" else self.refine
@@ -104,7 +104,7 @@ Quantity = TypeVar("Quantity")
 
 
 class Series(Table, Generic[Quantity]):
-    """A table of depths (`[indentation]`, `[load]`, `[impact]`): a span with steps, or a list."""
+    """A table that prescribes depths, such as `[load]`: a range with steps, or a list of values."""
 
     from_: Annotated[Quantity | None, Field(alias="from")] = None
     to: Quantity | None = None
@@ -136,7 +136,7 @@ class Series(Table, Generic[Quantity]):
         return self
 
     def series(self) -> list[float]:
-        """The prescribed values in SI units, increasing."""
+        """The prescribed values in SI units, in increasing order."""
         if self.values is not None:
             return sorted(cast(set[float], set(self.values)))
         space = np.geomspace if self.scale == "log" else np.linspace
@@ -149,10 +149,10 @@ def _listed(value: Any) -> Any:
 
 
 class ImpactTable(Series[Velocity]):
-    """The table `[impact]`: a span of velocities with steps, or the list `velocity`.
+    """The table `[impact]`: a range of velocities with steps, or the list `velocity`.
 
-    With `angle` or `spin` there are oblique impacts: one for each velocity of the centres and each
-    angle from the normal. `spin` lists the spin of the first body, or of both bodies.
+    If `angle` or `spin` is given, oblique impacts are computed, too: one for each velocity of the
+    centres and each angle from the normal. `spin` lists the spin of the first body, or of both.
     """
 
     values: Annotated[
@@ -192,7 +192,7 @@ class ImpactTable(Series[Velocity]):
         return self.angle is not None or self.spin is not None
 
     def angles(self) -> list[float]:
-        """Angles of the oblique impacts from the normal (rad), increasing; empty if none."""
+        """Angles of impact from the normal (rad), increasing; empty without oblique impacts."""
         return sorted(set(self.angle or [0.0])) if self.oblique else []
 
     def spins(self) -> tuple[float, float]:
@@ -201,11 +201,11 @@ class ImpactTable(Series[Velocity]):
         return first, second
 
     def velocities(self) -> list[float]:
-        """The prescribed velocities of the centres (m/s), increasing."""
+        """The prescribed velocities of the centres (m/s), in increasing order."""
         return super().series()
 
     def series(self) -> list[float]:
-        """Normal velocities to compute (m/s), increasing: of the head-on and oblique impacts."""
+        """Normal velocities of all head-on and oblique impacts (m/s), in increasing order."""
         listed = self.velocities()
         normal = [V * math.cos(angle) for V in listed for angle in self.angles()]
         found: list[float] = []

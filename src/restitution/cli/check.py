@@ -52,7 +52,7 @@ def check(
         ),
     ],
 ) -> None:
-    """Validate CASE and print R*, E*, m*, yield and contact size; solve nothing."""
+    """Validate CASE and print derived quantities, such as first yield; solve nothing."""
     from restitution.case.case_file import naming
     from restitution.case.derived import deepest_indentation
     from restitution.cli.console import answers, command, say, say_next, waiting, warn

@@ -19,7 +19,7 @@ errors = Console(stderr=True, highlight=False)
 
 
 def say(text: str, console: Console = answers, style: str | None = None) -> None:
-    """Print one line verbatim: without markup, and not wrapped."""
+    """Print `text` verbatim as one line, without markup and without wrapping."""
     console.print(text, style=style, markup=False, soft_wrap=True)
 
 
@@ -45,7 +45,7 @@ def print_error(message: str) -> None:
 
 @cache
 def hint_at_kernels() -> None:
-    """Print a hint on standard error if compiled kernels are missing, so that solves are slow."""
+    """Print a hint on standard error if compiled kernels are missing, which makes solves slow."""
     from restitution.numerics.convolution.device import CPU, current
     from restitution.numerics.kernels import missing
 

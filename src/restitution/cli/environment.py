@@ -16,7 +16,7 @@ def prepare(arguments: Sequence[str]) -> None:
     Raises `CaseError` for an invalid number of threads, and for a path that is not UTF-8, which the
     netCDF library requires.
     """
-    # Select a backend for files, because the user may have set an interactive backend.
+    # Select the backend of matplotlib for files; the user may have set an interactive backend.
     os.environ["MPLBACKEND"] = "agg"
     _check_threads()
     for path in (*arguments, _current_folder()):
@@ -43,7 +43,7 @@ def _check_threads() -> None:
     if not text.strip():
         del os.environ[name]
         return
-    # OpenMP accepts a list; its first number is for the outermost level.
+    # OpenMP accepts a list of numbers of threads; the first is for the outermost parallel level.
     first = text.split(",")[0].strip() if name == "OMP_NUM_THREADS" else text.strip()
     if not (first.isascii() and first.isdigit() and len(first) < 10):
         raise CaseError(

@@ -1,4 +1,4 @@
-"""`restitution mixture`: the laws of every pair of several materials and sizes."""
+"""`restitution mixture`: restitution laws of all pairs of particles in a mixture."""
 
 from pathlib import Path
 from typing import Annotated

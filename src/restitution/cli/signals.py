@@ -23,8 +23,8 @@ class Stopped(KeyboardInterrupt):
         self.status = 128 + number
 
 
-# Compiled code that calls Python may convert `Stopped` to another exception. The list of received
-# signals distinguishes such an exception from an error.
+# Signals received so far. Compiled code that calls Python may convert `Stopped` to another
+# exception. If this list is not empty, such an exception comes from a signal and is not an error.
 received: list[int] = []
 
 

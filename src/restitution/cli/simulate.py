@@ -62,7 +62,7 @@ def simulate(
         ),
     ] = None,
 ) -> None:
-    """Integrate collisions in time with the stored forces of RESULTS; check COR against energies.
+    """Integrate collisions in time with the stored forces of RESULTS; compare with stored COR.
 
     With an angle or a spin, here or in the case, the impacts are oblique: VELOCITY is the relative
     velocity of the centres, and the table contains the tangential restitution, the angle of rebound
@@ -102,7 +102,7 @@ def simulate(
     courses, blended = [], False
     for each in velocities:
         found, energies = collide_in_time(force, each), law.at(each)
-        # The difference from the stored energies is an estimate of the error of the force curves.
+        # The difference from COR by the stored energies estimates the error of the force curves.
         error = max(abs(found.restitution - energies.restitution), energies.error)
         courses += course(found)
         table.add_row(

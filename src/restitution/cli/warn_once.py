@@ -10,7 +10,7 @@ _QUOTED = 60  # number of characters of a warning that are quoted when its repet
 
 
 class Warn(Protocol):
-    """A function that issues a warning about one of several subjects (a case, a law) or none."""
+    """A function that issues a warning, optionally about a subject such as a case or a law."""
 
     def __call__(self, message: str, subject: str = "") -> None:
         """Print `message` with its `subject`, or count it if it was printed before."""
@@ -18,7 +18,7 @@ class Warn(Protocol):
 
 @contextmanager
 def warn_once() -> Iterator[Warn]:
-    """Print each warning once; at the end, print how often and for which subjects it repeated."""
+    """Print each warning once; at the end, print how often it was repeated, for which subjects."""
     from restitution.cli.console import warn
     from restitution.display import some_of, without_numbers
 

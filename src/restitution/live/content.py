@@ -48,11 +48,11 @@ def text_of(content: Content) -> str:
     try:
         return tomli_w.dumps(tables)
     except (TypeError, ValueError) as error:
-        raise CaseError(f"{error}; a case file has texts, numbers, lists and tables") from None
+        raise CaseError(f"{error}; a case file holds texts, numbers, lists and tables") from None
 
 
 def problems_in(text: str, folder: Path) -> dict[str, str]:
-    """Find the problems of the case file `text`, by key. Its scans must lie in `folder`."""
+    """Check the case file `text`, whose scans must lie in `folder`; return messages by key."""
     try:
         content = parse_toml(text)
     except CaseError as error:

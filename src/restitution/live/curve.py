@@ -28,7 +28,7 @@ from restitution.runs.refinement import settled, with_chosen_adhesion
 from restitution.runs.smooth import smooth_curve
 from restitution.surfaces import Surface
 
-_PARTIAL = 0.7  # time (s) between drawings of a curve that is not complete
+_PARTIAL = 0.7  # time (s) between two drawings of a curve that is still being computed
 _TABS = 4  # number of tabs whose last curves are kept
 
 
@@ -67,7 +67,10 @@ class LiveCurves:
             yield curve.maps.line(min(max(depth, 0), len(curve.maps) - 1))
 
     def beside(self, tab: str, shown: str, check: Callable[[], None]) -> Iterator[str]:
-        """Yield the smooth curve of the last case, and its surface unless `shown` is its key."""
+        """Yield the curve of the smooth bodies of the last case, and its surface.
+
+        The surface is left out if its key is `shown`, because the page then shows it already.
+        """
         curve = self._curves.get(tab)
         if curve is not None:
             yield from curve.with_smooth(check)

@@ -66,7 +66,7 @@ def live_dataset(case: Case, contact: Contact, rows: Sequence[Mapping[str, float
 
 
 def curve_figures(results: xr.Dataset) -> Raw:
-    """Draw COR against velocity and indentation, and the force, as JSON, if there are data."""
+    """Draw COR against velocity and indentation, and the force, as JSON; omit empty figures."""
     found: dict[str, Figure] = {}
     if results.sizes["indentation_max"]:
         found["indentation"] = restitution_against_indentation(results)

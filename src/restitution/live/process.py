@@ -1,4 +1,4 @@
-"""A worker process and its requests, as the server sees them.
+"""The server's side of a worker process: start it, send requests and receive the answers.
 
 The process starts with the first request. If it has ended, the next request starts it again. The
 process is terminated if an abandoned request does not stop by itself.
@@ -19,7 +19,7 @@ from typing import Any
 from restitution.live.figures import as_json
 from restitution.live.worker import Request, serve
 
-_PATIENCE = 1.5  # time (s) that a request may take to stop
+_PATIENCE = 1.5  # time (s) that a cancelled request may take to stop
 _LOST = as_json(
     {
         "error": "the computing process has ended unexpectedly (perhaps because the memory was "
@@ -28,7 +28,7 @@ _LOST = as_json(
     }
 )
 _CLOSED = as_json({"error": "the program has ended; start restitution app again", "lost": True})
-_AGAIN = "again"  # makes `ask` repeat a request whose process was ended due to another request
+_AGAIN = "again"  # tells `ask` to repeat a request, because another request ended its process
 _Lines = asyncio.Queue[str | None]
 
 
@@ -79,7 +79,7 @@ class _Running:
         self._connection, theirs = context.Pipe()
         self.process = context.Process(target=serve, args=(theirs, scans, room), daemon=True)
         self.process.start()
-        theirs.close()  # so that the end of the process closes the connection
+        theirs.close()  # otherwise the connection would stay open after the end of the process
         self.waiting: dict[int, _Lines] = {}
         self._last_words = ""  # last line for waiting requests, if the process is ended on purpose
         self._watching: set[asyncio.Task[None]] = set()
@@ -115,7 +115,7 @@ class _Running:
         task.add_done_callback(self._watching.discard)
 
     def end(self, last_words: str) -> None:
-        """End the process, with a last line for the requests that still wait."""
+        """End the process, and answer the requests that still wait with the line `last_words`."""
         self._last_words = last_words
         self.process.terminate()
         for task in self._watching - {asyncio.current_task()}:

@@ -29,7 +29,10 @@ class Runs:
         self._folders: dict[str, Path] = {}
 
     def folder(self, text: str, folder: Path, check: Check, grids: int = 1) -> Path:
-        """Return the results folder of the case `text`; of a convergence study if `grids` > 1."""
+        """Return the results folder of the case `text`; run the case if it is not stored.
+
+        If `grids` > 1, the results are those of a convergence study on several grids.
+        """
         key = hashlib.blake2b(f"{grids}\n{text}".encode()).hexdigest()
         if key not in self._folders:
             self._folders[key] = self._compute(text, folder, check, grids)

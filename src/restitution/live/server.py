@@ -1,8 +1,8 @@
 """The server of the page: static files, and requests as JSON that only this page can make.
 
 A request is a POST with the token of the address and, from a browser, the Origin of this page. The
-Host header must name this machine, so that a web site whose name points to this machine cannot
-reach the server.
+Host header must name this machine. Otherwise a web site could point its own domain name to this
+machine, and its pages could then reach the server (DNS rebinding).
 """
 
 from __future__ import annotations
@@ -141,7 +141,7 @@ class Server:
         return JSONResponse({"form": form(), "content": self._session.content})
 
     async def _content(self, request: Request) -> Response:
-        """The tables of a case file that the user has edited as text."""
+        """Return the tables of a case file that the user has edited as text."""
         values = await _values(request, {"text": str})
         try:
             return JSONResponse({"content": content_of(values["text"])})
@@ -149,7 +149,7 @@ class Server:
             return JSONResponse({"error": str(error)})
 
     async def _text(self, request: Request) -> Response:
-        """The text of the case file with the given tables."""
+        """Return the text of the case file with the given tables."""
         values = await _values(request, {"content": dict})
         return JSONResponse({"text": _text(values["content"])})
 
@@ -215,7 +215,7 @@ class OwnHostOnly:
         self._app, self._hosts = app, hosts
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on requests to this machine, from its own page or from no page."""
+        """Pass on a request if `_refused` finds no objection, and add headers to the response."""
         if scope["type"] == "http" and (why := self._refused(dict(scope["headers"]))):
             await JSONResponse({"error": why}, 403, headers=_HEADERS)(scope, receive, send)
             return

@@ -92,7 +92,7 @@ class Inbox:
             try:
                 message = self._wire.receive()
             except (EOFError, OSError):
-                os._exit(0)  # nobody needs the result of a running solve
+                os._exit(0)  # end even during a solve, because nobody needs its result
             with self._changed:
                 if isinstance(message, Request):
                     self._drop((message.tab, message.kind))

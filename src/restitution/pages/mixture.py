@@ -26,7 +26,8 @@ def write_mixture_page(out: Path) -> Path:
         title=summary["title"] or "Mixture",
         intro=[
             f"{summary['pairs']} pairs of particles and walls, from {summary['curves_computed']} "
-            "computed curves. Laws of other pairs are interpolated in R* at equal W/R*³."
+            "computed curves. The laws of other pairs are interpolated between computed reduced "
+            "radii R*, at equal loading work over R*³."
         ],
         warnings=summary["warnings"],
         parts=parts,

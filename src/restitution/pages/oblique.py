@@ -10,10 +10,10 @@ from restitution.pages.page import Cell, Drawing, Table
 from restitution.plots.oblique import oblique_figure
 
 _NOTE = (
-    "Tangential restitution and angles are those of the centres; spins are positive in the "
-    "direction in which friction turns a body without spin. The dotted line marks the angle from "
-    "which the whole contact slides. The error of e_t includes the errors of the tangential law "
-    "and of e_n."
+    "Tangential restitution and angles refer to the velocity of the centres. Spins are positive in "
+    "the direction in which friction turns a body without spin. The dotted line marks the angle "
+    "from which the whole contact slides. The error of the tangential restitution e_t includes the "
+    "errors of the tangential law and of the normal restitution e_n."
 )
 
 

@@ -26,7 +26,7 @@ Cell = str | float | int | None
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of cells under column names, after lines of text."""
+    """A table with column names and rows of cells; lines of `text` precede it."""
 
     title: str
     columns: Sequence[str] = ()

@@ -9,7 +9,7 @@ import numpy as np
 from restitution.plots.figure import Array, Axis, Band, Mark, Points, Series, has_error
 
 _STEP = 0.1  # the ends of the axis are multiples of this value
-_MARGIN = 0.02  # margin beyond 0 and 1
+_MARGIN = 0.02  # smallest distance of the values from the ends of the axis
 
 
 def cor_axis(series: Sequence[Series]) -> Axis:

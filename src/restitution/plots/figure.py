@@ -1,7 +1,7 @@
 """The content of a figure as data. `static` draws it in files, `interactive` on pages.
 
-Texts are plain; the module that draws them escapes markup. Numbers are in the units of the axes.
-Colours are names that both CSS and matplotlib know.
+Texts contain no markup; the module that draws them escapes special characters. Numbers are in the
+units of the axes. Colours are written in a way that both CSS and matplotlib understand.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class Axis:
 
 @dataclass(frozen=True, eq=False)
 class Line:
-    """A line through `y` at `x`; NaN interrupts it.
+    """A line through the points (`x`, `y`), interrupted where a value is NaN.
 
     Series of one figure with the same `label` share one entry of the legend; a series without a
     label has no entry. A page shows `name` beside the value under the pointer. `step` draws one

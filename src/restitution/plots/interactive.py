@@ -55,7 +55,7 @@ def draw(panel: Chart | Map, figure: Figure) -> Plot:
 
 
 def shown_step(panel: Map) -> int:
-    """The step along x and y between nodes that are drawn."""
+    """Return n if every n-th node of `panel` along x and along y is drawn."""
     return math.ceil(max(panel.x.size, panel.y.size) / _MOST_PIXELS)
 
 
@@ -75,7 +75,7 @@ def _chart_axes(chart: Chart) -> dict[str, Any]:
 
 
 def _all_traces(chart: Chart) -> list[dict[str, Any]]:
-    """The traces of all series, from bottom to top; each text has one entry in the legend."""
+    """The traces of all series, from bottom to top; each label has one entry in the legend."""
     ranks = {label: rank for rank, label in enumerate(legend_entries(chart), 1)}
     seen: set[str] = set()
     found = []
@@ -141,7 +141,8 @@ def _traces(each: Band | Line | Points, chart: Chart) -> list[dict[str, Any]]:
             "width": 3,
         }
     if has_open(each) and not hollow.all():
-        # The legend shows the marker of the first point, which may be open.
+        # By default the legend shows the marker of the first point, which may be open. Show a
+        # closed marker instead.
         closed = {"symbol": each.symbol, "size": 7, "color": each.color}
         traces.insert(0, _legend_only(each.label, closed, mode=trace["mode"], line=trace["line"]))
     if has_open(each):

@@ -21,8 +21,8 @@ from restitution.plots.figure import (
     Series,
 )
 
-# Colour, dashes and width of the line of each law. Laws that often coincide at e = 1 have lines of
-# different width.
+# Colour, dashes and width of the line of each law. Laws that often coincide, at COR = 1, have lines
+# of different width.
 LAW_LINES: dict[str, tuple[str, Dash, float]] = {
     "hertz": ("#bfbfbf", SOLID, 5.0),
     "sticking": ("#e69f00", SOLID, 3.2),

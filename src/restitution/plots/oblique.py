@@ -35,10 +35,10 @@ def has_oblique(results: xr.Dataset) -> bool:
 
 
 def oblique_figure(results: xr.Dataset) -> Figure:
-    """Tangential restitution, angle of rebound and spin of the first body against the angle.
+    """Plot tangential restitution, rebound and spin of the first body against the angle of impact.
 
-    The dotted line is the angle from which the whole contact slides, and the dashed line the closed
-    form of full slip, both at the largest velocity and without spin before the impact.
+    The dotted line marks the angle from which the whole contact slides. The dashed line is the
+    closed form of full slip. Both apply to the largest velocity, without spin before the impact.
     """
     degrees = np.degrees(results["oblique_angle"].values)
     axis = Axis("angle of impact", "°", low=0.0, high=min(90.0, 1.05 * degrees.max() + 1))
@@ -83,9 +83,11 @@ def _points(results: xr.Dataset, variable: str, scale: float) -> Iterator[Points
 
 
 def _full_slip(results: xr.Dataset) -> tuple[float, Array, Array] | None:
-    """Angle of full slip (degrees), and the closed form beyond: angles (degrees) and e_t.
+    """Return the angle of full slip, and angles and tangential restitution of the closed form.
 
-    None if a body has a spin before the impact, which the closed form does not include.
+    The angle of full slip is the angle of impact from which the whole contact slides. All angles
+    are in degrees. None if a body has a spin before the impact, which the closed form does not
+    include, or if there is no friction or no result.
     """
     if results["oblique_first_spin_before"].any() or results["oblique_second_spin_before"].any():
         return None

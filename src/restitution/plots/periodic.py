@@ -21,7 +21,7 @@ def periodic_figures(results: xr.Dataset) -> Iterator[tuple[str, Figure]]:
 
 
 def area_against_pressure(results: xr.Dataset) -> Figure:
-    """Relative contact area (also after Persson) and mean gap against nominal pressure."""
+    """Plot relative contact area (computed, and after Persson) and mean gap against pressure."""
     title = results.attrs.get("title", "")
     # Leave out negative nominal pressures (due to attraction), because the axis is logarithmic.
     results = results.isel(depth=results["nominal_pressure"].values > 0)

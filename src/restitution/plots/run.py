@@ -39,8 +39,8 @@ from restitution.plots.oblique import has_oblique, oblique_figure
 UNRESOLVED = f"open: not resolved (patches below {NODES_PER_PATCH} nodes)"
 
 _MARGIN = 1.2  # factor by which a logarithmic axis extends beyond the first and the last point
-_RIM = 4  # number of nodes around a contact in its map
-_UNIFORM = 0.01  # a pressure counts as the largest if its relative difference is below this value
+_RIM = 4  # number of nodes between the contact and each edge of its map
+_UNIFORM = 0.01  # relative difference up to which a pressure counts as the largest pressure
 # If at least this share of the contact carries the largest pressure, the pressure map is left out.
 _SATURATED = 0.95
 _SMOOTH = "smooth, same model"
@@ -67,7 +67,7 @@ def has_map(results: xr.Dataset) -> bool:
 
 
 def load_displacement(results: xr.Dataset) -> Figure:
-    """Force against indentation in loading and unloading, on linear and on logarithmic axes."""
+    """Plot force against indentation (loading and unloading), on linear and logarithmic axes."""
     depth, force = 1e6 * results["indentation"].values, results["force"].values
     beside = _references(force_references(results), 1e6)
     if "smooth_force" in results and results.attrs["derived_yield_pressure_Pa"] != "None":
@@ -101,7 +101,7 @@ def load_displacement(results: xr.Dataset) -> Figure:
 
 
 def restitution_against_indentation(results: xr.Dataset) -> Figure:
-    """Coefficient of restitution against maximum indentation."""
+    """Plot the coefficient of restitution against the maximum indentation."""
     return _restitution(
         results,
         "indentation",
@@ -112,7 +112,7 @@ def restitution_against_indentation(results: xr.Dataset) -> Figure:
 
 
 def restitution_against_velocity(results: xr.Dataset) -> Figure:
-    """Coefficient of restitution against impact velocity."""
+    """Plot the coefficient of restitution against the impact velocity."""
     return _restitution(
         results,
         "impact_velocity",
@@ -123,10 +123,10 @@ def restitution_against_velocity(results: xr.Dataset) -> Figure:
 
 
 def pressure_map(results: xr.Dataset) -> Figure:
-    """Contact pressure and plastic displacement at the deepest point.
+    """Draw maps of the contact pressure and the plastic displacement at the deepest indentation.
 
-    A map is left out if it shows nothing: the plastic displacement of an elastic contact, and the
-    pressure where (nearly) the whole contact yields at one bound.
+    The plastic displacement of an elastic contact is left out. The pressure is left out if nearly
+    the whole contact is at the same yield pressure.
     """
     pressure = 1e-6 * results["pressure"].values
     none = np.zeros_like(pressure)

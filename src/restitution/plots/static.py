@@ -37,13 +37,14 @@ from restitution.results.writer import replace_file
 
 Format = Literal["png", "svg", "pdf"]
 
-# Sizes in inches: a chart and a map (width, height), the width of each further panel; the height of
-# a row of the legend, and the width of a legend at the side.
+# Sizes in inches: width and height of a chart and of a map, and width of each further panel; then
+# the height of a row of the legend, and the width of a legend at the side.
 _CHART, _MAP, _SECOND = (6.4, 4.0), (5.6, 4.6), 4.6
 _ROW, _SIDE = 0.2, 2.4
 # Largest number of entries of a legend below the axes; a longer legend is placed at the side.
 _MOST_BELOW = 8
-# For each number of decades: the digits labelled on a logarithmic axis that spans at most so many.
+# Pairs (decades, digits): a logarithmic axis of at most this many decades is labelled at these
+# digits.
 _DIGITS: tuple[tuple[float, tuple[int, ...]], ...] = ((1.0, (1, 2, 3, 5, 7)), (3.0, (1, 2, 5)))
 _TICKS = 6  # approximate number of labels of a linear axis (at most one more)
 _LINEAR = 0.5  # a logarithmic axis of fewer decades has linear ticks

@@ -36,7 +36,7 @@ def rows_with(case: StoredCase, abscissa: Abscissa) -> list[dict[str, float]]:
 
 
 def study_figure(cases: Sequence[StoredCase], abscissa: Abscissa) -> Figure:
-    """COR of the first `MOST_LINES` complete `cases` against `abscissa`."""
+    """Plot COR of the first `MOST_LINES` of the complete `cases` against `abscissa`."""
     series = []
     for number, case in enumerate(cases[:MOST_LINES]):
         rows = rows_with(case, abscissa)

@@ -26,7 +26,7 @@ _ROUNDING = 1e-15  # densities below this fraction of the largest density are ro
 
 
 def surface_map(surface: Surface, title: str = "") -> Figure:
-    """Heights (nm) above their mean."""
+    """Draw a map of the heights (nm) above their mean."""
     height = 1e9 * (surface.height - surface.height.mean())
     down = surface.provenance.get("y_axis") == "down"
     x, y = 1e6 * surface.grid.x, 1e6 * surface.grid.y
@@ -34,7 +34,7 @@ def surface_map(surface: Surface, title: str = "") -> Figure:
 
 
 def height_distribution(density: HeightDensity, curve: MaterialRatio) -> Figure:
-    """Probability density of heights, the normal density, and the material ratio (right axis)."""
+    """Plot the probability density of heights, the normal density, and the material ratio."""
     x = 1e9 * density.height
     return Figure(
         "",
@@ -63,7 +63,7 @@ def height_distribution(density: HeightDensity, curve: MaterialRatio) -> Figure:
 
 
 def autocorrelation_figure(R: Autocorrelation) -> Figure:
-    """Autocorrelation along x and y, with the levels that define correlation lengths."""
+    """Plot the autocorrelation along x and y, and the levels that define correlation lengths."""
     i, j = (n // 2 for n in R.values.shape)
     series: list[Series] = [
         Line(1e6 * R.x[i:], R.values[i:, j], "along x", color=PALETTE[0]),
@@ -75,7 +75,7 @@ def autocorrelation_figure(R: Autocorrelation) -> Figure:
 
 
 def spectrum_figure(spectra: list[DirectedSpectrum]) -> Figure:
-    """Power spectral density against wave number, averaged over all and over some directions."""
+    """Plot the power spectral density: the mean over all directions, and near x and near y."""
     series: list[Line] = []
     largest = 0.0
     for each, color, dash in zip(spectra, PALETTE, (SOLID, DOTTED, DASHED), strict=False):

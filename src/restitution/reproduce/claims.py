@@ -23,8 +23,8 @@ Array = NDArray[np.float64]
 Studies = Mapping[str, xr.Dataset]
 Verdict = Literal["agrees", "agrees in part", "does not agree", "not decided"]
 
-# R* (m), E* (Pa), p_y (Pa) and radius (m) of the two steel spheres of the paper. The R of the paper
-# is taken as the radius of a particle.
+# Reduced radius R* (m), contact modulus E* (Pa), yield pressure p_y (Pa) and radius (m) of the two
+# steel spheres of the paper. The R of the paper is taken as the radius of a particle.
 R, E_STAR, P_Y, RADIUS = 250e-6, 112e9, 750e6, 500e-6
 SMOOTH = "1 pm"  # rms roughness of cases that represent the smooth sphere
 _VARIABLES = ("indentation", "restitution", "force", "pull_off_force", "resolved")

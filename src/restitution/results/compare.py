@@ -20,11 +20,11 @@ _SAME = 1e-9  # largest relative difference of two depths that count as equal
 
 @dataclass(frozen=True)
 class Comparison:
-    """Table of the values of two results a and b, the inputs that differ, and notes.
+    """The comparison of two results a and b: a table, the inputs that differ, and notes.
 
     A row contains the swept values of a study's case, `max_indentation_m`, `restitution_a`,
-    `restitution_b`, `difference` (b − a), the `error` of the difference (see `_error`),
-    `significant` (the difference exceeds the error), `resolved` (both grids resolve the contact),
+    `restitution_b`, `difference` (b − a), `error` (of the difference, from the errors of both),
+    `significant` (the difference exceeds this error), `resolved` (both grids resolve the contact),
     and `force_ratio` (b/a).
     """
 
@@ -50,7 +50,9 @@ def _kind(folder: Path) -> str:
         return "study"
     if (folder / "curve.csv").is_file():
         return "run"
-    raise OutputError(f"{folder}: holds no results of a run or study; give the folder of a run")
+    raise OutputError(
+        f"{folder}: holds no results of a run or study; give the results folder of one"
+    )
 
 
 def _studies(a: Path, b: Path) -> Comparison:
@@ -76,7 +78,10 @@ def _studies(a: Path, b: Path) -> Comparison:
 def _curves(
     a: Sequence[_Row], b: Sequence[_Row], swept: Mapping[str, str]
 ) -> tuple[list[dict[str, Any]], list[str]]:
-    """Make rows, and notes, for the depths of `a` within the range of `b`; interpolate `b`."""
+    """Compare two curves at the depths of `a`; return rows of the table, and notes.
+
+    The curve `b` is interpolated. Depths of `a` outside the range of `b` are left out.
+    """
     depth_b = np.array([row["max_indentation_m"] for row in b])
     rows, between, beyond = [], 0, 0
     for row in a:

@@ -1,8 +1,7 @@
 """Delay Ctrl-C and similar signals during operations that must complete.
 
-Python can raise `KeyboardInterrupt` between any two instructions. Raised inside the libraries that
-write and read netCDF files, it would leave the locks of the libraries taken, and the next access
-would wait forever.
+Python can raise `KeyboardInterrupt` between any two instructions. If this happens inside a library
+that reads or writes netCDF files, the library keeps its locks, and the next access waits forever.
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ def hold_signals() -> Iterator[None]:
     """Delay SIGINT, SIGTERM and SIGHUP until the `with` body has ended, normally or by an error.
 
     Only signals with a Python handler are delayed, because other signals do not raise exceptions.
-    In other threads than the main thread, which receives all signals, this function does nothing.
+    Only the main thread receives signals, so in other threads this function does nothing.
     """
     global _depth
     if threading.current_thread() is not threading.main_thread():
@@ -35,8 +34,8 @@ def hold_signals() -> Iterator[None]:
     if not _depth:
         _received.clear()
         _install()
-    # Python does not handle signals between `_depth += 1` and `try`, nor between `_depth -= 1` and
-    # `if`.
+    # Python handles no signal between `_depth += 1` and `try`, or between `_depth -= 1` and `if`.
+    # So no signal can leave a wrong `_depth` behind.
     _depth += 1
     try:
         yield

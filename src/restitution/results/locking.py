@@ -44,5 +44,5 @@ def locked(folder: Path) -> Iterator[None]:
                 (folder / LOCK).unlink()
             lock.release()
             if new:
-                with suppress(OSError):  # the folder is not empty
+                with suppress(OSError):  # the folder may hold results
                     folder.rmdir()

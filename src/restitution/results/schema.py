@@ -10,7 +10,7 @@ from restitution.contact.checks.resolution import ADHESIVE_NODES, NODES_PER_PATC
 
 @dataclass(frozen=True)
 class Column:
-    """A column of `curve.csv`: its variable in `results.nc`, its unit, meaning and limits.
+    """A column of a table of results: its variable in `results.nc`, unit, meaning and limits.
 
     A `flag` is true or false, and an `optional` cell may be empty. All other cells are finite
     numbers from `low` to `high`.
@@ -117,7 +117,8 @@ COLUMNS = {
         "refinement", "1", "cells along x and y that one cell of [grid] is divided into", low=1.0
     ),
 }
-# Additional columns of the curve of an ensemble, whose other columns are means.
+# Additional columns of the curve of an ensemble. Its other columns combine the surfaces, mostly as
+# means (`runs.ensemble.mean_rows`).
 SPREAD_COLUMNS = {
     "realisations": Column("realisations", "1", "surfaces that reached this depth", low=0.0),
     "restitution_std": Column(
@@ -142,8 +143,8 @@ SPREAD_COLUMNS = {
 }
 ALL_COLUMNS = COLUMNS | SPREAD_COLUMNS
 OBLIQUE_FILE = "oblique.csv"
-# Columns of the table of oblique impacts. The tangential restitution and the angle of rebound are
-# those of the centres.
+# Columns of the table of oblique impacts. The tangential restitution and the angle of rebound refer
+# to the velocity of the centres of the bodies.
 OBLIQUE_COLUMNS = {
     "impact_velocity_m_per_s": Column(
         "oblique_velocity", "m s-1", "velocity of the centres before the impact", low=0.0
@@ -196,7 +197,8 @@ OBLIQUE_COLUMNS = {
         "oblique_slides", "1", "the whole contact slides from beginning to end", flag=True
     ),
 }
-# Additional columns for an ensemble, whose other columns are means.
+# Additional columns of the oblique impacts of an ensemble. Its other columns are means over the
+# surfaces, except `slides`, which is true if the contact slides on all surfaces.
 OBLIQUE_SPREAD_COLUMNS = {
     "realisations": Column("oblique_realisations", "1", "surfaces with this impact", low=0.0),
     "tangential_restitution_std": Column(

@@ -24,7 +24,7 @@ def reading(path: Path) -> Iterator[None]:
         yield
     except FileNotFoundError:
         raise OutputError(
-            f"{path}: does not exist; give a results folder (the -o of a command)"
+            f"{path}: does not exist; give a results folder, which a command wrote with -o"
         ) from None
     except OSError as error:
         raise OutputError(f"{path}: cannot be read ({error.strerror or error})") from None

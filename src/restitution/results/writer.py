@@ -2,8 +2,8 @@
 
 While a case runs, rows are appended to `curve.csv` and `unloading.csv` one by one, so that the rows
 survive if the run is stopped. `results.nc` and `summary.json` are written once, at the end or on
-interruption. Each is written into a temporary file, which is then renamed. Signals are delayed
-while a file is written.
+interruption. Each of the two is written to a temporary file, which is then renamed. Signals are
+delayed while a file is written.
 """
 
 from __future__ import annotations
@@ -54,8 +54,8 @@ def curve_row(
 ) -> dict[str, float]:
     """Make the row of `curve.csv` for one state of loading, with NaN for undefined values.
 
-    `refine` is the refinement factor of the grid, and `touch` (m) the additional approach to first
-    touch on this grid.
+    `refine` is the refinement factor of the grid. `touch` (m) is added to the indentations, because
+    the bodies touch later on a coarse grid than on the finest grid.
     """
     patches = state.patch_sizes()
     median = median_patch(patches)
@@ -145,7 +145,7 @@ class ResultsFolder:
     def add_unloading(self, path: Sequence[State], touch: float = 0.0) -> None:
         """Append one unloading curve, from its deepest state to separation, to `unloading.csv`.
 
-        `touch` (m) is the additional approach to first touch on the grid of `path`.
+        `touch` (m) is added to the indentations, as in `curve_row`.
         """
         deepest = path[0].indentation + touch
         points = [(indentation + touch, force) for indentation, force in complete_curve(path)]

@@ -34,7 +34,7 @@ _TOLERANCE = 0.005  # allowed error of COR due to the steps of adhesive unloadin
 _SHALLOWER, _DEEPER = (
     0.5,
     1.3,
-)  # factors for additional depths, because other surfaces reach the same work at other depths
+)  # factors for one more depth at each end; other surfaces reach the same work at other depths
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,10 @@ class Curve:
     restitution: Array
 
     def at(self, work: Array) -> Array:
-        """Interpolate COR at `work` (J) by a monotone cubic in ln W; constant beyond the ends."""
+        """Interpolate COR at `work` (J): monotone cubic in the logarithm, constant beyond the ends.
+
+        All values are NaN if the curve is empty.
+        """
         from scipy.interpolate import PchipInterpolator
 
         if self.work.size == 0:
@@ -89,14 +92,14 @@ def curve_of(
 
 @dataclass(frozen=True)
 class Companions:
-    """The companion curves of `case` (files relative to `folder`) over `depths` (m)."""
+    """The companion curves of `case` over `depths` (m); file names are relative to `folder`."""
 
     case: Case
     folder: Path
     depths: Sequence[float]
 
     def own(self) -> Curve:
-        """Compute the curve of the case on cells twice as large, without the shortest waves."""
+        """Compute the curve of the case's own surface on cells twice as large."""
         return self._curve(self._coarse(self.case))
 
     def others(self, progress: Say = ignore) -> Iterator[Curve]:
@@ -108,9 +111,9 @@ class Companions:
     def materials(self, work: Array) -> list[Array]:
         """Changes of COR at `work` (J) due to the spread of library values.
 
-        There is one change each for elasticity, yield model and density. Each is the larger of the
-        changes at the low and at the high end of the spread, with both bodies at the same end. The
-        list is empty if no value comes from the library.
+        Elasticity, yield model and density cause one change each, unless they have no spread. Both
+        bodies are moved together to the low end and then to the high end of the spread, and the
+        larger change of COR counts. The list is empty if no value comes from the library.
         """
         coarse = self._coarse(self.case)
         ends = [_spread(self.case, end) for end in ("low", "high")]

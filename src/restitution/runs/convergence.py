@@ -40,7 +40,8 @@ from restitution.runs.refinement import later_touches, settled, with_chosen_adhe
 from restitution.runs.run import run_case
 
 _Row = dict[str, float]
-# For each refinement factor: the extra approach to first touch (m), and the rows.
+# For each refinement factor: the additional approach to first touch (m), compared with the finest
+# grid, and the rows of the curve.
 _Runs = dict[int, tuple[float, list[_Row]]]
 
 
@@ -61,8 +62,8 @@ def run_convergence(
     grid. If a run fails, the study ends and keeps the results so far.
 
     Depths are measured from first touch on the finest grid. The highest summit lies between the
-    nodes of a coarser grid, so a coarser grid touches after a larger approach. Indentations on the
-    coarser grid are smaller by this difference.
+    nodes of a coarser grid, so a coarser grid touches after a larger approach. Counted from its own
+    first touch, the indentations on the coarser grid are smaller by this difference.
     """
     case.require_impact()
     log, runs = RunLog(progress, warn), _Runs()
@@ -108,7 +109,10 @@ def _add_errors(
     runs: _Runs,
     progress: Say,
 ) -> None:
-    """Add the errors of surface and materials, from the coarsest grid, to the finest rows."""
+    """Add errors due to surface and materials to the rows of the finest grid in `runs`.
+
+    These errors are computed on the coarsest grid.
+    """
     coarsest, finest = case.refined(min(runs)), runs[max(runs)][1]
     alone = [dict(row) for row in finest]
     add_errors(coarsest, folder, coarsest.surface(folder), alone, progress)
@@ -117,12 +121,15 @@ def _add_errors(
 
 
 def _levels(case: Case, folder: Path, grids: int) -> dict[int, float]:
-    """Refinement factors, each with its extra approach (m) to first touch; 0 on the finest grid."""
+    """Return the refinement factors, each with the additional approach (m) to first touch.
+
+    The approach is compared with the finest grid.
+    """
     if grids < 2:
         raise CaseError(f"grids: {grids} cannot show convergence; give 2 or more")
     if case.realisations > 1:
         raise CaseError(
-            "roughness.realisations: a convergence study uses one surface; remove it, or give 1"
+            "roughness.realisations: a convergence study uses one surface; remove this key"
         )
     coarsest = case.grid.factor if case.grid else 1
     factors = [coarsest * 2**k for k in range(grids)]

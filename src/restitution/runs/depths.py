@@ -71,7 +71,7 @@ def collision_at(
     """Return the collision with the maximum indentation of `state`, and its unloading curve.
 
     The curve is computed if `unload` is true or the collision needs it; otherwise it is empty.
-    `known` is the unloading curve of a shallower depth (`unloading_path`).
+    `known` is the unloading curve of a shallower depth, which `unloading_path` may reuse.
     """
     followed = state.contact.adhesive and case.unloading.method == "path"
     back: list[State] = []
@@ -85,7 +85,8 @@ def collision_at(
 def _levels(case: Case, folder: Path, deepest: Contact) -> Iterator[_Level]:
     """Yield the grids of a case with their depths, from the shallowest to the deepest depths."""
     factors, depths = case.factors(), case.depths()
-    # Also needed for loads and velocities, because indentations are stored.
+    # Coarse grids touch later. This difference is added to the stored indentations, so it is also
+    # needed for loads and velocities.
     touches = later_touches(case, folder, set(factors)) if len(set(factors)) > 1 else {}
     for factor in sorted(set(factors), reverse=True):
         own = [depth for depth, its in zip(depths, factors, strict=True) if its == factor]

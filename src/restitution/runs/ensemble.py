@@ -53,10 +53,11 @@ def run_realisations(
     """Run `case` on each of its surfaces, and return the summary.
 
     A periodic case is run by `run_periodic`. A single surface is run by `run_case` alone. If there
-    are several surfaces, the run of each is stored in a folder `realisation-<n>` (n from 1; n − 1
-    is added to the seed), and the curve of `out` contains the means (`mean_rows`). If the run of a
-    surface fails, its error is recorded and the other runs continue. If all runs fail, the first
-    error is raised. With `grid.refine = "auto"`, `refinement` selects one grid for all surfaces.
+    are several surfaces, the run on each is stored in a folder `realisation-<n>`, and the curve of
+    `out` contains the means (`mean_rows`). n begins at 1, and n − 1 is added to the seed or to the
+    place on the scan. If the run on a surface fails, its error is recorded and the other runs
+    continue. If all runs fail, the first error is raised. With `grid.refine = "auto"`, the first
+    surface decides the grid of each depth for all surfaces (`refinement`).
     """
     if case.periodic:
         return run_periodic(case, text, folder, out, progress, warn)
@@ -234,7 +235,7 @@ def mean_rows(curves: Sequence[Sequence[_Row]], errors: Sequence[_Row] = ()) -> 
     mean ± t s/√n with Student's t, clipped to [0, 1] (NaN for one surface).
 
     `errors` are the rows of one surface with the errors of grid and materials. These errors are
-    used for the mean, too. `surface_scatter` is half of the confidence interval.
+    used for the mean, too. `surface_scatter` is half of the width of the confidence interval.
     """
     from scipy.stats import t
 

@@ -10,11 +10,14 @@ COR is the mean over surfaces of the same kind, on a grid that resolves all wave
     discretisation_error² = ΔCOR² [1 + (1.5 n)²] + (s f)²,   n = ln(S/S_h)/ln(S_h/S_2h).
 
 S is the rms slope of the scan, and S_h and S_2h are the rms slopes on cells of h and 2h. The
-formula assumes that COR changes with ln S beyond the grid as in the last octave that the grid
-resolves. For generated surfaces n = 0, because the shortest wave belongs to their definition. f is
-the usual error of contacts with the same number of nodes in the median patch (docs/resolution.md),
-and s is the fraction of f that is added. s is large if the grid does not resolve the contact.
-Otherwise s is small; it only keeps the error from vanishing by chance.
+formula assumes that the waves beyond the grid change COR with ln S at the same rate as the last
+octave that the grid resolves. For generated surfaces n = 0, because their definition includes the
+shortest wave.
+
+f is the usual error of contacts with the same number of nodes in the median patch, the contact
+patch of the median contact node (docs/resolution.md). s is the fraction of f that is added. s is
+large if the grid does not resolve the contact. Otherwise s is small; it only keeps the error from
+vanishing by chance.
 
 The constants were chosen on about 260 random cases, 30 of them adhesive, and checked on other cases
 (docs/error.md).
@@ -54,8 +57,8 @@ _PATCH_ERROR = (0.9, 0.4, 0.15, 0.08, 0.05, 0.024, 0.008)
 # Error due to the surface, in standard deviations of COR between surfaces. With eight surfaces, it
 # exceeds the true error in about 88 % of cases.
 _SCATTER = 1.5
-# Lengths in ln W over which differences of COR are smoothed, because single differences may vanish
-# by chance.
+# Lengths, in the logarithm of the loading work, over which differences of COR are smoothed, because
+# single differences may vanish by chance.
 _NEAR_GRID, _NEAR_SURFACE = 2.0, 1.0
 MOST_AFFORDABLE = 2**24  # largest recommended number of nodes (takes some minutes and 2 GB)
 MISSING_BAND = 0.03  # a row counts as resolved up to this error of COR due to omitted waves
@@ -99,6 +102,7 @@ def grid_error(
     """Discretisation error of COR of `rows`, and the part of it due to omitted waves.
 
     `change` is the difference of COR from the value on cells twice as large, at `work` (J).
+    `octaves` is the attribute of `Band`.
     """
     near = np.sqrt(_smoothed(change**2, work, _NEAR_GRID))
     band = _BAND * octaves * near
@@ -108,10 +112,10 @@ def grid_error(
 def widened_error(
     error: float, last_change: float, row: Row, octaves: float
 ) -> tuple[float, float]:
-    """Add the minimum error and the effect of omitted waves to `error`; return sum and effect.
+    """Add a minimum error and the effect of omitted waves to `error`, in quadrature.
 
     `error` comes from a convergence study. `last_change` is the difference of COR between the last
-    two grids.
+    two grids. `octaves` is the attribute of `Band`. Returns the sum and the effect of the waves.
     """
     band = _BAND * octaves * last_change
     return math.hypot(error, band, _floor(row)), band
@@ -257,7 +261,10 @@ def _floor(row: Row) -> float:
 
 
 def _smoothed(values: Array, work: Array, near: float) -> Array:
-    """Mean of `values` weighted by exp(−|Δ ln W|/near); all NaN if any value is NaN."""
+    """Smooth `values` over the loading work (J); all NaN if any value is NaN.
+
+    The result is a mean with the weights exp(−|Δ ln work|/near).
+    """
     L = np.log(work)
     weights = np.exp(-np.abs(L[:, None] - L) / near)
     smoothed: Array = weights @ values / weights.sum(axis=1)

@@ -110,7 +110,8 @@ def _row(
     nearest = min(rows, key=lambda row: _apart(row, normal))
     error = math.nan
     if _apart(nearest, normal) < _SAME:
-        # A run reaches the velocities of its case only within the error of the loading work.
+        # A run reaches the velocities of its case only within the error of the loading work, so use
+        # the velocity that it reached.
         normal = nearest["impact_velocity_m_per_s"]
         error = nearest["total_error"]
     found = collide_obliquely(law, normal / math.cos(angle), angle, friction, impact.spins())
@@ -148,7 +149,7 @@ def _errors(law: StoredForce, found: ObliqueCollision, error: float) -> _Row:
     """Errors of the tangential results, which include the `error` of the normal restitution.
 
     If the normal restitution is larger by de, the friction impulse is larger by at most
-    µ m* V_n de, which is its change in full slip.
+    µ m* V_n de, its change in full slip (reduced mass m*, normal velocity V_n before the impact).
     """
     normal_velocity = found.velocity * math.cos(found.angle)
     impulse = found.friction * error * (law.pair.mass or math.nan) * normal_velocity
@@ -156,7 +157,8 @@ def _errors(law: StoredForce, found: ObliqueCollision, error: float) -> _Row:
     tangential = math.nan
     if tangent > 0:
         tangential = found.tangential_restitution_error + found.friction * error / tangent
-    # The angle of rebound is atan(e_t tan θ/e_n).
+    # The angle of rebound is atan(e_t tan θ/e_n), with the tangential and normal restitution e_t
+    # and e_n, and the angle of impact θ.
     rebound = math.tan(found.rebound_angle)
     shift = tangent * (tangential if tangent > 0 else 0.0) + abs(rebound) * error
     turned = [

@@ -148,7 +148,7 @@ def _load_and_unload(
     """Compute the depths one after the other; return the error of the first depth that failed."""
     count = len(case.depths())
     curves = count if is_oblique(case) else case.unloading.curves
-    # Numbers of the depths that are unloaded: evenly spaced, including the deepest depth.
+    # Indices of the depths that are unloaded: evenly spaced, including the deepest depth.
     unloaded = {count - 1 - (k * count) // curves for k in range(curves)}
     began = time.perf_counter()
     failure: RestitutionError | None = None
@@ -169,7 +169,7 @@ def _load_and_unload(
 def _keep(
     depth: Depth, state: State, case: Case, out: ResultsFolder, run: _Run, unload: bool
 ) -> None:
-    """Unload from a depth, and keep its row."""
+    """Unload from a depth, and write its row of the curve."""
     collision, back = collision_at(case, state, unload=unload, known=run.last_unloading)
     run.last_unloading = back
     with hold_signals():  # an interruption leaves a complete row or no row
@@ -213,9 +213,10 @@ def _check(state: State, back: Sequence[State], collision: Collision) -> dict[st
 
 
 def _unbalance(state: State, end: State, work: float, lost: float) -> float:
-    """The unloading `work` (J) minus its value by energy balance, over the stored energy (1).
+    """Return the relative error of the energy balance of an unloading curve.
 
-    `lost` is the energy (J) lost by adhesion on the way from `state` to `end`.
+    It is `work` (J) minus the work that the balance predicts, over the stored energy. `lost` is the
+    energy (J) lost by adhesion on the way from `state` to `end`.
     """
     if isinstance(state, CohesiveState) and isinstance(end, CohesiveState):
         released = state.potential_energy - end.potential_energy

@@ -39,7 +39,8 @@ def smooth_curve(
     if contact.plasticity == "truncated" or contact.adhesive or not rows:
         return {}
     last = max(row["max_indentation_m"] for row in rows)
-    # Smooth bodies reach the same work at a smaller depth, so the curve may begin at less depth.
+    # Smooth bodies reach the same work at a smaller depth than rough ones, so their curve may begin
+    # at a smaller depth.
     least = min(row["loading_work_J"] for row in rows)
     hertz = Hertz(R, E_star)
     same_work = float(hertz.indentation_from_energy(least))
