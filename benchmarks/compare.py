@@ -64,15 +64,17 @@ of 0.25 µm. The indentation is δ = a²/R*.
   to transform. restitution finds this box by itself.
 
 **Time.** A time is that of one complete solution in a process that is already running. It includes
-the set-up and the kernel. It does not include imports, compilation and reading the problem. Nothing
-is kept from earlier solutions, except the plans of FFTW, which saves SlipPy most of its planning.
-"First" is the time of the start of the process with its imports, plus that of the first solution.
+the set-up and the kernel. It does not include imports, compilation or reading the problem. Nothing
+is kept from earlier solutions, with one exception: FFTW keeps its plans, so SlipPy does most of its
+planning only once. "First" is the time of the start of the process with its imports, plus that of
+the first solution.
 
-**Accuracy.** Every program has its own tolerance. It runs with the largest one, in powers of ten,
-at which the contact conditions 0 ≤ p ≤ p_y hold to {residual} δ. This is checked with the pressures
-alone, by code that none of the programs use: g = K p + h₀ − δ with Love's formula in extended
-precision and a zero-padded FFT over the whole grid. If a program needs more than {limit:.0f} s for
-a solution, or does not reach this accuracy at any tolerance, the table says so.
+**Accuracy.** Every program has its own tolerance. It runs with the largest power of ten as
+tolerance at which the contact conditions (0 ≤ p ≤ p_y) hold to {residual} δ. The conditions are
+checked from the pressures alone, by code that none of the programs use. This code computes the gap
+g = K p + h₀ − δ with Love's formula in extended precision and a zero-padded FFT over the whole
+grid. If a program needs more than {limit:.0f} s for a solution, or does not reach this accuracy at
+any tolerance, the table says so.
 
 **Repetitions.** The programs take turns {rounds} times, in an order that is reversed each time.
 Times are medians. Ratios are computed for each turn, and the table shows their median
@@ -83,9 +85,8 @@ ran at the same time, which slows down threads most.
 
 **Settings.** Each program runs with the best settings that were found, and in the units that suit
 it best (see the workers in `benchmarks/peers`). Tamaas does not accept an indentation on a free
-half-space. It is given the correct force instead, which saves it the search for the force. Its
-package runs on one core. SlipPy uses one core on grids of up to 256², where its threads save no
-time.
+half-space. It is given the correct force instead, so it need not search for the force. Its package
+runs on one core. SlipPy uses one core on grids of up to 256², where its threads save no time.
 """
 
 

@@ -53,10 +53,11 @@ REPORT = """\
 {date}, {machine}. Written by `make bench`.
 
 All contacts are those of two steel spheres (R* = 250 µm, E* = 112 GPa, p_y = 750 MPa) on {nodes}²
-nodes of 0.25 µm. The times start with the contact in memory and end with the results; they include
-the kernels of the convolutions. They are medians of {repeats} runs (smallest and largest). Fig. 10
-was run once. U is the time of one zero-padded convolution (forward and inverse) on the same grid
-with scipy.fft, two workers and float64. It was measured between the runs and is {unit_ms:.0f} ms.
+nodes of 0.25 µm. A time begins with the contact in memory and ends with the results; it includes
+computing the kernels of the convolutions. The times are medians of {repeats} runs (smallest and
+largest). Fig. 10 was run once. U is the time of one zero-padded convolution (forward and inverse)
+on the same grid with scipy.fft, two workers and float64. It was measured between the runs and is
+{unit_ms:.0f} ms.
 
 | what | time, s | U | convolutions | largest error of COR |
 |---|---|---|---|---|

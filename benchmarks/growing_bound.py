@@ -46,9 +46,9 @@ REPORT = """\
 Two steel spheres (R* = 250 µm, E* = 112 GPa) on {nodes}² nodes of 0.25 µm are loaded to 24 depths
 from 2 nm to 5 µm: the contacts of `benchmarks/steel.toml`. The constant bound is 750 MPa, and the
 bound that grows has Y = 268 MPa. The times are processor seconds of one thread, which other
-programs on the machine affect less than the elapsed time. They exclude making the surface. Both
-curves are computed {repeats} times in turn. The ratio is the median of the ratios of the repeats
-(smallest and largest in brackets).
+programs on the machine affect less than the elapsed time. They do not include the time to generate
+the surface. Both curves are computed {repeats} times in turn. The ratio is the median of the ratios
+of the repeats (smallest and largest in brackets).
 
 | surface | curve | constant bound, s | bound that grows, s | ratio |
 |---|---|---|---|---|

@@ -48,14 +48,15 @@ All contacts are between flat steel bodies (E* = 112 GPa) on {nodes} × {nodes} 
 of 0.25 µm. The surface is self-affine with H = 0.8, a roll-off at an eighth of the period and eight
 nodes in the shortest wave (`seed = 1`). Pressures are in units of E* times the rms slope.
 
-The nominal pressure is prescribed in every program. Each program runs with its largest tolerance,
-in powers of ten, at which the contact conditions hold to {residual} δ and the force within 1e-6.
-This is checked with the pressures alone, by code that none of the programs use. "force" is the
-relative difference of the force from the prescribed force, and "nodes" the difference of the number
-of nodes in contact from that of restitution. restitution always meets the pressure to 1e-8, which
-needs accurate solutions, so its own tolerance hardly matters. The programs take turns {rounds}
-times, in an order that is reversed each time; ratios are medians (smallest–largest). [Beside other
-programs](peers.md) says what a time includes.
+The nominal pressure is prescribed in every program. Each program runs with the largest power of ten
+as tolerance at which the contact conditions hold to {residual} δ and the relative error of the
+force is below 1e-6. This is checked from the pressures alone, by code that none of the programs
+use. "force" is the relative difference of the force from the prescribed force, and "nodes" the
+difference of the number of nodes in contact from that of restitution. restitution always meets the
+prescribed pressure to 1e-8. This requires accurate solutions whatever tolerance is requested, so
+its own tolerance hardly matters. The programs take turns {rounds} times, in an order that is
+reversed each time; ratios are medians (smallest–largest). [Beside other programs](peers.md) says
+what a time includes.
 
 Tamaas solves elastic contact by `PolonskyKeerRey` and plastic contact by `KatoSaturated`.
 ContactMechanics solves them by `minimize_proxy` with `external_force`. A program that needs more
