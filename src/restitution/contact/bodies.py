@@ -102,10 +102,9 @@ class Pair:
     def shear_compliances(self) -> tuple[float, float]:
         """Compliances α and β of the surfaces under a tangential point force Q (SI, 1/Pa).
 
-        At the distance r from the force, the two surfaces move relative to each other by α Q/r at
-        points on the line through the force perpendicular to Q, and by β Q/r at points on the line
-        along Q. α = Σ (1 − ν)/(2πG) and β = Σ 1/(2πG), with sums over the bodies. The mean of α and
-        β is 1/(πG*).
+        At the distance r from the force, the two surfaces move relative to each other, by α Q/r
+        beside the force and by β Q/r ahead of it and behind it. With the shear moduli G and sums
+        over the bodies, α = Σ (1 − ν)/(2πG) and β = Σ 1/(2πG). The mean of α and β is 1/(πG*).
         """
         across, along = 0.0, 0.0
         for body in (self.first, self.second):

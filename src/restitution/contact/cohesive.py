@@ -1,23 +1,25 @@
 """Contact with an attraction of finite range: one solve, and the state that it returns.
 
-The bodies interact at every node by a law of the gap g (`theory.LennardJones`). At a prescribed
-indentation δ, the displacement u is a local minimum of
+The bodies interact at every node by a traction that depends on the gap g (the interface law,
+`theory.LennardJones`). At a prescribed indentation δ, the displacement u is a local minimum of
 
-    ½ uᵀK⁻¹u + Σ φ(g),   g = z₀ + h₀ + u_p − δ + u,
+    ½ uᵀK⁻¹u + Σ φ(g),   g = z₀ + h₀ + u_p − δ + u.
 
-with the energy φ of the law. There is no contact set and no release of nodes. Where an equilibrium
-ceases to exist, the solve descends to another one; `cohesive_path` computes the energy that is
-dissipated there. Surfaces yield where the pressure of the law would exceed the bound: the pressure
-stays at the bound, and the rest of the approach becomes plastic displacement.
+φ is the energy of the law, K the operator from pressure to elastic displacement, z₀ the equilibrium
+separation, h₀ the initial gap and u_p the plastic displacement. Unlike in the JKR limit, no set of
+contact nodes has to be found, and no nodes are released. Where an equilibrium ceases to exist, the
+solve descends to another one; `cohesive_path` computes the energy that is dissipated there.
+Surfaces yield where the pressure of the law would exceed the bound: the pressure stays at the
+bound, and the rest of the approach becomes plastic displacement.
 
-A node is *in contact* if its gap is smaller than 3^{1/6} z₀, the gap of the largest attraction. The
-law is stable at these gaps. As the range decreases, the nodes in contact tend to the contact of
-JKR, whose edge carries tension.
+A node is *in contact* if its gap is smaller than 3^{1/6} z₀, the gap of the largest attraction. At
+these gaps the law is stable: its attraction grows with the gap. As the range of the attraction
+decreases, the nodes in contact approach the contact area of JKR, whose edge carries tension.
 
 Nodes outside the box, and the paraboloid outside the grid, attract as rigid bodies.
 
-In a periodic contact the box is the whole period, and the mean of u is zero at a prescribed δ, the
-approach of the mean planes. The pressure takes the mean that balances the law.
+In a periodic contact the box is the whole period, and δ is the approach of the mean planes. The
+mean of u is then zero, and the mean pressure equals the mean traction of the law.
 """
 
 from __future__ import annotations
@@ -47,11 +49,12 @@ Array = NDArray[np.float64]
 # energy and the pull-off force.
 COARSEST = 0.3
 COMPANION = "companion"  # provenance key of a surface that serves only to compare grids
-_REACH = 12.0  # nodes with rigid gaps up to this multiple of z₀ are solved
+_REACH = 12.0  # nodes are solved if their gap between rigid bodies is below this multiple of z₀
 # Tolerance of u/z₀: the first value times the `residual` of a solve, but at least the second value,
 # because of rounding.
 _TOLERANCE, _LEAST_TOLERANCE = 100.0, 1e-7
-_UNIQUE = 0.7  # bound on the spectral radius below which an equilibrium counts as unique
+# An equilibrium counts as unique if the bound that `is_unique` computes is below this value.
+_UNIQUE = 0.7
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -63,7 +66,8 @@ class CohesiveState(State):
         far_force: Part of the normal force from outside `box` (N).
         adhesive_loss: Energy dissipated so far by jumps between equilibria (J).
         jumps: Number of these jumps so far (1).
-        unaccounted: Work of the force minus the energy accounted for (J), so far.
+        unaccounted: Work of the force minus the change of energy (J), summed over all steps without
+            a jump so far. It differs from zero only by the error of integration.
         smallest_gap: Smallest gap between the surfaces (m); z₀ where they touch without pressure.
     """
 
@@ -112,8 +116,9 @@ def cohesive_length(contact: Contact) -> float:
 def coarsest_spacing(pair: Pair, work_of_adhesion: float, z0: float) -> float:
     """The largest grid spacing (m) that resolves the attraction, with a margin for rounding.
 
-    It resolves the cohesive zone and the radius over which a sphere attracts. The gap under a
-    paraboloid of radius R* grows by z₀ within sqrt(2R*z₀) of the apex.
+    Two lengths must be resolved: the cohesive zone and the radius over which a sphere attracts.
+    This radius is of the order sqrt(R*z₀), because the gap under a paraboloid of radius R* grows by
+    the range z₀ of the attraction within sqrt(2R*z₀) of the apex.
     """
     zone = pair.contact_modulus * z0**2 / work_of_adhesion
     return COARSEST * (1 + 1e-9) * min(zone, math.sqrt(pair.radius * z0))
@@ -153,10 +158,10 @@ def solve_cohesive(
 ) -> CohesiveState:
     """Descend from the pressure `p` and displacement `u` = K p on `box` to an equilibrium.
 
-    `limit` is the largest pressure (Pa), a number or an array of the shape of the grid. The works
-    of the result are those of `history` (zero if None), except that interaction and plastic
-    displacement are those of the result. Raises `NotConvergedError`, and `DomainError` if a
-    periodic contact without yield is compressed beyond the law.
+    `limit` is the largest pressure (Pa), a number or an array of the shape of the grid. The plastic
+    work and the work error of the result are those of `history` (zero if None), and its adhesive
+    work is zero; the caller sets them. Raises `NotConvergedError`, and `DomainError` if the
+    pressure in a periodic contact without yield exceeds E*.
     """
     K = _operator(contact, box)
     before = np.zeros(contact.grid.nodes) if history is None else history.plastic_displacement
@@ -192,7 +197,8 @@ def solve_cohesive(
     far_force, far_energy = _far(contact, indentation, box)
     energy = float(np.sum(law_of(contact).energy(gap))) * area
     if not law.yields:
-        # Bodies without yield: the linear continuation of the law beyond `limit`.
+        # Without yield, the gap can be smaller than `law.least`. Add the energy of the linear
+        # continuation there.
         energy += float(np.sum(law.continuation(found.u))) * area
     return CohesiveState(
         contact,
@@ -215,9 +221,10 @@ def solve_cohesive(
 
 
 def rigid_start(contact: Contact, *, limit: Array | float, residual: float) -> CohesiveState:
-    """The start of a loading path: a state of approaching bodies, far enough apart.
+    """Return a state of approaching bodies that are far enough apart to begin a loading path.
 
-    At this and every larger distance the equilibrium is unique, so nothing is dissipated.
+    At this and every larger distance the equilibrium is unique. So the approach up to this state
+    dissipates no energy.
     """
     z0 = contact.equilibrium_separation
     gap, convolutions = 2 * z0, 0
@@ -256,12 +263,12 @@ def rigid_pressure(contact: Contact, indentation: float, box: Box) -> Array:
 
 
 def with_interaction(state: CohesiveState) -> CohesiveState:
-    """Set the work of adhesion so far from the interaction energy and the loss of `state`."""
+    """Set the adhesive work of `state` from its interaction energy and its adhesive loss."""
     return replace(state, adhesive_work=-state.interaction_energy - state.adhesive_loss)
 
 
 def interacting_box(contact: Contact, indentation: float, history: State | None = None) -> Box:
-    """The box of the nodes that are near enough to interact as deformable bodies."""
+    """Return the box of all nodes whose gap is small enough for the attraction to deform them."""
     if contact.periodic:
         rows, columns = (slice(0, n) for n in contact.grid.nodes)
         return rows, columns
@@ -324,14 +331,17 @@ def is_unique(state: CohesiveState) -> bool:
 
 
 def _operator(contact: Contact, box: Box) -> Convolution:
-    """The half-space on `box`. The solver works on NumPy arrays, so it is on the CPU always."""
+    """Make the operator from pressure to displacement on `box`.
+
+    It is always on the CPU, because this solver needs NumPy arrays.
+    """
     build = periodic_half_space if contact.periodic else half_space
     with on_device(CPU):
         return build(shape_of(box), contact.grid.spacing, contact.pair.contact_modulus)
 
 
 def _base(contact: Contact, indentation: float, box: Box, plastic: Array | None) -> Array:
-    """Gap of the surfaces without elastic displacement on `box` (m)."""
+    """Gap (m) between the surfaces on `box` before elastic displacement."""
     base: Array = contact.gap[box] + (contact.equilibrium_separation - indentation)
     if plastic is not None:
         base += plastic[box]
@@ -355,7 +365,8 @@ def _far(contact: Contact, indentation: float, box: Box) -> tuple[float, float]:
         gap = np.maximum(contact.gap[part] + (z0 - indentation), 1.2 * z0)
         force -= float(np.sum(law.traction(gap))) * grid.cell_area
         energy += float(np.sum(law.energy(gap))) * grid.cell_area
-    # Off the grid, the mean surface of the bodies beyond the circle with the area of the grid.
+    # Off the grid, the bodies are smooth and at the mean height of the surface. They are integrated
+    # outside the circle that has the area of the grid.
     R, (wide, long) = contact.pair.radius, grid.size
     edge = wide * long / (2 * math.pi * R) + contact.mean_offset + z0 - indentation
     edge = max(edge, 2 * z0)

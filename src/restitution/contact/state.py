@@ -153,9 +153,12 @@ class State:
 
     @property
     def separation_indentation(self) -> float:
-        """Indentation min(h₀ + u_p) at which bodies without adhesion separate (m)."""
-        # It suffices to search the box, because the sum h₀ + u_p of nodes in contact is below that
-        # of nodes outside the box.
+        """Indentation (m) at which bodies without adhesion separate.
+
+        It is the smallest sum h₀ + u_p of initial gap and plastic displacement.
+        """
+        # It suffices to search the box, because h₀ + u_p is smaller at nodes in contact than at
+        # nodes outside the box.
         box = self.box if self.contact_nodes else ...
         return float((self.contact.gap[box] + self.plastic_displacement[box]).min())
 

@@ -70,8 +70,8 @@ class LennardJones:
             gap: Gap g between the surfaces (m), positive.
 
         Returns:
-            Energy per area (J/m²), which is −w (w: work of adhesion) at the equilibrium separation
-            and 0 at infinity.
+            Energy per area (J/m²), minus the work of adhesion at the equilibrium separation and 0
+            at infinity.
         """
         x2 = self._ratio(gap) ** 2
         return scalar_or_array(-self.work_of_adhesion * x2 * (4 - x2**3) / 3)
