@@ -18,7 +18,7 @@ class SurfaceError(RestitutionError, ValueError):
 
 
 class NotConvergedError(RestitutionError):
-    """A solve, a search or a path did not reach its tolerance or its end; there is no result."""
+    """A solve did not reach its tolerance, or a path did not reach its end; there is no result."""
 
 
 class DomainError(RestitutionError):

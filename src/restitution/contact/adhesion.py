@@ -35,6 +35,7 @@ from restitution.theory import Kendall
 Array = NDArray[np.float64]
 
 _ACCURACY = 1e-3  # tolerance of solves between releases, as a fraction of the crack opening
+
 # Edge nodes with an energy release rate G above the fraction _ACTIVE of the work of adhesion are
 # taken as a receding edge, and their mean G determines the balance. On a scale where the step leads
 # from 0 to 1, the balance may lie between _EARLIEST and 1.

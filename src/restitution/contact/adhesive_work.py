@@ -43,10 +43,11 @@ def work_by_balance(
     load: Callable[[Contact, float, State | None], State],
     tolerance: float,
 ) -> tuple[float, float, int]:
-    """Return the loading work (J), the error of the quadrature (J) and the convolutions.
+    """Return the loading work (J), the error of its quadrature (J) and the number of convolutions.
 
-    The work is integrated from `start`, or from first touch. `load` solves at another depth (m),
-    with a shallower state (or None) as its initial guess. `tolerance` is relative to the work.
+    The force at the balances of a few contact areas is integrated over the indentation, from
+    `start` or, if None, from first touch. `load` solves at another depth (m), with a shallower
+    state (or None) as its initial guess. `tolerance` is relative to the work.
     """
     contact, last = state.contact, state.indentation
     first, work, convolutions = 0.0, 0.0, 0
@@ -111,7 +112,7 @@ def work_by_force(
 
 
 def pinning_error(state: State) -> float:
-    """Error of the work (J) because the grid pins the contact edge between its nodes."""
+    """Error of the loading work (J) that arises because the grid pins the contact edge."""
     contact = state.contact
     return _PINNING[contact.approach] * contact.work_of_adhesion * state.contact_area
 

@@ -35,7 +35,8 @@ class Body:
             raise CaseError(f"youngs_modulus: {self.youngs_modulus} Pa is not a positive modulus")
         if not -1 < self.poissons_ratio <= 0.5:
             raise CaseError(
-                f"poissons_ratio: {self.poissons_ratio} is not above -1 and at most 0.5"
+                f"poissons_ratio: {self.poissons_ratio} is not possible; give a value above -1 and "
+                "at most 0.5"
             )
         if self.density is not None and not (math.isfinite(self.density) and self.density > 0):
             raise CaseError(f"density: {self.density} kg/m³ is not a positive density")
@@ -125,7 +126,7 @@ class Pair:
         return 1 / (1 / self.first.mass + 1 / self.second.mass)
 
     def _reduced(self) -> str:
-        """R*, E* and m*, as `repr` shows them."""
+        """Text with the reduced radius, modulus and mass, for `repr`."""
         mass = "" if self.mass is None else f", m* {quantity(self.mass, 'kg')}"
         E = quantity(self.contact_modulus, "Pa")
         if self.flat:

@@ -71,6 +71,7 @@ GROWTH, LARGEST = 0.65, 3.5
 # Relative increase of the coefficients c₀ (value at first yield), c₁ and c₂ on a ridge.
 _RIDGE_ONSET, _RIDGE_GROWTH, _RIDGE_LARGEST = 0.11, 1.1, 0.25
 _DEPTH_FACTOR = 2.0  # the elastic pressure is computed at this multiple of the indentation
+
 # Tolerance of the elastic solve: a multiple of the tolerance of the bounded solve, and its largest
 # value. At 1e-4, COR is within 1e-4 of its value at 1e-8 (tests/contact/test_cavity.py).
 _RESIDUAL_FACTOR, _LARGEST_RESIDUAL = 1e4, 1e-4
@@ -78,9 +79,10 @@ _TABOR = 0.2  # ratio of the representative strain to a/R
 
 
 def yield_bound(contact: Contact, indentation: float, residual: float) -> tuple[Array, int]:
-    """Compute the pressure bound (Pa) of each node at `indentation` (m); count the convolutions.
+    """Return the pressure bound (Pa) of each node at `indentation` (m), and the convolutions.
 
-    The array has the shape of the grid and is read-only. `residual` is the tolerance of the solve
+    The bound is an array of the shape of the grid, read-only. The second result is the number of
+    convolutions that it took. `residual` is the tolerance of the solve
     under this bound. The bound is computed from an elastic solve. This solve uses a larger
     tolerance, because the bound depends only on the logarithm of the elastic pressure. It is no
     error if the elastic contact reaches the edge of the grid. Raises `NotConvergedError`.

@@ -50,6 +50,7 @@ Array = NDArray[np.float64]
 COARSEST = 0.3
 COMPANION = "companion"  # provenance key of a surface that serves only to compare grids
 _REACH = 12.0  # nodes are solved if their gap between rigid bodies is below this multiple of z₀
+
 # Tolerance of u/z₀: the first value times the `residual` of a solve, but at least the second value,
 # because of rounding.
 _TOLERANCE, _LEAST_TOLERANCE = 100.0, 1e-7
@@ -80,12 +81,15 @@ class CohesiveState(State):
 
     @property
     def force(self) -> float:
-        """Normal force (N) of all nodes and of the bodies outside the grid."""
+        """Normal force (N), including the attraction of the bodies outside `box` and the grid."""
         return super().force + self.far_force
 
     @property
     def box_touching(self) -> NDArray[np.bool_]:
-        """Whether the gap of each node of the box is below that of the largest traction (bool)."""
+        """Whether each node of the box is in contact (bool).
+
+        A node is in contact if its gap is below the gap of the largest attraction.
+        """
         return box_gap(self) < float(law_of(self.contact).gap_of_largest_traction)
 
     @property
@@ -95,7 +99,7 @@ class CohesiveState(State):
 
     @property
     def potential_energy(self) -> float:
-        """Elastic energy and energy of the interaction (J)."""
+        """Sum of elastic energy and interaction energy (J)."""
         return self.stored_energy + self.interaction_energy
 
 
@@ -131,12 +135,15 @@ def needed_spacing(contact: Contact) -> float:
 
 
 def resolves_range(contact: Contact) -> bool:
-    """Whether the cells are fine enough for the range of the attraction."""
+    """Whether the cells of the grid resolve the range of the attraction."""
     return max(contact.grid.spacing) <= needed_spacing(contact)
 
 
 def require_fine_grid(contact: Contact) -> None:
-    """Raise `CaseError` if the cells are too coarse for the range, except for a `COMPANION`."""
+    """Raise `CaseError` if the cells are too coarse to resolve the range of the attraction.
+
+    Surfaces that serve only to compare grids (`COMPANION`) may have coarser cells.
+    """
     if not resolves_range(contact) and not contact.surface.provenance.get(COMPANION):
         raise CaseError(
             f"grid.spacing: {1e9 * max(contact.grid.spacing):.4g} nm is too coarse for the range "
@@ -245,7 +252,7 @@ def from_rigid(
     residual: float,
     box: Box | None = None,
 ) -> CohesiveState:
-    """Solve from the pressures that rigid bodies would have at `indentation`."""
+    """Find the equilibrium at `indentation`, starting from the pressure between rigid bodies."""
     box = box or interacting_box(contact, indentation)
     p = rigid_pressure(contact, indentation, box)
     K = _operator(contact, box)
@@ -256,7 +263,10 @@ def from_rigid(
 
 
 def rigid_pressure(contact: Contact, indentation: float, box: Box) -> Array:
-    """Pressure of the law between rigid bodies (Pa), where they attract; zero elsewhere."""
+    """Pressure (Pa) of the interface law between rigid bodies.
+
+    It is zero at nodes whose gap is below that of the largest attraction.
+    """
     gap = _base(contact, indentation, box, None)
     least = float(law_of(contact).gap_of_largest_traction)
     return np.where(gap > least, -law_of(contact).traction(np.maximum(gap, least)), 0.0)
@@ -314,11 +324,11 @@ def on_box(state: CohesiveState, box: Box, *, residual: float) -> CohesiveState:
 def is_unique(state: CohesiveState) -> bool:
     """Whether the equilibrium is unique at this distance of the bodies and at every larger one.
 
-    This is so if the spectral radius of K diag(max(−φ″, 0)) is below 1, where K gives the elastic
-    displacement due to a pressure and φ is the interaction energy per area. The largest row sum
-    bounds this radius. In a periodic contact the row sums of K vanish; the bound is then the
-    compliance of the longest wave, λ/(πE*), times the largest −φ″ at any gap not smaller than the
-    present smallest gap.
+    The equilibrium is unique if the spectral radius of the matrix K diag(max(−φ″, 0)) is below 1.
+    K is the operator from pressure to elastic displacement, and φ the interaction energy per area
+    as a function of the gap. The largest row sum of the matrix is an upper bound of this radius. In
+    a periodic contact the row sums of K vanish. The bound is then the compliance λ/(πE*) of the
+    longest wave (wavelength λ), times the largest −φ″ at the present smallest gap or larger gaps.
     """
     contact = state.contact
     if contact.periodic:
@@ -349,7 +359,10 @@ def _base(contact: Contact, indentation: float, box: Box, plastic: Array | None)
 
 
 def _far(contact: Contact, indentation: float, box: Box) -> tuple[float, float]:
-    """Force (N) and energy (J) of the rigid nodes outside `box` and of the bodies off the grid."""
+    """Force (N) and energy (J) of the nodes outside `box` and of the bodies outside the grid.
+
+    All of them are treated as rigid.
+    """
     if contact.periodic:
         return 0.0, 0.0
     law, grid, (rows, columns) = law_of(contact), contact.grid, box

@@ -26,9 +26,10 @@ def law_of(contact: Contact) -> LennardJones:
 
 
 def stiffness(contact: Contact, x: Array) -> Array:
-    """Slope of the attractive traction over the gap (Pa/m); negative where the attraction weakens.
+    """Derivative of the attractive traction with respect to the gap (Pa/m).
 
-    `x` is the ratio of the equilibrium separation to the gap.
+    It is negative where the attraction weakens as the gap grows. `x` is the ratio of the
+    equilibrium separation to the gap.
     """
     scale = 8 * contact.work_of_adhesion / contact.equilibrium_separation**2
     slope: Array = scale * x**4 * (3 * x**6 - 1)
@@ -36,7 +37,7 @@ def stiffness(contact: Contact, x: Array) -> Array:
 
 
 def largest_softening(contact: Contact, smallest_gap: float) -> float:
-    """Largest rate (Pa/m) at which the attraction weakens with the gap, from `smallest_gap` on."""
+    """Largest rate (Pa/m) at which the attraction weakens as the gap grows from `smallest_gap`."""
     x = np.minimum(contact.equilibrium_separation / np.asarray(smallest_gap), _SOFTEST)
     return max(0.0, -float(stiffness(contact, x)))
 
@@ -61,9 +62,9 @@ class BoundedLaw:
         self._stiff = 0.0 if self.yields else stiffness(contact, x)
 
     def __call__(self, u: Array) -> tuple[Array, Array, Array]:
-        """Return the energy (J/m²) at the displacement `u`, and its first two derivatives by `u`.
+        """Return the energy (J/m²) at the displacement `u`, and its first and second derivative.
 
-        The derivatives are the attractive traction (Pa) and its slope (Pa/m).
+        The derivatives are the attractive traction (Pa) and the slope of this traction (Pa/m).
         """
         gap = self.base + u
         below = np.minimum(gap - self.least, 0.0)

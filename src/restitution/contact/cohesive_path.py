@@ -42,6 +42,7 @@ Array = NDArray[np.float64]
 # of the energies of the contact.
 ACCURACY = 2e-4
 _FIRST_STEP = 0.25  # length of the first step, in units of the equilibrium separation z₀
+
 # Longest step of unloading under tension, in units of z₀ plus the adhesive length.
 _UNDER_TENSION = 0.15
 # Shortest step, in units of z₀. If even this step fails, the path cannot be followed; this is an
@@ -49,6 +50,7 @@ _UNDER_TENSION = 0.15
 _LEAST_STEP = 1e-5
 _MOST_STEPS = 5000
 _FARTHEST = 0.02  # unloading ends where the tension is below this fraction of the largest tension
+
 # When the box must grow, it is made larger than needed by this factor, so that it seldom grows.
 _WIDER = 1.3
 
@@ -140,8 +142,8 @@ class _Step:
     """A trial step: the state at its end, and its work and energy (J).
 
     `by_trapezium` and `by_parabola` are the work of the force by two rules of integration. `change`
-    is the change of the potential energy plus the plastic work. `uncertainty` is that of the work
-    if the force has jumped in the step.
+    is the change of the potential energy plus the plastic work. `uncertainty` is the error of the
+    work if the force has jumped in the step.
     """
 
     state: CohesiveState
@@ -211,7 +213,7 @@ def follow(
 
 
 def _accounted(state: CohesiveState, step: _Step, smooth: bool) -> CohesiveState:
-    """The state of an accepted step, with its losses and errors added to those of `state`."""
+    """Return the state after an accepted `step`; add its losses and errors to those of `state`."""
     lost = 0.0 if smooth else max(step.by_trapezium - step.change, 0.0)
     error = 0.0 if smooth else min(step.uncertainty, max(lost, abs(step.change)))
     unaccounted = state.unaccounted + (step.by_parabola - step.change if smooth else 0.0)
@@ -226,7 +228,7 @@ def _accounted(state: CohesiveState, step: _Step, smooth: bool) -> CohesiveState
 
 
 def _try(previous: CohesiveState | None, state: CohesiveState, at: float, residual: float) -> _Step:
-    """Solve at the indentation `at`, from an extrapolation of the last two states."""
+    """Make a trial step to the indentation `at`, starting from an extrapolation of two states."""
     contact, box = state.contact, state.box
     limit, convolutions = state.bound, 0
     if at > state.indentation:
@@ -274,7 +276,7 @@ def _parabola(previous: CohesiveState, state: CohesiveState, new: CohesiveState)
 
 
 def _scale(state: CohesiveState, *, loading: bool) -> float:
-    """Energy (J) of which a step may leave at most the fraction `accuracy` unaccounted for."""
+    """Energy scale (J) of the contact, to which the unaccounted work of a step is related."""
     scale = state.stored_energy + abs(state.interaction_energy)
     return scale + state.plastic_work if loading else scale
 

@@ -32,6 +32,7 @@ Approach = Literal["equilibrium", "hertzian", "pull-increments"]
 Adhesion = Literal["jkr", "cohesive"]
 EQUILIBRIUM_SEPARATION = 0.3e-9  # default range of the attraction z₀ (m)
 FULL_CONSTRAINT = 2.8  # pressure over yield strength of fully plastic contact (Tabor 1951)
+
 # Position of the apex of smooth adhesive bodies relative to a node (cells), see `Contact.apex`. The
 # point lies on no symmetry axis of the grid, so nodes do not attach or detach in groups.
 _OFF_NODE = 0.31, 0.17
@@ -250,7 +251,7 @@ class Contact:
         return 1.86 * math.sqrt(self.work_of_adhesion * h / self.pair.contact_modulus)
 
     def residual_length(self, indentation: float) -> float:
-        """Length by which residuals of adhesive contacts are divided.
+        """Length to which residuals of adhesive contacts are related.
 
         Args:
             indentation: Approach of the bodies (m).

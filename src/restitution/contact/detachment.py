@@ -70,6 +70,7 @@ _LARGEST_ON_COARSE_GRIDS = 1.04
 _RESOLVED_RIM, _AT_REST = 2.0, 0.002
 _LEAST_STRIP = 0.75  # smallest width (cells) of a strip; in narrower ones nodes are released singly
 _SMOOTHED = 3  # standard deviation (cells) of the filter that smooths the outline of the contact
+
 # Tensions that differ by less than this fraction of the largest tension count as equal, because
 # the difference may be an error of the solve.
 _TIE = 1e-3
@@ -197,10 +198,10 @@ class Edge:
         outwards = (_FACES @ np.array([row, 1]))[side]
 
         def values_at(values: Array, cells: int) -> Array:
-            """Return `values` on the normal of each face, `cells` cells outwards of its edge node.
+            """Return `values` at the node that lies `cells` cells outwards of the edge node.
 
-            A face is a side of an edge node without contact beyond it. Negative `cells` lie
-            inwards.
+            There is one value for each face. A face is a side of the cell of an edge node without
+            contact beyond it; outwards is across this side. Negative `cells` lie inwards.
             """
             found: Array = np.take(values, here + cells * outwards, mode="clip")
             return found
@@ -288,7 +289,10 @@ def _curvature(touching: Mask, nodes: Nodes, faces: NDArray[np.intp]) -> Array:
 
 
 def _patch_numbers(touching: Mask, nodes: Nodes) -> NDArray[np.intp]:
-    """Number of the patch of each edge node; patches are joined by sides or corners of cells."""
+    """Number of the patch to which each edge node belongs.
+
+    Contact nodes are in the same patch if their cells are connected by sides or corners.
+    """
     from scipy.ndimage import label
 
     numbers: NDArray[np.intp] = label(touching, structure=np.ones((3, 3)))[0][nodes]

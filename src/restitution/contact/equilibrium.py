@@ -49,7 +49,8 @@ from restitution.numerics.read_only import freeze
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-# Default tolerance on the violation of the contact conditions, relative to the overlap δ − min h.
+# Default tolerance on the violation of the contact conditions, relative to the largest overlap of
+# the undeformed surfaces.
 RESIDUAL = 1e-8
 MAX_ITERATIONS = 1000  # iterations after which a solve counts as not converged
 
@@ -97,10 +98,10 @@ def solve_pressure(
 
     The lower bound is 0, or minus the tension at the `held` nodes (None without adhesion). `limit`
     (Pa) is a number or an array of the shape of the grid. `box` contains the `candidate_box` and
-    all held nodes. `residual` bounds the violation of the contact conditions, relative to the
-    overlap δ − min h or, with adhesion, to `Contact.residual_length`. Contact at the grid edge is
-    not checked here. Raises `NotConvergedError`, and `DomainError` if an elastic periodic contact
-    cannot be as deep.
+    all held nodes. `residual` is the tolerance on the violation of the contact conditions, relative
+    to the largest overlap before deformation or, with adhesion, to `Contact.residual_length`.
+    Contact at the grid edge is not checked here. Raises `NotConvergedError`, and `DomainError` if a
+    periodic contact of elastic bodies is already complete at a smaller indentation.
     """
     device, shape = current(), shape_of(box)
     b = _overlap(contact, indentation, box, history)
@@ -200,7 +201,7 @@ def _overlap(contact: Contact, indentation: float, box: Box, history: State | No
 
 
 def _scale_of(contact: Contact, indentation: float, b: Array) -> float:
-    """The length (m) by which residuals are divided; `b` is the overlap."""
+    """Length (m) to which residuals are related; `b` is the overlap before deformation."""
     return contact.residual_length(indentation) if contact.adhesive else float(b.max())
 
 

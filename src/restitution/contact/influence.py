@@ -31,8 +31,8 @@ Operator = TypeVar("Operator", FreeConvolution, PeriodicConvolution, SpectralFil
 Moduli = TypeVar("Moduli", float, tuple[float, float])
 
 # Distance (in cell diagonals) beyond which the series of `far_displacement` is used. Beyond this
-# distance the relative error of the series is under 2e-12. In Love's formula, cancellation makes
-# the error grow as (r/h)².
+# distance the relative error of the series is under 2e-12. The relative error of Love's formula
+# grows, due to cancellation, as the square of the distance.
 _FAR = 32.0
 
 
@@ -61,10 +61,12 @@ def far_displacement(x: Array, y: Array, hx: float, hy: float, contact_modulus: 
     The Taylor series of the displacement due to a point load is averaged over the cell. With the
     displacement u, the pressure p and the distance r from the cell,
     u πE*/(p hx hy) = [1 + (hx²∂x² + hy²∂y²)/24 + hx⁴∂x⁴/1920 + hx²hy²∂x²∂y²/576 + hy⁴∂y⁴/1920] 1/r.
-    The next term is of relative order (h/r)⁶. `x` and `y` (m) are a column and a row.
+    The relative error is of the order of the sixth power of cell size over distance. `x` and `y`
+    (m) are a column and a row.
     """
     xx, yy = hx * hx, hy * hy
-    # Polynomials in c, the squared direction cosine along x: ∂x² 1/r = (3c − 1)/r³ and so on.
+    # Coefficients of polynomials in c, the squared direction cosine along x. They follow from
+    # ∂x² 1/r = (3c − 1)/r³ and the further derivatives.
     second = np.array([2 * yy - xx, 3 * (xx - yy), 0.0]) / 24
     fourth = (
         np.array([9 * xx * xx + 24 * yy * yy, -90 * xx * xx - 120 * yy * yy, 105 * (xx**2 + yy**2)])
@@ -143,8 +145,8 @@ def inverse_half_space(
 ) -> SpectralFilter:
     """Make the operator from displacement to pressure, an approximate inverse of `half_space`.
 
-    It multiplies displacement waves of the wave number |q| by |q| E*/2, which is exact for a
-    periodic half-space (Johnson 1985).
+    It multiplies a displacement wave of the angular wave number |q| by |q| E*/2, which is exact for
+    a periodic half-space (Johnson 1985).
     """
     return _operator(_inverse_half_space, shape, spacing, contact_modulus)
 

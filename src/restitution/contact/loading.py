@@ -186,7 +186,7 @@ def solve_without_work(
 
 
 def _limit_at(contact: Contact, indentation: float, residual: float) -> tuple[Array | float, int]:
-    """Return the pressure bound of the solve (Pa) and the convolutions spent on computing it.
+    """Return the pressure bound of a solve (Pa), and the number of convolutions that it took.
 
     The bound is infinite if the pressure is truncated after the solve.
     """
@@ -215,7 +215,7 @@ def solve_nonadhesive(
 
 
 def truncate_pressure(elastic: State) -> State:
-    """Truncate the elastic pressure at p_y, without redistributing the excess pressure.
+    """Truncate the elastic pressure at the yield pressure, without redistributing the excess.
 
     Force and area are then those of Thornton and Ning (1998). The truncated pressure deforms the
     bodies less, so their surfaces overlap in the contact and beside it. This overlap becomes the
@@ -297,7 +297,10 @@ def with_work(state: State, start: State | None) -> State:
 
 
 def _adhesive_work_is_negligible(state: State) -> bool:
-    """Whether the largest possible adhesive work on approach is below the tolerance of the work."""
+    """Whether the work of adhesion times the contact area is small compared with the other work.
+
+    In this case the adhesive work on approach is not integrated.
+    """
     contact = state.contact
     if not contact.adhesive or contact.approach != "equilibrium":
         return False

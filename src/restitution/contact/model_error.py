@@ -61,9 +61,9 @@ def model_error(state: State, restitution: float) -> float:
 def hysteresis_ratio(tabor: float) -> float:
     """Energy dissipated in a cycle of contact of smooth elastic spheres, over that of JKR.
 
-    Beyond the last value of the reference (µ = 5), the difference from 1 is extrapolated with the
-    exponent found between µ = 3 and 5. This exponent increases with µ up to there, so the result is
-    too small rather than too large.
+    Up to the Tabor parameter µ = 5, the result is interpolated in a table. Beyond, its difference
+    from 1 is extrapolated as a power of µ, with the exponent found between µ = 3 and 5. Up to µ = 5
+    this exponent increases with µ, so the extrapolated result is rather too small than too large.
     """
     if tabor >= _TABOR[-1]:
         return 1 - (1 - _HYSTERESIS[-1]) * math.pow(_TABOR[-1] / tabor, _BEYOND)

@@ -45,7 +45,7 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
     """
     mass = contact.pair.mass
     if mass is None:
-        raise CaseError("density: is missing; give the density of both bodies, or no velocity")
+        raise CaseError("density: is missing; an impact velocity needs the density of both bodies")
     if contact.periodic:
         raise CaseError("velocity: the bodies of a periodic contact have no mass; use solve")
     if not 0 < velocity < math.inf:
@@ -90,7 +90,7 @@ class _Search:
         self.found: dict[float, State] = {}
 
     def at(self, indentation: float) -> State:
-        """The state at an indentation (m), loaded from the deepest shallower state."""
+        """Return the state at an indentation (m), solved from the next shallower known state."""
         if indentation not in self.found:
             shallower = (state for depth, state in self.found.items() if depth < indentation)
             guess = max(shallower, key=lambda state: state.indentation, default=self._start)

@@ -30,14 +30,17 @@ Array = NDArray[np.float64]
 RESTITUTION_ERROR = 0.002
 _ACCURACY = 1e-3  # tolerance of the solves as a fraction of the crack opening at the edge
 _STEPS_OF_RECOVERY = 8  # smallest number of steps over the elastic recovery
+
 # Smallest number of steps over the pull-off displacement of a punch of the same area.
 _STEPS_OF_TENSION = {"crack-closure": 32, "pohrt-popov": 16}
 _FINEST = 400  # the shortest step is this pull-off displacement divided by _FINEST
 _REFINEMENTS = (1, 2, 4)  # factors on the number of steps, tried until the tolerance is met
+
 # If the error of the steps is below this fraction of the surface energy (work of adhesion times
 # contact area), the error of the grid is larger (see `collision`). Finer steps are then useless.
 _SMALL = {"crack-closure": 0.005, "pohrt-popov": 0.0}
 _MOST_STEPS = 3000  # steps after which unloading counts as not converged
+
 # Error of the unloading work as a fraction of the work of late release. To first order, the
 # integral of the force through the states after each release does not contain this work. In a
 # comparison with ten times finer steps, the fraction was below 0.1 with `crack-closure` and below
@@ -268,19 +271,19 @@ def _plan(state: State, tolerance: float) -> tuple[float, float]:
 
 
 def _tension_reach(state: State) -> float:
-    """Pull-off displacement (m) of a punch of the same area (Kendall 1971)."""
+    """Pull-off displacement (m) of a flat punch with the contact area of `state` (Kendall 1971)."""
     punch, a = _punch(state)
     return float(punch.pull_off_displacement(a))
 
 
 def _punch_force(state: State) -> float:
-    """Pull-off force (N) of a punch of the same area (Kendall 1971)."""
+    """Pull-off force (N) of a flat punch with the contact area of `state` (Kendall 1971)."""
     punch, a = _punch(state)
     return float(punch.pull_off_force(a))
 
 
 def _punch(state: State) -> tuple[Kendall, float]:
-    """Kendall's law for the bodies, and the radius (m) of the punch with the contact area."""
+    """Return Kendall's law and the radius (m) of a flat punch with the contact area of `state`."""
     contact = state.contact
     punch = Kendall(contact.pair.contact_modulus, contact.work_of_adhesion)
     return punch, math.sqrt(state.contact_area / math.pi)

@@ -75,23 +75,23 @@ class TangentialState:
 
     @property
     def force(self) -> float:
-        """Tangential force T = Σ q hx hy (N)."""
+        """Tangential force (N): the sum of the traction over all nodes, times the cell area."""
         return float(self.box_traction.sum()) * self.normal.contact.grid.cell_area
 
     @property
     def stored_energy(self) -> float:
-        """Elastic energy (J) of the traction: ½ Σ q C q hx hy."""
+        """Elastic energy (J) due to the traction: half the work of the traction on the surfaces."""
         twice = float(np.einsum("ij,ij->", self.box_traction, self.box_displacement))
         return 0.5 * twice * self.normal.contact.grid.cell_area
 
     @property
     def slip(self) -> Array:
-        """Slip s = U − C q (m) on `box`."""
+        """Slip (m) on `box`: displacement of the bodies minus that of their surfaces."""
         return self.displacement - self.box_displacement
 
     @property
     def sticking(self) -> NDArray[np.bool_]:
-        """Whether a node sticks (bool), on `box`: the traction is below µ p."""
+        """Whether a node sticks (bool), on `box`: the traction is below Coulomb's limit."""
         return np.abs(self.box_traction) < _limit(self.normal, self.friction, self.box)
 
     def _summary(self) -> list[str]:
@@ -200,5 +200,5 @@ def shear(
 
 
 def _limit(normal: State, friction: float, box: Box) -> Array:
-    """Limit µ p of the traction (Pa) on `box`."""
+    """Coulomb's limit of the traction (Pa) on `box`: coefficient of friction times pressure."""
     return friction * normal.pressure_on(box)

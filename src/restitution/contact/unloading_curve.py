@@ -21,6 +21,7 @@ Array = NDArray[np.float64]
 
 _FEW_NODES = 10  # a contact of fewer nodes has too few edge nodes to compute a balance
 _SMOOTHED = 11  # number of points in each parabola that smooths the force
+
 # A change of the force between two points is a jump if it exceeds this fraction of the largest
 # tension.
 _JUMP = 0.1
@@ -178,9 +179,9 @@ class SharedUnloading:
         return abs(force - known) <= _SAME * max(self.curve.largest_tension(), abs(force))
 
     def below(self, state: State) -> Iterator[State]:
-        """Yield the known states at smaller indentations, with their work adapted to `state`.
+        """Yield the known states at smaller indentations than `state`.
 
-        Their work then is that of the whole path, which ends at `state` before they are joined.
+        Their adhesive work is changed, so that their loading work continues that of `state`.
         """
         following = self._following(state)
         first = following[0]

@@ -34,6 +34,7 @@ NodePotential = Callable[[Array], tuple[Array, Array, Array]]
 MOST_STEPS = 300  # Newton steps after which the solve counts as not converged
 _MOST_ITERATIONS = 500  # limit on the conjugate-gradient iterations of one Newton step
 _FORCING = 0.1  # largest residual of the linear system of a step, relative to the gradient
+
 # Limits of the ratio of the actual to the predicted decrease of the energy. A step is accepted
 # above _TAKEN. The trust region shrinks below _POOR and may grow above _GOOD.
 _TAKEN, _POOR, _GOOD = 0.05, 0.25, 0.75

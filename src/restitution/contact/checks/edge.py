@@ -13,6 +13,7 @@ from restitution.contact.state import State
 from restitution.errors import DomainError
 
 _MARGIN = 1.2  # width of the recommended grid over the largest possible width of the contact
+
 # First touch counts as off-centre if its distance from the centre exceeds this fraction of the
 # width of the grid.
 _OFF_CENTRE = 0.25

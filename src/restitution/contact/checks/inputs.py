@@ -24,6 +24,7 @@ _OBLONG = 0.01  # relative difference of the edges of a pixel
 _STEEP = 0.5  # rms slope, beyond which small-slope theory is inaccurate
 _PRESSURES = (1e-5, 0.3)  # p_y/E*, from soft polymers to the ideal strength
 _NEAR_EDGE = 0.1  # distance of first touch from the edge (widths of the grid)
+
 # Factor on the displacement outside a smooth contact. It is below 1 because a rough contact carries
 # less force.
 _DISPLACED = 0.7

@@ -214,7 +214,7 @@ def unresolved_adhesion(depths: Sequence[float], nodes: Sequence[float]) -> list
 
 
 def grid_of_a_scan(contact: Contact) -> bool:
-    """Whether the grid covers a whole scan, so that a larger grid needs a larger scan."""
+    """Whether the grid covers a whole scan, so that only a larger scan allows a larger grid."""
     provenance = contact.surface.provenance
     if provenance.get("source") != "measured":
         return False

@@ -63,7 +63,7 @@ class BoundedQuadratic:
 
     `K` computes in double precision. `b` has shape (nx, ny), and a bound is a number or an array of
     this shape. `K_single` is K in single precision, for the products of K with steps. If `K_single`
-    is None, K is used for them too.
+    is None, these products are computed with K.
     """
 
     K: Operator

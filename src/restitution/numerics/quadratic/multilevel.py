@@ -50,10 +50,12 @@ _MIN_NODES_FOR_GUESS, _MIN_NODES_TO_COARSEN = 120, 80
 _COARSE_ACCURACY, _FINER_COARSE_ACCURACY = 1e-2, 3e-3
 _COARSE_ITERATIONS = 60
 _MARGIN = 3  # nodes by which the window exceeds the guessed contact on each side
+
 # Largest window, as a fraction of all nodes. A larger window saves less time than the check of all
 # nodes takes.
 _MAX_WINDOW_FRACTION = 0.7
 _PLACES = 8  # points along each axis around which local means are taken (see `local_mean`)
+
 # In a nearly fully plastic contact, the gradient is used to correct the contact edge of a guess.
 # First number: the guess is corrected if at most this fraction of the contact nodes is strictly
 # between the bounds. Second number: size of the correction, as a fraction of the pressure that
@@ -201,7 +203,10 @@ def mean_damped_preconditioner(inverse: Operator, p: Array, b: Array, upper: Bou
 
 
 def may_coarsen(shape: tuple[int, ...], periodic: bool) -> bool:
-    """Whether a grid of this shape is large enough to be coarsened; if periodic, also even."""
+    """Whether a grid of this shape is large enough to be coarsened.
+
+    If `periodic`, its numbers of nodes must also be even.
+    """
     even = all(n % 2 == 0 for n in shape)
     return min(shape) >= _MIN_NODES_TO_COARSEN and (even or not periodic)
 
@@ -240,7 +245,7 @@ def _first_guess(
     accuracy: float,
     periodic: bool = False,
 ) -> tuple[Array, Array]:
-    """Solve on the grid of `level`; return the solution prolonged to the next finer grid.
+    """Solve on the grid of `level`; return the solution, prolonged to the next finer grid.
 
     The solve starts from the first guess of the next coarser grid, or from zero on the coarsest
     grid. Its tolerance is the fraction `accuracy` of the largest b. The second result is the

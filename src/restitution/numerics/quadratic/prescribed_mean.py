@@ -23,6 +23,7 @@ from restitution.numerics.quadratic.multilevel import Operators, coarsened, may_
 Array = NDArray[np.float64]
 
 _MAX_SOLVES = 60  # solves on one grid after which the search counts as not converged
+
 # Tolerance of a solve as a fraction of the estimated error of the multiplier D.
 _ACCURACY = 0.05
 # Largest error of the mean that the violation of the optimality conditions may cause, as a fraction
