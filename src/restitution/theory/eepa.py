@@ -83,7 +83,7 @@ class EEPA:
             indentation: Approach of the spheres δ (m).
 
         Returns:
-            Normal force F (N). It jumps from 0 to f₀ at first touch.
+            Normal force F (N). It jumps from 0 to the constant force f₀ at first touch.
         """
         d = touching(indentation)
         F = self.constant_force + self.loading_stiffness * d**self.exponent
@@ -148,7 +148,7 @@ class EEPA:
         return self.constant_force * d + self.loading_stiffness * d ** (n + 1) / (n + 1)
 
     def unloading_work(self, maximum_indentation: Values) -> Array:
-        """Work returned from `maximum_indentation` to δ = 0.
+        """Work that the contact returns on unloading from `maximum_indentation` to δ = 0.
 
         Args:
             maximum_indentation: Indentation at which unloading began, δ_max (m).

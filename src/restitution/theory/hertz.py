@@ -125,7 +125,9 @@ class Hertz:
         return 8 / 15 * self.contact_modulus * self.radius**0.5 * touching(indentation) ** 2.5
 
     def impact_velocity(self, indentation: Values, mass: Values) -> Array:
-        """Impact velocity V at which the impact energy ½ m* V² is the energy at an indentation.
+        """Impact velocity that is just large enough to reach an indentation.
+
+        The impact energy ½ m* V² then equals the elastic energy stored at this indentation.
 
         Args:
             indentation: Approach of the spheres δ (m).

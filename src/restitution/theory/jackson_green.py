@@ -70,7 +70,7 @@ class JacksonGreen:
 
     @cached_property
     def elastic(self) -> Hertz:
-        """Hertz contact that the fit follows up to the normalised indentation ω* = 1.9."""
+        """Hertz contact, which the fit follows up to 1.9 times the indentation at first yield."""
         return Hertz(self.radius, self.contact_modulus)
 
     @cached_property
@@ -106,7 +106,8 @@ class JacksonGreen:
     def hardness(self, contact_radius: Values) -> Array:
         """Mean contact pressure of fully plastic flow.
 
-        It tends to 2.84 Y for small contacts and decreases as a/R* grows.
+        It is 2.84 times the yield strength in the limit of small contacts, and decreases as the
+        contact radius grows.
 
         Args:
             contact_radius: Contact radius a (m).
@@ -136,5 +137,5 @@ class JacksonGreen:
         return scalar_or_array(first.force * np.where(w <= TRANSITION, w**1.5, fit))
 
     def _normalised(self, indentation: Values) -> Array:
-        """Normalised indentation ω* = ω/ω_c, zero for separated bodies."""
+        """Indentation over the indentation at first yield; zero for separated bodies."""
         return touching(indentation) / self.first_yield.indentation

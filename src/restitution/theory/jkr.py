@@ -195,7 +195,7 @@ class JKR:
 
     @property
     def break_force(self) -> Array:
-        """Force −5/9 F_c (N) at which the contact breaks at fixed grips."""
+        """Force (N) at which the contact breaks at fixed grips: −5/9 of the pull-off force."""
         return -5 / 9 * self.pull_off_force
 
     @cached_property
@@ -211,7 +211,7 @@ class JKR:
 
     @property
     def jump_in_force(self) -> Array:
-        """Force −8/9 F_c (N) right after the jump into contact at δ = 0."""
+        """Force (N) right after the jump into contact at δ = 0: −8/9 of the pull-off force."""
         return -8 / 9 * self.pull_off_force
 
     @property
@@ -239,7 +239,7 @@ class JKR:
         return scalar_or_array(np.where(np.asarray(indentation) <= 0, 0.0, W_l))
 
     def unloading_work(self, indentation: Values) -> Array:
-        """Work returned on unloading from an indentation to the break.
+        """Work that the contact returns on unloading from an indentation until it breaks.
 
         For δ ≥ 0 this work equals `loading_work` minus `hysteresis_loss`.
 
@@ -263,15 +263,17 @@ class JKR:
         return (_AT_BREAK - _AT_JUMP_IN) * self._energy_unit
 
     def impact_velocity(self, maximum_indentation: Values, mass: Values) -> Array:
-        """Impact velocity V at which the impact energy ½ m* V² is the work to an indentation.
+        """Impact velocity that is just large enough to reach an indentation.
+
+        The impact energy ½ m* V² then equals the loading work up to this indentation.
 
         Args:
             maximum_indentation: Largest indentation of the impact δ_max (m).
             mass: Reduced mass m* (kg).
 
         Returns:
-            Relative normal velocity V (m/s); NaN if this work is negative, because adhesion then
-            pulls the spheres deeper at any velocity.
+            Relative normal velocity V (m/s); NaN if the loading work is negative, because adhesion
+            then pulls the spheres deeper at any velocity.
 
         Raises:
             CaseError: `mass` is not positive and finite.

@@ -113,10 +113,10 @@ class Johnson:
 
     @property
     def _energy_of_unity(self) -> Values:
-        """Reduced energy ½m*V²/YR*³ at which e = 1."""
+        """Impact energy over YR*³ at which the formula gives e = 1."""
         return (COEFFICIENT**2 * self.yield_strength / self.contact_modulus) ** 4
 
     def _velocity(self, reduced: Values, mass: Values) -> Array:
-        """Impact velocity V (m/s) at a reduced energy ½m*V²/YR*³."""
+        """Impact velocity V (m/s) at which the impact energy over YR*³ is `reduced`."""
         (m,) = positive(mass=mass)
         return scalar_or_array(np.sqrt(2 * reduced * self.yield_strength * self.radius**3 / m))

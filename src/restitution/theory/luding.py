@@ -157,7 +157,7 @@ class Luding:
         return 0.5 * k2 * (d - d0) ** 2 + 0.5 * self.loading_stiffness * plastic * d0
 
     def unloading_work(self, maximum_indentation: Values) -> Array:
-        """Work returned from `maximum_indentation` to δ = 0.
+        """Work that the contact returns on unloading from `maximum_indentation` to δ = 0.
 
         Args:
             maximum_indentation: Indentation at which unloading began, δ_max (m).

@@ -92,7 +92,9 @@ class MDR:
         return Hertz(self.radius, self.youngs_modulus / (1 - self.poissons_ratio**2))
 
     def yield_pressure(self, indentation: Values) -> Array:
-        """Mean pressure of the yielded contact, which falls from 2.75 Y at δ = 0 towards Y.
+        """Mean pressure of the yielded contact.
+
+        It falls as the indentation grows, from 2.75 times the yield strength towards this strength.
 
         Args:
             indentation: Indentation of the sphere δ (m).
@@ -121,7 +123,7 @@ class MDR:
             indentation: Indentation of the sphere δ (m).
 
         Returns:
-            Normal force F (N); NaN for δ > R.
+            Normal force F (N); NaN if the indentation exceeds the radius of the sphere.
         """
         return scalar_or_array(self._force(self._inside(indentation)))
 
@@ -135,7 +137,7 @@ class MDR:
             indentation: Indentation of the sphere δ (m).
 
         Returns:
-            Loading work W_l = ∫F dδ (J); NaN for δ > R.
+            Loading work W_l = ∫F dδ (J); NaN if the indentation exceeds the radius of the sphere.
         """
         return scalar_or_array(self._work(self._inside(indentation)))
 
@@ -149,7 +151,8 @@ class MDR:
             maximum_indentation: Indentation at which unloading began, δ_max (m).
 
         Returns:
-            Normal force F (N); 0 at and below `residual_indentation`, NaN for δ > R.
+            Normal force F (N); 0 at and below `residual_indentation`, NaN if an indentation exceeds
+            the radius of the sphere.
         """
         d, d_max = self._inside(indentation), self._inside(maximum_indentation)
         left = np.clip((d_max - d) / self._recovery(d_max), 0.0, 1.0)
@@ -171,7 +174,7 @@ class MDR:
         return scalar_or_array(np.where(d <= self.yield_indentation, 0.0, d - self._recovery(d)))
 
     def unloading_work(self, maximum_indentation: Values) -> Array:
-        """Work returned from `maximum_indentation` to separation.
+        """Work that the contact returns on unloading from `maximum_indentation` to separation.
 
         Args:
             maximum_indentation: Indentation at which unloading began, δ_max (m).
@@ -189,7 +192,7 @@ class MDR:
             mass: Mass m of the sphere (kg).
 
         Returns:
-            Indentation δ (m); NaN if it would exceed R.
+            Indentation δ (m); NaN if it would exceed the radius of the sphere.
 
         Raises:
             CaseError: `mass` is not positive and finite.
@@ -210,7 +213,7 @@ class MDR:
 
         Returns:
             Coefficient of restitution e = (W_u/W_l)^½ (1); 1 up to yield, NaN if the indentation
-            would exceed R.
+            would exceed the radius of the sphere.
 
         Raises:
             CaseError: `mass` is not positive and finite.

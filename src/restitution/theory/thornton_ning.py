@@ -160,7 +160,7 @@ class ThorntonNing:
         return scalar_or_array(np.where(beyond, self.loading_force(d), unloading))
 
     def unloading_work(self, maximum_indentation: Values) -> Array:
-        """Work returned from `maximum_indentation` to separation.
+        """Work that the contact returns on unloading from `maximum_indentation` to separation.
 
         Args:
             maximum_indentation: Indentation at which unloading began, δ_max (m).
@@ -175,7 +175,9 @@ class ThorntonNing:
         return scalar_or_array(np.where(d <= first.indentation, elastic, plastic))
 
     def impact_velocity(self, maximum_indentation: Values, mass: Values) -> Array:
-        """Impact velocity V at which the impact energy ½ m* V² is the work to an indentation.
+        """Impact velocity that is just large enough to reach an indentation.
+
+        The impact energy ½ m* V² then equals the loading work up to this indentation.
 
         Args:
             maximum_indentation: Largest indentation of the impact δ_max (m).
@@ -261,5 +263,5 @@ class ThorntonNing:
 
 
 def _line(x: Array) -> Array:
-    """Force f = F/F_y beyond yield, on the tangent, at the indentation x = δ/δ_y."""
+    """Force beyond yield, which is linear in the indentation `x`; both relative to first yield."""
     return (3 * x - 1) / 2
