@@ -19,7 +19,7 @@ decreases, the nodes in contact approach the contact area of JKR, whose edge car
 Nodes outside the box, and the paraboloid outside the grid, attract as rigid bodies.
 
 In a periodic contact the box is the whole period, and δ is the approach of the mean planes. The
-mean of u is then zero, and the mean pressure equals the mean traction of the law.
+mean of u is then zero, and the mean pressure balances the mean traction of the law.
 """
 
 from __future__ import annotations

@@ -7,8 +7,8 @@ work of adhesion w. On a grid the edge is a staircase of nodes. Two local criter
 `pohrt-popov`: a node is released if its tension exceeds the limit σ_c of a single node on the
 half-space (Pohrt and Popov 2015, Facta Universitatis 13, 3–10). The criterion is simple and
 independent of the order of release. However, nodes on a straight edge hold until G = 1.8 w and
-nodes at a kink until G = 1.0 w. The pull-off force is therefore too large, by the relative error
-1.5 h/a, with the cell size h and the contact radius a.
+nodes at a kink until G = 1.0 w. The pull-off force is therefore too large: its relative error is
+1.5 times the cell size over the contact radius.
 
 `crack-closure`: the contact edge is a crack, and G is the work of closing the crack by one cell
 (Rybicki and Kanninen 1977, Eng. Fract. Mech. 9, 931–938). For each face between a node in contact
@@ -26,7 +26,7 @@ of the surfaces in the contact. The initial gap outside, where the surfaces neve
 count as opening.
 
 For rectangular cells σ_c² = 2πE*w hx hy/I, where I is the double integral of 1/r over the cell; for
-square cells σ_c² = E*w/(κh), κ = (2/3π)[1 − √2 + 3 ln(1 + √2)] = 0.473201.
+square cells of size hx it is E*w/(κ hx), κ = (2/3π)[1 − √2 + 3 ln(1 + √2)] = 0.473201.
 """
 
 from __future__ import annotations

@@ -2,8 +2,8 @@
 
 In each step the bodies first retract with a fixed contact area, so the force is linear in the
 indentation. Then nodes are released at the new indentation. In continuous unloading, these nodes
-would be released earlier. The late release costs work: in each step, the work is below the work of
-continuous unloading by half the force jump times the step.
+would be released earlier. Because of the late release, the work that the contact returns in a step
+is smaller than in continuous unloading, by half the jump of the force times the step.
 """
 
 from __future__ import annotations

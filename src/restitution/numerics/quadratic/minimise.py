@@ -1,4 +1,4 @@
-"""Minimisation of a convex quadratic within bounds. All contact problems use this solver.
+"""Minimisation of a convex quadratic within bounds: the solver of all non-cohesive contacts.
 
     minimise  ½ pᵀK p − pᵀb   subject to   lower ≤ p ≤ upper
 
