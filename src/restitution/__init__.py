@@ -77,8 +77,9 @@ __all__ = [
     "unloading_path",
 ]
 
-# Modules and the public names that each defines. A name is imported on first use, so that the
-# command line, which is in this package, can answer and be interrupted before NumPy is loaded.
+# Modules and the public names that each of them defines. A module is imported on first use of one
+# of its names, so that `import restitution` does not load NumPy. The command line imports this
+# package too; without the delay, it could neither print its help nor react to Ctrl-C at once.
 _MODULES = {
     "api": ("collide_obliquely", "export", "law_of", "open_results", "run"),
     "case.materials": ("material", "materials"),

@@ -35,7 +35,7 @@ def run(
 
     Args:
         case: Case file, or its tables: `{"first": {"material": "steel", "radius": "500 um"}, …}`.
-            Files that tables name are relative to the current folder.
+            File names in these tables are relative to the current folder.
         out: Folder for the results; new or empty.
         progress: Called with a short text after every step.
 
@@ -65,7 +65,7 @@ def run(
 
 
 def _read(case: Folder | Mapping[str, Any]) -> tuple[Case, str, Path]:
-    """Read a case; return it with its text and the file name that messages show."""
+    """Read a case. Return it, its TOML text, and the file name that error messages show."""
     from restitution.case.case_file import naming, parse_case, read_case
 
     if not isinstance(case, Mapping):
@@ -92,7 +92,7 @@ def open_results(folder: Folder) -> RunResults | StudyResults | PeriodicResults:
     `as_written` of a coordinate holds its values as written in the study file.
 
     Args:
-        folder: Results folder, the OUT of `restitution run`, `converge` or `study`.
+        folder: Folder that `restitution run`, `converge` or `study` wrote.
 
     Returns:
         `StudyResults` for a study, `EnsembleResults` for several surfaces, `PeriodicResults` for a
@@ -124,7 +124,7 @@ def law_of(results: Folder | RunResults) -> Law:
 
     Args:
         results: Results of a run, ensemble or convergence study, or their folder. If the folder
-            already holds a law, this law is returned.
+            holds a law that was written before, this law is read and returned.
 
     Returns:
         The law: COR, with its error, at each computed impact velocity.
@@ -149,10 +149,10 @@ def collide_obliquely(
     friction: float | None = None,
     spin: str | float | tuple[str | float, str | float] = 0.0,
 ) -> ObliqueCollision:
-    """Let the two particles of a run collide at an angle, with friction and spin.
+    """Compute an oblique collision of the two particles of a run, with friction and spin.
 
-    The normal force is that of the stored curves, and the tangential force follows from it
-    (docs/oblique.md).
+    The normal force is taken from the stored curves of loading and unloading. The tangential force
+    is computed from the normal force and the coefficient of friction (docs/oblique.md).
 
     Args:
         results: Results of a run of one surface, their folder, or a force law
@@ -160,10 +160,10 @@ def collide_obliquely(
         velocity: Relative velocity of the centres, such as "0.5 m/s", or a number (m/s).
         angle: Angle of impact from the normal, such as "30 deg", or a number (rad), from 0 to below
             90 degrees.
-        friction: Coefficient of friction µ (1); by default that of the case.
-        spin: Spin of the first body before the impact, or of both: texts such as "100 rad/s" or
-            "20 rpm", or numbers (rad/s). A spin is positive in the direction in which friction
-            turns a body without spin.
+        friction: Coefficient of friction µ (1); by default the coefficient in the case.
+        spin: Spin before the impact: one value for the first body, or a pair of values for both
+            bodies. A value is a text such as "100 rad/s" or "20 rpm", or a number (rad/s). It is
+            positive in the direction in which friction turns a body without spin.
 
     Returns:
         The collision: normal and tangential restitution, angle of rebound, spins, losses, and time
@@ -225,8 +225,8 @@ def export(
     """Write laws as the input of a DEM code, as `restitution export` does.
 
     Args:
-        laws: One law for each pair of particles, folders of results or laws (`law_of`), or the
-            folder of a mixture.
+        laws: One law or several, one for each pair of particles. Each is a `Law`, or a folder that
+            holds a law or results (see `law_of`). The folder of a mixture holds all its laws.
         to: DEM code: "lammps", "liggghts", "yade", "mercurydpm", "edem", "mujoco" or "drake"; or
             "csv" for one table.
         out: Folder for the files; existing files are never overwritten.
@@ -236,7 +236,7 @@ def export(
         The files that were written.
 
     Raises:
-        CaseError: The code is not known, or does not accept the laws.
+        CaseError: The DEM code is unknown, or does not accept these laws.
         DomainError: The velocity lies outside the computed range.
         OutputError: A file exists, or cannot be read or written.
     """

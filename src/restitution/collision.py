@@ -21,8 +21,8 @@ from restitution.display import quantity, summary_html, summary_text
 UnloadingMethod = Literal["path", "energy-estimate"]
 # Error of the unloading work that each detachment criterion causes on a grid, as a fraction of the
 # work of adhesion w times the contact area. Smaller unloading steps do not reduce this error. With
-# crack closure, nodes detach at an energy release rate of 0.985 to 0.99 w. With the tension limit,
-# nodes detach at 1.0 w (kink in the contact edge) to 1.8 w (straight edge).
+# `crack-closure`, nodes detach at an energy release rate of 0.985 to 0.99 w. With `pohrt-popov`,
+# nodes at a kink of the contact edge detach at 1.0 w, and nodes on a straight edge at 1.8 w.
 _RELEASE_ERROR = {"crack-closure": 0.015, "pohrt-popov": 0.4}
 
 
@@ -60,7 +60,10 @@ class Collision:
 
     @property
     def restitution(self) -> float:
-        """Coefficient of restitution sqrt(W_u/W_l) (1) (Johnson 1985, §11.5); 0 for sticking."""
+        """Coefficient of restitution (1); 0 if the bodies stick.
+
+        It is sqrt(W_u/W_l) with the works of unloading W_u and loading W_l (Johnson 1985, §11.5).
+        """
         return _restitution(self.unloading_work, self.loading_work)
 
     @property
@@ -76,10 +79,11 @@ class Collision:
 
     @property
     def impact_velocity(self) -> float | None:
-        """Approach velocity V (m/s) from ½ m* V² = W_l.
+        """Impact velocity V (m/s) whose kinetic energy ½ m* V² is the work of loading.
 
-        None if a density is missing. Also None if W_l < 0, because adhesion then pulls the bodies
-        deeper than this collision at any impact velocity.
+        None if a density is missing, because the reduced mass m* is then unknown. Also None if the
+        work of loading is negative: adhesion then pulls the bodies deeper than this collision at
+        any impact velocity.
         """
         if self.mass is None or self.loading_work < 0:
             return None
@@ -114,15 +118,16 @@ def collide(
 
     Without adhesion, the work of unloading is the stored energy, and `method` has no effect. With
     adhesion, `method="path"` simulates unloading. `method="energy-estimate"` subtracts the surface
-    energy from the elastic energy, W_u = E_el − wA, with an error of wA, where w is the work of
-    adhesion and A the contact area. For cohesive contacts it uses the computed interaction energy
-    in place of −wA. It does not compute the pull-off force and the indentation at separation (NaN).
-    In all cases compared with a simulation, wA exceeded the sum of the energy dissipated at
-    detachment and the grid error of detachment.
+    energy from the elastic energy, W_u = E_el − wA, where w is the work of adhesion and A the
+    contact area. For cohesive contacts this method uses the computed interaction energy in place of
+    −wA. The pull-off force and the indentation at separation are then NaN. The error of W_u is set
+    to wA. In all comparisons with simulated unloading, wA exceeded the energy dissipated at
+    detachment plus the grid error of detachment.
 
     Args:
         state: Deepest state of the collision, reached by loading.
-        unloading: States from `separate`, if they are known; only used with adhesion.
+        unloading: States of unloading that `separate` has yielded. By default they are computed
+            here. Used only with adhesion.
         method: Method for the work of unloading with adhesion.
         tolerance: Error of the restitution (1) that the unloading steps may cause.
 
@@ -156,7 +161,7 @@ def collide(
     path = list(separate(state, tolerance=tolerance) if unloading is None else unloading)
     separation = separation_of(path)
     release_error = 0.0
-    if not contact.cohesive:  # no release of nodes
+    if not contact.cohesive:  # cohesive contacts have no detachment criterion
         release_error = _RELEASE_ERROR[contact.detachment] * contact.work_of_adhesion
     return replace(
         elastic,
@@ -172,5 +177,6 @@ def collide(
 def _restitution(unloading_work: float, loading_work: float) -> float:
     if unloading_work <= 0 or loading_work <= 0:
         return 0.0
-    # W_u exceeds W_l only by numerical errors, which restitution_error includes.
+    # The work of unloading can exceed the work of loading only by numerical errors, which
+    # restitution_error includes.
     return min(1.0, math.sqrt(unloading_work / loading_work))

@@ -1,7 +1,7 @@
 """Short descriptions of objects: the text of `repr`, and HTML for notebooks.
 
-A class defines `_summary`, at most three lines without arrays, and assigns `summary_text` to
-`__repr__` and `summary_html` to `_repr_html_`.
+A class with such a description defines the method `_summary`, which returns at most three lines
+without arrays. It assigns `summary_text` to `__repr__` and `summary_html` to `_repr_html_`.
 """
 
 from __future__ import annotations
@@ -57,7 +57,10 @@ def without_numbers(text: str) -> str:
 
 
 def some_of(names: Iterable[str], most: int = 6) -> str:
-    """List up to `most` different non-empty `names`, and the number of further names."""
+    """Join the first `most` different names with commas, and add "and … more" for the rest.
+
+    Empty names are skipped.
+    """
     each = list(dict.fromkeys(filter(None, names)))
     more = f" and {len(each) - most} more" if len(each) > most else ""
     return ", ".join(each[:most]) + more

@@ -14,18 +14,18 @@ class CaseError(RestitutionError, ValueError):
 
 
 class SurfaceError(RestitutionError, ValueError):
-    """The requested operation cannot use a surface or a topography file."""
+    """A surface or a topography file is not suitable for the requested operation."""
 
 
 class NotConvergedError(RestitutionError):
-    """The residual of a solve stayed above its tolerance, so there is no result."""
+    """A solve did not reach its tolerance, or a path did not reach its end; there is no result."""
 
 
 class DomainError(RestitutionError):
     """The contact reaches the edge of the grid, or a value lies outside the computed range.
 
-    Beyond the edge of the grid, material that is not modelled would carry load. Nothing is
-    extrapolated.
+    Contact at the edge is an error because the material beyond the edge, which is not modelled,
+    would carry a part of the load. Results are not extrapolated beyond the computed range.
     """
 
 
@@ -39,9 +39,12 @@ def one_line(text: str) -> str:
 
 
 def shown(value: object, limit: int = 60) -> str:
-    """Format a value from the user's input for a message: one line, shortened, text in quotes."""
+    """Format a value that the user gave for a message, on one line of at most `limit` characters.
+
+    Strings are put in quotes.
+    """
     if isinstance(value, bool):
-        return str(value).lower()  # as in TOML
+        return str(value).lower()  # TOML writes true and false in lower case
     try:
         text = one_line(value if isinstance(value, str) else repr(value))
     except ValueError:  # Python refuses to print an integer of more than 4300 digits

@@ -64,7 +64,7 @@ def test_a_path_is_streamed(contact):
 
 @pytest.mark.parametrize("what", [{}, {"indentations": [1e-9], "forces": [1e-3]}])
 def test_a_path_follows_depths_or_forces(contact, what):
-    with pytest.raises(CaseError, match="takes one of indentations, forces and velocities"):
+    with pytest.raises(CaseError, match="takes exactly one of indentations, forces and velocities"):
         next(loading_path(contact, **what))
 
 

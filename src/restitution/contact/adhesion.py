@@ -1,4 +1,10 @@
-"""Contact area of adhesive contacts: which nodes attach or are released at one indentation."""
+"""Contact area of adhesive contacts: which nodes attach or are released at one indentation.
+
+On a grid, the contact edge moves by whole nodes, so force and indentation scatter about their
+values in the continuum. The *balance* of a contact area removes this scatter: it is the indentation
+and the force at which the energy release rate G, averaged along the edge of this area, equals the
+work of adhesion w.
+"""
 
 from __future__ import annotations
 
@@ -29,16 +35,19 @@ from restitution.theory import Kendall
 Array = NDArray[np.float64]
 
 _ACCURACY = 1e-3  # tolerance of solves between releases, as a fraction of the crack opening
-# Edge nodes with G above this part of w are on a receding edge, and their mean G determines the
-# balance. The balance is sought from half a step before the state to the step's end.
+
+# Edge nodes with an energy release rate G above the fraction _ACTIVE of the work of adhesion are
+# taken as a receding edge, and their mean G determines the balance. On a scale where the step leads
+# from 0 to 1, the balance may lie between _EARLIEST and 1.
 _ACTIVE, _EARLIEST = 0.8, -0.5
 # Smallest pull-off radius of an asperity (cells) for which balances are used. On coarser grids most
-# nodes leave the contact because the bodies part, not because G reaches w.
+# nodes leave the contact because the bodies separate, not because G reaches the work of adhesion.
 _RESOLVED = 2.0
-# A loaded contact is retracted by this part of the pull-off displacement of a punch to find its
-# balance, with this tolerance of the solve.
+# To find its balance, a loaded contact is retracted by the fraction _RETREAT of the pull-off
+# displacement of a punch. _BALANCE_RESIDUAL is the tolerance of the solve there.
 _RETREAT, _BALANCE_RESIDUAL = 0.05, 1e-5
-_FEW = 0.1  # the width of rings is doubled while a smaller part of the nodes of a ring is released
+# If less than this fraction of the nodes of a ring is released, the next ring is twice as wide.
+_FEW = 0.1
 
 
 def release_nodes(
@@ -122,11 +131,12 @@ def grow_contact(
     first_guess: Array | None = None,
     residual: float,
 ) -> State:
-    """Grow the contact of the undeformed bodies from `held` by rings of nodes until it stops.
+    """Grow the contact of the undeformed bodies outwards from the nodes `held`, ring by ring.
 
     The first ring is one cell wide. If nearly all of its nodes stay in contact, the next ring is
-    twice as wide. The contact stops growing when a ring of one cell lowers the energy no more. With
-    `pohrt-popov` all rings are one cell wide.
+    twice as wide. The contact stops growing when a further ring of one cell no longer lowers the
+    energy. With `pohrt-popov` all rings are one cell wide, and the contact grows while nodes of the
+    ring stay in contact.
     """
     closure = contact.detachment == "crack-closure"
 
@@ -163,7 +173,7 @@ def grow_contact(
 
 
 def _surrounded(touching: Mask, cells: int) -> Mask:
-    """The contact with a ring of nodes around it that is `cells` wide."""
+    """Return the contact nodes `touching` together with a ring of nodes of width `cells`."""
     from scipy.ndimage import distance_transform_edt
 
     within: Mask = distance_transform_edt(~touching) < cells + 0.5
@@ -171,7 +181,10 @@ def _surrounded(touching: Mask, cells: int) -> Mask:
 
 
 def _is_better(wider: State, state: State) -> bool:
-    """Whether the contact grows from `state` to `wider`, at the same indentation."""
+    """Whether the contact grows from `state` to `wider`, both at the same indentation.
+
+    It does if this lowers the energy or, with `pohrt-popov`, adds nodes.
+    """
     contact = state.contact
     if contact.detachment == "pohrt-popov" or not state.contact_nodes:
         return wider.contact_nodes > state.contact_nodes
@@ -212,23 +225,23 @@ def unload_adhesive(
 
 
 def _released(before: State, after: State) -> bool:
-    """Whether nodes left the contact between two states of one indentation."""
+    """Whether `before` is in contact and `after` has another number of contact nodes."""
     return 0 < before.contact_nodes != after.contact_nodes
 
 
 def balances_are_reliable(state: State) -> bool:
-    """Whether the grid resolves the adhesion of `state` enough for balances of its areas."""
+    """Whether the grid is fine enough to compute balances of the contact areas of `state`."""
     if state.contact.detachment == "pohrt-popov":
         return False
     return adhesive_nodes(state) >= _RESOLVED
 
 
 def balance_of(state: State) -> tuple[float, float]:
-    """Indentation (m) and force (N) at which the contact area of a loaded `state` has G = w.
+    """Return the balance of the contact area of a loaded `state`: indentation (m) and force (N).
 
-    The function solves once more with this contact area, at an indentation that is smaller by a
-    part of the pull-off displacement of a punch. If no balance exists, it returns the values of the
-    state.
+    At the balance, the energy release rate equals the work of adhesion. The function solves once
+    more with the same contact area, at an indentation that is smaller by a fraction of the pull-off
+    displacement of a punch. If no balance exists, it returns the values of `state`.
     """
     contact = state.contact
     if state.contact_nodes == 0:
@@ -249,14 +262,13 @@ def balance_of(state: State) -> tuple[float, float]:
 
 
 def _balance(state: State, retracted: State) -> tuple[float, float] | None:
-    """Indentation (m) and force (N) at which the contact area of `state` has G = w on average.
+    """Return the balance of the contact area of `state`: indentation (m) and force (N).
 
-    `retracted` has the same contact area at a smaller indentation. On a grid, nodes are released
-    late or early by a part of a node, so force and indentation of a state scatter about those of
-    the continuum. At the balance, where the mean of G along the edge is w, this scatter disappears.
-    While the contact area is fixed, sqrt(G) and the force are linear in the indentation, so the two
-    states determine the balance. Returns None if no edge is about to move, or if G does not
-    increase from `state` to `retracted`.
+    At the balance, the mean of the energy release rate G along the edge equals the work of
+    adhesion. `retracted` has the same contact area at a smaller indentation. While the contact area
+    is fixed, sqrt(G) and the force are linear in the indentation, so the two states determine the
+    balance. Returns None if no edge is about to move, or if G does not increase from `state` to
+    `retracted`.
     """
     contact = state.contact
     touching = state.box_pressure != 0

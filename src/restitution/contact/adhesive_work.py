@@ -1,8 +1,9 @@
 """Work of adhesive loading, from the balances of a few contact areas or from the force.
 
-The force of a loaded state scatters, because the edge of the contact lies between nodes. At the
-balance of its contact area (`adhesion`) the force does not scatter, so few depths suffice. If
-balances are not reliable, the force of the states is integrated.
+The force of a loaded state scatters, because its contact edge can move only by whole nodes. The
+*balance* of a contact area is the indentation and the force at which the energy release rate along
+its edge equals the work of adhesion (`contact.adhesion`). The force at balances does not scatter,
+so few depths suffice. If balances are not reliable, the force of the states is integrated.
 """
 
 from __future__ import annotations
@@ -16,17 +17,18 @@ from restitution.contact.contact import Contact
 from restitution.contact.state import State
 from restitution.numerics.quadrature import integrate_adaptively
 
-# Numbers of intervals between the depths: initially, from first touch or from another state, and at
-# most. The depths follow t to the power _CROWDING, so they are closer at first touch, where the
-# curvature of the force is large.
+# Numbers of intervals between the depths: the initial number if the integral begins at first touch
+# or at another state, and the largest number. The depths grow as t^_CROWDING with t evenly spaced,
+# so they are closer near first touch, where the curvature of the force is large.
 _FROM_TOUCH, _FROM_STATE, _MOST = 4, 2, 16
 _CROWDING = 1.5
 # The error estimate is this factor times the change of the work when every second depth is left
 # out. The factor is above 1 because the force of rough contacts jumps.
 _MARGIN = 1.5
-# Error of the work because the loading steps influence which nodes attach, divided by w times the
-# area. The references have 240 steps from first touch. The work was within these bounds in 93 % of
-# 29 validation contacts with `equilibrium`, and in all 11 contacts with `pull-increments`.
+# The loading steps influence which nodes attach. The resulting error of the work is at most this
+# fraction of the work of adhesion times the contact area, compared with references of 240 steps
+# from first touch. This held in 93 % of 29 validation contacts with `equilibrium`, and in all 11
+# contacts with `pull-increments`.
 _PINNING = {"equilibrium": 0.02, "pull-increments": 0.006, "hertzian": 0.0}
 
 # Largest number of bisections of the quadrature of `work_by_force`.
@@ -41,10 +43,11 @@ def work_by_balance(
     load: Callable[[Contact, float, State | None], State],
     tolerance: float,
 ) -> tuple[float, float, int]:
-    """Return the loading work (J), the error of the quadrature (J) and the convolutions.
+    """Return the loading work (J), the error of its quadrature (J) and the number of convolutions.
 
-    The work is integrated from `start`, or from first touch. `load` solves at another depth (m),
-    with a shallower state (or None) as its initial guess. `tolerance` is relative to the work.
+    The force at the balances of a few contact areas is integrated over the indentation, from
+    `start` or, if None, from first touch. `load` solves at another depth (m), with a shallower
+    state (or None) as its initial guess. `tolerance` is relative to the work.
     """
     contact, last = state.contact, state.indentation
     first, work, convolutions = 0.0, 0.0, 0
@@ -81,10 +84,10 @@ def work_by_force(
     load: Callable[[Contact, float, State | None], State],
     tolerance: float,
 ) -> tuple[float, float, int]:
-    """Integrate the force of the loaded states; the arguments and results of `work_by_balance`.
+    """Integrate the force of loaded states, adaptively in the indentation.
 
-    The third argument of `load` is the state at the depth before, a first guess. The error contains
-    the `pinning_error`.
+    Arguments and results are those of `work_by_balance`. Here `load` gets the previous state of the
+    quadrature as its initial guess, and the error includes the `pinning_error`.
     """
     contact, indentation = state.contact, state.indentation
     guess, convolutions = start, 0
@@ -100,7 +103,7 @@ def work_by_force(
         first, first_force = start.indentation, start.force
         work, error = start.loading_work, start.work_error - pinning_error(start)
     elif contact.approach == "equilibrium":
-        first_force = force_at(0.0)  # adhesive force right after the jump into contact
+        first_force = force_at(0.0)  # the force right after the jump into contact
     scale = abs(work) + 0.5 * (abs(first_force) + abs(state.force)) * (indentation - first)
     increment, its_error = integrate_adaptively(
         force_at, first, indentation, first_force, state.force, tolerance * scale, depth=_HALVINGS
@@ -109,13 +112,16 @@ def work_by_force(
 
 
 def pinning_error(state: State) -> float:
-    """Error of the work (J) because the grid pins the contact edge between its nodes."""
+    """Error of the loading work (J) that arises because the grid pins the contact edge."""
     contact = state.contact
     return _PINNING[contact.approach] * contact.work_of_adhesion * state.contact_area
 
 
 def _integral(points: list[Point], first: float, last: float) -> float:
-    """Integral of the force from `first` to `last` (m), extrapolated linearly at both ends."""
+    """Integral (J) of the force through `points` from `first` to `last` (m).
+
+    The force is a cubic spline, extrapolated linearly beyond the first and the last point.
+    """
     from scipy.interpolate import CubicSpline
 
     x, F = np.array(_increasing(points)).T
@@ -129,7 +135,7 @@ def _integral(points: list[Point], first: float, last: float) -> float:
 
 
 def _increasing(points: list[Point]) -> list[Point]:
-    """The points without those at a smaller indentation than the point before."""
+    """Drop each point whose indentation does not exceed that of the point kept before it."""
     kept = points[:1]
     for point in points[1:]:
         if point[0] > kept[-1][0]:

@@ -11,8 +11,8 @@ Array = NDArray[np.float64]
 
 _FROM, _TO = slice(1, None), slice(None, -1)
 _ALL = slice(None)
-# Each pair of blocks holds all nodes that have a neighbour in one of the eight directions, and
-# these neighbours.
+# For each of the eight directions, a pair of blocks of the grid: all nodes that have a neighbour in
+# this direction, and these neighbours.
 _NEIGHBOURS = [
     ((to_x, to_y), (from_x, from_y))
     for to_x, from_x in ((_TO, _FROM), (_ALL, _ALL), (_FROM, _TO))
@@ -24,8 +24,8 @@ _NEIGHBOURS = [
 def elongation_of(gap: Array, spacing: tuple[float, float]) -> Array:
     """Elongation of the asperity at each node, (1 − κ₂/κ₁)².
 
-    κ₂ and κ₁ are the smaller and the larger absolute principal curvature of the gap, from second
-    differences.
+    κ₂ and κ₁ are the magnitudes of the two principal curvatures of the gap, from second
+    differences; κ₁ is the larger one.
 
     Args:
         gap: Gap before loading (m), shape (nx, ny).
@@ -77,7 +77,7 @@ def crest_gap_of(gap: Array) -> Array:
 
 
 def _take_smaller_neighbours(lowest: Array, values: Array, axis: int) -> None:
-    """Replace `lowest` by `values` of the two neighbours along `axis` that are smaller."""
+    """Replace `lowest` at each node by the `values` of its neighbours along `axis`, if smaller."""
     ahead, behind = ((_ALL,) * axis + (part,) for part in (_FROM, _TO))
     np.minimum(lowest[behind], values[ahead], out=lowest[behind])
     np.minimum(lowest[ahead], values[behind], out=lowest[ahead])

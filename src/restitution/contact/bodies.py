@@ -35,7 +35,8 @@ class Body:
             raise CaseError(f"youngs_modulus: {self.youngs_modulus} Pa is not a positive modulus")
         if not -1 < self.poissons_ratio <= 0.5:
             raise CaseError(
-                f"poissons_ratio: {self.poissons_ratio} is not above -1 and at most 0.5"
+                f"poissons_ratio: {self.poissons_ratio} is not possible; give a value above -1 and "
+                "at most 0.5"
             )
         if self.density is not None and not (math.isfinite(self.density) and self.density > 0):
             raise CaseError(f"density: {self.density} kg/m³ is not a positive density")
@@ -102,10 +103,9 @@ class Pair:
     def shear_compliances(self) -> tuple[float, float]:
         """Compliances α and β of the surfaces under a tangential point force Q (SI, 1/Pa).
 
-        At the distance r from the force, the two surfaces move relative to each other by α Q/r at
-        points on the line through the force perpendicular to Q, and by β Q/r at points on the line
-        along Q. α = Σ (1 − ν)/(2πG) and β = Σ 1/(2πG), with sums over the bodies. The mean of α and
-        β is 1/(πG*).
+        At the distance r from the force, the two surfaces move relative to each other, by α Q/r
+        beside the force and by β Q/r ahead of it and behind it. With the shear moduli G and sums
+        over the bodies, α = Σ (1 − ν)/(2πG) and β = Σ 1/(2πG). The mean of α and β is 1/(πG*).
         """
         across, along = 0.0, 0.0
         for body in (self.first, self.second):
@@ -126,7 +126,7 @@ class Pair:
         return 1 / (1 / self.first.mass + 1 / self.second.mass)
 
     def _reduced(self) -> str:
-        """R*, E* and m*, as `repr` shows them."""
+        """Text with the reduced radius, modulus and mass, for `repr`."""
         mass = "" if self.mass is None else f", m* {quantity(self.mass, 'kg')}"
         E = quantity(self.contact_modulus, "Pa")
         if self.flat:

@@ -1,4 +1,4 @@
-"""The pressure bound of `expanding-cavity`, which grows from first yield to full plasticity.
+"""The pressure bound of the model `expanding-cavity`: it grows from first yield to full plasticity.
 
 A contact that has just begun to yield carries a pressure of 1.6 Y, where Y is the yield strength of
 a tensile test. A fully plastic contact carries about 3 Y, because the surrounding material
@@ -8,17 +8,18 @@ an expanding cavity (Johnson 1970, J. Mech. Phys. Solids 18, 115–126; Johnson 
     bound = Y · min(c₀ + c₁ ln(m/(c₀ Y)), c₂).
 
 c₀ is the ratio of the largest pressure to Y at first yield of a sphere (`yield_coefficient` in
-`theory`). m measures the strain. For a sphere m is (2/π) E*a/R, the largest pressure of an elastic
-contact. On a rough surface
+`theory`). m measures the strain as an elastic pressure. For a sphere with the contact radius a, m
+is (2/π) E*a/R, the largest pressure of an elastic contact of this radius. At a node of a rough
+surface at the indentation δ
 
     m = m₀ [2(δ − h_c)/(2δ − h_c)]^s,    m₀ = p_e(2δ)/√2.
 
 p_e(2δ) is the pressure at the same node between *elastic* bodies of this shape at twice the
-indentation. The factors 2 and √2 have this reason: an elastic sphere at 2δ has the contact radius
-of a plastic sphere at δ, and √2 times the largest pressure of an elastic sphere at δ. While
+indentation. The factors 2 and √2 are those of a sphere: an elastic sphere at 2δ has the contact
+radius of a plastic sphere at δ, and √2 times the largest pressure of an elastic sphere at δ. While
 asperities are in separate contact, m follows the slope of an asperity. Once the asperity contacts
-have merged, m follows the slope of the bodies. The bound depends only on the indentation, so the
-state still does not depend on the path.
+have merged, m follows the slope of the bodies. The bound depends only on the indentation.
+Therefore, as with a constant bound, the state does not depend on the loading path.
 
 The fraction in brackets corrects the depth of an asperity whose crest has an initial gap h_c. Such
 an asperity is deformed by δ − h_c, so p_e should be taken at 2(δ − h_c), but at the indentation 2δ
@@ -28,8 +29,8 @@ exponent s decreases from 1 for separate asperities to 0 for merged ones:
 
     s = max(1 − (p_H/m₀)^1.5, 0).
 
-p_H is the pressure of smooth bodies under the elastic force at 2δ (Hertz): where p_H ≥ m₀, the
-asperity contacts have merged.
+p_H is the Hertz pressure at this node between smooth bodies under the force of the elastic rough
+bodies at 2δ. Where p_H ≥ m₀, the asperity contacts have merged.
 
 A ridge yields in plane strain. This constrains plastic flow more than at a round asperity. With q
 between 0 (a round asperity, or merged contacts) and 1 (a ridge in separate contact), the
@@ -64,10 +65,13 @@ from restitution.theory import Hertz
 Array = NDArray[np.float64]
 Nodes = tuple[NDArray[np.intp], ...]  # indices of rows and columns
 
-GROWTH, LARGEST = 0.65, 3.5  # coefficients c₁ and c₂ for round asperities
-# Relative increase of c₀, c₁ and c₂ on a ridge.
+# Coefficients of the bound over the yield strength, for round asperities: growth with the logarithm
+# of the strain (c₁), and upper limit (c₂).
+GROWTH, LARGEST = 0.65, 3.5
+# Relative increase of the coefficients c₀ (value at first yield), c₁ and c₂ on a ridge.
 _RIDGE_ONSET, _RIDGE_GROWTH, _RIDGE_LARGEST = 0.11, 1.1, 0.25
 _DEPTH_FACTOR = 2.0  # the elastic pressure is computed at this multiple of the indentation
+
 # Tolerance of the elastic solve: a multiple of the tolerance of the bounded solve, and its largest
 # value. At 1e-4, COR is within 1e-4 of its value at 1e-8 (tests/contact/test_cavity.py).
 _RESIDUAL_FACTOR, _LARGEST_RESIDUAL = 1e4, 1e-4
@@ -75,12 +79,13 @@ _TABOR = 0.2  # ratio of the representative strain to a/R
 
 
 def yield_bound(contact: Contact, indentation: float, residual: float) -> tuple[Array, int]:
-    """Compute the pressure bound (Pa) of each node at `indentation` (m); count the convolutions.
+    """Return the pressure bound (Pa) of each node at `indentation` (m), and the convolutions.
 
-    The array has the shape of the grid and is read-only. `residual` is the tolerance of the solve
-    under this bound. The elastic solve that gives the bound uses a larger tolerance, because the
-    bound depends only on the logarithm of the elastic pressure. The elastic contact may reach the
-    edge of the grid. Raises `NotConvergedError`.
+    The bound is an array of the shape of the grid, read-only. The second result is the number of
+    convolutions that it took. `residual` is the tolerance of the solve
+    under this bound. The bound is computed from an elastic solve. This solve uses a larger
+    tolerance, because the bound depends only on the logarithm of the elastic pressure. It is no
+    error if the elastic contact reaches the edge of the grid. Raises `NotConvergedError`.
     """
     bound = np.full(contact.grid.nodes, contact.first_yield_pressure)
     tolerance = min(_RESIDUAL_FACTOR * residual, _LARGEST_RESIDUAL)
@@ -102,9 +107,9 @@ def yield_bound(contact: Contact, indentation: float, residual: float) -> tuple[
 
 
 def bound_of(contact: Contact, measure: Array, ridge: Array | float = 0.0) -> Array:
-    """The pressure bound (Pa) for the strain measure m, `measure` (Pa).
+    """Return the pressure bound (Pa) for `measure`, the strain measured as a pressure (Pa).
 
-    `ridge` is q, from 0 for round asperities to 1 for ridges.
+    `ridge` describes the shape of the asperity, from 0 (round) to 1 (ridge).
     """
     Y = contact.yield_strength
     c_0 = contact.first_yield_pressure / Y * (1 + _RIDGE_ONSET * ridge)
@@ -122,9 +127,10 @@ def bound_of(contact: Contact, measure: Array, ridge: Array | float = 0.0) -> Ar
 
 
 def _depth_ratio(crest_gap: Array, indentation: float) -> Array:
-    """Twice the depth of each asperity at `indentation`, over its depth at twice `indentation`.
+    """Return 2 d(δ)/d(2δ) for each asperity, with the `indentation` δ (m).
 
-    It is 0 for an asperity that does not overlap at `indentation` (m) before elastic deformation.
+    d is the overlap of the undeformed surfaces at the crest of the asperity. The ratio is 0 for an
+    asperity without overlap at δ.
     """
     depth = np.maximum(indentation - crest_gap, 0)
     ratio: Array = _DEPTH_FACTOR * depth / (_DEPTH_FACTOR * indentation - crest_gap)

@@ -1,23 +1,25 @@
 """Contact with an attraction of finite range: one solve, and the state that it returns.
 
-The bodies interact at every node by a law of the gap g (`theory.LennardJones`). At a prescribed
-indentation δ, the displacement u is a local minimum of
+The bodies interact at every node by a traction that depends on the gap g (the interface law,
+`theory.LennardJones`). At a prescribed indentation δ, the displacement u is a local minimum of
 
-    ½ uᵀK⁻¹u + Σ φ(g),   g = z₀ + h₀ + u_p − δ + u,
+    ½ uᵀK⁻¹u + Σ φ(g),   g = z₀ + h₀ + u_p − δ + u.
 
-with the energy φ of the law. There is no contact set and no release of nodes. Where an equilibrium
-ceases to exist, the solve descends to another one; `cohesive_path` computes the energy that is
-dissipated there. Surfaces yield where the pressure of the law would exceed the bound: the pressure
-stays at the bound, and the rest of the approach becomes plastic displacement.
+φ is the energy of the law, K the operator from pressure to elastic displacement, z₀ the equilibrium
+separation, h₀ the initial gap and u_p the plastic displacement. Unlike in the JKR limit, no set of
+contact nodes has to be found, and no nodes are released. Where an equilibrium ceases to exist, the
+solve descends to another one; `cohesive_path` computes the energy that is dissipated there.
+Surfaces yield where the pressure of the law would exceed the bound: the pressure stays at the
+bound, and the rest of the approach becomes plastic displacement.
 
-A node is *in contact* if its gap is smaller than 3^{1/6} z₀, the gap of the largest attraction. The
-law is stable at these gaps. As the range decreases, the nodes in contact tend to the contact of
-JKR, whose edge carries tension.
+A node is *in contact* if its gap is smaller than 3^{1/6} z₀, the gap of the largest attraction. At
+these gaps the law is stable: its attraction grows with the gap. As the range of the attraction
+decreases, the nodes in contact approach the contact area of JKR, whose edge carries tension.
 
 Nodes outside the box, and the paraboloid outside the grid, attract as rigid bodies.
 
-In a periodic contact the box is the whole period, and the mean of u is zero at a prescribed δ, the
-approach of the mean planes. The pressure takes the mean that balances the law.
+In a periodic contact the box is the whole period, and δ is the approach of the mean planes. The
+mean of u is then zero, and the mean pressure balances the mean traction of the law.
 """
 
 from __future__ import annotations
@@ -47,11 +49,13 @@ Array = NDArray[np.float64]
 # energy and the pull-off force.
 COARSEST = 0.3
 COMPANION = "companion"  # provenance key of a surface that serves only to compare grids
-_REACH = 12.0  # nodes with rigid gaps up to this multiple of z₀ are solved
+_REACH = 12.0  # nodes are solved if their gap between rigid bodies is below this multiple of z₀
+
 # Tolerance of u/z₀: the first value times the `residual` of a solve, but at least the second value,
 # because of rounding.
 _TOLERANCE, _LEAST_TOLERANCE = 100.0, 1e-7
-_UNIQUE = 0.7  # bound on the spectral radius below which an equilibrium counts as unique
+# An equilibrium counts as unique if the bound that `is_unique` computes is below this value.
+_UNIQUE = 0.7
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -63,7 +67,8 @@ class CohesiveState(State):
         far_force: Part of the normal force from outside `box` (N).
         adhesive_loss: Energy dissipated so far by jumps between equilibria (J).
         jumps: Number of these jumps so far (1).
-        unaccounted: Work of the force minus the energy accounted for (J), so far.
+        unaccounted: Work of the force minus the change of energy (J), summed over all steps without
+            a jump so far. It differs from zero only by the error of integration.
         smallest_gap: Smallest gap between the surfaces (m); z₀ where they touch without pressure.
     """
 
@@ -76,12 +81,15 @@ class CohesiveState(State):
 
     @property
     def force(self) -> float:
-        """Normal force (N) of all nodes and of the bodies outside the grid."""
+        """Normal force (N), including the attraction of the bodies outside `box` and the grid."""
         return super().force + self.far_force
 
     @property
     def box_touching(self) -> NDArray[np.bool_]:
-        """Whether the gap of each node of the box is below that of the largest traction (bool)."""
+        """Whether each node of the box is in contact (bool).
+
+        A node is in contact if its gap is below the gap of the largest attraction.
+        """
         return box_gap(self) < float(law_of(self.contact).gap_of_largest_traction)
 
     @property
@@ -91,7 +99,7 @@ class CohesiveState(State):
 
     @property
     def potential_energy(self) -> float:
-        """Elastic energy and energy of the interaction (J)."""
+        """Sum of elastic energy and interaction energy (J)."""
         return self.stored_energy + self.interaction_energy
 
 
@@ -112,8 +120,9 @@ def cohesive_length(contact: Contact) -> float:
 def coarsest_spacing(pair: Pair, work_of_adhesion: float, z0: float) -> float:
     """The largest grid spacing (m) that resolves the attraction, with a margin for rounding.
 
-    It resolves the cohesive zone and the radius over which a sphere attracts. The gap under a
-    paraboloid of radius R* grows by z₀ within sqrt(2R*z₀) of the apex.
+    Two lengths must be resolved: the cohesive zone and the radius over which a sphere attracts.
+    This radius is of the order sqrt(R*z₀), because the gap under a paraboloid of radius R* grows by
+    the range z₀ of the attraction within sqrt(2R*z₀) of the apex.
     """
     zone = pair.contact_modulus * z0**2 / work_of_adhesion
     return COARSEST * (1 + 1e-9) * min(zone, math.sqrt(pair.radius * z0))
@@ -126,12 +135,15 @@ def needed_spacing(contact: Contact) -> float:
 
 
 def resolves_range(contact: Contact) -> bool:
-    """Whether the cells are fine enough for the range of the attraction."""
+    """Whether the cells of the grid resolve the range of the attraction."""
     return max(contact.grid.spacing) <= needed_spacing(contact)
 
 
 def require_fine_grid(contact: Contact) -> None:
-    """Raise `CaseError` if the cells are too coarse for the range, except for a `COMPANION`."""
+    """Raise `CaseError` if the cells are too coarse to resolve the range of the attraction.
+
+    Surfaces that serve only to compare grids (`COMPANION`) may have coarser cells.
+    """
     if not resolves_range(contact) and not contact.surface.provenance.get(COMPANION):
         raise CaseError(
             f"grid.spacing: {1e9 * max(contact.grid.spacing):.4g} nm is too coarse for the range "
@@ -153,10 +165,10 @@ def solve_cohesive(
 ) -> CohesiveState:
     """Descend from the pressure `p` and displacement `u` = K p on `box` to an equilibrium.
 
-    `limit` is the largest pressure (Pa), a number or an array of the shape of the grid. The works
-    of the result are those of `history` (zero if None), except that interaction and plastic
-    displacement are those of the result. Raises `NotConvergedError`, and `DomainError` if a
-    periodic contact without yield is compressed beyond the law.
+    `limit` is the largest pressure (Pa), a number or an array of the shape of the grid. The plastic
+    work and the work error of the result are those of `history` (zero if None), and its adhesive
+    work is zero; the caller sets them. Raises `NotConvergedError`, and `DomainError` if the
+    pressure in a periodic contact without yield exceeds E*.
     """
     K = _operator(contact, box)
     before = np.zeros(contact.grid.nodes) if history is None else history.plastic_displacement
@@ -192,7 +204,8 @@ def solve_cohesive(
     far_force, far_energy = _far(contact, indentation, box)
     energy = float(np.sum(law_of(contact).energy(gap))) * area
     if not law.yields:
-        # Bodies without yield: the linear continuation of the law beyond `limit`.
+        # Without yield, the gap can be smaller than `law.least`. Add the energy of the linear
+        # continuation there.
         energy += float(np.sum(law.continuation(found.u))) * area
     return CohesiveState(
         contact,
@@ -215,9 +228,10 @@ def solve_cohesive(
 
 
 def rigid_start(contact: Contact, *, limit: Array | float, residual: float) -> CohesiveState:
-    """The start of a loading path: a state of approaching bodies, far enough apart.
+    """Return a state of approaching bodies that are far enough apart to begin a loading path.
 
-    At this and every larger distance the equilibrium is unique, so nothing is dissipated.
+    At this and every larger distance the equilibrium is unique. So the approach up to this state
+    dissipates no energy.
     """
     z0 = contact.equilibrium_separation
     gap, convolutions = 2 * z0, 0
@@ -238,7 +252,7 @@ def from_rigid(
     residual: float,
     box: Box | None = None,
 ) -> CohesiveState:
-    """Solve from the pressures that rigid bodies would have at `indentation`."""
+    """Find the equilibrium at `indentation`, starting from the pressure between rigid bodies."""
     box = box or interacting_box(contact, indentation)
     p = rigid_pressure(contact, indentation, box)
     K = _operator(contact, box)
@@ -249,19 +263,22 @@ def from_rigid(
 
 
 def rigid_pressure(contact: Contact, indentation: float, box: Box) -> Array:
-    """Pressure of the law between rigid bodies (Pa), where they attract; zero elsewhere."""
+    """Pressure (Pa) of the interface law between rigid bodies.
+
+    It is zero at nodes whose gap is below that of the largest attraction.
+    """
     gap = _base(contact, indentation, box, None)
     least = float(law_of(contact).gap_of_largest_traction)
     return np.where(gap > least, -law_of(contact).traction(np.maximum(gap, least)), 0.0)
 
 
 def with_interaction(state: CohesiveState) -> CohesiveState:
-    """Set the work of adhesion so far from the interaction energy and the loss of `state`."""
+    """Set the adhesive work of `state` from its interaction energy and its adhesive loss."""
     return replace(state, adhesive_work=-state.interaction_energy - state.adhesive_loss)
 
 
 def interacting_box(contact: Contact, indentation: float, history: State | None = None) -> Box:
-    """The box of the nodes that are near enough to interact as deformable bodies."""
+    """Return the box of all nodes whose gap is small enough for the attraction to deform them."""
     if contact.periodic:
         rows, columns = (slice(0, n) for n in contact.grid.nodes)
         return rows, columns
@@ -307,11 +324,11 @@ def on_box(state: CohesiveState, box: Box, *, residual: float) -> CohesiveState:
 def is_unique(state: CohesiveState) -> bool:
     """Whether the equilibrium is unique at this distance of the bodies and at every larger one.
 
-    This is so if the spectral radius of K diag(max(−φ″, 0)) is below 1, where K gives the elastic
-    displacement due to a pressure and φ is the interaction energy per area. The largest row sum
-    bounds this radius. In a periodic contact the row sums of K vanish; the bound is then the
-    compliance of the longest wave, λ/(πE*), times the largest −φ″ at any gap not smaller than the
-    present smallest gap.
+    The equilibrium is unique if the spectral radius of the matrix K diag(max(−φ″, 0)) is below 1.
+    K is the operator from pressure to elastic displacement, and φ the interaction energy per area
+    as a function of the gap. The largest row sum of the matrix is an upper bound of this radius. In
+    a periodic contact the row sums of K vanish. The bound is then the compliance λ/(πE*) of the
+    longest wave (wavelength λ), times the largest −φ″ at the present smallest gap or larger gaps.
     """
     contact = state.contact
     if contact.periodic:
@@ -324,14 +341,17 @@ def is_unique(state: CohesiveState) -> bool:
 
 
 def _operator(contact: Contact, box: Box) -> Convolution:
-    """The half-space on `box`. The solver works on NumPy arrays, so it is on the CPU always."""
+    """Make the operator from pressure to displacement on `box`.
+
+    It is always on the CPU, because this solver needs NumPy arrays.
+    """
     build = periodic_half_space if contact.periodic else half_space
     with on_device(CPU):
         return build(shape_of(box), contact.grid.spacing, contact.pair.contact_modulus)
 
 
 def _base(contact: Contact, indentation: float, box: Box, plastic: Array | None) -> Array:
-    """Gap of the surfaces without elastic displacement on `box` (m)."""
+    """Gap (m) between the surfaces on `box` before elastic displacement."""
     base: Array = contact.gap[box] + (contact.equilibrium_separation - indentation)
     if plastic is not None:
         base += plastic[box]
@@ -339,7 +359,10 @@ def _base(contact: Contact, indentation: float, box: Box, plastic: Array | None)
 
 
 def _far(contact: Contact, indentation: float, box: Box) -> tuple[float, float]:
-    """Force (N) and energy (J) of the rigid nodes outside `box` and of the bodies off the grid."""
+    """Force (N) and energy (J) of the nodes outside `box` and of the bodies outside the grid.
+
+    All of them are treated as rigid.
+    """
     if contact.periodic:
         return 0.0, 0.0
     law, grid, (rows, columns) = law_of(contact), contact.grid, box
@@ -355,7 +378,8 @@ def _far(contact: Contact, indentation: float, box: Box) -> tuple[float, float]:
         gap = np.maximum(contact.gap[part] + (z0 - indentation), 1.2 * z0)
         force -= float(np.sum(law.traction(gap))) * grid.cell_area
         energy += float(np.sum(law.energy(gap))) * grid.cell_area
-    # Off the grid, the mean surface of the bodies beyond the circle with the area of the grid.
+    # Off the grid, the bodies are smooth and at the mean height of the surface. They are integrated
+    # outside the circle that has the area of the grid.
     R, (wide, long) = contact.pair.radius, grid.size
     edge = wide * long / (2 * math.pi * R) + contact.mean_offset + z0 - indentation
     edge = max(edge, 2 * z0)

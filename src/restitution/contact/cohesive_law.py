@@ -1,4 +1,8 @@
-"""The law of the gap of a cohesive contact, with a pressure bound or a continuation beyond it."""
+"""The interface law of a cohesive contact: traction and energy as functions of the gap.
+
+The Lennard-Jones law is modified at high pressure: the pressure is bounded if the bodies yield, and
+otherwise the law is continued linearly.
+"""
 
 from __future__ import annotations
 
@@ -12,33 +16,38 @@ from restitution.theory import LennardJones
 
 Array = NDArray[np.float64]
 
-_SOFTEST = (2 / 15) ** (1 / 6)  # z₀/g at which φ″ is smallest
+# Ratio of the equilibrium separation to the gap where the attraction weakens most steeply.
+_SOFTEST = (2 / 15) ** (1 / 6)
 
 
 def law_of(contact: Contact) -> LennardJones:
-    """The law of the gap between the bodies of `contact`."""
+    """Return the Lennard-Jones law between the surfaces of `contact`."""
     return LennardJones(contact.work_of_adhesion, contact.equilibrium_separation)
 
 
 def stiffness(contact: Contact, x: Array) -> Array:
-    """Slope of the traction (Pa/m) at z₀/g = x; negative where the attraction weakens with g."""
+    """Derivative of the attractive traction with respect to the gap (Pa/m).
+
+    It is negative where the attraction weakens as the gap grows. `x` is the ratio of the
+    equilibrium separation to the gap.
+    """
     scale = 8 * contact.work_of_adhesion / contact.equilibrium_separation**2
     slope: Array = scale * x**4 * (3 * x**6 - 1)
     return slope
 
 
 def largest_softening(contact: Contact, smallest_gap: float) -> float:
-    """Largest −φ″ (Pa/m) at any gap not smaller than `smallest_gap`."""
+    """Largest rate (Pa/m) at which the attraction weakens as the gap grows from `smallest_gap`."""
     x = np.minimum(contact.equilibrium_separation / np.asarray(smallest_gap), _SOFTEST)
     return max(0.0, -float(stiffness(contact, x)))
 
 
 class BoundedLaw:
-    """The law of the gap on a box, as a function of u, bounded or continued beyond `limit`.
+    """The interface law of the nodes of a box, as a function of their elastic displacement u.
 
-    If the bodies yield (`yields`), the pressure does not exceed `limit`. For elastic bodies, the
-    law is continued linearly above the pressure E*, which no result reaches. The continuation keeps
-    the iteration away from negative gaps.
+    The gap is `base` + u. If the bodies yield (`yields`), the pressure does not exceed `limit`. For
+    elastic bodies, the law is continued linearly above the pressure E*, which no result reaches.
+    The continuation keeps the iteration away from negative gaps.
     """
 
     def __init__(self, contact: Contact, base: Array, limit: Array | float) -> None:
@@ -53,7 +62,10 @@ class BoundedLaw:
         self._stiff = 0.0 if self.yields else stiffness(contact, x)
 
     def __call__(self, u: Array) -> tuple[Array, Array, Array]:
-        """Energy (J/m²), its slope (Pa) and its curvature (Pa/m) at u."""
+        """Return the energy (J/m²) at the displacement `u`, and its first and second derivative.
+
+        The derivatives are the attractive traction (Pa) and the slope of this traction (Pa/m).
+        """
         gap = self.base + u
         below = np.minimum(gap - self.least, 0.0)
         x = self._z0 / (gap - below)
@@ -69,12 +81,15 @@ class BoundedLaw:
         return energy, slope, stiff
 
     def beyond(self, u: Array) -> Array:
-        """How far the gap would lie below that of the limit (m): the plastic displacement."""
+        """Distance (m) by which the gap at the displacement `u` is below the gap at the limit.
+
+        If the bodies yield, it is the plastic displacement.
+        """
         yielded: Array = np.maximum(self.least - self.base - u, 0.0)
         return yielded
 
     def continuation(self, u: Array) -> Array:
-        """Energy beyond the limit (J/m²) of bodies that do not yield."""
+        """Energy (J/m²) of the linear continuation beyond the limit, for bodies without yield."""
         below = -self.beyond(u)
         energy: Array = below * (self._slope + 0.5 * self._stiff * below)
         return energy

@@ -38,13 +38,21 @@ from restitution.numerics.read_only import freeze
 
 Array = NDArray[np.float64]
 
-ACCURACY = 2e-4  # largest unaccounted work of a step, over the energies of the contact
-_FIRST_STEP = 0.25  # first step (z₀)
-_UNDER_TENSION = 0.15  # longest step of unloading under tension (z₀ plus the adhesive length)
-_LEAST_STEP = 1e-5  # shortest step (z₀); an equilibrium that cannot be followed is an error
+# Largest difference between the work of the force and the change of energy in a step, as a fraction
+# of the energies of the contact.
+ACCURACY = 2e-4
+_FIRST_STEP = 0.25  # length of the first step, in units of the equilibrium separation z₀
+
+# Longest step of unloading under tension, in units of z₀ plus the adhesive length.
+_UNDER_TENSION = 0.15
+# Shortest step, in units of z₀. If even this step fails, the path cannot be followed; this is an
+# error.
+_LEAST_STEP = 1e-5
 _MOST_STEPS = 5000
-_FARTHEST = 0.02  # unloading ends where the tension is below this part of the largest tension
-_WIDER = 1.3  # factor on the interacting region when the box grows, so that it grows seldom
+_FARTHEST = 0.02  # unloading ends where the tension is below this fraction of the largest tension
+
+# When the box must grow, it is made larger than needed by this factor, so that it seldom grows.
+_WIDER = 1.3
 
 
 def load_cohesive(
@@ -84,9 +92,10 @@ def load_until(
     start: State | None,
     residual: float,
 ) -> tuple[CohesiveState, CohesiveState]:
-    """Load until `reached`; return the last state before this and the first state after it.
+    """Load until `reached` is true; return the last state before this and the first state after it.
 
-    Both are the same state if `start`, or the state of bodies far apart, has reached it already.
+    If `reached` is true for the first state already, both results are this state. The first state
+    is `start` or, without it, the state of bodies far apart.
     """
     begin = start.indentation if isinstance(start, CohesiveState) else -math.inf
     before = load_cohesive(contact, begin, start=start, residual=residual)
@@ -109,10 +118,11 @@ def step_cohesive(state: CohesiveState, indentation: float, *, residual: float) 
 
 
 def separate_cohesive(state: CohesiveState, *, accuracy: float = ACCURACY) -> Iterator[State]:
-    """Yield `state` and the states of unloading until the rest of the path is reversible and weak.
+    """Yield `state` and the states of unloading until the bodies attract each other only weakly.
 
-    The last state has no contact, and no other equilibrium can exist at larger distances. Its
-    interaction energy, with the opposite sign, is the work to separate the bodies completely.
+    In the last state the bodies are out of contact, and at this and larger distances no other
+    equilibrium exists. The rest of the separation is therefore reversible. Its work is minus the
+    potential energy of the last state.
     """
     yield state
     tension = max(0.0, -state.force)
@@ -129,7 +139,12 @@ def separate_cohesive(state: CohesiveState, *, accuracy: float = ACCURACY) -> It
 
 @dataclass(frozen=True)
 class _Step:
-    """A trial step: its state, the work of the force by two rules, and the energy change (J)."""
+    """A trial step: the state at its end, and its work and energy (J).
+
+    `by_trapezium` and `by_parabola` are the work of the force by two rules of integration. `change`
+    is the change of the potential energy plus the plastic work. `uncertainty` is the error of the
+    work if the force has jumped in the step.
+    """
 
     state: CohesiveState
     by_trapezium: float
@@ -143,14 +158,14 @@ def follow(
 ) -> Iterator[CohesiveState]:
     """Yield the equilibria from `state` (not included) to the indentation `target`.
 
-    `target` may be −inf; then the caller ends the path. Raises `NotConvergedError` if an
+    `target` may be infinite; then the caller ends the path. Raises `NotConvergedError` if an
     equilibrium cannot be followed.
     """
     contact = state.contact
     z0 = contact.equilibrium_separation
     sign = 1.0 if target > state.indentation else -1.0
     length = _FIRST_STEP * z0
-    if state.smallest_gap < 1.1 * z0:  # in contact: a part of the depth of the contact
+    if state.smallest_gap < 1.1 * z0:  # in contact: at least a fraction of the indentation
         length = max(length, 0.02 * abs(state.indentation))
     previous: CohesiveState | None = None
     rejected = 0  # convolutions of steps that were not accepted
@@ -185,7 +200,7 @@ def follow(
             continue
         new = _accounted(state, step, smooth)
         require_inside_grid(new)
-        # The curve has a kink at a jump, so it is not extrapolated across it.
+        # The next step must not extrapolate across a jump between equilibria.
         previous, state = (state if smooth else None), new
         yield replace(new, convolutions=new.convolutions + rejected)
         rejected = 0
@@ -198,7 +213,7 @@ def follow(
 
 
 def _accounted(state: CohesiveState, step: _Step, smooth: bool) -> CohesiveState:
-    """The state of an accepted step, with its losses and errors added to those of `state`."""
+    """Return the state after an accepted `step`; add its losses and errors to those of `state`."""
     lost = 0.0 if smooth else max(step.by_trapezium - step.change, 0.0)
     error = 0.0 if smooth else min(step.uncertainty, max(lost, abs(step.change)))
     unaccounted = state.unaccounted + (step.by_parabola - step.change if smooth else 0.0)
@@ -213,7 +228,7 @@ def _accounted(state: CohesiveState, step: _Step, smooth: bool) -> CohesiveState
 
 
 def _try(previous: CohesiveState | None, state: CohesiveState, at: float, residual: float) -> _Step:
-    """Solve at the indentation `at`, from an extrapolation of the last two states."""
+    """Make a trial step to the indentation `at`, starting from an extrapolation of two states."""
     contact, box = state.contact, state.box
     limit, convolutions = state.bound, 0
     if at > state.indentation:
@@ -253,7 +268,7 @@ def _try(previous: CohesiveState | None, state: CohesiveState, at: float, residu
 
 
 def _parabola(previous: CohesiveState, state: CohesiveState, new: CohesiveState) -> float:
-    """Integral of the force over the last of two steps, of the parabola through three states."""
+    """Work (J) of the force in the last of two steps, from the parabola through three states."""
     a = state.indentation - previous.indentation
     b = new.indentation - state.indentation
     second = ((new.force - state.force) / b - (state.force - previous.force) / a) / (a + b)
@@ -261,7 +276,7 @@ def _parabola(previous: CohesiveState, state: CohesiveState, new: CohesiveState)
 
 
 def _scale(state: CohesiveState, *, loading: bool) -> float:
-    """Energy (J) of which a step may leave the fraction `accuracy` unaccounted for."""
+    """Energy scale (J) of the contact, to which the unaccounted work of a step is related."""
     scale = state.stored_energy + abs(state.interaction_energy)
     return scale + state.plastic_work if loading else scale
 
@@ -284,7 +299,7 @@ def _within(inner: Box, outer: Box) -> bool:
 
 
 def _bound(contact: Contact, indentation: float, residual: float) -> tuple[Array | float, int]:
-    """The largest pressure (Pa) at `indentation`, and the convolutions spent on it."""
+    """Pressure bound (Pa) at `indentation`, and the number of convolutions that it took."""
     if contact.grows:
         return yield_bound(contact, max(indentation, 0.0), residual)
     return contact.yield_pressure, 0

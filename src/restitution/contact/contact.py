@@ -32,8 +32,9 @@ Approach = Literal["equilibrium", "hertzian", "pull-increments"]
 Adhesion = Literal["jkr", "cohesive"]
 EQUILIBRIUM_SEPARATION = 0.3e-9  # default range of the attraction z₀ (m)
 FULL_CONSTRAINT = 2.8  # pressure over yield strength of fully plastic contact (Tabor 1951)
-# Position of the apex of smooth adhesive bodies relative to a node (cells). No symmetry of the grid
-# maps this point onto itself.
+
+# Position of the apex of smooth adhesive bodies relative to a node (cells), see `Contact.apex`. The
+# point lies on no symmetry axis of the grid, so nodes do not attach or detach in groups.
 _OFF_NODE = 0.31, 0.17
 
 
@@ -210,7 +211,10 @@ class Contact:
 
     @property
     def hardening_modulus(self) -> float:
-        """Slope of the flow stress over *plastic* strain (Pa): E_t/(1 − E_t/E)."""
+        """Slope of the flow stress over *plastic* strain (Pa).
+
+        It is E_t/(1 − E_t/E) with the tangent modulus E_t and Young's modulus E of the softer body.
+        """
         E = min(body.youngs_modulus for body in (self.pair.first, self.pair.second))
         return self.tangent_modulus / (1 - self.tangent_modulus / E)
 
@@ -247,7 +251,7 @@ class Contact:
         return 1.86 * math.sqrt(self.work_of_adhesion * h / self.pair.contact_modulus)
 
     def residual_length(self, indentation: float) -> float:
-        """Length by which residuals of adhesive contacts are divided.
+        """Length to which residuals of adhesive contacts are related.
 
         Args:
             indentation: Approach of the bodies (m).
@@ -298,22 +302,22 @@ class Contact:
 
     @cached_property
     def gap(self) -> NDArray[np.float64]:
-        """Initial gap h₀ = (x² + y²)/(2R*) − z, shifted to min h₀ = 0 (m), shape `grid.nodes`.
+        """Initial gap h₀ = (x² + y²)/(2R*) − z (m), shifted to min h₀ = 0, shape `grid.nodes`.
 
-        x and y are measured from `apex`.
+        z is the height of the surface, and x and y are measured from `apex`.
         """
         axes = zip((self.grid.x, self.grid.y), self.apex, strict=True)
         x, y = ((along - centre) ** 2 / (2 * self.pair.radius) for along, centre in axes)
         gap: NDArray[np.float64] = np.add.outer(x, y)
-        gap -= self.surface.height  # in place, because allocating another array takes as long
+        gap -= self.surface.height  # in place: allocating a new array takes as long as subtracting
         gap -= gap.min()
         return freeze(gap)
 
     @cached_property
     def mean_offset(self) -> float:
-        """Gap (m) that the smooth bodies have at first touch of the rough bodies.
+        """Gap (m) between the mean surfaces, at the apex, at first touch of the rough bodies.
 
-        The rough surface is replaced by its mean height, and the gap is taken at the apex.
+        The mean surfaces are the smooth bodies at the mean height of the rough surface.
         """
         at = tuple(n // 2 for n in self.grid.nodes)  # the origin
         r2 = sum(along**2 for along in self.apex)

@@ -7,14 +7,16 @@ work of adhesion w. On a grid the edge is a staircase of nodes. Two local criter
 `pohrt-popov`: a node is released if its tension exceeds the limit σ_c of a single node on the
 half-space (Pohrt and Popov 2015, Facta Universitatis 13, 3–10). The criterion is simple and
 independent of the order of release. However, nodes on a straight edge hold until G = 1.8 w and
-nodes at a kink until G = 1.0 w. The relative error of the pull-off force is therefore +1.5 h/a.
+nodes at a kink until G = 1.0 w. The pull-off force is therefore too large: its relative error is
+1.5 times the cell size over the contact radius.
 
 `crack-closure`: the contact edge is a crack, and G is the work of closing the crack by one cell
 (Rybicki and Kanninen 1977, Eng. Fract. Mech. 9, 931–938). For each face between a node in contact
-and a node outside, this work per area is ½ |p| times the opening. The relative error of G is 1e-3
-on a straight edge; on a staircase, the mean of G over the faces has this accuracy. G is therefore
-averaged along the edge over about five cells, but never across to another patch. The opening is the
-separation of the surfaces beyond the smooth continuation of their contact:
+and a node outside, this work per area is ½ |p| times the opening, with the pressure p of the node
+in contact. The relative error of G is 1e-3 on a straight edge; on a staircase, only the mean of G
+over the faces has this accuracy. G is therefore averaged along the edge over about five cells, but
+never across to another patch. The opening is the separation of the surfaces beyond the smooth
+continuation of their contact:
 
     opening = (u₊ − 2u₀ + u₋) + (h₀ − 2h₋ + h₋₋),
 
@@ -24,7 +26,7 @@ of the surfaces in the contact. The initial gap outside, where the surfaces neve
 count as opening.
 
 For rectangular cells σ_c² = 2πE*w hx hy/I, where I is the double integral of 1/r over the cell; for
-square cells σ_c² = E*w/(κh), κ = (2/3π)[1 − √2 + 3 ln(1 + √2)] = 0.473201.
+square cells of size hx it is E*w/(κ hx), κ = (2/3π)[1 − √2 + 3 ln(1 + √2)] = 0.473201.
 """
 
 from __future__ import annotations
@@ -56,16 +58,19 @@ _LARGEST_CURVATURE = 0.35
 # Smallest and largest distance (cells) that is kept between a node released alone and the next
 # released node.
 _RELEASE_RADIUS, _LARGEST_RADIUS = 3, 40
-# An edge moves by whole nodes, so G scatters along an edge at rest. On coarse grids, the largest G
-# of an edge exceeds the mean by this factor, and only nodes with a larger G are released.
+# An edge moves by whole nodes, so the energy release rate G scatters along an edge at rest. On
+# coarse grids, the largest G of an edge exceeds the mean by this factor. So only nodes at which G
+# exceeds the work of adhesion by more than this factor are released.
 _LARGEST_ON_COARSE_GRIDS = 1.04
-# On a fine grid the rim under tension is wider than _RESOLVED_RIM (cells), and the mean of G is
-# accurate. A patch is then at rest if the mean of 1 − sqrt(w/G) over its edge is below _AT_REST,
-# where nodes with G < w count as zero. The tension limit is not applied, because nodes at the kinks
-# of an edge reach it at G = w, and their release would roughen the edge.
+# A grid counts as fine if the rim under tension is wider than _RESOLVED_RIM (cells). The mean of G
+# is then accurate. A patch is at rest if the mean of 1 − sqrt(w/G) over its edge is below _AT_REST,
+# where w is the work of adhesion and nodes with G < w count as zero. On a fine grid the tension
+# limit is not applied: nodes at the kinks of an edge reach it at G = w, and their release would
+# roughen the edge.
 _RESOLVED_RIM, _AT_REST = 2.0, 0.002
 _LEAST_STRIP = 0.75  # smallest width (cells) of a strip; in narrower ones nodes are released singly
 _SMOOTHED = 3  # standard deviation (cells) of the filter that smooths the outline of the contact
+
 # Tensions that differ by less than this fraction of the largest tension count as equal, because
 # the difference may be an error of the solve.
 _TIE = 1e-3
@@ -109,11 +114,11 @@ class CrackClosure:
     limit: float
 
     def releases(self, p: Array, u: Array, h: Array, touching: Mask) -> Mask:
-        """Select nodes that the edge must pass to reach G = w.
+        """Select nodes to release until the energy release rate falls to the work of adhesion.
 
-        The distance to G = w is estimated for each edge node (`_recession`). All nodes of the strip
-        between the smoothed outline and this distance are released. If the strip is narrow or
-        contains no node, single nodes under the largest tension are released.
+        `_recession` estimates how far the edge must recede for this at each edge node. All nodes
+        under tension within this distance of the smoothed outline are released. If this strip is
+        narrow or contains no node, single nodes under the largest tension are released instead.
         """
         edge = Edge.of(p, u, h, touching)
         tensile = touching & (p < 0)
@@ -131,9 +136,9 @@ class CrackClosure:
     def _recession(self, edge: Edge, tensile: Mask, fine: bool) -> Array:
         """Distance (cells) by which each edge node must recede; zero if its patch is at rest.
 
-        At a fixed indentation sqrt(G) falls linearly with the position of the edge, and its slope
-        over sqrt(G) is 1/(2t) for a smooth contact (JKR), where t is the width of the rim under
-        tension.
+        At a fixed indentation, sqrt(G) falls linearly as the edge recedes, where G is the energy
+        release rate. In a smooth contact (JKR), receding by the small distance d reduces sqrt(G) by
+        the fraction d/(2t), where t is the width of the rim under tension.
         """
         largest = (1.0 if fine else _LARGEST_ON_COARSE_GRIDS) * self.work_of_adhesion
         moves = (largest < edge.G) & tensile[edge.nodes]
@@ -158,14 +163,20 @@ def criterion(
 
 
 def energy_release_rate(p: Array, u: Array, h: Array, touching: Mask) -> tuple[Nodes, Array]:
-    """Return the indices of the edge nodes of the contact and G (J/m²), averaged along the edge."""
+    """Return the edge nodes of the contact and their energy release rate G (J/m²).
+
+    The nodes are given by their indices. G is averaged along the edge.
+    """
     edge = Edge.of(p, u, h, touching)
     return edge.nodes, edge.G
 
 
 @dataclass(frozen=True)
 class Edge:
-    """The edge nodes of a contact (indices), G (J/m²) at each, and their diffusion step."""
+    """The edge nodes of a contact (indices), and the energy release rate G (J/m²) at each of them.
+
+    `diffusion` holds the neighbours and weights that average values along the edge (`_diffusion`).
+    """
 
     touching: Mask
     nodes: Nodes
@@ -187,10 +198,10 @@ class Edge:
         outwards = (_FACES @ np.array([row, 1]))[side]
 
         def values_at(values: Array, cells: int) -> Array:
-            """Return `values` on the normal of each face, `cells` cells outwards of its edge node.
+            """Return `values` at the node that lies `cells` cells outwards of the edge node.
 
-            A face is a side of an edge node without contact beyond it. Negative `cells` lie
-            inwards.
+            There is one value for each face. A face is a side of the cell of an edge node without
+            contact beyond it; outwards is across this side. Negative `cells` lie inwards.
             """
             found: Array = np.take(values, here + cells * outwards, mode="clip")
             return found
@@ -216,7 +227,10 @@ class Edge:
         return width
 
     def strip(self, width: Array) -> Mask:
-        """The nodes of the contact within a `width` (cells) of the edge; one width a node."""
+        """Mask of the contact nodes at most `width` (cells) deep inside the smoothed outline.
+
+        `width` has one value for each edge node, which holds for the nodes nearest to it.
+        """
         _, nearest = self._distance
         near: Mask = self._depth <= width[nearest]
         return self.touching & near
@@ -229,9 +243,9 @@ class Edge:
 
     @cached_property
     def _depth(self) -> Array:
-        """Distance (cells) of each node inwards of the smoothed outline of the contact.
+        """Depth (cells) of each node inside the smoothed outline of the contact.
 
-        Along the edge, the mean distance of the edge nodes is half a cell.
+        The outline is placed so that the mean depth of the edge nodes is half a cell.
         """
         from scipy.ndimage import distance_transform_edt, gaussian_filter
 
@@ -248,7 +262,10 @@ class Edge:
 
     @cached_property
     def _distance(self) -> tuple[Array, NDArray[np.intp]]:
-        """Distance (cells) of each node of the box to the next edge node, and its number."""
+        """Distance (cells) of each node of the box to the nearest edge node, and its number.
+
+        The number is the position of this edge node in `nodes`.
+        """
         from scipy.ndimage import distance_transform_edt
 
         beside = np.ones(self.touching.shape, dtype=bool)
@@ -260,9 +277,10 @@ class Edge:
 
 
 def _curvature(touching: Mask, nodes: Nodes, faces: NDArray[np.intp]) -> Array:
-    """Mean curvature (1/cell) of the edge of the patch of each edge node, at most 0.35.
+    """Mean curvature (1/cell) of the patch to which each edge node belongs, at most 0.35.
 
-    It is 2π over the perimeter, which is π/4 times the number of faces for any smooth outline.
+    It is 2π over the perimeter of the patch. The perimeter of a smooth outline is on average π/4
+    times the number of faces.
     """
     patch = _patch_numbers(touching, nodes)
     total = np.bincount(patch, weights=faces)[patch]
@@ -271,7 +289,10 @@ def _curvature(touching: Mask, nodes: Nodes, faces: NDArray[np.intp]) -> Array:
 
 
 def _patch_numbers(touching: Mask, nodes: Nodes) -> NDArray[np.intp]:
-    """Number of the patch of each edge node; patches are joined by sides or corners of cells."""
+    """Number of the patch to which each edge node belongs.
+
+    Contact nodes are in the same patch if their cells are connected by sides or corners.
+    """
     from scipy.ndimage import label
 
     numbers: NDArray[np.intp] = label(touching, structure=np.ones((3, 3)))[0][nodes]
@@ -281,9 +302,10 @@ def _patch_numbers(touching: Mask, nodes: Nodes) -> NDArray[np.intp]:
 def _apart(nodes: Nodes, pressure: Array, recession: Array) -> NDArray[np.intp]:
     """Numbers of the edge nodes under the largest tension that are released alone.
 
-    Where the edge must recede by a part r of a cell, one node in 1/r is released. The release of a
-    node unloads its neighbours, so no other node within 0.5/r cells and `_RELEASE_RADIUS` is
-    released. Ties are broken by index, so that rounding does not decide.
+    Where the edge must recede by a fraction r of a cell, one of every 1/r nodes is released. The
+    release of a node unloads its neighbours. So no other node within 0.5/r cells is released (this
+    distance is at least `_RELEASE_RADIUS` and at most `_LARGEST_RADIUS`). Ties are broken by index,
+    so that rounding does not decide.
     """
     i, j = nodes
     rank = np.round(pressure / (_TIE * max(-float(pressure.min(initial=0.0)), _TINY)))

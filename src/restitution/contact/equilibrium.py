@@ -1,7 +1,8 @@
-"""The solve for pressure and yield at a prescribed indentation, which all contacts use.
+"""Solve for pressure and plastic displacement at a prescribed indentation.
 
-Let h be the gap before the solve (initial gap plus earlier plastic displacement). The pressure
-minimises
+All contacts except cohesive ones are solved here. Let K be the operator from pressure to elastic
+displacement, δ the indentation, h the gap before the solve (initial gap plus earlier plastic
+displacement) and p_y the pressure bound. The pressure p minimises
 
     ½ pᵀK p − pᵀ(δ − h),   lower ≤ p ≤ p_y.
 
@@ -14,8 +15,8 @@ adhesion the lower bound is a tension on the nodes held in contact. The box then
 nodes and a margin of two cells.
 
 In a periodic contact, the mean of K p is zero, so K p < 0 somewhere. Nodes with h ≥ δ may therefore
-come into contact, and the box is the whole grid. The mean of the gradient gives the
-mean gap, mean(h) − δ: an elastic contact is complete at δ = mean(h).
+come into contact, and the box is the whole grid. The mean of the gradient, mean(h) − δ, is the mean
+of the deformed gap. An elastic contact is therefore complete at δ = mean(h).
 """
 
 from __future__ import annotations
@@ -48,7 +49,8 @@ from restitution.numerics.read_only import freeze
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-# Default tolerance on the violation of the contact conditions, relative to the overlap δ − min h.
+# Default tolerance on the violation of the contact conditions, relative to the largest overlap of
+# the undeformed surfaces.
 RESIDUAL = 1e-8
 MAX_ITERATIONS = 1000  # iterations after which a solve counts as not converged
 
@@ -70,8 +72,9 @@ class HeldNodes:
 class Solution:
     """Result of a solve on a box; the arrays have the shape of the box.
 
-    `overlap` is δ − h (m), `gap` the deformed gap (m) and `pressure` in Pa. `residual` and the
-    number of `convolutions` describe the solve.
+    `overlap` is the indentation minus the gap before the solve (m), `gap` the deformed gap (m) and
+    `pressure` the pressure (Pa). `residual` is the accuracy of the solve, and `convolutions` the
+    number of convolutions that it took.
     """
 
     overlap: Array
@@ -95,17 +98,17 @@ def solve_pressure(
 
     The lower bound is 0, or minus the tension at the `held` nodes (None without adhesion). `limit`
     (Pa) is a number or an array of the shape of the grid. `box` contains the `candidate_box` and
-    all held nodes. `residual` bounds the violation of the contact conditions, relative to the
-    overlap δ − min h or, with adhesion, to `Contact.residual_length`. Contact at the grid edge is
-    not checked here. Raises `NotConvergedError`, and `DomainError` if an elastic periodic contact
-    cannot be as deep.
+    all held nodes. `residual` is the tolerance on the violation of the contact conditions, relative
+    to the largest overlap before deformation or, with adhesion, to `Contact.residual_length`.
+    Contact at the grid edge is not checked here. Raises `NotConvergedError`, and `DomainError` if a
+    periodic contact of elastic bodies is already complete at a smaller indentation.
     """
     device, shape = current(), shape_of(box)
     b = _overlap(contact, indentation, box, history)
     if contact.periodic and limit == math.inf and b.mean() >= 0:
         raise DomainError(
             f"indentation: the contact is complete at {1e9 * (indentation - b.mean()):.6g} nm, "
-            "below this indentation; use a smaller one, or prescribe the pressure"
+            "below this indentation; use a smaller indentation, or prescribe the pressure"
         )
     scale = _scale_of(contact, indentation, b)
     operators = _operators_of(contact)
@@ -165,9 +168,9 @@ def elastic_pressure(
 ) -> tuple[Array, Box, int]:
     """Estimate the pressure (Pa) between elastic bodies without adhesion, to a large `residual`.
 
-    The pressure is given on a box and is zero outside. Contacts of a few nodes can be missing
-    beside the others, see `solve_near_guess`. Return the pressure, the box and the number of
-    convolutions. Raises `NotConvergedError`.
+    The pressure is given on a box and is zero outside. Contact patches of a few nodes that lie
+    apart from the others can be missing, because `solve_near_guess` does not check all nodes.
+    Return the pressure, the box and the number of convolutions. Raises `NotConvergedError`.
     """
     box = candidate_box(contact, indentation)
     if box is None:
@@ -190,7 +193,7 @@ def elastic_pressure(
 
 
 def _overlap(contact: Contact, indentation: float, box: Box, history: State | None = None) -> Array:
-    """The overlap δ − h on `box` (m) before elastic deformation."""
+    """Overlap (m) of the surfaces on `box` before elastic deformation: indentation minus gap."""
     b: Array = indentation - contact.gap[box]
     if history is not None:
         b -= history.plastic_displacement[box]
@@ -198,7 +201,7 @@ def _overlap(contact: Contact, indentation: float, box: Box, history: State | No
 
 
 def _scale_of(contact: Contact, indentation: float, b: Array) -> float:
-    """The length (m) by which residuals are divided; `b` is the overlap."""
+    """Length (m) to which residuals are related; `b` is the overlap before deformation."""
     return contact.residual_length(indentation) if contact.adhesive else float(b.max())
 
 
@@ -269,7 +272,7 @@ def candidate_box(contact: Contact, indentation: float, history: State | None = 
         return whole if bool((gap < indentation).any()) else None
     if history is None:
         return bounding_box(contact.gap < indentation)
-    if indentation <= history.indentation:  # outside the old box no new contact arises
+    if indentation <= history.indentation:  # on unloading, no new contact arises outside the box
         region = widen(history.box, 2, nodes)
     else:
         region = (slice(0, nodes[0]), slice(0, nodes[1]))
@@ -299,7 +302,7 @@ def separated_state(contact: Contact, indentation: float, history: State | None 
 
 
 def _past(contact: Contact, history: State | None) -> tuple[Array, float, float, float]:
-    """Plastic displacement, plastic work, adhesive work and work error of `history`."""
+    """Plastic displacement, plastic work, adhesive work and work error of `history`, or zeros."""
     if history is None:
         return np.zeros(contact.grid.nodes), 0.0, 0.0, 0.0
     return (

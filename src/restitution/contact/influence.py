@@ -31,8 +31,8 @@ Operator = TypeVar("Operator", FreeConvolution, PeriodicConvolution, SpectralFil
 Moduli = TypeVar("Moduli", float, tuple[float, float])
 
 # Distance (in cell diagonals) beyond which the series of `far_displacement` is used. Beyond this
-# distance the relative error of the series is under 2e-12. In Love's formula, cancellation makes
-# the error grow as (r/h)².
+# distance the relative error of the series is under 2e-12. The relative error of Love's formula
+# grows, due to cancellation, as the square of the distance.
 _FAR = 32.0
 
 
@@ -58,12 +58,15 @@ def love_displacement(x: Array, y: Array, hx: float, hy: float, contact_modulus:
 def far_displacement(x: Array, y: Array, hx: float, hy: float, contact_modulus: float) -> Array:
     """Displacement (m/Pa) as in `love_displacement`, by a series that holds far from the cell.
 
-    The Taylor series of the displacement due to a point load is averaged over the cell:
+    The Taylor series of the displacement due to a point load is averaged over the cell. With the
+    displacement u, the pressure p and the distance r from the cell,
     u πE*/(p hx hy) = [1 + (hx²∂x² + hy²∂y²)/24 + hx⁴∂x⁴/1920 + hx²hy²∂x²∂y²/576 + hy⁴∂y⁴/1920] 1/r.
-    The next term is of relative order (h/r)⁶. `x` and `y` (m) are a column and a row.
+    The relative error is of the order of the sixth power of cell size over distance. `x` and `y`
+    (m) are a column and a row.
     """
     xx, yy = hx * hx, hy * hy
-    # Polynomials in c, the squared direction cosine along x: ∂x² 1/r = (3c − 1)/r³ and so on.
+    # Coefficients of polynomials in c, the squared direction cosine along x. They follow from
+    # ∂x² 1/r = (3c − 1)/r³ and the further derivatives.
     second = np.array([2 * yy - xx, 3 * (xx - yy), 0.0]) / 24
     fourth = (
         np.array([9 * xx * xx + 24 * yy * yy, -90 * xx * xx - 120 * yy * yy, 105 * (xx**2 + yy**2)])
@@ -83,14 +86,16 @@ def cerruti_displacement(
 
     The cell is at the origin.
 
-    A tangential force Q along x moves the surface of a half-space by u = Q [(1 − ν)/r + ν x²/r³]/
-    (2πG) along x (Cerruti 1882; Johnson 1985, *Contact Mechanics*, eq. 3.75). With y²/r³ = ∂²r/∂x²
-    and x²/r³ = ∂²r/∂y², which add up to 1/r, the integral over the cell is
+    A tangential force Q along x moves the surface of a half-space of shear modulus G by
+    u = Q [(1 − ν)/r + ν x²/r³]/(2πG) along x, at the distance r from the force (Cerruti 1882;
+    Johnson 1985, *Contact Mechanics*, eq. 3.75). With y²/r³ = ∂²r/∂x² and x²/r³ = ∂²r/∂y², which
+    add up to 1/r, the integral over the cell is
 
         u = α [[x asinh(y/|x|)]] + β [[y asinh(x/|y|)]],   α = Σ (1 − ν)/(2πG),   β = Σ 1/(2πG).
 
-    The double brackets are the differences between the corners of the cell. Cancellation makes the
-    relative error grow as the square of the distance in cells; it is below 1e-9 up to 1000 cells.
+    α and β are the `compliances`, with sums over the bodies. The double brackets are the
+    differences between the corners of the cell. Cancellation makes the relative error grow as the
+    square of the distance in cells; it is below 1e-9 up to 1000 cells.
     `x` and `y` (m) broadcast together, and must not lie on the lines through the edges of the cell.
     """
     alpha, beta = compliances
@@ -113,8 +118,8 @@ def influence_coefficients(
 
     `i` is a column and `j` a row; both start at 0.
     """
-    # For given E*, u/h depends only on the aspect ratio of the cells and on the lag. So the
-    # coefficients are computed for E* = 1 and cells of unit width, and then scaled.
+    # Coefficients of cells of equal shape are proportional to the cell width and to 1/E*. So they
+    # are computed for E* = 1 and cells of unit width, and then scaled.
     hx, hy = spacing
     lags, aspect, scale = (i.size, j.size), hy / hx, hx / contact_modulus
     if i.size * j.size <= _most_coefficients():
@@ -140,8 +145,8 @@ def inverse_half_space(
 ) -> SpectralFilter:
     """Make the operator from displacement to pressure, an approximate inverse of `half_space`.
 
-    It multiplies displacement waves of the wave number |q| by |q| E*/2, which is exact for a
-    periodic half-space (Johnson 1985).
+    It multiplies a displacement wave of the angular wave number |q| by |q| E*/2, which is exact for
+    a periodic half-space (Johnson 1985).
     """
     return _operator(_inverse_half_space, shape, spacing, contact_modulus)
 
@@ -185,15 +190,16 @@ def foundation_compliance(
 ) -> float:
     """Displacement of the elastic foundation of `sprung_half_space` per mean pressure (m/Pa).
 
-    It is the compliance of a half-space for a wave twice as long as the longer edge of the period.
+    The compliance is chosen equal to that of a half-space for a pressure wave twice as long as the
+    longer edge of the period.
     """
     q = math.pi / max(n * h for n, h in zip(shape, spacing, strict=True))
     return 2 / (contact_modulus * q)
 
 
 # Largest operator and largest block of coefficients that are cached, as fractions of the size of
-# the cache. As a contact grows, larger operators would fill the cache. With the default size of the
-# cache, operators of up to 1400² nodes are cached.
+# the cache. If larger operators were cached too, a few of them would fill the cache as a contact
+# grows. With the default size of the cache, operators of up to 1400² nodes are cached.
 _MAX_OPERATOR, _MAX_COEFFICIENTS = 1 / 15, 2 / 3
 
 
@@ -216,8 +222,8 @@ def _operator(
 def _unit_coefficients(lags: tuple[int, int], aspect: float, device: Device) -> Array:
     """Coefficients for cells 1 × `aspect` and E* = 1, as a view that callers must not change.
 
-    The number of lags follows the size of the contact and differs between most solves. The cache
-    keeps the largest block so far, and smaller blocks are views of it.
+    The number of lags depends on the size of the contact, so it differs between most solves. The
+    cache keeps the largest block so far, and smaller blocks are views of it.
     """
     key = _compute_coefficients, aspect, device
     known: Array | None = operator_cache.get(key)
@@ -315,7 +321,10 @@ def _with_mean(
     contact_modulus: float,
     device: Device,
 ) -> PeriodicConvolution:
-    """Periodic half-space with a mean displacement of `compliance` (m/Pa) times mean pressure."""
+    """Build a periodic half-space with a mean displacement of `compliance` times mean pressure.
+
+    The unit of `compliance` is m/Pa.
+    """
 
     def symbol(qx: Array, qy: Array) -> Array:
         q = _wave_numbers(qx, qy, spacing)

@@ -2,9 +2,9 @@
 
 The state of monotonic loading under a pressure bound does not depend on the path, so one solve from
 the undeformed bodies is enough. The loading work is computed in one of three ways. Under a constant
-bound without adhesion it is W = E_el + p_y V_p. With a truncated pressure or with adhesion on
-approach, it is the integral of the force over the indentation. Under a growing bound, the plastic
-work is summed over increments of the indentation.
+bound without adhesion, it is the elastic energy plus the bound times the plastic volume. With a
+truncated pressure or with adhesion on approach, it is the integral of the force over the
+indentation. Under a growing bound, the plastic work is summed over increments of the indentation.
 """
 
 from __future__ import annotations
@@ -41,18 +41,18 @@ Array = NDArray[np.float64]
 # Retraction after each loading increment (m) (Ghanbarzadeh et al. 2019, §2.2).
 PULL_INCREMENT = 1e-10
 # Quadrature of a truncated force: tolerance relative to force times indentation, margin added to
-# the error (in tolerances), and number of initial intervals. With one interval, the integrand, zero
-# up to first yield, could be zero at all sampled depths.
+# the error (in tolerances), and number of initial intervals. The integrand can be zero up to first
+# yield, so with one interval it could be zero at all sampled depths.
 _TRUNCATION_TOLERANCE, _TRUNCATION_MARGIN, _TRUNCATION_PANELS = 3e-5, 10.0, 4
-# Tolerance of the work of an adhesive force, relative to the work.
-# The force jumps as asperities attach, which limits the accuracy. An error of 1.5e-3 of the work is
-# an error of at most 0.00075 in restitution.
+# Relative tolerance of the integral of an adhesive force. The force jumps as asperities attach,
+# which limits the accuracy. A relative error of 1.5e-3 of the loading work changes the restitution
+# by at most 0.00075.
 _ADHESIVE_TOLERANCE = 1.5e-3
-# The plastic work is a sum over depths. The first depth is _SHALLOW times the indentation, and each
-# next one is at most _RATIO times the last. The error estimate of `plastic_work` holds up to this
-# ratio.
+# Under a growing bound, the plastic work is a sum over depths. The first depth is _SHALLOW times
+# the indentation, and each further depth is at most _RATIO times the one before. The error estimate
+# of `plastic_work` holds up to this ratio.
 _RATIO, _SHALLOW = 1.42, 0.2
-_WORK_RESIDUAL = 1e-6  # tolerance of intermediate solves; the relative force error is far smaller
+_WORK_RESIDUAL = 1e-6  # tolerance of intermediate solves; the force is far more accurate than this
 
 
 def solve(
@@ -138,9 +138,10 @@ def step(state: State, indentation: float, *, residual: float = RESIDUAL) -> Sta
 def solve_without_work(
     contact: Contact, indentation: float, *, start: State | None, residual: float
 ) -> State:
-    """Do `solve` without computing the loading work and without checking the grid edge.
+    """Do the same as `solve`, but leave out the loading work and the check of the grid edge.
 
-    Cohesive contacts follow the whole path of loading, so their state has its work.
+    The state of a cohesive contact contains its work in any case, because it is found by following
+    the whole loading path.
     """
     if contact.cohesive:
         return load_cohesive(contact, indentation, start=start, residual=residual)
@@ -155,9 +156,9 @@ def solve_without_work(
         elif contact.detachment == "pohrt-popov":
             box, held = shallower.box, shallower.box_pressure != 0
         else:
-            # A contact that grows from a smaller one may stop before it reaches its balance (G = w
-            # along the edge). So the search starts from all nodes that overlap at this indentation,
-            # and then releases nodes.
+            # A contact that grows from a smaller one may stop before the energy release rate along
+            # its edge has fallen to the work of adhesion. So the search starts from all nodes that
+            # overlap at this indentation, and then releases nodes.
             inside = contact.gap <= indentation
             inside[shallower.box] |= shallower.box_pressure != 0
             box = bounding_box(inside)
@@ -185,7 +186,7 @@ def solve_without_work(
 
 
 def _limit_at(contact: Contact, indentation: float, residual: float) -> tuple[Array | float, int]:
-    """Return the pressure bound of the solve (Pa) and the convolutions spent on computing it.
+    """Return the pressure bound of a solve (Pa), and the number of convolutions that it took.
 
     The bound is infinite if the pressure is truncated after the solve.
     """
@@ -214,7 +215,7 @@ def solve_nonadhesive(
 
 
 def truncate_pressure(elastic: State) -> State:
-    """Truncate the elastic pressure at p_y, without redistributing the excess pressure.
+    """Truncate the elastic pressure at the yield pressure, without redistributing the excess.
 
     Force and area are then those of Thornton and Ning (1998). The truncated pressure deforms the
     bodies less, so their surfaces overlap in the contact and beside it. This overlap becomes the
@@ -244,7 +245,10 @@ def work_is_integrated(contact: Contact) -> bool:
 
 
 def with_work(state: State, start: State | None) -> State:
-    """Add the work to a state of `solve_without_work`, integrated from `start` or first touch."""
+    """Add the loading work to a `state` that `solve_without_work` has returned.
+
+    If the work has to be integrated, the integral begins at `start` or, if None, at first touch.
+    """
     contact, indentation = state.contact, state.indentation
     if contact.cohesive or not work_is_integrated(contact):
         return state
@@ -259,8 +263,9 @@ def with_work(state: State, start: State | None) -> State:
             return replace(state, work_error=error)
     known = state.stored_energy + state.plastic_work
     if _adhesive_work_is_negligible(state):
-        # Where the adhesive work was integrated, it was 0.37 to 0.93 of w times the area, in most
-        # cases above 0.7.
+        # The adhesive work is set to its largest possible value, the work of adhesion times the
+        # area. Where it was integrated instead, it was 0.37 to 0.93 of this value, in most cases
+        # above 0.7.
         return replace(state, adhesive_work=gain, work_error=0.5 * gain)
     if contact.adhesive and contact.approach != "hertzian":
         balanced = contact.approach == "equilibrium" and balances_are_reliable(state)
@@ -279,8 +284,8 @@ def with_work(state: State, start: State | None) -> State:
         work, error, convolutions = _work_by_truncation(state, start)
     convolutions += state.convolutions
     if contact.plasticity == "truncated":
-        # There is no formula for the plastic work of a truncated pressure. It is the integrated
-        # work minus the elastic energy.
+        # There is no formula for the plastic work of a truncated pressure. It is computed as the
+        # integrated work minus the elastic energy.
         return replace(
             state,
             plastic_work=work - state.stored_energy,
@@ -292,7 +297,10 @@ def with_work(state: State, start: State | None) -> State:
 
 
 def _adhesive_work_is_negligible(state: State) -> bool:
-    """Whether the largest possible adhesive work on approach is below the tolerance of the work."""
+    """Whether the work of adhesion times the contact area is small compared with the other work.
+
+    In this case the adhesive work on approach is not integrated.
+    """
     contact = state.contact
     if not contact.adhesive or contact.approach != "equilibrium":
         return False
@@ -309,8 +317,8 @@ def _intermediate(contact: Contact, depth: float, start: State | None = None) ->
 def _work_by_increments(state: State, start: State | None) -> tuple[float, float, int]:
     """Return the plastic work (J) under a growing bound, its error (J) and the convolutions.
 
-    The work is summed over increasing depths from `start`, or from `_SHALLOW` times the
-    indentation, where little has yielded.
+    The work is summed over increasing depths, beginning at `start` or, if None, at `_SHALLOW` times
+    the indentation, where little has yielded.
     """
     contact, indentation = state.contact, state.indentation
     first = _SHALLOW * indentation if start is None else start.indentation
@@ -332,10 +340,10 @@ def _work_by_increments(state: State, start: State | None) -> tuple[float, float
 def _work_by_truncation(state: State, start: State | None) -> tuple[float, float, int]:
     """Return the results of `work_by_force` for a truncated pressure without adhesion on approach.
 
-    There are two ways to the work. One integrates the truncated force. The other integrates the
-    force that truncation removes, and subtracts the integral from the energy of the elastic
-    contact. The second integral is zero below first yield, and it is more accurate as long as the
-    removed force is smaller than the remaining force.
+    The work is computed in one of two ways. The first integrates the truncated force. The second
+    integrates the force that truncation removes, and subtracts this integral from the energy of the
+    elastic contact. The second integrand is zero below first yield. The second way is used while
+    the removed force is smaller than the remaining force, because it is then more accurate.
     """
     contact, indentation = state.contact, state.indentation
     p_y, area = contact.yield_pressure, contact.grid.cell_area

@@ -2,15 +2,17 @@
 
 The error of plasticity comes from a comparison with finite elements (docs/validation.md). The
 largest relative differences of COR in this comparison are tabulated over the COR due to plasticity
-alone, e_p = sqrt(E_el/(E_el + W_p)). This COR decreases monotonically from first yield to full
-plasticity, for smooth bodies and for asperities. The differences of `expanding-cavity` also depend
-on the steepness of the asperities ψ = E* S/Y, where S is the rms slope. Outside the range of the
-finite element results, the nearest value is used and may be too small.
+alone, e_p = sqrt(E_el/(E_el + W_p)), with the elastic energy E_el and the plastic work W_p. This
+COR decreases monotonically from first yield to full plasticity, for smooth bodies and for
+asperities. The differences of `expanding-cavity` also depend on the steepness of the asperities
+ψ = E* S/Y, with the rms slope S and the yield strength Y. Outside the range of the finite element
+results, the nearest value is used and may be too small.
 
-`adhesion = "jkr"` neglects the range of the attraction and therefore dissipates too much energy.
-This is the second part of the error. It follows from a table of the energy that smooth elastic
-spheres dissipate in one cycle of contact, divided by that of JKR, as a function of the Tabor
-parameter (docs/studies/cohesive_reference.csv).
+The second part of the error belongs to `adhesion = "jkr"`, which neglects the range of the
+attraction and therefore dissipates too much energy. This part is computed from a table of the
+energy that smooth elastic spheres dissipate in one cycle of contact, divided by the energy
+dissipated in JKR theory, as a function of the Tabor parameter
+(docs/studies/cohesive_reference.csv).
 """
 
 from __future__ import annotations
@@ -34,20 +36,23 @@ _CONSTANT = {
         (0.3, 0.65, 0.65, 0.55, 0.45, 0.37, 0.3, 0.18, 0.17, 0.11, 0.07),
     ),
 }
-# Largest relative difference as a function of ψ, and a factor on it as a function of COR near 1.
+# For `expanding-cavity`: steepness ψ of the asperities, and the largest relative difference from
+# finite elements. Then the COR due to plasticity alone, and a factor on this difference.
 _STEEPNESS, _GROWING = (0.0, 4.0, 6.0), (0.03, 0.035, 0.045)
 _NEAR_ONE = (0.94, 0.98, 1.0), (1.0, 0.5, 0.2)
-# Tabor parameter, and the hysteresis of the axisymmetric reference over that of JKR.
+# Tabor parameter, and the energy that smooth elastic spheres dissipate in a cycle of contact, over
+# that of JKR (from an axisymmetric reference solution).
 _TABOR = (0.7, 1.0, 2.0, 3.0, 5.0)
 _HYSTERESIS = (0.0, 0.0347, 0.2039, 0.3198, 0.4581)
-_BEYOND = 0.44
+_BEYOND = 0.44  # exponent of the extrapolation to larger Tabor parameters
 _ONSET = 1.6 / 2.8  # pressure at first yield over the yield pressure (full plasticity)
 
 
 def model_error(state: State, restitution: float) -> float:
-    """Error of the `restitution` of an impact up to `state` due to the models of its contact.
+    """Error of the COR `restitution` of an impact whose deepest point is `state`.
 
-    The two parts, of plasticity and of the range of adhesion, are independent.
+    It has two independent parts, one due to the plasticity model and one due to neglecting the
+    range of adhesion.
     """
     parts = _plasticity_error(state, restitution), _range_error(state, restitution)
     return math.hypot(*parts) if all(parts) else max(parts)
@@ -56,9 +61,9 @@ def model_error(state: State, restitution: float) -> float:
 def hysteresis_ratio(tabor: float) -> float:
     """Energy dissipated in a cycle of contact of smooth elastic spheres, over that of JKR.
 
-    Beyond the last value of the reference (µ = 5), the difference from 1 is extrapolated with the
-    exponent found between µ = 3 and 5. This exponent increases with µ up to there, so the result is
-    too small rather than too large.
+    Up to the Tabor parameter µ = 5, the result is interpolated in a table. Beyond, its difference
+    from 1 is extrapolated as a power of µ, with the exponent found between µ = 3 and 5. Up to µ = 5
+    this exponent increases with µ, so the extrapolated result is rather too small than too large.
     """
     if tabor >= _TABOR[-1]:
         return 1 - (1 - _HYSTERESIS[-1]) * math.pow(_TABOR[-1] / tabor, _BEYOND)
@@ -87,8 +92,8 @@ def _plasticity_error(state: State, restitution: float) -> float:
     stored, lost = state.stored_energy, state.plastic_work
     returned = stored / (stored + lost) if stored + lost > 0 else 0.0
     error = largest_difference(state, math.sqrt(returned))
-    # The adhesive loss of energy does not depend on the plastic loss, so e² and e_p² change by the
-    # same amount.
+    # An error of the COR due to plasticity alone changes only the plastic loss of energy. The
+    # adhesive loss stays the same, so the squares of both COR change by the same amount.
     high, low = (
         math.sqrt(max(restitution**2 + returned * ((1 + off) ** 2 - 1), 0.0))
         for off in (error, -error)
@@ -97,7 +102,10 @@ def _plasticity_error(state: State, restitution: float) -> float:
 
 
 def largest_difference(state: State, restitution: float) -> float:
-    """Largest relative error of COR if plasticity alone would give the COR `restitution`."""
+    """Largest relative difference of COR from finite elements, due to the plasticity model.
+
+    `restitution` is the COR that plasticity alone would give.
+    """
     contact = state.contact
     if not contact.grows:
         return float(np.interp(restitution, *_CONSTANT[str(contact.plasticity)]))

@@ -26,8 +26,8 @@ def loading_path(
 ) -> Iterator[State]:
     """Load the undeformed bodies to each of several indentations, forces or impact velocities.
 
-    Give exactly one of `indentations`, `forces` and `velocities`. If the work has to be integrated,
-    each integral starts from the previous state.
+    Give exactly one of `indentations`, `forces` and `velocities`. If the loading work has to be
+    integrated numerically, each integral starts from the previous state.
 
     Args:
         contact: Contact to load.
@@ -47,7 +47,7 @@ def loading_path(
         DomainError: The contact reaches the edge of the grid.
     """
     if sum(given is not None for given in (indentations, forces, velocities)) != 1:
-        raise CaseError("a loading path takes one of indentations, forces and velocities")
+        raise CaseError("a loading path takes exactly one of indentations, forces and velocities")
     state: State | None = None
     for depth in () if indentations is None else indentations:
         state = solve(contact, depth, start=state, residual=residual)
@@ -81,9 +81,9 @@ def unloading_path(
             determines the number of steps with adhesion, see `contact.separation`.
         residual: Tolerance on the violation of the contact conditions (1), as in `solve`; only
             without adhesion.
-        known: States of unloading from a shallower depth of the same contact. Adhesive unloading of
-            elastic bodies then ends with these states, because its path below that depth does not
-            depend on the largest depth.
+        known: States of unloading from a shallower depth of the same contact. They save time with
+            adhesion: below that depth, unloading of elastic bodies does not depend on the largest
+            depth, so these states are yielded instead of computing them again.
 
     Yields:
         `state`, then the state after each step.

@@ -2,8 +2,9 @@
 
 If a node is in contact, its whole cell counts as contact. On average, this adds a strip along the
 contact edge to the area. The excess area is (π − 1 + ln 2)/24 times the length of the staircase
-edge times the spacing. This includes that the staircase edge is longer than the true edge by the
-factor 4/π on average (Yastrebov, Anciaux and Molinari 2017, Tribol. Int. 114, 161–171).
+edge times the spacing. The factor accounts for the length of the staircase edge, which is on
+average 4/π times that of the true edge (Yastrebov, Anciaux and Molinari 2017, Tribol. Int. 114,
+161–171).
 """
 
 from __future__ import annotations

@@ -23,9 +23,10 @@ PRESSURE_TOLERANCE = 1e-8
 def solve_at_pressure(contact: Contact, pressure: float, *, residual: float = RESIDUAL) -> State:
     """Load a periodic contact to a nominal pressure, within a relative error of 1e-8.
 
-    For the solve, an elastic foundation is added, whose compression is proportional to the mean
-    pressure. It makes the problem positive definite even in complete contact, where the indentation
-    does not depend on the pressure. The compression of the foundation is subtracted at the end.
+    For the solve, the bodies are put on an elastic foundation, whose compression is proportional to
+    the mean pressure. The foundation makes the problem positive definite even in complete contact,
+    where the indentation of the bodies alone no longer depends on the pressure. The compression of
+    the foundation is subtracted from the result.
 
     Args:
         contact: Periodic contact to load.

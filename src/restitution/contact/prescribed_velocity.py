@@ -26,9 +26,9 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
     """Load the undeformed bodies until the loading work is ½ m* V².
 
     If the work is known exactly, the relative error of the velocity is at most 1e-6. If the work is
-    integrated, the velocity computed from `State.loading_work` is V within 1e-4, and
-    `State.work_error` is an additional error. Where the work is positive, it increases with the
-    indentation, so the search always converges.
+    integrated numerically, the velocity computed from `State.loading_work` agrees with V within
+    1e-4. In addition, the work then has the error `State.work_error`. Where the work is positive,
+    it increases with the indentation, so the search always converges.
 
     Args:
         contact: Contact to load.
@@ -45,7 +45,7 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
     """
     mass = contact.pair.mass
     if mass is None:
-        raise CaseError("density: is missing; give the density of both bodies, or no velocity")
+        raise CaseError("density: is missing; an impact velocity needs the density of both bodies")
     if contact.periodic:
         raise CaseError("velocity: the bodies of a periodic contact have no mass; use solve")
     if not 0 < velocity < math.inf:
@@ -79,8 +79,10 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
 class _Search:
     """The search for the indentation at which the loading work is `work` (J).
 
-    Newton's method for ln W as a function of ln δ, whose slope is F δ/W because dW/dδ = F, needs
-    two or three solves. It can fail where the work jumps; a bracketing root finder then takes over.
+    Newton's method is applied to ln W as a function of ln δ, with the loading work W and the
+    indentation δ. The slope is F δ/W with the force F, because dW/dδ = F. Two or three solves are
+    usually enough. Where the work jumps, Newton's method can fail; a bracketing root finder then
+    takes over.
     """
 
     def __init__(self, contact: Contact, work: float, start: State | None) -> None:
@@ -88,7 +90,7 @@ class _Search:
         self.found: dict[float, State] = {}
 
     def at(self, indentation: float) -> State:
-        """The state at an indentation (m), loaded from the deepest shallower state."""
+        """Return the state at an indentation (m), solved from the next shallower known state."""
         if indentation not in self.found:
             shallower = (state for depth, state in self.found.items() if depth < indentation)
             guess = max(shallower, key=lambda state: state.indentation, default=self._start)
@@ -101,9 +103,10 @@ class _Search:
         return abs(math.sqrt(max(state.loading_work, 0.0) / self._work) - 1)
 
     def first_depth(self) -> float:
-        """A first guess (m): a Newton step from the start, or else Hertz's depth for this work.
+        """Return a first guess (m): a Newton step from the start, or the depth of smooth bodies.
 
-        A cohesive contact is loaded until the work is exceeded, so that no path is followed twice.
+        A cohesive contact is instead loaded until the work is exceeded. Later solves continue from
+        the last state before this, so that the loading path is not followed again.
         """
         if self._contact.cohesive:
             before, reached = load_until(
@@ -125,14 +128,17 @@ class _Search:
         return float(smooth.indentation_from_energy(self._work))
 
     def newton(self, depth: float) -> float | None:
-        """The next depth (m) after `depth`, or None if it lies outside the bracket so far."""
+        """Return the depth (m) of a Newton step from `depth`; None if it is outside the bracket.
+
+        The bracket consists of the nearest depths tried so far with too little and too much work.
+        """
         following = self._step(self.at(depth))
         low = max((d for d, s in self.found.items() if self._excess(s) < 0), default=0.0)
         high = min((d for d, s in self.found.items() if self._excess(s) >= 0), default=math.inf)
         return following if following is not None and low < following < high else None
 
     def bracketed(self, tolerance: float) -> float:
-        """The depth (m), within the relative `tolerance`, by a bracketing root finder."""
+        """Find the depth (m) with a bracketing root finder, within the relative `tolerance`."""
         from scipy.optimize import toms748
 
         low = max((d for d, s in self.found.items() if self._excess(s) < 0), default=0.0)
@@ -143,11 +149,12 @@ class _Search:
         def excess(indentation: float) -> float:
             return self._excess(self.at(float(indentation))) if indentation else -1.0
 
-        # The tolerance on the depth follows from ΔV/V = ½ ΔW/W, which is Δδ/δ to 1.25 Δδ/δ.
+        # The work W grows as δ² to δ^2.5, so ΔV/V = ½ ΔW/W is Δδ/δ to 1.25 Δδ/δ. The relative
+        # tolerance of the velocity therefore serves as that of the depth, too.
         return float(toms748(excess, low, high, xtol=tolerance * high, rtol=1e-12, k=1))
 
     def _step(self, state: State) -> float | None:
-        """A Newton step from `state`; None where the work does not grow from a positive value."""
+        """Return the depth (m) of a Newton step from `state`; None if force or work is not > 0."""
         force, work = state.force, state.loading_work
         if not (force > 0 and work > 0):
             return None
@@ -155,13 +162,17 @@ class _Search:
         return state.indentation * math.exp(min(change, math.log(_MAX_GROWTH)))
 
     def _excess(self, state: State) -> float:
-        """Number with the sign of W − work, nearly linear in δ because W grows as δ² to δ^2.5."""
+        """Return a measure of how far the loading work of `state` is above the prescribed work.
+
+        It has the sign of the difference and is nearly linear in the indentation δ, because the
+        work grows as δ² to δ^2.5.
+        """
         work = state.loading_work
         return math.copysign((abs(work) / self._work) ** 0.4, work) - 1
 
 
 def _adhesive_depth(contact: Contact, work: float) -> float:
-    """Indentation (m) at which smooth elastic adhesive bodies have taken up `work` (J)."""
+    """Indentation (m) at which the loading work of smooth JKR bodies is `work` (J)."""
     from scipy.optimize import brentq
 
     pair = contact.pair

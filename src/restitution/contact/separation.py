@@ -2,8 +2,8 @@
 
 In each step the bodies first retract with a fixed contact area, so the force is linear in the
 indentation. Then nodes are released at the new indentation. In continuous unloading, these nodes
-would be released earlier. The late release costs work: in each step, the work is below the work of
-continuous unloading by half the force jump times the step.
+would be released earlier. Because of the late release, the work that the contact returns in a step
+is smaller than in continuous unloading, by half the jump of the force times the step.
 """
 
 from __future__ import annotations
@@ -29,22 +29,26 @@ Array = NDArray[np.float64]
 
 RESTITUTION_ERROR = 0.002
 _ACCURACY = 1e-3  # tolerance of the solves as a fraction of the crack opening at the edge
-_STEPS_OF_RECOVERY = 8  # fewest steps over the elastic recovery
-# fewest steps over the pull-off displacement of a punch of the same area
+_STEPS_OF_RECOVERY = 8  # smallest number of steps over the elastic recovery
+
+# Smallest number of steps over the pull-off displacement of a punch of the same area.
 _STEPS_OF_TENSION = {"crack-closure": 32, "pohrt-popov": 16}
-_FINEST = 400  # the shortest step is this pull-off displacement divided by 400
+_FINEST = 400  # the shortest step is this pull-off displacement divided by _FINEST
 _REFINEMENTS = (1, 2, 4)  # factors on the number of steps, tried until the tolerance is met
-# Error of the steps, in w times the contact area, below which the error of the grid is larger
-# (`collision`), so that finer steps would not reduce the sum.
+
+# If the error of the steps is below this fraction of the surface energy (work of adhesion times
+# contact area), the error of the grid is larger (see `collision`). Finer steps are then useless.
 _SMALL = {"crack-closure": 0.005, "pohrt-popov": 0.0}
 _MOST_STEPS = 3000  # steps after which unloading counts as not converged
-# Error of the unloading work as a fraction of the work of late release. The integral through the
-# states after each release is free of this work to first order. A comparison with ten times finer
-# steps showed errors below 0.1 for crack closure and below 1/3 for the tension limit, with which
-# nodes are released in larger jumps. The values include a margin of 1.5.
+
+# Error of the unloading work as a fraction of the work of late release. To first order, the
+# integral of the force through the states after each release does not contain this work. In a
+# comparison with ten times finer steps, the fraction was below 0.1 with `crack-closure` and below
+# 1/3 with `pohrt-popov`, which releases nodes in larger jumps. The values include a margin of 1.5.
 _LATENESS = {"crack-closure": 0.15, "pohrt-popov": 0.5}
-# Cohesive contacts: unaccounted work of a step over the energies, in units of the tolerance of the
-# restitution, and error of the adhesive loss on the coarsest grid allowed (docs/adhesion.md).
+# For cohesive contacts: tolerance of the energy balance of a step (`accuracy` in `cohesive_path`),
+# as a fraction of the tolerance of the restitution; and relative error of the adhesive loss on the
+# coarsest grid allowed (docs/adhesion.md).
 _UNACCOUNTED = 0.1
 _GRID_LOSS = 0.05
 
@@ -70,13 +74,12 @@ def separate(
 ) -> Iterator[State]:
     """Yield `state` and the states of unloading to separation, the last of them without contact.
 
-    `known` may be such states from a shallower depth of the same contact. If nothing has yielded
-    and both forces agree, the states below that depth are taken from there.
-
     If `state` is already without contact, it is the only state. `tolerance` is the error of the
     coefficient of restitution that the steps may cause. If the estimated error is larger, unloading
-    is repeated with 2 and finally 4 times as many steps. Raises `NotConvergedError` if the bodies
-    do not separate.
+    is repeated with 2 and finally 4 times as many steps. `known` may be states of unloading from a
+    shallower depth of the same contact. As soon as the force agrees with the known unloading, and
+    if nothing has yielded, the remaining states are taken from `known`. Raises `NotConvergedError`
+    if the bodies do not separate.
     """
     for finer in _REFINEMENTS:
         path = list(_unload(state, tolerance / finer, finer, known))
@@ -112,7 +115,7 @@ def _unload(
     other = SharedUnloading.of(state, known)
     yield state
     if state.contact_nodes == 0:
-        return  # `approach = "pull-increments"` has released all nodes already
+        return  # with `approach = "pull-increments"`, loading can end with all nodes released
     recovery, allowed = _plan(state, tolerance)
     step = recovery / (finer * _STEPS_OF_RECOVERY)
     previous: State | None = None
@@ -123,9 +126,9 @@ def _unload(
         if state.force < 0.1 * abs(_punch_force(state)):
             longest = min(longest, shortened)
         elif previous is not None:
-            # End the step near zero force, because tension requires shorter steps. In a Hertz-like
-            # recovery, F ∝ δ^1.5, force over slope is two thirds of the way to zero force. The
-            # factor below extends the step to 87 % of the way.
+            # End the step before the force reaches zero, because tension requires shorter steps. In
+            # a Hertz-like recovery (F ∝ δ^1.5), the force divided by its slope is two thirds of the
+            # way to zero force. The factor 1.3 extends the step to 87 % of the way.
             slope = (previous.force - state.force) / (previous.indentation - state.indentation)
             if slope > 0:
                 longest = min(longest, max(1.3 * state.force / slope, shortened))
@@ -164,7 +167,7 @@ def _unload(
 
 
 def separation_of(path: list[State]) -> Separation:
-    """The energies of a `path` from `separate`."""
+    """Compute works, errors, pull-off force and end of a `path` from `separate`."""
     depth = np.array([state.indentation for state in path])
     force = np.array([state.force for state in path])
     start, end = path[0], path[-1]
@@ -179,7 +182,7 @@ def separation_of(path: list[State]) -> Separation:
     found = curve.work()
     # Unloading returns at most the elastic energy.
     work = min(found, start.stored_energy) if curve.balanced else found
-    # Difference between the works of the curve and of the states.
+    # Difference between the work of the curve and the work of the states.
     scatter = work - trapezoid if curve.balanced else 0.0
     return Separation(
         unloading_work=work,
@@ -196,7 +199,7 @@ def separation_of(path: list[State]) -> Separation:
 
 
 def _cohesive_separation(start: CohesiveState, end: CohesiveState, path: list[State]) -> Separation:
-    """The energies of a cohesive path. Beyond its `end` the bodies separate reversibly."""
+    """Compute the result of a cohesive path. Beyond its `end`, the bodies separate reversibly."""
     lost = end.adhesive_loss - start.adhesive_loss
     plastic = end.plastic_work - start.plastic_work
     fineness = max(start.contact.grid.spacing) / (COARSEST * cohesive_length(start.contact))
@@ -218,7 +221,11 @@ def _cohesive_separation(start: CohesiveState, end: CohesiveState, path: list[St
 
 
 def _largest_tension(path: list[State]) -> float:
-    """Largest tension (N) of a cohesive path: the vertex of the parabola through three states."""
+    """Largest tension (N) of a cohesive path.
+
+    It is the vertex of the parabola through the state of largest tension and its two neighbours. If
+    these states are separated by a jump, it is the tension of the middle one.
+    """
     force = np.array([state.force for state in path])
     k = int(force.argmin())
     largest = max(0.0, -float(force[k]))
@@ -236,7 +243,7 @@ def _jumps(state: State) -> int:
 
 
 def _late_force(state: State) -> float:
-    """Half of the force jump when nodes were released at the end of a step (N)."""
+    """Half the jump of the force (N) when nodes were released at the end of the step to `state`."""
     assert state.force_before_release is not None  # set by every `unload_adhesive`
     return 0.5 * (state.force - state.force_before_release)
 
@@ -244,39 +251,39 @@ def _late_force(state: State) -> float:
 def _plan(state: State, tolerance: float) -> tuple[float, float]:
     """Return the length of the elastic recovery (m) and the largest allowed `_late_force` (N)."""
     stored, adhesion = state.stored_energy, state.contact.work_of_adhesion * state.contact_area
-    # The elastic recovery is estimated as that of a punch of the same area and, from the force, as
-    # that of a Hertz-like contact. The smaller estimate is used.
+    # The elastic recovery is estimated in two ways from the stored energy: as that of a punch of
+    # the same area and, with the force, as that of a Hertz-like contact. The smaller one is used.
     a = math.sqrt(state.contact_area / math.pi)
     recovery = 1.5 * math.sqrt(stored / (state.contact.pair.contact_modulus * a))
     if state.force > 0:
         recovery = min(recovery, 2.2 * stored / state.force)
     recovery = max(recovery, _tension_reach(state))
-    # The allowed error, and so the step, would vanish with COR. For pairs that stick or nearly
-    # stick, it is that of COR = 0.05.
+    # The allowed error of the work is proportional to COR, so it would vanish for pairs that stick.
+    # For COR below 0.05, the value at COR = 0.05 is used.
     work = max(state.loading_work, 0.05 * stored)
     restitution = math.sqrt(max(stored - adhesion, 0.0) / work)
     # From dCOR = dW/(2 W_l COR), the tolerance allows dW = 2 W_l COR dCOR. Half of it is reserved
     # for the error of the loading work.
     allowed = 1.0 * tolerance * max(restitution, 0.05) * work
-    if balances_are_reliable(state):  # they do not depend on late releases
+    if balances_are_reliable(state):  # balances do not depend on late releases
         return recovery, math.inf
     return recovery, allowed / (_LATENESS[state.contact.detachment] * recovery)
 
 
 def _tension_reach(state: State) -> float:
-    """Pull-off displacement (m) of a punch of the same area (Kendall 1971)."""
+    """Pull-off displacement (m) of a flat punch with the contact area of `state` (Kendall 1971)."""
     punch, a = _punch(state)
     return float(punch.pull_off_displacement(a))
 
 
 def _punch_force(state: State) -> float:
-    """Pull-off force (N) of a punch of the same area (Kendall 1971)."""
+    """Pull-off force (N) of a flat punch with the contact area of `state` (Kendall 1971)."""
     punch, a = _punch(state)
     return float(punch.pull_off_force(a))
 
 
 def _punch(state: State) -> tuple[Kendall, float]:
-    """Kendall's law for the bodies, and the radius (m) of the punch with the contact area."""
+    """Return Kendall's law and the radius (m) of a flat punch with the contact area of `state`."""
     contact = state.contact
     punch = Kendall(contact.pair.contact_modulus, contact.work_of_adhesion)
     return punch, math.sqrt(state.contact_area / math.pi)
@@ -285,8 +292,8 @@ def _punch(state: State) -> tuple[Kendall, float]:
 def _predict(previous: State | None, state: State, step: float) -> NDArray[np.float64] | None:
     """Extrapolate the pressure on the nodes in contact linearly by `step`.
 
-    The extrapolation improves accuracy, not speed. The tolerance of a step is large, so a better
-    first guess gives a result nearer to the solution.
+    The result is a first guess. It improves the accuracy rather than the speed: the tolerance of a
+    step is large, so a better first guess gives a result nearer to the solution.
     """
     if previous is None:
         return None

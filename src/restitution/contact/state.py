@@ -94,7 +94,7 @@ class State:
 
     @property
     def force(self) -> float:
-        """Normal force F = Σ p hx hy (N)."""
+        """Normal force (N): the sum of the pressure over all nodes, times the cell area."""
         return float(self.box_pressure.sum()) * self.contact.grid.cell_area
 
     @property
@@ -110,7 +110,7 @@ class State:
 
     @property
     def contact_area(self) -> float:
-        """Real contact area (m²): nodes in contact times hx hy."""
+        """Real contact area (m²): number of nodes in contact times cell area."""
         return self.contact_nodes * self.contact.grid.cell_area
 
     @property
@@ -137,25 +137,28 @@ class State:
 
     @property
     def stored_energy(self) -> float:
-        """Elastic energy E_el = ½ Σ p u hx hy (J)."""
+        """Elastic energy ½ Σ p u hx hy (J), with the pressure p and the elastic displacement u."""
         twice = float(np.einsum("ij,ij->", self.box_pressure, self.box_displacement))
         return 0.5 * twice * self.contact.grid.cell_area
 
     @property
     def plastic_volume(self) -> float:
-        """Volume V_p = Σ u_p hx hy (m³) by which yielding has lowered the surface."""
+        """Plastic volume (m³): plastic displacement, summed over the nodes, times cell area."""
         return float(self.plastic_displacement.sum()) * self.contact.grid.cell_area
 
     @property
     def loading_work(self) -> float:
-        """Work done on the bodies so far (J): E_el + plastic work − adhesive work."""
+        """Work done on the bodies so far (J): elastic energy + plastic work − adhesive work."""
         return self.stored_energy + self.plastic_work - self.adhesive_work
 
     @property
     def separation_indentation(self) -> float:
-        """Indentation min(h₀ + u_p) at which bodies without adhesion separate (m)."""
-        # It suffices to search the box, because the sum h₀ + u_p of nodes in contact is below that
-        # of nodes outside the box.
+        """Indentation (m) at which bodies without adhesion separate.
+
+        It is the smallest sum h₀ + u_p of initial gap and plastic displacement.
+        """
+        # It suffices to search the box, because h₀ + u_p is smaller at nodes in contact than at
+        # nodes outside the box.
         box = self.box if self.contact_nodes else ...
         return float((self.contact.gap[box] + self.plastic_displacement[box]).min())
 

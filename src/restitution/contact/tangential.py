@@ -1,9 +1,10 @@
 """Tangential contact at a fixed normal pressure: stick, slip and friction loss at every node.
 
 The bodies move relative to each other by the tangential displacement U along x. The traction q
-along x moves their surfaces by C q relative to each other (`influence.cerruti_displacement`), and
-the slip of a node is s = U − C q. Coulomb's law limits |q| to µ p. Where |q| is below this limit,
-the slip does not change. From one state to the next, the traction minimises
+along x moves their surfaces relative to each other by C q, where C is the elastic operator of
+`influence.shear_half_space`. The slip of a node is s = U − C q. Coulomb's law limits |q| to µ p,
+with the coefficient of friction µ and the pressure p. Where |q| is below this limit, the slip does
+not change. From one state to the next, the traction minimises
 
     ½ qᵀC q − qᵀ(U − s₀)   subject to   −µ p ≤ q ≤ µ p,
 
@@ -14,8 +15,9 @@ before the step are the whole history, and the normal states of a path may follo
 order.
 
 Like Cattaneo (1938) and Mindlin (1949), this module neglects the traction along y and the influence
-of tangential traction on the pressure. This influence is zero for bodies of like materials. Yield
-limits only the pressure; the tangential traction does not contribute to yield.
+of tangential traction on the pressure. (Between bodies of the same material, tangential traction
+has no influence on the pressure.) Yield limits only the pressure; the tangential traction does not
+contribute to yield.
 """
 
 from __future__ import annotations
@@ -73,23 +75,23 @@ class TangentialState:
 
     @property
     def force(self) -> float:
-        """Tangential force T = Σ q hx hy (N)."""
+        """Tangential force (N): the sum of the traction over all nodes, times the cell area."""
         return float(self.box_traction.sum()) * self.normal.contact.grid.cell_area
 
     @property
     def stored_energy(self) -> float:
-        """Elastic energy (J) of the traction: ½ Σ q C q hx hy."""
+        """Elastic energy (J) due to the traction: half the work of the traction on the surfaces."""
         twice = float(np.einsum("ij,ij->", self.box_traction, self.box_displacement))
         return 0.5 * twice * self.normal.contact.grid.cell_area
 
     @property
     def slip(self) -> Array:
-        """Slip s = U − C q (m) on `box`."""
+        """Slip (m) on `box`: displacement of the bodies minus that of their surfaces."""
         return self.displacement - self.box_displacement
 
     @property
     def sticking(self) -> NDArray[np.bool_]:
-        """Whether a node sticks (bool), on `box`: the traction is below µ p."""
+        """Whether a node sticks (bool), on `box`: the traction is below Coulomb's limit."""
         return np.abs(self.box_traction) < _limit(self.normal, self.friction, self.box)
 
     def _summary(self) -> list[str]:
@@ -115,10 +117,11 @@ def shear(
 ) -> TangentialState:
     """Move the bodies of a contact tangentially, along x, to a displacement.
 
-    The energy lost to friction is the slip of each node times the mean of its tractions before and
-    after the step. So the mean of the forces before and after the step, times the change of U, is
-    exactly the change of the stored energy plus the loss. If a path changes direction or pressure,
-    stored energy and loss approach the values of the continuous path as the steps become shorter.
+    The energy lost to friction is the slip in this step times the mean of the tractions before and
+    after the step, summed over the nodes. With this rule, the mean of the tangential forces before
+    and after the step, times the change of the displacement, is exactly the change of the stored
+    energy plus the loss. If a path changes direction or pressure, stored energy and loss approach
+    the values of the continuous path as the steps become shorter.
 
     Args:
         normal: Normal state after the step, without adhesion.
@@ -197,5 +200,5 @@ def shear(
 
 
 def _limit(normal: State, friction: float, box: Box) -> Array:
-    """Limit µ p of the traction (Pa) on `box`."""
+    """Coulomb's limit of the traction (Pa) on `box`: coefficient of friction times pressure."""
     return friction * normal.pressure_on(box)

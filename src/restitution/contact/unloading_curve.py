@@ -1,4 +1,9 @@
-"""Curves of adhesive unloading (force over indentation), and where two curves coincide."""
+"""Curves of adhesive unloading (force over indentation), and a test whether two curves coincide.
+
+The points of most curves are *balances* of contact areas. The balance of a contact area is the
+indentation and the force at which the energy release rate along its edge equals the work of
+adhesion (`contact.adhesion`).
+"""
 
 from __future__ import annotations
 
@@ -14,13 +19,17 @@ from restitution.numerics.quadrature import integrate_curve
 
 Array = NDArray[np.float64]
 
-_FEW_NODES = 10  # a smaller contact has too few edge nodes for a balance
-_SMOOTHED = 11  # points through which a parabola smooths the force under tension
-_JUMP = 0.1  # a larger change of force between two points, over the largest tension, is a jump
-# Fall of the indentation while the last contact snaps apart, over the range of the curve.
+_FEW_NODES = 10  # a contact of fewer nodes has too few edge nodes to compute a balance
+_SMOOTHED = 11  # number of points in each parabola that smooths the force
+
+# A change of the force between two points is a jump if it exceeds this fraction of the largest
+# tension.
+_JUMP = 0.1
+# Smallest decrease of the indentation from the last balance to separation, as a fraction of the
+# decrease before.
 _END = 1e-3
-# Two forces at one indentation count as equal if their difference over the largest tension is below
-# this value, which is the scatter of the balances.
+# Two forces at one indentation count as equal if their difference is below this fraction of the
+# largest tension. The balances scatter by about as much.
 _SAME = 0.03
 
 
@@ -28,10 +37,10 @@ _SAME = 0.03
 class UnloadingCurve:
     """Force (N) over decreasing indentation (m), shape (points,).
 
-    With `crack-closure` the points are the state at which unloading begins and the balances of the
-    contact areas, which do not contain the jumps of the force when nodes are released. With
-    `pohrt-popov` the points are the states. `fixed` says that the contact area is fixed between the
-    first two points, so that the force is linear.
+    If `balanced`, the first point is the state at which unloading begins, and the others are the
+    balances of the contact areas. Balances do not contain the jumps of the force when nodes are
+    released. Otherwise, for example with `pohrt-popov`, the points are all states. `fixed` says
+    that the contact area is fixed between the first two points, so that the force is linear there.
     """
 
     indentation: Array
@@ -47,9 +56,9 @@ class UnloadingCurve:
         return -float(np.trapezoid(F[:2], x[:2])) - integrate_curve(x[1:], F[1:])
 
     def halved(self) -> UnloadingCurve:
-        """Leave out every second point.
+        """Return the curve without every second point, to estimate the error of the work.
 
-        The work from these points has at least four times the error of the work from all points.
+        The work of this curve has at least four times the error of the work from all points.
         """
         last = self.force.size - 1
         fewer = np.append(np.arange(0, last, 2), last)
@@ -58,12 +67,12 @@ class UnloadingCurve:
         return replace(self, indentation=self.indentation[fewer], force=self.force[fewer])
 
     def largest_tension(self) -> float:
-        """Largest tension (N); without the scatter of the points, if they are balances."""
+        """Largest tension (N). Balances scatter, so their force is smoothed first."""
         F = self.force
         if not self.balanced:
             return -float(F.min())
         largest = -float(F.min())
-        # Where contacts snap apart the force jumps; such a jump must not be smoothed.
+        # Where contacts snap apart, the force jumps. The curve is smoothed only between the jumps.
         jumps = np.flatnonzero(np.abs(np.diff(F)) > _JUMP * largest) + 1
         smoothed = [
             _smoothed(x, part)
@@ -73,9 +82,10 @@ class UnloadingCurve:
 
 
 def unloading_curve(path: list[State]) -> UnloadingCurve:
-    """The curve of a `path` from `separate`.
+    """Return the curve of a `path` from `separate`.
 
-    Each contact area has one point, its balance. An area without a balance has all its states.
+    Each contact area is represented by its balance, or by all its states if it has no balance. On a
+    grid where balances are not reliable, the points are all states of the path.
     """
     states = [(state.indentation, state.force) for state in path]
     balances = [state.balance for state in path[1:]]
@@ -100,9 +110,10 @@ def unloading_curve(path: list[State]) -> UnloadingCurve:
 def complete_curve(path: Sequence[State]) -> list[tuple[float, float]]:
     """Indentations (m) and forces (N) of a `path` from `separate`, with both of its ends.
 
-    The points are those of `unloading_curve`, between the state at which unloading begins and the
-    separation. Scatter beyond the largest tension is removed, so the smallest force is the pull-off
-    force. The work of the points is that of the curve, within its error.
+    The first point is the state at which unloading begins, and the last one is the separation, with
+    zero force. Between them are the points of `unloading_curve`. Scatter beyond the largest tension
+    is removed, so the smallest force is minus the pull-off force. The work of these points agrees
+    with the work of the curve within its error.
     """
     curve, begin, end = unloading_curve(list(path)), path[0], path[-1]
     if not curve.balanced:
@@ -120,7 +131,8 @@ def complete_curve(path: Sequence[State]) -> list[tuple[float, float]]:
 def _smoothed(x: Array, F: Array) -> Array:
     """Replace each value by that of the least-squares parabola through the nearest points.
 
-    The parabola is limited to the range of their values. Fewer than five points are returned.
+    The result is limited to the range of the values at these points. If there are fewer than five
+    points, `F` is returned unchanged.
     """
     window = min(_SMOOTHED, F.size)
     if window < 5:
@@ -137,10 +149,10 @@ def _smoothed(x: Array, F: Array) -> Array:
 
 @dataclass(frozen=True)
 class SharedUnloading:
-    """Unloading from a shallower depth, which deeper unloading of elastic bodies joins.
+    """Known states of unloading from a shallower depth, to reuse in unloading from a larger depth.
 
-    An elastic contact has one equilibrium at each indentation while it unloads, whatever the depth
-    from which it came.
+    While an elastic contact unloads, its state depends only on the indentation, not on the depth at
+    which unloading began. The two paths therefore join.
     """
 
     states: Sequence[State]
@@ -148,7 +160,7 @@ class SharedUnloading:
 
     @classmethod
     def of(cls, state: State, known: Sequence[State]) -> SharedUnloading | None:
-        """The unloading `known` if `state` may join it; otherwise None."""
+        """Return the unloading `known` if unloading from `state` can join it, otherwise None."""
         if not known or known[0].contact is not state.contact or known[-1].contact_nodes:
             return None
         if state.plastic_displacement.any() or known[0].plastic_displacement.any():
@@ -157,7 +169,7 @@ class SharedUnloading:
         return cls(known, curve) if curve.balanced and balances_are_reliable(state) else None
 
     def agrees(self, state: State) -> bool:
-        """Whether the contact area before `state` balances at a force of the known unloading."""
+        """Whether the balance that `state` stores lies on the known unloading curve."""
         if state.balance is None:
             return False
         (at, force), x, F = state.balance, self.curve.indentation, self.curve.force
@@ -167,11 +179,15 @@ class SharedUnloading:
         return abs(force - known) <= _SAME * max(self.curve.largest_tension(), abs(force))
 
     def below(self, state: State) -> Iterator[State]:
-        """The known states at smaller indentations, with the works of unloading from `state`."""
+        """Yield the known states at smaller indentations than `state`.
+
+        Their adhesive work is changed, so that their loading work continues that of `state`.
+        """
         following = self._following(state)
         first = following[0]
         fallen = 0.5 * (state.force + first.force) * (state.indentation - first.indentation)
-        # The work before the first state follows from the forces, all later works as they are.
+        # The work from `state` to the first known state is computed from their forces. All later
+        # changes of the work are those of the known states.
         offset = first.loading_work - (state.loading_work - fallen)
         for each in following:
             joined = replace(each, adhesive_work=each.adhesive_work + offset, convolutions=0)

@@ -1,4 +1,4 @@
-"""Choice between compiled kernels and NumPy, and of the instruction set of the kernels.
+"""Selection of compiled kernels or NumPy expressions, and of the instruction set of the kernels.
 
 Each time-critical operation is written twice: as a NumPy expression of whole arrays, which works on
 any device, and as a C++ loop that computes the same in one pass over memory. Tests compare the two.
@@ -70,9 +70,10 @@ def missing() -> str | None:
 
 
 def use_loop(expression: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
-    """Make `expression` call the compiled loop of the same name, if there is one.
+    """Decorate the NumPy function `expression` to call the compiled loop of the same name.
 
-    The loop is called if `loop_takes` the first argument, and the expression otherwise.
+    The loop is called if `loop_takes` accepts the first argument. Otherwise, and if no loops are
+    loaded, `expression` itself is called.
     """
     if loops is None:
         return expression

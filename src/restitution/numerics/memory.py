@@ -81,7 +81,10 @@ def _limit(file: Path) -> float:
 
 
 def _of_address_space() -> float:
-    """Limit set by `ulimit -v`, minus the addresses that are reserved but not resident (bytes)."""
+    """Memory (bytes) that the limit on the address space (`ulimit -v`) allows.
+
+    The limit also counts addresses that are reserved but hold no data, so these are subtracted.
+    """
     try:
         import resource
     except ImportError:

@@ -46,7 +46,7 @@ def integrate_adaptively(
 
     The error estimate compares two rules on the same interval. If the integrand is zero at all five
     nodes but not between them, the estimate is wrongly zero. A larger number of initial intervals
-    (`panels`) reduces this risk, for example for a force that is truncated at yield.
+    (`panels`) reduces this risk, for example for an integrand that is zero up to first yield.
     """
     edges = [*(a + (b - a) * k / panels for k in range(panels)), b]
     value, error, left = 0.0, 0.0, f_a
@@ -72,7 +72,8 @@ def _refine(
     f_l, f_r = f(0.5 * (a + m)), f(0.5 * (m + b))
     whole = h / 6 * (f_a + 4 * f_m + f_b)
     halves = h / 12 * (f_a + 4 * f_l + 2 * f_m + 4 * f_r + f_b)
-    # This is 15 times the error for a smooth integrand, to allow for kinks.
+    # For a smooth integrand, the error is a fifteenth of this difference. The whole difference is
+    # used, because the integrand may have kinks.
     error = abs(halves - whole)
     if error <= tolerance or depth == 0:
         return halves + (halves - whole) / 15, error

@@ -7,13 +7,13 @@ needed. The point is stored twice, as u and as p = K⁻¹u. The gradient is r = 
 is K⁻¹ + diag(φ″).
 
 Each step of Newton's method is solved by conjugate gradients that stop at the boundary of a trust
-region or at negative curvature (Steihaug 1983, SIAM J. Numer. Anal. 20, 626–637). K preconditions
-the conjugate gradients. Therefore K⁻¹ of each direction is a sum of residuals that are already
-known, and an iteration takes one product with K. The energy falls in every step. If the start is no
-longer a minimum, the method therefore descends to a neighbouring minimum.
+region or at negative curvature (Steihaug 1983, SIAM J. Numer. Anal. 20, 626–637). K is the
+preconditioner, so each direction is K times a sum of residuals. Its product with K⁻¹ is this sum,
+which is known, and an iteration takes only one product with K. The energy falls in every step. If
+the start is no longer a minimum, the method therefore descends to a neighbouring minimum.
 
-With `zero_mean`, K maps constant arrays to zero. Then the minimum is over all u of mean zero. The
-mean of p has no effect on u, and it is chosen so that the mean of the gradient is zero.
+With `zero_mean`, K maps constant arrays to zero. The minimum is then sought among all u of mean
+zero. The mean of p has no effect on u, and it is chosen so that the mean of the gradient is zero.
 """
 
 from __future__ import annotations
@@ -34,6 +34,7 @@ NodePotential = Callable[[Array], tuple[Array, Array, Array]]
 MOST_STEPS = 300  # Newton steps after which the solve counts as not converged
 _MOST_ITERATIONS = 500  # limit on the conjugate-gradient iterations of one Newton step
 _FORCING = 0.1  # largest residual of the linear system of a step, relative to the gradient
+
 # Limits of the ratio of the actual to the predicted decrease of the energy. A step is accepted
 # above _TAKEN. The trust region shrinks below _POOR and may grow above _GOOD.
 _TAKEN, _POOR, _GOOD = 0.05, 0.25, 0.75
@@ -73,7 +74,8 @@ def minimise_locally(
     """Descend from (p, u) to a local minimum of ½ uᵀK⁻¹u + Σ φ(u), where `potential` returns φ.
 
     `p` and `u` = K p are the start and are not changed. `length` is the change of u over which φ″
-    changes. It sets the size of a step along negative curvature while there is no trust region.
+    changes noticeably. It sets the size of a step along negative curvature while there is no trust
+    region.
     `tolerance` limits `LocalMinimum.residual`. `zero_mean` states that K maps constant arrays to
     zero and is positive definite for arrays of mean zero. If the method does not converge,
     `converged` of the result is False; no exception is raised.
@@ -125,9 +127,9 @@ def _newton_step(
     """Solve (K⁻¹ + k) x = −r approximately, with the gradient r and k = φ″.
 
     Returns x, K⁻¹x, whether a limit truncated the step, and whether the step met a direction of
-    negative curvature. The norm of the trust region is (xᵀK⁻¹x)^½. `limits` are the radius of the
-    trust region and the largest change of u in a step along negative curvature without a trust
-    region (infinite radius).
+    negative curvature. `limits` are two numbers. The first is the radius of the trust region in the
+    norm (xᵀK⁻¹x)^½, infinite if there is no trust region yet. In this case, the second number
+    limits the change of u in a step along negative curvature.
     """
     radius, length = limits
     x, Sx, Hd, scaled = (np.zeros_like(r) for _ in range(4))
@@ -158,7 +160,7 @@ def _newton_step(
         x += np.multiply(d, a, out=scaled)
         Sx += np.multiply(Sd, a, out=scaled)
         rest -= np.multiply(Hd, a, out=scaled)
-        if zero_mean:  # K ignores the mean, which would worsen the rounding in single precision
+        if zero_mean:  # the mean has no effect but would increase errors in single precision
             rest -= rest.mean()
         K.single_precision(rest, out=z)
         before, rz = rz, _dot(rest, z)

@@ -1,4 +1,6 @@
-"""Closed forms for smooth spheres, one law per module. Each module states its range of validity.
+"""Closed-form contact laws, most of them for smooth spheres; one law per module.
+
+Each module states the range of validity of its law.
 
 A law is a frozen object. Its parameters are fields, checked on construction, and its quantities are
 properties and methods: `Hertz(radius, contact_modulus).force(indentation)`. Laws that predict an
@@ -18,7 +20,8 @@ These conventions hold for every law:
   length, area and energy is 0 and the restitution is 1. Adhesive contacts also exist at negative
   indentation, down to the point where they break. Spheres that stick have restitution 0. NaN
   arguments give NaN.
-- **Outside its range** a formula without a solution returns NaN; the method says where.
+- **Out of range**: where a formula has no solution, the result is NaN. The docstring of the method
+  names these cases.
 - **Invalid parameters**: a radius, modulus, pressure, strength or mass that is not positive and
   finite raises `CaseError` (a `ValueError`) that names the argument.
 """

@@ -46,7 +46,7 @@ def _chandrupatla(
     above: Array,
     inside: NDArray[np.bool_],
 ) -> Array:
-    """Return the roots of the elements where the mask `inside` is true.
+    """Return the roots of `excess` where the mask `inside` is true. Other elements are undefined.
 
     Point 1 (`x1`, `f1`) is the newest point, point 2 the other end of the bracket, and point 3 the
     end that point 1 replaced.
@@ -76,7 +76,11 @@ def _chandrupatla(
 
 
 def _interpolated(x1: Array, f1: Array, x2: Array, f2: Array, x3: Array, f3: Array) -> Array:
-    """Return the next trial as a fraction of the way from point 1 to point 2."""
+    """Return the next trial as a fraction of the way from point 1 to point 2.
+
+    The fraction comes from inverse quadratic interpolation through points 1 to 3. It is ½
+    (bisection) where interpolation is not safe.
+    """
     xi, phi = (x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2)
     safe = (phi**2 < xi) & ((1 - phi) ** 2 < 1 - xi)
     quadratic = f1 / (f2 - f1) * f3 / (f2 - f3) + (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (

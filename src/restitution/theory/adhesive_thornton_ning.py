@@ -1,7 +1,8 @@
 """Thornton & Ning (1998): elastic, perfectly plastic spheres with adhesion.
 
-C. Thornton, Z. Ning, Powder Technology 99 (1998) 154–162. With e_p from `ThorntonNing`, V_s from
-`JKR` and V_y from `FirstYield`:
+C. Thornton, Z. Ning, Powder Technology 99 (1998) 154–162. With the impact velocity V, the sticking
+velocity V_s of `JKR`, the yield velocity V_y of `FirstYield` and the restitution e_p of
+`ThorntonNing` (without adhesion):
 
     V ≤ V_y    e² = 1 − (V_s/V)²        elastic and adhesive, 0 for V ≤ V_s: the spheres stick
     V > V_y    e² = e_p² − (V_s/V)²     plastic and adhesive losses added
@@ -83,7 +84,8 @@ class AdhesiveThorntonNing:
 
         Returns:
             Coefficient of restitution e (1); 0 if the spheres stick, 1 at zero or negative
-            velocity, NaN for V > V_y if V_s > V_y (outside the range of the formula).
+            velocity. If the sticking velocity exceeds the yield velocity, the formula fails and e
+            is NaN above the yield velocity.
 
         Raises:
             CaseError: `mass` is not positive and finite.

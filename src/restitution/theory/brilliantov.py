@@ -6,8 +6,9 @@ Pöschel, Phys. Rev. E 84 (2011) 021302, arXiv:1102.5247. The equation of motion
 
     ẍ + k x^{3/2} + γ x^½ ẋ = 0,   ẋ(0) = V,   until the force returns to zero (ẍ = 0, x > 0)
 
-contains, after scaling, one parameter: v = β^½ V^{1/10} with β = γ/k^{3/5}. With the dissipative
-constant A, which is a time:
+has the impact velocity V as its initial condition. After scaling, it contains a single parameter,
+v = β^½ V^{1/10} with β = γ/k^{3/5}. With the dissipative constant A of the material, which is a
+time:
 
     k = 4E*R*^½/3m*,  γ = 3/2 A k,  β = 3/2 A k^{2/5}
     series   e = 1 − 1.153449 v² + 0.798267 v⁴ + 0.266666 v⁵ − …
@@ -63,7 +64,9 @@ class Brilliantov:
     def from_material(
         cls, radius: Values, contact_modulus: Values, dissipative_time: Values, mass: Values
     ) -> Self:
-        """Make the law from the dissipative constant A: β = 3/2 A (4E*R*^½/3m*)^{2/5}.
+        """Make the law from the dissipative constant A of the material.
+
+        The dissipation parameter is β = 3/2 A (4E*R*^½/3m*)^{2/5}.
 
         Args:
             radius: Reduced radius R* (m).

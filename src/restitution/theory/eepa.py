@@ -83,7 +83,7 @@ class EEPA:
             indentation: Approach of the spheres δ (m).
 
         Returns:
-            Normal force F (N). It jumps from 0 to f₀ at first touch.
+            Normal force F (N). It jumps from 0 to the constant force f₀ at first touch.
         """
         d = touching(indentation)
         F = self.constant_force + self.loading_stiffness * d**self.exponent
@@ -109,7 +109,7 @@ class EEPA:
         return scalar_or_array(np.where(onwards, self.loading_force(d), unloading))
 
     def residual_indentation(self, maximum_indentation: Values) -> Array:
-        """Indentation at which the force is f₀ on unloading.
+        """Indentation at which the force has fallen to the constant force f₀ on unloading.
 
         Args:
             maximum_indentation: Indentation at which unloading began, δ_max (m).
@@ -127,7 +127,8 @@ class EEPA:
             maximum_indentation: Indentation at which unloading began, δ_max (m).
 
         Returns:
-            Magnitude k_adhδ_minⁿ − f₀ of the force (N); 0 if `maximum_indentation` ≤ 0.
+            Magnitude k_adhδ_minⁿ − f₀ of the force (N), where δ_min is the indentation at which the
+            unloading branch meets the adhesive branch; 0 if `maximum_indentation` ≤ 0.
         """
         d, (k1, k2, k_adh) = touching(maximum_indentation), self._springs
         F_c = k_adh * (k2 - k1) / (k2 + k_adh) * d**self.exponent - self.constant_force
@@ -140,13 +141,14 @@ class EEPA:
             indentation: Approach of the spheres δ (m).
 
         Returns:
-            Loading work W_l = ∫F dδ (J), negative where f₀ draws the bodies together.
+            Loading work W_l = ∫F dδ (J), negative where the constant force draws the bodies
+            together.
         """
         d, n = touching(indentation), self.exponent
         return self.constant_force * d + self.loading_stiffness * d ** (n + 1) / (n + 1)
 
     def unloading_work(self, maximum_indentation: Values) -> Array:
-        """Work returned from `maximum_indentation` to δ = 0.
+        """Work that the contact returns on unloading from `maximum_indentation` to δ = 0.
 
         Args:
             maximum_indentation: Indentation at which unloading began, δ_max (m).
@@ -163,9 +165,10 @@ class EEPA:
     def indentation_from_velocity(self, velocity: Values, mass: Values) -> Array:
         """Largest indentation of an impact.
 
-        The indentation is the root of W_l(δ) = K with K = ½m*V². Without f₀ it would be
-        a = ((n + 1) K/k₁)^{1/(n+1)}, and f₀ alone (K = 0) would cause b = (−(n + 1) f₀/k₁)^{1/n}.
-        The root lies between max(a, b) and a + b.
+        The indentation is the root of W_l(δ) = K, where W_l is the loading work and K = ½m*V² the
+        impact energy. Two special cases bracket it: without the constant force f₀ the root is
+        a = ((n + 1) K/k₁)^{1/(n+1)}, and without impact energy it is b = (−(n + 1) f₀/k₁)^{1/n}.
+        In general the root lies between max(a, b) and a + b.
 
         Args:
             velocity: Relative normal impact velocity V (m/s).
@@ -203,5 +206,5 @@ class EEPA:
 
     @property
     def _springs(self) -> tuple[Values, Values, Values]:
-        """k₁, k₂ and k_adh (N/mⁿ)."""
+        """Stiffnesses k₁ of loading, k₂ of unloading and k_adh of the adhesive branch (N/mⁿ)."""
         return self.loading_stiffness, self.unloading_stiffness, self.adhesive_stiffness

@@ -1,7 +1,8 @@
 """Hertz (1882): smooth, frictionless, linear elastic spheres.
 
-With the contact radius a, where a² = R*δ, the force F, the elastic energy W and the pressure p are
-(Johnson 1985, *Contact Mechanics*, section 4.2):
+At the indentation δ the contact radius a follows from a² = R*δ. The force F, the elastic energy W
+and the pressure p at the distance r from the axis are (Johnson 1985, *Contact Mechanics*, section
+4.2):
 
     F = 4/3 E* R*^½ δ^{3/2},   W = 8/15 E* R*^½ δ^{5/2},
     p(r) = p₀ (1 − r²/a²)^½,   p₀ = 2E*a/(πR*).
@@ -124,7 +125,9 @@ class Hertz:
         return 8 / 15 * self.contact_modulus * self.radius**0.5 * touching(indentation) ** 2.5
 
     def impact_velocity(self, indentation: Values, mass: Values) -> Array:
-        """Impact velocity at which an impact reaches an indentation: ½ m* V² = W.
+        """Impact velocity that is just large enough to reach an indentation.
+
+        The impact energy ½ m* V² then equals the elastic energy stored at this indentation.
 
         Args:
             indentation: Approach of the spheres δ (m).
@@ -146,7 +149,7 @@ class Hertz:
             indentation: Approach of the spheres δ (m).
 
         Returns:
-            Peak pressure p₀ = 2E*a/(πR*) (Pa).
+            Peak pressure p₀ = 2E*a/(πR*) (Pa), with the contact radius a.
         """
         d = touching(indentation)  # p₀ = 2E*a/(πR*) with a = (R*δ)^½
         return 2 * self.contact_modulus / np.pi * (d / self.radius) ** 0.5
@@ -162,7 +165,8 @@ class Hertz:
             indentation: Approach of the spheres δ (m).
 
         Returns:
-            Pressure p(r) = p₀ (1 − r²/a²)^½ (Pa), zero outside the contact.
+            Pressure p(r) = p₀ (1 − r²/a²)^½ (Pa), with the peak pressure p₀ and the contact radius
+            a; zero outside the contact.
         """
         r, R = np.asarray(radial_distance, dtype=np.float64), self.radius
         d = touching(indentation)  # p = p₀ (1 − r²/a²)^½ with a² = R*δ

@@ -10,14 +10,16 @@ modulus E* (their E′), the yield strength Y of a tensile test (their S_y), the
                 A/A_c = ω* (ω*/1.9)^B,  B = 0.14 exp(23 Y/E*)
                 H_G/Y = 2.84 [1 − exp(−0.82 (a/R*)^{−0.7})]
 
-CY is the peak pressure at first yield: ω_c is `FirstYield.indentation` with p_y = CY.
+H_G is the mean pressure of fully plastic flow. The index c marks values at first yield, where the
+peak pressure is CY; ω_c is `FirstYield.indentation` with p_y = CY.
 
 The fit covers only loading against a rigid frictionless flat. Its data are finite-element results
 for five steel-like materials (Y/E* from 0.001 to 0.007, ν = 0.32; von Mises, no hardening) up to
 a/R* = 0.412. The force deviates from these results by 1 % on average and by at most 3.5 %, the area
-by 1.3 % and 4.3 %. Outside these ranges the fit extrapolates. At ω* = 1.9 the force of the two
-branches agrees within 0.1 % for ν = 0.32, but it jumps by +7.5 % for ν = 0, +1.5 % for ν = 0.25 and
-−3.4 % for ν = 0.5. For two deformable bodies use Y and ν of the body with the smaller CY.
+by 1.3 % and 4.3 %. Outside these ranges the fit extrapolates. At ω* = 1.9 the forces of the two
+branches agree within 0.1 % for ν = 0.32. For other values of ν the force jumps there: by +7.5 % for
+ν = 0, +1.5 % for ν = 0.25 and −3.4 % for ν = 0.5. For two deformable bodies use Y and ν of the body
+with the smaller CY.
 Units, shapes and errors are those of `restitution.theory`.
 """
 
@@ -49,8 +51,8 @@ class JacksonGreen:
         poissons_ratio: Poisson's ratio ν (1).
 
     Raises:
-        CaseError: A field is not positive and finite, or Poisson's ratio is not above −1 and at
-            most ½.
+        CaseError: A field is not positive and finite, or Poisson's ratio is outside the range
+            −1 < ν ≤ ½.
 
     Source:
         R. L. Jackson, I. Green, J. Tribology 127 (2005) 343–354.
@@ -68,12 +70,12 @@ class JacksonGreen:
 
     @cached_property
     def elastic(self) -> Hertz:
-        """Hertz contact that the fit follows up to the normalised indentation ω* = 1.9."""
+        """Hertz contact, which the fit follows up to 1.9 times the indentation at first yield."""
         return Hertz(self.radius, self.contact_modulus)
 
     @cached_property
     def first_yield(self) -> FirstYield:
-        """First yield, below the surface: indentation ω_c and force P_c at the peak pressure CY."""
+        """First yield, which begins below the surface at the peak pressure C Y."""
         p_c = yield_coefficient(self.poissons_ratio) * self.yield_strength
         return FirstYield(self.radius, self.contact_modulus, p_c)
 
@@ -104,7 +106,8 @@ class JacksonGreen:
     def hardness(self, contact_radius: Values) -> Array:
         """Mean contact pressure of fully plastic flow.
 
-        It tends to 2.84 Y for small contacts and decreases as a/R* grows.
+        It is 2.84 times the yield strength in the limit of small contacts, and decreases as the
+        contact radius grows.
 
         Args:
             contact_radius: Contact radius a (m).
@@ -134,5 +137,5 @@ class JacksonGreen:
         return scalar_or_array(first.force * np.where(w <= TRANSITION, w**1.5, fit))
 
     def _normalised(self, indentation: Values) -> Array:
-        """Normalised indentation ω* = ω/ω_c, zero for separated bodies."""
+        """Indentation over the indentation at first yield; zero for separated bodies."""
         return touching(indentation) / self.first_yield.indentation

@@ -47,9 +47,9 @@ Valid for quasi-static normal impacts in the range of Hertz (a ≪ R*, no yield:
 range z₀ of the forces. JKR holds for μ > 5; for μ < 0.1 the contact follows DMT or the spheres are
 rigid (Johnson & Greenwood, J. Colloid Interface Sci. 192 (1997) 326–333). As μ grows, the pull-off
 force approaches its JKR value long before the jump into contact does, because forces of finite
-range act before first touch. So W_s requires a larger μ than the pull-off force (Ciavarella,
-Greenwood & Barber, J. Mech. Phys. Solids 98 (2017) 236–244). Small hard particles have a small μ,
-and their sticking velocity is below V_s.
+range act before first touch. So a larger μ is needed for an accurate W_s than for an accurate
+pull-off force (Ciavarella, Greenwood & Barber, J. Mech. Phys. Solids 98 (2017) 236–244). Small hard
+particles have a small μ, and their sticking velocity is below V_s.
 Units, shapes and errors are those of `restitution.theory`.
 """
 
@@ -65,8 +65,8 @@ from ._inputs import Array, Values, keep_positive, positive, scalar_or_array, to
 from .hertz import Hertz
 from .kendall import Kendall
 
-# Total energy U_T over its unit U where the contact breaks (s = 1) and where it jumps in (s³ = 4),
-# at fixed indentation. s and U are defined above.
+# Total energy in units of U where the contact breaks (s = 1) and right after it has formed by a
+# jump (s³ = 4), at fixed indentation. The module docstring defines U and s.
 _AT_BREAK = 16 / 5
 _AT_JUMP_IN = -24 / 5 * 4 * math.cbrt(4)
 
@@ -99,15 +99,16 @@ class JKR:
     def force(self, indentation: Values) -> Array:
         """Normal force of spheres in contact, on the branch that is stable at fixed grips.
 
-        F is −5/9 F_c at δ_b and −8/9 F_c at δ = 0, with a minimum of −F_c between them. For δ < 0
-        this is the force on separation; approaching spheres have no force before they jump into
-        contact at δ = 0.
+        With the pull-off force F_c, the force is −5/9 F_c at the indentation δ_b where the contact
+        breaks and −8/9 F_c at δ = 0, with a minimum of −F_c between them. For δ < 0 this is the
+        force on separation; approaching spheres have no force before they jump into contact at
+        δ = 0.
 
         Args:
             indentation: Approach of the spheres δ (m).
 
         Returns:
-            Normal force F (N), positive in compression; 0 below the indentation δ_b of the break.
+            Normal force F (N), positive in compression; 0 below `break_indentation`.
         """
         s = self._root(indentation)
         return self.pull_off_force / 9 * s**3 * (s**3 - 6)
@@ -119,7 +120,7 @@ class JKR:
             indentation: Approach of the spheres δ (m).
 
         Returns:
-            Contact radius a ≥ a_b (m); 0 below the indentation δ_b of the break.
+            Contact radius a (m), at least `break_radius`; 0 below `break_indentation`.
         """
         return self.break_radius * self._root(indentation) ** 2
 
@@ -194,12 +195,12 @@ class JKR:
 
     @property
     def break_force(self) -> Array:
-        """Force −5/9 F_c (N) at which the contact breaks at fixed grips."""
+        """Force (N) at which the contact breaks at fixed grips: −5/9 of the pull-off force."""
         return -5 / 9 * self.pull_off_force
 
     @cached_property
     def break_radius(self) -> Array:
-        """Contact radius a_b = (πwR*²/8E*)^{1/3} (m) at the break; the stable branch is a ≥ a_b."""
+        """Contact radius a_b = (πwR*²/8E*)^{1/3} (m) at the break, the smallest stable one."""
         R, E_star, w = self.radius, self.contact_modulus, self.work_of_adhesion
         return scalar_or_array(np.cbrt(np.pi / 8 * w * R**2 / E_star))
 
@@ -210,7 +211,7 @@ class JKR:
 
     @property
     def jump_in_force(self) -> Array:
-        """Force −8/9 F_c (N) right after the jump into contact at δ = 0."""
+        """Force (N) right after the jump into contact at δ = 0: −8/9 of the pull-off force."""
         return -8 / 9 * self.pull_off_force
 
     @property
@@ -220,7 +221,7 @@ class JKR:
 
     @property
     def adhesive_length(self) -> Array:
-        """Height (w²R*/E*²)^{1/3} (m) of the neck; `break_indentation` is −1.61 times it."""
+        """Height (w²R*/E*²)^{1/3} (m) of the neck; `break_indentation` is −1.61 times as large."""
         R, E_star, w = self.radius, self.contact_modulus, self.work_of_adhesion
         return scalar_or_array((w * w * R / E_star**2) ** (1 / 3))
 
@@ -238,9 +239,9 @@ class JKR:
         return scalar_or_array(np.where(np.asarray(indentation) <= 0, 0.0, W_l))
 
     def unloading_work(self, indentation: Values) -> Array:
-        """Work returned on unloading from an indentation to the break.
+        """Work that the contact returns on unloading from an indentation until it breaks.
 
-        For δ ≥ 0 it equals W_l − W_s, that is `loading_work` minus `hysteresis_loss`.
+        For δ ≥ 0 this work equals `loading_work` minus `hysteresis_loss`.
 
         Args:
             indentation: Approach of the spheres δ (m).
@@ -262,14 +263,17 @@ class JKR:
         return (_AT_BREAK - _AT_JUMP_IN) * self._energy_unit
 
     def impact_velocity(self, maximum_indentation: Values, mass: Values) -> Array:
-        """Impact velocity at which an impact reaches an indentation: ½ m* V² = W_l.
+        """Impact velocity that is just large enough to reach an indentation.
+
+        The impact energy ½ m* V² then equals the loading work up to this indentation.
 
         Args:
             maximum_indentation: Largest indentation of the impact δ_max (m).
             mass: Reduced mass m* (kg).
 
         Returns:
-            Relative normal velocity V (m/s); NaN if W_l < 0, because then every impact goes deeper.
+            Relative normal velocity V (m/s); NaN if the loading work is negative, because adhesion
+            then pulls the spheres deeper at any velocity.
 
         Raises:
             CaseError: `mass` is not positive and finite.
@@ -349,9 +353,10 @@ class JKR:
         return Kendall(self.contact_modulus, self.work_of_adhesion)
 
     def _root(self, indentation: Values) -> Array:
-        """s = (a/a_b)^½ on the stable branch; 0 below the break.
+        """Root s = (a/a_b)^½ of the relative contact radius, stable branch; 0 below the break.
 
-        s ≥ 1 is the larger root of s⁴ − 4s = 3k with k = δ/|δ_b| ≥ −1. Ferrari's method gives
+        a_b and δ_b are the radius and the indentation at which the contact breaks. s ≥ 1 is the
+        larger solution of s⁴ − 4s = 3k with k = δ/|δ_b| ≥ −1. Ferrari's method gives
         s = p + (1/p − p²)^½, where y = 2p² is the positive root of the cubic y³ + 3ky = 2.
         Cardano's formula for this root, y = t − k/t with t³ = 1 + (1 + k³)^½, is evaluated as
         y = 2/(t² + k + k²/t²), which has no cancellation at any depth.
@@ -371,5 +376,8 @@ class JKR:
 
 
 def _total_energy(s: Array) -> Array:
-    """Total energy U_T/U in units of U = E*a_b⁵/R*², for s = (a/a_b)^½."""
+    """Total energy in units of U = E*a_b⁵/R*², for s = (a/a_b)^½.
+
+    a is the contact radius and a_b its value where the contact breaks.
+    """
     return s**4 * (8 / 15 * s**6 - 16 / 3 * s**3 + 8)

@@ -1,8 +1,8 @@
 """Johnson (1985): fully plastic impact of a sphere, elastic rebound, no adhesion.
 
 K. L. Johnson, Contact Mechanics (Cambridge, 1985), section 11.5. The contact of radius a flows at a
-constant pressure p_d, and δ = a²/2R*. W is the work of loading to the force F. The rebound is that
-of a Hertz contact with the flattened surface and returns the work W_u:
+constant pressure p_d, and its indentation is δ = a²/2R*. W is the work of loading to the force F.
+The rebound is that of a Hertz contact with the flattened surface and returns the work W_u:
 
     ½ m* V² = W = πp_da⁴/4R*,   W_u = 3F²/10E*a,  F = πa²p_d
     e² = W_u/W = (3π^{5/4} 4^{3/4}/10) (p_d/E*) (W/p_dR*³)^{−1/4}
@@ -11,7 +11,7 @@ Johnson sets p_d = 3Y, the indentation pressure of a material of yield strength 
 
     e = 3.8 (Y/E*)^½ (½m*V²/YR*³)^{−1/8}
 
-This coefficient is used here; the preceding equation gives 3.74.
+The printed coefficient 3.8 is used here, although the equation for e² gives 3.74.
 
 Valid for fully developed plastic flow, at E*a/YR* > 30 or so (his section 6.3). This corresponds to
 e < 0.6 for any material, and to V > 190 V_y, where V_y is `FirstYield.velocity` at p_y = 1.6 Y. At
@@ -61,7 +61,7 @@ class Johnson:
     def restitution(self, velocity: Values, mass: Values) -> Array:
         """Coefficient of restitution after an impact.
 
-        The formula holds for e < 0.6; it is limited to 1 at low velocity.
+        The formula holds for e < 0.6. At low velocity, where it would exceed 1, e is set to 1.
 
         Args:
             velocity: Relative normal impact velocity V (m/s).
@@ -97,7 +97,8 @@ class Johnson:
     def velocity_at_full_radius(self, mass: Values) -> Array:
         """Impact velocity at which the contact radius a reaches R*.
 
-        The loading work W = π 3Y a⁴/4R* with a = R* equals ½m*V².
+        At this velocity the impact energy ½m*V² equals the loading work W = π 3Y a⁴/4R* with
+        a = R*.
 
         Args:
             mass: Reduced mass m* (kg).
@@ -112,10 +113,10 @@ class Johnson:
 
     @property
     def _energy_of_unity(self) -> Values:
-        """Reduced energy ½m*V²/YR*³ at which e = 1."""
+        """Impact energy over YR*³ at which the formula gives e = 1."""
         return (COEFFICIENT**2 * self.yield_strength / self.contact_modulus) ** 4
 
     def _velocity(self, reduced: Values, mass: Values) -> Array:
-        """Impact velocity V (m/s) at a reduced energy ½m*V²/YR*³."""
+        """Impact velocity V (m/s) at which the impact energy over YR*³ is `reduced`."""
         (m,) = positive(mass=mass)
         return scalar_or_array(np.sqrt(2 * reduced * self.yield_strength * self.radius**3 / m))

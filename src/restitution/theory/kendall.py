@@ -7,9 +7,10 @@ release rate F²/(8πE*a³). The punch detaches when this rate reaches the work 
     F = (8πE*wa³)^½,   displacement F/(2E*a) = (2πwa/E*)^½.
 
 The whole contact detaches at once, because crack growth raises the energy release rate. F grows as
-a^{3/2}, so the mean tension F/(πa²) at detachment decreases with a. The work ½F²/(2E*a) = 2πwa² is
-twice the surface energy πwa²; the other half is dissipated. JKR theory is Hertz theory minus this
-force and this displacement at the same contact radius (`jkr`).
+a^{3/2}, so the mean tension F/(πa²) at detachment decreases with a. The work up to detachment,
+½F²/(2E*a) = 2πwa², is twice the surface energy πwa² of the contact; the other half is dissipated.
+In JKR theory (`jkr`), this force and this displacement are subtracted from the force and the
+indentation of a Hertz contact of the same radius.
 
 Valid under four conditions:
 

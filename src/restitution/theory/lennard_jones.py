@@ -14,8 +14,8 @@ Integrating this traction over rigid spheres (a paraboloid of reduced radius R*)
     F = −(8/3) πwR* [(z₀/g)² − ¼ (z₀/g)⁸]
 
 at the smallest gap g between the spheres, with the pull-off force 2πwR* at g = z₀ (R. S. Bradley,
-Phil. Mag. 13 (1932) 853–862). This is the limit of hard spheres, in which the Tabor parameter tends
-to zero.
+Phil. Mag. 13 (1932) 853–862). Elastic spheres approach this limit as their Tabor parameter tends to
+zero.
 Units, shapes and errors are those of `restitution.theory`.
 """
 
@@ -70,7 +70,8 @@ class LennardJones:
             gap: Gap g between the surfaces (m), positive.
 
         Returns:
-            Energy per area (J/m²), −w at z₀ and 0 at infinity.
+            Energy per area (J/m²), minus the work of adhesion at the equilibrium separation and 0
+            at infinity.
         """
         x2 = self._ratio(gap) ** 2
         return scalar_or_array(-self.work_of_adhesion * x2 * (4 - x2**3) / 3)
@@ -84,9 +85,10 @@ class LennardJones:
 
     @property
     def dugdale_traction(self) -> Array:
-        """Constant traction 0.548 w/z₀ (Pa) of a Dugdale law with the same w and the same ∫σ² dg.
+        """Constant traction 0.548 w/z₀ (Pa) of the Dugdale law that matches this law.
 
-        With this traction the pull-off force of `MaugisDugdale` agrees with that of the
+        Both laws have the same work of adhesion w and the same integral ∫σ² dg of the squared
+        traction. With this traction the pull-off force of `MaugisDugdale` agrees with that of the
         Lennard-Jones law within 1.5 %. With the largest traction σ₀ the pull-off force is up to
         5.4 % too small (docs/adhesion.md).
         """
@@ -150,5 +152,5 @@ class LennardJones:
         return scalar_or_array(2 * math.pi * self.work_of_adhesion * R)
 
     def _ratio(self, gap: Values) -> Array:
-        """Ratio z₀/g."""
+        """Ratio z₀/g of the equilibrium separation to the gap."""
         return scalar_or_array(self.equilibrium_separation / np.asarray(gap, dtype=np.float64))

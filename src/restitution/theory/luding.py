@@ -74,19 +74,23 @@ class Luding:
 
     @property
     def limit_indentation(self) -> Array:
-        """Indentation δ* (m) beyond which first loading is elastic; infinite if k̂₂ = k₁."""
+        """Indentation δ* (m) beyond which first loading is elastic.
+
+        It is infinite if the limit stiffness equals the loading stiffness.
+        """
         k1, k2_hat = self.loading_stiffness, self.limit_stiffness
-        with np.errstate(divide="ignore"):  # δ* is infinite for k̂₂ = k₁
+        with np.errstate(divide="ignore"):  # the result is infinite for equal stiffnesses
             return scalar_or_array(k2_hat / (k2_hat - k1) * self._limit_residual)
 
     def loading_force(self, indentation: Values) -> Array:
-        """Normal force on first loading: k₁δ up to δ*, then the elastic limit k̂₂(δ − δ₀*).
+        """Normal force on first loading: plastic up to `limit_indentation`, then elastic.
 
         Args:
             indentation: Approach of the spheres δ (m).
 
         Returns:
-            Normal force F (N).
+            Normal force F (N), first k₁δ with the loading stiffness k₁ and then k̂₂(δ − δ₀*) with
+            the limit stiffness k̂₂ and the largest residual indentation δ₀*.
         """
         d = touching(indentation)
         k2, d0 = self._unloading_line(d)
@@ -128,7 +132,8 @@ class Luding:
             maximum_indentation: Indentation at which unloading began, δ_max (m).
 
         Returns:
-            Magnitude k_cδ_min of the force (N).
+            Magnitude k_cδ_min of the force (N), with the adhesive stiffness k_c and the indentation
+            δ_min at which the unloading line meets the adhesive branch.
         """
         k_c, (k2, d0) = self.adhesive_stiffness, self._unloading_line(maximum_indentation)
         return k_c * k2 / (k2 + k_c) * d0
@@ -136,7 +141,9 @@ class Luding:
     def loading_work(self, indentation: Values) -> Array:
         """Work done from first touch to an indentation on first loading.
 
-        The part ½k₂(δ − δ₀)² is elastic, and the part ½k₁ min(δ, δ*) δ₀ is dissipated.
+        With the unloading stiffness k₂ and the residual indentation δ₀, the part ½k₂(δ − δ₀)² of
+        the work is elastic. With the loading stiffness k₁ and the limit indentation δ*, the part
+        ½k₁ min(δ, δ*) δ₀ is dissipated.
 
         Args:
             indentation: Approach of the spheres δ (m).
@@ -150,7 +157,7 @@ class Luding:
         return 0.5 * k2 * (d - d0) ** 2 + 0.5 * self.loading_stiffness * plastic * d0
 
     def unloading_work(self, maximum_indentation: Values) -> Array:
-        """Work returned from `maximum_indentation` to δ = 0.
+        """Work that the contact returns on unloading from `maximum_indentation` to δ = 0.
 
         Args:
             maximum_indentation: Indentation at which unloading began, δ_max (m).
@@ -165,8 +172,9 @@ class Luding:
     def indentation_from_velocity(self, velocity: Values, mass: Values) -> Array:
         """Largest indentation of an impact.
 
-        The indentation is d₁ = V (m*/k₁)^½ if d₁ ≤ δ*. Otherwise it is the root δ > δ* of
-        k̂₂(δ − δ₀*)² = k₁(d₁² − δ*δ₀*).
+        With the loading stiffness k₁, the indentation is d₁ = V (m*/k₁)^½ if d₁ is at most the
+        limit indentation δ*. Otherwise it is the root δ > δ* of k̂₂(δ − δ₀*)² = k₁(d₁² − δ*δ₀*),
+        with the limit stiffness k̂₂ and the largest residual indentation δ₀*.
 
         Args:
             velocity: Relative normal impact velocity V (m/s).
@@ -205,16 +213,16 @@ class Luding:
 
     @property
     def _limit_residual(self) -> Values:
-        """Residual indentation δ₀* (m) after loading to the elastic limit δ* or deeper."""
+        """Residual indentation δ₀* (m) after loading to `limit_indentation` or deeper."""
         return self.plasticity_depth * 2 * self.radius
 
     def _depth(self, indentation: Values) -> Array:
-        """Indentation relative to the elastic limit, x = δ/δ*; zero where k̂₂ = k₁."""
+        """Indentation over `limit_indentation`; zero where this limit is infinite."""
         rise = 1 - self.loading_stiffness / self.limit_stiffness
         return touching(indentation) * rise / self._limit_residual
 
     def _unloading_line(self, maximum_indentation: Values) -> tuple[Array, Array]:
-        """Unloading stiffness k₂ (N/m) and residual indentation δ₀ (m)."""
+        """Stiffness k₂ (N/m) of unloading from `maximum_indentation`, and residual indentation."""
         d, k1 = touching(maximum_indentation), self.loading_stiffness
         k2 = k1 + (self.limit_stiffness - k1) * np.minimum(self._depth(d), 1.0)
         return k2, np.minimum((1 - k1 / k2) * d, self._limit_residual)

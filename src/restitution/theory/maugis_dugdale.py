@@ -2,8 +2,8 @@
 
 D. Maugis, J. Colloid Interface Sci. 150 (1992) 243–269; K. L. Johnson, J. A. Greenwood, J. Colloid
 Interface Sci. 192 (1997) 326–333. The attraction σ₀ acts in the ring a < r < c around the contact
-area of radius a, where the gap is below w/σ₀. With K = 4/3 E*, the parameter
-λ = 2σ₀ (R*/(πwK²))^{1/3} and the dimensionless quantities
+area of radius a. In this ring the gap is below w/σ₀, where w is the work of adhesion. With
+K = 4/3 E*, the parameter λ = 2σ₀ (R*/(πwK²))^{1/3} and the dimensionless quantities
 
     ā = a (K/(πwR*²))^{1/3},   F̄ = F/(πwR*),   m = c/a,
 
@@ -12,9 +12,10 @@ the contact radius ā determines m and the force:
     1 = λā²/2 [(m² − 1)^½ + (m² − 2) arcsec m] + 4λ²ā/3 [(m² − 1)^½ arcsec m − m + 1]
     F̄ = ā³ − λā² [(m² − 1)^½ + m² arcsec m]
 
-The pull-off force goes from 2πwR* (λ → 0, rigid spheres) to 3/2 πwR* (λ → ∞, JKR). If σ₀ is the
-largest traction of the Lennard-Jones law, 1.03 w/z₀, then λ = 1.16 µ with the Tabor parameter µ
-(Johnson and Greenwood). If σ₀ is `LennardJones.dugdale_traction`, then λ = 0.62 µ.
+The pull-off force goes from 2πwR* (λ → 0, rigid spheres) to 3/2 πwR* (λ → ∞, JKR). The relation
+between λ and the Tabor parameter µ depends on the choice of σ₀. If σ₀ is the largest traction of
+the Lennard-Jones law (1.03 w/z₀ with the equilibrium separation z₀), λ = 1.16 µ (Johnson and
+Greenwood). If σ₀ is `LennardJones.dugdale_traction`, λ = 0.62 µ.
 Units, shapes and errors are those of `restitution.theory`.
 """
 
@@ -27,9 +28,11 @@ import numpy as np
 from ._inputs import Array, Values, keep_positive, scalar_or_array
 from ._roots import increasing_root
 
-_LARGEST_RADIUS = 2.0  # upper limit of the search for ā at pull-off, which is below 1.15 (JKR)
+# Upper limit of the search for the normalised contact radius ā at pull-off. There, ā is below 1.15,
+# its value in the JKR limit.
+_LARGEST_RADIUS = 2.0
 _GOLDEN = 0.5 * (5**0.5 - 1)
-_SECTIONS = 60  # number of golden sections in the search for ā at pull-off
+_SECTIONS = 60  # number of golden sections in this search
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +97,7 @@ class MaugisDugdale:
 
 
 def _force(a: Array, parameter: Array) -> Array:
-    """Normalised force F̄ at the normalised contact radius ā = `a`, for λ = `parameter`."""
+    """Normalised force at the normalised contact radius `a`, for the transition `parameter`."""
     a, parameter = np.broadcast_arrays(a, parameter)
 
     def excess(log_width: Array) -> Array:
@@ -104,7 +107,8 @@ def _force(a: Array, parameter: Array) -> Array:
         found: Array = parameter * a**2 / 2 * inner + 4 / 3 * parameter**2 * a * outer - 1
         return found
 
-    # The unknown is ln(m − 1), because m − 1 ranges from 0 (JKR) to infinity (rigid spheres).
+    # The unknown is ln(m − 1), where m is the outer radius of the ring over the contact radius:
+    # m − 1 ranges from 0 (JKR) to infinity (rigid spheres).
     width = increasing_root(excess, np.full_like(a, -40.0), np.full_like(a, 40.0))
     root, angle, m = _ring(width)
     force: Array = a**3 - parameter * a**2 * (root + m * m * angle)
@@ -112,7 +116,10 @@ def _force(a: Array, parameter: Array) -> Array:
 
 
 def _ring(log_width: Array) -> tuple[Array, Array, Array]:
-    """Return (m² − 1)^½, arcsec m and m for `log_width` = ln(m − 1)."""
+    """Return (m² − 1)^½, arcsec m and m for `log_width` = ln(m − 1).
+
+    m is the outer radius of the attracting ring over the contact radius.
+    """
     width = np.exp(log_width)
     root = np.sqrt(width * (2 + width))
     return root, np.arctan(root), 1 + width

@@ -21,7 +21,7 @@ Y is the yield strength of a tensile test. The contact stays elastic up to a mea
 2.75 Y (a peak of 4.1 Y) and is then fully plastic at once. δ, R and m are those of one sphere.
 LAMMPS puts a rigid flat between two spheres: the impact of two equal spheres at relative velocity V
 is two impacts on a flat at V/2, each with the radius and mass of one sphere. The law cannot
-describe a flat that yields or deforms.
+describe a deformable flat.
 
 At yield the rebound changes abruptly from Hertz to the elliptical indenter: e drops from 1 by at
 least 5 % (more for a larger Y/E*), rises a little, and then decreases with V. LAMMPS does the same.
@@ -92,7 +92,9 @@ class MDR:
         return Hertz(self.radius, self.youngs_modulus / (1 - self.poissons_ratio**2))
 
     def yield_pressure(self, indentation: Values) -> Array:
-        """Mean pressure of the yielded contact, which falls from 2.75 Y at δ = 0 towards Y.
+        """Mean pressure of the yielded contact.
+
+        It falls as the indentation grows, from 2.75 times the yield strength towards this strength.
 
         Args:
             indentation: Indentation of the sphere δ (m).
@@ -107,7 +109,7 @@ class MDR:
     def yield_indentation(self) -> Array:
         """Indentation δ_Y (m) at which the mean Hertz pressure reaches `yield_pressure`.
 
-        δ_Y = s²R with the root s of s = c (1 + 1.75 exp(−4.4s²)), c = 3πY/4E*.
+        It is s²R, where s is the root of s = c (1 + 1.75 exp(−4.4s²)) with c = 3πY/4E*.
         """
         nu = self.poissons_ratio
         c = 0.75 * np.pi * self.yield_strength * (1 - nu**2) / self.youngs_modulus
@@ -121,21 +123,21 @@ class MDR:
             indentation: Indentation of the sphere δ (m).
 
         Returns:
-            Normal force F (N); NaN for δ > R.
+            Normal force F (N); NaN if the indentation exceeds the radius of the sphere.
         """
         return scalar_or_array(self._force(self._inside(indentation)))
 
     def loading_work(self, indentation: Values) -> Array:
         """Work done from first touch to an indentation on first loading.
 
-        The work is that of Hertz up to δ_Y; beyond, the force is integrated by Gauss–Legendre
-        quadrature.
+        Up to `yield_indentation` the work is that of Hertz. Beyond it, the force is integrated by
+        Gauss–Legendre quadrature.
 
         Args:
             indentation: Indentation of the sphere δ (m).
 
         Returns:
-            Loading work W_l = ∫F dδ (J); NaN for δ > R.
+            Loading work W_l = ∫F dδ (J); NaN if the indentation exceeds the radius of the sphere.
         """
         return scalar_or_array(self._work(self._inside(indentation)))
 
@@ -149,7 +151,8 @@ class MDR:
             maximum_indentation: Indentation at which unloading began, δ_max (m).
 
         Returns:
-            Normal force F (N); 0 at and below `residual_indentation`, NaN for δ > R.
+            Normal force F (N); 0 at and below `residual_indentation`, NaN if an indentation exceeds
+            the radius of the sphere.
         """
         d, d_max = self._inside(indentation), self._inside(maximum_indentation)
         left = np.clip((d_max - d) / self._recovery(d_max), 0.0, 1.0)
@@ -165,20 +168,19 @@ class MDR:
             maximum_indentation: Indentation at which unloading began, δ_max (m).
 
         Returns:
-            Residual indentation δ_max − (d + δ_R) (m), where d + δ_R is the elastic recovery; 0 up
-            to yield.
+            Residual indentation (m), which is δ_max minus the elastic recovery; 0 up to yield.
         """
         d = self._inside(maximum_indentation)
         return scalar_or_array(np.where(d <= self.yield_indentation, 0.0, d - self._recovery(d)))
 
     def unloading_work(self, maximum_indentation: Values) -> Array:
-        """Work returned from `maximum_indentation` to separation.
+        """Work that the contact returns on unloading from `maximum_indentation` to separation.
 
         Args:
             maximum_indentation: Indentation at which unloading began, δ_max (m).
 
         Returns:
-            Unloading work W_u (J); W_l up to yield.
+            Unloading work W_u (J); up to yield it equals the loading work.
         """
         return scalar_or_array(self._returned(self._inside(maximum_indentation)))
 
@@ -190,7 +192,7 @@ class MDR:
             mass: Mass m of the sphere (kg).
 
         Returns:
-            Indentation δ (m); NaN if it would exceed R.
+            Indentation δ (m); NaN if it would exceed the radius of the sphere.
 
         Raises:
             CaseError: `mass` is not positive and finite.
@@ -211,7 +213,7 @@ class MDR:
 
         Returns:
             Coefficient of restitution e = (W_u/W_l)^½ (1); 1 up to yield, NaN if the indentation
-            would exceed R.
+            would exceed the radius of the sphere.
 
         Raises:
             CaseError: `mass` is not positive and finite.
@@ -226,7 +228,10 @@ class MDR:
         return np.where(d > self.radius, np.nan, d)
 
     def _contact_radius(self, d: Values) -> Array:
-        """Contact radius a (m) of the yielded contact; up to δ_Y the value at δ_Y."""
+        """Contact radius a (m) of the yielded contact at the indentation `d`.
+
+        Up to `yield_indentation`, the result is the value at `yield_indentation`.
+        """
         R, d_Y = self.radius, self.yield_indentation
         t = touching(d - d_Y)
         a: Array = (R * d_Y + t * (2 * (R - d_Y) - t)) ** 0.5
@@ -248,13 +253,17 @@ class MDR:
         return self.elastic.stored_energy(np.minimum(d, d_Y)) + half * forces
 
     def _elastic_depth(self, d: Values) -> Array:
-        """Depth A/2 (m) of the indenter in the transformed half-space at full load."""
+        """Depth d_e (m) of the elliptical indenter in the transformed half-space at full load.
+
+        It is half the height A of the indenter. `d` is the indentation of the sphere.
+        """
         return 2 * self.yield_pressure(d) * self._contact_radius(d) / self.elastic.contact_modulus
 
     def _recovery(self, d: Values) -> Array:
-        """Elastic recovery d + δ_R (m) of an indentation, with the depth d = A/2 of the indenter.
+        """Elastic recovery d_e + δ_R (m) on unloading from the indentation `d`.
 
-        δ_R is rewritten with F_max/(2πGa²d) = E*/(4Ga) = 1/(2a(1 − ν)).
+        d_e is the depth of the indenter at full load (`_elastic_depth`), and δ_R corrects it for
+        the finite size of the sphere. The code uses F_max/(2πGa²d_e) = E*/(4Ga) = 1/(2a(1 − ν)).
         """
         a, d_e, nu = self._contact_radius(d), self._elastic_depth(d), self.poissons_ratio
         z = self.radius - d + d_e
@@ -264,7 +273,11 @@ class MDR:
         return recovery
 
     def _returned(self, d: Values) -> Array:
-        """Unloading work W_u (J): beyond yield (1 + δ_R/d) E*A²B/12 with the width B = 2a."""
+        """Unloading work W_u (J) from the indentation `d`.
+
+        Beyond yield it is (1 + δ_R/d_e) E*A²B/12, with the height A, the width B = 2a and the depth
+        d_e = A/2 of the indenter, and the elastic recovery d_e + δ_R.
+        """
         E_star = self.elastic.contact_modulus
         plastic = 2 / 3 * E_star * self._elastic_depth(d) * self._contact_radius(d)
         elastic = self.elastic.stored_energy(d)

@@ -2,8 +2,9 @@
 
 `AdhesiveThorntonNing` adds adhesion. C. Thornton, Z. Ning, Powder Technology 99 (1998) 154–162; the
 plastic law is that of Thornton, J. Appl. Mech. 64 (1997) 383–386. The Hertz pressure is truncated
-at p_y, and the contact is not brought back into equilibrium: it keeps a² = R*δ. With x = δ/δ_y,
-f = F/F_y and W in units of F_y δ_y:
+at the yield pressure p_y without restoring equilibrium, so the contact radius a still follows
+a² = R*δ. The index y marks values at first yield. With the indentation x = δ/δ_y, the force
+f = F/F_y and the works W in units of F_y δ_y:
 
     loading     f = x^{3/2} for x ≤ 1, then the tangent  f = (3x − 1)/2,  F = F_y + πp_yR*(δ − δ_y)
                 W_l = ⅖ x^{5/2} for x ≤ 1, then  W_l = ⅖ + (x − 1) + ¾ (x − 1)²
@@ -72,7 +73,7 @@ class ThorntonNing:
         return FirstYield(self.radius, self.contact_modulus, self.yield_pressure)
 
     def loading_force(self, indentation: Values) -> Array:
-        """Normal force on first loading: Hertz up to δ_y, then its tangent at δ_y.
+        """Normal force on first loading: Hertz up to first yield, then the tangent at first yield.
 
         Args:
             indentation: Approach of the spheres δ (m).
@@ -113,8 +114,9 @@ class ThorntonNing:
     def unloading_radius(self, maximum_indentation: Values) -> Array:
         """Reduced radius of the flattened spheres on unloading.
 
-        With x = δ_max/δ_y and f = F/F_y, R_p = R* x^{3/2}/f equals the published formula
-        (4E*/3F) [(2F + F_y)/(2πp_y)]^{3/2}, in which the bracket is a².
+        With the indentation x = δ_max/δ_y and the force f = F/F_y relative to first yield,
+        R_p = R* x^{3/2}/f. This equals the published formula (4E*/3F) [(2F + F_y)/(2πp_y)]^{3/2},
+        in which the bracket is the square of the contact radius.
 
         Args:
             maximum_indentation: Indentation at which unloading began, δ_max (m).
@@ -136,7 +138,7 @@ class ThorntonNing:
         """
         x = self._yielded(maximum_indentation)
         s = x**0.5
-        # This equals x − f/s with f = (3s² − 1)/2; the factors avoid cancellation near yield.
+        # This equals x − f/s with f = (3s² − 1)/2; the factored form avoids cancellation at yield.
         return self.first_yield.indentation * ((x - 1) / (s + 1)) ** 2 * (s + 0.5) / s
 
     def unloading_force(self, indentation: Values, maximum_indentation: Values) -> Array:
@@ -158,13 +160,13 @@ class ThorntonNing:
         return scalar_or_array(np.where(beyond, self.loading_force(d), unloading))
 
     def unloading_work(self, maximum_indentation: Values) -> Array:
-        """Work returned from `maximum_indentation` to separation.
+        """Work that the contact returns on unloading from `maximum_indentation` to separation.
 
         Args:
             maximum_indentation: Indentation at which unloading began, δ_max (m).
 
         Returns:
-            Unloading work W_u (J); W_l up to yield.
+            Unloading work W_u (J); up to yield it equals the loading work.
         """
         d, first = touching(maximum_indentation), self.first_yield
         x = self._yielded(d)
@@ -173,7 +175,9 @@ class ThorntonNing:
         return scalar_or_array(np.where(d <= first.indentation, elastic, plastic))
 
     def impact_velocity(self, maximum_indentation: Values, mass: Values) -> Array:
-        """Impact velocity at which an impact reaches an indentation: ½ m* V² = W_l.
+        """Impact velocity that is just large enough to reach an indentation.
+
+        The impact energy ½ m* V² then equals the loading work up to this indentation.
 
         Args:
             maximum_indentation: Largest indentation of the impact δ_max (m).
@@ -191,7 +195,8 @@ class ThorntonNing:
     def indentation_from_velocity(self, velocity: Values, mass: Values) -> Array:
         """Largest indentation of an impact; the inverse of `impact_velocity`.
 
-        δ/δ_y = (V/V_y)^{4/5} up to yield and (1 + 2f)/3 beyond, with f² = (6 (V/V_y)² − 1)/5.
+        With the values δ_y and V_y at first yield, δ/δ_y = (V/V_y)^{4/5} up to yield and
+        (1 + 2f)/3 beyond, where f² = (6 (V/V_y)² − 1)/5 is the square of the relative force.
 
         Args:
             velocity: Relative normal impact velocity V (m/s).
@@ -211,7 +216,7 @@ class ThorntonNing:
     def restitution(self, velocity: Values, mass: Values) -> Array:
         """Coefficient of restitution after an impact.
 
-        Above V_y, with q = V_y/V,
+        Above the yield velocity V_y, with q = V_y/V,
 
             e = (6√3/5)^½ (1 − q²/6)^½ [q/(q + 2(6/5 − q²/5)^½)]^¼,
 
@@ -249,11 +254,14 @@ class ThorntonNing:
         return (0.4 * _line(x) ** 2 / x**0.5 / W_l) ** 0.5
 
     def _yielded(self, maximum_indentation: Values) -> Array:
-        """x = δ/δ_y, set to 1 below yield, because there all ratios to Hertz values are 1."""
+        """Indentation over that of first yield, x = δ/δ_y; 1 up to yield, where the law is Hertz's.
+
+        All quantities that are computed from x are ratios to Hertz's values.
+        """
         x: Array = np.maximum(touching(maximum_indentation) / self.first_yield.indentation, 1.0)
         return x
 
 
 def _line(x: Array) -> Array:
-    """Force f = F/F_y beyond yield, on the tangent, at the indentation x = δ/δ_y."""
+    """Force beyond yield, which is linear in the indentation `x`; both relative to first yield."""
     return (3 * x - 1) / 2

@@ -7,7 +7,8 @@ and reloading have a larger stiffness k₂, which may grow with the largest forc
     unloading   F = k₂(δ − δ₀),  δ₀ = δ_max (1 − k₁/k₂),  k₂ = k_u + S F_max,  F_max = k₁δ_max
     impact      δ_max = V (m*/k₁)^½,  e² = W_u/W_l = k₁/k₂
 
-The paper uses two special cases. With S = 0 the unloading stiffness is constant and
+Here k_u and S are constants, δ_max is the largest indentation, and unloading ends at the residual
+indentation δ₀. The paper uses two special cases. With S = 0 the unloading stiffness is constant and
 e = (k₁/k_u)^½ at any velocity. With k_u = k₁ the stiffness varies and
 e = (1 + S V (m*/k₁)^½)^{−½}; the paper writes (m*/k₁)^½ as 1/ω₀ with ω₀ = (2k₁/m)^½, for two equal
 spheres of mass m.
@@ -42,8 +43,10 @@ class WaltonBraun:
 
     Attributes:
         loading_stiffness: Stiffness k₁ of first loading (N/m).
-        unloading_stiffness: Unloading stiffness k_u in the limit F_max = 0 (N/m), at least k₁.
-        hardening: Increase S of the unloading stiffness per unit of F_max (1/m), at least 0.
+        unloading_stiffness: Unloading stiffness k_u (N/m) in the limit of a small largest force, at
+            least k₁.
+        hardening: Increase S of the unloading stiffness (N/m) per newton of the largest force
+            (1/m), at least 0.
 
     Raises:
         CaseError: A field is not finite or not in its range.
@@ -109,7 +112,8 @@ class WaltonBraun:
             mass: Reduced mass m* (kg).
 
         Returns:
-            Coefficient of restitution e = (k₁/k₂)^½ (1); 1 at zero or negative velocity.
+            Coefficient of restitution e = (k₁/k₂)^½ (1), with the stiffnesses k₁ of loading and k₂
+            of unloading; 1 at zero or negative velocity.
 
         Raises:
             CaseError: `mass` is not positive and finite.

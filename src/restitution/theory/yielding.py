@@ -3,7 +3,8 @@
 `yield_pressure` p_y is a contact pressure, not the yield strength Y of a tensile test: p_y ≈ 1.6 Y
 at first yield below the surface, and p_y ≈ 2.8–3 Y (the hardness) for fully plastic flow (Johnson
 1985, sections 6.1 and 6.3). Setting the peak pressure p₀ = 2E*a/(πR*) with a² = R*δ equal to p_y
-gives the indentation, the force and the impact velocity at first yield (W is the Hertz energy):
+gives the indentation, the force and the impact velocity at first yield, where W is the elastic
+energy of a Hertz contact:
 
     δ_y = (πp_y/2E*)² R*,   F_y = π³R*²p_y³/(6E*²),   ½ m* V_y² = W(δ_y) = ⅖ F_y δ_y.
 
@@ -68,7 +69,8 @@ class FirstYield:
     def velocity(self, mass: Values) -> Array:
         """Largest relative normal velocity at which an impact stays elastic.
 
-        Equating ½ m* V_y² with the Hertz energy at δ_y gives V_y = (π⁵/30)^½ (p_y⁵R*³/(E*⁴m*))^½.
+        Equating ½ m* V_y² with the elastic energy of the Hertz contact at first yield gives
+        V_y = (π⁵/30)^½ (p_y⁵R*³/(E*⁴m*))^½.
         Thornton & Ning (1998) round the coefficient (π⁵/30)^½ to 3.194; the exact value is used
         here.
 
@@ -99,7 +101,7 @@ def yield_coefficient(poissons_ratio: Values) -> Array:
         Yield coefficient C (1).
 
     Raises:
-        CaseError: Poisson's ratio is not above −1 and at most ½.
+        CaseError: Poisson's ratio is outside the range −1 < ν ≤ ½.
 
     Source:
         R. L. Jackson, I. Green, J. Tribology 127 (2005) 343–354.

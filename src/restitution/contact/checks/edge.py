@@ -13,7 +13,10 @@ from restitution.contact.state import State
 from restitution.errors import DomainError
 
 _MARGIN = 1.2  # width of the recommended grid over the largest possible width of the contact
-_OFF_CENTRE = 0.25  # a larger distance from the centre counts as off-centre (widths of the grid)
+
+# First touch counts as off-centre if its distance from the centre exceeds this fraction of the
+# width of the grid.
+_OFF_CENTRE = 0.25
 
 
 class EdgeReachedError(DomainError):
@@ -106,6 +109,7 @@ def needed_edges(contact: Contact, indentation: float) -> tuple[float, float]:
     shift = float(((x * x + y * y) / (2 * R) - height).min())
     reach = math.sqrt(2 * R * (indentation + float(height.max()) + shift))
     wide, long = contact.grid.size
-    # A larger grid is recommended even if the shorter edge already exceeds twice the reach.
+    # The contact reaches the edge, or is expected to. Therefore a larger grid is recommended even
+    # if the shorter edge already exceeds twice the reach.
     needed = max(2 * reach, min(wide, long)) * _MARGIN
     return max(wide, needed), max(long, needed)

@@ -24,7 +24,9 @@ _OBLONG = 0.01  # relative difference of the edges of a pixel
 _STEEP = 0.5  # rms slope, beyond which small-slope theory is inaccurate
 _PRESSURES = (1e-5, 0.3)  # p_y/E*, from soft polymers to the ideal strength
 _NEAR_EDGE = 0.1  # distance of first touch from the edge (widths of the grid)
-# Factor on the displacement outside a smooth contact, because a rough contact carries less force.
+
+# Factor on the displacement outside a smooth contact. It is below 1 because a rough contact carries
+# less force.
 _DISPLACED = 0.7
 
 
@@ -126,7 +128,7 @@ def _closed_gap(contact: Contact, indentation: float, distance: float) -> float:
     The result is the indentation minus the displacement F/(πE*r) outside a smooth contact. With
     adhesion, the pull-off displacement of a punch as wide as the contact (JKR) is added to the
     indentation. The displacement F/(πE*r) is reduced if the roughness is not small compared with
-    the indentation, because single asperities then carry the load.
+    the indentation, because a few asperities then carry the load.
     """
     pair, p_y, w = contact.pair, contact.hardness, contact.work_of_adhesion
     E_star, deeper = pair.contact_modulus, indentation
@@ -157,7 +159,7 @@ def _yield_pressure(contact: Contact) -> Finding | None:
 
 
 def _oblong(contact: Contact) -> Finding | None:
-    """Find pixels that are not square, because scan lines may be missing in the file."""
+    """Find pixels that are not square. They suggest that scan lines are missing in the file."""
     provenance = contact.surface.provenance
     for key, hx in provenance.items():
         if not key.endswith("pixel_x_m") or (key != "pixel_x_m" and not key.startswith("part_")):

@@ -29,7 +29,9 @@ NODES_PER_PATCH = 20
 # With four or more nodes per pull-off radius and `crack-closure`, the pull-off force of smooth
 # spheres is within 2.3 % of JKR at all positions of the apex that were compared (docs/adhesion.md).
 ADHESIVE_NODES = 4
-_COHESIVE_PULL_OFF = 0.01  # relative error of the pull-off force on grids that resolve the range
+# Relative error of the pull-off force of a cohesive contact whose grid resolves the range of the
+# attraction.
+_COHESIVE_PULL_OFF = 0.01
 _HALF_SPACE = 0.2  # contact radius over R* beyond which the half-space approximation fails
 
 
@@ -45,10 +47,11 @@ def predicted_radius(pair: Pair, indentation: float, yield_pressure: float = mat
 
 
 def adhesive_nodes(state: State) -> float:
-    """Number of nodes per pull-off radius of an asperity, a_c/h; inf without adhesion.
+    """Number of nodes per pull-off radius of an asperity; inf without adhesion.
 
-    a_c = (9πw/(8E*κ²))^⅓ (JKR), where 1/κ is the `radius_of_asperities`. For a cohesive contact,
-    the result is inf if the grid resolves the range of the attraction, and 0 otherwise.
+    It is a_c/h with the larger spacing h of the grid and the `pull_off_radius` a_c of a sphere of
+    radius `radius_of_asperities`. For a cohesive contact, the result is inf if the grid resolves
+    the range of the attraction, and 0 otherwise.
     """
     contact = state.contact
     if not contact.adhesive:
@@ -133,7 +136,8 @@ def resolution_findings(contact: Contact, indentation: float) -> list[Finding]:
 
     The findings and their values are:
 
-    * `contact-beyond-grid`: `radius`, `indentation`, `half_width` (m), `whole_scan`;
+    * `contact-beyond-grid`: `radius`, `indentation`, `half_width` of the grid (m), and
+      `whole_scan`, whether the grid covers a whole scan;
     * `few-nodes`: `spacing`, `radius` (m);
     * `no-half-space`: `radius`, `reduced_radius` (m), `limit` of their ratio;
     * `finer-than-scan`: `spacing`, `pixel` (m).
@@ -166,10 +170,10 @@ def resolution_findings(contact: Contact, indentation: float) -> list[Finding]:
 
 
 def median_patch(patches: NDArray[np.int64]) -> int:
-    """Size in nodes of the patch that contains the median contact node.
+    """Size (nodes) of the patch that contains the median contact node.
 
-    Nodes are ordered by the size of their patches. `patches` are the sizes (nodes) from
-    `State.patch_sizes`, largest first.
+    The median refers to the contact nodes ordered by the size of their patches. `patches` are the
+    sizes (nodes) from `State.patch_sizes`, largest first.
     """
     if patches.size == 0:
         return 0
@@ -210,7 +214,7 @@ def unresolved_adhesion(depths: Sequence[float], nodes: Sequence[float]) -> list
 
 
 def grid_of_a_scan(contact: Contact) -> bool:
-    """Whether the grid covers a whole scan, so that a larger grid needs a larger scan."""
+    """Whether the grid covers a whole scan, so that only a larger scan allows a larger grid."""
     provenance = contact.surface.provenance
     if provenance.get("source") != "measured":
         return False

@@ -80,7 +80,8 @@ class _Compiled:
     name = "cpu"
 
     def __init__(self, loops: Any, library: Device) -> None:
-        # `library` convolves if a period has other prime factors than 2, 3, 5 and 7.
+        # The compiled transforms need periods without prime factors other than 2, 3, 5 and 7.
+        # `library` convolves arrays with other periods.
         self._loops, self._library = loops, library
         # Use as many threads as ducc0; the environment variable DUCC0_NUM_THREADS sets the number.
         loops.use_threads(ducc0.misc.thread_pool_size())
@@ -160,7 +161,8 @@ class _Arrays:
         nx, ny = values.shape
         px, py = periods
         scaled = np.divide(values, scale, dtype=np.float64)
-        # Each axis is transformed separately, so that padding rows are not transformed.
+        # Each axis is transformed separately. The first transform then skips the rows of zeros that
+        # padding adds.
         modes = self._fft.rfft(scaled.astype(spectrum.dtype), n=py, axis=1)
         modes = self._fft.fft(modes, n=px, axis=0)
         weights, last = spectrum.T, px // 2

@@ -24,7 +24,7 @@ Bounds = tuple[Bound, Bound]  # lower, upper
 def as_rows(lower: Bound, upper: Bound, p: Array) -> Bounds:
     """Convert bounds that are numbers to arrays of the shape of `p`, if a compiled loop takes `p`.
 
-    The compiled loops require arrays. Each array is one row, broadcast.
+    The compiled loops require arrays. Only one row of each array is stored; it is broadcast.
     """
 
     def rows(bound: Bound) -> Bound:
@@ -100,7 +100,7 @@ def take_step(
 
     Write the projected gradient at the new point to `out` and return its largest magnitude, as
     `projected_gradient` does. After a full step (`step` = 1), nodes where d was truncated at a
-    bound lie on the bound without rounding error.
+    bound lie exactly on this bound, in spite of rounding.
     """
     lower, upper = bounds
     low, high = ((step == 1) & (d == (bound - p).astype(d.dtype, copy=False)) for bound in bounds)

@@ -1,4 +1,4 @@
-"""Minimisation of a convex quadratic within bounds. All contact problems use this solver.
+"""Minimisation of a convex quadratic within bounds: the solver of all non-cohesive contacts.
 
     minimise  ½ pᵀK p − pᵀb   subject to   lower ≤ p ≤ upper
 
@@ -37,8 +37,8 @@ Array = NDArray[np.float64]
 # Bound on the rounding error of a product with K, in machine epsilons times the largest value of
 # the product. The largest error measured on 64² to 4096² nodes is 8 in this unit.
 _ROUNDING = 10.0
-# The gradient updated along the steps is used while the violation is at least this multiple of the
-# estimated error of the gradient.
+# Each step updates the gradient. The gradient is computed anew when the violation falls below this
+# multiple of the estimated error of the updated gradient.
 _CLEAR = 3.0
 # If a bound truncates the projected step and the optimal step exceeds this fraction of it, take the
 # full step, so that nodes reach the bound.
@@ -63,7 +63,7 @@ class BoundedQuadratic:
 
     `K` computes in double precision. `b` has shape (nx, ny), and a bound is a number or an array of
     this shape. `K_single` is K in single precision, for the products of K with steps. If `K_single`
-    is None, K is used for them too.
+    is None, these products are computed with K.
     """
 
     K: Operator
@@ -106,17 +106,16 @@ def minimise_quadratic(
     fraction of the projected direction, so an iteration takes one product and the energy always
     falls. (2) The direction is not reset when nodes reach or leave a bound. Polak–Ribière's β is
     limited to the range from zero to the β of Fletcher and Reeves (Gilbert and Nocedal 1992, SIAM
-    J. Optim. 2, 21–42). It decreases after a step that ends at a bound, because such a step is not
-    optimal. (3) The projected gradient is preconditioned by an approximate inverse of K. This
-    inverse need not be symmetric and need not give a descent direction.
+    J. Optim. 2, 21–42). β decreases after a step that ends at a bound, because the length of such a
+    step is not optimal. (3) The projected gradient is preconditioned by an approximate inverse of
+    K. This inverse may be unsymmetric and may give an ascent direction.
 
     `start` is the initial point, shape (nx, ny), and is overwritten. `precondition` is an
-    approximate inverse of K. `tolerance` limits the violation and has the units of `b`. `K_start`
-    is the product of `K_single` and `start`, if this product is known and `start` is within the
-    bounds; `K_start` is overwritten. With `accept_estimated_gradient`, the final gradient may be
-    the one updated along the steps, provided that the violation plus the estimated error of this
-    gradient is within `tolerance`. Otherwise the final gradient is computed with K at the final
-    point.
+    approximate inverse of K. `tolerance` limits the violation and has the units of `b`. If `start`
+    is within the bounds and the product of `K_single` and `start` is known, give this product as
+    `K_start`; it is overwritten. The final gradient is computed with K at the final point. With
+    `accept_estimated_gradient`, the gradient updated along the steps is returned instead, if the
+    violation plus the estimated error of this gradient is within `tolerance`.
 
     The first gradient is computed with K, or with `K_single` if `K_start` is given or the estimate
     is accepted. Each step updates the gradient by the product of K and the step. The rounding
@@ -136,7 +135,7 @@ def minimise_quadratic(
     error = 0.0 if first is K else rounding * max_magnitude(K_start)
     d, r_old = (np.zeros_like(p, dtype=work_type) for _ in range(2))
     r, z, Kd = (np.empty_like(p, dtype=work_type) for _ in range(3))
-    g = K_start  # projected_gradient subtracts b
+    g = K_start  # `projected_gradient` subtracts b in place
     residual = projected_gradient(p, g, b, bounds, r)
     rz_old, iteration = 0.0, 0
     step_change = 1.0  # factor by which the trial length last changed

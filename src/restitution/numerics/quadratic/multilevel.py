@@ -50,18 +50,21 @@ _MIN_NODES_FOR_GUESS, _MIN_NODES_TO_COARSEN = 120, 80
 _COARSE_ACCURACY, _FINER_COARSE_ACCURACY = 1e-2, 3e-3
 _COARSE_ITERATIONS = 60
 _MARGIN = 3  # nodes by which the window exceeds the guessed contact on each side
+
 # Largest window, as a fraction of all nodes. A larger window saves less time than the check of all
 # nodes takes.
 _MAX_WINDOW_FRACTION = 0.7
 _PLACES = 8  # points along each axis around which local means are taken (see `local_mean`)
-# The gradient corrects the contact edge of a guess if at most this fraction of the contact nodes
-# (first number) is strictly between the bounds. The second number is the size of the correction, as
-# a fraction of the pressure at one node alone that would close the gap at this node (0.15 to 0.5
-# work nearly as well).
+
+# In a nearly fully plastic contact, the gradient is used to correct the contact edge of a guess.
+# First number: the guess is corrected if at most this fraction of the contact nodes is strictly
+# between the bounds. Second number: size of the correction, as a fraction of the pressure that
+# would make the gradient of a node zero if it acted on this node alone. Fractions from 0.15 to 0.5
+# work nearly as well.
 _MAX_FREE_FRACTION, _GAP_FRACTION = 0.05, 0.3
-# The mean is damped if the Rayleigh quotient of K·M on the free nodes exceeds the first number (M
-# is the approximate inverse). The second number is the largest damping factor that still saves
-# time.
+# The local mean is damped if the Rayleigh quotient of K·M on the free nodes exceeds the first
+# number, where M is the approximate inverse of K. The second number is the largest (weakest)
+# damping factor that still saves time.
 _USUAL_STIFFNESS, _MAX_DAMPING_FACTOR = 3.5, 0.7
 
 
@@ -78,11 +81,11 @@ def solve_multilevel(
 
     `operators` builds K and its approximate inverse. `b` has shape (nx, ny); `upper` is a number or
     an array of this shape. `tolerance` limits the violation of the optimality conditions and has
-    the units of `b`. If the operators are `periodic`, the fine problem is solved on the whole grid,
-    and only grids of even size are coarsened. The approximate inverse of a periodic operator is
-    nearly exact, so it is used without damping. Return the result and the number of products with K
-    on the finest grid. If the solve does not converge, `converged` of the result is False; no
-    exception is raised.
+    the units of `b`. `periodic` says that the operators are periodic: the fine problem is then
+    solved on the whole grid, and only grids of even size are coarsened. The approximate inverse of
+    a periodic operator is nearly exact, so it is used without damping. Return the result and the
+    number of products with K on the finest grid. If the solve does not converge, `converged` of the
+    result is False; no exception is raised.
     """
     whole_grid: Box = (slice(0, b.shape[0]), slice(0, b.shape[1]))
     size = shape_of(whole_grid)
@@ -175,9 +178,9 @@ def mean_damped_preconditioner(inverse: Operator, p: Array, b: Array, upper: Bou
     edge. The inverse of a smoothing operator amplifies the short waves of this drop, more so on
     finer grids (McLean and Steinbach 1999, Adv. Comput. Math. 11, 271–286). So `inverse`
     overestimates the response to the constant part, by up to 30 times on rough contacts. Conjugate
-    gradients would have to correct this part again whenever nodes reach or leave a bound. The guess
-    `p` gives the damping factor, because K p = b on the free nodes. Means around 8 × 8 places
-    represent the nearly constant part.
+    gradients would have to correct this part again whenever nodes reach or leave a bound. The
+    damping factor follows from the guess `p`, for which K p = b on the free nodes. The nearly
+    constant part is represented by local means around 8 × 8 places.
     """
     free, free_nodes, contact_nodes = _between_the_bounds(p, upper)
     if free_nodes <= 0.5 * contact_nodes:  # no guess, or most contact nodes yield
@@ -200,7 +203,10 @@ def mean_damped_preconditioner(inverse: Operator, p: Array, b: Array, upper: Bou
 
 
 def may_coarsen(shape: tuple[int, ...], periodic: bool) -> bool:
-    """Whether a grid of this shape is large enough to be coarsened; if periodic, also even."""
+    """Whether a grid of this shape is large enough to be coarsened.
+
+    If `periodic`, its numbers of nodes must also be even.
+    """
     even = all(n % 2 == 0 for n in shape)
     return min(shape) >= _MIN_NODES_TO_COARSEN and (even or not periodic)
 
@@ -239,7 +245,7 @@ def _first_guess(
     accuracy: float,
     periodic: bool = False,
 ) -> tuple[Array, Array]:
-    """Solve on the grid of `level`; return the solution prolonged to the next finer grid.
+    """Solve on the grid of `level`; return the solution, prolonged to the next finer grid.
 
     The solve starts from the first guess of the next coarser grid, or from zero on the coarsest
     grid. Its tolerance is the fraction `accuracy` of the largest b. The second result is the
@@ -267,7 +273,7 @@ def _first_guess(
         prolong(found.point, guess)
         return guess, displacement
     # In a nearly fully plastic contact, the pressure jumps from the upper bound to zero between two
-    # nodes. The gradients at these nodes (plastic displacement at one, gap at the other) locate the
-    # jump.
+    # nodes. The gradients at these two nodes are minus the plastic displacement and the gap. They
+    # show how far the jump is from each node.
     prolong(found.point - _GAP_FRACTION / K.diagonal * found.gradient, guess)
     return np.clip(guess, 0.0, upper, out=guess), displacement

@@ -23,9 +23,11 @@ from restitution.numerics.quadratic.multilevel import Operators, coarsened, may_
 Array = NDArray[np.float64]
 
 _MAX_SOLVES = 60  # solves on one grid after which the search counts as not converged
+
 # Tolerance of a solve as a fraction of the estimated error of the multiplier D.
 _ACCURACY = 0.05
-# Error of the mean that the violation may cause, as a fraction of the tolerance of the mean.
+# Largest error of the mean that the violation of the optimality conditions may cause, as a fraction
+# of the tolerance of the mean.
 _MEAN_SHARE = 0.5
 # `MeanTarget.residual` and `MeanTarget.precision` on coarser grids.
 _COARSE_RESIDUAL, _COARSE_MEAN = 1e-2, 0.02
@@ -46,10 +48,10 @@ class MeanTarget:
     residual: float
 
     def tolerance(self, multiplier: float, slope: float) -> float:
-        """The limit of the violation of the optimality conditions, in the units of h.
+        """Return the largest violation of the optimality conditions to allow, in the units of h.
 
-        A violation changes the mean by at most as much as an equal change of the `multiplier` D
-        does. `slope` is dD/dmean.
+        `multiplier` is D, and `slope` is dD/dmean. A violation changes the mean by at most as much
+        as an equal change of D, so `slope` converts the tolerance of the mean to a violation.
         """
         by_residual = self.residual * abs(multiplier - self.compliance * self.mean)
         return min(by_residual, _MEAN_SHARE * self.precision * self.mean * slope)
@@ -139,9 +141,9 @@ class _Bracket:
         self._before: tuple[float, float] | None = None
 
     def following(self, x: float, y: float, uncertainty: float) -> float:
-        """Return the next x, given that y is the function value at a point near x.
+        """Return the next argument to try after the function value `y` was found near `x`.
 
-        The distance of this point from x is at most `uncertainty`.
+        The value belongs to a point at a distance of at most `uncertainty` from `x`.
         """
         if y > 0:
             self._high = min(self._high, x + uncertainty)
