@@ -122,12 +122,12 @@ def test_truncated_work_from_an_unloaded_state_is_not_taken_for_granted(rough_co
 # --- refusals ---------------------------------------------------------------------------------
 
 
-def test_the_shortcut_of_adhesive_loading_states_half_of_what_it_takes():
-    """If adhesion is negligible, its work is stated as w times the area, with half as its error."""
+def test_negligible_adhesive_work_is_w_times_the_area_with_an_error_that_covers_integrated_values():
+    """Integrated values of the adhesive work were 0.37 to 0.93 of w times the contact area."""
     body = Body(500e-6, 210e9, 0.25)
     grid = Grid((64, 64), (0.5e-6, 0.5e-6))
     contact = Contact(Pair(body, body), smooth(grid), work_of_adhesion=1e-4)
     state = solve(contact, 4e-7)
     gain = 1e-4 * state.contact_area
     assert state.adhesive_work == approx(gain, rel=1e-12)
-    assert state.work_error == approx(0.5 * gain, rel=1e-12)
+    assert state.work_error == approx(0.65 * gain, rel=1e-12)

@@ -265,8 +265,8 @@ def with_work(state: State, start: State | None) -> State:
     if _adhesive_work_is_negligible(state):
         # The adhesive work is set to its largest possible value, the work of adhesion times the
         # area. Where it was integrated instead, it was 0.37 to 0.93 of this value, in most cases
-        # above 0.7.
-        return replace(state, adhesive_work=gain, work_error=0.5 * gain)
+        # above 0.7. The error covers this range.
+        return replace(state, adhesive_work=gain, work_error=0.65 * gain)
     if contact.adhesive and contact.approach != "hertzian":
         balanced = contact.approach == "equilibrium" and balances_are_reliable(state)
         if balanced and not contact.truncates:
