@@ -13,6 +13,8 @@ from restitution.dem.pair_table import pair_table
 from restitution.laws.law_files import read_laws
 from tolerance import approx
 
+pytestmark = pytest.mark.programs  # even those without LAMMPS need the laws of all pairs
+
 VELOCITY = 0.3  # m/s
 SPHERES = {1: 40, 2: 30, 3: 10, 4: 20}  # by type
 STEPS = 100_000  # the lowest spheres reach the wall
