@@ -55,7 +55,7 @@ of the repeats (smallest and largest in brackets).
 {rows}
 
 A depth under the bound that grows needs a second solve: the elastic contact at twice the depth, to
-a residual of 1e-4 (`contact/cavity.py`). The unloading is one solve per depth in both models.
+a mean residual of 5e-5 (`contact/cavity.py`). The unloading is one solve per depth in both models.
 """
 
 

@@ -11,6 +11,7 @@ Array = NDArray[np.float64]
 
 _FROM, _TO = slice(1, None), slice(None, -1)
 _ALL = slice(None)
+_STRIP = 32  # rows computed at a time, so that intermediate arrays stay in the cache
 # For each of the eight directions, a pair of blocks of the grid: all nodes that have a neighbour in
 # this direction, and these neighbours.
 _NEIGHBOURS = [
@@ -35,16 +36,11 @@ def elongation_of(gap: Array, spacing: tuple[float, float]) -> Array:
         Elongation (1), shape of `gap`, read-only: 0 at a round asperity, 1 along a ridge. It is 0
         at the outermost nodes of the grid, which a contact must not reach.
     """
-    inner = slice(1, -1)
-    hx, hy = spacing
-    elongation = np.zeros(gap.shape)
-    xx = (gap[2:, inner] - 2 * gap[inner, inner] + gap[:-2, inner]) / hx**2
-    yy = (gap[inner, 2:] - 2 * gap[inner, inner] + gap[inner, :-2]) / hy**2
-    xy = (gap[2:, 2:] - gap[2:, :-2] - gap[:-2, 2:] + gap[:-2, :-2]) / (4 * hx * hy)
-    mean, spread = 0.5 * np.abs(xx + yy), np.sqrt(0.25 * (xx - yy) ** 2 + xy**2)
-    larger = mean + spread
-    ratio = np.divide(np.abs(mean - spread), larger, out=np.ones_like(larger), where=larger > 0)
-    elongation[inner, inner] = (1 - ratio) ** 2
+    elongation, rows = np.empty(gap.shape), gap.shape[0]
+    for first in range(0, rows, _STRIP):
+        last, above = min(first + _STRIP, rows), max(first - 1, 0)
+        strip = _elongation(gap[above : last + 1], spacing)
+        elongation[first:last] = strip[first - above : last - above]
     return freeze(elongation)
 
 
@@ -74,6 +70,21 @@ def crest_gap_of(gap: Array) -> Array:
         if np.array_equal(longer, path):
             return freeze(gap.ravel()[path].reshape(gap.shape))
         path = longer
+
+
+def _elongation(gap: Array, spacing: tuple[float, float]) -> Array:
+    """`elongation_of` on all rows at once."""
+    inner = slice(1, -1)
+    hx, hy = spacing
+    elongation = np.zeros(gap.shape)
+    xx = (gap[2:, inner] - 2 * gap[inner, inner] + gap[:-2, inner]) / hx**2
+    yy = (gap[inner, 2:] - 2 * gap[inner, inner] + gap[inner, :-2]) / hy**2
+    xy = (gap[2:, 2:] - gap[2:, :-2] - gap[:-2, 2:] + gap[:-2, :-2]) / (4 * hx * hy)
+    mean, spread = 0.5 * np.abs(xx + yy), np.sqrt(0.25 * (xx - yy) ** 2 + xy**2)
+    larger = mean + spread
+    ratio = np.divide(np.abs(mean - spread), larger, out=np.ones_like(larger), where=larger > 0)
+    elongation[inner, inner] = (1 - ratio) ** 2
+    return elongation
 
 
 def _take_smaller_neighbours(lowest: Array, values: Array, axis: int) -> None:

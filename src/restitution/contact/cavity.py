@@ -73,8 +73,9 @@ _RIDGE_ONSET, _RIDGE_GROWTH, _RIDGE_LARGEST = 0.11, 1.1, 0.25
 _DEPTH_FACTOR = 2.0  # the elastic pressure is computed at this multiple of the indentation
 
 # Tolerance of the elastic solve: a multiple of the tolerance of the bounded solve, and its largest
-# value. At 1e-4, COR is within 1e-4 of its value at 1e-8 (tests/contact/test_cavity.py).
-_RESIDUAL_FACTOR, _LARGEST_RESIDUAL = 1e4, 1e-4
+# value. At 5e-5, COR is within 1e-4 of its value at 1e-8 (tests/contact/test_cavity.py): the
+# largest difference on 143 random rough surfaces was 7.5e-5.
+_RESIDUAL_FACTOR, _LARGEST_RESIDUAL = 5e3, 5e-5
 _TABOR = 0.2  # ratio of the representative strain to a/R
 
 

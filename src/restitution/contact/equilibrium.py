@@ -39,11 +39,8 @@ from restitution.numerics.quadratic.minimise import (
     Minimum,
     minimise_quadratic,
 )
-from restitution.numerics.quadratic.multilevel import (
-    Operators,
-    solve_multilevel,
-    solve_near_guess,
-)
+from restitution.numerics.quadratic.multilevel import Operators, solve_multilevel
+from restitution.numerics.quadratic.near_guess import solve_near_guess
 from restitution.numerics.read_only import freeze
 
 Array = NDArray[np.float64]
@@ -168,9 +165,10 @@ def elastic_pressure(
 ) -> tuple[Array, Box, int]:
     """Estimate the pressure (Pa) between elastic bodies without adhesion, to a large `residual`.
 
-    The pressure is given on a box and is zero outside. Contact patches of a few nodes that lie
-    apart from the others can be missing, because `solve_near_guess` does not check all nodes.
-    Return the pressure, the box and the number of convolutions. Raises `NotConvergedError`.
+    `residual` bounds the root mean square of the violation of the contact conditions, relative to
+    the overlap. The pressure is given on a box and is zero outside. Contact patches of a few nodes
+    that lie apart from the others can be missing, because `solve_near_guess` does not check all
+    nodes. Return the pressure, the box and the number of convolutions. Raises `NotConvergedError`.
     """
     box = candidate_box(contact, indentation)
     if box is None:

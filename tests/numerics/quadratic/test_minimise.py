@@ -248,6 +248,21 @@ def test_a_looser_tolerance_is_met_in_fewer_iterations(minimise, random_matrix):
     assert loose.iterations < tight.iterations
 
 
+def test_a_mean_violation_is_over_the_nodes_that_may_move():
+    """Three free nodes violate by 3, 4 and 0 (not counted); the fourth is held at its bound."""
+    b = np.array([[3.0, 4.0, 0.0, -7.0]])
+    found = minimise_quadratic(
+        BoundedQuadratic(lambda p, out=None: 1.0 * p, b, 0.0, np.inf),
+        start=np.zeros_like(b),
+        precondition=lambda r, out=None: 1.0 * r,
+        tolerance=3.6,
+        max_iterations=0,
+        mean_violation=True,
+    )
+    assert found.residual == approx(np.sqrt((9 + 16) / 2), rel=1e-12)
+    assert found.converged
+
+
 def test_violation_looks_only_where_a_node_may_move():
     lower, upper = np.zeros((1, 4)), np.ones((1, 4))
     p = np.array([[0.0, 1.0, 0.5, 0.5]])

@@ -97,6 +97,7 @@ def minimise_quadratic(
     max_iterations: int,
     K_start: Array | None = None,
     accept_estimated_gradient: bool = False,
+    mean_violation: bool = False,
 ) -> Minimum:
     """Solve `problem` by projected, preconditioned conjugate gradients (Polak–Ribière+).
 
@@ -120,11 +121,14 @@ def minimise_quadratic(
     The first gradient is computed with K, or with `K_single` if `K_start` is given or the estimate
     is accepted. Each step updates the gradient by the product of K and the step. The rounding
     errors of these products are added up as independent errors. When the violation is no longer
-    well above the sum of these errors, the gradient is computed with K again. If the solve does not
-    converge, `converged` of the result is False; no exception is raised.
+    well above the sum of these errors, the gradient is computed with K again. With
+    `mean_violation`, the violation is the root mean square over the nodes where the projected
+    gradient is not zero, instead of the largest magnitude. If the solve does not converge,
+    `converged` of the result is False; no exception is raised.
     """
     # Work arrays that only determine the direction have the same precision as the products.
     work_type: Any = np.float64 if problem.K_single is None else np.float32
+    measured = _root_mean_square if mean_violation else _largest
     K, b, K_single = problem.K, problem.b, problem.K_single or problem.K
     rounding = _ROUNDING * float(np.finfo(work_type).eps)
     p = np.clip(start, problem.lower, problem.upper, out=start)
@@ -136,7 +140,7 @@ def minimise_quadratic(
     d, r_old = (np.zeros_like(p, dtype=work_type) for _ in range(2))
     r, z, Kd = (np.empty_like(p, dtype=work_type) for _ in range(3))
     g = K_start  # `projected_gradient` subtracts b in place
-    residual = projected_gradient(p, g, b, bounds, r)
+    residual = measured(projected_gradient(p, g, b, bounds, r), r)
     rz_old, iteration = 0.0, 0
     step_change = 1.0  # factor by which the trial length last changed
     trial_length = _INITIAL_STEP
@@ -147,7 +151,7 @@ def minimise_quadratic(
                 iteration -= 1
                 break
             g, error = K(p, out=g), 0.0
-            residual = projected_gradient(p, g, b, bounds, r)
+            residual = measured(projected_gradient(p, g, b, bounds, r), r)
             continue
         z = precondition(r, out=z)
         rz, overlap = dot_products(z, r, r_old)
@@ -164,7 +168,7 @@ def minimise_quadratic(
         if step > 1 and violates_bounds(p, d, step, bounds):
             step = 1.0
         r, r_old = r_old, r
-        residual = take_step(p, g, d, Kd, step, bounds, r)
+        residual = measured(take_step(p, g, d, Kd, step, bounds, r), r)
         error = float(np.hypot(error, rounding * step * max_Kd))
         rz_old = rz
         step_change = min(max(optimum, _MIN_STEP), _MAX_STEP) ** _STEP_DAMPING
@@ -172,7 +176,7 @@ def minimise_quadratic(
 
     if not accept_estimated_gradient and error > 0:
         g, error = K(p, out=g), 0.0
-        residual = projected_gradient(p, g, b, bounds, r)
+        residual = measured(projected_gradient(p, g, b, bounds, r), r)
     residual += error
     return Minimum(p, g, residual, iteration, converged=residual <= tolerance)
 
@@ -184,3 +188,15 @@ def violation(p: Array, product: Array, b: Array, lower: Bound, upper: Bound) ->
     """
     bounds = as_rows(lower, upper, p)
     return projected_gradient(p, product, b, bounds, np.empty_like(p, dtype=np.float32))
+
+
+def _largest(largest: float, r: Array) -> float:
+    return largest
+
+
+def _root_mean_square(largest: float, r: Array) -> float:
+    """Root mean square of the nonzero values of `r`, whose largest magnitude is `largest`."""
+    if not largest > 0:
+        return largest
+    squares, _ = dot_products(r, r, r)
+    return math.sqrt(squares / np.count_nonzero(r))

@@ -12,7 +12,6 @@ solved again.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import Any, TypeGuard
 
@@ -44,10 +43,9 @@ Operators = Callable[[tuple[int, int], int], tuple[Convolution, SpectralFilter]]
 # of nodes: the first number for the finest grid, the second for coarser grids. On smaller grids the
 # guess costs more time than it saves.
 _MIN_NODES_FOR_GUESS, _MIN_NODES_TO_COARSEN = 120, 80
-# Tolerance on coarser grids, as a fraction of the largest b. In general a smaller tolerance gains
-# nothing, because prolongation errors are larger. Only `solve_near_guess` uses the second, smaller
-# value, because this saves a tenth of its time.
-_COARSE_ACCURACY, _FINER_COARSE_ACCURACY = 1e-2, 3e-3
+# Tolerance on coarser grids, as a fraction of the largest b. A smaller tolerance gains nothing,
+# because prolongation errors are larger.
+_COARSE_ACCURACY = 1e-2
 _COARSE_ITERATIONS = 60
 _MARGIN = 3  # nodes by which the window exceeds the guessed contact on each side
 
@@ -93,7 +91,7 @@ def solve_multilevel(
     # The operator of the whole grid is built first, because smaller windows reuse its coefficients.
     whole_K, whole_inverse = operators(size, 0)
     if min(size) >= _MIN_NODES_FOR_GUESS:
-        p, _ = _first_guess(operators, b, upper, 1, _COARSE_ACCURACY, periodic)
+        p = _first_guess(operators, b, upper, 1, periodic)
     window = None if periodic else bounding_box(p > 0)
     if window is not None and _is_worth_its_check(window, size):
         # Coarse grids miss some contact. Therefore the window also includes the nodes where the
@@ -137,38 +135,6 @@ def solve_multilevel(
         window = whole_grid if wider is None or wider == window else widen(wider, _MARGIN, size)
 
 
-def solve_near_guess(
-    operators: Operators, b: Array, *, tolerance: float, max_iterations: int
-) -> tuple[Minimum, Box, int]:
-    """Minimise ½ pᵀK p − pᵀb with 0 ≤ p approximately, on a window around a guess.
-
-    The guess comes from coarser grids. The window includes the nodes where the guess has pressure
-    and the nodes that would overlap under the displacement of the coarser grid. The other nodes are
-    neither solved nor checked. Return the result on the window, the window, and the number of
-    products with K.
-    """
-    size = b.shape[0], b.shape[1]
-    p, window = np.zeros_like(b), None
-    if min(size) >= _MIN_NODES_FOR_GUESS:
-        p, coarse = _first_guess(operators, b, math.inf, 1, _FINER_COARSE_ACCURACY)
-        displacement = np.empty_like(b, order="C")
-        prolong(coarse, displacement)
-        window = bounding_box((p > 0) | (displacement < b))
-    if window is None:
-        window = slice(0, size[0]), slice(0, size[1])
-    window = widen(window, _MARGIN, size)
-    K, inverse = operators(shape_of(window), 0)
-    found = minimise_quadratic(
-        BoundedQuadratic(K, b[window], 0.0, math.inf, K.single_precision),
-        start=p[window],
-        precondition=mean_damped_preconditioner(inverse, p[window], b[window], math.inf),
-        tolerance=tolerance,
-        max_iterations=max_iterations,
-        accept_estimated_gradient=True,
-    )
-    return found, window, K.count
-
-
 def mean_damped_preconditioner(inverse: Operator, p: Array, b: Array, upper: Bound) -> Operator:
     """Return `inverse` with a damped response to the local mean of its argument.
 
@@ -182,14 +148,8 @@ def mean_damped_preconditioner(inverse: Operator, p: Array, b: Array, upper: Bou
     damping factor follows from the guess `p`, for which K p = b on the free nodes. The nearly
     constant part is represented by local means around 8 × 8 places.
     """
-    free, free_nodes, contact_nodes = _between_the_bounds(p, upper)
-    if free_nodes <= 0.5 * contact_nodes:  # no guess, or most contact nodes yield
-        return inverse
-    constant: Any = free.astype(np.float32)
-    image = inverse(constant, out=np.empty_like(constant))
-    stiffness = dot(b, constant) / float(p.sum()) * (dot(image, constant) / contact_nodes)
-    factor = _USUAL_STIFFNESS / max(stiffness, _USUAL_STIFFNESS)
-    if factor > _MAX_DAMPING_FACTOR:
+    factor = mean_damping(inverse, p, b, upper)
+    if factor == 1.0:
         return inverse
 
     def damped(r: Array, out: Array | None = None) -> Array:
@@ -200,6 +160,18 @@ def mean_damped_preconditioner(inverse: Operator, p: Array, b: Array, upper: Bou
         return inverse(result, out=result)
 
     return damped
+
+
+def mean_damping(inverse: Operator, p: Array, b: Array, upper: Bound) -> float:
+    """Return the factor of `mean_damped_preconditioner`, or 1 where no damping is needed."""
+    free, free_nodes, contact_nodes = _between_the_bounds(p, upper)
+    if free_nodes <= 0.5 * contact_nodes:  # no guess, or most contact nodes yield
+        return 1.0
+    constant: Any = free.astype(np.float32)
+    image = inverse(constant, out=np.empty_like(constant))
+    stiffness = dot(b, constant) / float(p.sum()) * (dot(image, constant) / contact_nodes)
+    factor = _USUAL_STIFFNESS / max(stiffness, _USUAL_STIFFNESS)
+    return factor if factor <= _MAX_DAMPING_FACTOR else 1.0
 
 
 def may_coarsen(shape: tuple[int, ...], periodic: bool) -> bool:
@@ -238,42 +210,35 @@ def _is_worth_its_check(window: Box, size: tuple[int, int]) -> bool:
 
 
 def _first_guess(
-    operators: Operators,
-    b: Array,
-    upper: Bound,
-    level: int,
-    accuracy: float,
-    periodic: bool = False,
-) -> tuple[Array, Array]:
+    operators: Operators, b: Array, upper: Bound, level: int, periodic: bool = False
+) -> Array:
     """Solve on the grid of `level`; return the solution, prolonged to the next finer grid.
 
     The solve starts from the first guess of the next coarser grid, or from zero on the coarsest
-    grid. Its tolerance is the fraction `accuracy` of the largest b. The second result is the
-    displacement K p on the grid of `level`.
+    grid.
     """
     if not may_coarsen(b.shape, periodic):
-        return np.zeros_like(b), np.zeros_like(b)
+        return np.zeros_like(b)
     coarse, bound = coarsened(b), coarsened(upper) if _is_array(upper) else upper
     K, inverse = operators((coarse.shape[0], coarse.shape[1]), level)
-    start, _ = _first_guess(operators, coarse, bound, level + 1, accuracy, periodic)
+    start = _first_guess(operators, coarse, bound, level + 1, periodic)
     found = minimise_quadratic(
         BoundedQuadratic(K, coarse, 0.0, bound, K.single_precision),
         start=start,
         precondition=inverse
         if periodic
         else mean_damped_preconditioner(inverse, start, coarse, bound),
-        tolerance=accuracy * max(float(b.max()), 0.0),
+        tolerance=_COARSE_ACCURACY * max(float(b.max()), 0.0),
         max_iterations=_COARSE_ITERATIONS,
         accept_estimated_gradient=True,
     )
     guess = np.empty_like(b, order="C")
-    displacement = np.add(found.gradient, coarse, out=coarse)
     _, free_nodes, contact_nodes = _between_the_bounds(found.point, bound)
     if free_nodes > _MAX_FREE_FRACTION * contact_nodes:
         prolong(found.point, guess)
-        return guess, displacement
+        return guess
     # In a nearly fully plastic contact, the pressure jumps from the upper bound to zero between two
     # nodes. The gradients at these two nodes are minus the plastic displacement and the gap. They
     # show how far the jump is from each node.
     prolong(found.point - _GAP_FRACTION / K.diagonal * found.gradient, guess)
-    return np.clip(guess, 0.0, upper, out=guess), displacement
+    return np.clip(guess, 0.0, upper, out=guess)

@@ -1,0 +1,155 @@
+"""Approximate minimisation without upper bound, on a window around a guess from coarser grids.
+
+The problem is that of `multilevel` with an infinite upper bound: an elastic contact. Means over
+2 × 2 nodes hide the roughness between these nodes, so on a rough surface the coarser grid has far
+too many nodes in contact. But the mean pressure of this grid is nearly right. Therefore the short
+waves of the pressure are added to the guess, and then negative pressures are set to zero and the
+other pressures are lowered until the local means are again those of the coarser grid.
+
+The same means are protected during the iterations. The approximate inverse turns the residual of
+short waves on separate contact patches into a change of the mean pressure, which later iterations
+would have to take back. So the preconditioner damps the local means of its result as well as those
+of its argument (see `multilevel.mean_damped_preconditioner`).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from restitution.numerics.box import Box, bounding_box, shape_of, widen
+from restitution.numerics.convolution.operators import Convolution
+from restitution.numerics.quadratic.fused_ops import as_rows, projected_gradient
+from restitution.numerics.quadratic.grid_transfer import prolong
+from restitution.numerics.quadratic.local_mean import local_sums, subtract_local_mean
+from restitution.numerics.quadratic.minimise import (
+    BoundedQuadratic,
+    Minimum,
+    Operator,
+    minimise_quadratic,
+)
+from restitution.numerics.quadratic.multilevel import (
+    Operators,
+    coarsened,
+    may_coarsen,
+    mean_damping,
+)
+
+Array = NDArray[np.float64]
+
+_MIN_NODES_FOR_GUESS = 120  # along the shorter edge of the finest grid; on smaller ones p = 0
+_COARSE_ACCURACY = 1e-3  # tolerance on coarser grids, as a fraction of the largest b
+_COARSE_ITERATIONS = 60
+_MARGIN = 3  # nodes by which the window exceeds the guessed contact on each side
+_PLACES = 12  # points along each axis around which local means are taken (see `local_mean`)
+_PASSES = 4  # steps of Newton's method for the local means of the guess
+
+
+def solve_near_guess(
+    operators: Operators, b: Array, *, tolerance: float, max_iterations: int
+) -> tuple[Minimum, Box, int]:
+    """Minimise ½ pᵀK p − pᵀb with 0 ≤ p approximately, on a window around a guess.
+
+    The arguments are those of `solve_multilevel`, but `tolerance` limits the root mean square of
+    the violation, because the largest violation is often that of a few nodes that hardly matter.
+    The window includes the nodes where the guess has pressure and the nodes that would overlap
+    under the displacement of the coarser grid. The other nodes are neither solved nor checked.
+    Return the result on the window, the window, and the number of products with K.
+    """
+    size = b.shape[0], b.shape[1]
+    p, displacement, window = np.zeros_like(b), np.zeros_like(b), None
+    if min(size) >= _MIN_NODES_FOR_GUESS:
+        p, displacement = _guess(operators, b, 1)
+        window = bounding_box((p > 0) | (displacement < b))
+    if window is None:
+        window = slice(0, size[0]), slice(0, size[1])
+    window = widen(window, _MARGIN, size)
+    K, inverse = operators(shape_of(window), 0)
+    limits = tolerance, max_iterations
+    guess = p[window], displacement[window]
+    return _solve_from(guess, K, inverse, b[window], limits), window, K.count
+
+
+def _guess(operators: Operators, b: Array, level: int) -> tuple[Array, Array]:
+    """Solve on the grid of `level`; return p and K p prolonged to the next finer grid."""
+    if not may_coarsen(b.shape, periodic=False):
+        return np.zeros_like(b), np.zeros_like(b)
+    coarse = coarsened(b)
+    K, inverse = operators((coarse.shape[0], coarse.shape[1]), level)
+    start = _guess(operators, coarse, level + 1)
+    limits = _COARSE_ACCURACY * max(float(b.max()), 0.0), _COARSE_ITERATIONS
+    found = _solve_from(start, K, inverse, coarse, limits)
+    p, displacement = np.empty_like(b, order="C"), np.empty_like(b, order="C")
+    prolong(found.point, p)
+    prolong(np.add(found.gradient, coarse, out=coarse), displacement)
+    return p, displacement
+
+
+def _solve_from(
+    guess: tuple[Array, Array],
+    K: Convolution,
+    inverse: Operator,
+    b: Array,
+    limits: tuple[float, int],
+) -> Minimum:
+    """Minimise from p and K p of the coarser grid; `limits` are the tolerance and iterations."""
+    start = guess[0]
+    if start.any():
+        start = add_short_waves(*guess, inverse, b)
+    tolerance, max_iterations = limits
+    return minimise_quadratic(
+        BoundedQuadratic(K, b, 0.0, math.inf, K.single_precision),
+        start=start,
+        precondition=balanced_preconditioner(inverse, start, b),
+        tolerance=tolerance,
+        max_iterations=max_iterations,
+        accept_estimated_gradient=True,
+        mean_violation=True,
+    )
+
+
+def add_short_waves(guess: Array, displacement: Array, inverse: Operator, b: Array) -> Array:
+    """Add the pressure −`inverse` (K p − b) to the guess p, and keep p ≥ 0 and the local means.
+
+    `displacement` is K p of the coarser grid, which lacks only short waves; it is overwritten.
+    """
+    p: Any = guess.astype(np.float32)
+    free, change = np.empty_like(p), np.empty_like(p)
+    projected_gradient(guess, displacement, b, as_rows(0.0, math.inf, guess), free)
+    wanted, sums, nodes = np.empty_like(b, shape=(3, _PLACES, _PLACES))
+    local_sums(p, wanted, nodes)
+    p -= inverse(free, out=change)
+    p *= free != 0
+    for _ in range(_PASSES):
+        np.maximum(p, 0.0, out=p)
+        local_sums(p, sums, nodes)
+        subtract_local_mean(p, 1.0, sums - wanted, nodes, p)
+    start: Array = np.maximum(p, 0.0, dtype=np.float64)
+    return start
+
+
+def balanced_preconditioner(inverse: Operator, p: Array, b: Array) -> Operator:
+    """Return `inverse` with a damped response to local means and from other waves to local means.
+
+    The factor by which the response to a mean is damped is that of `mean_damped_preconditioner`.
+    Its square root damps the means of the argument and then those of the result.
+    """
+    share = 1.0 - math.sqrt(mean_damping(inverse, p, b, math.inf))
+    if share == 0.0:
+        return inverse
+
+    def balanced(r: Array, out: Array | None = None) -> Array:
+        result = np.empty_like(r) if out is None else out
+        sums, nodes = np.empty_like(b, shape=(2, _PLACES, _PLACES))
+        local_sums(r, sums, nodes)
+        subtract_local_mean(r, share, sums, nodes, result)
+        inverse(result, out=result)
+        result *= r != 0
+        local_sums(result, sums, nodes)
+        subtract_local_mean(result, share, sums, nodes, result)
+        return result
+
+    return balanced
