@@ -226,7 +226,7 @@ def export(
 
     Args:
         laws: One law or several, one for each pair of particles. Each is a `Law`, or a folder that
-            holds a law or results (see `law_of`). The folder of a mixture holds all its laws.
+            holds a law or results (see `law_of`). A mixture's folder stands for all laws in it.
         to: DEM code: "lammps", "liggghts", "yade", "mercurydpm", "edem", "mujoco" or "drake"; or
             "csv" for one table.
         out: Folder for the files; existing files are never overwritten.
@@ -237,7 +237,7 @@ def export(
 
     Raises:
         CaseError: The DEM code is unknown, or does not accept these laws.
-        DomainError: The velocity lies outside the computed range.
+        DomainError: The velocity lies outside the range of computed velocities.
         OutputError: A file exists, or cannot be read or written.
     """
     from restitution.dem.export import CODES, write_export

@@ -120,9 +120,9 @@ def collide(
     adhesion, `method="path"` simulates unloading. `method="energy-estimate"` subtracts the surface
     energy from the elastic energy, W_u = E_el − wA, where w is the work of adhesion and A the
     contact area. For cohesive contacts this method uses the computed interaction energy in place of
-    −wA. The pull-off force and the indentation at separation are then NaN. The error of W_u is set
-    to wA. In all comparisons with simulated unloading, wA exceeded the energy dissipated at
-    detachment plus the grid error of detachment.
+    −wA. The method leaves the pull-off force and the indentation at separation NaN, and it sets the
+    error of W_u to wA. In all comparisons with simulated unloading, wA exceeded the energy
+    dissipated at detachment plus the grid error of detachment.
 
     Args:
         state: Deepest state of the collision, reached by loading.

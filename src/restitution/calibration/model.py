@@ -1,6 +1,6 @@
 """COR of a case over a range of impact velocities, as a function of the free parameters.
 
-A curve is computed at a sequence of depths with a constant ratio. Their impact velocities cover the
+A curve is computed at depths that form a geometric sequence, and their impact velocities cover the
 range. Between these depths the ratio W_u/W_l of unloading work to loading work is interpolated
 (`RatioCurve`). All curves of a surface use depths of the same sequence, so that the interpolated
 COR is a smooth function of the parameters.
@@ -78,7 +78,7 @@ class Curve:
         return np.asarray(np.sqrt(np.clip(ratios, 0.0, 1.0)))
 
     def error(self, velocity: Array, name: Literal["solver_error", "model_error"]) -> Array:
-        """The error of COR called `name` at `velocity` (m/s), by interpolation."""
+        """Solver error or model error of COR at `velocity` (m/s), by interpolation."""
         known = getattr(self, name)
         return np.asarray(np.interp(np.log(velocity), np.log(self.velocity), known))
 
@@ -99,7 +99,7 @@ class Mean:
         return np.asarray(np.mean([each.restitution(velocity) for each in self.curves], axis=0))
 
     def error(self, velocity: Array, name: Literal["solver_error", "model_error"]) -> Array:
-        """The error of COR called `name` at `velocity` (m/s): the largest among the surfaces."""
+        """Solver error or model error of COR at `velocity` (m/s): the largest of all surfaces."""
         return np.asarray(np.max([each.error(velocity, name) for each in self.curves], axis=0))
 
     def resolved_at(self, velocity: Array) -> NDArray[np.bool_]:
@@ -180,8 +180,8 @@ class CaseModel:
     def text(self, x: Array, velocities: Sequence[float] | None = None, digits: int = 17) -> str:
         """Return the text of the case file with the parameters `x`.
 
-        `velocities` (m/s; None means `low` and `high`) replace the depths of the case. The free
-        keys are written with this number of significant `digits`.
+        `velocities` (m/s; None means `low` and `high`) replace the depths of the case. `digits` is
+        the number of significant digits of the free keys.
         """
         tables = with_factors(self.content, self.parameters, np.exp(x), digits)
         for name in DEPTHS:

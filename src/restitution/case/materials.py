@@ -45,8 +45,7 @@ class Material(Table):
     """A material: elasticity, true density and, if known, yield strength and hardness, in SI units.
 
     `yield_strength` is uniaxial. `hardness` is a mean contact pressure: force divided by projected
-    area.
-    `note` applies to all values of the material.
+    area. `note` applies to all values of the material.
     """
 
     key: Text

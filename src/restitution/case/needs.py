@@ -74,7 +74,7 @@ def generated_bytes(grid: Grid, *, normal: bool, periodic: bool) -> float:
 def measured_bytes(grid: Grid, scan: Grid, *, twin: bool) -> float:
     """Memory (bytes) to place a scan on `grid`; `scan` is the grid of its pixels.
 
-    If `twin`, a random surface with the statistics of the scan is made instead.
+    If `twin` is true, a random surface with the statistics of the scan is made instead.
     """
     size = _PROCESS + _SURFACE * nodes_of(grid) + _SCAN * nodes_of(scan)
     return size + _BAND * _band_nodes(grid, scan) if twin else size

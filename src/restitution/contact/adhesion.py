@@ -63,7 +63,7 @@ def release_nodes(
 ) -> tuple[State, State]:
     """Hold nodes in contact, then release nodes until the detachment criterion selects none.
 
-    `held` marks the nodes that are held first. `held` and `first_guess` are arrays on `box`.
+    `held` marks the nodes that are held at first. `held` and `first_guess` are arrays on `box`.
     Returns the state before the first release and the state after the last one.
     """
     grid, pair = contact.grid, contact.pair

@@ -8,7 +8,7 @@ work of adhesion w. On a grid the edge is a staircase of nodes. Two local criter
 half-space (Pohrt and Popov 2015, Facta Universitatis 13, 3–10). The criterion is simple and
 independent of the order of release. However, nodes on a straight edge hold until G = 1.8 w and
 nodes at a kink until G = 1.0 w. The pull-off force is therefore too large: its relative error is
-1.5 times the cell size over the contact radius.
+1.5 times the ratio of cell size to contact radius.
 
 `crack-closure`: the contact edge is a crack, and G is the work of closing the crack by one cell
 (Rybicki and Kanninen 1977, Eng. Fract. Mech. 9, 931–938). For each face between a node in contact

@@ -61,8 +61,8 @@ def far_displacement(x: Array, y: Array, hx: float, hy: float, contact_modulus: 
     The Taylor series of the displacement due to a point load is averaged over the cell. With the
     displacement u, the pressure p and the distance r from the cell,
     u πE*/(p hx hy) = [1 + (hx²∂x² + hy²∂y²)/24 + hx⁴∂x⁴/1920 + hx²hy²∂x²∂y²/576 + hy⁴∂y⁴/1920] 1/r.
-    The relative error is of the order of the sixth power of cell size over distance. `x` and `y`
-    (m) are a column and a row.
+    The relative error is of the order of the sixth power of the ratio of cell size to distance. `x`
+    (m) is a column and `y` (m) a row.
     """
     xx, yy = hx * hx, hy * hy
     # Coefficients of polynomials in c, the squared direction cosine along x. They follow from

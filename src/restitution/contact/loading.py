@@ -141,8 +141,8 @@ def solve_without_work(
 ) -> State:
     """Do the same as `solve`, but leave out the loading work and the check of the grid edge.
 
-    The state of a cohesive contact contains its work in any case, because it is found by following
-    the whole loading path.
+    The state of a cohesive contact contains its work in any case, because the whole loading path is
+    followed to find this state.
     """
     if contact.cohesive:
         return load_cohesive(contact, indentation, start=start, residual=residual)

@@ -61,9 +61,10 @@ def model_error(state: State, restitution: float) -> float:
 def hysteresis_ratio(tabor: float) -> float:
     """Energy dissipated in a contact cycle of smooth elastic spheres, as a fraction of that of JKR.
 
-    Up to the Tabor parameter µ = 5, the result is interpolated in a table. Beyond, its difference
-    from 1 is extrapolated as a power of µ, with the exponent between µ = 3 and 5. Up to µ = 5 this
-    exponent increases with µ, so the extrapolated result is more likely too small than too large.
+    Up to the Tabor parameter µ = 5, the result is interpolated in a table. For larger µ, its
+    difference from 1 is extrapolated as a power of µ, with the exponent between µ = 3 and 5. Up to
+    µ = 5 this exponent increases with µ, so the extrapolated result is more likely too small than
+    too large.
     """
     if tabor >= _TABOR[-1]:
         return 1 - (1 - _HYSTERESIS[-1]) * math.pow(_TABOR[-1] / tabor, _BEYOND)

@@ -105,8 +105,8 @@ class _Search:
     def first_depth(self) -> float:
         """Return a first guess (m): a Newton step from the start, or the depth of smooth bodies.
 
-        A cohesive contact is instead loaded until the work is exceeded. Later solves continue from
-        the last state before this, so that the loading path is not followed again.
+        A cohesive contact is instead loaded until the prescribed work is exceeded. Later solves
+        continue from the last state with less work, so the loading path is not followed again.
         """
         if self._contact.cohesive:
             before, reached = load_until(

@@ -48,8 +48,8 @@ class State:
         force_before_release: Force before nodes were released in this step of adhesive unloading
             (N); None after loading.
         balance: Indentation (m) and force (N) at which the energy release rate, averaged along the
-            edge of the previous contact area, equals the work of adhesion. None if this step of
-            unloading released no nodes or the balance is unknown, and always with `pohrt-popov`.
+            edge of the previous contact area, equals the work of adhesion. None after loading, if
+            this step released no nodes, if no balance exists, and always with `pohrt-popov`.
         is_first_loading: Whether the state was computed by loading the undeformed bodies, not by a
             step from another state (bool).
     """

@@ -141,7 +141,7 @@ def resolution_findings(contact: Contact, indentation: float) -> list[Finding]:
 
     * `contact-beyond-grid`: `radius`, `indentation`, `half_width` of the grid (m), and
       `whole_scan`, whether the grid covers a whole scan;
-    * `few-nodes`: `spacing`, the larger one of grid spacing and pixel, and `radius` (m);
+    * `few-nodes`: `radius` (m), and `spacing` (m), the larger one of grid spacing and pixel;
     * `no-half-space`: `radius`, `reduced_radius` (m), and the `limit` of their ratio;
     * `finer-than-scan`: `spacing`, `pixel` (m).
     """

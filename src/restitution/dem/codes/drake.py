@@ -79,9 +79,9 @@ class Contact:
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """Write a module to import and a test collision that prints e; return file names and texts.
+    """Write a module to import, and a test collision that prints its coefficient of restitution.
 
-    Raises `CaseError`, `DomainError`.
+    Returns file names and texts. Raises `CaseError`, `DomainError`.
     """
     pairs = pairs_at(table, velocity, CODE, LOWEST)
     head = header(table, pairs, velocity, code=CODE, ends=_ENDS, constant=False)

@@ -56,7 +56,7 @@ class LinearSpring:
 
 
 def velocity_damping(pairs: list[Pair], velocity: float) -> list[VelocityDamping]:
-    """Compute the damping with which every pair has the e of its law at `velocity` (m/s)."""
+    """Compute the damping that gives every pair the COR of its law at `velocity` (m/s)."""
     return [
         VelocityDamping(pair, velocity, hertz_damping(pair.law, velocity, pair.restitution))
         for pair in pairs
