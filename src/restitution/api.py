@@ -96,7 +96,7 @@ def open_results(folder: Folder) -> RunResults | StudyResults | PeriodicResults:
 
     Returns:
         `StudyResults` for a study, `EnsembleResults` for several surfaces, `PeriodicResults` for a
-        periodic case, or `RunResults`.
+        periodic case, and otherwise `RunResults`.
 
     Raises:
         OutputError: The folder does not hold results, or a file is damaged.
@@ -124,7 +124,7 @@ def law_of(results: Folder | RunResults) -> Law:
 
     Args:
         results: Results of a run, ensemble or convergence study, or their folder. If the folder
-            holds a law that was written before, this law is read and returned.
+            already holds a law, this law is read and returned.
 
     Returns:
         The law: COR, with its error, at each computed impact velocity.
@@ -160,7 +160,7 @@ def collide_obliquely(
         velocity: Relative velocity of the centres, such as "0.5 m/s", or a number (m/s).
         angle: Angle of impact from the normal, such as "30 deg", or a number (rad), from 0 to below
             90 degrees.
-        friction: Coefficient of friction µ (1); by default the coefficient in the case.
+        friction: Coefficient of friction µ (dimensionless); by default that of the case.
         spin: Spin before the impact: one value for the first body, or a pair of values for both
             bodies. A value is a text such as "100 rad/s" or "20 rpm", or a number (rad/s). It is
             positive in the direction in which friction turns a body without spin.
@@ -171,7 +171,7 @@ def collide_obliquely(
 
     Raises:
         CaseError: An argument is missing or outside its range, or the pair has adhesion.
-        DomainError: The normal velocity lies outside the computed velocities.
+        DomainError: The normal velocity lies outside the range of computed velocities.
         OutputError: The folder does not hold results with unloading curves, or a file is damaged.
     """
     from restitution.case.quantities import read_impact_angle, read_quantity
@@ -205,7 +205,7 @@ def collide_obliquely(
 
 
 def _laws_in(given: Folder | Law) -> list[Law]:
-    """Return the given law as a list, or read the law or the laws of a mixture from a folder."""
+    """Return the given law in a list. From a folder, read one law, or all laws of a mixture."""
     from restitution.laws.law import Law
     from restitution.laws.law_files import is_mixture, read_laws
 
@@ -226,7 +226,7 @@ def export(
 
     Args:
         laws: One law or several, one for each pair of particles. Each is a `Law`, or a folder that
-            holds a law or results (see `law_of`). The folder of a mixture holds all its laws.
+            holds a law or results (see `law_of`). A mixture's folder stands for all laws in it.
         to: DEM code: "lammps", "liggghts", "yade", "mercurydpm", "edem", "mujoco" or "drake"; or
             "csv" for one table.
         out: Folder for the files; existing files are never overwritten.
@@ -237,7 +237,7 @@ def export(
 
     Raises:
         CaseError: The DEM code is unknown, or does not accept these laws.
-        DomainError: The velocity lies outside the computed range.
+        DomainError: The velocity lies outside the range of computed velocities.
         OutputError: A file exists, or cannot be read or written.
     """
     from restitution.dem.export import CODES, write_export

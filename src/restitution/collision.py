@@ -40,7 +40,7 @@ class Collision:
         adhesive_loss: Energy dissipated by adhesion (J).
         loading_work_error: Error of the work of loading (J).
         unloading_work_error: Error of the work of unloading (J).
-        convolutions: Number of convolutions that unloading took.
+        convolutions: Number of convolutions computed for unloading.
     """
 
     loading_work: float
@@ -60,7 +60,7 @@ class Collision:
 
     @property
     def restitution(self) -> float:
-        """Coefficient of restitution (1); 0 if the bodies stick.
+        """Coefficient of restitution (dimensionless); 0 if the bodies stick.
 
         It is sqrt(W_u/W_l) with the works of unloading W_u and loading W_l (Johnson 1985, §11.5).
         """
@@ -68,7 +68,7 @@ class Collision:
 
     @property
     def restitution_error(self) -> float:
-        """Error of the restitution (1), from the independent errors of the two works."""
+        """Error of the COR (dimensionless), from the independent errors of the two works."""
         here, W_u, W_l = self.restitution, self.unloading_work, self.loading_work
         dW_u, dW_l = self.unloading_work_error, self.loading_work_error
         by_unloading = (_restitution(W_u + dW_u, W_l), _restitution(W_u - dW_u, W_l))
@@ -82,8 +82,8 @@ class Collision:
         """Impact velocity V (m/s) whose kinetic energy ½ m* V² is the work of loading.
 
         None if a density is missing, because the reduced mass m* is then unknown. Also None if the
-        work of loading is negative: adhesion then pulls the bodies deeper than this collision at
-        any impact velocity.
+        work of loading is negative: adhesion then pulls the bodies deeper than the deepest point of
+        this collision at any impact velocity.
         """
         if self.mass is None or self.loading_work < 0:
             return None
@@ -120,16 +120,17 @@ def collide(
     adhesion, `method="path"` simulates unloading. `method="energy-estimate"` subtracts the surface
     energy from the elastic energy, W_u = E_el − wA, where w is the work of adhesion and A the
     contact area. For cohesive contacts this method uses the computed interaction energy in place of
-    −wA. The pull-off force and the indentation at separation are then NaN. The error of W_u is set
-    to wA. In all comparisons with simulated unloading, wA exceeded the energy dissipated at
-    detachment plus the grid error of detachment.
+    −wA. The method leaves the pull-off force and the indentation at separation NaN, and it sets the
+    error of W_u to wA. In all comparisons with simulated unloading, wA exceeded the energy
+    dissipated at detachment plus the grid error of detachment.
 
     Args:
         state: Deepest state of the collision, reached by loading.
         unloading: States of unloading that `separate` has yielded. By default they are computed
             here. Used only with adhesion.
         method: Method for the work of unloading with adhesion.
-        tolerance: Error of the restitution (1) that the unloading steps may cause.
+        tolerance: Error of the coefficient of restitution (dimensionless) that the unloading steps
+            may cause.
 
     Returns:
         Works of loading and unloading, and restitution.

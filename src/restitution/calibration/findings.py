@@ -27,7 +27,7 @@ _UNLIKELY = 0.01  # with less probable residuals, the case does not explain the 
 
 
 def identifiable(found: Fit, parameter: int) -> bool:
-    """Whether the 95 % interval of a parameter spans less than a factor `WIDEST`."""
+    """Whether the 95 % interval of a parameter spans at most a factor of `WIDEST`."""
     return found.uncertainty.halves[parameter] <= 0.5 * math.log(WIDEST)
 
 
@@ -53,10 +53,10 @@ def interval_in_words(found: Fit, k: int) -> str:
 
 
 def combination(found: Fit) -> tuple[dict[str, float], float] | None:
-    """Find the product of powers of parameters that the data determine best.
+    """Find the combination, a product of powers of parameters, that the data determine best.
 
-    Returns the exponents by key, and half of the 95 % interval of the logarithm of the product.
-    Returns None for a single parameter, and if even this product is not identifiable.
+    Returns the exponents by key, and the half-width of the 95 % interval of the logarithm of the
+    product. Returns None for a single parameter, or if even this product is not identifiable.
     """
     direction = found.uncertainty.best_direction
     half = found.uncertainty.half(direction)
@@ -90,7 +90,10 @@ def _not_identifiable(found: Fit) -> Iterator[str]:
 
 
 def product_in_words(exponents: dict[str, float], half: float) -> str:
-    """Format a product of powers of parameters with its 95 % interval in percent."""
+    """Format a product of powers of parameters, with its 95 % interval in percent.
+
+    `half` is the half-width of the 95 % interval of the logarithm of the product.
+    """
     factors = [key if power == 1 else f"{key}^{power:.2f}" for key, power in exponents.items()]
     percent = 100 * (math.exp(half) - 1)
     return f"{' * '.join(factors)} (within {percent:.2g} %)"

@@ -40,7 +40,10 @@ _LEAST_NOISE = 1e-4
 
 @dataclass(frozen=True)
 class FittedCurve:
-    """The fitted COR with half of its 95 % band, at velocities (m/s) over the measured range."""
+    """The fitted COR at velocities (m/s) over the measured range.
+
+    `half_band` is the half-width of its 95 % confidence band.
+    """
 
     velocity: Array
     restitution: Array
@@ -74,7 +77,7 @@ class Fit:
 
     @property
     def factors(self) -> list[float]:
-        """Ratio of the fitted value to the first guess of each parameter."""
+        """Ratio of fitted value to first guess, for each parameter."""
         return [math.exp(each) for each in self.x.tolist()]
 
     @property
@@ -100,12 +103,12 @@ def fit(
     names: Sequence[str],
     progress: Say = ignore,
 ) -> Fit:
-    """Fit the keys `names` of the case file `text` to `measured` restitution.
+    """Fit the keys `names` of a case file to the `measured` COR.
 
-    Paths are relative to `folder`. The impact velocities of `measured` replace the depths of the
-    case. The values of the free keys in the case are first guesses (`free_parameters`). `progress`
-    is called with a few words after every curve. Raises `CaseError`, and the errors of
-    `solve_at_velocity` if the fitted case cannot be solved.
+    `text` is the content of the case file. File names in it are relative to `folder`. Its values of
+    the free keys are the first guesses. The impact velocities of `measured` replace the depths of
+    the case. `progress` is called with a few words after every curve. Raises `CaseError`, and the
+    errors of `solve_at_velocity` if the fitted case cannot be solved.
     """
     content = parse_toml(text)
     parse_case(text).require_impact()
@@ -145,7 +148,7 @@ def _check_points(measured: Measured, parameters: int) -> None:
 
 
 def _settle_grid(model: CaseModel, start: Array) -> None:
-    """Replace `grid.refine = "auto"` in the case by the factor that resolves the first guess."""
+    """Replace `grid.refine = "auto"` by the factor that resolves the case with the first guess."""
     case = model.case(start)
     if case.grid is not None and case.grid.refine == "auto":
         factor = settled(case, model.folder).grid
@@ -156,9 +159,10 @@ def _settle_grid(model: CaseModel, start: Array) -> None:
 
 
 def _best(model: CaseModel, data: Data, minima: Sequence[Minimum]) -> Minimum:
-    """Search on the grid of the case, starting from the best minimum on cells twice as large.
+    """Search on the grid of the case, starting from the best of the `minima`.
 
-    If the case cannot be solved there, the search starts from the next best minimum.
+    The `minima` were found on cells twice as large. If the case cannot be solved at the best one,
+    the search starts from the next one.
     """
     failure: RestitutionError | None = None
     for start in minima:
@@ -171,7 +175,7 @@ def _best(model: CaseModel, data: Data, minima: Sequence[Minimum]) -> Minimum:
 
 
 def _deviations(model: CaseModel, x: Array, velocity: Array) -> Deviations:
-    """Compute the deviations at `x`; here `random` includes only the error of the solver."""
+    """Compute the deviations at `x`; their field `random` includes only the error of the solver."""
     here = model.at(x)
     own = here.restitution(velocity)
     each = np.array([curve.restitution(velocity) for curve in here.curves])
@@ -189,7 +193,7 @@ def _deviations(model: CaseModel, x: Array, velocity: Array) -> Deviations:
 
 
 def _noise(measured: Measured, fitted: Array, parameters: int) -> Array:
-    """Standard deviations of the measured points, as given or estimated from the residuals."""
+    """Standard deviations of the measured COR: as given, or else estimated from the residuals."""
     if measured.deviation is not None:
         return measured.deviation
     freedom = fitted.size - parameters

@@ -35,7 +35,10 @@ _TOLERANCE: dict[Cost, float] = {"full": 1e-4, "quick": 1e-3}
 
 @dataclass(frozen=True)
 class Data:
-    """Measured COR at impact velocities (m/s), with standard deviations that scale residuals."""
+    """Measured COR at impact velocities (m/s).
+
+    `deviation` contains the standard deviations by which residuals are divided.
+    """
 
     velocity: Array
     restitution: Array
@@ -44,7 +47,11 @@ class Data:
 
 @dataclass(frozen=True)
 class Minimum:
-    """The end of a search: x = ln(value/first guess), and the sum of squared weighted residuals."""
+    """The end of a search.
+
+    `x` holds ln(value/first guess) of each parameter, and `squares` is the sum of squared weighted
+    residuals.
+    """
 
     x: Array
     squares: float
@@ -73,14 +80,20 @@ def jacobian(
 
 
 def search(model: CaseModel, data: Data, start: Array, cost: Cost = "full") -> Minimum:
-    """Search for a minimum from `start`; `RestitutionError` if the case cannot be solved there."""
+    """Search for a minimum from `start`.
+
+    Raises `RestitutionError` if the case cannot be solved at `start`.
+    """
     from scipy.optimize import least_squares
 
     def residuals(x: Array) -> Array:
         return (model.restitution(x, data.velocity, cost) - data.restitution) / data.deviation
 
     def safe(x: Array) -> Array:
-        """Return the residuals; if the case cannot be solved, large ones that reject the step."""
+        """Return the residuals.
+
+        If the case cannot be solved, return residuals so large that the step is rejected.
+        """
         try:
             return residuals(x)
         except RestitutionError:
@@ -103,10 +116,10 @@ def search(model: CaseModel, data: Data, start: Array, cost: Cost = "full") -> M
 
 
 def search_widely(model: CaseModel, data: Data) -> list[Minimum]:
-    """Return the minima of quick searches, the best first.
+    """Return the minima of searches with `cost="quick"`, the best first.
 
-    The searches start from the first guess and from the best points of a scan. Raises `CaseError`
-    if the case cannot be solved at any of the points.
+    The searches start from the first guess and from the best points of a scan over the range of the
+    parameters. Raises `CaseError` if the case cannot be solved at any of these starting points.
     """
     guess, *others = _scan(len(model.parameters))
     found, failure = [], ""
@@ -127,8 +140,8 @@ def search_widely(model: CaseModel, data: Data) -> list[Minimum]:
 def distinct(minima: Sequence[Minimum]) -> list[Minimum]:
     """Select minima that differ.
 
-    The first of `minima` is always kept. Another one is kept if it is far from all those kept
-    before, and not much worse than the best of the others.
+    The first of `minima` is always kept. Each later minimum is kept if it is far from all minima
+    kept before it, and not much worse than the best of the later minima.
     """
     first, *others = minima
     least = min((other.squares for other in others), default=0.0)
@@ -141,7 +154,7 @@ def distinct(minima: Sequence[Minimum]) -> list[Minimum]:
 
 
 def squares(model: CaseModel, data: Data, x: Array) -> float:
-    """Sum of squared weighted residuals of a quick curve; inf if the case cannot be solved."""
+    """Sum of squared weighted residuals with `cost="quick"`; inf if the case cannot be solved."""
     try:
         off = model.restitution(x, data.velocity, "quick") - data.restitution
     except RestitutionError:

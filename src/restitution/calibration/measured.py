@@ -67,7 +67,7 @@ def read_measured(path: Path) -> Measured:
 
 
 def _rows(path: Path) -> list[tuple[int, dict[str, str]]]:
-    """Read the rows of the file with their line numbers; check that the needed columns exist."""
+    """Read the rows of the file with their line numbers. Check that no needed column is missing."""
     try:
         kind = path.stat()
         if stat.S_ISDIR(kind.st_mode):

@@ -1,9 +1,9 @@
 """COR of a case over a range of impact velocities, as a function of the free parameters.
 
-A curve is computed at depths that grow by a constant ratio, from the lowest velocity to the
-highest. Between these depths the ratio W_u/W_l of unloading to loading work is interpolated
-(`RatioCurve`). All curves of a surface take their depths from the same sequence, so that the
-interpolated COR is a smooth function of the parameters.
+A curve is computed at depths that form a geometric sequence, and their impact velocities cover the
+range. Between these depths the ratio W_u/W_l of unloading work to loading work is interpolated
+(`RatioCurve`). All curves of a surface use depths of the same sequence, so that the interpolated
+COR is a smooth function of the parameters.
 """
 
 from __future__ import annotations
@@ -56,7 +56,8 @@ MOST_VELOCITIES = 12  # largest number of velocities in the case file that is wr
 class Curve:
     """COR of one surface at increasing impact velocities (m/s), shape (depths,).
 
-    `ratio` is W_u/W_l. `solver_error` and `model_error` are errors of COR.
+    `ratio` is W_u/W_l, the work of unloading divided by the work of loading. `solver_error` and
+    `model_error` are errors of COR. `resolved` says whether the grid resolves the contact.
     """
 
     velocity: Array
@@ -77,12 +78,12 @@ class Curve:
         return np.asarray(np.sqrt(np.clip(ratios, 0.0, 1.0)))
 
     def error(self, velocity: Array, name: Literal["solver_error", "model_error"]) -> Array:
-        """Interpolate an error of COR at `velocity` (m/s)."""
+        """Solver error or model error of COR at `velocity` (m/s), by interpolation."""
         known = getattr(self, name)
         return np.asarray(np.interp(np.log(velocity), np.log(self.velocity), known))
 
     def resolved_at(self, velocity: Array) -> NDArray[np.bool_]:
-        """Whether the grid resolves the computed contacts below and above `velocity` (m/s)."""
+        """Whether the grid resolves the two computed contacts that enclose `velocity` (m/s)."""
         known = self.resolved.astype(float)
         return np.asarray(np.interp(np.log(velocity), np.log(self.velocity), known) > 1 - 1e-9)
 
@@ -98,7 +99,7 @@ class Mean:
         return np.asarray(np.mean([each.restitution(velocity) for each in self.curves], axis=0))
 
     def error(self, velocity: Array, name: Literal["solver_error", "model_error"]) -> Array:
-        """Largest error of COR at `velocity` (m/s) over the surfaces."""
+        """Solver error or model error of COR at `velocity` (m/s): the largest of all surfaces."""
         return np.asarray(np.max([each.error(velocity, name) for each in self.curves], axis=0))
 
     def resolved_at(self, velocity: Array) -> NDArray[np.bool_]:
@@ -111,9 +112,10 @@ def curve_of(
 ) -> tuple[Curve, float]:
     """Compute the curve of `contact` from velocity `low` to at least `high` (m/s).
 
-    Returns the curve and its first depth (m). `near` is the first depth that this function returned
-    for another contact. If `near` is given, each depth is `near` times a power of `_RATIO`.
-    Adhesive contacts ignore `near`. Raises the errors of `solve` and `solve_at_velocity`.
+    Returns the curve and its first depth (m). `near` (m) is the first depth that this function
+    returned for the same surface with other parameters. If `near` is given, each depth is `near`
+    times a power of `_RATIO`. `near` is ignored for adhesive contacts and if `low` equals `high`.
+    Raises the errors of `solve` and `solve_at_velocity`.
     """
     with naming_keys():
         if math.isnan(near) or contact.adhesive or low == high:
@@ -139,7 +141,11 @@ def curve_of(
 
 
 def _row(state: State, unloading: UnloadingTable) -> tuple[float, ...]:
-    """Impact velocity (m/s), W_u/W_l, solver and model error, whether the contact is resolved."""
+    """Return the values of a `Curve` at one depth.
+
+    They are the impact velocity (m/s), W_u/W_l, the solver error and the model error of COR, and
+    whether the grid resolves the contact.
+    """
     collision = collide(state, method=unloading.method, tolerance=unloading.restitution_error)
     fine = adhesive_nodes(state) >= ADHESIVE_NODES
     return (
@@ -155,9 +161,10 @@ def _row(state: State, unloading: UnloadingTable) -> tuple[float, ...]:
 class CaseModel:
     """COR of the case with tables `content`, from velocity `low` to `high` (m/s).
 
-    COR is a function of x, which holds ln(value/first guess) of each of the free `parameters`. It
+    COR is a function of x, which holds ln(value/first guess) of each of the free `parameters`. COR
     is the mean over several random surfaces with the statistics of the case, because a single
-    random surface does not reproduce the measured surface. Paths are relative to `folder`.
+    random surface does not reproduce the measured surface. File names in the case are relative to
+    `folder`.
     """
 
     content: Mapping[str, Any]
@@ -171,7 +178,11 @@ class CaseModel:
     _first_depths: dict[tuple[int, Cost], float] = field(default_factory=dict)
 
     def text(self, x: Array, velocities: Sequence[float] | None = None, digits: int = 17) -> str:
-        """Write the case file with the parameters `x`, and `velocities` (m/s) instead of depths."""
+        """Return the text of the case file with the parameters `x`.
+
+        `velocities` (m/s; None means `low` and `high`) replace the depths of the case. `digits` is
+        the number of significant digits of the free keys.
+        """
         tables = with_factors(self.content, self.parameters, np.exp(x), digits)
         for name in DEPTHS:
             tables.pop(name, None)
@@ -227,7 +238,10 @@ class CaseModel:
 
 
 def velocities_to_run(measured: Array) -> list[float]:
-    """Velocities (m/s) of the fitted case: the measured ones or, if too many, over their range."""
+    """Velocities (m/s) of the fitted case.
+
+    They are the measured velocities or, if these are too many, fewer velocities over their range.
+    """
     own = np.unique(measured)
     if own.size <= MOST_VELOCITIES:
         return [float(V) for V in own]

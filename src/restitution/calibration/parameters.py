@@ -27,7 +27,7 @@ class Parameter:
     """A free key of a case file, such as "roughness.rms".
 
     `written` is the first guess as written in the file ("0.1 um"). `value` is the first guess in
-    the SI `unit` ("1" for a number).
+    the SI unit `unit`, which is "1" for a dimensionless key.
     """
 
     key: str
@@ -76,7 +76,7 @@ def free_parameters(content: Mapping[str, Any], names: Sequence[str]) -> tuple[P
 
 
 def _values(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield dotted keys and values; the keys of [[roughness]] tables contain a number, from 1."""
+    """Yield dotted keys and values; [[roughness]] tables are numbered in the keys, from 1."""
     for name, value in table.items():
         if isinstance(value, dict):
             yield from _values(value, f"{before}{name}.")

@@ -2,7 +2,7 @@
 
 Parameters are logarithms. With the Jacobian J = ∂COR/∂x and the standard deviations σ that weight
 the points, A = J/σ is the scaled Jacobian. A deviation ΔCOR of data or model changes the parameters
-by P ΔCOR, where P = (AᵀA)⁻¹Aᵀ/σ is the pseudo-inverse of A over σ. Three kinds of deviations
+by P ΔCOR, where P = (AᵀA)⁻¹Aᵀ/σ is the pseudo-inverse of A divided by σ. Three kinds of deviations
 contribute to the covariance C of the parameters:
 
     C = P diag(s²) Pᵀ + 2 S/n + (P Δ_grid)(P Δ_grid)ᵀ,  S = Σ (P Δ)(P Δ)ᵀ/(n − 1).
@@ -13,8 +13,8 @@ This term is the variance of the difference between two means: the fitted mean, 
 places of impact. If all impacts hit the same place, the term would be (1 + 1/n) S. In the third
 term, Δ_grid is the deviation due to the grid.
 
-Intervals use Student's t, with degrees of freedom after Welch and Satterthwaite (Satterthwaite
-1946).
+Intervals are computed with Student's t distribution, with the degrees of freedom according to Welch
+and Satterthwaite (Satterthwaite 1946).
 """
 
 from __future__ import annotations
@@ -37,12 +37,13 @@ _UNBOUNDED = math.log(1e6)  # half intervals of a logarithm above this value cou
 
 @dataclass(frozen=True)
 class Deviations:
-    """Deviations of COR from the fitted curve at the measured velocities, by their causes.
+    """Deviations of COR from the fitted curve at the measured velocities, one field for each cause.
 
     `random` are standard deviations of the points, shape (points,), estimated with `freedom`
-    degrees of freedom. `surfaces` are the differences of each surface from the mean over surfaces,
-    shape (surfaces, points). `grid` is the difference on cells twice as large, None if unknown.
-    `model` is the error due to the model of plasticity, which intervals do not include.
+    degrees of freedom. `surfaces` are the differences of the COR of each surface from the mean over
+    the surfaces, shape (surfaces, points). `grid` is the change of COR on cells twice as large,
+    None if unknown. `model` is the model error of COR (`contact.model_error`), which does not
+    contribute to the intervals.
     """
 
     random: Array
@@ -63,19 +64,23 @@ class Deviations:
 
     @property
     def by_grid(self) -> Array:
-        """The difference of COR on cells twice as large; zero if unknown."""
+        """Change of COR on cells twice as large, shape (points,); zero if unknown."""
         return np.zeros(self.random.size) if self.grid is None else self.grid
 
     @property
     def systematic(self) -> Array:
-        """Standard deviations of COR due to surface, grid and `random` deviations together."""
+        """Standard deviations of COR due to surfaces, grid and `random` deviations together."""
         squares = self.random**2 + (self.by_surface**2).sum(axis=0) + self.by_grid**2
         return np.asarray(np.sqrt(squares))
 
 
 @dataclass(frozen=True)
 class Uncertainty:
-    """Uncertainty of the logarithms of parameters, with A (`scaled`) and P (`sensitivity`)."""
+    """Uncertainty of the logarithms of parameters.
+
+    `scaled` is the scaled Jacobian A. `sensitivity` is the matrix P, by which deviations of COR are
+    multiplied to obtain the changes of the logarithms.
+    """
 
     scaled: Array
     sensitivity: Array
@@ -83,7 +88,11 @@ class Uncertainty:
 
     @classmethod
     def of(cls, jacobian: Array, weights: Array, deviations: Deviations) -> Uncertainty:
-        """Compute the uncertainty from ∂COR/∂x (`jacobian`) and σ of the points (`weights`)."""
+        """Compute the uncertainty.
+
+        `jacobian` is ∂COR/∂x at the points, where x are the logarithms. `weights` are the standard
+        deviations by which residuals are divided.
+        """
         scaled = jacobian / weights[:, None]
         U, s, Vt = np.linalg.svd(scaled, full_matrices=False)
         P = Vt.T @ np.diag(1 / np.maximum(s, _LEAST)) @ U.T / weights
@@ -102,7 +111,7 @@ class Uncertainty:
 
     @cached_property
     def _unknown(self) -> Array:
-        """The covariance along directions in which COR hardly changes."""
+        """Large covariance that is added along directions in which COR hardly changes."""
         _, s, Vt = np.linalg.svd(self.scaled, full_matrices=False)
         lost = Vt[s < _LEAST]
         return np.asarray(lost.T @ lost / _LEAST**2)
@@ -122,7 +131,11 @@ class Uncertainty:
         return np.asarray(found)
 
     def half(self, direction: Array) -> float:
-        """Half of the 95 % interval of the logarithms along `direction`; inf if above ln 10⁶."""
+        """Half-width of the 95 % interval of a combination of logarithms.
+
+        `direction` contains the coefficients of the combination. The result is inf if the
+        half-width is at least ln 10⁶.
+        """
         from scipy.stats import t
 
         variances = {name: float(direction @ C @ direction) for name, C in self.parts.items()}
@@ -141,11 +154,11 @@ class Uncertainty:
 
     @cached_property
     def halves(self) -> list[float]:
-        """Half of the 95 % interval of the logarithm of each parameter."""
+        """Half-width of the 95 % interval of the logarithm of each parameter."""
         return [self.half(axis) for axis in np.eye(self.scaled.shape[1])]
 
     def deviation(self, part: str) -> Array:
-        """Standard deviation of each logarithm due to one part of the covariance."""
+        """Standard deviation of each logarithm due to one of the `parts` of the covariance."""
         return np.asarray(np.sqrt(np.diag(self.parts[part])))
 
     @cached_property
@@ -155,13 +168,16 @@ class Uncertainty:
 
     @cached_property
     def by_one_place(self) -> Array:
-        """Standard deviation of each logarithm if all impacts hit the same place."""
+        """Standard deviation of each logarithm due to surfaces if all impacts hit one place."""
         n = len(self.deviations.surfaces)
         return np.asarray(math.sqrt((n + 1) / 2) * self.deviation("surface"))
 
     @cached_property
     def best_direction(self) -> Array:
-        """Direction in the space of logarithms that the data determine best; largest entry 1."""
+        """The linear combination of logarithms that the data determine best.
+
+        The result contains its coefficients; the coefficient of largest magnitude is 1.
+        """
         _, _, Vt = np.linalg.svd(self.scaled, full_matrices=False)
         direction: Array = Vt[0]
         return np.asarray(direction / direction[np.abs(direction).argmax()])
@@ -171,7 +187,10 @@ class Uncertainty:
         return math.log(2) * float(np.linalg.norm(self.scaled[:, parameter]))
 
     def band(self, jacobian: Array) -> Array:
-        """Half of the 95 % interval of the fitted COR; `jacobian` is ∂COR/∂x at the velocities."""
+        """Half-width of the 95 % interval of the fitted COR, one value for each row of `jacobian`.
+
+        `jacobian` is ∂COR/∂x at the velocities of the result, where x are the logarithms.
+        """
         noise = (jacobian @ self.sensitivity * self.deviations.random) ** 2
         whole = noise.sum(axis=1)
         for each in (*self.deviations.by_surface, self.deviations.by_grid):

@@ -99,8 +99,8 @@ DEFAULT_RULE: YieldRule = (FULL_CONSTRAINT, "yield_strength")
 def _pressure_or_rule(value: Any) -> float | YieldRule | None:
     """Read a yield pressure: a pressure (Pa; infinite for "elastic") or a rule.
 
-    A rule is a factor and the quantity that it multiplies: "2.8 Y" gives (2.8, "yield_strength"),
-    and "hardness" gives (1.0, "hardness").
+    A rule is a factor and the quantity that the factor multiplies. "2.8 Y" gives
+    (2.8, "yield_strength"), and "hardness" gives (1.0, "hardness").
     """
     if value is None:
         return None
@@ -195,7 +195,7 @@ class InterfaceTable(Table):
 
     @property
     def needs_jkr(self) -> bool:
-        """Whether approach, detachment or plasticity has a value that only "jkr" allows."""
+        """Whether approach, detachment or plasticity has a value that needs `adhesion = "jkr"`."""
         plain = self.approach == "equilibrium" and self.detachment == "crack-closure"
         return not plain or self.plasticity == "truncated"
 

@@ -212,7 +212,7 @@ class Case(Table):
         return self.model_copy(update={"roughness": parts})
 
     def has_library_values(self) -> bool:
-        """Whether any value of the bodies comes from the materials library and has a spread."""
+        """Whether any value of the bodies is from the materials library, so its spread is known."""
         return any(body.from_library() for body in (self.first, self.second) if body is not None)
 
     def refined(self, factor: int) -> Case:

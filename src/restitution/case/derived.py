@@ -69,7 +69,8 @@ def derived_quantities(case: Case, contact: Contact) -> dict[str, float | None]:
 def _of_period(contact: Contact) -> dict[str, float | None]:
     """Derived quantities of a periodic contact.
 
-    `reduced_pressure_Pa` is E* times the rms slope, the natural unit of its nominal pressure.
+    `reduced_pressure_Pa` is the contact modulus E* times the rms slope. It is the natural scale of
+    the nominal pressure.
     """
     elastic, (wide, long) = math.isinf(contact.hardness), contact.grid.size
     return {

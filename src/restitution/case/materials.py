@@ -24,8 +24,8 @@ Text = Annotated[str, Field(min_length=1)]
 class Property(Table, Generic[Quantity]):
     """One quantity of a material, in SI units.
 
-    `low` and `high` are the ends of the spread among sources and grades. `verified` means that
-    `value` was read in the source or in a copy of it, or computed from values read there.
+    `low` and `high` are the lowest and the highest value among sources and grades. `verified` means
+    that `value` was read in the source or in a copy of it, or computed from values read there.
     """
 
     value: Quantity
@@ -44,8 +44,8 @@ class Property(Table, Generic[Quantity]):
 class Material(Table):
     """A material: elasticity, true density and, if known, yield strength and hardness, in SI units.
 
-    `yield_strength` is uniaxial. `hardness` is a mean contact pressure: force over projected area.
-    `note` applies to all values of the material.
+    `yield_strength` is uniaxial. `hardness` is a mean contact pressure: force divided by projected
+    area. `note` applies to all values of the material.
     """
 
     key: Text

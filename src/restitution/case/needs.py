@@ -72,13 +72,19 @@ def generated_bytes(grid: Grid, *, normal: bool, periodic: bool) -> float:
 
 
 def measured_bytes(grid: Grid, scan: Grid, *, twin: bool) -> float:
-    """Memory (bytes) to place a scan, or its twin, on `grid`; `scan` is the grid of its pixels."""
+    """Memory (bytes) to place a scan on `grid`; `scan` is the grid of its pixels.
+
+    If `twin` is true, a random surface with the statistics of the scan is made instead.
+    """
     size = _PROCESS + _SURFACE * nodes_of(grid) + _SCAN * nodes_of(scan)
     return size + _BAND * _band_nodes(grid, scan) if twin else size
 
 
 def _band_nodes(grid: Grid, scan: Grid) -> float:
-    """Upper estimate of the nodes of the finest band of waves of a twin (see `surfaces.twin`)."""
+    """Upper estimate of the nodes of the finest grid on which waves of a twin are adjusted.
+
+    A twin is a random surface with the statistics of a scan (see `surfaces.twin`).
+    """
     repeats = [max(1.0, s / g) for s, g in zip(scan.size, grid.size, strict=True)]
     ratio = min(h / pixel for h, pixel in zip(grid.spacing, scan.spacing, strict=True))
     coarser = 2.0 ** max(math.floor(math.log2(ratio)), 0)

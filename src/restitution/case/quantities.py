@@ -75,7 +75,10 @@ def _registry() -> pint.UnitRegistry[float]:
 
 
 def unit_factors() -> dict[str, dict[str, float]]:
-    """The usual units of each SI unit, with their factors: unit_factors()["m"]["um"] is 1e-6."""
+    """The usual units that convert to each SI unit, with the factors of the conversion.
+
+    For example, `unit_factors()["m"]["um"]` is 1e-6.
+    """
     return {
         si: {name: read_quantity(f"1 {name}", si) for name in names} for si, names in _USUAL.items()
     }

@@ -79,7 +79,7 @@ Seed = Annotated[int, Field(ge=0, lt=2**63)]
 
 @contextmanager
 def _naming(keys: Mapping[str, str]) -> Iterator[None]:
-    """Reword errors of `surfaces` in terms of the case file; `keys` maps arguments to its keys."""
+    """Reword errors of `surfaces` for the case file; `keys` maps arguments to keys of the file."""
     try:
         yield
     except RefusedSurfaceError as error:
@@ -158,7 +158,7 @@ class MeasuredRoughness(Table):
         return self
 
     def variant(self, number: int) -> Self:
-        """Return the table with another twin, or another place on the scan; 0 changes nothing."""
+        """Return the table of another twin, or of another place on the scan; 0 changes nothing."""
         if self.extend == "twin":
             assert self.seed is not None  # checked by _twins
             return self.model_copy(update={"seed": self.seed + number})
@@ -201,7 +201,10 @@ class MeasuredRoughness(Table):
             return kept(asked, lambda: self._placed(scan, grid, factor))
 
     def _placed(self, scan: Surface, grid: Grid, factor: int) -> Surface:
-        """Place the scan on cells `factor` times smaller than in `grid`; extend it if requested."""
+        """Place the scan on cells `factor` times smaller than those of `grid`.
+
+        If requested, the scan is extended.
+        """
         if self.extend == "twin":
             # The waves of a twin do not depend on the grid, so evaluate them on the fine grid.
             placed, steps = extend(scan, divided(grid, factor), "twin", seed=self.seed), factor
@@ -218,10 +221,10 @@ class MeasuredRoughness(Table):
         return replace(finer, provenance={**finer.provenance, "refined": factor, "refinement": how})
 
     def _steps_to_pixel(self, grid: Grid, pixels: Grid, factor: int) -> int:
-        """Return by how much to divide the cells of `grid` to make them no larger than the pixel.
+        """Return the number by which to divide the cells of `grid` to reach the size of the pixel.
 
         The result is a power of two that divides `factor`. If `factor` is too small, the divided
-        cells may still be larger than the pixel.
+        cells are still larger than the pixel.
         """
         steps = 1
         while factor % (2 * steps) == 0 and any(

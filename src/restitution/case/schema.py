@@ -88,7 +88,10 @@ class GridTable(Table):
 
     @property
     def factor(self) -> int:
-        """Number of parts of a cell along each axis at the deepest depth; 1 for "auto"."""
+        """Refinement factor at the deepest depth; 1 for "auto".
+
+        It is the number of parts into which a cell is divided along each axis.
+        """
         if isinstance(self.refine, tuple):
             return self.refine[-1]
         return 1 if self.refine == "auto" else self.refine

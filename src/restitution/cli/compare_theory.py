@@ -37,7 +37,7 @@ def compare_theory(
     ] = None,
     figures: Figures = FigureFormat.png,
 ) -> None:
-    """Print COR of the smooth bodies of CASE against velocity, by published closed forms."""
+    """Print COR of the smooth bodies of CASE against velocity, from published closed forms."""
     from restitution.case.case_file import naming, read_case
     from restitution.cli.console import answers, command, say, say_next, say_written
     from restitution.laws import theories

@@ -30,7 +30,7 @@ received: list[int] = []
 
 @contextmanager
 def stoppable() -> Iterator[None]:
-    """Raise `Stopped` on SIGTERM and SIGHUP, unless the process was started to ignore them.
+    """Raise `Stopped` on SIGTERM and SIGHUP, unless the signal was already ignored (`nohup`).
 
     Python drops exceptions that are raised in a destructor or in the callback of a weak reference.
     A signal or Ctrl-C that is dropped there is raised again a moment later.

@@ -64,9 +64,9 @@ def simulate(
 ) -> None:
     """Integrate collisions in time with the stored forces of RESULTS; compare with stored COR.
 
-    With an angle or a spin, here or in the case, the impacts are oblique: VELOCITY is the relative
-    velocity of the centres, and the table contains the tangential restitution, the angle of rebound
-    and the spin.
+    If the options or the case give an angle or a spin, the impacts are oblique: VELOCITY is the
+    relative velocity of the centres, and the table contains the tangential restitution, the angle
+    of rebound and the spin.
     """
     from restitution.cli.console import answers, say_written, table_of_numbers
     from restitution.laws.from_results import bare_law

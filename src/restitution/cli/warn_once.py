@@ -18,7 +18,10 @@ class Warn(Protocol):
 
 @contextmanager
 def warn_once() -> Iterator[Warn]:
-    """Print each warning once; at the end, print how often it was repeated, for which subjects."""
+    """Print each warning once. At the end, print how often and for which subjects it was repeated.
+
+    Warnings that differ only in their numbers count as repetitions.
+    """
     from restitution.cli.console import warn
     from restitution.display import some_of, without_numbers
 

@@ -61,10 +61,10 @@ def release_nodes(
     first_guess: Array | None = None,
     residual: float,
 ) -> tuple[State, State]:
-    """Hold the nodes `held` in contact, then release nodes until the criterion is met everywhere.
+    """Hold nodes in contact, then release nodes until the detachment criterion selects none.
 
-    `held` and `first_guess` are arrays on `box`. Returns the state before the first release and the
-    state after the last one.
+    `held` marks the nodes that are held at first. `held` and `first_guess` are arrays on `box`.
+    Returns the state before the first release and the state after the last one.
     """
     grid, pair = contact.grid, contact.pair
     around = union(candidate_box(contact, indentation, history), bounding_box(held, box))
@@ -225,7 +225,7 @@ def unload_adhesive(
 
 
 def _released(before: State, after: State) -> bool:
-    """Whether `before` is in contact and `after` has another number of contact nodes."""
+    """Whether `before` is in contact and `after` has a different number of contact nodes."""
     return 0 < before.contact_nodes != after.contact_nodes
 
 
@@ -241,7 +241,7 @@ def balance_of(state: State) -> tuple[float, float]:
 
     At the balance, the energy release rate equals the work of adhesion. The function solves once
     more with the same contact area, at an indentation that is smaller by a fraction of the pull-off
-    displacement of a punch. If no balance exists, it returns the values of `state`.
+    displacement of a flat punch. If no balance exists, it returns the values of `state`.
     """
     contact = state.contact
     if state.contact_nodes == 0:
@@ -267,8 +267,8 @@ def _balance(state: State, retracted: State) -> tuple[float, float] | None:
     At the balance, the mean of the energy release rate G along the edge equals the work of
     adhesion. `retracted` has the same contact area at a smaller indentation. While the contact area
     is fixed, sqrt(G) and the force are linear in the indentation, so the two states determine the
-    balance. Returns None if no edge is about to move, or if G does not increase from `state` to
-    `retracted`.
+    balance. Returns None if G is nowhere close to the work of adhesion, or if the mean of G does
+    not increase from `state` to `retracted`.
     """
     contact = state.contact
     touching = state.box_pressure != 0

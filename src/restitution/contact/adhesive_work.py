@@ -46,8 +46,8 @@ def work_by_balance(
     """Return the loading work (J), the error of its quadrature (J) and the number of convolutions.
 
     The force at the balances of a few contact areas is integrated over the indentation, from
-    `start` or, if None, from first touch. `load` solves at another depth (m), with a shallower
-    state (or None) as its initial guess. `tolerance` is relative to the work.
+    `start` or, if None, from first touch. `load` solves the contact at a depth (m), with a
+    shallower state (or None) as its initial guess. `tolerance` is relative to the work.
     """
     contact, last = state.contact, state.indentation
     first, work, convolutions = 0.0, 0.0, 0

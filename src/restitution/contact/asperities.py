@@ -33,8 +33,8 @@ def elongation_of(gap: Array, spacing: tuple[float, float]) -> Array:
         spacing: Distances of nodes along x and y (m).
 
     Returns:
-        Elongation (1), shape of `gap`, read-only: 0 at a round asperity, 1 along a ridge. It is 0
-        at the outermost nodes of the grid, which a contact must not reach.
+        Elongation (dimensionless), shape of `gap`, read-only: 0 at a round asperity, 1 along a
+        ridge. It is 0 at the outermost nodes of the grid, which a contact must not reach.
     """
     elongation, rows = np.empty(gap.shape), gap.shape[0]
     for first in range(0, rows, _STRIP):
@@ -88,7 +88,7 @@ def _elongation(gap: Array, spacing: tuple[float, float]) -> Array:
 
 
 def _take_smaller_neighbours(lowest: Array, values: Array, axis: int) -> None:
-    """Replace `lowest` at each node by the `values` of its neighbours along `axis`, if smaller."""
+    """Replace `lowest` by the `values` of the neighbours along `axis` where these are smaller."""
     ahead, behind = ((_ALL,) * axis + (part,) for part in (_FROM, _TO))
     np.minimum(lowest[behind], values[ahead], out=lowest[behind])
     np.minimum(lowest[ahead], values[behind], out=lowest[ahead])

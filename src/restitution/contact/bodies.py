@@ -16,7 +16,7 @@ class Body:
     Attributes:
         radius: Radius of the sphere (m); inf for a wall.
         youngs_modulus: Young's modulus (Pa), positive.
-        poissons_ratio: Poisson's ratio (1), above −1 and at most 0.5.
+        poissons_ratio: Poisson's ratio (dimensionless), above −1 and at most 0.5.
         density: Density (kg/m³), positive. Needed only for velocities, and never for a wall.
 
     Raises:

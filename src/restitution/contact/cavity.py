@@ -1,16 +1,16 @@
 """The pressure bound of the model `expanding-cavity`: it grows from first yield to full plasticity.
 
-A contact that has just begun to yield carries a pressure of 1.6 Y, where Y is the yield strength of
-a tensile test. A fully plastic contact carries about 3 Y, because the surrounding material
+When a contact begins to yield, its largest pressure is 1.6 Y, where Y is the yield strength in a
+tensile test. In a fully plastic contact the pressure is about 3 Y, because the surrounding material
 constrains the plastic zone. In between, the pressure grows with the logarithm of the strain, as in
 an expanding cavity (Johnson 1970, J. Mech. Phys. Solids 18, 115–126; Johnson 1985, §6.3):
 
     bound = Y · min(c₀ + c₁ ln(m/(c₀ Y)), c₂).
 
 c₀ is the ratio of the largest pressure to Y at first yield of a sphere (`yield_coefficient` in
-`theory`). m measures the strain as an elastic pressure. For a sphere with the contact radius a, m
-is (2/π) E*a/R, the largest pressure of an elastic contact of this radius. At a node of a rough
-surface at the indentation δ
+`theory`). c₁ and c₂ are fitted constants. m measures the strain as an elastic pressure. For a
+sphere with the contact radius a, m is (2/π) E*a/R, the largest pressure of an elastic contact of
+this radius. At a node of a rough surface at the indentation δ
 
     m = m₀ [2(δ − h_c)/(2δ − h_c)]^s,    m₀ = p_e(2δ)/√2.
 
@@ -29,8 +29,8 @@ exponent s decreases from 1 for separate asperities to 0 for merged ones:
 
     s = max(1 − (p_H/m₀)^1.5, 0).
 
-p_H is the Hertz pressure at this node between smooth bodies under the force of the elastic rough
-bodies at 2δ. Where p_H ≥ m₀, the asperity contacts have merged.
+p_H is the Hertz pressure at this node between smooth bodies. Their force is that of the elastic
+rough bodies at the indentation 2δ. Where p_H ≥ m₀, the asperity contacts have merged.
 
 A ridge yields in plane strain. This constrains plastic flow more than at a round asperity. With q
 between 0 (a round asperity, or merged contacts) and 1 (a ridge in separate contact), the
@@ -38,15 +38,15 @@ coefficients become
 
     c₀ (1 + 0.11 q),  c₁ (1 + 1.1 q),  c₂ (1 + 0.25 q),    q = (1 − κ₂/κ₁)² s.
 
-κ₂ and κ₁ are the smaller and the larger curvature of the gap at the node. 1.11 is the ratio of the
-pressures at first yield of a cylinder and a sphere, 1.79 and 1.61 Y for ν = 0.3 (Johnson 1985,
-§§4.2, 4.4).
+κ₂ and κ₁ are the smaller and the larger curvature of the gap at the node. The factor 1 + 0.11 of a
+ridge is the ratio of the pressures at first yield of a cylinder and of a sphere, 1.79 Y and 1.61 Y
+for ν = 0.3 (Johnson 1985, §§4.2, 4.4).
 
 All other constants were fitted to finite elements (docs/validation.md lists them and their range).
 c₂ is above 3 because it also accounts for pile-up around a deep contact, which the model does not
-resolve. The bound reaches c₂ at the deepest of the finite element results. If the material hardens
-with a tangent modulus, Y is replaced by the flow stress at the representative strain 0.2 a/R (Tabor
-1951), with a/R = π m/(2E*).
+resolve. The bound reaches c₂ Y at the largest indentation of the finite element results. If the
+material hardens with a tangent modulus, Y is replaced by the flow stress at the representative
+strain 0.2 a/R (Tabor 1951), with a/R = π m/(2E*).
 """
 
 from __future__ import annotations
@@ -80,13 +80,13 @@ _TABOR = 0.2  # ratio of the representative strain to a/R
 
 
 def yield_bound(contact: Contact, indentation: float, residual: float) -> tuple[Array, int]:
-    """Return the pressure bound (Pa) of each node at `indentation` (m), and the convolutions.
+    """Return the pressure bound (Pa) at `indentation` (m), and a number of convolutions.
 
-    The bound is an array of the shape of the grid, read-only. The second result is the number of
-    convolutions that it took. `residual` is the tolerance of the solve
-    under this bound. The bound is computed from an elastic solve. This solve uses a larger
-    tolerance, because the bound depends only on the logarithm of the elastic pressure. It is no
-    error if the elastic contact reaches the edge of the grid. Raises `NotConvergedError`.
+    The bound is a read-only array of the shape of the grid. The second result is the number of
+    convolutions computed for it. The bound is computed from the pressure of an elastic solve.
+    `residual` is the tolerance of the later solve under this bound. The elastic solve has a larger
+    tolerance, because the bound depends only on the logarithm of the elastic pressure. The elastic
+    contact may reach the edge of the grid. Raises `NotConvergedError`.
     """
     bound = np.full(contact.grid.nodes, contact.first_yield_pressure)
     tolerance = min(_RESIDUAL_FACTOR * residual, _LARGEST_RESIDUAL)
@@ -128,10 +128,9 @@ def bound_of(contact: Contact, measure: Array, ridge: Array | float = 0.0) -> Ar
 
 
 def _depth_ratio(crest_gap: Array, indentation: float) -> Array:
-    """Return 2 d(δ)/d(2δ) for each asperity, with the `indentation` δ (m).
+    """Return the depth correction 2(δ − h_c)/(2δ − h_c) of the asperity at each node.
 
-    d is the overlap of the undeformed surfaces at the crest of the asperity. The ratio is 0 for an
-    asperity without overlap at δ.
+    h_c is the `crest_gap` (m), and δ the `indentation` (m). The result is 0 where δ < h_c.
     """
     depth = np.maximum(indentation - crest_gap, 0)
     ratio: Array = _DEPTH_FACTOR * depth / (_DEPTH_FACTOR * indentation - crest_gap)

@@ -12,11 +12,13 @@ solve descends to another one; `cohesive_path` computes the energy that is dissi
 Surfaces yield where the pressure of the law would exceed the bound: the pressure stays at the
 bound, and the rest of the approach becomes plastic displacement.
 
-A node is *in contact* if its gap is smaller than 3^{1/6} z₀, the gap of the largest attraction. At
-these gaps the law is stable: its attraction grows with the gap. As the range of the attraction
-decreases, the nodes in contact approach the contact area of JKR, whose edge carries tension.
+A node is *in contact* if its gap is smaller than 3^{1/6} z₀, the gap at which the attraction is
+largest. At smaller gaps the law is stable: its attraction grows with the gap. As the range of the
+attraction decreases, the nodes in contact approach the contact area of JKR, whose edge is under
+tension.
 
-Nodes outside the box, and the paraboloid outside the grid, attract as rigid bodies.
+The solve covers a box of the grid. Nodes outside the box, and the paraboloid outside the grid,
+attract as rigid bodies.
 
 In a periodic contact the box is the whole period, and δ is the approach of the mean planes. The
 mean of u is then zero, and the mean pressure balances the mean traction of the law.
@@ -66,7 +68,7 @@ class CohesiveState(State):
         interaction_energy: Energy of the interface law (J); 0 for bodies far apart.
         far_force: Part of the normal force from outside `box` (N).
         adhesive_loss: Energy dissipated so far by jumps between equilibria (J).
-        jumps: Number of these jumps so far (1).
+        jumps: Number of these jumps so far.
         unaccounted: Work of the force minus the change of energy (J), summed over all steps without
             a jump so far. It differs from zero only by the error of integration.
         smallest_gap: Smallest gap between the surfaces (m); z₀ where they touch without pressure.
@@ -88,7 +90,7 @@ class CohesiveState(State):
     def box_touching(self) -> NDArray[np.bool_]:
         """Whether each node of the box is in contact (bool).
 
-        A node is in contact if its gap is below the gap of the largest attraction.
+        A node is in contact if its gap is below the gap at which the attraction is largest.
         """
         return box_gap(self) < float(law_of(self.contact).gap_of_largest_traction)
 
@@ -112,7 +114,10 @@ def box_gap(state: State) -> Array:
 
 
 def cohesive_length(contact: Contact) -> float:
-    """Length of the cohesive zone at the edge of a contact, E*z₀²/w (m)."""
+    """Length E*z₀²/w (m) of the cohesive zone at the edge of a contact.
+
+    z₀ is the equilibrium separation and w the work of adhesion.
+    """
     z0, w = contact.equilibrium_separation, contact.work_of_adhesion
     return contact.pair.contact_modulus * z0**2 / w
 
@@ -166,8 +171,8 @@ def solve_cohesive(
     """Descend from the pressure `p` and displacement `u` = K p on `box` to an equilibrium.
 
     `limit` is the largest pressure (Pa), a number or an array of the shape of the grid. The plastic
-    work and the work error of the result are those of `history` (zero if None), and its adhesive
-    work is zero; the caller sets them. Raises `NotConvergedError`, and `DomainError` if the
+    work and the work error of the result are copied from `history` (zero if None), and its adhesive
+    work is zero. The caller updates all three. Raises `NotConvergedError`, and `DomainError` if the
     pressure in a periodic contact without yield exceeds E*.
     """
     K = _operator(contact, box)
@@ -265,7 +270,7 @@ def from_rigid(
 def rigid_pressure(contact: Contact, indentation: float, box: Box) -> Array:
     """Pressure (Pa) of the interface law between rigid bodies.
 
-    It is zero at nodes whose gap is below that of the largest attraction.
+    It is set to zero at nodes whose gap is below the gap at which the attraction is largest.
     """
     gap = _base(contact, indentation, box, None)
     least = float(law_of(contact).gap_of_largest_traction)
@@ -326,9 +331,10 @@ def is_unique(state: CohesiveState) -> bool:
 
     The equilibrium is unique if the spectral radius of the matrix K diag(max(−φ″, 0)) is below 1.
     K is the operator from pressure to elastic displacement, and φ the interaction energy per area
-    as a function of the gap. The largest row sum of the matrix is an upper bound of this radius. In
-    a periodic contact the row sums of K vanish. The bound is then the compliance λ/(πE*) of the
-    longest wave (wavelength λ), times the largest −φ″ at the present smallest gap or larger gaps.
+    as a function of the gap. An upper bound of the spectral radius is the largest row sum of the
+    matrix. In a periodic contact the row sums of K vanish. The upper bound is then the compliance
+    λ/(πE*) of the longest wave (wavelength λ), times the largest −φ″ at any gap from the present
+    smallest gap upwards.
     """
     contact = state.contact
     if contact.periodic:
@@ -361,7 +367,7 @@ def _base(contact: Contact, indentation: float, box: Box, plastic: Array | None)
 def _far(contact: Contact, indentation: float, box: Box) -> tuple[float, float]:
     """Force (N) and energy (J) of the nodes outside `box` and of the bodies outside the grid.
 
-    All of them are treated as rigid.
+    These parts of the bodies are treated as rigid.
     """
     if contact.periodic:
         return 0.0, 0.0

@@ -81,7 +81,7 @@ class BoundedLaw:
         return energy, slope, stiff
 
     def beyond(self, u: Array) -> Array:
-        """Distance (m) by which the gap at the displacement `u` is below the gap at the limit.
+        """Distance (m) by which the gap is below the gap at which the pressure reaches its limit.
 
         If the bodies yield, it is the plastic displacement.
         """

@@ -4,8 +4,8 @@ In a step without instability the work of the force equals the change of the pot
 the plastic work. The work is therefore computed from energies, and the integral of the force only
 checks it. Where an equilibrium ceases to exist, the solve descends to another one. In this step the
 work of the force exceeds the change of energy, and the excess is the energy dissipated by adhesion.
-Steps are halved around such jumps until the uncertainty of this excess, half the jump of the force
-times the step, is small.
+The uncertainty of this excess is half the jump of the force times the step. Steps across jumps are
+shortened until this uncertainty is small.
 """
 
 from __future__ import annotations
@@ -92,10 +92,11 @@ def load_until(
     start: State | None,
     residual: float,
 ) -> tuple[CohesiveState, CohesiveState]:
-    """Load until `reached` is true; return the last state before this and the first state after it.
+    """Load until `reached` is true.
 
-    If `reached` is true for the first state already, both results are this state. The first state
-    is `start` or, without it, the state of bodies far apart.
+    Returns the last state for which `reached` is false and the first state for which it is true. If
+    `reached` is already true for the state from which loading begins, both results are this state.
+    Loading begins from `start` or, if None, from bodies far apart.
     """
     begin = start.indentation if isinstance(start, CohesiveState) else -math.inf
     before = load_cohesive(contact, begin, start=start, residual=residual)
@@ -141,7 +142,7 @@ def separate_cohesive(state: CohesiveState, *, accuracy: float = ACCURACY) -> It
 class _Step:
     """A trial step: the state at its end, and its work and energy (J).
 
-    `by_trapezium` and `by_parabola` are the work of the force by two rules of integration. `change`
+    `by_trapezium` and `by_parabola` are the work of the force, integrated by two rules. `change`
     is the change of the potential energy plus the plastic work. `uncertainty` is the error of the
     work if the force has jumped in the step.
     """
@@ -158,7 +159,7 @@ def follow(
 ) -> Iterator[CohesiveState]:
     """Yield the equilibria from `state` (not included) to the indentation `target`.
 
-    `target` may be infinite; then the caller ends the path. Raises `NotConvergedError` if an
+    If `target` is infinite, the caller must end the path. Raises `NotConvergedError` if an
     equilibrium cannot be followed.
     """
     contact = state.contact
@@ -276,7 +277,7 @@ def _parabola(previous: CohesiveState, state: CohesiveState, new: CohesiveState)
 
 
 def _scale(state: CohesiveState, *, loading: bool) -> float:
-    """Energy scale (J) of the contact, to which the unaccounted work of a step is related."""
+    """Energy (J) that scales the errors of a step: they may reach `accuracy` times this energy."""
     scale = state.stored_energy + abs(state.interaction_energy)
     return scale + state.plastic_work if loading else scale
 

@@ -58,8 +58,8 @@ class Contact:
     Attributes:
         pair: The two bodies.
         surface: Composite roughness, on the grid of the contact.
-        yield_pressure: Largest pressure that the surface carries (Pa): a hardness, about 2.8 times
-            the yield strength. inf if unused.
+        yield_pressure: Pressure (Pa) at which the surface yields: a hardness, about 2.8 times the
+            yield strength. inf if unused.
         plasticity: Model of yielding. None selects `expanding-cavity` if a yield strength is given
             and `equilibrium` otherwise.
         work_of_adhesion: Work of adhesion w (J/m²); 0 without adhesion.
@@ -68,7 +68,7 @@ class Contact:
             0.1 nm with adhesion. `hertzian` loads without adhesion.
         detachment: Criterion by which nodes are released, see `contact.detachment`.
         yield_strength: Yield strength of a tensile test (Pa); inf if unused.
-        tangent_modulus: Slope of tensile stress over strain after yield (Pa), for
+        tangent_modulus: Slope of the stress-strain curve of a tensile test after yield (Pa), for
             `expanding-cavity`.
         adhesion: Range of the attraction. With `jkr` the range is zero (the limit of soft bodies).
             `cohesive` uses the Lennard-Jones law of `theory.LennardJones`, see `contact.cohesive`.
@@ -201,8 +201,8 @@ class Contact:
     def first_yield_pressure(self) -> float:
         """Largest pressure at which smooth bodies stay elastic (Pa); inf for elastic bodies.
 
-        It is the yield pressure, or the yield strength times the `yield_coefficient` at the mean
-        Poisson's ratio of the bodies.
+        It is the yield pressure or, for `expanding-cavity`, the yield strength times the
+        `theory.yield_coefficient` at the mean Poisson's ratio of the bodies.
         """
         if not self.grows:
             return self.yield_pressure
@@ -211,7 +211,7 @@ class Contact:
 
     @property
     def hardening_modulus(self) -> float:
-        """Slope of the flow stress over *plastic* strain (Pa).
+        """Slope of the flow stress against *plastic* strain (Pa).
 
         It is E_t/(1 − E_t/E) with the tangent modulus E_t and Young's modulus E of the softer body.
         """
@@ -245,20 +245,21 @@ class Contact:
     def crack_opening(self) -> float:
         """Gap (m) one cell outside a straight contact edge that is about to recede.
 
-        It is 1.86 sqrt(w h/E*) with the cell size h; see `contact.detachment`.
+        It is 1.86 sqrt(w h/E*) with the work of adhesion w and the cell size h; see
+        `contact.detachment`.
         """
         h = math.sqrt(self.grid.cell_area)
         return 1.86 * math.sqrt(self.work_of_adhesion * h / self.pair.contact_modulus)
 
     def residual_length(self, indentation: float) -> float:
-        """Length to which residuals of adhesive contacts are related.
+        """Length by which the residuals of adhesive contacts are divided.
 
         Args:
             indentation: Approach of the bodies (m).
 
         Returns:
             The magnitude of the indentation or the length scale of adhesion, whichever is larger
-            (m). The length scale between flat bodies is z₀.
+            (m). Between flat bodies, this length scale is the equilibrium separation.
         """
         return max(abs(indentation), self.adhesive_length or self.equilibrium_separation)
 
@@ -297,7 +298,7 @@ class Contact:
 
     @cached_property
     def slope(self) -> float:
-        """Root mean square slope of the surface (1)."""
+        """Root mean square slope of the surface (dimensionless)."""
         return rms_slope(self.surface)
 
     @cached_property
@@ -315,7 +316,7 @@ class Contact:
 
     @cached_property
     def mean_offset(self) -> float:
-        """Gap (m) between the mean surfaces, at the apex, at first touch of the rough bodies.
+        """Gap (m) at the apex between the mean surfaces, when the rough bodies first touch.
 
         The mean surfaces are the smooth bodies at the mean height of the rough surface.
         """
@@ -327,7 +328,7 @@ class Contact:
 
     @cached_property
     def elongation(self) -> NDArray[np.float64]:
-        """Elongation of the asperity at each node (1), see `contact.asperities`."""
+        """Elongation of the asperity at each node (dimensionless), see `contact.asperities`."""
         return elongation_of(self.gap, self.grid.spacing)
 
     @cached_property

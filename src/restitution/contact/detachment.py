@@ -8,7 +8,7 @@ work of adhesion w. On a grid the edge is a staircase of nodes. Two local criter
 half-space (Pohrt and Popov 2015, Facta Universitatis 13, 3–10). The criterion is simple and
 independent of the order of release. However, nodes on a straight edge hold until G = 1.8 w and
 nodes at a kink until G = 1.0 w. The pull-off force is therefore too large: its relative error is
-1.5 times the cell size over the contact radius.
+1.5 times the ratio of cell size to contact radius.
 
 `crack-closure`: the contact edge is a crack, and G is the work of closing the crack by one cell
 (Rybicki and Kanninen 1977, Eng. Fract. Mech. 9, 931–938). For each face between a node in contact
@@ -25,8 +25,9 @@ node, + the node outside, and − and −− the nodes inside. The second bracke
 of the surfaces in the contact. The initial gap outside, where the surfaces never touched, does not
 count as opening.
 
-For rectangular cells σ_c² = 2πE*w hx hy/I, where I is the double integral of 1/r over the cell; for
-square cells of size hx it is E*w/(κ hx), κ = (2/3π)[1 − √2 + 3 ln(1 + √2)] = 0.473201.
+For rectangular cells σ_c² = 2πE*w hx hy/I. I is the integral of 1/r over all pairs of points of a
+cell, with the distance r of the two points. For square cells of size hx, σ_c² is E*w/(κ hx), with
+κ = (2/3π)[1 − √2 + 3 ln(1 + √2)] = 0.473201.
 """
 
 from __future__ import annotations
@@ -200,8 +201,8 @@ class Edge:
         def values_at(values: Array, cells: int) -> Array:
             """Return `values` at the node that lies `cells` cells outwards of the edge node.
 
-            There is one value for each face. A face is a side of the cell of an edge node without
-            contact beyond it; outwards is across this side. Negative `cells` lie inwards.
+            There is one value for each face. A face is a side of an edge node's cell beyond which
+            there is no contact. Outwards means across this side; negative `cells` mean inwards.
             """
             found: Array = np.take(values, here + cells * outwards, mode="clip")
             return found
@@ -229,7 +230,8 @@ class Edge:
     def strip(self, width: Array) -> Mask:
         """Mask of the contact nodes at most `width` (cells) deep inside the smoothed outline.
 
-        `width` has one value for each edge node, which holds for the nodes nearest to it.
+        `width` has one value for each edge node. A contact node uses the value of the nearest edge
+        node.
         """
         _, nearest = self._distance
         near: Mask = self._depth <= width[nearest]
@@ -277,10 +279,10 @@ class Edge:
 
 
 def _curvature(touching: Mask, nodes: Nodes, faces: NDArray[np.intp]) -> Array:
-    """Mean curvature (1/cell) of the patch to which each edge node belongs, at most 0.35.
+    """Mean curvature (1/cell) of the outline of the patch of each edge node, at most 0.35.
 
-    It is 2π over the perimeter of the patch. The perimeter of a smooth outline is on average π/4
-    times the number of faces.
+    It is 2π divided by the perimeter of the patch. The perimeter is estimated as π/4 times the
+    number of faces between the patch and the nodes outside, as for an average smooth outline.
     """
     patch = _patch_numbers(touching, nodes)
     total = np.bincount(patch, weights=faces)[patch]
@@ -300,12 +302,12 @@ def _patch_numbers(touching: Mask, nodes: Nodes) -> NDArray[np.intp]:
 
 
 def _apart(nodes: Nodes, pressure: Array, recession: Array) -> NDArray[np.intp]:
-    """Numbers of the edge nodes under the largest tension that are released alone.
+    """Select edge nodes to release singly, those under the largest tension first.
 
     Where the edge must recede by a fraction r of a cell, one of every 1/r nodes is released. The
     release of a node unloads its neighbours. So no other node within 0.5/r cells is released (this
     distance is at least `_RELEASE_RADIUS` and at most `_LARGEST_RADIUS`). Ties are broken by index,
-    so that rounding does not decide.
+    so that rounding does not decide. Returns the positions of the selected nodes in `nodes`.
     """
     i, j = nodes
     rank = np.round(pressure / (_TIE * max(-float(pressure.min(initial=0.0)), _TINY)))

@@ -57,7 +57,7 @@ class HeldNodes:
     """The nodes of a box that are held in contact and can carry tension.
 
     `mask` marks the nodes, `tension` (Pa) is the largest tension allowed, and `first_guess` (Pa;
-    None is zero) is the initial pressure. `mask` and `first_guess` are arrays on the box.
+    None means zero) is the initial pressure. `mask` and `first_guess` are arrays on the box.
     """
 
     mask: Mask
@@ -91,14 +91,15 @@ def solve_pressure(
     held: HeldNodes | None = None,
     residual: float = RESIDUAL,
 ) -> State:
-    """Solve with upper bound `limit` on the surface deformed by `history`.
+    """Solve for a pressure of at most `limit` on the surface deformed by `history`.
 
-    The lower bound is 0, or minus the tension at the `held` nodes (None without adhesion). `limit`
-    (Pa) is a number or an array of the shape of the grid. `box` contains the `candidate_box` and
-    all held nodes. `residual` is the tolerance on the violation of the contact conditions, relative
-    to the largest overlap before deformation or, with adhesion, to `Contact.residual_length`.
-    Contact at the grid edge is not checked here. Raises `NotConvergedError`, and `DomainError` if a
-    periodic contact of elastic bodies is already complete at a smaller indentation.
+    The lower bound of the pressure is minus the largest tension at the `held` nodes, and 0 at other
+    nodes. Without adhesion `held` is None. `limit` (Pa) is a number or an array of the shape of the
+    grid. `box` must contain the `candidate_box` and all held nodes. `residual` is the tolerance on
+    the violation of the contact conditions, relative to the largest overlap before deformation or,
+    with adhesion, to `Contact.residual_length`. Contact at the grid edge is not checked here.
+    Raises `NotConvergedError`, and `DomainError` if a periodic contact of elastic bodies is already
+    complete at a smaller indentation.
     """
     device, shape = current(), shape_of(box)
     b = _overlap(contact, indentation, box, history)
@@ -163,12 +164,12 @@ def _require_converged(found: Minimum, indentation: float, residual: float, scal
 def elastic_pressure(
     contact: Contact, indentation: float, residual: float
 ) -> tuple[Array, Box, int]:
-    """Estimate the pressure (Pa) between elastic bodies without adhesion, to a large `residual`.
+    """Estimate the pressure (Pa) between elastic bodies without adhesion, with a large `residual`.
 
     `residual` bounds the root mean square of the violation of the contact conditions, relative to
     the overlap. The pressure is given on a box and is zero outside. Contact patches of a few nodes
     that lie apart from the others can be missing, because `solve_near_guess` does not check all
-    nodes. Return the pressure, the box and the number of convolutions. Raises `NotConvergedError`.
+    nodes. Returns the pressure, the box and the number of convolutions. Raises `NotConvergedError`.
     """
     box = candidate_box(contact, indentation)
     if box is None:
@@ -199,12 +200,12 @@ def _overlap(contact: Contact, indentation: float, box: Box, history: State | No
 
 
 def _scale_of(contact: Contact, indentation: float, b: Array) -> float:
-    """Length (m) to which residuals are related; `b` is the overlap before deformation."""
+    """Length (m) by which residuals are divided; `b` is the overlap before deformation."""
     return contact.residual_length(indentation) if contact.adhesive else float(b.max())
 
 
 def _operators_of(contact: Contact) -> Operators:
-    """Return a function that makes the operator and its approximate inverse for any level."""
+    """Return a function that makes the operator and its approximate inverse for a grid level."""
     E_star, (hx, hy) = contact.pair.contact_modulus, contact.grid.spacing
     make = periodic_half_space if contact.periodic else half_space
 

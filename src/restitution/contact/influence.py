@@ -61,8 +61,8 @@ def far_displacement(x: Array, y: Array, hx: float, hy: float, contact_modulus: 
     The Taylor series of the displacement due to a point load is averaged over the cell. With the
     displacement u, the pressure p and the distance r from the cell,
     u πE*/(p hx hy) = [1 + (hx²∂x² + hy²∂y²)/24 + hx⁴∂x⁴/1920 + hx²hy²∂x²∂y²/576 + hy⁴∂y⁴/1920] 1/r.
-    The relative error is of the order of the sixth power of cell size over distance. `x` and `y`
-    (m) are a column and a row.
+    The relative error is of the order of the sixth power of the ratio of cell size to distance. `x`
+    (m) is a column and `y` (m) a row.
     """
     xx, yy = hx * hx, hy * hy
     # Coefficients of polynomials in c, the squared direction cosine along x. They follow from
@@ -135,7 +135,7 @@ def half_space(
 ) -> FreeConvolution:
     """Make the operator from pressure to displacement on a free (non-periodic) half-space.
 
-    The operator takes and returns arrays of this shape (nodes) on the current device.
+    The operator takes and returns arrays of the given `shape` (nodes) on the current device.
     """
     return _operator(_half_space, shape, spacing, contact_modulus)
 
@@ -145,8 +145,8 @@ def inverse_half_space(
 ) -> SpectralFilter:
     """Make the operator from displacement to pressure, an approximate inverse of `half_space`.
 
-    It multiplies a displacement wave of the angular wave number |q| by |q| E*/2, which is exact for
-    a periodic half-space (Johnson 1985).
+    It multiplies a displacement wave of the angular wave number |q| by |q| E*/2. This inverse is
+    exact for a periodic half-space (Johnson 1985).
     """
     return _operator(_inverse_half_space, shape, spacing, contact_modulus)
 
@@ -156,8 +156,8 @@ def shear_half_space(
 ) -> FreeConvolution:
     """Make the operator from traction to displacement, both along x, on a free half-space.
 
-    The operator takes and returns arrays of this shape (nodes). `compliances` (1/Pa) are those of
-    `Pair.shear_compliances`.
+    The operator takes and returns arrays of the given `shape` (nodes). `compliances` (1/Pa) are
+    those of `Pair.shear_compliances`.
     """
     return _operator(_shear_half_space, shape, spacing, compliances)
 
@@ -220,7 +220,7 @@ def _operator(
 
 
 def _unit_coefficients(lags: tuple[int, int], aspect: float, device: Device) -> Array:
-    """Coefficients for cells 1 × `aspect` and E* = 1, as a view that callers must not change.
+    """Coefficients for cells 1 × `aspect` and E* = 1, as a view that callers must not modify.
 
     The number of lags depends on the size of the contact, so it differs between most solves. The
     cache keeps the largest block so far, and smaller blocks are views of it.

@@ -66,8 +66,8 @@ def solve(
         start: Shallower state of the same contact. If the work is integrated (`expanding-cavity`,
             `truncated`, or adhesion on approach), the integral starts from this state instead of
             first touch. With adhesion on approach this state is also the first guess.
-        residual: Tolerance on the violation of the contact conditions (1), relative to the overlap
-            or, with adhesion, to `Contact.residual_length`.
+        residual: Tolerance on the violation of the contact conditions (dimensionless), relative to
+            the overlap or, with adhesion, to `Contact.residual_length`.
 
     Returns:
         State at `indentation`.
@@ -96,7 +96,8 @@ def step(state: State, indentation: float, *, residual: float = RESIDUAL) -> Sta
     Args:
         state: State to start from.
         indentation: New approach of the bodies (m).
-        residual: Tolerance on the violation of the contact conditions (1), as in `solve`.
+        residual: Tolerance on the violation of the contact conditions (dimensionless), as in
+            `solve`.
 
     Returns:
         State at `indentation`.
@@ -140,8 +141,8 @@ def solve_without_work(
 ) -> State:
     """Do the same as `solve`, but leave out the loading work and the check of the grid edge.
 
-    The state of a cohesive contact contains its work in any case, because it is found by following
-    the whole loading path.
+    The state of a cohesive contact contains its work in any case, because the whole loading path is
+    followed to find this state.
     """
     if contact.cohesive:
         return load_cohesive(contact, indentation, start=start, residual=residual)
@@ -297,9 +298,10 @@ def with_work(state: State, start: State | None) -> State:
 
 
 def _adhesive_work_is_negligible(state: State) -> bool:
-    """Whether the work of adhesion times the contact area is small compared with the other work.
+    """Whether the work of adhesion times contact area is small compared with the mechanical work.
 
-    In this case the adhesive work on approach is not integrated.
+    The mechanical work is elastic energy plus plastic work. If the result is true, the adhesive
+    work on approach is not integrated.
     """
     contact = state.contact
     if not contact.adhesive or contact.approach != "equilibrium":
@@ -315,7 +317,7 @@ def _intermediate(contact: Contact, depth: float, start: State | None = None) ->
 
 
 def _work_by_increments(state: State, start: State | None) -> tuple[float, float, int]:
-    """Return the plastic work (J) under a growing bound, its error (J) and the convolutions.
+    """Return the plastic work (J) under a growing bound, its error (J), and the convolutions.
 
     The work is summed over increasing depths, beginning at `start` or, if None, at `_SHALLOW` times
     the indentation, where little has yielded.

@@ -1,9 +1,9 @@
 """Error of COR due to the models of plasticity and of adhesion.
 
 The error of plasticity comes from a comparison with finite elements (docs/validation.md). The
-largest relative differences of COR in this comparison are tabulated over the COR due to plasticity
-alone, e_p = sqrt(E_el/(E_el + W_p)), with the elastic energy E_el and the plastic work W_p. This
-COR decreases monotonically from first yield to full plasticity, for smooth bodies and for
+largest relative differences of COR in this comparison are tabulated as a function of the COR due to
+plasticity alone, e_p = sqrt(E_el/(E_el + W_p)), with the elastic energy E_el and the plastic work
+W_p. e_p decreases monotonically from first yield to full plasticity, for smooth bodies and for
 asperities. The differences of `expanding-cavity` also depend on the steepness of the asperities
 ψ = E* S/Y, with the rms slope S and the yield strength Y. Outside the range of the finite element
 results, the nearest value is used and may be too small.
@@ -59,11 +59,12 @@ def model_error(state: State, restitution: float) -> float:
 
 
 def hysteresis_ratio(tabor: float) -> float:
-    """Energy dissipated in a cycle of contact of smooth elastic spheres, over that of JKR.
+    """Energy dissipated in a contact cycle of smooth elastic spheres, as a fraction of that of JKR.
 
-    Up to the Tabor parameter µ = 5, the result is interpolated in a table. Beyond, its difference
-    from 1 is extrapolated as a power of µ, with the exponent found between µ = 3 and 5. Up to µ = 5
-    this exponent increases with µ, so the extrapolated result is rather too small than too large.
+    Up to the Tabor parameter µ = 5, the result is interpolated in a table. For larger µ, its
+    difference from 1 is extrapolated as a power of µ, with the exponent between µ = 3 and 5. Up to
+    µ = 5 this exponent increases with µ, so the extrapolated result is more likely too small than
+    too large.
     """
     if tabor >= _TABOR[-1]:
         return 1 - (1 - _HYSTERESIS[-1]) * math.pow(_TABOR[-1] / tabor, _BEYOND)
@@ -71,7 +72,7 @@ def hysteresis_ratio(tabor: float) -> float:
 
 
 def _range_error(state: State, restitution: float) -> float:
-    """Error of the `restitution` because JKR neglects the range of the attraction."""
+    """Error of the COR `restitution` because JKR neglects the range of the attraction."""
     contact, work = state.contact, state.loading_work
     if not contact.adhesive or contact.cohesive or work <= 0 or state.contact_nodes == 0:
         return 0.0
@@ -81,7 +82,7 @@ def _range_error(state: State, restitution: float) -> float:
 
 
 def _plasticity_error(state: State, restitution: float) -> float:
-    """Error of the `restitution` due to the plasticity model.
+    """Error of the COR `restitution` due to the plasticity model.
 
     The error is 0 for elastic bodies, and if no node has reached the pressure of first yield.
     """
@@ -102,7 +103,7 @@ def _plasticity_error(state: State, restitution: float) -> float:
 
 
 def largest_difference(state: State, restitution: float) -> float:
-    """Largest relative difference of COR from finite elements, due to the plasticity model.
+    """Largest relative difference of COR between the plasticity model and finite elements.
 
     `restitution` is the COR that plasticity alone would give.
     """

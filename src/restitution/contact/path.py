@@ -34,8 +34,8 @@ def loading_path(
         indentations: Approaches of the bodies (m).
         forces: Normal forces (N).
         velocities: Impact velocities (m/s).
-        residual: Tolerance on the violation of the contact conditions (1), as in `solve`; only for
-            `indentations`.
+        residual: Tolerance on the violation of the contact conditions (dimensionless), as in
+            `solve`; used only for `indentations`.
 
     Yields:
         State at each given value, in the given order.
@@ -70,20 +70,20 @@ def unloading_path(
 ) -> Iterator[State]:
     """Unload a contact step by step to separation.
 
-    Without adhesion, the bodies separate at the indentation δ_s where the force returns to zero.
-    After step k of n, δ − δ_s is (1 − k/n)² times the initial value. The force of a Hertzian
-    unloading, which is proportional to (δ − δ_s)^1.5, is then a cubic in k.
+    Without adhesion, the bodies separate at the indentation δ_s where the force returns to zero. At
+    the indentation δ after step k of n, δ − δ_s is (1 − k/n)² times its initial value. The force of
+    a Hertzian unloading, which is proportional to (δ − δ_s)^1.5, is then a cubic function of k.
 
     Args:
         state: State to unload.
-        steps: Number of steps (1) without adhesion.
-        tolerance: Error of the coefficient of restitution (1) that the steps may cause. It
-            determines the number of steps with adhesion, see `contact.separation`.
-        residual: Tolerance on the violation of the contact conditions (1), as in `solve`; only
-            without adhesion.
-        known: States of unloading from a shallower depth of the same contact. They save time with
-            adhesion: below that depth, unloading of elastic bodies does not depend on the largest
-            depth, so these states are yielded instead of computing them again.
+        steps: Number of steps without adhesion.
+        tolerance: Error of the coefficient of restitution (dimensionless) that the steps may cause.
+            It determines the number of steps with adhesion, see `contact.separation`.
+        residual: Tolerance on the violation of the contact conditions (dimensionless), as in
+            `solve`; used only without adhesion.
+        known: States of another unloading of the same contact, which began at a smaller
+            indentation. They save time with adhesion: an elastic contact that unloads from a larger
+            indentation passes through the same states, so these are yielded without a new solve.
 
     Yields:
         `state`, then the state after each step.

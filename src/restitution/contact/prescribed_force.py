@@ -1,4 +1,4 @@
-"""Contact under a prescribed force: search for the indentation at which it is reached."""
+"""Contact under a prescribed force: search for the indentation at which the force is reached."""
 
 from __future__ import annotations
 

@@ -31,8 +31,8 @@ def solve_at_pressure(contact: Contact, pressure: float, *, residual: float = RE
     Args:
         contact: Periodic contact to load.
         pressure: Nominal pressure: normal force per area of the grid (Pa), positive.
-        residual: Tolerance on the violation of the contact conditions (1), relative to the
-            indentation.
+        residual: Tolerance on the violation of the contact conditions (dimensionless), relative to
+            the indentation.
 
     Returns:
         State under `pressure`.

@@ -41,7 +41,7 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
     Raises:
         CaseError: The velocity is not positive, a body has no density, or the contact is periodic.
         DomainError: The contact reaches the edge of the grid.
-        NotConvergedError: The work jumps at this indentation, or a solve did not converge.
+        NotConvergedError: The loading work jumps past ½ m* V², or a solve did not converge.
     """
     mass = contact.pair.mass
     if mass is None:
@@ -105,8 +105,8 @@ class _Search:
     def first_depth(self) -> float:
         """Return a first guess (m): a Newton step from the start, or the depth of smooth bodies.
 
-        A cohesive contact is instead loaded until the work is exceeded. Later solves continue from
-        the last state before this, so that the loading path is not followed again.
+        A cohesive contact is instead loaded until the prescribed work is exceeded. Later solves
+        continue from the last state with less work, so the loading path is not followed again.
         """
         if self._contact.cohesive:
             before, reached = load_until(
@@ -128,9 +128,10 @@ class _Search:
         return float(smooth.indentation_from_energy(self._work))
 
     def newton(self, depth: float) -> float | None:
-        """Return the depth (m) of a Newton step from `depth`; None if it is outside the bracket.
+        """Return the depth (m) after a Newton step from `depth`; None if outside the bracket.
 
-        The bracket consists of the nearest depths tried so far with too little and too much work.
+        The bracket extends from the deepest depth tried so far with too little work to the
+        shallowest one with too much work.
         """
         following = self._step(self.at(depth))
         low = max((d for d, s in self.found.items() if self._excess(s) < 0), default=0.0)
@@ -154,7 +155,10 @@ class _Search:
         return float(toms748(excess, low, high, xtol=tolerance * high, rtol=1e-12, k=1))
 
     def _step(self, state: State) -> float | None:
-        """Return the depth (m) of a Newton step from `state`; None if force or work is not > 0."""
+        """Return the depth (m) after a Newton step from `state`.
+
+        None if the force or the work of `state` is not positive.
+        """
         force, work = state.force, state.loading_work
         if not (force > 0 and work > 0):
             return None

@@ -55,7 +55,7 @@ _GRID_LOSS = 0.05
 
 @dataclass(frozen=True)
 class Separation:
-    """Result of unloading to separation: works and error (J), force (N) and indentation (m)."""
+    """Result of unloading to separation: energies in J, the force in N, the indentation in m."""
 
     unloading_work: float
     error: float
@@ -76,10 +76,10 @@ def separate(
 
     If `state` is already without contact, it is the only state. `tolerance` is the error of the
     coefficient of restitution that the steps may cause. If the estimated error is larger, unloading
-    is repeated with 2 and finally 4 times as many steps. `known` may be states of unloading from a
-    shallower depth of the same contact. As soon as the force agrees with the known unloading, and
-    if nothing has yielded, the remaining states are taken from `known`. Raises `NotConvergedError`
-    if the bodies do not separate.
+    is repeated with 2 and finally 4 times as many steps. `known` may be the states of another
+    unloading of the same contact, which began at a smaller indentation. If nothing has yielded, the
+    remaining states are taken from `known` as soon as the force agrees with that of `known`. Raises
+    `NotConvergedError` if the bodies do not separate.
     """
     for finer in _REFINEMENTS:
         path = list(_unload(state, tolerance / finer, finer, known))
@@ -105,8 +105,8 @@ def _unload(
 ) -> Iterator[State]:
     """Generate `state` and the states of unloading down to separation.
 
-    The steps are at most 1/`finer` of the standard steps. A cohesive contact chooses its steps by
-    `tolerance` alone.
+    The steps are at most 1/`finer` of the standard steps. For a cohesive contact, the steps depend
+    only on `tolerance`.
     """
     contact = state.contact
     if isinstance(state, CohesiveState):
@@ -167,7 +167,7 @@ def _unload(
 
 
 def separation_of(path: list[State]) -> Separation:
-    """Compute works, errors, pull-off force and end of a `path` from `separate`."""
+    """Compute the result of a `path` of states from `separate`."""
     depth = np.array([state.indentation for state in path])
     force = np.array([state.force for state in path])
     start, end = path[0], path[-1]
@@ -199,7 +199,7 @@ def separation_of(path: list[State]) -> Separation:
 
 
 def _cohesive_separation(start: CohesiveState, end: CohesiveState, path: list[State]) -> Separation:
-    """Compute the result of a cohesive path. Beyond its `end`, the bodies separate reversibly."""
+    """Compute the result of a cohesive `path`. After its `end`, the bodies separate reversibly."""
     lost = end.adhesive_loss - start.adhesive_loss
     plastic = end.plastic_work - start.plastic_work
     fineness = max(start.contact.grid.spacing) / (COARSEST * cohesive_length(start.contact))
@@ -249,7 +249,7 @@ def _late_force(state: State) -> float:
 
 
 def _plan(state: State, tolerance: float) -> tuple[float, float]:
-    """Return the length of the elastic recovery (m) and the largest allowed `_late_force` (N)."""
+    """Estimate the elastic recovery (m) and the largest allowed `_late_force` (N)."""
     stored, adhesion = state.stored_energy, state.contact.work_of_adhesion * state.contact_area
     # The elastic recovery is estimated in two ways from the stored energy: as that of a punch of
     # the same area and, with the force, as that of a Hertz-like contact. The smaller one is used.
@@ -290,10 +290,10 @@ def _punch(state: State) -> tuple[Kendall, float]:
 
 
 def _predict(previous: State | None, state: State, step: float) -> NDArray[np.float64] | None:
-    """Extrapolate the pressure on the nodes in contact linearly by `step`.
+    """Extrapolate the pressure on the nodes in contact linearly over a `step` of unloading (m).
 
     The result is a first guess. It improves the accuracy rather than the speed: the tolerance of a
-    step is large, so a better first guess gives a result nearer to the solution.
+    solve is large, so a better first guess gives a result nearer to the solution.
     """
     if previous is None:
         return None

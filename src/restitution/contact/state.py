@@ -36,19 +36,20 @@ class State:
         box_displacement: Elastic displacement (m) on `box`.
         plastic_displacement: Depth (m) by which yielding has lowered the surface, shape
             `grid.nodes`.
-        bound: Largest pressure (Pa) that a node can carry from now on: one number, or an array of
-            shape `grid.nodes`.
+        bound: Largest possible pressure (Pa) of each node in later steps: one number, or an array
+            of shape `grid.nodes`.
         plastic_work: Work dissipated by yielding so far (J).
         adhesive_work: Work done by adhesion so far (J).
         work_error: Error of plastic work and adhesive work together (J).
-        residual: Largest violation of the contact conditions (1), relative to the largest overlap
-            of the undeformed surfaces or, with adhesion, to `Contact.residual_length`.
-        convolutions: Number of convolutions (1) that the solve took.
+        residual: Largest violation of the contact conditions (dimensionless), relative to the
+            largest overlap of the undeformed surfaces or, with adhesion, to
+            `Contact.residual_length`.
+        convolutions: Number of convolutions computed in the solve.
         force_before_release: Force before nodes were released in this step of adhesive unloading
             (N); None after loading.
         balance: Indentation (m) and force (N) at which the energy release rate, averaged along the
-            edge of the previous contact area, equals the work of adhesion. None if this step did
-            not release nodes on unloading, and with `pohrt-popov`.
+            edge of the previous contact area, equals the work of adhesion. None after loading, if
+            this step released no nodes, if no balance exists, and always with `pohrt-popov`.
         is_first_loading: Whether the state was computed by loading the undeformed bodies, not by a
             step from another state (bool).
     """
@@ -105,7 +106,7 @@ class State:
 
     @property
     def contact_nodes(self) -> int:
-        """Number of nodes in contact (1)."""
+        """Number of nodes in contact."""
         return int(np.count_nonzero(self.box_touching))
 
     @property
@@ -115,12 +116,12 @@ class State:
 
     @property
     def relative_area(self) -> float:
-        """Real contact area over the area of the grid (1)."""
+        """Real contact area divided by the area of the grid (dimensionless)."""
         return self.contact_nodes / math.prod(self.contact.grid.nodes)
 
     @property
     def nominal_pressure(self) -> float:
-        """Force over the area of the grid (Pa)."""
+        """Normal force divided by the area of the grid (Pa)."""
         return self.force / math.prod(self.contact.grid.size)
 
     @property
@@ -180,7 +181,7 @@ class State:
         Patches of a periodic contact continue across the edges of the grid.
 
         Returns:
-            Numbers of nodes (1), shape (patches,), largest first.
+            Sizes (nodes), shape (patches,), largest first.
         """
         from scipy.ndimage import label
 

@@ -10,9 +10,9 @@ not change. From one state to the next, the traction minimises
 
 where s₀ is the slip before the step. The gradient is s₀ − s: it is zero in stick and has the sign
 of −q in slip. Nodes without pressure carry no traction and slip freely. A node that comes into
-contact sticks where it touches. Because s₀ = U₀ − C q₀, the traction q₀ and the displacement U₀
-before the step are the whole history, and the normal states of a path may follow one another in any
-order.
+contact sticks where it touches. Because s₀ = U₀ − C q₀, the history consists only of the traction
+q₀ and the displacement U₀ before the step. The normal pressure may increase or decrease from step
+to step.
 
 Like Cattaneo (1938) and Mindlin (1949), this module neglects the traction along y and the influence
 of tangential traction on the pressure. (Between bodies of the same material, tangential traction
@@ -47,16 +47,16 @@ class TangentialState:
 
     Attributes:
         normal: Normal state, whose pressure limits the traction.
-        friction: Coefficient of friction µ (1).
+        friction: Coefficient of friction µ (dimensionless).
         displacement: Tangential displacement U of the bodies (m).
         box: Block of the grid outside of which the traction is zero.
         box_traction: Traction along x (Pa) on `box`.
         box_displacement: Displacement C q along x of the two surfaces relative to each other (m) on
             `box`.
         friction_loss: Energy lost to friction so far (J).
-        residual: Largest violation of the conditions of stick and slip (1), relative to the largest
-            displacement.
-        convolutions: Number of convolutions (1) that the solve took.
+        residual: Largest violation of the conditions of stick and slip (dimensionless), relative to
+            the largest displacement.
+        convolutions: Number of convolutions computed in the solve.
     """
 
     normal: State
@@ -118,19 +118,19 @@ def shear(
     """Move the bodies of a contact tangentially, along x, to a displacement.
 
     The energy lost to friction is the slip in this step times the mean of the tractions before and
-    after the step, summed over the nodes. With this rule, the mean of the tangential forces before
-    and after the step, times the change of the displacement, is exactly the change of the stored
-    energy plus the loss. If a path changes direction or pressure, stored energy and loss approach
-    the values of the continuous path as the steps become shorter.
+    after the step, summed over the nodes. The work of the step is the change of the displacement
+    times the mean of the tangential forces before and after the step. With these rules, the work is
+    exactly the change of the stored energy plus the loss. If a path changes direction or pressure,
+    stored energy and loss approach the values of the continuous path as the steps become shorter.
 
     Args:
         normal: Normal state after the step, without adhesion.
         displacement: Tangential displacement U after the step (m).
-        friction: Coefficient of friction µ (1), not negative.
+        friction: Coefficient of friction µ (dimensionless), not negative.
         history: State before the step, on the same grid. None means U = 0 without tangential
             traction.
-        residual: Tolerance on the violation of the conditions of stick and slip (1), relative to
-            the largest displacement.
+        residual: Tolerance on the violation of the conditions of stick and slip (dimensionless),
+            relative to the largest displacement.
 
     Returns:
         State at `displacement`.

@@ -38,9 +38,9 @@ class UnloadingCurve:
     """Force (N) over decreasing indentation (m), shape (points,).
 
     If `balanced`, the first point is the state at which unloading begins, and the others are the
-    balances of the contact areas. Balances do not contain the jumps of the force when nodes are
-    released. Otherwise, for example with `pohrt-popov`, the points are all states. `fixed` says
-    that the contact area is fixed between the first two points, so that the force is linear there.
+    balances of the contact areas, which do not contain the jumps of the force when nodes are
+    released. If not `balanced`, for example with `pohrt-popov`, the points are all states. `fixed`
+    means that the contact area is fixed between the first two points, so the force is linear there.
     """
 
     indentation: Array
@@ -84,8 +84,9 @@ class UnloadingCurve:
 def unloading_curve(path: list[State]) -> UnloadingCurve:
     """Return the curve of a `path` from `separate`.
 
-    Each contact area is represented by its balance, or by all its states if it has no balance. On a
-    grid where balances are not reliable, the points are all states of the path.
+    Each contact area is represented by its balance, or by all its states if its balance is unknown
+    or it has too few nodes. On a grid where balances are not reliable, the points are all states of
+    the path.
     """
     states = [(state.indentation, state.force) for state in path]
     balances = [state.balance for state in path[1:]]
@@ -108,12 +109,12 @@ def unloading_curve(path: list[State]) -> UnloadingCurve:
 
 
 def complete_curve(path: Sequence[State]) -> list[tuple[float, float]]:
-    """Indentations (m) and forces (N) of a `path` from `separate`, with both of its ends.
+    """Indentations (m) and forces (N) of a `path` from `separate`, including both of its ends.
 
     The first point is the state at which unloading begins, and the last one is the separation, with
-    zero force. Between them are the points of `unloading_curve`. Scatter beyond the largest tension
-    is removed, so the smallest force is minus the pull-off force. The work of these points agrees
-    with the work of the curve within its error.
+    zero force. Between them are the points of `unloading_curve`. Tensions above the pull-off force,
+    which are due to scatter, are reduced to it. The work from these points agrees with the work of
+    `unloading_curve` within the error of the latter.
     """
     curve, begin, end = unloading_curve(list(path)), path[0], path[-1]
     if not curve.balanced:
@@ -129,9 +130,9 @@ def complete_curve(path: Sequence[State]) -> list[tuple[float, float]]:
 
 
 def _smoothed(x: Array, F: Array) -> Array:
-    """Replace each value by that of the least-squares parabola through the nearest points.
+    """Smooth `F`: replace each value by that of a parabola fitted to the nearest points.
 
-    The result is limited to the range of the values at these points. If there are fewer than five
+    Each result is limited to the range of the values at these points. If there are fewer than five
     points, `F` is returned unchanged.
     """
     window = min(_SMOOTHED, F.size)
@@ -149,7 +150,7 @@ def _smoothed(x: Array, F: Array) -> Array:
 
 @dataclass(frozen=True)
 class SharedUnloading:
-    """Known states of unloading from a shallower depth, to reuse in unloading from a larger depth.
+    """Known states of unloading from one depth, to be reused in unloading from a larger depth.
 
     While an elastic contact unloads, its state depends only on the indentation, not on the depth at
     which unloading began. The two paths therefore join.

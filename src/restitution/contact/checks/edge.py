@@ -98,7 +98,7 @@ def first_touch(contact: Contact) -> tuple[float, float]:
 
 
 def needed_edges(contact: Contact, indentation: float) -> tuple[float, float]:
-    """Edge lengths (m) of a grid that contains the contact; never below the present lengths.
+    """Edge lengths (m) of a grid that contains the contact; at least those of the present grid.
 
     Contact is possible only where the initial gap h₀ is below the indentation δ. With heights
     z ≤ z_max and h₀ = r²/(2R*) − z − c, where the constant c makes min h₀ = 0, contact is possible

@@ -35,9 +35,10 @@ def impossible(contact: Contact, indentation: float) -> Finding | None:
 
     The findings and their values are:
 
-    * `roughness-above-radius`: `radius` of the smaller particle, `peak` above the mean (m);
+    * `roughness-above-radius`: `radius` of the smaller particle, and height `peak` of the highest
+      point above the mean (m);
     * `contact-beyond-radius`: predicted `radius`, `indentation`, `reduced_radius` (m);
-    * `pixel-above-contact`, see `coarse_scan`;
+    * `pixel-above-contact`: see `coarse_scan`;
     * `range-unresolved`: `spacing` and `needed` spacing (m) of a cohesive contact, and whether
       the contact is `periodic`.
 
@@ -61,13 +62,15 @@ def doubtful(contact: Contact, indentation: float) -> list[Finding]:
 
     They are the findings of `resolution_findings` and the following ones:
 
-    * `tilted-scan`: `file`, `explained`, the fraction of the variance that a plane explains;
-    * `edge-predicted`: `gap` at the edge at first touch (m), and the values of `edge_values`;
-    * `steep-surface`: rms `slope`, `limit`;
+    * `tilted-scan`: `file`, and the fraction `explained` of the height variance that a plane
+      explains;
+    * `edge-predicted`: smallest `gap` on the edge of the grid at first touch (m), and the values of
+      `edge_values`;
+    * `steep-surface`: rms `slope`, and its `limit`;
     * `unusual-yield-pressure`: `ratio` of the pressure of a fully plastic contact to E*, and the
       usual range of this ratio, `low` to `high`;
-    * `oblong-pixels`: `file`, edges `x` and `y` of a pixel (m);
-    * `coarser-than-scan`: `spacing`, `pixel` (m), `axis`;
+    * `oblong-pixels`: `file`, and edges `x` and `y` of a pixel (m);
+    * `coarser-than-scan`: `spacing` of the grid and edge `pixel` of a pixel (m) along `axis`;
     * `surface-notice`: `notice` from the provenance of a surface that differs from its scan.
 
     For a periodic contact, the findings that depend on the radius of the bodies are left out.
@@ -108,7 +111,7 @@ def _tilt(contact: Contact) -> Finding | None:
 
 
 def _edge(contact: Contact, indentation: float) -> Finding | None:
-    """Find whether contact at the edge of the grid is expected, with a margin for roughness."""
+    """Return a finding if contact at the edge of the grid is expected, otherwise None."""
     radius = predicted_radius(contact.pair, indentation, contact.hardness)
     gap, grid = contact.gap, contact.grid
     half_width = 0.5 * min(grid.size)
@@ -125,10 +128,11 @@ def _edge(contact: Contact, indentation: float) -> Finding | None:
 def _closed_gap(contact: Contact, indentation: float, distance: float) -> float:
     """The largest undeformed gap (m) that is predicted to close at `distance` from the centre.
 
-    The result is the indentation minus the displacement F/(πE*r) outside a smooth contact. With
-    adhesion, the pull-off displacement of a punch as wide as the contact (JKR) is added to the
-    indentation. The displacement F/(πE*r) is reduced if the roughness is not small compared with
-    the indentation, because a few asperities then carry the load.
+    The result is the indentation minus the displacement F/(πE*r) at the distance r from the centre
+    of a smooth contact under the force F. With adhesion, the pull-off displacement of a punch as
+    wide as the contact (JKR) is added to the indentation. The displacement F/(πE*r) is reduced if
+    the roughness is not small compared with the indentation, because a few asperities then carry
+    the load.
     """
     pair, p_y, w = contact.pair, contact.hardness, contact.work_of_adhesion
     E_star, deeper = pair.contact_modulus, indentation
@@ -159,7 +163,7 @@ def _yield_pressure(contact: Contact) -> Finding | None:
 
 
 def _oblong(contact: Contact) -> Finding | None:
-    """Find pixels that are not square. They suggest that scan lines are missing in the file."""
+    """Return a finding if pixels are not square, which suggests missing scan lines in the file."""
     provenance = contact.surface.provenance
     for key, hx in provenance.items():
         if not key.endswith("pixel_x_m") or (key != "pixel_x_m" and not key.startswith("part_")):

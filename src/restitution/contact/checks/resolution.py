@@ -49,9 +49,9 @@ def predicted_radius(pair: Pair, indentation: float, yield_pressure: float = mat
 def adhesive_nodes(state: State) -> float:
     """Number of nodes per pull-off radius of an asperity; inf without adhesion.
 
-    It is a_c/h with the larger spacing h of the grid and the `pull_off_radius` a_c of a sphere of
-    radius `radius_of_asperities`. For a cohesive contact, the result is inf if the grid resolves
-    the range of the attraction, and 0 otherwise.
+    It is a_c/h. a_c is the contact radius at pull-off (`pull_off_radius`) of a sphere of radius
+    `radius_of_asperities`, and h the larger spacing of the grid. For a cohesive contact, the result
+    is inf if the grid resolves the range of the attraction, and 0 otherwise.
     """
     contact = state.contact
     if not contact.adhesive:
@@ -100,7 +100,10 @@ def pull_off_radius(contact: Contact, radius: float) -> float:
 
 
 def expected_pull_off_error(contact: Contact) -> float:
-    """Relative error of the pull-off force of smooth spheres on this grid (docs/adhesion.md)."""
+    """Expected relative error of the pull-off force of smooth spheres on this grid.
+
+    See docs/adhesion.md.
+    """
     if contact.cohesive:
         return _COHESIVE_PULL_OFF
     nodes = pull_off_radius(contact, contact.pair.radius) / max(contact.grid.spacing)
@@ -110,8 +113,8 @@ def expected_pull_off_error(contact: Contact) -> float:
 def coarse_scan(contact: Contact, indentation: float) -> Finding | None:
     """Return the finding `pixel-above-contact` if a pixel of a scan exceeds the contact radius.
 
-    The values of the finding are `file`, `pixel` (m), and the contact `radius` (m) at the
-    `indentation` (m).
+    The values of the finding are `file`; `pixel`, the larger one of pixel and grid spacing (m); and
+    the contact `radius` (m) at the `indentation` (m).
     """
     provenance = contact.surface.provenance
     if "file" not in provenance:
@@ -132,14 +135,14 @@ def coarse_scan(contact: Contact, indentation: float) -> Finding | None:
 
 
 def resolution_findings(contact: Contact, indentation: float) -> list[Finding]:
-    """Find faults of the grid from the contact radius of the smooth bodies at `indentation` (m).
+    """Compare the grid with the contact radius of the smooth bodies at `indentation` (m).
 
     The findings and their values are:
 
     * `contact-beyond-grid`: `radius`, `indentation`, `half_width` of the grid (m), and
       `whole_scan`, whether the grid covers a whole scan;
-    * `few-nodes`: `spacing`, `radius` (m);
-    * `no-half-space`: `radius`, `reduced_radius` (m), `limit` of their ratio;
+    * `few-nodes`: `radius` (m), and `spacing` (m), the larger one of grid spacing and pixel;
+    * `no-half-space`: `radius`, `reduced_radius` (m), and the `limit` of their ratio;
     * `finer-than-scan`: `spacing`, `pixel` (m).
     """
     grid, pair = contact.grid, contact.pair

@@ -14,11 +14,11 @@ that the contact lasts as long as a Hertz contact. The relation between e and d 
 elastic force that is multiplied by (1 + d x′). So it also holds for a hydroelastic contact whose
 surfaces approach at one velocity (not tested in Drake).
 
-A geometry has only one k and one d, so one scene cannot contain all pairs of three types.
+A geometry has only one k and one d, so one scene cannot contain all pairs of three types of bodies.
 
-In Drake 1.51, a continuous plant (`time_step=0`) returns the exported e. A discrete plant loses
-additional energy because of its time step. Its SAP approximation ignores the dissipation, and e is
-close to 0.
+In Drake 1.51, a continuous plant (`time_step=0`) reproduces the exported e. A discrete plant loses
+additional energy because of its time step. With its SAP approximation, a discrete plant ignores the
+dissipation, and e is close to 0.
 """
 
 from __future__ import annotations
@@ -58,7 +58,10 @@ _STEPS = 200
 
 @dataclass(frozen=True)
 class Contact:
-    """The contact of a pair: velocity of the export (m/s), duration (s) and dissipation (s/m)."""
+    """The contact of a pair at the velocity of the export (m/s).
+
+    `duration` is the contact time (s), and `dissipation` the coefficient d (s/m).
+    """
 
     pair: Pair
     velocity: float
@@ -71,14 +74,14 @@ class Contact:
         return self.pair.law.mass * (math.pi / self.duration) ** 2
 
     def restitution(self, share: float) -> float:
-        """Return e in Drake at `share` times the velocity of the export."""
+        """Return Drake's coefficient of restitution at `share` times the velocity of the export."""
         return hunt_crossley_restitution(self.dissipation * self.velocity * share)
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """Write a module to import and a test collision that prints e; return file names and texts.
+    """Write a module to import, and a test collision that prints its coefficient of restitution.
 
-    Raises `CaseError`, `DomainError`.
+    Returns file names and texts. Raises `CaseError`, `DomainError`.
     """
     pairs = pairs_at(table, velocity, CODE, LOWEST)
     head = header(table, pairs, velocity, code=CODE, ends=_ENDS, constant=False)

@@ -1,9 +1,10 @@
 """EDEM: tables of interactions and materials, to be typed into the panels of EDEM.
 
 The tables were not tested in EDEM. EDEM's Hertz–Mindlin model has Tsuji's damping with the
-coefficient of Antypov & Elliott (Altair's documentation). Its hysteretic spring model is that of
-Walton & Braun with K1 = 5 R* min(Y1, Y2), where Y1 and Y2 are the yield strengths. Its
-e = (K1/K2)^½ is the same at every velocity, so the K2 of the export holds at one velocity.
+coefficient of Antypov & Elliott (Altair's documentation). EDEM's hysteretic spring model is that of
+Walton & Braun, with the stiffness K1 of loading and K2 of unloading. K1 = 5 R* min(Y1, Y2), where
+Y1 and Y2 are the yield strengths. The coefficient of restitution (K1/K2)^½ of this model is the
+same at every velocity, so the exported K2 holds at one velocity.
 """
 
 from __future__ import annotations
@@ -73,10 +74,11 @@ def _interaction(pair: Pair, velocity: float) -> dict[str, str]:
 
 
 def _springs(pair: Pair, velocity: float) -> tuple[float, float] | None:
-    """K1 and K2 (N/m) of the fitted Walton–Braun law at `velocity` V (m/s).
+    """Stiffness K1 of loading and K2 of unloading (N/m) of the fitted Walton–Braun law.
 
-    K2 = k_u + S V (m* K1)^½ with the unloading stiffness k_u and the hardening S. None if there is
-    no such fit, or if `velocity` is outside the fitted range.
+    K2 = k_u + S V (m* K1)^½, with the `velocity` V (m/s), the reduced mass m*, and the fitted
+    parameters k_u (unloading stiffness) and S (hardening). None if there is no such fit, or if
+    `velocity` is outside the fitted range.
     """
     if not pair.law.fits_hold_at(velocity):
         return None

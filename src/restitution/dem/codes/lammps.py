@@ -5,9 +5,10 @@ LAMMPS uses the E and ν of a pair_coeff for both bodies, also at walls:
     E* = E/2(1 − ν²),   G* = E/4(2 − ν)(1 + ν).
 
 So each pair gets values of E and ν that lead to its E* and G*. LAMMPS' mixing of two materials
-applies the factor ½ twice, so the export does not use it. Force and damping (Antypov & Elliott, EPL
-94 (2011) 50004) act until the overlap is zero, with tension at the end. `limit_damping` would cut
-off the tension and raise e. In released versions, `damping tsuji` is wrong by a factor of √2.
+applies the factor ½ twice, so the export does not use the mixing. Force and damping (Antypov &
+Elliott, EPL 94 (2011) 50004) act until the overlap is zero, with tension at the end.
+`limit_damping` would cut off the tension and increase the coefficient of restitution. In released
+versions, `damping tsuji` is wrong by a factor of √2.
 """
 
 from __future__ import annotations
@@ -137,8 +138,8 @@ def _tangential(pair: Pair) -> str:
 def _counts(table: PairTable) -> list[int]:
     """Number of spheres of each type, at least one; the sum is `_GRAINS`.
 
-    The numbers are proportional to the number fractions of the sizes. A type without a number
-    fraction counts as 1. So all materials of a mixture have the same number of spheres.
+    The numbers are proportional to the number fractions of the sizes. For a type without a number
+    fraction, the fraction 1 is used. So all materials of a mixture have the same number of spheres.
     """
     weights = [body.number_fraction or 1.0 for body in table.spheres]
     ends = [round(_GRAINS * part / sum(weights)) for part in itertools.accumulate(weights)]

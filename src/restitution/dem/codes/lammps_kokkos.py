@@ -1,8 +1,9 @@
 """Second fragment of the export to LAMMPS, with damping models that its package KOKKOS supports.
 
-LAMMPS 22Jul2025 has no KOKKOS variant of pair_style granular. Pull request 5187 adds one with hooke
-and hertz normal forces, velocity-based damping, and linear and Mindlin tangential forces; it needs
-newton off. The older gran/hooke/history/kk has only one set of values for all pairs of types.
+LAMMPS 22Jul2025 has no KOKKOS variant of pair_style granular. Pull request 5187 adds a variant with
+hooke and hertz normal forces, velocity-based damping, and linear and Mindlin tangential forces.
+This variant needs the setting `newton off`. The older gran/hooke/history/kk has only one set of
+values for all pairs of types.
 
 Each pair gets a Hertz force with a constant damping coefficient (`damping velocity`,
 `damping.hertz_damping`). Its coefficient of restitution e increases with the velocity V, because
@@ -41,7 +42,7 @@ class VelocityDamping:
         return mindlin_stiffness(self.pair)
 
     def restitution(self, share: float) -> float:
-        """Return e at `share` times the velocity of the export."""
+        """Return the coefficient of restitution at `share` times the velocity of the export."""
         return hertz_restitution_at(self.pair.law, self.damping, share * self.velocity)
 
 
@@ -55,7 +56,7 @@ class LinearSpring:
 
 
 def velocity_damping(pairs: list[Pair], velocity: float) -> list[VelocityDamping]:
-    """Compute the damping with which every pair has the e of its law at `velocity` (m/s)."""
+    """Compute the damping that gives every pair the COR of its law at `velocity` (m/s)."""
     return [
         VelocityDamping(pair, velocity, hertz_damping(pair.law, velocity, pair.restitution))
         for pair in pairs

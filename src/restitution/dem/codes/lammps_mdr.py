@@ -19,7 +19,10 @@ _FAR = 0.1  # a fitted law is offered if its largest difference in e is at most 
 
 
 def mdr_offers(pairs: list[Pair], velocity: float) -> list[tuple[Pair, FittedLaw | None, str]]:
-    """Return every pair with its fitted mdr law and the obstacle to offering it, empty if none."""
+    """Return every pair with its fitted mdr law (or None) and the reason not to offer this law.
+
+    The reason is empty if the law can be offered.
+    """
     return [(pair, _fit_of(pair), _obstacle(pairs, pair, velocity)) for pair in pairs]
 
 
