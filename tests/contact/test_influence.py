@@ -1,5 +1,7 @@
 """Displacement due to one cell, compared with the integral of the point load over it."""
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
@@ -244,3 +246,12 @@ def test_blocks_that_are_long_both_ways_make_no_larger_one(small_cache):
     for n in ((100, 10), (10, 100)):
         influence_coefficients(*lags(*n), (1.0, 1.0), 1.0)
         assert operator_cache.nbytes == 8 * 1000
+
+
+@pytest.mark.parametrize(("n", "kept"), [(20, (30, 20)), (24, (10, 24))])
+def test_two_blocks_make_one_that_takes_at_most_two_thirds_of_the_cache(small_cache, n, kept):
+    """Of 1000 coefficients: 30 x 20 are kept together, but 30 x 24 are not."""
+    small_cache(8 * 1000)
+    for each in ((30, 10), (10, n)):
+        influence_coefficients(*lags(*each), (1.0, 1.0), 1.0)
+    assert operator_cache.nbytes == 8 * math.prod(kept)
