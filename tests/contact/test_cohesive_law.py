@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from restitution.contact.bodies import Body, Pair
-from restitution.contact.cohesive_law import BoundedLaw, law_of
+from restitution.contact.cohesive_law import BoundedLaw, largest_softening, law_of, stiffness
 from restitution.contact.contact import Contact, smooth
 from restitution.numerics.grid import Grid
 from tolerance import approx
@@ -51,3 +51,16 @@ def test_what_goes_beyond_the_limit_is_plastic_or_the_energy_of_the_continuation
     rest = law(u)[0] - law_of(CONTACT).energy(np.maximum(gap, law.least))
     assert rest[:2] == approx(law.continuation(u)[:2], rel=1e-9)
     assert law.continuation(u)[2:].tolist() == [0, 0]
+
+
+def test_the_stiffness_is_the_slope_of_the_traction():
+    gap, step = Z0 * np.array([0.9, 1.0, 1.3, 2.0]), 1e-5 * Z0
+    low, high = (law_of(CONTACT).traction(gap + sign * step) for sign in (-1, 1))
+    assert stiffness(CONTACT, Z0 / gap) == approx((high - low) / (2 * step), rel=1e-6)
+
+
+def test_the_largest_softening_is_that_of_all_wider_gaps():
+    for smallest in Z0 * np.array([0.8, 1.3, 1.6, 3.0]):
+        gaps = smallest * np.linspace(1, 5, 20001)
+        softest = -stiffness(CONTACT, Z0 / gaps).min()
+        assert largest_softening(CONTACT, smallest) == approx(softest)
