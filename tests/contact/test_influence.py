@@ -235,8 +235,10 @@ def test_coefficients_of_a_smaller_or_larger_block_are_the_same(aspect):
         assert_allclose(k, whole[: k.shape[0], : k.shape[1]], rtol=1e-14)
 
 
-def test_a_block_that_is_too_large_is_not_kept(small_cache):
-    small_cache(1200)  # 100 coefficients
+@pytest.mark.parametrize("size", [1200, 8 * 590])
+def test_a_block_that_is_too_large_is_not_kept(small_cache, size):
+    """400 coefficients are more than 150, and more than two thirds of 590."""
+    small_cache(size)
     influence_coefficients(*lags(20, 20), (1.0, 1.0), 1.0)
     assert len(operator_cache) == 0
 
