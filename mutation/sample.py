@@ -18,6 +18,7 @@ import difflib
 import json
 import os
 import random
+import re
 import shutil
 import subprocess
 import sys
@@ -106,9 +107,9 @@ def pointless(operator: str, line: str) -> bool:
 
     A mutated `|` is nearly always in a type hint, which is not evaluated. Arithmetic on floats that
     becomes a bit operation raises a TypeError at once. `strict` of `zip` guards against lengths
-    that differ, which they never do. A lone `*` or `/` marks keyword-only arguments.
+    that differ, which they never do. A `*` or `/` between commas marks keyword-only arguments.
     """
-    if line.strip() in ("*,", "/,"):
+    if re.search(r"(^|[,(])\s*[*/]\s*,", line):
         return True
     if "ReplaceBinaryOperator" in operator:
         before, after = operator.split("_")[1:]

@@ -1,5 +1,7 @@
 """Displacement due to one cell, compared with the integral of the point load over it."""
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
@@ -233,8 +235,10 @@ def test_coefficients_of_a_smaller_or_larger_block_are_the_same(aspect):
         assert_allclose(k, whole[: k.shape[0], : k.shape[1]], rtol=1e-14)
 
 
-def test_a_block_that_is_too_large_is_not_kept(small_cache):
-    small_cache(1200)  # 100 coefficients
+@pytest.mark.parametrize("size", [1200, 8 * 590])
+def test_a_block_that_is_too_large_is_not_kept(small_cache, size):
+    """400 coefficients are more than 150, and more than two thirds of 590."""
+    small_cache(size)
     influence_coefficients(*lags(20, 20), (1.0, 1.0), 1.0)
     assert len(operator_cache) == 0
 
@@ -244,3 +248,12 @@ def test_blocks_that_are_long_both_ways_make_no_larger_one(small_cache):
     for n in ((100, 10), (10, 100)):
         influence_coefficients(*lags(*n), (1.0, 1.0), 1.0)
         assert operator_cache.nbytes == 8 * 1000
+
+
+@pytest.mark.parametrize(("n", "kept"), [(20, (30, 20)), (24, (10, 24))])
+def test_two_blocks_make_one_that_takes_at_most_two_thirds_of_the_cache(small_cache, n, kept):
+    """Of 1000 coefficients: 30 x 20 are kept together, but 30 x 24 are not."""
+    small_cache(8 * 1000)
+    for each in ((30, 10), (10, n)):
+        influence_coefficients(*lags(*each), (1.0, 1.0), 1.0)
+    assert operator_cache.nbytes == 8 * math.prod(kept)

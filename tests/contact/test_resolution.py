@@ -1,4 +1,5 @@
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -6,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from restitution.contact.bodies import Body, Pair
+from restitution.contact.checks import resolution
 from restitution.contact.checks.finding import Finding
 from restitution.contact.checks.resolution import (
     ADHESIVE_NODES,
@@ -21,6 +23,7 @@ from restitution.contact.checks.resolution import (
     unresolved_adhesion,
     unresolved_patches,
 )
+from restitution.contact.cohesive import resolves_range
 from restitution.contact.contact import Contact, smooth
 from restitution.contact.loading import solve
 from restitution.numerics.grid import Grid
@@ -219,3 +222,22 @@ def test_the_error_of_pull_off_is_a_share_of_a_node(pair, detachment, share):
         coarse = Contact(pair, surface, work_of_adhesion=0.1, detachment=detachment)
         expected = share * max(spacing) / a_c
         assert expected_pull_off_error(coarse) == approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize(("share", "nodes"), [(0.99, math.inf), (1.01, 0.0)])
+def test_the_range_of_the_attraction_is_also_to_be_resolved_on_asperities(
+    pair, share, nodes, monkeypatch
+):
+    """The spacing is at most 0.3 sqrt(r z0) for asperities of radius r, here 1 um."""
+    z0, radius = 0.3e-9, 1e-6
+    monkeypatch.setattr(resolution, "radius_of_asperities", lambda _: radius)
+    grid = Grid(8, share * 0.3 * math.sqrt(radius * z0))
+    contact = Contact(
+        pair,
+        smooth(grid),
+        adhesion="cohesive",
+        work_of_adhesion=0.1 * pair.contact_modulus * z0**2 / grid.spacing[0],
+        equilibrium_separation=z0,
+    )
+    assert resolves_range(contact)
+    assert adhesive_nodes(SimpleNamespace(contact=contact)) == nodes

@@ -25,6 +25,7 @@ def pressed():
 def test_the_way_back_ends_without_contact(pressed):
     path = list(separation.separate(pressed))
     assert path[0] is pressed
+    assert separation.separation_of(path).steps == len(path[1:])
     assert path[-1].contact_nodes == 0
     assert all(state.contact_nodes for state in path[:-1])
     assert all(np.diff([state.indentation for state in path]) < 0)

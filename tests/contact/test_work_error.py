@@ -147,3 +147,16 @@ def test_pinning_adds_to_the_quadrature_of_balances_once(monkeypatch):
     assert first.work_error == approx(3e-16 + pinned[0], rel=1e-9)
     assert second.work_error == approx(6e-16 + pinned[1], rel=1e-9)
     assert pinned[0] > 0
+
+
+def test_a_short_step_has_at_most_the_error_of_any_growing_force(monkeypatch):
+    """No state is loaded between both, and a force that jumps at either end is within the error."""
+    monkeypatch.setattr(adhesive_work, "balance_of", lambda state: (state.indentation, state.force))
+    start, end = (
+        SimpleNamespace(indentation=x, force=F, loading_work=1e-13, contact=None)
+        for x, F in ((1.00e-8, 2.0e-5), (1.01e-8, 2.1e-5))
+    )
+    work, error, convolutions = adhesive_work.work_by_balance(end, start, lambda *_: None, 0.1)
+    assert convolutions == 0
+    assert work - error == approx(1e-13 + 2.0e-5 * 1e-10)
+    assert work + error == approx(1e-13 + 2.1e-5 * 1e-10)

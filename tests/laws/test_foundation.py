@@ -107,6 +107,19 @@ def test_below_the_first_depth_of_loading_the_loads_grow_in_proportion(wall):
     )
 
 
+def test_after_yield_the_springs_within_the_contact_carry_its_whole_force(wall):
+    """At every depth of loading, those beyond its contact radius carry nothing."""
+    yielded = replace(wall, separation=lambda x: 0.3 * x)
+    springs = Foundation.of(yielded, wall.deepest)
+    reach = []
+    for depth, loads in zip(springs.depths[19::20], springs.loads[19::20], strict=True):
+        reach.append(np.count_nonzero(loads > 0))
+        assert not loads[reach[-1] :].any()
+        assert loads.sum() * springs.width == approx(wall.loading(depth), rel=0.02)
+    assert reach[-1] == loads.size
+    assert (np.diff(reach) > 0).all()
+
+
 def test_a_contact_has_yielded_if_it_separates_a_thousandth_of_its_depth_above_touch():
     law = elastic(Pair(ALUMINA, ALUMINA), 1.0)
     for share, expected in ((0.9e-3, False), (1.1e-3, True)):

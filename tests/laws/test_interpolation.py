@@ -157,6 +157,14 @@ def test_where_sticking_ends(ratios, begins):
     assert curve.begins() == begins
 
 
+def test_the_last_of_several_sticking_points_counts():
+    V = np.array([1.0, 2.0, 4.0])
+    curve = RatioCurve(V, np.array([0.0, -0.1, 0.3]), adhesive=False)
+    assert 2.0 < curve.begins() < 4.0
+    assert curve.at(curve.begins()) == approx(0, abs=1e-9)
+    assert RatioCurve(V, np.array([-0.1, 0.0, 0.3]), adhesive=False).begins() == 2.0
+
+
 def test_the_error_is_at_least_the_distance_from_a_straight_line():
     """The points of a smooth curve are so dense that leave-one-out residuals almost vanish."""
     V = np.geomspace(1.0, 2.0, 40)

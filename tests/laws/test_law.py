@@ -262,6 +262,7 @@ def test_damaged_results_are_refused(rough, tmp_path):
         ({"mass": -1.0}, "mass"),
         ({"radius": 1.0}, "radius"),
         ({"mass": math.nan}, "mass"),
+        ({"mass": math.inf}, "mass"),
         ({"conventions": {}}, "conventions"),
         ({"points": []}, "points"),
     ],

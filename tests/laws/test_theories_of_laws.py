@@ -102,6 +102,14 @@ def test_a_law_with_another_interface_says_so(points, law):
     assert "p_y = 2000 MPa, w = 0.3 J/m^2" in said
 
 
+@pytest.mark.parametrize("p_y", [None, 2e9])
+@pytest.mark.parametrize("w", [0.0, 0.3])
+def test_the_computed_points_state_the_interface_of_their_law(law, p_y, w):
+    stated = {"yield_pressure_Pa": p_y, "work_of_adhesion_J_per_m2": w or None}
+    found = by_name(case_of(), V, law(yield_pressure=p_y, work_of_adhesion=w))["computed"]
+    assert found.parameters == {name: value for name, value in stated.items() if value}
+
+
 def test_nothing_is_fitted_to_what_is_not_resolved(law):
     coarse = tuple(point.model_copy(update={"resolved": False}) for point in law().points)
     found = law(points=coarse)

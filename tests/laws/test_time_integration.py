@@ -10,7 +10,8 @@ import pytest
 
 from restitution.case.case_file import parse_case
 from restitution.contact.bodies import Body, Pair
-from restitution.errors import CaseError, DomainError, OutputError
+from restitution.errors import CaseError, DomainError, NotConvergedError, OutputError
+from restitution.laws import time_integration
 from restitution.laws.from_results import bare_law
 from restitution.laws.time_integration import StoredForce, collide_in_time, course, stored_force
 from restitution.results.writer import ResultsFolder
@@ -82,6 +83,12 @@ def test_momentum_is_kept_and_a_wall_stays():
     assert wall.rebound_second == 0
 
 
+def test_equal_spheres_rebound_with_opposite_velocities():
+    pair = Pair(STEEL, STEEL)
+    found = collide_in_time(closed_form(pair, P_Y, np.geomspace(1e-8, 1e-6, 5)), 0.1)
+    assert found.rebound_first == approx(-found.rebound_second, rel=1e-12)
+
+
 def shaped(depths, powers, *, end=0.25):
     """A law that unloads from each depth with a power of the part that is left."""
     s = np.linspace(0, 1, 400)
@@ -122,6 +129,29 @@ def test_a_stored_curve_serves_depths_that_differ_by_rounding():
     for deepest in (1e-7 * (1 - 2e-5), 4e-7 * (1 + 2e-5)):
         with pytest.raises(DomainError, match="stored only from 100 to 400 nm"):
             law.branch(deepest)
+
+
+class Still(StoredForce):
+    """A pair that no force drives apart again."""
+
+    def branch(self, deepest):
+        return (lambda _: 0.0), 0.0, False
+
+
+def test_bodies_that_never_part_have_no_restitution():
+    law = Still(**vars(shaped([1e-7, 4e-7], [1.0, 1.0])))
+    with pytest.raises(NotConvergedError, match=r"at 0\.01 m/s did not end"):
+        collide_in_time(law, 0.01)
+
+
+def test_with_adhesion_the_force_is_linear_up_to_the_first_depth():
+    """It does the stored work there, although it pulls at first."""
+    depth, force, work = np.array([2e-8, 5e-8]), np.array([1e-3, 6e-3]), np.array([-4e-11, 5e-11])
+    pushing = time_integration._loading(depth, force, work)
+    x = np.linspace(0, depth[0], 5)
+    F = [pushing(float(each)) for each in x]
+    assert approx(np.linspace(F[0], force[0], 5)) == F
+    assert 0.5 * (F[0] + F[-1]) * depth[0] == approx(work[0])
 
 
 CASE = """

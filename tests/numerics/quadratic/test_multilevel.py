@@ -269,3 +269,17 @@ def test_coarser_grids_have_wider_cells_and_larger_tolerances(monkeypatch):
     ]
     assert tolerances[:3] == approx([1e-2] * 3, rel=2e-3)  # means over nodes lower the peak
     assert limits == [60] * 3 + [500] * (len(limits) - 3)
+
+
+@pytest.mark.parametrize(
+    ("shape", "free", "periodic"),
+    [
+        ((80, 90), True, True),
+        ((78, 90), False, False),
+        ((81, 90), True, False),
+        ((90, 81), True, False),
+    ],
+)
+def test_a_periodic_grid_is_coarsened_only_if_both_edges_are_even(shape, free, periodic):
+    assert multilevel.may_coarsen(shape, periodic=False) == free
+    assert multilevel.may_coarsen(shape, periodic=True) == periodic
