@@ -53,7 +53,7 @@ class Wire:
             self._connection.send((number, line))
 
     def receive(self) -> Any:
-        """Wait for the next message of the parent."""
+        """Wait for the next message from the parent process."""
         return self._connection.recv()
 
 
@@ -187,7 +187,7 @@ class Worker:
 
 
 def serve(connection: Connection, scans: Path, room: Path) -> None:
-    """Answer requests until the parent closes the connection or ends."""
+    """Answer requests until the parent process closes the connection or ends."""
     # Ctrl-C reaches every process of the terminal. Ignore it, because the parent ends this process.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.environ["MPLBACKEND"] = "agg"

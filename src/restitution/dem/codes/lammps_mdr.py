@@ -19,7 +19,7 @@ _FAR = 0.1  # a fitted law is offered if its largest difference in e is at most 
 
 
 def mdr_offers(pairs: list[Pair], velocity: float) -> list[tuple[Pair, FittedLaw | None, str]]:
-    """Return every pair with its fitted mdr law and the obstacle to offering it, empty if none."""
+    """Return every pair with its fitted mdr law (or None) and the reason why it is not offered."""
     return [(pair, _fit_of(pair), _obstacle(pairs, pair, velocity)) for pair in pairs]
 
 
@@ -28,7 +28,7 @@ def _fit_of(pair: Pair) -> FittedLaw | None:
 
 
 def _obstacle(pairs: list[Pair], pair: Pair, velocity: float) -> str:
-    """Return why `pair` gets no mdr line; empty if it gets one."""
+    """Return the reason why `pair` gets no mdr line; empty if it gets such a line."""
     spheres = [other for other in pairs if not other.wall]
     if not pair.wall and len(spheres) > 1:
         return (
@@ -44,7 +44,7 @@ def _obstacle(pairs: list[Pair], pair: Pair, velocity: float) -> str:
 
 
 def _unfit(pair: Pair, velocity: float) -> str:
-    """Return why the mdr fit of `pair` itself cannot be offered; empty if it can."""
+    """Return the reason why the mdr fit of `pair` itself is not offered; empty if it is offered."""
     fit = _fit_of(pair)
     if fit is None and not pair.law.laws:
         return "no law was fitted to it"

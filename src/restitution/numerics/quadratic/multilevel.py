@@ -140,12 +140,13 @@ def solve_multilevel(
 def solve_near_guess(
     operators: Operators, b: Array, *, tolerance: float, max_iterations: int
 ) -> tuple[Minimum, Box, int]:
-    """Minimise ½ pᵀK p − pᵀb with 0 ≤ p approximately, on a window around a guess.
+    """Minimise ½ pᵀK p − pᵀb with 0 ≤ p on a window around a guess.
+
+    The result is approximate, because the nodes outside the window are neither solved nor checked.
 
     The guess comes from coarser grids. The window includes the nodes where the guess has pressure
-    and the nodes that would overlap under the displacement of the coarser grid. The other nodes are
-    neither solved nor checked. Return the result on the window, the window, and the number of
-    products with K.
+    and the nodes where the displacement from the coarser grid leaves an overlap. Return the result
+    on the window, the window, and the number of products with K.
     """
     size = b.shape[0], b.shape[1]
     p, window = np.zeros_like(b), None
@@ -174,13 +175,13 @@ def mean_damped_preconditioner(inverse: Operator, p: Array, b: Array, upper: Bou
 
     If `inverse` does not overestimate the response to a mean, it is returned without damping.
 
-    The mean part of a residual is constant on the contact nodes and drops to zero at the contact
-    edge. The inverse of a smoothing operator amplifies the short waves of this drop, more so on
-    finer grids (McLean and Steinbach 1999, Adv. Comput. Math. 11, 271–286). So `inverse`
+    The part of a residual that equals its mean is constant on the contact nodes and drops to zero
+    at the contact edge. The inverse of a smoothing operator amplifies the short waves of this drop,
+    more so on finer grids (McLean and Steinbach 1999, Adv. Comput. Math. 11, 271–286). So `inverse`
     overestimates the response to the constant part, by up to 30 times on rough contacts. Conjugate
     gradients would have to correct this part again whenever nodes reach or leave a bound. The
     damping factor follows from the guess `p`, for which K p = b on the free nodes. The nearly
-    constant part is represented by local means around 8 × 8 places.
+    constant part is represented by local means around 8 × 8 points of a coarse lattice.
     """
     free, free_nodes, contact_nodes = _between_the_bounds(p, upper)
     if free_nodes <= 0.5 * contact_nodes:  # no guess, or most contact nodes yield
@@ -225,7 +226,7 @@ def _is_array(bound: Bound) -> TypeGuard[Array]:
 
 
 def _between_the_bounds(p: Array, upper: Bound) -> tuple[Mask, int, int]:
-    """Return the mask of 0 < p < `upper`, its number of true nodes, and the number with p > 0."""
+    """Return the mask of nodes with 0 < p < `upper`, their number, and the number with p > 0."""
     touching = p > 0
     free = touching & (p < upper)
     return free, int(np.count_nonzero(free)), int(np.count_nonzero(touching))
