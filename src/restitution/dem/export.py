@@ -36,7 +36,7 @@ def export(laws: Sequence[Law], code: str, velocity: float | None) -> dict[str, 
 
     Returns the text of each file by name.
 
-    All codes except `csv` take one coefficient of restitution for each pair, so they need the
+    All codes except `csv` use one coefficient of restitution for each pair, so they need the
     `velocity` (m/s) at which this coefficient holds. Raises `CaseError` if the velocity is missing,
     if a pair has no law, or if the code does not accept a value. Raises `DomainError` for a
     velocity outside the computed velocities.

@@ -1,6 +1,6 @@
 """Functions that all exports share: the pairs at one velocity, comments, and templates.
 
-DEM codes take one coefficient of restitution e for each pair, so an export is valid at one impact
+DEM codes use one coefficient of restitution e for each pair, so an export is valid at one impact
 velocity. The comments in an export give the origin of e, its error, and its values at other
 velocities. Comments are plain ASCII without quotes, braces or line-continuation characters, so that
 a name or title given by the user cannot end a comment.

@@ -240,8 +240,9 @@ class Law(_Stored):
         """Estimate COR at `velocity` (m/s).
 
         The error of the estimate is the sum of two parts: the error of the points, interpolated
-        linearly in ln V, and the interpolation error of W_u/W_l (`RatioCurve.error`). The sum is
-        continuous in V. Raises `DomainError` outside the computed velocities.
+        linearly in ln V, and the error of COR due to the interpolation of W_u/W_l
+        (`RatioCurve.error`). The sum is continuous in V. Raises `DomainError` outside the computed
+        velocities.
         """
         if not self.lowest * (1 - _SAME) <= velocity <= self.highest * (1 + _SAME):
             raise DomainError(

@@ -117,7 +117,7 @@ class Inbox:
 
 
 class Worker:
-    """Answers requests, with a method for each kind; reads scans in `scans`, writes to `room`."""
+    """Answers requests, with a method for each kind; reads scans from `scans`, writes to `room`."""
 
     def __init__(self, scans: Path, room: Path, check: Callable[[], None]) -> None:
         self._scans, self._room, self._check = scans, room, check

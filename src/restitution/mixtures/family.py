@@ -95,7 +95,7 @@ class Family:
 
     @cached_property
     def _grid(self) -> dict[str, Any]:
-        """Make the table `[grid]`, which is the same for all reduced radii, like the surface."""
+        """Make the table `[grid]`; like the surface, it is the same for all reduced radii."""
         if self.mixture.grid is not None:
             return {"refine": "auto", **self.mixture.grid}
         probe = {"nodes": 64, "spacing": "1 um"}

@@ -155,7 +155,7 @@ class ResultsFolder:
             self.unloading.append((deepest, points))
 
     def discard(self) -> None:
-        """Remove the empty tables, and the folder if it is new, so that -o can name it again."""
+        """Remove the empty tables, and the folder if it is new, so that a new run can use it."""
         for name in ("curve.csv", "unloading.csv"):
             (self.path / name).unlink(missing_ok=True)
         if self._new:

@@ -111,9 +111,10 @@ class Companions:
     def materials(self, work: Array) -> list[Array]:
         """Changes of COR at `work` (J) due to the spread of library values.
 
-        Elasticity, yield model and density cause one change each, unless they have no spread. Both
-        bodies are moved together to the low end and then to the high end of the spread, and the
-        larger change of COR counts. The list is empty if no value comes from the library.
+        Elasticity, yield model and density cause one change each, unless they have no spread. The
+        values of both bodies are set together to the low end and then to the high end of the
+        spread, and the larger change of COR is used. The list is empty if no value comes from the
+        library.
         """
         coarse = self._coarse(self.case)
         ends = [_spread(self.case, end) for end in ("low", "high")]
