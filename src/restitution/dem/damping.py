@@ -1,13 +1,13 @@
 """Damping parameters of simple contact laws that return a given coefficient of restitution e.
 
 A linear spring and dashpot without tension has the equation x″ = −max(ω²x + 2ζωx′, 0) for the
-overlap x, with the natural frequency ω and the damping ratio ζ. The contact ends when the force is
-zero, after the phase 2 arccos ζ, with
+overlap x, with the natural frequency ω and the damping ratio ζ. The contact ends when the force
+returns to zero, which is at the phase 2 arccos ζ. Then
 
     e = exp(−2ζ arccos ζ/(1 − ζ²)^½).
 
 For ζ > 1, arccosh and ζ² − 1 replace arccos and 1 − ζ². Source: T. Schwager, T. Pöschel, Granular
-Matter 9 (2007) 465, for a force that must not attract.
+Matter 9 (2007) 465, where the force is never attractive.
 
 The law of Hunt and Crossley is F = f(x)(1 + d x′) with any function f and the dissipation d.
 Dividing m x′ dx′ by 1 + d x′ and integrating over the contact gives, with c = dV and the impact
@@ -47,7 +47,7 @@ _LARGEST_DAMPING = 20.0
 
 
 def dashpot_restitution(ratio: float) -> float:
-    """Return e of a linear spring and dashpot without tension, for its damping ratio ζ (1)."""
+    """Return e of a linear spring and dashpot without tension from its damping ratio ζ."""
     if ratio == 1:
         return math.exp(-2)
     root = math.sqrt(abs(1 - ratio**2))
@@ -56,12 +56,12 @@ def dashpot_restitution(ratio: float) -> float:
 
 
 def dashpot_ratio(restitution: float) -> float:
-    """Return the damping ratio ζ (1) with which a spring and dashpot without tension has e."""
+    """Return the damping ratio ζ with which a spring and dashpot without tension has a given e."""
     return _root(dashpot_restitution, restitution, _LARGEST_DAMPING)
 
 
 def hunt_crossley_dissipation(restitution: float) -> float:
-    """Return the product dV (1) of dissipation d and impact velocity V that gives e > 0."""
+    """Return the product dV (dimensionless) of dissipation d and impact velocity V for e > 0."""
     e = restitution
     if 1 - e < _NEARLY_ELASTIC:
         return 1.5 * (1 - e**2) / (1 + e**3)
@@ -77,7 +77,7 @@ def hunt_crossley_dissipation(restitution: float) -> float:
 
 
 def hunt_crossley_restitution(dissipation: float) -> float:
-    """Return e for the product dV (1) of dissipation d and impact velocity V."""
+    """Return e from the product dV (dimensionless) of dissipation d and impact velocity V."""
     c = dissipation
     if c < _SMALL:
         return 1.0 - 2 / 3 * c
@@ -90,7 +90,7 @@ def hunt_crossley_restitution(dissipation: float) -> float:
 
 
 def hertz_restitution(damping: float) -> float:
-    """Return e of a Hertz contact with the dimensionless damping g; 0 if it does not rebound."""
+    """Return e of a Hertz contact with the dimensionless damping g; 0 without rebound."""
 
     def slope(_: float, y: tuple[float, float]) -> list[float]:
         return [y[1], -(max(y[0], 0.0) ** 1.5) - damping * y[1]]
@@ -104,7 +104,7 @@ def hertz_restitution(damping: float) -> float:
 
 
 def hertz_damping(law: Law, velocity: float, restitution: float) -> float:
-    """Return the damping coefficient γ (kg/s) of a Hertz contact that has e at `velocity` (m/s)."""
+    """Return the damping γ (kg/s) with which a Hertz contact has e at `velocity` (m/s)."""
     g = _root(hertz_restitution, restitution, 2.0)
     return g * law.mass * velocity / _length(law, velocity)
 

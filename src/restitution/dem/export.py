@@ -32,12 +32,14 @@ _WHOLE = (
 
 
 def export(laws: Sequence[Law], code: str, velocity: float | None) -> dict[str, str]:
-    """Make the input of `code` (one of `CODES`) for the pairs of `laws`; return names and texts.
+    """Make input files of `code` (one of `CODES`) for the pairs of `laws`.
 
-    All codes except `csv` take one coefficient of restitution for each pair, so they need the
-    `velocity` (m/s) at which it holds. Raises `CaseError` if the velocity is missing, if a pair has
-    no law, or if the code does not accept a value. Raises `DomainError` for a velocity outside the
-    computed velocities.
+    Returns the text of each file by name.
+
+    All codes except `csv` use one coefficient of restitution for each pair, so they need the
+    `velocity` (m/s) at which this coefficient holds. Raises `CaseError` if the velocity is missing,
+    if a pair has no law, or if the code does not accept a value. Raises `DomainError` for a
+    velocity outside the computed velocities.
     """
     table = pair_table(laws)
     if code == "csv":
@@ -61,7 +63,7 @@ def limit(code: str) -> str:
 
 
 def write_export(texts: dict[str, str], out: Path) -> list[Path]:
-    """Write the files into `out`; existing files are never overwritten. Raises `OutputError`."""
+    """Write `texts` (by file name) into `out`; never overwrite a file. Raises `OutputError`."""
     with writing(out):
         out.mkdir(parents=True, exist_ok=True)
         there = [name for name in texts if (out / name).exists()]
@@ -75,7 +77,7 @@ def write_export(texts: dict[str, str], out: Path) -> list[Path]:
 
 
 def _table(table: PairTable, velocity: float | None) -> str:
-    """Write a CSV text: the points of all pairs or, if given, the values at `velocity` (m/s)."""
+    """Make a CSV table of all pairs: values at `velocity` (m/s), or all points if it is None."""
     rows: list[dict[str, float | str]] = []
     for i, j, law in table.pairs():
         pair: dict[str, float | str] = {

@@ -1,6 +1,6 @@
 """Functions that all exports share: the pairs at one velocity, comments, and templates.
 
-DEM codes take one coefficient of restitution e for each pair, so an export is valid at one impact
+DEM codes use one coefficient of restitution e for each pair, so an export is valid at one impact
 velocity. The comments in an export give the origin of e, its error, and its values at other
 velocities. Comments are plain ASCII without quotes, braces or line-continuation characters, so that
 a name or title given by the user cannot end a comment.
@@ -52,7 +52,7 @@ class Pair:
 
     @property
     def friction(self) -> float:
-        """The coefficient of friction of the case, or a placeholder."""
+        """The coefficient of friction of the case, or the placeholder `FRICTION`."""
         return FRICTION if self.law.friction is None else self.law.friction
 
     @property
@@ -95,13 +95,17 @@ def pairs_at(table: PairTable, velocity: float, code: str, lowest: float) -> lis
 
 
 def contact_time(law: Law, radius: float | None = None) -> float:
-    """Elastic contact time (s) at 1 m/s, 2.87 (m*²/(R* E*² V))^⅕ (Johnson 1985, eq. 11.24)."""
+    """Contact time (s) of an elastic impact at 1 m/s.
+
+    It is 2.87 (m*²/(R* E*² V))^⅕ with V = 1 m/s (Johnson 1985, eq. 11.24). `radius` (m) replaces
+    the R* of the law.
+    """
     R = law.radius if radius is None else radius
     return float(2.87 * (law.mass**2 / (R * law.contact_modulus**2)) ** 0.2)
 
 
 def density_of(particle: Particle) -> float:
-    """The density of a sphere (kg/m³). Raises `CaseError` if the law states none."""
+    """The density of a sphere (kg/m³). Raises `CaseError` if the density is unknown."""
     if particle.density is None:
         raise CaseError(
             f"{particle}: has no density, but DEM needs one; give the density in the case"
@@ -132,8 +136,8 @@ def header(
 ) -> list[str]:
     """Write the comment lines above the export for `code`.
 
-    `ends` describes where `code` ends a contact. `constant` says whether e in `code` is the same at
-    every velocity.
+    `ends` describes the condition at which `code` ends a contact. `constant` says whether e in
+    `code` is the same at every velocity.
     """
     lines = _origin(velocity, code, ends, constant)
     lines += ["", "Types:"]

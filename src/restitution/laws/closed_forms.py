@@ -136,7 +136,7 @@ class Bodies:
 
     @property
     def strength(self) -> float:
-        """Yield strength Y (Pa) of the softer body; p_y/2.8 if a body has no yield strength."""
+        """Yield strength Y (Pa) of the softer body; p_y/2.8 if the case lacks a yield strength."""
         return self.p_y / STRENGTHS if self.strengths is None else min(self.strengths)
 
     @property
@@ -149,19 +149,22 @@ class Bodies:
 
     @property
     def yielding_wall(self) -> bool | None:
-        """Whether the wall is softer than the sphere; None if unknown, or without a wall."""
+        """Whether the wall is softer than the sphere; None if unknown, or if there is no wall."""
         if not self.walls or self.strengths is None or self.strengths[0] == self.strengths[1]:
             return None
         return (self.strengths[1] < self.strengths[0]) == self.sphere_is_first
 
     def velocity(self, indentation: Array) -> Array:
-        """Impact velocity (m/s) that reaches `indentation` (m), by Thornton and Ning or Hertz."""
+        """Impact velocity (m/s) that reaches `indentation` (m).
+
+        The theory is that of Thornton and Ning, or of Hertz if the bodies are elastic.
+        """
         if self.elastic:
             return self.hertz.impact_velocity(indentation, self.m)
         return self.yielding.impact_velocity(indentation, self.m)
 
     def depth_under(self, force: Array) -> Array:
-        """Indentation (m) under `force` (N), by Thornton and Ning; by Hertz if elastic."""
+        """Indentation (m) under `force` (N), from the same theories as in `velocity`."""
         return (self.hertz if self.elastic else self.yielding).indentation(force)
 
 
@@ -169,8 +172,9 @@ class Bodies:
 class Form:
     """The result of one closed form.
 
-    `restitution` is e at the velocities, `holds` the range of validity in words. `takes_strength`
-    says whether the form uses the yield strength Y, `with_adhesion` whether it includes adhesion.
+    `restitution` is e at the impact velocities, and `holds` describes the range of validity in
+    words. `takes_strength` says whether the form uses the yield strength Y, and `with_adhesion`
+    says whether it includes adhesion.
     """
 
     restitution: Array

@@ -2,15 +2,16 @@
 
     e² = Σ c_k L^k − s/V²,   L = ln(V/V₀)/w in [−1, 1]
 
-V₀ is the geometric mean of the lowest and highest velocity, and w scales ln V to the interval. The
-last term is the loss by adhesion, which is the same energy at every velocity. For an elastic pair s
-is the square of the sticking velocity (Thornton & Ning 1998). The polynomial describes the loss by
-yielding. Low velocities at which nothing is lost (e = 1) or the pair sticks (e = 0) are excluded.
+V₀ is the geometric mean of the lowest and highest velocity, and w scales ln(V/V₀) to the interval
+[−1, 1]. The term s/V² is the loss by adhesion, which is the same energy at every velocity. For an
+elastic pair s is the square of the sticking velocity (Thornton & Ning 1998). The polynomial
+describes the loss by yielding. Low velocities at which nothing is lost (e = 1) or the pair sticks
+(e = 0) are excluded, except the highest of these velocities.
 
 The fit is linear least squares in e². The error between the points is estimated by the larger of
 two values: the largest residual, and the largest leave-one-out residual (as in PRESS, Allen 1974,
-but with the maximum instead of the sum). The polynomial has the lowest
-degree whose error is small, or near the smallest error of all degrees.
+but with the maximum instead of the sum). The polynomial has the lowest degree whose error is below
+0.001 or at most 1.1 times the smallest error of all degrees.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ _COUNTS = 0.01  # decrease of e² due to adhesion at the velocity `adhesive_belo
 
 
 def compact_fit(law: Law) -> CompactFit | None:
-    """Fit the compact formula to the resolved points of `law`; None if fewer than four are used."""
+    """Fit the compact formula to the resolved points of `law`; None if fewer than four remain."""
     V, ratio = law.column("velocity", resolved=True), law.column("ratio", resolved=True)
     lossless = law.work_of_adhesion == 0
     first = 0

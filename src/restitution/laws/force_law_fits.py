@@ -55,7 +55,10 @@ _AT_FORCE_ZERO = "separation, where the force is back to zero"
 
 
 def fitted_laws(law: Law, begin: Begin | None = None) -> tuple[FittedLaw, ...]:
-    """Fit all applicable force laws to `law`; none if COR is 1 or no point is resolved."""
+    """Fit all applicable force laws to `law`.
+
+    The result is empty if COR is 1 at all resolved points, or if no point is resolved.
+    """
     if _seen(law, "restitution").min(initial=1.0) > 1 - LOSS:
         return ()
     fits, found = _all(law), []
@@ -301,8 +304,8 @@ def _least_squares(
 ) -> Array:
     """Minimise the sum of squares of `misfit`, whose kinks can lead to several minima.
 
-    The search runs from several starting points. With a single parameter, one is enough, because
-    COR is monotone in this parameter.
+    The search runs from several starting points. A single parameter needs only one starting point,
+    because COR is monotone in this parameter.
     """
     from scipy.optimize import least_squares
 

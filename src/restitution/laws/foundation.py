@@ -1,10 +1,10 @@
 """A one-dimensional foundation with the normal and tangential response of a stored contact.
 
-Springs stand side by side on a line. The spring at the distance x from the middle touches at the
-indentation g(x). At the indentation δ it carries the normal load 2E* (δ − g) per unit length of the
-half line. With the tangential displacement u, it also carries the tangential load 2G* u. g follows
-from the normal curve F(δ) alone: the inverse of g(x) is the contact radius a(δ) = F′(δ)/2E*. A
-sticking spring is displaced with the bodies. The load |2G* u| is at most µ times the normal load,
+Springs stand side by side on a line. The spring at the distance x from the middle touches when the
+indentation reaches g(x). At the indentation δ, its normal load is 2E* (δ − g) per unit length of
+the half line. With the tangential displacement u, its tangential load is 2G* u. g follows from the
+normal curve F(δ) alone: the inverse of g(x) is the contact radius a(δ) = F′(δ)/2E*. A sticking
+spring is displaced with the bodies. The tangential load |2G* u| is at most µ times the normal load,
 where µ is the coefficient of friction. For a sphere, g = x²/R*, and the foundation is exact: it
 gives Hertz's force, and Cattaneo's and Mindlin's tangential force for every history (Popov and Heß
 2015, Method of Dimensionality Reduction, chapters 3 and 5). For other elastic contacts, µ times the
@@ -12,9 +12,9 @@ difference of two normal forces is a good approximation of the tangential force 
 Appl. Mech. 65, 478–487; Ciavarella 1998, Int. J. Solids Struct. 35, 2349–2378).
 
 A contact that has yielded responds to small motions elastically, as on its unloading curve. At
-every depth of loading, the normal loads of the springs are therefore those of the unloading curve
-from this depth. Springs that already touch keep their tangential displacement. This extension is
-not in the cited literature. `tangential_error` estimates the error of this law.
+every depth of loading, the normal loads of the springs are therefore computed from the unloading
+curve that starts at this depth. Springs that already touch keep their tangential displacement. This
+extension is not in the cited literature. `tangential_error` estimates the error of this law.
 """
 
 from __future__ import annotations
@@ -85,9 +85,9 @@ class Foundation:
         """Move the bodies tangentially by `motion` (m).
 
         `u` (m) holds the tangential displacements of the springs, and `limit` (N) their friction
-        limits. `factor` multiplies the tangential modulus. `motion` and `factor` may be arrays;
-        each of their values belongs to a row of `u`. Returns the new displacements (m), the
-        tangential force (N), and the work of friction (J).
+        limits. `factor` multiplies the tangential modulus. `motion` and `factor` may be arrays with
+        one value for each row of `u`. Returns the new displacements (m), the tangential force (N),
+        and the work of friction (J).
         """
         stiffness = 2 * self.moduli[1] * self.width * np.asarray(factor)
         largest = limit / stiffness[..., None]
@@ -103,7 +103,7 @@ def has_yielded(law: StoredForce, deepest: float) -> bool:
 
 
 def _touching(law: StoredForce, depth: float, contact_modulus: float) -> tuple[Array, Array]:
-    """Return indentations (m) on the unloading curve from `depth` (m), and contact radii (m) there.
+    """Return indentations (m) on the unloading curve from `depth` (m), with contact radii (m).
 
     The radii are made to increase with the indentation, so that every spring touches once. The
     radii are scaled so that the loads of the springs add up to the force.

@@ -169,7 +169,10 @@ def _points(run: RunResults, asked: bool) -> list[Point]:
 
 
 def _ratio(row: _Row, work: float, *, means: bool) -> float:
-    """Ratio of unloading to loading work; e² if the row is a mean over surfaces and e > 0."""
+    """Ratio of unloading to loading work.
+
+    For means over surfaces, the ratio is e² if e > 0, so that it agrees with the mean COR.
+    """
     ratio, e = row["unloading_work_J"] / work, row["restitution"]
     return e * e if means and e > 0 else ratio
 

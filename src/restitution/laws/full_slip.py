@@ -1,15 +1,16 @@
 """Closed forms for impacts in which the whole contact slides from the beginning to the end.
 
-The bodies meet at the angle θ from the normal, with the tangential and normal velocities V_t and
-V_n. In the foundation (`foundation`), a spring that slides has the displacement µ (E*/G*)(δ − g),
-where δ is the indentation and g the indentation at which this spring touches. It continues to slide
-as long as the velocity U of the contact point exceeds the rate of this displacement:
+The bodies meet at the angle θ from the normal, with the tangential velocity V_t, the normal
+velocity V_n and the normal restitution e. In the foundation (`foundation`), a spring that slides
+has the displacement µ (E*/G*)(δ − g), where δ is the indentation and g the indentation at which
+this spring touches. It continues to slide as long as the velocity U of the contact point exceeds
+the rate of this displacement:
 
     U > µ (E*/G*) dδ/dt.
 
 With full slip, the difference of the two sides decreases during the whole contact. So the condition
-is strictest at the end of contact, with dδ/dt = −e V_n and U = V_t − (7/2) µ (1 + e) V_n. There it
-is
+is strictest at the end of contact, where dδ/dt = −e V_n and U = V_t − (7/2) µ (1 + e) V_n. There
+the condition becomes
 
     tan θ ≥ µ [(7/2)(1 + e) − e E*/G*].
 
@@ -27,9 +28,9 @@ def full_slip_angle(friction: float, restitution: float, modulus_ratio: float) -
     """The smallest angle of impact at which the whole contact slides, for bodies without spin.
 
     Args:
-        friction: Coefficient of friction µ (1).
-        restitution: Normal restitution e (1).
-        modulus_ratio: G*/E* (1).
+        friction: Coefficient of friction µ (dimensionless).
+        restitution: Normal restitution e (dimensionless).
+        modulus_ratio: G*/E* (dimensionless).
 
     Returns:
         The angle from the normal (rad).
@@ -46,12 +47,13 @@ def full_slip_restitution(friction: float, restitution: float, angle: float) -> 
     """Tangential restitution of the centres with full slip: 1 − µ (1 + e)/tan θ.
 
     Args:
-        friction: Coefficient of friction µ (1).
-        restitution: Normal restitution e (1).
+        friction: Coefficient of friction µ (dimensionless).
+        restitution: Normal restitution e (dimensionless).
         angle: Angle of impact from the normal (rad), above 0.
 
     Returns:
-        Ratio of the tangential velocities of the centres after and before the impact (1).
+        Ratio of the tangential velocities of the centres after and before the impact
+        (dimensionless).
 
     Source:
         The impulse of a sliding contact: µ times the normal impulse, (1 + e) m* V_n.

@@ -5,15 +5,16 @@
 W_u and W_l are the works of unloading and loading, V is the impact velocity and V_s the sticking
 velocity. A monotone cubic (PCHIP) interpolates q. The term s/V² is the loss by adhesion, an energy
 that is about the same at every velocity (s = V_s² for an elastic pair: Thornton & Ning 1998). s is
-chosen such that q is constant between the two lowest velocities, but not negative. The pair
-rebounds above the velocity at which the interpolated ratio is zero. Without adhesion s = 0.
+chosen such that q is constant between the two lowest velocities. A negative s is replaced by zero,
+and without adhesion s is zero. The pair rebounds above the velocity at which the interpolated ratio
+is zero.
 
 The error estimate at the middle of an interval is 1.5 times the larger leave-one-out residual of
 the two end points, and at least the difference between the cubic and linear interpolation. With
 only two points, it is the difference between their values. Towards the end points, the estimate
 decreases to zero as 2 (t (1 − t))^½, where t (0 to 1) is the position in the interval of ln V. The
-standard deviation of a random walk with both ends fixed has the same form. docs/dem.md says how
-often the error is within the estimate for rough surfaces.
+standard deviation of a random walk with both ends fixed has the same form. For rough surfaces,
+docs/dem.md states how often the true error is within the estimate.
 """
 
 from __future__ import annotations
@@ -59,9 +60,9 @@ class RatioCurve:
         return max(middle * 2 * math.sqrt(t * (1 - t)), line)
 
     def interval(self, velocity: float) -> tuple[int, float]:
-        """Return the index of the first point above `velocity` (m/s), and t in the interval below.
+        """Find the interval between two points that contains `velocity` (m/s).
 
-        t (0 to 1) is the position of ln V between the points on both sides of `velocity`.
+        Returns the index of the upper point, and the position t (0 to 1) of ln V in the interval.
         """
         L = math.log(velocity)
         after = min(max(int(np.searchsorted(self._L, L)), 1), self._L.size - 1)

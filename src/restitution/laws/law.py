@@ -64,9 +64,9 @@ class Particle(_Stored):
 class Point(_Stored):
     """The result at one impact velocity, in SI units.
 
-    `ratio` is W_u/W_l, the unloading work over the loading work; it is negative if the pair sticks.
-    `error` is the error of `restitution`. `indentation` and `force` are the maxima during the
-    impact.
+    `ratio` is W_u/W_l, the unloading work divided by the loading work; it is negative if the pair
+    sticks. `error` is the error of `restitution`. `indentation` and `force` are the maxima during
+    the impact.
     """
 
     velocity: Positive
@@ -91,10 +91,10 @@ class CompactFit(_Stored):
 
     `coefficients` are c_k, `centre` is V₀ and `width` is w. e = 0 where e² is negative and for V ≤
     `sticks_below`; e = 1 for V ≤ `elastic_below`. The fit uses the resolved points. `lowest` and
-    `highest` (m/s) are the first and the last resolved point, and the fit has no value outside.
-    `worst` is the largest difference in e at the resolved points; `between` is the largest
-    difference at a point that was left out of the fit. Velocities are in m/s, and `adhesion` is s
-    in m²/s².
+    `highest` (m/s) are the velocities of the first and the last resolved point; outside them the
+    fit has no value. `worst` is the largest difference in e at the resolved points; `between` is
+    the largest difference at a point that was left out of the fit. Velocities are in m/s, and
+    `adhesion` is s in m²/s².
     """
 
     coefficients: tuple[float, ...]
@@ -112,8 +112,8 @@ class CompactFit(_Stored):
     def restitution(self, velocity: ArrayLike) -> Array:
         """Coefficient of restitution at `velocity` (m/s, any shape).
 
-        NaN outside `lowest` to `highest`, also if `velocity` is below `elastic_below` or
-        `sticks_below`.
+        NaN outside the range from `lowest` to `highest`, even where `velocity` is below
+        `elastic_below` or `sticks_below`.
         """
         V = np.asarray(velocity, dtype=float)
         L = np.log(V / self.centre) / self.width
@@ -130,7 +130,7 @@ class CompactFit(_Stored):
 class FittedLaw(_Stored):
     """A force law of DEM codes, fitted to the computed COR.
 
-    The keys of `parameters` carry the units. `restitution` is the COR of the force law at the
+    The keys of `parameters` include the units. `restitution` is the COR of the force law at the
     velocities of the points; it is None where the force law has no solution, and outside the
     resolved velocities (`Law.fitted_range`). `rms` and `worst` are the differences from the
     computed COR at the resolved points.
@@ -171,8 +171,8 @@ class Law(_Stored):
 
     `radius`, `contact_modulus` and `mass` are R*, E* and m*. `friction` is the coefficient of
     friction of the case, or None; e does not depend on friction. `yield_velocity` and
-    `sticking_velocity` belong to the smooth bodies. `sticks_below` is the velocity above which this
-    pair rebounds; None if the pair rebounds at every computed velocity, or at none of them.
+    `sticking_velocity` are those of the smooth bodies. `sticks_below` is the velocity above which
+    this pair rebounds; None if the pair rebounds at every computed velocity, or at none of them.
     """
 
     title: str
@@ -211,12 +211,12 @@ class Law(_Stored):
 
     @property
     def lowest(self) -> float:
-        """The lowest computed velocity, m/s."""
+        """The lowest computed velocity (m/s)."""
         return self.points[0].velocity
 
     @property
     def highest(self) -> float:
-        """The highest computed velocity, m/s."""
+        """The highest computed velocity (m/s)."""
         return self.points[-1].velocity
 
     @property
@@ -240,8 +240,9 @@ class Law(_Stored):
         """Estimate COR at `velocity` (m/s).
 
         The error of the estimate is the sum of two parts: the error of the points, interpolated
-        linearly in ln V, and the interpolation error of W_u/W_l (`RatioCurve.error`). The sum is
-        continuous in V. Raises `DomainError` outside the computed velocities.
+        linearly in ln V, and the error of COR due to the interpolation of W_u/W_l
+        (`RatioCurve.error`). The sum is continuous in V. Raises `DomainError` outside the computed
+        velocities.
         """
         if not self.lowest * (1 - _SAME) <= velocity <= self.highest * (1 + _SAME):
             raise DomainError(

@@ -5,11 +5,12 @@ normal velocity (`time_integration`). The contact point slides with the velocity
 
     U = v_t − R₁ω₁ − R₂ω₂,   dU/dt = −(7/2) T/m*,   dv_t/dt = −T/m*,   dω_i/dt = (5/2) T/(m_i R_i)
 
-for solid spheres (moment of inertia I = 2/5 m R²), where v_t is the tangential velocity of the
-centres and m* the reduced mass. The spin ω is positive in the direction in which friction turns a
-sphere without spin. The tangential force T follows from a one-dimensional foundation of springs
-with constant friction µ (`foundation`). If all springs slide to the end, the impulse of T is
-µ (1 + e) m* V_n for every force law, with the normal impact velocity V_n.
+for solid spheres (moment of inertia I = 2/5 m R²) with the radii R_i, the masses m_i and the spins
+ω_i. v_t is the tangential velocity of the centres and m* the reduced mass. A spin is positive in
+the direction in which friction turns a sphere without spin. The tangential force T follows from a
+one-dimensional foundation of springs with constant friction µ (`foundation`). If all springs slide
+to the end, the impulse of T is µ (1 + e) m* V_n for every force law, with the normal impact
+velocity V_n.
 
 To convert the error of the tangential law (`tangential_error`) to an error of the impulse of T, the
 motion is integrated again with a larger and a smaller tangential modulus. If the contact has
@@ -55,14 +56,16 @@ class ObliqueCollision:
     Attributes:
         velocity: Impact velocity (m/s).
         angle: Angle of impact from the normal (rad).
-        friction: Coefficient of friction µ (1).
-        normal_restitution: Ratio of the normal velocities after and before the impact (1).
+        friction: Coefficient of friction µ (dimensionless).
+        normal_restitution: Ratio of the normal velocities after and before the impact
+            (dimensionless).
         tangential_restitution: Ratio of the tangential velocities of the centres after and before
-            the impact (1); NaN for a head-on impact.
+            the impact (dimensionless); NaN for a head-on impact.
         rebound_angle: Angle of rebound of the centres from the normal (rad).
         spins: Angular velocities of the two bodies after the impact (rad/s); 0 for a wall.
         tangential_restitution_error: Error of `tangential_restitution` due to the tangential law
-            (1); NaN for a head-on impact. The error of the normal forces is not included.
+            (dimensionless); NaN for a head-on impact. The error of the normal forces is not
+            included.
         rebound_angle_error: Error of `rebound_angle` due to the tangential law (rad).
         spin_errors: Errors of `spins` due to the tangential law (rad/s).
         friction_loss: Energy lost to friction (J).
@@ -72,7 +75,7 @@ class ObliqueCollision:
         normal_force: Normal force (N).
         tangential_force: Tangential force (N).
         slip_velocity: Velocity of the contact point (m/s).
-        sticking: Fraction of the normal force that sticking springs carry (1).
+        sticking: Fraction of the normal force that sticking springs carry (dimensionless).
     """
 
     velocity: float
@@ -123,7 +126,7 @@ def collide_obliquely(
         law: Stored normal force of the pair (`stored_force`), without adhesion.
         velocity: Relative velocity of the centres before the impact (m/s), positive.
         angle: Angle between this velocity and the normal (rad), at least 0 and below π/2.
-        friction: Coefficient of friction µ (1), not negative.
+        friction: Coefficient of friction µ (dimensionless), not negative.
         spins: Angular velocities of the two bodies before the impact (rad/s), positive in the sense
             in which friction turns a body without spin.
 
@@ -245,7 +248,10 @@ def course(collision: ObliqueCollision) -> list[dict[str, float | str]]:
 
 @dataclass(frozen=True, eq=False)
 class _Course:
-    """Time series of an oblique impact, tangential impulse with error (N s), friction loss (J)."""
+    """Time series of an oblique impact, with its tangential impulse and friction loss.
+
+    `impulse` and `impulse_error` are in N s, `loss` in J.
+    """
 
     time: Array
     normal: Array
@@ -260,7 +266,7 @@ class _Course:
 def _slide(
     law: StoredForce, normal: ReferenceCollision, slip: float, friction: float, error: float
 ) -> _Course:
-    """Integrate the tangential motion; the contact point first slides with `slip` (m/s).
+    """Integrate the tangential motion, beginning with the slip velocity `slip` (m/s).
 
     `error` is the relative error of the tangential stiffness.
     """

@@ -28,9 +28,9 @@ class Reference:
 
 
 def force_references(results: xr.Dataset) -> list[Reference]:
-    """Closed forms of the force (N) against indentation (m), elastic and (if bodies yield) plastic.
+    """Closed forms of the force (N) against indentation (m): elastic and, if bodies yield, plastic.
 
-    The curves begin below the smallest indentation that carries a force in loading or unloading.
+    The curves begin below the smallest indentation with a force in loading or unloading.
     """
     R, E_star, p_y, w = _parameters(results)
     deepest = float(results["indentation"].max())
@@ -60,7 +60,7 @@ def restitution_references_by_indentation(results: xr.Dataset) -> list[Reference
 
 
 def restitution_references_by_velocity(results: xr.Dataset) -> list[Reference]:
-    """Closed forms of COR against impact velocity (m/s); NaN where a law has no value."""
+    """Closed forms of COR against impact velocity (m/s); NaN where a closed form has no value."""
     R, E_star, p_y, w = _parameters(results)
     velocity, mass = results["impact_velocity"].values, results.attrs["derived_reduced_mass_kg"]
     fine, m = _between(velocity), float(mass)
@@ -77,7 +77,7 @@ def restitution_references_by_velocity(results: xr.Dataset) -> list[Reference]:
 
 
 def least_indentation(results: xr.Dataset) -> float:
-    """The smallest indentation (m) that carries a force in loading or unloading."""
+    """The smallest positive indentation (m) with a force in loading or unloading."""
     found = [float(results["indentation"].min())]
     for k in range(results.sizes.get("unloading", 0)):
         force = results["unloading_force"][k].values

@@ -17,10 +17,11 @@ effects cause an error:
   constant β. Without slip this adds no tangential force by symmetry, and the stiffness grows only
   by about β²/3 (atanh(β)/β − 1 for a round punch; Spence 1968, Proc. R. Soc. A 305, 55–80). But if
   µ is not large compared with |β|, the surfaces slip radially under pressure alone (Spence 1975, J.
-  Elast. 5, 297–319), and friction cannot also resist a tangential motion. In coupled solutions, the
-  impulse changed as if the stiffness changed by less than |β| for µ < |β|, and by less than
-  |β|³/µ² for larger µ. In full slip the radial slip turns the friction away from the direction of
-  motion, so the impulse is smaller.
+  Elast. 5, 297–319), and friction cannot also resist a tangential motion. Solutions that include
+  this effect were compared with the law. The difference of the impulse corresponded to a relative
+  change of the stiffness of less than |β| if µ < |β|, and of less than |β|³/µ² for larger µ. In
+  full slip the radial slip turns the friction away from the direction of motion, so the impulse is
+  smaller.
 """
 
 from __future__ import annotations
@@ -51,7 +52,7 @@ _SHALLOWEST = 0.2  # unloading curves below this fraction of the deepest depth a
 
 @dataclass(frozen=True)
 class TangentialError:
-    """Relative errors of the tangential law (1).
+    """Relative errors of the tangential law (dimensionless).
 
     `stiffness` is the error of the tangential stiffness. `impulse` is an additional error of the
     tangential impulse of a contact far from full slip. `sliding` is the error of the tangential
@@ -66,8 +67,8 @@ class TangentialError:
 def tangential_error(law: StoredForce, deepest: float, friction: float) -> TangentialError:
     """Error of the tangential law for an impact with the maximum indentation `deepest` (m).
 
-    `friction` is the coefficient of friction (1). The errors hold for the grid of the stored
-    contact and do not include the error of the normal forces.
+    `friction` is the coefficient of friction (dimensionless). The errors hold for the grid of the
+    stored contact and do not include the error of the normal forces.
     """
     beta = abs(dundurs(law.pair))
     slipping = min(beta / friction, 1.0) ** 2 if friction > 0 else 1.0
@@ -87,7 +88,7 @@ def tangential_error(law: StoredForce, deepest: float, friction: float) -> Tange
 
 
 def dundurs(pair: Pair) -> float:
-    """Dundurs' second constant β of a pair (1), zero for like bodies.
+    """Dundurs' second constant β of a pair (dimensionless), zero for like bodies.
 
     β = [(1 − 2ν₁)/G₁ − (1 − 2ν₂)/G₂]/2[(1 − ν₁)/G₁ + (1 − ν₂)/G₂] (Johnson 1985, eq. 5.3).
     """

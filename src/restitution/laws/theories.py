@@ -43,11 +43,11 @@ class Theory:
 
 
 def velocities_of(case: Case, law: Law | None = None) -> Array:
-    """Velocities (m/s) of the table: those of the law if one is given, else the span of the case.
+    """Velocities (m/s) at which theories are evaluated: those of `law`, or a range from the case.
 
-    If the case gives indentations or loads, the span is between the velocities at which smooth
-    bodies reach the first and the last of these, by Thornton and Ning or, for elastic bodies, by
-    Hertz. Raises `CaseError`.
+    If the case gives indentations or loads, the ends of the range are the velocities at which
+    smooth bodies reach the first and the last indentation or load. These velocities follow from
+    Thornton and Ning or, for elastic bodies, from Hertz. Raises `CaseError`.
     """
     if law is not None:
         return law.column("velocity")
@@ -76,10 +76,10 @@ def theories(case: Case, velocities: Array, law: Law | None = None) -> list[Theo
 def theory_lines(
     case: Case, velocities: Array, found: list[Theory]
 ) -> list[tuple[str, bool, Array, Array]]:
-    """Lines of a figure: name, whether fitted, velocities (m/s) and COR of each theory in `found`.
+    """Lines of a figure: name, flag for fits, velocities (m/s) and COR of each theory in `found`.
 
     Closed forms are evaluated at many velocities between the first and the last of `velocities`,
-    fits only at `velocities`. The computed points are left out.
+    and fits only at `velocities`. The computed points are left out.
     """
     closed: dict[str, Array] = {}
     V = velocities
@@ -113,7 +113,7 @@ def marks(case: Case) -> dict[str, float]:
 
 
 def check_same_pair(case: Case, law: Law) -> None:
-    """Raise `CaseError` with the differing values if R*, E* or m* differ by more than 1e-6."""
+    """Raise `CaseError` if R*, E* or m* of case and law differ by more than 1e-6 (relative)."""
     bodies = Bodies.of(case)
     quantities = {
         "R*": (law.radius, bodies.R, "m"),
@@ -205,7 +205,7 @@ def _unresolved(law: Law) -> str:
 
 
 def _other_interface(bodies: Bodies, law: Law) -> str:
-    """The yield pressure and adhesion of the law, if they differ from those of the case."""
+    """Describe yield pressure and adhesion of the law, if they differ from the case."""
     differing = []
     p_y = math.inf if law.yield_pressure is None else law.yield_pressure
     if not math.isclose(p_y, bodies.p_y, rel_tol=_SAME):

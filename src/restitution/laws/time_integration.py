@@ -4,17 +4,17 @@
 
 x'' is an acceleration; v and v' are the velocities before and after the impact. F follows the
 loading curve until the particles stop approaching, and then the unloading curve from the depth
-reached. The resulting e is a check of the stored unloading work against the unloading forces, and
-of the formula for e from energies against an equation of motion.
+reached. The resulting e checks the stored unloading work against the unloading forces. It also
+checks the formula for e from energies against an equation of motion.
 
 The loading force is the derivative of a cubic Hermite spline through the stored loading work W. At
-the stored depths, the slope of the spline is the stored force. The motion stops where W equals the
-initial kinetic energy, as in the formula from energies. If W resembles a power of δ, the spline
-interpolates ln W against ln δ.
+the stored depths, the slope of the spline is the stored force. The particles therefore stop
+approaching where W equals the initial kinetic energy, as in the formula from energies. If W
+increases about as a power of δ, the spline interpolates ln W against ln δ.
 
 Unloading curves are monotone cubics (PCHIP) and are stored for some depths only. Between two of
-these depths, F/F_max is interpolated against (δ − δ_s)/(δ_max − δ_s), with the separation δ_s and
-the maximum force F_max of the intermediate depth.
+these depths, F/F_max is interpolated as a function of (δ − δ_s)/(δ_max − δ_s). Here δ_max is the
+intermediate depth, F_max the loading force there, and δ_s the indentation at separation.
 """
 
 from __future__ import annotations
@@ -91,8 +91,8 @@ class StoredForce:
     `deepest` is the largest indentation (m) with a stored force, and `highest` the impact velocity
     (m/s) that reaches it. The function `loading` maps indentation (m) to force (N). The function
     `separation` maps the maximum indentation to the indentation at separation (m). `unloading`
-    contains the indentations (increasing) and forces of one curve for each depth of
-    `unloading_from` (increasing). `roughness` is None for smooth bodies.
+    contains one curve (increasing indentations, and forces) for each depth of `unloading_from`;
+    these depths increase. `roughness` is None for smooth bodies.
     """
 
     pair: Pair
@@ -109,10 +109,10 @@ class StoredForce:
             raise CaseError("density: is missing; integrating a collision in time needs the masses")
 
     def branch(self, deepest: float) -> tuple[Force, float, bool]:
-        """Return the unloading force from `deepest` (m), the separation (m), and a flag.
+        """Return the force of unloading from `deepest` (m), the separation (m), and a flag.
 
-        The flag says whether the force is interpolated between two stored curves. Raises
-        `DomainError` if the stored unloading curves do not enclose this depth.
+        The separation is an indentation. The flag says whether the force is interpolated between
+        two stored curves. Raises `DomainError` if these curves do not enclose `deepest`.
         """
         depths = self.unloading_from
         if not depths[0] * (1 - _SAME) <= deepest <= depths[-1] * (1 + _SAME):
@@ -128,9 +128,9 @@ class StoredForce:
     def shape(self, deepest: float) -> tuple[Callable[[Any], Any], bool]:
         """Return the shape of the unloading curve from `deepest` (m), and a flag.
 
-        The shape is F/F_max as a function of (δ − δ_s)/(δ_max − δ_s), for numbers and arrays. The
-        flag says whether the shape is interpolated between two stored curves. Beyond the first or
-        the last stored curve, the shape is that of the nearest curve.
+        The shape is F/F_max as a function of (δ − δ_s)/(δ_max − δ_s); the module docstring defines
+        these symbols. The flag says whether it is interpolated between two stored curves. Beyond
+        the first or the last stored curve, the shape is that of the nearest curve.
         """
         depths = self.unloading_from
         near = np.flatnonzero(np.abs(depths / deepest - 1) < _SAME)
@@ -320,7 +320,7 @@ def _integrate(
 
 
 def _loading(depth: Array, force: Array, work: Array) -> Force:
-    """Return the loading force (N) as a function of indentation (m): the slope of the work."""
+    """Return the loading force (N), the derivative of the work with respect to indentation."""
     with np.errstate(divide="ignore", invalid="ignore"):
         powers = force * depth / work
     if (work > 0).all() and (powers > 0.5).all() and (powers < _STEEPEST).all():
@@ -348,7 +348,7 @@ def _loading(depth: Array, force: Array, work: Array) -> Force:
 
 
 def _hermite(x: Array, y: Array, slope: Array) -> Callable[[float], tuple[float, float]]:
-    """Return a function that gives a cubic Hermite spline and its slope; linear beyond the end."""
+    """Return a function for value and slope of a cubic Hermite spline, linear beyond the end."""
     from scipy.interpolate import CubicHermiteSpline
 
     if x.size == 1:
@@ -381,7 +381,7 @@ def _separation(results: xr.Dataset, depth: Array) -> Callable[[float], float]:
 
 
 def _shape(x: Array, F: Array) -> Force:
-    """Return F/F_max as a function of (δ − δ_s)/(δ_max − δ_s) for one unloading curve."""
+    """Return F/F_max of one unloading curve, as described in `StoredForce.shape`."""
     return _pchip((x - x[0]) / (x[-1] - x[0]), F / F[-1])
 
 

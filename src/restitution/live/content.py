@@ -52,7 +52,7 @@ def text_of(content: Content) -> str:
 
 
 def problems_in(text: str, folder: Path) -> dict[str, str]:
-    """Check the case file `text`, whose scans must lie in `folder`; return messages by key."""
+    """Check the case file `text`, whose scans must be in `folder`; return error messages by key."""
     try:
         content = parse_toml(text)
     except CaseError as error:

@@ -43,7 +43,7 @@ class LiveCurves:
         """Compute the curve of the case `text`; yield lines of JSON for the page.
 
         `check` raises an exception if the curve is no longer wanted. Depths that were computed are
-        drawn even if others fail.
+        drawn even if other depths fail.
         """
         case = parse_case(text).realisation(0)
         case.require_impact()
@@ -67,7 +67,7 @@ class LiveCurves:
             yield curve.maps.line(min(max(depth, 0), len(curve.maps) - 1))
 
     def beside(self, tab: str, shown: str, check: Callable[[], None]) -> Iterator[str]:
-        """Yield the curve of the smooth bodies of the last case, and its surface.
+        """Yield the curve of the smooth bodies of the last case, and the surface of this case.
 
         The surface is left out if its key is `shown`, because the page then shows it already.
         """
@@ -147,6 +147,6 @@ class _Curve:
 
 
 def _stamps(case: Case, folder: Path) -> list[tuple[int, int]]:
-    """Modification times and sizes of the scans; they change when a file is dropped again."""
+    """Modification times and sizes of the scans; they show whether a file was replaced."""
     found = [folder / part.file for part in case.roughness if part.kind == "measured"]
     return [(each.stat().st_mtime_ns, each.stat().st_size) for each in found]

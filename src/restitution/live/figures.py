@@ -60,13 +60,13 @@ def _finite(value: Any) -> Any:
 
 
 def live_dataset(case: Case, contact: Contact, rows: Sequence[Mapping[str, float]]) -> xr.Dataset:
-    """Make the dataset that the figures of a run need from `rows`, without unloading and maps."""
+    """Convert `rows` to the dataset of a run's figures, without unloading curves and maps."""
     derived = {f"derived_{k}": str(v) for k, v in derived_quantities(case, contact).items()}
     return xr.Dataset(curve_variables(rows), attrs={"title": case.title, **derived})
 
 
 def curve_figures(results: xr.Dataset) -> Raw:
-    """Draw COR against velocity and indentation, and the force, as JSON; omit empty figures."""
+    """Draw the figures of COR and of force as JSON; omit figures without data."""
     found: dict[str, Figure] = {}
     if results.sizes["indentation_max"]:
         found["indentation"] = restitution_against_indentation(results)
@@ -114,7 +114,7 @@ def _thinned(surface: Surface) -> Surface:
 
 @dataclass(frozen=True, eq=False)
 class _Thumbnail:
-    """Pressure (Pa) and plastic displacement (m) on thinned nodes at `x` and `y` (m)."""
+    """Pressure (Pa) and plastic displacement (m) at some of the nodes, at `x` and `y` (m)."""
 
     x: Array
     y: Array
@@ -131,7 +131,7 @@ class ContactMaps:
         self._down = False
 
     def add(self, state: State, indentation: float) -> None:
-        """Store thinned maps of `state`."""
+        """Store maps of `state` with at most `_MOST_PIXELS` nodes along each axis."""
         grid, box = state.contact.grid, state.box
         step = math.ceil(max(state.box_pressure.shape) / _MOST_PIXELS)
         x, y = grid.x[box[0]][::step], grid.y[box[1]][::step]
@@ -144,7 +144,7 @@ class ContactMaps:
         return len(self._maps)
 
     def line(self, number: int) -> str:
-        """The maps at one depth as a line of JSON, with axes that are the same at all depths."""
+        """Return the maps at one depth as a line of JSON; the axes are the same at all depths."""
         at = self._maps[number]
         touched = (at.pressure != 0) | (at.plastic != 0)
         MPa, nm = 1e-6 * at.pressure, 1e9 * at.plastic

@@ -25,10 +25,10 @@ _GENERATED = get_args(RoughnessKind)
 class Field:
     """One key of the case file.
 
-    `unit` is the SI unit of a quantity. `low` and `high` are the ends of the slider, in this unit;
-    without them the field has no slider. The field is shown while the key `when[0]` has one of the
-    values `when[1:]`, where "" means that the key is left out. `initial` is filled in when the
-    field appears. A field with `more` is hidden behind "More" while it is empty.
+    `unit` is the SI unit of a quantity. `low` and `high` are the ends of the slider, in the same
+    unit; without them the field has no slider. The field is shown while the key `when[0]` has one
+    of the values `when[1:]`, where "" means that the key is left out. `initial` is filled in when
+    the field appears. A field with `more` is hidden behind "More" while it is empty.
     """
 
     key: str

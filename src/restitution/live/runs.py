@@ -1,4 +1,4 @@
-"""Complete runs for the page; each writes the results folder that `restitution run` writes."""
+"""Complete runs for the page; each writes the same results folder as `restitution run`."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """The server of the page: static files, and requests as JSON that only this page can make.
 
-A request is a POST with the token of the address and, from a browser, the Origin of this page. The
-Host header must name this machine. Otherwise a web site could point its own domain name to this
-machine, and its pages could then reach the server (DNS rebinding).
+A request is a POST with the token from the address of the page and, from a browser, the Origin of
+this page. The Host header must name this machine. Without this condition, a web site could point
+its own domain name to this machine, and its pages could then reach the server (DNS rebinding).
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ class Server:
             self.stop()
 
     def stop(self) -> None:
-        """End the processes and with them all unfinished answers."""
+        """End the processes, and with them all unfinished requests."""
         for process in (self._live, self._runs, self._finer):
             process.stop()
 

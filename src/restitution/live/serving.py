@@ -14,7 +14,7 @@ from restitution.live.session import Session
 
 
 class _Uvicorn(uvicorn.Server):
-    """A server that calls `ready` when it accepts requests, and `ending` before it ends."""
+    """A server that calls `ready` when it accepts requests, and `ending` before it shuts down."""
 
     def __init__(
         self, config: uvicorn.Config, ready: Callable[[], None], ending: Callable[[], None]

@@ -1,4 +1,4 @@
-"""The temporary folder of one page: the scans that were dropped, and the results."""
+"""The temporary folder of one page, with the scans that the user added and the results."""
 
 from __future__ import annotations
 
@@ -23,7 +23,10 @@ class Session:
     """
 
     def __init__(self, content: Content, folder: Path | None = None) -> None:
-        """Make the folders. Scans of `content`, relative to `folder`, are linked into `scans`."""
+        """Make the folders, and link the scans of `content` into `scans`.
+
+        The paths of these scans are relative to `folder`.
+        """
         self.token = secrets.token_urlsafe(24)
         self.room = Path(mkdtemp(prefix="restitution-app-"))
         self.scans = self.room / "scans"
@@ -33,7 +36,7 @@ class Session:
             _bring_scans(content, folder, self.scans)
 
     def free_name(self, wanted: str) -> str:
-        """Make an unused name in `scans` from the name `wanted`; replace unusual characters."""
+        """Make a file name from `wanted` that is unused in `scans`; replace unusual characters."""
         name = _ODD.sub("_", wanted.replace("\\", "/").rsplit("/", 1)[-1]).lstrip(".")[-80:]
         stem, dot, kind = (name or "scan").partition(".")
         numbers = ("", *(f"-{k}" for k in range(2, 1000)))
@@ -46,7 +49,7 @@ class Session:
 
 
 def first_content(case: Path | None) -> Content:
-    """The tables of the file `case`, or of the built-in first case."""
+    """Read the tables of the file `case`; if it is None, of the built-in first case."""
     if case is None:
         from importlib.resources import files
 
@@ -60,7 +63,7 @@ def first_content(case: Path | None) -> Content:
 
 
 def _bring_scans(content: Content, folder: Path, scans: Path) -> None:
-    """Link the scans of `content` into `scans`, and remove the folders from their names."""
+    """Link the scans of `content` into `scans`; in `content`, replace paths by file names."""
     for name in scans_of(content):
         source = (folder / name).resolve()
         if not source.is_file():

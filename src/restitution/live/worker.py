@@ -53,7 +53,7 @@ class Wire:
             self._connection.send((number, line))
 
     def receive(self) -> Any:
-        """Wait for the next message of the parent."""
+        """Wait for the next message from the parent process."""
         return self._connection.recv()
 
 
@@ -117,7 +117,7 @@ class Inbox:
 
 
 class Worker:
-    """Answers requests, with a method for each kind; reads scans in `scans`, writes to `room`."""
+    """Answers requests, with a method for each kind; reads scans from `scans`, writes to `room`."""
 
     def __init__(self, scans: Path, room: Path, check: Callable[[], None]) -> None:
         self._scans, self._room, self._check = scans, room, check
@@ -187,7 +187,7 @@ class Worker:
 
 
 def serve(connection: Connection, scans: Path, room: Path) -> None:
-    """Answer requests until the parent closes the connection or ends."""
+    """Answer requests until the parent process closes the connection or ends."""
     # Ctrl-C reaches every process of the terminal. Ignore it, because the parent ends this process.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.environ["MPLBACKEND"] = "agg"

@@ -1,4 +1,4 @@
-"""Pairs of two components: which particles can meet, and the case to run for a reduced radius.
+"""Pairs of two components of a mixture: their particles, and the case for a reduced radius.
 
 Smooth spheres without adhesion obey a scaling law. With lengths in units of the reduced radius R*,
 the contact depends only on W/R*³, where W is the loading work; the masses and the two radii have no
@@ -95,7 +95,7 @@ class Family:
 
     @cached_property
     def _grid(self) -> dict[str, Any]:
-        """Make the table `[grid]`, which is the same for all reduced radii, like the surface."""
+        """Make the table `[grid]`; like the surface, it is the same for all reduced radii."""
         if self.mixture.grid is not None:
             return {"refine": "auto", **self.mixture.grid}
         probe = {"nodes": 64, "spacing": "1 um"}
@@ -162,7 +162,7 @@ def families(mixture: Mixture) -> list[Family]:
 
 
 def _steps(start: float, end: float, step: float) -> list[float]:
-    """Velocities after `start` up to `end`, about `step` times apart; none if both are equal."""
+    """Velocities from `start` (excluded) to `end` in ratios of about `step`; empty if equal."""
     distance = math.log(end / start) / math.log(step)
     if distance < 1e-6:
         return []
@@ -215,7 +215,7 @@ def _meeting(first: Particle, second: Particle) -> Meeting:
 
 
 def _half_width(case: Case) -> float:
-    """Largest possible radius (m) of the deepest contact."""
+    """Upper estimate of the contact radius (m) at the deepest indentation of `case`."""
     pair, depth = case.pair(), deepest_indentation(case)
     rms = math.hypot(*(getattr(part, "rms", 0.0) for part in case.roughness))
     rough = math.sqrt(2 * pair.radius * (0.5 * depth + _PEAKS * rms))

@@ -13,11 +13,11 @@ _OFF = 0.02  # largest accepted difference of the sum from 1 (fractions are ofte
 
 
 def number_fractions(key: str, table: dict[str, Any], radii: Sequence[float]) -> tuple[float, ...]:
-    """Remove the fractions from the `table` of a material, and return them by number, with sum 1.
+    """Remove the fractions from the `table` of a material, and return fractions by number.
 
-    `radii` (m) are in the order of the file. Without fractions, every size has the same number of
-    particles. All sizes have the same density, so a mass fraction is proportional to the number
-    times R³. Raises a `CaseError` that names the key.
+    The sum of the result is 1. `radii` (m) are in the order of the file. Without fractions, every
+    size has the same number of particles. All sizes have the same density, so a mass fraction is
+    proportional to the number times R³. Raises a `CaseError` that names the key.
     """
     given = [name for name in KEYS if name in table]
     if len(given) > 1:

@@ -1,9 +1,9 @@
 """Compute all laws of a mixture from as few runs as the error of interpolation allows.
 
-All pairs of two components are a family. Each family is first computed at its smallest, a middle
-and its largest reduced radius. If the interpolation error of a pair exceeds the limit, another
-radius is computed, in the middle between the neighbouring computed radii. This is repeated until no
-error exceeds the limit.
+All pairs of two components (materials or walls) are a family. Each family is first computed at its
+smallest, a middle and its largest reduced radius. If the interpolation error of a pair exceeds the
+limit, another radius is computed, in the middle between the neighbouring computed radii. This is
+repeated until no error exceeds the limit.
 """
 
 from __future__ import annotations
@@ -112,7 +112,10 @@ def _first_radii(family: Family) -> list[float]:
 
 
 def _more_radii(computed: Computed) -> Iterator[float]:
-    """Radii (m) to compute next: one between two computed radii if an error there is too large."""
+    """Yield reduced radii (m) to compute next.
+
+    Between two neighbouring computed radii, one radius is chosen if an error there is too large.
+    """
     family = computed.family
     poor = {meeting.radius for meeting in family.meetings if not computed.is_good(meeting)}
     for low, high in zip(computed.radii[:-1], computed.radii[1:], strict=True):

@@ -32,7 +32,7 @@ def write_mixture(
 ) -> list[str]:
     """Write the laws of all `pairs`, their table and the summary; return the names in `out`.
 
-    `runs` is the number of computed curves, `seconds` the time that they took. Raises
+    `runs` is the number of computed curves, and `seconds` the time for computing them. Raises
     `OutputError`.
     """
     with writing(out):
@@ -79,7 +79,7 @@ def write_mixture(
 
 
 def condensed_warnings(pairs: Sequence[PairLaw]) -> list[str]:
-    """List each warning once, with its pairs; texts that differ only in numbers are the same."""
+    """List each warning once, with its pairs; texts that differ only in numbers count as one."""
     found: dict[str, list[tuple[str, str]]] = {}
     for pair in pairs:
         family = f"{pair.law.first.name}+{pair.law.second.name}"

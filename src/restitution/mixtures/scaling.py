@@ -47,9 +47,9 @@ class Computed:
     def is_good(self, meeting: Meeting) -> bool:
         """Whether the law of the pair is accurate enough without computing another radius.
 
-        At every velocity, the error due to interpolation in R* must not exceed the limit of the
-        mixture or a quarter of the error of the computed laws (at most `_MOST`), whichever is
-        larger.
+        At every velocity, the error due to interpolation in R* must not exceed the larger of two
+        limits. One is the limit of the mixture. The other is a quarter of the error of the computed
+        laws, but not more than `_MOST`.
         """
         points, errors = self._points(meeting), self.interpolation_errors(meeting)
         limit = self.family.mixture.interpolation_error
@@ -104,7 +104,7 @@ class Computed:
         )
 
     def _curves(self, meeting: Meeting) -> list[RatioCurve]:
-        """Make a curve of W_u/W_l against R* for each velocity of the mixture, from all laws."""
+        """Make a curve of W_u/W_l against R* from all laws, for each velocity of the mixture."""
         found = []
         for V in self.family.mixture.velocities:
             ratios = np.array(
@@ -122,7 +122,7 @@ class Computed:
         used = [k for k, share in enumerate(shares) if share > _SAME]
 
         def mean(name: str, power: int) -> float:
-            """Interpolate `name`, which scales as R*^power, between the two laws."""
+            """Interpolate the field `name`, which scales as R*^power, between the two laws."""
             R = meeting.radius
             return R**power * sum(
                 shares[k]
@@ -146,7 +146,7 @@ class Computed:
 
 
 def _of(law: Law, V: float, meeting: Meeting) -> float:
-    """Velocity (m/s) at which `law` has the same W/R*³ as the pair at V (m/s)."""
+    """Velocity (m/s) at which `law` has the same W/R*³ as the pair `meeting` at V (m/s)."""
     velocity = V * math.sqrt(meeting.kappa / (law.mass / law.radius**3))
     return min(max(velocity, law.lowest), law.highest) if _near(velocity, law) else velocity
 
@@ -163,7 +163,7 @@ def _value(curve: RatioCurve, radius: float) -> float:
 
 
 def _with_near(curves: list[RatioCurve]) -> list[tuple[RatioCurve, list[RatioCurve]]]:
-    """Pair each curve with the curves at the next lower and the next higher velocity."""
+    """Pair each curve with a list: itself and the curves at the next lower and higher velocity."""
     return [(curve, curves[max(k - 1, 0) : k + 2]) for k, curve in enumerate(curves)]
 
 
@@ -178,7 +178,8 @@ def _error_of(curve: RatioCurve, radius: float, near: list[RatioCurve]) -> float
 def _column_at(law: Law, name: str, velocity: float) -> float:
     """Interpolate the field `name` at `velocity` (m/s) between the points.
 
-    It is a power of the velocity, or linear in ln V if a value is not positive.
+    Between points, the field is a power of the velocity V, or linear in ln V if any of its values
+    is not positive.
     """
     L, values = np.log(law.column("velocity")), law.column(name)
     if (values <= 0).any():

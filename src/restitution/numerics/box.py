@@ -34,7 +34,7 @@ def bounding_box(mask: NDArray[np.bool_], within: Box | None = None) -> Box | No
 
 
 def widen(box: Box, cells: int, nodes: tuple[int, int]) -> Box:
-    """Enlarge the box by `cells` on each side, up to the edges of a grid with `nodes` nodes."""
+    """Enlarge the box by `cells` on each side, but not beyond a grid with `nodes` nodes."""
     rows, columns = (
         slice(max(part.start - cells, 0), min(part.stop + cells, n))
         for part, n in zip(box, nodes, strict=True)

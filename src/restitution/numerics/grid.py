@@ -87,7 +87,7 @@ def _sides(edges: tuple[float, float]) -> str:
 def _both(name: str, value: Any, wanted: str) -> tuple[Any, Any]:
     """Return the two values of `value` along x and y, or `value` twice if it is one number.
 
-    Raises `CaseError`, with the expected input `wanted`, if `value` is neither.
+    Raises `CaseError` if `value` is neither; the message contains the expected input, `wanted`.
     """
     along = (value, value) if isinstance(value, Real) else value
     try:

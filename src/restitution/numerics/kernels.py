@@ -6,8 +6,8 @@ The loops form the module `restitution.numerics.loops`. If this module was not c
 loaded, the NumPy expressions are used, which are several times slower.
 
 The environment variable RESTITUTION_KERNELS is read once. The values "avx512", "avx2" and "plain"
-select the kernels for this instruction set; "numpy" selects the NumPy expressions. By default the
-process uses the kernels with the widest vectors that the processor supports.
+select the kernels for this instruction set; "numpy" selects the NumPy expressions. By default, the
+kernels with the widest vectors that the processor supports are used.
 """
 
 from __future__ import annotations
@@ -72,8 +72,8 @@ def missing() -> str | None:
 def use_loop(expression: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
     """Decorate the NumPy function `expression` to call the compiled loop of the same name.
 
-    The loop is called if `loop_takes` accepts the first argument. Otherwise, and if no loops are
-    loaded, `expression` itself is called.
+    The loop is called if `loop_takes` accepts the first argument. Otherwise, `expression` itself is
+    called.
     """
     if loops is None:
         return expression

@@ -17,8 +17,8 @@ _GROUPS = Path("/sys/fs/cgroup")
 def available() -> float:
     """Memory limit of this process (bytes); infinite if the system does not report any limit.
 
-    It is the smallest of three values: the memory of the machine, the limit of the control groups
-    and the limit of the address space.
+    The limit is the smallest of three values: the memory of the machine, the limit of the control
+    groups and the limit of the address space.
     """
     return min(_of_machine(), _of_control_groups(), _of_address_space())
 

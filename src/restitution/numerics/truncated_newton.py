@@ -8,9 +8,9 @@ is K⁻¹ + diag(φ″).
 
 Each step of Newton's method is solved by conjugate gradients that stop at the boundary of a trust
 region or at negative curvature (Steihaug 1983, SIAM J. Numer. Anal. 20, 626–637). K is the
-preconditioner, so each direction is K times a sum of residuals. Its product with K⁻¹ is this sum,
-which is known, and an iteration takes only one product with K. The energy falls in every step. If
-the start is no longer a minimum, the method therefore descends to a neighbouring minimum.
+preconditioner, so each direction is K times a sum of residuals. The product of the direction with
+K⁻¹ is this known sum, so an iteration takes only one product with K. The energy falls in every
+step. So if the start is no longer a minimum, the method descends to a neighbouring minimum.
 
 With `zero_mean`, K maps constant arrays to zero. The minimum is then sought among all u of mean
 zero. The mean of p has no effect on u, and it is chosen so that the mean of the gradient is zero.
@@ -74,8 +74,7 @@ def minimise_locally(
     """Descend from (p, u) to a local minimum of ½ uᵀK⁻¹u + Σ φ(u), where `potential` returns φ.
 
     `p` and `u` = K p are the start and are not changed. `length` is the change of u over which φ″
-    changes noticeably. It sets the size of a step along negative curvature while there is no trust
-    region.
+    changes noticeably. It limits a step along negative curvature until a trust region is known.
     `tolerance` limits `LocalMinimum.residual`. `zero_mean` states that K maps constant arrays to
     zero and is positive definite for arrays of mean zero. If the method does not converge,
     `converged` of the result is False; no exception is raised.

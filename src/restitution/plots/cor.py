@@ -13,7 +13,7 @@ _MARGIN = 0.02  # smallest distance of the values from the ends of the axis
 
 
 def cor_axis(series: Sequence[Series]) -> Axis:
-    """Make an axis of COR that holds `series` and their bars, with ends at multiples of 0.1."""
+    """Make an axis of COR that holds `series` and their bars; its ends are multiples of 0.1."""
     shown: Array = np.concatenate([np.ravel(part) for each in series for part in _values(each)])
     values = shown[np.isfinite(shown)] if np.isfinite(shown).any() else np.array([0.0, 1.0])
     low = max(_STEP * np.floor((values.min() - _MARGIN) / _STEP), 0.0)

@@ -53,8 +53,9 @@ class Line:
     """A line through the points (`x`, `y`), interrupted where a value is NaN.
 
     Series of one figure with the same `label` share one entry of the legend; a series without a
-    label has no entry. A page shows `name` beside the value under the pointer. `step` draws one
-    level for each `x`; `right` uses the right axis.
+    label has no entry. A page shows `name` beside the value under the pointer. With `step`, the
+    line is a staircase with one level for each `x`. With `right`, it belongs to the axis on the
+    right.
     """
 
     x: Array
@@ -70,7 +71,7 @@ class Line:
 
 @dataclass(frozen=True, eq=False)
 class Points:
-    """Markers at `x` and `y`, `joined` by a line, with error bars.
+    """Markers at `x` and `y` with error bars; if `joined`, a line connects the markers.
 
     `error` has shape (n,) for symmetric bars, or (2, n) for the lengths below and above. Markers
     are open where `open` is true; `open_label` and `error_label` are entries of the legend.

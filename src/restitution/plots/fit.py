@@ -1,4 +1,4 @@
-"""The figure of a fit: measured restitution, and the fitted curve with its band."""
+"""The figure of a fit: measured restitution, and the fitted curve with its 95 % band."""
 
 from __future__ import annotations
 

@@ -91,7 +91,7 @@ def _all_traces(chart: Chart) -> list[dict[str, Any]]:
 
 
 def _traces(each: Band | Line | Points, chart: Chart) -> list[dict[str, Any]]:
-    """Make the traces of one series, each with its legend text `entry`."""
+    """Make the traces of one series; the key `entry` of a trace is its legend text."""
     if isinstance(each, Band):
         edge = {"x": each.x, "mode": "lines", "line": {"width": 0}, "hoverinfo": "skip"}
         return [

@@ -42,7 +42,7 @@ _FINE = 400  # number of points of a fitted line
 
 
 def law_figure(law: Law) -> Figure:
-    """Plot the computed COR with its error, and each fit over the velocities of its data."""
+    """Plot the computed COR with its error, and each fit in the range of the fitted velocities."""
     V = law.column("velocity")
     series: list[Series] = [computed_points(law, "computed", "not resolved")]
     if law.fit is not None:
@@ -59,7 +59,7 @@ def law_figure(law: Law) -> Figure:
 
 
 def computed_points(law: Law, label: str, open_label: str) -> Points:
-    """Make markers of the points of `law` with their error, open if they are not resolved."""
+    """Make markers of the points of `law` with error bars, open for unresolved points."""
     cor = law.column("restitution")
     error, error_label = bars(cor, law.column("error"))
     return Points(

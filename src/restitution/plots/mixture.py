@@ -10,7 +10,7 @@ from restitution.plots.figure import GREY, PALETTE, Axis, Chart, Figure, Line, S
 
 
 def mixture_figure(title: str, laws: Sequence[Law]) -> Figure:
-    """Plot the COR of all pairs, with a chart for every two materials.
+    """Plot the COR of all pairs, with a chart for every pair of materials.
 
     Lines are labelled with R*. If a chart has more than five pairs, about five lines have labels.
     """

@@ -38,7 +38,8 @@ def oblique_figure(results: xr.Dataset) -> Figure:
     """Plot tangential restitution, rebound and spin of the first body against the angle of impact.
 
     The dotted line marks the angle from which the whole contact slides. The dashed line is the
-    closed form of full slip. Both apply to the largest velocity, without spin before the impact.
+    closed form of full slip. Both apply to the largest impact velocity, without spin before the
+    impact.
     """
     degrees = np.degrees(results["oblique_angle"].values)
     axis = Axis("angle of impact", "°", low=0.0, high=min(90.0, 1.05 * degrees.max() + 1))
@@ -86,8 +87,8 @@ def _full_slip(results: xr.Dataset) -> tuple[float, Array, Array] | None:
     """Return the angle of full slip, and angles and tangential restitution of the closed form.
 
     The angle of full slip is the angle of impact from which the whole contact slides. All angles
-    are in degrees. None if a body has a spin before the impact, which the closed form does not
-    include, or if there is no friction or no result.
+    are in degrees. The result is None without friction or without results. It is also None if a
+    body spins before the impact, which the closed form does not include.
     """
     if results["oblique_first_spin_before"].any() or results["oblique_second_spin_before"].any():
         return None

@@ -222,9 +222,10 @@ def _unloading(results: xr.Dataset) -> list[Line]:
 
 
 def _span(series: list[Points | Line], name: str) -> tuple[float, float | None]:
-    """Find the ends of an axis: the smallest and the largest value with a margin, or zero.
+    """Find the lower and the upper end of an axis.
 
-    The upper end is None if all values are zero.
+    The lower end is zero or, if a value is negative, the smallest value with a margin. The upper
+    end is the largest value with a margin, or None if all values are zero.
     """
     values: Array = np.concatenate([getattr(each, name) for each in series])
     low, high = float(values.min()), float(values.max())

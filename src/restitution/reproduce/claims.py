@@ -247,8 +247,8 @@ def _single_nodes(flags: NDArray[np.bool_]) -> str:
 def critical_indentation(curve: Curve, smooth: Curve) -> float:
     """Depth (m) beyond which COR stays within 5 % of the smooth sphere's; NaN if not reached.
 
-    The result is interpolated in the logarithm of depth between the last depth with a larger
-    difference and the next depth.
+    The result lies between the last depth with a larger difference and the next depth, and is
+    interpolated in the logarithm of depth.
     """
     off = np.abs(curve.cor / smooth.cor - 1)
     apart = np.flatnonzero(off > _NEAR)

@@ -65,7 +65,7 @@ def _release() -> None:
 
 
 def _note(number: int, frame: FrameType | None) -> None:
-    """Store a signal while signals are held; otherwise pass it to its handler."""
+    """Store a signal while signals are delayed; otherwise pass it to its handler."""
     if _depth:
         _received.append(number)
     else:

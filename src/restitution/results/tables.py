@@ -19,7 +19,7 @@ def damaged(path: Path, why: object) -> OutputError:
 
 @contextmanager
 def reading(path: Path) -> Iterator[None]:
-    """Convert errors of the system and of decoders while reading `path` to `OutputError`."""
+    """Convert errors of the system and of decoders to `OutputError` while `path` is read."""
     try:
         yield
     except FileNotFoundError:
@@ -55,7 +55,9 @@ def read_numbers(
     cells: Mapping[str, str],
     columns: Mapping[str, Column] = ALL_COLUMNS,
 ) -> dict[str, float]:
-    """Convert the cells of one row in `columns` to numbers; columns without a cell are left out.
+    """Convert those cells of one row that belong to `columns` to numbers.
+
+    Columns without a cell are left out.
 
     Raises `OutputError` for a cell that a run cannot have written.
     """

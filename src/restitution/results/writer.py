@@ -2,8 +2,8 @@
 
 While a case runs, rows are appended to `curve.csv` and `unloading.csv` one by one, so that the rows
 survive if the run is stopped. `results.nc` and `summary.json` are written once, at the end or on
-interruption. Each of the two is written to a temporary file, which is then renamed. Signals are
-delayed while a file is written.
+interruption. Each of these two files is first written under a temporary name and then renamed.
+Signals are delayed while a file is written.
 """
 
 from __future__ import annotations
@@ -155,7 +155,7 @@ class ResultsFolder:
             self.unloading.append((deepest, points))
 
     def discard(self) -> None:
-        """Remove the empty tables, and the folder if it is new, so that -o can name it again."""
+        """Remove the empty tables, and the folder if it is new, so that a new run can use it."""
         for name in ("curve.csv", "unloading.csv"):
             (self.path / name).unlink(missing_ok=True)
         if self._new:
@@ -242,7 +242,7 @@ def write_table(path: Path, rows: Sequence[Mapping[str, float | str]]) -> None:
 
 
 def table_text(rows: Sequence[Mapping[str, float | str]]) -> str:
-    """Format `rows`, whose keys are the columns, as CSV; empty without rows."""
+    """Format `rows`, whose keys are the columns, as CSV; the text is empty without rows."""
     text = io.StringIO()
     if rows:
         table = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
@@ -252,7 +252,7 @@ def table_text(rows: Sequence[Mapping[str, float | str]]) -> str:
 
 
 def replace_file(path: Path, write: Callable[[Path], object]) -> None:
-    """Let `write` fill a temporary file, then rename the file to `path`. Raises `OutputError`.
+    """Let `write` fill a temporary file, and rename this file to `path`. Raises `OutputError`.
 
     Signals are delayed until the file is renamed.
     """

@@ -1,1 +1,1 @@
-"""Runs of one case: on one surface, on many, or on several grids, with error estimates."""
+"""Runs of one case, on one or several surfaces or on several grids, with error estimates."""

@@ -1,8 +1,8 @@
 """Companion curves of a run: additional curves that show how COR changes with the input.
 
 Each curve has another grid, another surface or other materials. Companion curves are computed on
-cells twice as large, so each of them costs a fifth of the run. They are compared with the run at
-equal loading work, that is, at equal impact velocity.
+cells twice as large, so each of them takes about a fifth of the time of the run. They are compared
+with the run at equal loading work, that is, at equal impact velocity.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class Curve:
     restitution: Array
 
     def at(self, work: Array) -> Array:
-        """Interpolate COR at `work` (J): monotone cubic in the logarithm, constant beyond the ends.
+        """Interpolate COR at `work` (J): monotone cubic in ln(work), constant beyond the ends.
 
         All values are NaN if the curve is empty.
         """
@@ -92,7 +92,7 @@ def curve_of(
 
 @dataclass(frozen=True)
 class Companions:
-    """The companion curves of `case` over `depths` (m); file names are relative to `folder`."""
+    """The companion curves of `case` at `depths` (m); file names are relative to `folder`."""
 
     case: Case
     folder: Path
@@ -111,9 +111,10 @@ class Companions:
     def materials(self, work: Array) -> list[Array]:
         """Changes of COR at `work` (J) due to the spread of library values.
 
-        Elasticity, yield model and density cause one change each, unless they have no spread. Both
-        bodies are moved together to the low end and then to the high end of the spread, and the
-        larger change of COR counts. The list is empty if no value comes from the library.
+        Elasticity, yield model and density cause one change each, unless they have no spread. The
+        values of both bodies are set together to the low end and then to the high end of the
+        spread, and the larger change of COR is used. The list is empty if no value comes from the
+        library.
         """
         coarse = self._coarse(self.case)
         ends = [_spread(self.case, end) for end in ("low", "high")]

@@ -62,8 +62,9 @@ def run_convergence(
     grid. If a run fails, the study ends and keeps the results so far.
 
     Depths are measured from first touch on the finest grid. The highest summit lies between the
-    nodes of a coarser grid, so a coarser grid touches after a larger approach. Counted from its own
-    first touch, the indentations on the coarser grid are smaller by this difference.
+    nodes of a coarser grid, so a coarser grid touches after a larger approach. Measured from the
+    first touch on the coarser grid, its indentations are smaller by the difference of the two
+    approaches.
     """
     case.require_impact()
     log, runs = RunLog(progress, warn), _Runs()
@@ -121,9 +122,9 @@ def _add_errors(
 
 
 def _levels(case: Case, folder: Path, grids: int) -> dict[int, float]:
-    """Return the refinement factors, each with the additional approach (m) to first touch.
+    """Return the additional approach (m) to first touch for each refinement factor.
 
-    The approach is compared with the finest grid.
+    It is the approach to first touch on the grid with this factor minus that on the finest grid.
     """
     if grids < 2:
         raise CaseError(f"grids: {grids} cannot show convergence; give 2 or more")
@@ -144,7 +145,10 @@ def _levels(case: Case, folder: Path, grids: int) -> dict[int, float]:
 
 
 def _pressed_less(case: Case, later: float) -> Case:
-    """Reduce the indentations of `case` by `later` (m); leave out indentations without contact."""
+    """Reduce the indentations of `case` by `later` (m), the additional approach to first touch.
+
+    Indentations without contact are left out.
+    """
     if case.indentation is None:
         return case  # loads and velocities do not depend on where a grid touches first
     depths = [depth - later for depth in case.depths() if depth > later]
@@ -246,7 +250,7 @@ def _with_grid_errors(case: Case, folder: Path, rows: list[_Row]) -> int:
 
 
 def _by_depth(case: Case, runs: _Runs) -> list[dict[int, _Row]]:
-    """Return, for each depth, the rows of all grids that reached it, with error and order."""
+    """Return for each depth the rows of all grids that reached it, with grid error and order."""
     asked = case.depths()
     found: list[dict[int, _Row]] = [{} for _ in asked]
     for factor, (later, rows) in sorted(runs.items()):
@@ -285,10 +289,11 @@ def discretisation(values: Sequence[float]) -> tuple[float, float]:
 
 
 def observed_order(depths: Sequence[dict[int, _Row]]) -> float:
-    """Observed order of the last three grids, from rms differences of COR over depths; or NaN.
+    """Observed order of the last three grids, from differences of COR (rms over depths).
 
-    The orders of single depths scatter. Only depths that the finest grid resolves and that all
-    three grids reach are used.
+    The rms is used because the orders of single depths scatter. Only depths that the finest grid
+    resolves and that all three grids reach are used. The result is NaN for fewer than three grids,
+    without such depths, or if COR does not change between two grids.
     """
     factors = sorted({factor for rows in depths for factor in rows})[-3:]
     steps = np.array(

@@ -22,8 +22,8 @@ class Depth:
     """One depth of a case, after loading.
 
     `asked` is the prescribed value (m, N or m/s), and `refine` the refinement factor of the grid on
-    which the depth is solved. `touch` (m) is the additional approach to first touch on this grid,
-    compared with the finest grid. `state` is None if loading failed with `error`.
+    which the depth is solved. `touch` (m) is the approach to first touch on this grid minus that on
+    the finest grid. `state` is None if loading failed with `error`.
     """
 
     asked: float
@@ -70,7 +70,7 @@ def collision_at(
 ) -> tuple[Collision, Sequence[State]]:
     """Return the collision with the maximum indentation of `state`, and its unloading curve.
 
-    The curve is computed if `unload` is true or the collision needs it; otherwise it is empty.
+    The curve is computed if `unload` is true or if the collision needs it; otherwise it is empty.
     `known` is the unloading curve of a shallower depth, which `unloading_path` may reuse.
     """
     followed = state.contact.adhesive and case.unloading.method == "path"
@@ -83,7 +83,7 @@ def collision_at(
 
 
 def _levels(case: Case, folder: Path, deepest: Contact) -> Iterator[_Level]:
-    """Yield the grids of a case with their depths, from the shallowest to the deepest depths."""
+    """Yield the grids of a case with their depths, from the shallowest depths to the deepest."""
     factors, depths = case.factors(), case.depths()
     # Coarse grids touch later. This difference is added to the stored indentations, so it is also
     # needed for loads and velocities.

@@ -53,11 +53,12 @@ def run_realisations(
     """Run `case` on each of its surfaces, and return the summary.
 
     A periodic case is run by `run_periodic`. A single surface is run by `run_case` alone. If there
-    are several surfaces, the run on each is stored in a folder `realisation-<n>`, and the curve of
-    `out` contains the means (`mean_rows`). n begins at 1, and n − 1 is added to the seed or to the
-    place on the scan. If the run on a surface fails, its error is recorded and the other runs
-    continue. If all runs fail, the first error is raised. With `grid.refine = "auto"`, the first
-    surface decides the grid of each depth for all surfaces (`refinement`).
+    are several surfaces, the run on surface n (n = 1, 2, …) is stored in a folder
+    `realisation-<n>`, and the curve of `out` contains the means (`mean_rows`). Surface n has n − 1
+    added to its seed or to its place on the scan. If the run on a surface fails, its error is
+    recorded and the other runs continue. If all runs fail, the first error is raised. With
+    `grid.refine = "auto"`, the first surface decides the grid of each depth for all surfaces
+    (`refinement`).
     """
     if case.periodic:
         return run_periodic(case, text, folder, out, progress, warn)

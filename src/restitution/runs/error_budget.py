@@ -19,8 +19,8 @@ patch of the median contact node (docs/resolution.md). s is the fraction of f th
 large if the grid does not resolve the contact. Otherwise s is small; it only keeps the error from
 vanishing by chance.
 
-The constants were chosen on about 260 random cases, 30 of them adhesive, and checked on other cases
-(docs/error.md).
+The constants of these formulas were chosen on about 260 random cases, 30 of them adhesive, and
+checked on other cases (docs/error.md).
 """
 
 from __future__ import annotations
@@ -74,8 +74,8 @@ class Band:
     """The waves that a grid leaves out of a scan.
 
     `octaves` is n in the formula of the module docstring, 0 if no wave is left out. `removed_slope`
-    is the rms slope of the omitted waves over that of the scan. `pixel` is the spacing (m) that
-    resolves these waves.
+    is the rms slope of the omitted waves, divided by that of the scan. `pixel` is the spacing (m)
+    that resolves these waves.
     """
 
     octaves: float
@@ -99,10 +99,10 @@ class Band:
 def grid_error(
     change: Array, work: Array, rows: Sequence[Row], octaves: float
 ) -> tuple[Array, Array]:
-    """Discretisation error of COR of `rows`, and the part of it due to omitted waves.
+    """Discretisation error of COR of `rows`, and the part due to waves that the grid omits.
 
     `change` is the difference of COR from the value on cells twice as large, at `work` (J).
-    `octaves` is the attribute of `Band`.
+    `octaves` is `Band.octaves`.
     """
     near = np.sqrt(_smoothed(change**2, work, _NEAR_GRID))
     band = _BAND * octaves * near
@@ -115,7 +115,7 @@ def widened_error(
     """Add a minimum error and the effect of omitted waves to `error`, in quadrature.
 
     `error` comes from a convergence study. `last_change` is the difference of COR between the last
-    two grids. `octaves` is the attribute of `Band`. Returns the sum and the effect of the waves.
+    two grids. `octaves` is `Band.octaves`. Returns the sum and the effect of the waves.
     """
     band = _BAND * octaves * last_change
     return math.hypot(error, band, _floor(row)), band
@@ -144,10 +144,10 @@ def add_errors(
 ) -> list[float]:
     """Add the errors of grid, surface and materials, and their total, to the rows of a run.
 
-    `surface` is the surface of the deepest depth. Without `scattered`, the scatter between surfaces
-    is left out. If the loading work of a row is not positive, no impact has its maximum at this
-    depth, and the row gets no errors. If a part of the error is unknown, the row gets no total.
-    Returns the errors due to waves that the grid leaves out, one for each row with errors.
+    `surface` is the surface of the deepest depth. If `scattered` is false, the scatter between
+    surfaces is left out. If the loading work of a row is not positive, no impact has its maximum at
+    this depth, and the row gets no errors. If a part of the error is unknown, the row gets no
+    total. Returns the errors due to waves that the grid leaves out, one for each row with errors.
     """
     band: list[float] = []
     for factor in dict.fromkeys(int(row["refine"]) for row in rows):

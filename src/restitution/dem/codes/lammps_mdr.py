@@ -31,7 +31,7 @@ def _fit_of(pair: Pair) -> FittedLaw | None:
 
 
 def _obstacle(pairs: list[Pair], pair: Pair, velocity: float) -> str:
-    """Return why `pair` gets no mdr line; empty if it gets one."""
+    """Return the reason why `pair` gets no mdr line; empty if it gets such a line."""
     spheres = [other for other in pairs if not other.wall]
     if not pair.wall and len(spheres) > 1:
         return (
@@ -47,7 +47,7 @@ def _obstacle(pairs: list[Pair], pair: Pair, velocity: float) -> str:
 
 
 def _unfit(pair: Pair, velocity: float) -> str:
-    """Return why the mdr fit of `pair` itself cannot be offered; empty if it can."""
+    """Return the reason why the mdr fit of `pair` itself is not offered; empty if it is offered."""
     fit = _fit_of(pair)
     if fit is None and not pair.law.laws:
         return "no law was fitted to it"

@@ -2,8 +2,8 @@
 
 LIGGGHTS computes the E* of a pair from the E and ν of its two types; walls are types, too. So the
 types get the E and ν of the materials, and E*, m* and R* agree with the law. Force and damping
-(Tsuji's form with the coefficient of Antypov & Elliott) act until the overlap is zero, with tension
-at the end. `limitForce on` would cut off the tension.
+(Tsuji's form with the coefficient of Antypov & Elliott) act until the overlap is zero, so the force
+is tensile at the end of the contact. The option `limitForce on` would cut off this tension.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _HARD, _SOFT = 1e9, 5e6  # LIGGGHTS accepts E (Pa) outside this range only with 
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """Write a fragment to include and a test collision that prints e; return names and texts.
+    """Write a fragment to include and a test collision that prints e; return file names and texts.
 
     Raises `CaseError`, `DomainError`.
     """
@@ -73,7 +73,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
 
 
 def _hardness(table: PairTable) -> str:
-    """Return the command with which LIGGGHTS accepts the E of `table`; empty if not needed."""
+    """Return the command with which LIGGGHTS accepts all E in `table`; empty if not needed."""
     E = [body.youngs_modulus for body in table.particles]
     if max(E) > _HARD:
         return "hard_particles yes"
@@ -81,7 +81,10 @@ def _hardness(table: PairTable) -> str:
 
 
 def _restitution(table: PairTable) -> list[list[str]]:
-    """Symmetric matrix, by types, of the variables with e; 1 for two walls, which never touch."""
+    """Return the symmetric matrix of the variables that contain e, with a row for each type.
+
+    Two walls never touch; their entry is 1.
+    """
     numbers = range(1, len(table.particles) + 1)
 
     def entry(i: int, j: int) -> str:
@@ -92,7 +95,10 @@ def _restitution(table: PairTable) -> list[list[str]]:
 
 
 def _friction(table: PairTable, pairs: list[Pair]) -> list[list[str]]:
-    """Symmetric matrix, by types, of friction; two walls never touch and get the placeholder."""
+    """Return the symmetric matrix of the coefficients of friction, with a row for each type.
+
+    Two walls never touch; their entry is the placeholder `FRICTION`.
+    """
     known = {(pair.i, pair.j): pair.friction for pair in pairs}
     numbers = range(1, len(table.particles) + 1)
     return [[number(known.get((min(i, j), max(i, j)), FRICTION)) for j in numbers] for i in numbers]

@@ -2,8 +2,8 @@
 
 `setEffectiveElasticModulusAndRestitutionCoefficient(E*, e)` takes the contact modulus E* and
 converts e to the damping of Antypov & Elliott (EPL 94 (2011) 50004). Force and damping act until
-the overlap is zero, with tension at the end. This description follows the sources of MercuryDPM;
-the export was not tested in MercuryDPM.
+the overlap is zero, so the force is tensile at the end of the contact. This description follows the
+sources of MercuryDPM; the export was not tested in MercuryDPM.
 """
 
 from __future__ import annotations

@@ -8,9 +8,9 @@ equation of motion is
 
     r″ = −stiffness r − damping r′ + (1 − d) a₀,
 
-a linear spring and dashpot per unit of mass, whatever the masses. The contact force is never
-attractive, so `damping.dashpot_ratio` gives the damping ratio ζ for e. The formula
-e = exp(−πζ/(1 − ζ²)^½) does not apply: with its ζ for e = 0.6, MuJoCo returns 0.632.
+This is a linear spring and dashpot per unit of mass, independent of the masses. The contact force
+is never attractive, so `damping.dashpot_ratio` gives the damping ratio ζ for e. The usual formula
+e = exp(−πζ/(1 − ζ²)^½) does not apply: with the ζ that it gives for e = 0.6, MuJoCo returns 0.632.
 
 d = 0.9999, the largest value that MuJoCo accepts, makes e independent of the friction cone.
 With d = 0.9 and pyramidal cones, MuJoCo returns 0.79 for e = 0.8. The stiffness is chosen such that
@@ -56,9 +56,9 @@ _COARSE = 50  # number of time steps in a softened contact
 
 @dataclass(frozen=True)
 class Contact:
-    """Durations (s) and damping ratio ζ (1) of the contact of a pair.
+    """Durations (s) and damping ratio ζ (dimensionless) of the contact of a pair.
 
-    `duration` is that of an elastic Hertz contact. `soft_duration` is that of a softened contact,
+    `duration` belongs to an elastic Hertz contact. `soft_duration` belongs to a softened contact,
     whose largest overlap is the fraction `_DEEPEST` of the smaller radius.
     """
 
@@ -79,7 +79,7 @@ class Contact:
 
     @property
     def soft_step(self) -> float:
-        """The time step (s) for the softened contact."""
+        """Time step (s) for the softened contact."""
         return self.soft_duration / _COARSE
 
     def softened(self, duration: float) -> tuple[float, float]:
@@ -89,7 +89,9 @@ class Contact:
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
-    """Write an MJCF file to include and a test collision that prints e; return names and texts.
+    """Write an MJCF file to include and a test collision that prints e.
+
+    Returns file names and texts.
 
     Raises `CaseError`, `DomainError`.
     """

@@ -1,11 +1,12 @@
 """YADE: `Ip2_FrictMat_FrictMat_MindlinPhys` with a `betan` for each pair of materials, or e(V).
 
 YADE adds the damping force 2β(m* dF/dδ)^½ dδ/dt to Hertz's force F at the overlap δ. The sum is
-never attractive, so a contact ends when the force returns to zero. YADE 2023.02a converts `en` to β
-by a fit (Thornton et al., Powder Technol. 233 (2013) 30, eqs. B6, B7). This fit returns e = 0.979
-for en = 0.99 and e = 0.948 for en = 0.95; other releases convert `en` differently. The export
-therefore writes β (`betan`), computed by a new fit to this equation of motion. The new fit is valid
-for e ≥ 0.01, and the resulting e differs by less than 10⁻⁵ from the required e:
+never attractive, so a contact ends when the force returns to zero. YADE 2023.02a converts the
+coefficient of restitution `en` to β by a fit (Thornton et al., Powder Technol. 233 (2013) 30, eqs.
+B6, B7). This fit returns e = 0.979 for en = 0.99 and e = 0.948 for en = 0.95; other releases
+convert `en` differently. The export therefore writes β (`betan`), computed by a new fit to this
+equation of motion. The new fit is valid for e ≥ 0.01, and the resulting e differs by less than 10⁻⁵
+from the required e:
 
     β = L exp(Σ c_k L^k),  L = −ln e
 
@@ -85,7 +86,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
 
 
 def _tangential(pair: Pair) -> float:
-    """Factor on YADE's tangential stiffness (1); 1 if the case has no friction."""
+    """Factor on YADE's tangential stiffness (dimensionless); 1 if the case has no friction."""
     return 1.0 if pair.law.friction is None else STIFFNESS_SHARE
 
 
@@ -100,5 +101,5 @@ def _points(law: Law) -> list[tuple[float, float]]:
 
 
 def _contact_time(pair: Pair) -> float:
-    """Elastic contact time (s) at 1 m/s; on a wall with R/2 for R*, as in YADE."""
+    """Contact time (s) of an elastic impact at 1 m/s; on a wall, R/2 replaces R*, as in YADE."""
     return contact_time(pair.law, pair.law.radius / (2 if pair.wall else 1))

@@ -54,7 +54,7 @@ class Device(Protocol):
         """
 
     def workspace(self, shape: tuple[int, int], periods: tuple[int, int]) -> Array:
-        """Return a work array for `convolve` with arrays of this shape and padded size."""
+        """Return a work array for `convolve`, for arrays of this shape padded to `periods`."""
 
     def convolve(
         self,
@@ -121,7 +121,7 @@ class _Compiled:
 
 
 class _Arrays:
-    """Device with a NumPy-like library (`arrays`) and a library like scipy.fft (`fft`)."""
+    """Device that uses a library like NumPy (`arrays`) and a library like scipy.fft (`fft`)."""
 
     def __init__(self, name: str, arrays: Any, fft: Any) -> None:
         self.name = name

@@ -9,7 +9,7 @@ the linear one (Liu, Wang and Liu 2000, Wear 243, 101–111, "DC-FFT"); kernel v
 n − 1 have no effect. The kernel is even along both axes. So its spectrum is real and equals the
 DCT-I of one quadrant, which takes a quarter of the storage.
 
-A periodic convolution needs no padding. Its kernel is given by the spectrum (`symbol`).
+A periodic convolution needs no padding. Its kernel is given by its spectrum (`symbol`).
 """
 
 from __future__ import annotations

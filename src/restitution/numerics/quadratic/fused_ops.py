@@ -24,7 +24,8 @@ Bounds = tuple[Bound, Bound]  # lower, upper
 def as_rows(lower: Bound, upper: Bound, p: Array) -> Bounds:
     """Convert bounds that are numbers to arrays of the shape of `p`, if a compiled loop takes `p`.
 
-    The compiled loops require arrays. Only one row of each array is stored; it is broadcast.
+    The compiled loops require arrays. Only one row of each array is stored and broadcast to all
+    rows.
     """
 
     def rows(bound: Bound) -> Bound:
@@ -112,7 +113,7 @@ def take_step(
 
 
 def _free(p: Array, g: Array, bounds: Bounds) -> NDArray[np.bool_]:
-    """Mask of free nodes: p is between the bounds, or −g points from a bound to the inside."""
+    """Mask of free nodes: p is between the bounds, or on a bound with −g pointing inwards."""
     lower, upper = bounds
     free = p > lower
     free |= g < 0

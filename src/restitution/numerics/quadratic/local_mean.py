@@ -14,10 +14,10 @@ Array = NDArray[Any]  # double or single precision
 
 @use_loop
 def local_sums(r: Array, sums: Array, nodes: Array) -> None:
-    """Write Σ r and the number of nodes with r ≠ 0 around each place into `sums` and `nodes`.
+    """Sum r and count the nodes with r ≠ 0 around each place; write into `sums` and `nodes`.
 
-    `sums` and `nodes` have shape (places, places), with at least two places. A node between two
-    places contributes to both with linear weights (hat functions).
+    `sums` and `nodes` have one value for each place. Along each axis there are at least two places.
+    A node between two places contributes to both with linear weights (hat functions).
     """
     over_x, over_y = _hat_weights(r, sums)
     sums[...] = over_x.T @ r @ over_y
@@ -37,7 +37,7 @@ def subtract_local_mean(r: Array, share: float, sums: Array, nodes: Array, out: 
 
 
 def _hat_weights(r: Array, places: Array) -> list[Array]:
-    """Linear weights of the rows of `r` at each place along x, and of the columns along y."""
+    """Linear weights of the nodes of `r` at the places: one matrix along x and one along y."""
     hats = []
     for n, m in zip(r.shape, places.shape, strict=True):
         node, place = (np.cumsum(np.ones_like(places, shape=k)) for k in (n, m))

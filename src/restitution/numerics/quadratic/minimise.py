@@ -112,11 +112,12 @@ def minimise_quadratic(
     K. This inverse may be unsymmetric and may give an ascent direction.
 
     `start` is the initial point, shape (nx, ny), and is overwritten. `precondition` is an
-    approximate inverse of K. `tolerance` limits the violation and has the units of `b`. If `start`
-    is within the bounds and the product of `K_single` and `start` is known, give this product as
-    `K_start`; it is overwritten. The final gradient is computed with K at the final point. With
-    `accept_estimated_gradient`, the gradient updated along the steps is returned instead, if the
-    violation plus the estimated error of this gradient is within `tolerance`.
+    approximate inverse of K. `tolerance` limits the violation of the optimality conditions and has
+    the units of `b`. If `start` is within the bounds and the product of `K_single` and `start` is
+    known, give this product as `K_start`; it is overwritten. The final gradient is computed with K
+    at the final point. With `accept_estimated_gradient`, the gradient updated along the steps is
+    returned instead, if the violation plus the estimated error of this gradient is within
+    `tolerance`.
 
     The first gradient is computed with K, or with `K_single` if `K_start` is given or the estimate
     is accepted. Each step updates the gradient by the product of K and the step. The rounding

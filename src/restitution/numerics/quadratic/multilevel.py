@@ -140,13 +140,13 @@ def mean_damped_preconditioner(inverse: Operator, p: Array, b: Array, upper: Bou
 
     If `inverse` does not overestimate the response to a mean, it is returned without damping.
 
-    The mean part of a residual is constant on the contact nodes and drops to zero at the contact
-    edge. The inverse of a smoothing operator amplifies the short waves of this drop, more so on
-    finer grids (McLean and Steinbach 1999, Adv. Comput. Math. 11, 271–286). So `inverse`
+    The part of a residual that equals its mean is constant on the contact nodes and drops to zero
+    at the contact edge. The inverse of a smoothing operator amplifies the short waves of this drop,
+    more so on finer grids (McLean and Steinbach 1999, Adv. Comput. Math. 11, 271–286). So `inverse`
     overestimates the response to the constant part, by up to 30 times on rough contacts. Conjugate
     gradients would have to correct this part again whenever nodes reach or leave a bound. The
     damping factor follows from the guess `p`, for which K p = b on the free nodes. The nearly
-    constant part is represented by local means around 8 × 8 places.
+    constant part is represented by local means around 8 × 8 points of a coarse lattice.
     """
     factor = mean_damping(inverse, p, b, upper)
     if factor == 1.0:
@@ -197,7 +197,7 @@ def _is_array(bound: Bound) -> TypeGuard[Array]:
 
 
 def _between_the_bounds(p: Array, upper: Bound) -> tuple[Mask, int, int]:
-    """Return the mask of 0 < p < `upper`, its number of true nodes, and the number with p > 0."""
+    """Return the mask of nodes with 0 < p < `upper`, their number, and the number with p > 0."""
     touching = p > 0
     free = touching & (p < upper)
     return free, int(np.count_nonzero(free)), int(np.count_nonzero(touching))

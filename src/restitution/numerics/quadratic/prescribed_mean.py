@@ -48,7 +48,7 @@ class MeanTarget:
     residual: float
 
     def tolerance(self, multiplier: float, slope: float) -> float:
-        """Return the largest violation of the optimality conditions to allow, in the units of h.
+        """Return the largest allowed violation of the optimality conditions, in the units of h.
 
         `multiplier` is D, and `slope` is dD/dmean. A violation changes the mean by at most as much
         as an equal change of D, so `slope` converts the tolerance of the mean to a violation.
@@ -134,7 +134,7 @@ class _Bracket:
     """Secant steps to the root of an increasing function that is negative at zero."""
 
     def __init__(self, slope: float, least_slope: float) -> None:
-        """Begin with a guess of the inverse slope dx/dy, which is at least `least_slope`."""
+        """Begin with a guess `slope` of the inverse slope dx/dy, at least `least_slope`."""
         self.slope = slope
         self._least_slope = least_slope
         self._low, self._high = 0.0, math.inf
@@ -143,7 +143,7 @@ class _Bracket:
     def following(self, x: float, y: float, uncertainty: float) -> float:
         """Return the next argument to try after the function value `y` was found near `x`.
 
-        The value belongs to a point at a distance of at most `uncertainty` from `x`.
+        `y` is the exact function value of a point within the distance `uncertainty` from `x`.
         """
         if y > 0:
             self._high = min(self._high, x + uncertainty)
