@@ -84,7 +84,7 @@ class Band:
 
     @classmethod
     def of(cls, surface: Surface) -> Band:
-        """Return the waves that `surface` lost when it was placed on the grid."""
+        """Describe the waves that `surface` lost when it was resampled to its grid."""
         provenance = surface.provenance
         removed = float(provenance.get("removed_slope", 0.0))
         pixel = max(float(provenance.get(f"pixel_{axis}_m", 0.0)) for axis in "xy")
@@ -193,9 +193,9 @@ def _add_errors(
 
 
 def band_warning(surface: Surface, band_errors: Sequence[float]) -> str | None:
-    """Make a warning if waves that the grid leaves out of a scan change COR; otherwise None.
+    """Return a warning if waves that the grid leaves out of a scan change COR, otherwise None.
 
-    The warning states the grid that would resolve these waves, and whether this grid is too large.
+    The warning states which grid would resolve these waves, and whether such a grid is too large.
     """
     band = Band.of(surface)
     lacking = [error for error in band_errors if error > MISSING_BAND]
@@ -252,7 +252,7 @@ def steps(case: Case) -> int:
 
 
 def _floor(row: Row) -> float:
-    """The part s f of the discretisation error of a row (s and f: see the top of this file)."""
+    """Minimum s f of the discretisation error of a row (s and f: see the top of this file)."""
     nodes = max(row["median_patch_nodes"], 1.0)
     expected = math.exp(np.interp(math.log(nodes), np.log(_PATCH_NODES), np.log(_PATCH_ERROR)))
     if resolves(nodes) and row["adhesion_resolved"]:
@@ -263,7 +263,8 @@ def _floor(row: Row) -> float:
 def _smoothed(values: Array, work: Array, near: float) -> Array:
     """Smooth `values` over the loading work (J); all NaN if any value is NaN.
 
-    The result is a mean with the weights exp(−|Δ ln work|/near).
+    The result is a weighted mean with the weights exp(−Δ/near), where Δ is the distance of two
+    values in ln(work).
     """
     L = np.log(work)
     weights = np.exp(-np.abs(L[:, None] - L) / near)

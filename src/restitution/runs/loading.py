@@ -12,8 +12,9 @@ from restitution.runs.messages import naming_keys
 
 
 def load_to(case: Case, contact: Contact, depth: float, start: State | None = None) -> State:
-    """Load `contact` to `depth`, one of `case.depths()` (m, N or m/s).
+    """Load `contact` to `depth`, one of `case.depths()`.
 
+    Depending on the case, `depth` is an indentation (m), a force (N) or an impact velocity (m/s).
     `start` is the state at a shallower depth. Raises the errors of `solve`, `solve_at_force` or
     `solve_at_velocity`.
     """

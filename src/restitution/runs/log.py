@@ -69,8 +69,9 @@ class RunLog:
     ) -> Iterator[None]:
         """Record how the `with` body ends, let `keep` write the results, and issue new warnings.
 
-        `keep` returns the summary, which becomes `summary`, or None if nothing was computed. In the
-        latter case the folder is removed. Errors of the body are raised again.
+        `keep` returns the summary, which is stored in the attribute `summary`. If nothing was
+        computed, `keep` returns None and the folder is removed. Errors of the body are raised
+        again.
         """
         try:
             yield

@@ -44,12 +44,15 @@ def require_possible(contact: Contact, indentation: float) -> None:
 
 
 def input_warnings(contact: Contact, indentation: float) -> list[str]:
-    """Make a warning for each doubtful property of `contact` when loaded to `indentation` (m)."""
+    """Return a warning for each doubtful property of `contact` loaded to `indentation` (m)."""
     return [message(found) for found in doubtful(contact, indentation)]
 
 
 def no_range(contact: Contact) -> list[str]:
-    """Make a warning if `contact` neglects the range of the attraction because of a coarse grid."""
+    """Return a warning if a coarse grid makes `contact` neglect the range of the attraction.
+
+    The list is empty otherwise.
+    """
     if contact.cohesive:
         return []
     pair, w = contact.pair, contact.work_of_adhesion
@@ -69,7 +72,7 @@ def no_range(contact: Contact) -> list[str]:
 
 @contextmanager
 def naming_keys() -> Iterator[None]:
-    """Reword errors of the solvers: replace the names of arguments by keys of the case file."""
+    """Replace the names of arguments in errors of the solvers by keys of the case file."""
     try:
         yield
     except EdgeReachedError as error:
@@ -82,7 +85,7 @@ def naming_keys() -> Iterator[None]:
 
 
 def message(found: Finding) -> str:
-    """Write the finding `found` as one line that also says what to do."""
+    """Describe the finding `found` in one line that also says what to do."""
     match found.code:
         case "roughness-above-radius":
             return (

@@ -33,8 +33,8 @@ def is_oblique(case: Case) -> bool:
 def oblique_rows(case: Case, surface: Surface, out: ResultsFolder) -> tuple[list[_Row], str | None]:
     """Compute the oblique impacts of `case` from the rows and the unloading curves of `out`.
 
-    Returns a row of `oblique.csv` for each impact, and a warning that names the impacts that could
-    not be computed, or None.
+    Returns a row of `oblique.csv` for each impact. The second value is a warning that names the
+    impacts that could not be computed, or None if there are none.
     """
     impact, friction = case.impact, case.interface.friction
     assert impact is not None  # the case is oblique
@@ -81,7 +81,7 @@ def mean_oblique(tables: Sequence[Sequence[_Row]]) -> list[_Row]:
 
 
 def _force(case: Case, surface: Surface, out: ResultsFolder) -> StoredForce:
-    """The force law of the rows and unloading curves that a run has computed so far."""
+    """Make a force law from the rows and unloading curves that a run has computed so far."""
     curves = []
     for start, points in out.unloading:
         indentation, force = np.array(points)[::-1].T
@@ -104,7 +104,11 @@ def _row(
     velocity_and_angle: tuple[float, float],
     friction: float,
 ) -> _Row:
-    """Compute one impact, at the normal velocity of the nearest row of the curve."""
+    """Compute one impact.
+
+    If a row of the curve has nearly the prescribed normal velocity, the impact is computed at the
+    velocity of this row, and the total error of this row is the error of the normal restitution.
+    """
     velocity, angle = velocity_and_angle
     normal = velocity * math.cos(angle)
     nearest = min(rows, key=lambda row: _apart(row, normal))
@@ -119,7 +123,7 @@ def _row(
 
 
 def _apart(row: _Row, normal: float) -> float:
-    """Relative difference of the velocity of `row` from `normal` (m/s); infinite if unknown."""
+    """Relative difference between the velocity of `row` and `normal` (m/s); infinite if unknown."""
     apart = abs(row["impact_velocity_m_per_s"] / normal - 1)
     return math.inf if math.isnan(apart) else apart
 
@@ -148,8 +152,9 @@ def _cells(
 def _errors(law: StoredForce, found: ObliqueCollision, error: float) -> _Row:
     """Errors of the tangential results, which include the `error` of the normal restitution.
 
-    If the normal restitution is larger by de, the friction impulse is larger by at most
-    µ m* V_n de, its change in full slip (reduced mass m*, normal velocity V_n before the impact).
+    A change de of the normal restitution changes the friction impulse by at most µ m* V_n de, which
+    is the change in full slip. µ is the coefficient of friction, m* the reduced mass, and V_n the
+    normal velocity before the impact.
     """
     normal_velocity = found.velocity * math.cos(found.angle)
     impulse = found.friction * error * (law.pair.mass or math.nan) * normal_velocity

@@ -26,10 +26,10 @@ _MARGIN = 1.5
 def settled(case: Case, folder: Path, warn: Say = ignore) -> Case:
     """Replace `grid.refine = "auto"` in `case` by a factor for each depth.
 
-    Each depth gets the coarsest grid on which half of its contact lies in patches of at least 1.5
-    times `NODES_PER_PATCH` nodes. In an ensemble, the first surface decides. Deeper contacts have
-    larger patches, so bisection finds the shallowest depth that a grid resolves. If no grid of up
-    to `MOST_NODES` nodes resolves a depth, the depth gets the finest grid, and `warn` is called.
+    Each depth gets the coarsest grid on which half of the contact nodes lie in patches of at least
+    1.5 times `NODES_PER_PATCH` nodes. In an ensemble, the first surface decides. Deeper contacts
+    have larger patches, so bisection finds the shallowest depth that a grid resolves. If no grid of
+    up to `MOST_NODES` nodes resolves a depth, the depth gets the finest grid, and `warn` is called.
     Raises the errors of `solve`.
     """
     if case.grid is None or case.grid.refine != "auto":
@@ -82,7 +82,7 @@ def with_chosen_adhesion(case: Case, contact: Contact, warn: Say = ignore) -> Ca
 
 
 def later_touches(case: Case, folder: Path, factors: Iterable[int]) -> dict[int, float]:
-    """Extra approach (m) to first touch on each grid, compared with the finest of `factors`.
+    """Extra approach (m) to first touch on each grid, compared with the finest of these grids.
 
     A coarse grid touches later because the highest point of the surface lies between its nodes.
     """
@@ -95,7 +95,7 @@ def later_touches(case: Case, folder: Path, factors: Iterable[int]) -> dict[int,
 
 
 def _first_resolved(case: Case, contact: Contact, depths: list[float]) -> int:
-    """Index of the shallowest of `depths` that the grid resolves; len(depths) if there is none."""
+    """Index of the shallowest depth that the grid resolves; len(depths) if it resolves none."""
     low, high = 0, len(depths)
     while low < high:
         middle = (low + high) // 2

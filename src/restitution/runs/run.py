@@ -82,15 +82,15 @@ def run_case(
 
     With `errors` (and unless the case has total_error = false), every row gets its total error
     (`error_budget`), and a depth that does not converge is left out. Without `errors`, a depth that
-    does not converge ends the curve, because rows of several runs are compared by their number.
-    Contact at the edge of the grid always ends the curve. In each of these cases the first error is
-    raised at the end of the run.
+    does not converge ends the curve, because rows of several runs are compared by their row number.
+    Contact at the edge of the grid always ends the curve. In each of these cases the run raises the
+    first error at its end.
 
     The case has one surface (see `ensemble`). `grid.refine = "auto"` is replaced first
     (`refinement`). Depths are measured from first touch on the finest grid. `progress` is called
     with a few words after every depth. `warn` is called with every warning: about the input before
-    the first solve, and about the results at the end, even after an error. An error is raised again
-    after the results so far and the reason are written. If there are no results, the folder is
+    the first solve, and about the results at the end, even after an error. Before an error is
+    raised, the results so far and the reason are written. If there are no results, the folder is
     removed.
     """
     case.require_impact()
@@ -199,7 +199,7 @@ def _add_errors(
 
 
 def _check(state: State, back: Sequence[State], collision: Collision) -> dict[str, float]:
-    """Compare the work of an unloading curve with the stored energy."""
+    """Check the energy balance of an unloading curve."""
     work = unloading_curve(list(back)).work()
     estimate = collide(state, method="energy-estimate")
     return {
@@ -215,8 +215,8 @@ def _check(state: State, back: Sequence[State], collision: Collision) -> dict[st
 def _unbalance(state: State, end: State, work: float, lost: float) -> float:
     """Return the relative error of the energy balance of an unloading curve.
 
-    It is `work` (J) minus the work that the balance predicts, over the stored energy. `lost` is the
-    energy (J) lost by adhesion on the way from `state` to `end`.
+    The error is `work` (J) minus the work that the balance predicts, divided by the stored energy.
+    `lost` is the energy (J) that adhesion dissipates on the way from `state` to `end`.
     """
     if isinstance(state, CohesiveState) and isinstance(end, CohesiveState):
         released = state.potential_energy - end.potential_energy
@@ -276,7 +276,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> d
 
 
 def _materials(case: Case) -> dict[str, Any]:
-    """The values of the bodies that come from the library, with their spread and source."""
+    """Material values that come from the library, with their spread and source."""
     bodies = {"first": case.first, "second": case.second or case.first}
     return {
         name: {
@@ -289,7 +289,7 @@ def _materials(case: Case) -> dict[str, Any]:
 
 
 def _imprecise(out: ResultsFolder, case: Case) -> str | None:
-    """Make a warning if the COR of some depths is less precise than requested; otherwise None."""
+    """Return a warning if the COR of some depths is less precise than requested, otherwise None."""
     asked = max(_IMPRECISE, case.unloading.restitution_error)
     missed = [row for row in out.rows if row["restitution_error"] > asked]
     if not missed:
@@ -306,7 +306,7 @@ def _imprecise(out: ResultsFolder, case: Case) -> str | None:
 
 
 def _velocities_missed(out: ResultsFolder, case: Case, computed: list[float]) -> str | None:
-    """Make a warning if impact velocities differ from the prescribed values; otherwise None."""
+    """Return a warning if impact velocities differ from the prescribed values, otherwise None."""
     if case.impact is None:
         return None
     pairs = zip((row["impact_velocity_m_per_s"] for row in out.rows), computed, strict=False)
@@ -340,7 +340,7 @@ def _adhesion_of(contact: Contact, case: Case) -> dict[str, Any]:
 
 
 def _unbalanced(checks: list[dict[str, float]]) -> str | None:
-    """Make a warning if the work of unloading curves differs from the stored energy; else None."""
+    """Return a warning if the energy balance of an unloading curve is off, otherwise None."""
     off = [check for check in checks if not abs(check["relative_to_stored_energy"]) <= _BALANCE]
     if not off:
         return None
@@ -353,7 +353,7 @@ def _unbalanced(checks: list[dict[str, float]]) -> str | None:
 
 
 def _attributes(summary: dict[str, Any], text: str) -> dict[str, str]:
-    """Attributes of results.nc; all values are strings."""
+    """Return the attributes of results.nc; all values are strings."""
     groups = ("model", "conventions", "derived", "surface", "surface_statistics", "versions")
     return {
         "title": summary["title"],

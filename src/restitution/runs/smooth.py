@@ -29,10 +29,10 @@ def smooth_curve(
     """Make the variables of results.nc for the smooth bodies: force, restitution and velocity.
 
     The curve spans the depths and velocities of `rows`. Up to yield it is Hertz's solution. Beyond
-    yield, each depth is solved on a separate small grid. There are no variables for the `truncated`
-    model, because Thornton and Ning's formulas give its smooth contact. There are no variables for
-    adhesive contacts either, because small grids do not resolve adhesion. `check` is called before
-    every solve, and may raise an error to end the curve. Raises the errors of `solve`.
+    yield, each depth is solved on a separate small grid. The result is empty for the `truncated`
+    model, because Thornton and Ning's formulas describe its smooth contact. It is also empty for
+    adhesive contacts, because small grids do not resolve adhesion. `check` is called before every
+    solve, and may raise an error to end the curve. Raises the errors of `solve`.
     """
     pair, p_y = contact.pair, contact.hardness
     R, E_star = pair.radius, pair.contact_modulus

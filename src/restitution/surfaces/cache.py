@@ -91,7 +91,8 @@ def _write(file: Path, key: str, surface: Surface) -> None:
 def _free_space(folder: Path, size: int) -> None:
     """Make space for a new file of `size` bytes in the cache folder.
 
-    Abandoned temporary files are deleted, and the least recently used files until `size` fits.
+    Abandoned temporary files are deleted. The least recently used files are also deleted until the
+    new file fits.
     """
     files = [(entry.stat(), entry) for entry in folder.iterdir() if entry.is_file()]
     files.sort(key=lambda item: item[0].st_mtime)

@@ -75,7 +75,7 @@ def describe(surface: Surface) -> dict[str, float | None]:
 
 
 def rms_slope(surface: Surface) -> float:
-    """Root mean square gradient (1), the parameter `Sdq` of `describe`."""
+    """Root mean square gradient (dimensionless), the parameter `Sdq` of `describe`."""
     hx, hy = surface.grid.spacing
     z = surface.height - surface.height.mean()
     return math.sqrt(_mean_square_slope(z, hx) + _mean_square_slope(z.T, hy))
@@ -87,7 +87,7 @@ def _mean_square_slope(z: NDArray[np.float64], h: float) -> float:
 
 
 def _rms_curvature(z: NDArray[np.float64], hx: float, hy: float) -> float:
-    """Half the rms Laplacian (1/m) of the inner nodes; axes with fewer than 3 nodes add nothing."""
+    """Half the rms Laplacian (1/m) of the inner nodes; axes of fewer than 3 nodes are omitted."""
     laplacian = np.zeros([n - 2 if n > 2 else n for n in z.shape])
     inner = tuple(slice(1, -1) if n > 2 else slice(None) for n in z.shape)
     if z.shape[0] > 2:

@@ -34,7 +34,7 @@ def extend(
         to: Grid of the new surface, or the edge lengths along x and y (m). With edge lengths, the
             cells have the size of the pixels of the scan.
         how: Method, `twin` or `mirror`.
-        seed: Seed of the random phases (1); for a twin only.
+        seed: Seed of the random phases; for a twin only.
 
     Returns:
         Extended surface. The `notice` in its provenance states that it is not the scan.

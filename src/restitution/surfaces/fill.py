@@ -53,7 +53,7 @@ def fill_harmonically(
 
 
 def _neighbours(axis: int, step: int) -> tuple[tuple[slice, slice], tuple[slice, slice]]:
-    """Slices of all pixels that have a neighbour at `step` along `axis`, and of the neighbours."""
+    """Slices of the pixels with a neighbour at `step` along `axis`, and of these neighbours."""
     low, high = slice(None, -1), slice(1, None)
     here, there = [slice(None), slice(None)], [slice(None), slice(None)]
     here[axis], there[axis] = (low, high) if step > 0 else (high, low)

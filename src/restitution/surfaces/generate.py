@@ -75,17 +75,17 @@ def generate_surface(
         grid: Grid of the surface.
         kind: Autocorrelation `exponential` or `gaussian`, or a `self-affine` power spectrum.
         rms: Root mean square height Rq (m), reached exactly.
-        seed: Seed of the noise (1), not negative.
-        skewness: Skewness of the heights (1).
-        kurtosis: Kurtosis of the heights (1), 3 for a normal distribution; at least
-            skewness² + 1.1.
+        seed: Seed of the noise, not negative.
+        skewness: Skewness of the heights (dimensionless).
+        kurtosis: Kurtosis of the heights (dimensionless), 3 for a normal distribution; at
+            least skewness² + 1.1.
         periodic: Whether opposite edges of the surface match (bool).
         **waves: Parameters of the waves of this `kind`; None is the same as no argument.
             `correlation_length` (m; exponential, gaussian): length over which the autocorrelation
             falls to 10 %, or two lengths, along and across the lay.
             `lay` (rad; exponential, gaussian): angle of the first length from the x axis,
             default 0.
-            `hurst` (1; self-affine): Hurst exponent.
+            `hurst` (dimensionless; self-affine): Hurst exponent.
             `rolloff` (m; self-affine): wavelength above which the spectrum is constant; without
             `rolloff` the power law extends to the size of the domain.
             `shortest` (m; all kinds): wavelength below which waves are left out.
@@ -198,7 +198,10 @@ def _heights(
 
 
 def _enlarged(grid: Grid, longest: float) -> Grid:
-    """Return a larger grid: surfaces cut from it to the size of `grid` have uncorrelated edges."""
+    """Return a larger grid, from which a surface of the size of `grid` is cut.
+
+    The opposite edges of the cut surface are uncorrelated.
+    """
     from scipy.fft import next_fast_len
 
     nx, ny = (

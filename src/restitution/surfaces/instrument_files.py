@@ -179,7 +179,8 @@ def _list(some: list[Any], channels: list[Any]) -> str:
 def _why_unreadable(error: Exception, suffix: str) -> str:
     """Describe the error in words.
 
-    If the package has a reader named after the `suffix` of the file, its message is included.
+    If SurfaceTopography has a reader named after the `suffix` of the file, the message of this
+    reader is included.
     """
     named_after_suffix = rf"tried {re.escape(suffix.removeprefix('.'))}reader:\s*(.+)"
     reason = re.search(named_after_suffix, str(error), re.IGNORECASE)

@@ -61,7 +61,7 @@ def read_surface(
 
     Args:
         path: File to read.
-        channel: Number of the channel (1), from 0; None selects the reader's default height
+        channel: Number of the channel, counted from 0; None selects the reader's default height
             channel.
         size: Lengths of the x and y edges (m): number of pixels times pixel size. Required if the
             file does not contain the lengths. Otherwise `size` must agree with the file.

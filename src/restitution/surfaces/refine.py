@@ -22,7 +22,7 @@ def refine(surface: Surface, factor: int) -> Surface:
 
     Args:
         surface: Surface to refine.
-        factor: Number of new cells (1) per old cell along each axis, at least 1.
+        factor: Number of new cells per old cell along each axis, at least 1.
 
     Returns:
         Surface on the finer grid.
@@ -46,7 +46,7 @@ def refine(surface: Surface, factor: int) -> Surface:
 def coarsen(surface: Surface, factor: int = 2) -> Surface:
     """Resample `surface` to cells `factor` times as large.
 
-    Waves of two new cells or less are removed; longer waves do not change.
+    Waves no longer than two new cells are removed; longer waves do not change.
 
     If the number of nodes is not a multiple of `factor`, the new cells are slightly smaller, so
     that a whole number of cells covers the domain. Raises `SurfaceError` for a factor below 1.

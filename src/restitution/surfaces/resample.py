@@ -23,9 +23,10 @@ def place_on_grid(surface: Surface, grid: Grid) -> Surface:
 
     The origins coincide (see `Grid`). If the spacings are equal, the cells coincide with pixels,
     the surface is cropped, and heights do not change. Otherwise a cubic spline through the pixel
-    centres is evaluated at the cell centres. Along an axis with coarser cells, waves shorter than
-    two cells are removed first, because they would be aliased to longer waves. Beyond the outermost
-    pixel centres (by less than a pixel) the height is constant, not extrapolated.
+    centres is evaluated at the cell centres. Along an axis where cells are larger than pixels,
+    waves shorter than two cells are removed first, because they would be aliased to longer waves.
+    Beyond the outermost pixel centres (by less than a pixel) the height is constant, not
+    extrapolated.
 
     The method (`placement`) and the waves that were removed are added to the provenance.
 
@@ -65,7 +66,7 @@ def place_on_grid(surface: Surface, grid: Grid) -> Surface:
 
 
 def carried(surface: Surface, spacing: tuple[float, float], *, mirrored: bool = False) -> Array:
-    """Return the heights of `surface` without the waves too short for cells of `spacing` (m).
+    """Return the heights of `surface` without waves that are too short for cells of `spacing` (m).
 
     Waves shorter than two cells along either axis are removed. The filter continues the surface
     beyond its edges. If `mirrored`, the surface is continued by its mirror image. Otherwise the
@@ -85,10 +86,12 @@ def carried(surface: Surface, spacing: tuple[float, float], *, mirrored: bool = 
 def left_out(surface: Surface, kept: Array, spacing: tuple[float, float]) -> dict[str, float]:
     """Provenance entries that describe the waves removed by resampling to cells of `spacing` (m).
 
-    `kept` are the heights of `surface` without these waves. The entries are `removed_rms_m`, the
-    rms height of the removed waves; `removed_slope`, their rms slope divided by the rms slope of
-    the surface; `shortest_carried_m`, the shortest remaining wave; `pixel_x_m` and `pixel_y_m`, the
-    largest pixel size before this or any earlier resampling.
+    `kept` are the heights of `surface` without these waves. Earlier resampling is included:
+
+    - `removed_rms_m`: rms height of the removed waves
+    - `removed_slope`: rms slope of the removed waves divided by that of the original surface
+    - `shortest_carried_m`: wavelength of the shortest remaining wave
+    - `pixel_x_m`, `pixel_y_m`: largest pixel size before this or any earlier resampling
     """
     before = surface.provenance
     pixel = [
@@ -139,7 +142,7 @@ def crop_to(height: Array, nodes: tuple[int, int]) -> Array:
 def _carried(height: Array, ratio: float) -> Array:
     """Remove waves shorter than 2/ratio pixels along the first axis.
 
-    `ratio` is the pixel size over the cell size of the new grid.
+    `ratio` is the pixel size divided by the cell size of the new grid.
     """
     from scipy.fft import dst, idst
 

@@ -152,7 +152,11 @@ def _parse_field(path: Path, number: int, text: str) -> float:
 def _read_header(
     path: Path, comments: list[str]
 ) -> tuple[tuple[float | None, float | None], float, dict[str, str | float], _Counts]:
-    """Read edge lengths (m), metres per unit of height, provenance details and counts."""
+    """Read the header lines.
+
+    Returns the edge lengths (m), the unit of the heights in metres, details for the provenance, and
+    the numbers of values per line and of lines.
+    """
     sides: dict[str, float] = {}
     metres_per_value = 1.0
     details: dict[str, str | float] = {}
@@ -202,7 +206,7 @@ def _statement(comment: str) -> tuple[str, str]:
 
 
 def _counts(key: str, value: str) -> _Counts:
-    """Read the numbers of values per line and of lines that a header entry states, if any."""
+    """Read the number of values per line and the number of lines, if a header entry states them."""
     if key in _COLUMNS | _LINES and value.isdecimal() and len(value) < 10:
         return {"values" if key in _COLUMNS else "lines": int(value)}
     if key in ("pixels", "resolution", "shape") and (both := _BOTH.fullmatch(value)):

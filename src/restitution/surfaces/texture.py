@@ -51,13 +51,13 @@ def texture(surface: Surface) -> dict[str, float | None]:
 
     - `Sal_m`: autocorrelation length, the shortest lag at which the autocorrelation falls to 0.2
       (4.2.1)
-    - `Str`: texture aspect ratio, the shortest over the longest lag at which the autocorrelation
-      falls to 0.2; near 1 without a lay and near 0 with a lay; None if the autocorrelation stays
-      above 0.2 in some direction up to half of the domain (4.2.2)
+    - `Str`: texture aspect ratio, the shortest lag at which the autocorrelation falls to 0.2,
+      divided by the longest such lag; near 1 without a lay and near 0 with a lay; None if the
+      autocorrelation stays above 0.2 in some direction up to half of the domain (4.2.2)
     - `lay_deg`: direction (°) of this longest lag from the x axis, 0 to 180; it is the direction of
       the lay if Str is small
-    - `Sdr`: developed interfacial area ratio, the area of triangles between nodes over the area of
-      their projection, minus 1 (4.3.2)
+    - `Sdr`: developed interfacial area ratio, the area of triangles between nodes divided by the
+      area of their projection, minus 1 (4.3.2)
     - `Sk_m`, `Spk_m`, `Svk_m`: core, reduced peak and reduced dale height; `Smr1`, `Smr2`: material
       ratios where peaks and dales begin (5.2 to 5.4, after ISO 13565-2)
     """
@@ -148,7 +148,7 @@ def _decay_lags(R: Autocorrelation) -> Array:
 
 
 def _developed_area(surface: Surface) -> float:
-    """Sdr: the area of two triangles per cell over the area of their projection, minus 1."""
+    """Sdr: the area of two triangles per cell divided by that of their projection, minus 1."""
     z, (hx, hy) = surface.height, surface.grid.spacing
     if min(z.shape) < 2:
         return 0.0
@@ -159,7 +159,7 @@ def _developed_area(surface: Surface) -> float:
 
 
 def _core(curve: MaterialRatio) -> dict[str, float | None]:
-    """Parameters Sk, Spk, Svk, Smr1 and Smr2, from the secant of the flattest 40 % of the curve."""
+    """Parameters Sk, Spk, Svk, Smr1 and Smr2, from the secant of the flattest 40 % of `curve`."""
     from scipy.integrate import trapezoid
 
     ratio, height = curve

@@ -62,9 +62,9 @@ def twin(scan: Surface, grid: Grid, seed: int) -> Surface:
 
     The provenance describes the waves left out (`removed_…`) and contains the statistics of the
     scan (`scan_…`). It also contains `spectrum_misfit`, the root mean square of the relative
-    difference between the spectra of twin and scan. The spectra are compared on parts as large as
-    the scan, in bands of a quarter octave. The weight of a band is the sum of its fractions of the
-    mean square height and of the mean square slope.
+    difference between the spectra of twin and scan. The spectra are compared on parts of the twin
+    as large as the scan, in bands of a quarter octave. The weight of a band is the sum of two
+    fractions: its share of the mean square height and its share of the mean square slope.
 
     Raises `SurfaceError` for a scan that is flat or has fewer than 16 pixels along an axis, and for
     cells that are too large for any wave of the scan.
@@ -126,7 +126,10 @@ def _adjusted(spectrum: WaveSpectrum, scan: Surface, grid: Grid, seed: int) -> M
 
 
 def _bands(spectrum: WaveSpectrum, scan: Surface) -> list[tuple[float, float]]:
-    """Return the largest cell size (m) that resolves the waves of each band, coarsest first."""
+    """For each band, return the largest cell (x and y edges in m) that resolves its waves.
+
+    The band of the longest waves comes first.
+    """
     most = (1 - _UNADJUSTED) * float(np.var(scan.height))
 
     def cell(level: int) -> tuple[float, float]:

@@ -2,9 +2,10 @@
 
 1. The scan's power spectrum C (`psd`) is interpolated linearly to the wave vectors of the twin.
    Waves longer than the scan have not been measured and are left out.
-2. The result is multiplied by a + b/k², where k is the number of waves per scan, so that height and
-   slope have the mean squares of the scan. C alone does not give these values, because the tapers
-   in the estimate of C give the rim of the scan less weight than the middle.
+2. The result is multiplied by a + b/k², where k is the size of the scan divided by the wavelength.
+   The constants a and b are chosen so that height and slope have the mean squares of the scan. C
+   alone does not give these values, because the tapers in the estimate of C give the rim of the
+   scan less weight than the middle.
 
 Both steps depend on the scan and the period of the twin, but not on the grid. So the waves are the
 same for grids of any spacing.
@@ -53,7 +54,7 @@ class WaveSpectrum:
         return np.maximum(C * (self.flat + self.steep / np.maximum(k2, 1.0)), 0.0)
 
     def _raw(self, m: NDArray[np.int64], n: NDArray[np.int64]) -> tuple[Array, Array]:
-        """Interpolated density without the factor a + b/k², and k² (k: waves per scan)."""
+        """Interpolated density without the factor a + b/k², and k² (k: scan size/wavelength)."""
         from scipy.ndimage import map_coordinates
 
         kx, ky = m / self.waves[0], n / self.waves[1]
@@ -110,10 +111,11 @@ def spectrum_of(scan: Surface, period: tuple[float, float]) -> WaveSpectrum:
 def _moments(spectrum: WaveSpectrum, *, raw: bool = True) -> Array:
     """Mean square height and mean square slope (rows) for the powers C and C/k² (columns).
 
-    k is the number of waves per scan. If `raw` is False, the first column is for the power
-    C(a + b/k²), and the second is 0. Slopes are differences between neighbouring pixels, as in
-    `rms_slope`. Long waves are summed one by one, over the wave vectors of the twin. Short waves
-    are summed over the wave vectors of the scan, which are fewer, because the twin is not smaller.
+    k is the size of the scan divided by the wavelength. If `raw` is False, the first column is for
+    the power C(a + b/k²), and the second is 0. Slopes are differences between neighbouring pixels,
+    as in `rms_slope`. Long waves are summed one by one, over the wave vectors of the twin. Short
+    waves are summed over the wave vectors of the scan, which are fewer, because the twin is not
+    smaller.
     """
     wx, wy = spectrum.waves
     (mx, my), (hx, hy) = spectrum.density.shape, spectrum.pixel

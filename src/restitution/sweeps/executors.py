@@ -29,8 +29,8 @@ PATIENCE = "15s"  # timeout of the connection to a Dask scheduler
 class Workers:
     """An executor that computes `places` cases at a time, each with `threads` threads.
 
-    `renewed` makes a new executor of a given size after a process has died; `heard` returns the
-    messages that arrived through `channel` since its last call.
+    `renewed` makes a new executor for a given number of cases at a time, after a process has died.
+    `heard` returns the messages that arrived through `channel` since the last call of `heard`.
     """
 
     executor: Executor

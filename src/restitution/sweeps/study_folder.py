@@ -1,4 +1,4 @@
-"""The folder of a study: one folder for each case, and tables over all of them.
+"""The folder of a study: one folder for each case, and tables of all cases.
 
 A case is written to a temporary folder, which is then renamed, so a case is stored completely or
 not at all. The tables are always made anew from all stored cases.
@@ -138,7 +138,8 @@ class StudyFolder:
     ) -> list[dict[str, str]]:
         """Make the rows of `table.csv`.
 
-        Each row contains swept values and a row of `curve.csv`. A case without a curve has one row.
+        Each row contains the swept values of a case and a row of its `curve.csv`. A case without a
+        curve has one row.
         """
         columns = next((list(rows[0]) for rows in curves.values() if rows), list(COLUMNS))
         rows = []

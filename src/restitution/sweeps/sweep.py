@@ -87,7 +87,10 @@ def parse_study(text: str) -> Study:
 
 
 def _paths(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, list[Any]]]:
-    """Yield dotted keys and their values, for `"roughness.rms" = …` and `roughness.rms = …`."""
+    """Yield dotted keys and their values.
+
+    A key may be written with or without quotes: `"roughness.rms" = …` or `roughness.rms = …`.
+    """
     for key, value in table.items():
         if isinstance(value, dict):
             yield from _paths(value, f"{before}{key}.")

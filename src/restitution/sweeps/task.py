@@ -20,9 +20,10 @@ class Channel(Protocol):
 
 @dataclass(frozen=True)
 class Outcome:
-    """The outcome of a case: the files of its results folder, and the reason of a failure.
+    """The outcome of a case: the files of its results folder, and the reason for a failure.
 
-    `reason` is empty if the case is complete. A failed case has only the files written before.
+    `reason` is empty if the case is complete. A failed case has only the files that were written
+    before the failure.
     """
 
     files: dict[str, bytes]

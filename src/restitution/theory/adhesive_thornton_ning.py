@@ -83,9 +83,9 @@ class AdhesiveThorntonNing:
             mass: Reduced mass m* (kg).
 
         Returns:
-            Coefficient of restitution e (1); 0 if the spheres stick, 1 at zero or negative
-            velocity. If the sticking velocity exceeds the yield velocity, the formula fails and e
-            is NaN above the yield velocity.
+            Coefficient of restitution e (dimensionless); 0 if the spheres stick, 1 at zero or
+            negative velocity. If the sticking velocity exceeds the yield velocity, the formula
+            fails and e is NaN above the yield velocity.
 
         Raises:
             CaseError: `mass` is not positive and finite.

@@ -2,13 +2,13 @@
 
 N. V. Brilliantov, F. Spahn, J.-M. Hertzsch, T. Pöschel, Phys. Rev. E 53 (1996) 5382–5392; R.
 Ramírez, T. Pöschel, N. V. Brilliantov, T. Schwager, Phys. Rev. E 60 (1999) 4465–4472; P. Müller, T.
-Pöschel, Phys. Rev. E 84 (2011) 021302, arXiv:1102.5247. The equation of motion of the approach x
+Pöschel, Phys. Rev. E 84 (2011) 021302, arXiv:1102.5247. After first touch at the impact velocity V,
+the equation of motion of the approach x is
 
     ẍ + k x^{3/2} + γ x^½ ẋ = 0,   ẋ(0) = V,   until the force returns to zero (ẍ = 0, x > 0)
 
-has the impact velocity V as its initial condition. After scaling, it contains a single parameter,
-v = β^½ V^{1/10} with β = γ/k^{3/5}. With the dissipative constant A of the material, which is a
-time:
+After scaling, this equation contains a single parameter, v = β^½ V^{1/10} with β = γ/k^{3/5}. The
+dissipative constant A of the material, which is a time, determines γ and β:
 
     k = 4E*R*^½/3m*,  γ = 3/2 A k,  β = 3/2 A k^{2/5}
     series   e = 1 − 1.153449 v² + 0.798267 v⁴ + 0.266666 v⁵ − …
@@ -90,7 +90,7 @@ class Brilliantov:
             velocity: Relative normal impact velocity V (m/s).
 
         Returns:
-            Coefficient of restitution e (1); 1 at zero or negative velocity.
+            Coefficient of restitution e (dimensionless); 1 at zero or negative velocity.
         """
         v = self.dissipation**0.5 * touching(velocity) ** 0.1
         return scalar_or_array(np.polyval(_NUMERATOR, v) / np.polyval(_DENOMINATOR, v))

@@ -3,7 +3,8 @@
 J. P. Morrissey, thesis, University of Edinburgh (2013); S. C. Thakur, J. P. Morrissey, J. Sun, J.
 F. Chen, J. Y. Ooi, Granular Matter 16 (2014) 383–400. The stiffnesses are k₁ (loading), k₂
 (unloading) and k_adh (adhesion). The exponent n is the same for all branches (1: linear, 3/2:
-Hertz-like). With the constant force f₀ ≤ 0 and the largest indentation d = δ_max:
+Hertz-like). With the constant force f₀ ≤ 0, the largest indentation d = δ_max, the indentation δ_p
+at which the unloading force has fallen to f₀, the loading work W_l and the returned work W_u:
 
     loading     F = f₀ + k₁δⁿ
     unloading   F = f₀ + k₂(δⁿ − δ_pⁿ),  δ_p = (1 − k₁/k₂)^{1/n} d
@@ -53,7 +54,7 @@ class EEPA:
         unloading_stiffness: Stiffness k₂ of unloading (N/mⁿ, SI), at least k₁.
         adhesive_stiffness: Stiffness k_adh of the adhesive branch (N/mⁿ, SI), at least 0.
         constant_force: Constant force f₀ (N), at most 0 (attractive).
-        exponent: Exponent n of all branches (1), at least 1.
+        exponent: Exponent n of all branches (dimensionless), at least 1.
 
     Raises:
         CaseError: A field is not finite or not in its range.
@@ -195,8 +196,8 @@ class EEPA:
             mass: Reduced mass m* (kg).
 
         Returns:
-            Coefficient of restitution e = (W_u/W_l)^½ (1); 0 if the bodies stick, 1 at zero or
-            negative velocity.
+            Coefficient of restitution e = (W_u/W_l)^½ (dimensionless); 0 if the bodies stick, 1
+            at zero or negative velocity.
 
         Raises:
             CaseError: `mass` is not positive and finite.

@@ -16,10 +16,10 @@ peak pressure is CY; ω_c is `FirstYield.indentation` with p_y = CY.
 The fit covers only loading against a rigid frictionless flat. Its data are finite-element results
 for five steel-like materials (Y/E* from 0.001 to 0.007, ν = 0.32; von Mises, no hardening) up to
 a/R* = 0.412. The force deviates from these results by 1 % on average and by at most 3.5 %, the area
-by 1.3 % and 4.3 %. Outside these ranges the fit extrapolates. At ω* = 1.9 the forces of the two
-branches agree within 0.1 % for ν = 0.32. For other values of ν the force jumps there: by +7.5 % for
-ν = 0, +1.5 % for ν = 0.25 and −3.4 % for ν = 0.5. For two deformable bodies use Y and ν of the body
-with the smaller CY.
+by 1.3 % on average and by at most 4.3 %. Outside these ranges the fit extrapolates. At ω* = 1.9 the
+forces of the two branches agree within 0.1 % for ν = 0.32. For other values of ν the force jumps
+there: by +7.5 % for ν = 0, +1.5 % for ν = 0.25 and −3.4 % for ν = 0.5. For two deformable bodies
+use Y and ν of the body with the smaller CY.
 Units, shapes and errors are those of `restitution.theory`.
 """
 
@@ -48,7 +48,7 @@ class JacksonGreen:
         radius: Reduced radius R* (m).
         contact_modulus: Contact modulus E* (Pa).
         yield_strength: Yield strength Y of a tensile test (Pa).
-        poissons_ratio: Poisson's ratio ν (1).
+        poissons_ratio: Poisson's ratio ν (dimensionless).
 
     Raises:
         CaseError: A field is not positive and finite, or Poisson's ratio is outside the range
@@ -137,5 +137,5 @@ class JacksonGreen:
         return scalar_or_array(first.force * np.where(w <= TRANSITION, w**1.5, fit))
 
     def _normalised(self, indentation: Values) -> Array:
-        """Indentation over the indentation at first yield; zero for separated bodies."""
+        """Indentation divided by the indentation at first yield; zero for separated bodies."""
         return touching(indentation) / self.first_yield.indentation

@@ -7,10 +7,10 @@ of the same contact radius a:
 
     F = 4E*a³/(3R*) − (8πE*wa³)^½,   δ = a²/R* − (2πwa/E*)^½
 
-Forces are positive in compression, and δ is positive when the contact is compressed; only
-`pull_off_force` is a magnitude. With a_b = (πwR*²/8E*)^{1/3}, F_c = 3/2 πwR* and U = E*a_b⁵/R*²,
-the indentation δ, the force F, the elastic energy U_el and the total energy U_T are polynomials in
-s = (a/a_b)^½:
+Forces are positive in compression, except `pull_off_force`, which is a magnitude; δ is positive
+when the contact is compressed. The contact radius at the break is a_b = (πwR*²/8E*)^{1/3}, and the
+pull-off force is F_c = 3/2 πwR*. With the unit of energy U = E*a_b⁵/R*², the indentation δ, the
+force F, the elastic energy U_el and the total energy U_T are polynomials in s = (a/a_b)^½:
 
     δ = (s⁴ − 4s) a_b²/R*,   F = (s⁶ − 6s³) F_c/9
     U_el/U = 8/15 s¹⁰ − 16/3 s⁷ + 16 s⁴,   U_T = U_el − wπa² = U_el − 8 s⁴ U,   dU_T = F dδ
@@ -200,7 +200,7 @@ class JKR:
 
     @cached_property
     def break_radius(self) -> Array:
-        """Contact radius a_b = (πwR*²/8E*)^{1/3} (m) at the break, the smallest stable one."""
+        """Contact radius a_b = (πwR*²/8E*)^{1/3} (m) at the break; no stable radius is smaller."""
         R, E_star, w = self.radius, self.contact_modulus, self.work_of_adhesion
         return scalar_or_array(np.cbrt(np.pi / 8 * w * R**2 / E_star))
 
@@ -221,7 +221,7 @@ class JKR:
 
     @property
     def adhesive_length(self) -> Array:
-        """Height (w²R*/E*²)^{1/3} (m) of the neck; `break_indentation` is −1.61 times as large."""
+        """Height h = (w²R*/E*²)^{1/3} (m) of the neck; `break_indentation` is −1.61 h."""
         R, E_star, w = self.radius, self.contact_modulus, self.work_of_adhesion
         return scalar_or_array((w * w * R / E_star**2) ** (1 / 3))
 
@@ -304,8 +304,8 @@ class JKR:
             mass: Reduced mass m* (kg).
 
         Returns:
-            Coefficient of restitution e = (1 − (V_s/V)²)^½ (1); 0 if the spheres stick (V ≤ V_s), 1
-            at zero or negative velocity.
+            Coefficient of restitution e = (1 − (V_s/V)²)^½ (dimensionless); 0 if the spheres
+            stick (V ≤ V_s), 1 at zero or negative velocity.
 
         Raises:
             CaseError: `mass` is not positive and finite.
@@ -321,8 +321,8 @@ class JKR:
             maximum_indentation: Indentation at which unloading began, δ_max (m).
 
         Returns:
-            Coefficient of restitution e = (W_u/W_l)^½ (1); 0 if W_u ≤ 0 (the spheres stick), 1 at
-            zero or negative indentation.
+            Coefficient of restitution e = (W_u/W_l)^½ (dimensionless); 0 if W_u ≤ 0 (the spheres
+            stick), 1 at zero or negative indentation.
         """
         W_l, W_s = self.loading_work(maximum_indentation), self.hysteresis_loss
         e = (1 - W_s / np.maximum(W_l, W_s)) ** 0.5
@@ -336,7 +336,7 @@ class JKR:
                 0.15–0.4 nm.
 
         Returns:
-            Tabor parameter μ (1).
+            Tabor parameter μ (dimensionless).
 
         Raises:
             CaseError: `equilibrium_separation` is not positive and finite.
@@ -353,11 +353,11 @@ class JKR:
         return Kendall(self.contact_modulus, self.work_of_adhesion)
 
     def _root(self, indentation: Values) -> Array:
-        """Root s = (a/a_b)^½ of the relative contact radius, stable branch; 0 below the break.
+        """Square root s = (a/a_b)^½ of the relative contact radius on the stable branch.
 
-        a_b and δ_b are the radius and the indentation at which the contact breaks. s ≥ 1 is the
-        larger solution of s⁴ − 4s = 3k with k = δ/|δ_b| ≥ −1. Ferrari's method gives
-        s = p + (1/p − p²)^½, where y = 2p² is the positive root of the cubic y³ + 3ky = 2.
+        s is 0 below the break. a_b and δ_b are the radius and the indentation at which the contact
+        breaks. s ≥ 1 is the larger solution of s⁴ − 4s = 3k with k = δ/|δ_b| ≥ −1. Ferrari's method
+        gives s = p + (1/p − p²)^½, where y = 2p² is the positive root of the cubic y³ + 3ky = 2.
         Cardano's formula for this root, y = t − k/t with t³ = 1 + (1 + k³)^½, is evaluated as
         y = 2/(t² + k + k²/t²), which has no cancellation at any depth.
         """

@@ -68,7 +68,7 @@ class Johnson:
             mass: Reduced mass m* (kg).
 
         Returns:
-            Coefficient of restitution e (1).
+            Coefficient of restitution e (dimensionless).
 
         Raises:
             CaseError: `mass` is not positive and finite.
@@ -82,7 +82,7 @@ class Johnson:
         """Impact velocity that gives a coefficient of restitution.
 
         Args:
-            restitution: Coefficient of restitution e (1), above 0 and at most 1.
+            restitution: Coefficient of restitution e (dimensionless), above 0 and at most 1.
             mass: Reduced mass m* (kg).
 
         Returns:
@@ -113,10 +113,10 @@ class Johnson:
 
     @property
     def _energy_of_unity(self) -> Values:
-        """Impact energy over YR*³ at which the formula gives e = 1."""
+        """Impact energy, divided by YR*³, at which the formula gives e = 1."""
         return (COEFFICIENT**2 * self.yield_strength / self.contact_modulus) ** 4
 
     def _velocity(self, reduced: Values, mass: Values) -> Array:
-        """Impact velocity V (m/s) at which the impact energy over YR*³ is `reduced`."""
+        """Impact velocity V (m/s) at which the impact energy divided by YR*³ is `reduced`."""
         (m,) = positive(mass=mass)
         return scalar_or_array(np.sqrt(2 * reduced * self.yield_strength * self.radius**3 / m))

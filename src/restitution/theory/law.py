@@ -20,7 +20,7 @@ class ImpactLaw(Protocol):
             mass: Reduced mass m* (kg).
 
         Returns:
-            Coefficient of restitution e (1).
+            Coefficient of restitution e (dimensionless).
 
         Raises:
             CaseError: `mass` is not positive and finite.

@@ -2,8 +2,9 @@
 
 S. Luding, Granular Matter 10 (2008) 235–246, eqs. 6–8; the limit branch as given by A. Singh, V.
 Magnanimo, S. Luding, arXiv:1503.03720. The stiffnesses are k₁ (plastic loading), k̂₂ (the elastic
-limit) and k_c (adhesion), and φ_f is the plasticity depth. With the largest indentation d = δ_max
-and x = d/δ*:
+limit) and k_c (adhesion), and φ_f is the plasticity depth. With the largest indentation d = δ_max,
+x = d/δ*, the unloading stiffness k₂, the residual indentation δ₀, the loading work W_l and the
+returned work W_u:
 
     limit       δ* = k̂₂/(k̂₂ − k₁) φ_f 2R*,  with the residual indentation δ₀* = φ_f 2R*
     unloading   F = k₂(δ − δ₀),  k₂ = k₁ + (k̂₂ − k₁) min(x, 1),  δ₀ = min((1 − k₁/k₂) d, δ₀*)
@@ -52,7 +53,8 @@ class Luding:
         limit_stiffness: Stiffness k̂₂ of the elastic limit (N/m), at least k₁. If both are equal,
             the law is elastic.
         adhesive_stiffness: Stiffness k_c of the adhesive branch (N/m), at least 0.
-        plasticity_depth: Plasticity depth φ_f (1): the largest residual indentation over 2R*.
+        plasticity_depth: Plasticity depth φ_f (dimensionless): the largest residual indentation
+            divided by 2R*.
 
     Raises:
         CaseError: A field is not finite or not in its range.
@@ -202,8 +204,8 @@ class Luding:
             mass: Reduced mass m* (kg).
 
         Returns:
-            Coefficient of restitution e = (W_u/W_l)^½ (1); 0 if the bodies stick, 1 at zero or
-            negative velocity.
+            Coefficient of restitution e = (W_u/W_l)^½ (dimensionless); 0 if the bodies stick, 1
+            at zero or negative velocity.
 
         Raises:
             CaseError: `mass` is not positive and finite.
@@ -217,12 +219,12 @@ class Luding:
         return self.plasticity_depth * 2 * self.radius
 
     def _depth(self, indentation: Values) -> Array:
-        """Indentation over `limit_indentation`; zero where this limit is infinite."""
+        """Indentation divided by `limit_indentation`; zero where this limit is infinite."""
         rise = 1 - self.loading_stiffness / self.limit_stiffness
         return touching(indentation) * rise / self._limit_residual
 
     def _unloading_line(self, maximum_indentation: Values) -> tuple[Array, Array]:
-        """Stiffness k₂ (N/m) of unloading from `maximum_indentation`, and residual indentation."""
+        """Unloading stiffness k₂ (N/m) and residual indentation δ₀ (m) after first loading."""
         d, k1 = touching(maximum_indentation), self.loading_stiffness
         k2 = k1 + (self.limit_stiffness - k1) * np.minimum(self._depth(d), 1.0)
         return k2, np.minimum((1 - k1 / k2) * d, self._limit_residual)

@@ -64,7 +64,7 @@ class MaugisDugdale:
 
     @property
     def transition_parameter(self) -> Array:
-        """Maugis' transition parameter λ = 2σ₀ (R*/(πwK²))^{1/3} with K = 4/3 E* (1)."""
+        """Maugis' transition parameter λ = 2σ₀ (R*/(πwK²))^{1/3}, dimensionless; K = 4/3 E*."""
         w, K = self.work_of_adhesion, 4 / 3 * np.asarray(self.contact_modulus)
         return scalar_or_array(2 * self.traction * np.cbrt(self.radius / (np.pi * w * K**2)))
 
@@ -118,7 +118,7 @@ def _force(a: Array, parameter: Array) -> Array:
 def _ring(log_width: Array) -> tuple[Array, Array, Array]:
     """Return (m² − 1)^½, arcsec m and m for `log_width` = ln(m − 1).
 
-    m is the outer radius of the attracting ring over the contact radius.
+    m is the outer radius of the attracting ring divided by the contact radius.
     """
     width = np.exp(log_width)
     root = np.sqrt(width * (2 + width))

@@ -28,9 +28,11 @@ least 5 % (more for a larger Y/E*), rises a little, and then decreases with V. L
 
 These parts of the LAMMPS implementation are left out:
 
-- the growth of the apparent radius by the displaced volume and the ellipse in place of Hertz's
-  parabola below δ_Y. Both have relative order δ/R; they change e by 10⁻⁴ at δ = 0.01 R.
-- the bulk response of spheres confined on all sides.
+- The displaced volume increases the apparent radius of the sphere.
+- Below δ_Y, LAMMPS uses an ellipse in place of Hertz's parabola.
+- Spheres confined on all sides have a bulk response.
+
+The first two have relative order δ/R; they change e by 10⁻⁴ at δ = 0.01 R.
 
 The result is NaN for δ > R.
 Units, shapes and errors are those of `restitution.theory`.
@@ -67,7 +69,7 @@ class MDR:
     Attributes:
         radius: Radius R of the sphere (m).
         youngs_modulus: Young's modulus E (Pa).
-        poissons_ratio: Poisson's ratio ν (1), from 0 to ½ as in LAMMPS.
+        poissons_ratio: Poisson's ratio ν (dimensionless), from 0 to ½ as in LAMMPS.
         yield_strength: Yield strength Y of a tensile test (Pa).
 
     Raises:
@@ -212,8 +214,8 @@ class MDR:
             mass: Mass m of the sphere (kg).
 
         Returns:
-            Coefficient of restitution e = (W_u/W_l)^½ (1); 1 up to yield, NaN if the indentation
-            would exceed the radius of the sphere.
+            Coefficient of restitution e = (W_u/W_l)^½ (dimensionless); 1 up to yield, NaN if the
+            indentation would exceed the radius of the sphere.
 
         Raises:
             CaseError: `mass` is not positive and finite.
@@ -223,7 +225,7 @@ class MDR:
         return scalar_or_array(np.where(d <= d_Y, 1.0, np.minimum(e, 1.0)))
 
     def _inside(self, indentation: Values) -> Array:
-        """Indentation δ (m) with negative values set to zero and values above R set to NaN."""
+        """Indentation δ (m) with negative values set to zero, values above the radius to NaN."""
         d = touching(indentation)
         return np.where(d > self.radius, np.nan, d)
 
@@ -255,7 +257,7 @@ class MDR:
     def _elastic_depth(self, d: Values) -> Array:
         """Depth d_e (m) of the elliptical indenter in the transformed half-space at full load.
 
-        It is half the height A of the indenter. `d` is the indentation of the sphere.
+        This depth is half the height of the indenter. `d` is the indentation of the sphere.
         """
         return 2 * self.yield_pressure(d) * self._contact_radius(d) / self.elastic.contact_modulus
 
@@ -275,8 +277,8 @@ class MDR:
     def _returned(self, d: Values) -> Array:
         """Unloading work W_u (J) from the indentation `d`.
 
-        Beyond yield it is (1 + δ_R/d_e) E*A²B/12, with the height A, the width B = 2a and the depth
-        d_e = A/2 of the indenter, and the elastic recovery d_e + δ_R.
+        Beyond yield it is (1 + δ_R/d_e) E*A²B/12. A is the height, B = 2a the width and d_e = A/2
+        the depth of the indenter; d_e + δ_R is the elastic recovery.
         """
         E_star = self.elastic.contact_modulus
         plastic = 2 / 3 * E_star * self._elastic_depth(d) * self._contact_radius(d)

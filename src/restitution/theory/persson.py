@@ -35,7 +35,7 @@ class Persson:
     The fields and arguments may be arrays and broadcast (see `restitution.theory`).
 
     Attributes:
-        rms_slope: Root mean square slope h′ of the composite roughness (1).
+        rms_slope: Root mean square slope h′ of the composite roughness (dimensionless).
         contact_modulus: Contact modulus E* (Pa).
 
     Raises:
@@ -58,7 +58,7 @@ class Persson:
             pressure: Nominal pressure p (Pa).
 
         Returns:
-            Relative area erf(√2 p/(E* h′)) (1).
+            Relative area erf(√2 p/(E* h′)) (dimensionless).
         """
         reduced = touching(pressure) / (self.contact_modulus * self.rms_slope)
         return scalar_or_array(_erf(math.sqrt(2) * reduced))

@@ -227,7 +227,7 @@ class ThorntonNing:
             mass: Reduced mass m* (kg).
 
         Returns:
-            Coefficient of restitution e (1); 1 up to the yield velocity V_y.
+            Coefficient of restitution e (dimensionless); 1 up to the yield velocity V_y.
 
         Raises:
             CaseError: `mass` is not positive and finite.
@@ -247,16 +247,17 @@ class ThorntonNing:
             maximum_indentation: Indentation at which unloading began, δ_max (m).
 
         Returns:
-            Coefficient of restitution e (1); 1 up to yield.
+            Coefficient of restitution e (dimensionless); 1 up to yield.
         """
         x = self._yielded(maximum_indentation)
         W_l = 0.4 + (x - 1) + 0.75 * (x - 1) ** 2
         return (0.4 * _line(x) ** 2 / x**0.5 / W_l) ** 0.5
 
     def _yielded(self, maximum_indentation: Values) -> Array:
-        """Indentation over that of first yield, x = δ/δ_y; 1 up to yield, where the law is Hertz's.
+        """Indentation x = δ/δ_y relative to first yield; 1 below first yield.
 
-        All quantities that are computed from x are ratios to Hertz's values.
+        At x = 1 the formulas for the flattened radius, the residual indentation and the restitution
+        give the values of a Hertz contact, which hold up to first yield.
         """
         x: Array = np.maximum(touching(maximum_indentation) / self.first_yield.indentation, 1.0)
         return x

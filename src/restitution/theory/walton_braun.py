@@ -43,10 +43,10 @@ class WaltonBraun:
 
     Attributes:
         loading_stiffness: Stiffness k₁ of first loading (N/m).
-        unloading_stiffness: Unloading stiffness k_u (N/m) in the limit of a small largest force, at
+        unloading_stiffness: Unloading stiffness k_u (N/m) after loading to a vanishing force, at
             least k₁.
-        hardening: Increase S of the unloading stiffness (N/m) per newton of the largest force
-            (1/m), at least 0.
+        hardening: Increase S of the unloading stiffness with the largest force (1/m, which is N/m
+            per N), at least 0.
 
     Raises:
         CaseError: A field is not finite or not in its range.
@@ -112,8 +112,8 @@ class WaltonBraun:
             mass: Reduced mass m* (kg).
 
         Returns:
-            Coefficient of restitution e = (k₁/k₂)^½ (1), with the stiffnesses k₁ of loading and k₂
-            of unloading; 1 at zero or negative velocity.
+            Coefficient of restitution e = (k₁/k₂)^½ (dimensionless), with the stiffnesses k₁ of
+            loading and k₂ of unloading; 1 at zero or negative velocity.
 
         Raises:
             CaseError: `mass` is not positive and finite.

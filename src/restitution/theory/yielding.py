@@ -95,10 +95,10 @@ def yield_coefficient(poissons_ratio: Values) -> Array:
     0 ≤ ν ≤ ½. C = 1.61 at ν = 0.3.
 
     Args:
-        poissons_ratio: Poisson's ratio ν (1).
+        poissons_ratio: Poisson's ratio ν (dimensionless).
 
     Returns:
-        Yield coefficient C (1).
+        Yield coefficient C (dimensionless).
 
     Raises:
         CaseError: Poisson's ratio is outside the range −1 < ν ≤ ½.
