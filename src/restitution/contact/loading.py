@@ -48,9 +48,9 @@ _TRUNCATION_TOLERANCE, _TRUNCATION_MARGIN, _TRUNCATION_PANELS = 3e-5, 10.0, 4
 # which limits the accuracy. A relative error of 1.5e-3 of the loading work changes the restitution
 # by at most 0.00075.
 _ADHESIVE_TOLERANCE = 1.5e-3
-# Under a growing bound, the plastic work is a sum over depths. The first depth is _SHALLOW times
-# the indentation, and each further depth is at most _RATIO times the one before. The error estimate
-# of `plastic_work` holds up to this ratio.
+# If the pressure bound grows with deformation, the plastic work is a sum over depths. The first
+# depth is _SHALLOW times the indentation, and each further depth is at most _RATIO times the one
+# before, because the error estimate of `plastic_work` holds up to this ratio.
 _RATIO, _SHALLOW = 1.42, 0.2
 _WORK_RESIDUAL = 1e-6  # tolerance of intermediate solves; the force is far more accurate than this
 

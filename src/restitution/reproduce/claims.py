@@ -75,9 +75,8 @@ def curves(study: xr.Dataset) -> list[Curve]:
 def _as_written(coordinate: xr.DataArray) -> dict[float | str, str]:
     """Map each value of a swept quantity to its text in the study file."""
     values = coordinate.values.tolist()
-    written = coordinate.attrs.get(
-        AS_WRITTEN
-    )  # missing in files of earlier versions, which stored texts
+    # Files of earlier versions lack this attribute, because they stored the values as texts.
+    written = coordinate.attrs.get(AS_WRITTEN)
     return dict(
         zip(values, map(str, values) if written is None else json.loads(written), strict=True)
     )

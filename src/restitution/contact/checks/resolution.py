@@ -32,7 +32,7 @@ ADHESIVE_NODES = 4
 # Relative error of the pull-off force of a cohesive contact whose grid resolves the range of the
 # attraction.
 _COHESIVE_PULL_OFF = 0.01
-_HALF_SPACE = 0.2  # contact radius over R* beyond which the half-space approximation fails
+_HALF_SPACE = 0.2  # ratio of contact radius to R* above which the half-space approximation fails
 
 
 def predicted_radius(pair: Pair, indentation: float, yield_pressure: float = math.inf) -> float:
