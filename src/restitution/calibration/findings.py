@@ -26,8 +26,8 @@ _AS_GOOD = 4.0
 # A combination is a product of powers of parameters. Parameters with a smaller exponent (magnitude)
 # are left out.
 _SHARE = 0.1
-# The case does not explain the data if residuals as large as the actual ones have a probability
-# below this value.
+# The case does not explain the data if residuals at least as large as the actual ones have a
+# probability below this value.
 _UNLIKELY = 0.01
 
 

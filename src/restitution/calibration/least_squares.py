@@ -31,8 +31,8 @@ _WORTH = 3.0
 _FAILED = 1e3  # residual (in standard deviations) assigned to a case that cannot be solved
 _EVALUATIONS = 40  # largest number of function evaluations of a search
 
-# Tolerances of a search: of the sum of squares (relative), and of the logarithms of the parameters.
-# A quick search needs less accuracy, because a full search starts from its result.
+# Relative tolerance of a search, for the sum of squares and for the logarithms of the parameters. A
+# quick search needs less accuracy, because a full search starts from its result.
 _TOLERANCE: dict[Cost, float] = {"full": 1e-4, "quick": 1e-3}
 
 

@@ -38,7 +38,7 @@ _ACCURACY = 1e-3  # tolerance of solves between releases, as a fraction of the c
 
 # The balance (see the top of this file) is determined by the mean of the energy release rate G over
 # the edge nodes that are about to move: those where G exceeds the fraction _ACTIVE of the work of
-# adhesion. It is interpolated between the states before (0) and after (1) a retraction, or
+# adhesion. The balance is interpolated between the states before (0) and after (1) a retraction, or
 # extrapolated backwards, at most to _EARLIEST.
 _ACTIVE, _EARLIEST = 0.8, -0.5
 # Smallest pull-off radius of an asperity (cells) for which balances are used. On coarser grids most

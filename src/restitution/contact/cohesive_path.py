@@ -38,8 +38,8 @@ from restitution.numerics.read_only import freeze
 
 Array = NDArray[np.float64]
 
-# Largest difference between the work of the force and the change of energy in a step, as a fraction
-# of the energies of the contact.
+# In each step, the work of the force must equal the change of energy. This is the largest accepted
+# difference, as a fraction of the energies of the contact.
 ACCURACY = 2e-4
 _FIRST_STEP = 0.25  # length of the first step, in units of the equilibrium separation z₀
 

@@ -40,9 +40,10 @@ Array = NDArray[np.float64]
 
 # Retraction after each loading increment (m) (Ghanbarzadeh et al. 2019, §2.2).
 PULL_INCREMENT = 1e-10
-# Quadrature of a truncated force: tolerance relative to force times indentation, margin added to
-# the error (in tolerances), and number of initial intervals. The integrand can be zero up to first
-# yield, so with one interval it could be zero at all sampled depths.
+# Quadrature of the force of a truncated contact: tolerance as a fraction of force times
+# indentation, margin that is added to the error (in multiples of the tolerance), and number of
+# initial intervals. The integrand can be zero up to first yield, so with one interval it could be
+# zero at all sampled depths.
 _TRUNCATION_TOLERANCE, _TRUNCATION_MARGIN, _TRUNCATION_PANELS = 3e-5, 10.0, 4
 # Relative tolerance of the integral of an adhesive force. The force jumps as asperities attach,
 # which limits the accuracy. A relative error of 1.5e-3 of the loading work changes the restitution
@@ -264,8 +265,8 @@ def with_work(state: State, start: State | None) -> State:
     known = state.stored_energy + state.plastic_work
     if _adhesive_work_is_negligible(state):
         # The adhesive work is set to its largest possible value, the work of adhesion times the
-        # area. Where it was integrated instead, it was 0.37 to 0.93 of this value, in most cases
-        # above 0.7. The error covers this range.
+        # contact area. In contacts for which it was integrated, it was 0.37 to 0.93 times this
+        # value, and above 0.7 times in most of them. The error covers this range.
         return replace(state, adhesive_work=gain, work_error=0.65 * gain)
     if contact.adhesive and contact.approach != "hertzian":
         balanced = contact.approach == "equilibrium" and balances_are_reliable(state)

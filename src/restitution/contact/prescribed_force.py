@@ -66,7 +66,7 @@ def solve_at_force(contact: Contact, force: float, *, start: State | None = None
 
     hertz = float(Hertz(contact.pair.radius, contact.pair.contact_modulus).indentation(force))
     low, high = 0.0, max(hertz, start.indentation if start is not None else 0.0)
-    if contact.cohesive:  # the last two states of one loading path bracket the force
+    if contact.cohesive:  # the last two states of a loading path enclose the force
         start, reached = load_until(
             contact, lambda state: state.force >= force, start=start, residual=RESIDUAL
         )

@@ -29,9 +29,10 @@ Array = NDArray[np.float64]
 
 RESTITUTION_ERROR = 0.002
 _ACCURACY = 1e-3  # tolerance of the solves as a fraction of the crack opening at the edge
-_STEPS_OF_RECOVERY = 8  # smallest number of steps over the elastic recovery
+_STEPS_OF_RECOVERY = 8  # smallest number of steps into which the elastic recovery is divided
 
-# Smallest number of steps over the pull-off displacement of a punch of the same area.
+# Smallest number of steps into which the pull-off displacement of a punch of the same area is
+# divided.
 _STEPS_OF_TENSION = {"crack-closure": 32, "pohrt-popov": 16}
 _FINEST = 400  # the shortest step is the pull-off displacement of this punch divided by _FINEST
 _REFINEMENTS = (1, 2, 4)  # factors on the number of steps, tried until the tolerance is met

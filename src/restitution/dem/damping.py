@@ -37,7 +37,7 @@ from scipy.optimize import brentq
 
 from restitution.laws.law import Law
 
-_NEARLY_ELASTIC = 1e-4  # below this value of 1 − e, dV is computed from the leading terms in 1 − e
+_NEARLY_ELASTIC = 1e-4  # below this value of 1 − e, only the first terms of a series of dV are used
 _TOLERANCE = 1e-12  # tolerance of root finding
 
 # If the dissipation d times the impact velocity V is below this value, the series e = 1 − ⅔ dV is

@@ -44,7 +44,7 @@ Array = NDArray[np.float64]
 Force = Callable[[float], float]
 
 _RTOL = 1e-10
-_SLACK = 1e-3  # fraction by which integration errors may exceed the deepest stored depth
+_SLACK = 1e-3  # relative excess over the deepest stored depth, allowed for integration errors
 _STEEPEST = 6.0  # largest exponent of a power law of the work; above it, adhesion nearly cancels W
 _SAME = 1e-5  # largest relative difference of depths that count as equal
 

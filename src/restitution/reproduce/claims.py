@@ -28,7 +28,7 @@ Verdict = Literal["agrees", "agrees in part", "does not agree", "not decided"]
 R, E_STAR, P_Y, RADIUS = 250e-6, 112e9, 750e6, 500e-6
 SMOOTH = "1 pm"  # rms roughness of cases that represent the smooth sphere
 _VARIABLES = ("indentation", "restitution", "force", "pull_off_force", "resolved")
-_NEAR = 0.05  # relative difference of COR below which a rough sphere behaves as a smooth one
+_NEAR = 0.05  # a rough sphere behaves as a smooth one if their COR differ by less (relative)
 
 
 @dataclass(frozen=True)
