@@ -64,12 +64,15 @@ def _text(node: ast.expr) -> str:
 
 
 def comments(file: Path, text: str, tree: ast.Module) -> Iterator[Text]:
-    """Comments; consecutive lines are one comment."""
+    """Comments; consecutive lines without code are one comment."""
     blocks: list[list[tokenize.TokenInfo]] = []
+    alone = False  # whether the last comment has a line of its own
     for token in tokenize.generate_tokens(io.StringIO(text).readline):
         if token.type != tokenize.COMMENT or "noqa" in token.string or "type:" in token.string:
             continue
-        if not blocks or token.start[0] != blocks[-1][-1].start[0] + 1:
+        continued = alone and token.start[0] == blocks[-1][-1].start[0] + 1
+        alone = token.line.lstrip().startswith("#")
+        if not (continued and alone):
             blocks.append([])
         blocks[-1].append(token)
     for block in blocks:

@@ -79,7 +79,7 @@ __all__ = [
 
 # Modules and the public names that each of them defines. A module is imported on first use of one
 # of its names, so that `import restitution` does not load NumPy. The command line imports this
-# package too; without the delay, it could neither print its help nor react to Ctrl-C at once.
+# package, too. If NumPy were loaded first, help texts and the reaction to Ctrl-C would be delayed.
 _MODULES = {
     "api": ("collide_obliquely", "export", "law_of", "open_results", "run"),
     "case.materials": ("material", "materials"),

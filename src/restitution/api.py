@@ -245,7 +245,7 @@ def export(
     from restitution.laws.law import Law, velocity_of
 
     if to not in CODES:
-        raise CaseError(f'to: "{to}" is not one of {", ".join(CODES)}')
+        raise CaseError(f'to="{to}" is not one of {", ".join(CODES)}')
     given = [laws] if isinstance(laws, (str, os.PathLike, Law)) else laws
     read = [law for each in given for law in _laws_in(each)]
     speed = velocity_of(velocity) if isinstance(velocity, str) else velocity

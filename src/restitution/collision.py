@@ -19,10 +19,11 @@ from restitution.contact.state import State
 from restitution.display import quantity, summary_html, summary_text
 
 UnloadingMethod = Literal["path", "energy-estimate"]
-# Error of the unloading work that each detachment criterion causes on a grid, as a fraction of the
-# work of adhesion w times the contact area. Smaller unloading steps do not reduce this error. With
-# `crack-closure`, nodes detach at an energy release rate of 0.985 to 0.99 w. With `pohrt-popov`,
-# nodes at a kink of the contact edge detach at 1.0 w, and nodes on a straight edge at 1.8 w.
+# On a grid, each detachment criterion causes an error of the unloading work. It is stated as a
+# fraction of the work of adhesion w times the contact area. Smaller unloading steps do not reduce
+# this error. With `crack-closure`, nodes detach at an energy release rate of 0.985 to 0.99 w. With
+# `pohrt-popov`, nodes at a kink of the contact edge detach at 1.0 w, and nodes on a straight edge
+# at 1.8 w.
 _RELEASE_ERROR = {"crack-closure": 0.015, "pohrt-popov": 0.4}
 
 

@@ -41,7 +41,7 @@ def test_a_name_alone_is_a_wall():
     pair = parsed('second = "aluminum"\n' + GLASS).pair()
     assert math.isinf(pair.second.radius)
     assert pair.second.youngs_modulus == material("aluminium").youngs_modulus.value
-    with pytest.raises(CaseError, match="both are flat"):
+    with pytest.raises(CaseError, match="both bodies are flat"):
         parsed('first = "glass"\nsecond = "steel"\n').pair()
     with pytest.raises(CaseError, match=r'add \[second\], or give .* a radius such as "500 um"'):
         parsed('first = "glass"\n').pair()

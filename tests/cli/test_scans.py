@@ -160,7 +160,7 @@ def test_a_scan_may_be_refined_on_its_own_pixels(surface, scan):
         ("outliers = -1", "", "roughness.outliers: -1 should be greater than 0"),
         ("outliers = 0.1", "", "roughness.outliers: "),
         ('crop = { x = ["1 um"] }', "", "roughness.crop.x: ['1 um'] should be a list of two"),
-        ('crop = { x = ["2 um", "1 um"] }', "", "the first of the two positions must be below"),
+        ('crop = { x = ["2 um", "1 um"] }', "", "the first of the two positions must be smaller"),
         (
             'crop = { x = ["20 um", "30 um"] }',
             "",

@@ -275,7 +275,7 @@ def test_elastic_contact_cannot_be_deeper_than_complete():
         ({"yield_pressure": 1e9, "plasticity": "truncated"}, "plasticity: a periodic contact"),
         ({"pair": Pair(WALL, Body(1e-3, 210e9, 0.25))}, "periodic: needs two flat bodies"),
         ({"surface": Surface(np.full((8, 8), 1e-6), Grid(8, 1e-6))}, "surface: is flat"),
-        ({"periodic": False}, "both are flat; one must be a sphere, or the contact must"),
+        ({"periodic": False}, "both bodies are flat; one must be a sphere, or the contact must"),
     ],
 )
 def test_what_a_periodic_contact_refuses(model, words):

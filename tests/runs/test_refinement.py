@@ -93,7 +93,7 @@ def test_it_says_why_it_cannot(auto, tmp_path, monkeypatch):
     found = settled(parse_case(auto), tmp_path, said.append)
     assert found.grid.refine == 1
     assert "the next grid would have 144 x 128 nodes" in said[0]
-    assert "not resolved" in said[0]
+    assert "does not resolve" in said[0]
     monkeypatch.setattr(refinement, "MOST_NODES", 2**24)
     monkeypatch.setattr(refinement, "FACTORS", (1, 2))
     found = settled(parse_case(auto.replace("0.05 um", "0.5 um")), tmp_path, said.append)

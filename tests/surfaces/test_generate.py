@@ -129,7 +129,7 @@ def test_limits_of_the_correlation_length_are_allowed():
 @pytest.mark.parametrize("skewness", [0.0, -1.0])
 def test_a_grid_without_a_wave_is_refused(skewness):
     one = Grid((1, 1), (1e-6, 1e-6))
-    with pytest.raises(SurfaceError, match=r"^grid: 1 x 1 nodes cannot carry"):
+    with pytest.raises(SurfaceError, match=r"^grid: 1 x 1 nodes cannot represent"):
         generate_surface(
             one, kind="self-affine", hurst=0.8, rms=1e-8, seed=1, skewness=skewness, kurtosis=6
         )

@@ -75,5 +75,5 @@ def test_few_pixels(nodes, how):
 
 
 def test_unknown_levelling_is_refused():
-    with pytest.raises(SurfaceError, match=r"^how: 'cubic' is unknown; choose one of none"):
+    with pytest.raises(SurfaceError, match=r"^how='cubic' is unknown; choose one of none"):
         level(Surface(ROUGH, GRID), "cubic")

@@ -355,7 +355,7 @@ def test_too_many_undefined_pixels(refusal, tmp_path, undefined):
 
 
 def test_unknown_treatment_of_undefined_pixels(tmp_path):
-    with pytest.raises(SurfaceError, match=r"^undefined: 'zero' is unknown; "):
+    with pytest.raises(SurfaceError, match=r"^undefined='zero' is unknown; "):
         read_surface(save(tmp_path / "ramp.npy", RAMP), size=SIZE, undefined="zero")
 
 

@@ -16,14 +16,19 @@ Array = NDArray[np.float64]
 WIDEST = 4.0
 """Ratio of the ends of a 95 % interval above which a parameter is not identifiable."""
 _CORRELATED = 0.99  # correlation above which two parameters cannot be told apart
+
 # A parameter has no effect if doubling it changes the residuals by less than this number of
 # standard deviations.
 _NO_EFFECT = 0.3
 # Another minimum explains the data equally well if its χ² is larger by less than this value. A
 # parameter that is off by two standard deviations increases χ² by 4.
 _AS_GOOD = 4.0
-_SHARE = 0.1  # a combination leaves out parameters with a smaller exponent
-_UNLIKELY = 0.01  # with less probable residuals, the case does not explain the data
+# A combination is a product of powers of parameters. Parameters with a smaller exponent (magnitude)
+# are left out.
+_SHARE = 0.1
+# The case does not explain the data if residuals at least as large as the actual ones have a
+# probability below this value.
+_UNLIKELY = 0.01
 
 
 def identifiable(found: Fit, parameter: int) -> bool:

@@ -33,8 +33,9 @@ Array = NDArray[np.float64]
 
 _FINE = 60  # number of velocities of the fitted curve
 _EQUAL = 0.02  # initial standard deviation of COR if the table of measurements has none
-# Lower limit of the standard deviation of COR estimated from residuals: the accuracy of the
-# interpolation between velocities.
+
+# Smallest standard deviation of COR that is estimated from residuals. The interpolation between
+# velocities is not more accurate than this.
 _LEAST_NOISE = 1e-4
 
 

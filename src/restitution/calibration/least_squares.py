@@ -16,20 +16,23 @@ from restitution.errors import CaseError, RestitutionError
 Array = NDArray[np.float64]
 
 RANGE = 30.0  # values from 1/30 to 30 times the first guess are searched
+
 # Step of finite differences in the logarithm of a parameter. The noise of the solver (1e-8) would
 # allow a smaller step. But the COR of shallow contacts is not smooth over changes of about 1 %,
 # because nodes begin to yield one at a time.
 _STEP = 0.03
-_SCANNED, _STARTS = (
-    15,
-    2,
-)  # number of scanned points besides the first guess; number of searches from the best of them
-DISTANCE = math.log(1.5)  # minima count as different if a parameter differs by more
-_WORTH = 3.0  # a minimum is kept up to this multiple of the least sum of squares
-_FAILED = 1e3  # residual (standard deviations) that stands for a case that cannot be solved
+# Number of scanned points besides the first guess, and number of searches that start from the best
+# of these points.
+_SCANNED, _STARTS = 15, 2
+# Two minima count as different if the logarithm of a parameter differs by more than this value.
+DISTANCE = math.log(1.5)
+# A minimum is kept if its sum of squares is at most this multiple of the smallest one.
+_WORTH = 3.0
+_FAILED = 1e3  # residual (in standard deviations) assigned to a case that cannot be solved
 _EVALUATIONS = 40  # largest number of function evaluations of a search
-# Relative tolerances of the sum of squares and of x. The result of a quick search is the start of a
-# full search.
+
+# Relative tolerance of a search, for the sum of squares and for the logarithms of the parameters. A
+# quick search needs less accuracy, because a full search starts from its result.
 _TOLERANCE: dict[Cost, float] = {"full": 1e-4, "quick": 1e-3}
 
 

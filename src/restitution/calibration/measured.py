@@ -16,7 +16,8 @@ from restitution.errors import CaseError, shown
 Array = NDArray[np.float64]
 
 VELOCITY, RESTITUTION = "velocity_m_per_s", "restitution"
-DEVIATIONS = ("restitution_std", "restitution_error")  # the first one in the file is used
+# Columns with the standard deviation of COR. If the file has both, the first one is used.
+DEVIATIONS = ("restitution_std", "restitution_error")
 _BOUNDS = 1e-9, 1e4  # range of velocities (m/s), as in a case file
 _LARGEST = 2**24  # largest size of a file (bytes)
 

@@ -29,10 +29,12 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 CONFIDENCE = 0.95
-# Smaller singular values of A are replaced by this value. It belongs to a combination of parameters
-# that is known only within a factor of e^1000.
+# Singular values of the scaled Jacobian A below this value are replaced by it. A combination of
+# parameters with this singular value is known only within a factor of e^1000.
 _LEAST = 1e-3
-_UNBOUNDED = math.log(1e6)  # half intervals of a logarithm above this value count as infinite
+# The interval of a parameter counts as infinite if half of the interval of its logarithm exceeds
+# this value.
+_UNBOUNDED = math.log(1e6)
 
 
 @dataclass(frozen=True)

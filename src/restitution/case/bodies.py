@@ -114,7 +114,8 @@ def _pressure_or_rule(value: Any) -> float | YieldRule | None:
         return read_positive(value, "Pa")
     if not 0.5 <= (factor := float(match[1])) <= 10:
         raise ValueError(
-            f"{shown(value)} is not a contact pressure; correct the factor of Y (usually 1.6 to 3)"
+            f"{shown(value)} is not a contact pressure; give a factor of Y from 0.5 to 10 (usually "
+            "1.6 to 3)"
         )
     return factor, "yield_strength"
 
@@ -165,8 +166,8 @@ class InterfaceTable(Table):
             for key in ("yield_strength", "tangent_modulus"):
                 if getattr(self, key) is not None:
                     raise ValueError(
-                        f"yield_pressure, {key}: give only one of them; yield_pressure is a "
-                        "constant bound of the contact pressure, and with yield_strength (of a "
+                        f"yield_pressure, {key}: give only one of them; with yield_pressure the "
+                        "contact pressure has a constant bound, and with yield_strength (of a "
                         "tensile test) the bound grows with deformation"
                     )
             if grows:

@@ -138,7 +138,7 @@ class Case(Table):
         if self.indentation is None:
             raise ValueError(
                 "interface.work_of_adhesion: a periodic contact with adhesion needs [indentation], "
-                "because the contact jumps at a given load or pressure"
+                "because its indentation jumps if the load or the pressure is prescribed"
             )
 
     def _check_factors(self, factors: tuple[int, ...]) -> None:
@@ -249,7 +249,9 @@ class Case(Table):
                     "first.radius: both bodies are flat, because [second] is left out and defaults "
                     'to [first]; add [second], or give [first] a radius such as "500 um"'
                 )
-            raise CaseError("first.radius, second.radius: both are flat; one must be a sphere")
+            raise CaseError(
+                "first.radius, second.radius: both bodies are flat; one must be a sphere"
+            )
         return pair
 
     def yielding(self) -> Yielding:

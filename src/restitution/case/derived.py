@@ -25,8 +25,8 @@ def deepest_indentation(case: Case) -> float:
     if case.load is not None:
         return float(Hertz(pair.radius, pair.contact_modulus).indentation(last))
     assert pair.mass is not None  # checked by Case._check_masses
-    # ThorntonNing needs a finite yield pressure p_y, which is infinite for elastic bodies. They get
-    # E*, a pressure that no contact reaches.
+    # The yield pressure p_y of elastic bodies is infinite, but ThorntonNing needs a finite value.
+    # Use E*, a pressure that no contact reaches.
     p_y = min(case.yielding().hardness, pair.contact_modulus)
     smooth = ThorntonNing(pair.radius, pair.contact_modulus, p_y)
     return float(smooth.indentation_from_velocity(last, pair.mass))

@@ -13,6 +13,7 @@ from restitution.numerics import memory
 from restitution.numerics.grid import Grid
 
 _PROCESS = 250e6  # bytes for the program, its libraries and figures
+
 # Bytes per node of the grid, unless stated otherwise.
 _SURFACE = 75.0  # a generated surface
 _SKEWED = 115.0  # a generated surface with skewness or kurtosis
@@ -21,11 +22,13 @@ _SCAN = 60.0  # per pixel of a scan: reading, levelling and its spectrum
 _TWIN = 75.0  # a statistical twin of a scan
 _BAND = 90.0  # per node of the finest band of waves that is adjusted to make a twin
 _DESCRIBED = 150.0  # autocorrelation, spectrum and page of `restitution surface`
-# A run without adhesion, for each model of plasticity; and a run with adhesion.
+
+# A run without adhesion, for each model of plasticity.
 _MODELS = {"none": 115.0, "equilibrium": 140.0, "expanding-cavity": 190.0, "truncated": 190.0}
-_ADHESIVE = 150.0
-# A run with an attraction of finite range keeps pressure and displacement of some 100 states of
-# unloading (16 bytes each), besides the arrays of the solver.
+_ADHESIVE = 150.0  # a run with adhesion
+
+# A run with an attraction of finite range keeps the pressure and the displacement of some 100
+# states of unloading (16 bytes for each state), besides the arrays of the solver.
 _COHESIVE = 1800.0
 # A non-periodic surface is generated on an enlarged grid with at most about this many times the
 # nodes (`generate._enlarged`: twice the nodes along each axis, rounded up to a fast FFT length).

@@ -11,7 +11,8 @@ from restitution.theory import JKR, Hertz
 # Typical work of adhesion (J/m²), within the range 0.01 to 0.09 of Ghanbarzadeh et al. (2019).
 TYPICAL_ADHESION = 0.05
 # Ratio of impact velocity V to sticking velocity V_s below which adhesion matters. Adhesion lowers
-# e² by (V_s/V)² (Thornton and Ning 1998), so at V = 8.5 V_s it lowers a COR e of 0.7 by 0.01.
+# the square of COR by (V_s/V)² (Thornton and Ning 1998). At V = 8.5 V_s, it lowers a COR of 0.7 by
+# 0.01.
 _MATTERS = 8.5
 
 

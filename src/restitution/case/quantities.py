@@ -12,7 +12,7 @@ from pydantic import BeforeValidator
 
 from restitution.errors import shown
 
-# A quantity is one number followed by one unit expression of names, powers, * and /. Arithmetic
+# A quantity is one number followed by one unit, an expression of names, powers, * and /. Arithmetic
 # with numbers is excluded, so that a case file cannot start long calculations in the unit parser. A
 # digit directly after a name is a power: "g/cm3" is g/cm^3.
 _NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?"

@@ -66,7 +66,7 @@ def _range(value: Any) -> Any:
 
 def _ascending(value: tuple[float, float]) -> tuple[float, float]:
     if not value[0] < value[1]:
-        raise ValueError("the first of the two positions must be below the second")
+        raise ValueError("the first of the two positions must be smaller than the second")
     return value
 
 

@@ -6,7 +6,7 @@ import sys
 # Error numbers of failed output: the disk is full, a quota is used up, or a device fails.
 _OUTPUT_FAILS = {errno.ENOSPC, errno.EFBIG, errno.EIO, getattr(errno, "EDQUOT", errno.ENOSPC)}
 
-# Error numbers of files and folders that cannot be used under this name or by this user.
+# Error numbers for a file or folder that this user may not access, or whose name is not possible.
 _ACCESS_DENIED = {
     errno.EACCES,
     errno.EPERM,

@@ -61,7 +61,7 @@ def compare_theory(
         figure = theory_figure(read.title, lines, theories.marks(read), points)
         written.append(write_figure(out / "theory", figure, figures.value))
 
-    say("COR of the smooth bodies at impact velocities (m/s); - means: outside the theory's range")
+    say('COR of the smooth bodies at impact velocities (m/s); "-": outside the range of a theory')
     for table in _tables(velocities.tolist(), found, answers.width):
         answers.print(table)
     for each in found:

@@ -16,7 +16,8 @@ def prepare(arguments: Sequence[str]) -> None:
     Raises `CaseError` for an invalid number of threads, and for a path that is not UTF-8, which the
     netCDF library requires.
     """
-    # Select the backend of matplotlib for files; the user may have set an interactive backend.
+    # Select the matplotlib backend that writes files, because the user may have set an interactive
+    # backend.
     os.environ["MPLBACKEND"] = "agg"
     _check_threads()
     for path in (*arguments, _current_folder()):

@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 
-# Time (s) after which a dropped signal is repeated. By then the callback that dropped the exception
-# has returned.
+# Time (s) after which a signal is sent again if Python dropped its exception in a callback. By then
+# the callback has returned.
 _REPEAT_AFTER = 0.05
 
 
@@ -68,7 +68,7 @@ def stoppable() -> Iterator[None]:
 
 
 def _signal_main_thread(number: int) -> None:
-    if hasattr(signal, "pthread_kill"):  # pthread_kill also interrupts waiting system calls
+    if hasattr(signal, "pthread_kill"):  # this also interrupts a system call that is waiting
         signal.pthread_kill(threading.main_thread().ident or 0, number)
     else:
         _thread.interrupt_main(signal.Signals(number))

@@ -102,7 +102,8 @@ def simulate(
     courses, blended = [], False
     for each in velocities:
         found, energies = collide_in_time(force, each), law.at(each)
-        # The difference from COR by the stored energies estimates the error of the force curves.
+        # The difference from the COR of the stored energies is an estimate of the error that is due
+        # to the force curves.
         error = max(abs(found.restitution - energies.restitution), energies.error)
         courses += course(found)
         table.add_row(

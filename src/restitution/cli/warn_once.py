@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Protocol
 
-_QUOTED = 60  # number of characters of a warning that are quoted when its repetitions are counted
+# Number of characters that are quoted of a warning when the number of its repetitions is printed.
+_QUOTED = 60
 
 
 class Warn(Protocol):

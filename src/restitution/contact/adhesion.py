@@ -36,17 +36,19 @@ Array = NDArray[np.float64]
 
 _ACCURACY = 1e-3  # tolerance of solves between releases, as a fraction of the crack opening
 
-# Edge nodes with an energy release rate G above the fraction _ACTIVE of the work of adhesion are
-# taken as a receding edge, and their mean G determines the balance. On a scale where the step leads
-# from 0 to 1, the balance may lie between _EARLIEST and 1.
+# The balance (see the top of this file) is determined by the mean of the energy release rate G over
+# the edge nodes that are about to move: those where G exceeds the fraction _ACTIVE of the work of
+# adhesion. The balance is interpolated between the states before (0) and after (1) a retraction, or
+# extrapolated backwards, at most to _EARLIEST.
 _ACTIVE, _EARLIEST = 0.8, -0.5
 # Smallest pull-off radius of an asperity (cells) for which balances are used. On coarser grids most
 # nodes leave the contact because the bodies separate, not because G reaches the work of adhesion.
 _RESOLVED = 2.0
-# To find its balance, a loaded contact is retracted by the fraction _RETREAT of the pull-off
-# displacement of a punch. _BALANCE_RESIDUAL is the tolerance of the solve there.
+# To find the balance of a loaded contact, the contact is retracted by the fraction _RETREAT of the
+# pull-off displacement of a punch, and solved with the tolerance _BALANCE_RESIDUAL.
 _RETREAT, _BALANCE_RESIDUAL = 0.05, 1e-5
-# If less than this fraction of the nodes of a ring is released, the next ring is twice as wide.
+# A contact grows by rings of nodes around it. If less than this fraction of the nodes of a ring is
+# released again, the next ring is twice as wide.
 _FEW = 0.1
 
 
@@ -81,8 +83,9 @@ def release_nodes(
     rule = criterion(
         contact.detachment, pair.contact_modulus, contact.work_of_adhesion, grid.spacing
     )
-    # The lower bound of the pressure. Nodes beyond the tension limit are released, so twice this
-    # limit never restricts the result. The solver is faster with a finite than an infinite bound.
+    # The lower bound of the pressure. Nodes beyond the tension limit are released, so a bound of
+    # twice this limit never restricts the result. The solver is faster with a finite bound than
+    # without a bound.
     tension = 2 * tension_limit(pair.contact_modulus, contact.work_of_adhesion, grid.spacing)
     before_release: State | None = None
     convolutions = 0
@@ -93,7 +96,7 @@ def release_nodes(
         opening = contact.crack_opening / contact.residual_length(indentation)
         accuracy = _ACCURACY * opening
         if accuracy < 2 * residual:
-            accuracy = residual  # a last solve would hardly be more accurate
+            accuracy = residual  # a second solve at the end would hardly be more accurate
     while True:
         state = solve_pressure(
             contact,

@@ -109,7 +109,8 @@ class Pair:
         """
         across, along = 0.0, 0.0
         for body in (self.first, self.second):
-            one = (1 + body.poissons_ratio) / (math.pi * body.youngs_modulus)  # 1/(2πG)
+            # With the shear modulus G, this is 1/(2πG).
+            one = (1 + body.poissons_ratio) / (math.pi * body.youngs_modulus)
             across, along = across + (1 - body.poissons_ratio) * one, along + one
         return across, along
 

@@ -65,18 +65,19 @@ from restitution.theory import Hertz
 Array = NDArray[np.float64]
 Nodes = tuple[NDArray[np.intp], ...]  # indices of rows and columns
 
-# Coefficients of the bound over the yield strength, for round asperities: growth with the logarithm
-# of the strain (c₁), and upper limit (c₂).
+# Coefficients of the ratio of the pressure bound to the yield strength, for round asperities:
+# growth with the logarithm of the strain (c₁), and upper limit (c₂).
 GROWTH, LARGEST = 0.65, 3.5
-# Relative increase of the coefficients c₀ (value at first yield), c₁ and c₂ on a ridge.
+# Relative increase, from a round asperity to a ridge, of the coefficients c₀ (value at first
+# yield), c₁ (growth with strain) and c₂ (upper limit).
 _RIDGE_ONSET, _RIDGE_GROWTH, _RIDGE_LARGEST = 0.11, 1.1, 0.25
 _DEPTH_FACTOR = 2.0  # the elastic pressure is computed at this multiple of the indentation
 
-# Tolerance of the elastic solve: a multiple of the tolerance of the bounded solve, and its largest
-# value. At 5e-5, COR is within 1e-4 of its value at 1e-8 (tests/contact/test_cavity.py): the
-# largest difference on 143 random rough surfaces was 7.5e-5.
+# The tolerance of the elastic solve is _RESIDUAL_FACTOR times that of the bounded solve, but at
+# most _LARGEST_RESIDUAL. With a tolerance of 5e-5, COR differs from its value with 1e-8 by at most
+# 7.5e-5 on 143 random rough surfaces (tests/contact/test_cavity.py checks 1e-4).
 _RESIDUAL_FACTOR, _LARGEST_RESIDUAL = 5e3, 5e-5
-_TABOR = 0.2  # ratio of the representative strain to a/R
+_TABOR = 0.2  # representative strain divided by a/R (contact radius a, radius R of the sphere)
 
 
 def yield_bound(contact: Contact, indentation: float, residual: float) -> tuple[Array, int]:

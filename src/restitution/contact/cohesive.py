@@ -46,15 +46,16 @@ from restitution.numerics.truncated_newton import minimise_locally
 
 Array = NDArray[np.float64]
 
-# Largest spacing over the smaller of the length of the cohesive zone, E*z₀²/w, and sqrt(R*z₀). On
-# coarser grids the edge of the contact is pinned between nodes, which falsifies the dissipated
-# energy and the pull-off force.
+# Largest ratio of the spacing to the shorter of two lengths: the length of the cohesive zone,
+# E*z₀²/w, and sqrt(R*z₀). On coarser grids the edge of the contact is pinned between nodes, which
+# falsifies the dissipated energy and the pull-off force.
 COARSEST = 0.3
 COMPANION = "companion"  # provenance key of a surface that serves only to compare grids
-_REACH = 12.0  # nodes are solved if their gap between rigid bodies is below this multiple of z₀
 
-# Tolerance of u/z₀: the first value times the `residual` of a solve, but at least the second value,
-# because of rounding.
+# A solve includes the nodes at which the gap between the rigid bodies is below this multiple of z₀.
+_REACH = 12.0
+# Tolerance of the displacement, as a fraction of z₀: _TOLERANCE times the `residual` of a solve,
+# but at least _LEAST_TOLERANCE, because of rounding.
 _TOLERANCE, _LEAST_TOLERANCE = 100.0, 1e-7
 # An equilibrium counts as unique if the bound that `is_unique` computes is below this value.
 _UNIQUE = 0.7
@@ -153,7 +154,8 @@ def require_fine_grid(contact: Contact) -> None:
         raise CaseError(
             f"grid.spacing: {1e9 * max(contact.grid.spacing):.4g} nm is too coarse for the range "
             f'of the attraction; adhesion = "cohesive" needs {1e9 * needed_spacing(contact):.4g} '
-            "nm or less (0.3 times the smaller of E* z0^2/w and sqrt(R* z0))"
+            "nm or less (0.3 times the smaller of E* z0^2/w and sqrt(R* z0), with the work of "
+            "adhesion w and the equilibrium separation z0)"
         )
 
 
@@ -192,13 +194,15 @@ def solve_cohesive(
     if not found.converged:
         raise NotConvergedError(
             f"the cohesive solve at an indentation of {1e9 * indentation:.6g} nm stopped at a "
-            f"residual of {found.residual / z0:.1e} z0 after {found.steps} steps; refine the grid"
+            f"residual of {found.residual / z0:.1e} times the equilibrium separation after "
+            f"{found.steps} steps; refine the grid"
         )
     yielded = law.beyond(found.u)
     if contact.periodic and not law.yields and yielded.any():
         raise DomainError(
-            f"indentation: at {1e9 * indentation:.6g} nm the pressure exceeds E*, "
-            f"{contact.pair.contact_modulus:.4g} Pa; use a smaller indentation or a yield_pressure"
+            f"indentation: at {1e9 * indentation:.6g} nm the pressure exceeds E* "
+            f"({contact.pair.contact_modulus:.4g} Pa); use a smaller indentation, or give a "
+            "yield_pressure"
         )
     plastic = before
     if law.yields and yielded.any():
@@ -209,8 +213,8 @@ def solve_cohesive(
     far_force, far_energy = _far(contact, indentation, box)
     energy = float(np.sum(law_of(contact).energy(gap))) * area
     if not law.yields:
-        # Without yield, the gap can be smaller than `law.least`. Add the energy of the linear
-        # continuation there.
+        # Without yield, the gap can be smaller than `law.least`, the limit below which the law is
+        # continued linearly. Add the energy of the continuation.
         energy += float(np.sum(law.continuation(found.u))) * area
     return CohesiveState(
         contact,
@@ -290,7 +294,7 @@ def interacting_box(contact: Contact, indentation: float, history: State | None 
     reach = _REACH * contact.equilibrium_separation + contact.adhesive_length
     gap = contact.gap if history is None else contact.gap + history.plastic_displacement
     box = bounding_box(gap < max(indentation + reach, reach * 1e-3))
-    if box is None:  # the bodies are far apart: take the nodes that are nearest to each other
+    if box is None:  # the bodies are far apart: use the nodes with the smallest gaps
         box = bounding_box(gap <= gap.min() + reach)
         assert box is not None
     return box
@@ -384,8 +388,8 @@ def _far(contact: Contact, indentation: float, box: Box) -> tuple[float, float]:
         gap = np.maximum(contact.gap[part] + (z0 - indentation), 1.2 * z0)
         force -= float(np.sum(law.traction(gap))) * grid.cell_area
         energy += float(np.sum(law.energy(gap))) * grid.cell_area
-    # Off the grid, the bodies are smooth and at the mean height of the surface. They are integrated
-    # outside the circle that has the area of the grid.
+    # Outside the grid, the bodies count as smooth, at the mean height of the surface. Their force
+    # and energy are integrated outside a circle that has the area of the grid.
     R, (wide, long) = contact.pair.radius, grid.size
     edge = wide * long / (2 * math.pi * R) + contact.mean_offset + z0 - indentation
     edge = max(edge, 2 * z0)

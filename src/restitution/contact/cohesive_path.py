@@ -38,15 +38,15 @@ from restitution.numerics.read_only import freeze
 
 Array = NDArray[np.float64]
 
-# Largest difference between the work of the force and the change of energy in a step, as a fraction
-# of the energies of the contact.
+# In each step, the work of the force must equal the change of energy. This is the largest accepted
+# difference, as a fraction of the energies of the contact.
 ACCURACY = 2e-4
 _FIRST_STEP = 0.25  # length of the first step, in units of the equilibrium separation z₀
 
 # Longest step of unloading under tension, in units of z₀ plus the adhesive length.
 _UNDER_TENSION = 0.15
-# Shortest step, in units of z₀. If even this step fails, the path cannot be followed; this is an
-# error.
+# Shortest step, in units of z₀. If even this step fails, the path cannot be followed, and an error
+# is raised.
 _LEAST_STEP = 1e-5
 _MOST_STEPS = 5000
 _FARTHEST = 0.02  # unloading ends where the tension is below this fraction of the largest tension
@@ -106,7 +106,7 @@ def load_until(
         if reached(state):
             return before, state
         before = state
-    raise NotConvergedError("the loading path has ended early")  # `follow` raises before this
+    raise NotConvergedError("the loading path has ended early")  # not reached: `follow` raises
 
 
 def step_cohesive(state: CohesiveState, indentation: float, *, residual: float) -> CohesiveState:
@@ -166,7 +166,7 @@ def follow(
     z0 = contact.equilibrium_separation
     sign = 1.0 if target > state.indentation else -1.0
     length = _FIRST_STEP * z0
-    if state.smallest_gap < 1.1 * z0:  # in contact: at least a fraction of the indentation
+    if state.smallest_gap < 1.1 * z0:  # in contact, a step is at least 2 % of the indentation
         length = max(length, 0.02 * abs(state.indentation))
     previous: CohesiveState | None = None
     rejected = 0  # convolutions of steps that were not accepted

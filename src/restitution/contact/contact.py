@@ -31,10 +31,12 @@ Plasticity = Literal["expanding-cavity", "equilibrium", "truncated"]
 Approach = Literal["equilibrium", "hertzian", "pull-increments"]
 Adhesion = Literal["jkr", "cohesive"]
 EQUILIBRIUM_SEPARATION = 0.3e-9  # default range of the attraction z₀ (m)
-FULL_CONSTRAINT = 2.8  # pressure over yield strength of fully plastic contact (Tabor 1951)
 
-# Position of the apex of smooth adhesive bodies relative to a node (cells), see `Contact.apex`. The
-# point lies on no symmetry axis of the grid, so nodes do not attach or detach in groups.
+# Ratio of pressure to yield strength of a fully plastic contact (Tabor 1951).
+FULL_CONSTRAINT = 2.8
+
+# Position (cells) of the apex of smooth adhesive bodies relative to a node, see `Contact.apex`. It
+# is on no symmetry axis of the grid, so nodes do not attach or detach in groups.
 _OFF_NODE = 0.31, 0.17
 
 
@@ -165,8 +167,8 @@ class Contact:
         if not self.periodic:
             if self.pair.flat:
                 raise CaseError(
-                    "first.radius, second.radius: both are flat; one must be a sphere, or the "
-                    "contact must be periodic"
+                    "first.radius, second.radius: both bodies are flat; one must be a sphere, or "
+                    "the contact must be periodic"
                 )
             return
         if not self.pair.flat:

@@ -50,10 +50,11 @@ Detachment = Literal["crack-closure", "pohrt-popov"]
 _FACES = np.array([(1, 0), (-1, 0), (0, 1), (0, -1)])
 _AROUND = np.array([(-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1), (0, 0)])
 # Steps of averaging G along the edge. Each step adds a variance of ⅔ cell², so the standard
-# deviation of the weights is about five cells in all.
+# deviation of the weights after all steps is about five cells.
 _SMOOTHING_STEPS = 32
-# Relative error by which G is too small on a curved edge, over the curvature (1/cell): on discs of
-# 5, 10 and 20 cells per radius, the mean of G is 0.970, 0.984 and 0.992 of its exact value.
+# On a curved edge the computed G is too small. This is its relative error divided by the curvature
+# (1/cell). On discs with radii of 5, 10 and 20 cells, the mean of G is 0.970, 0.984 and 0.992 times
+# its exact value.
 _CURVATURE_BIAS = 0.16
 _LARGEST_CURVATURE = 0.35
 # Smallest and largest distance (cells) that is kept between a node released alone and the next
@@ -66,10 +67,12 @@ _LARGEST_ON_COARSE_GRIDS = 1.04
 # A grid counts as fine if the rim under tension is wider than _RESOLVED_RIM (cells). The mean of G
 # is then accurate. A patch is at rest if the mean of 1 − sqrt(w/G) over its edge is below _AT_REST,
 # where w is the work of adhesion and nodes with G < w count as zero. On a fine grid the tension
-# limit is not applied: nodes at the kinks of an edge reach it at G = w, and their release would
-# roughen the edge.
+# limit is not applied, because nodes at the kinks of an edge reach this limit as soon as G = w, and
+# their release would roughen the edge.
 _RESOLVED_RIM, _AT_REST = 2.0, 0.002
-_LEAST_STRIP = 0.75  # smallest width (cells) of a strip; in narrower ones nodes are released singly
+# Smallest width (cells) of a strip along the edge whose nodes are all released together. If the
+# strip is narrower, single nodes are released.
+_LEAST_STRIP = 0.75
 _SMOOTHED = 3  # standard deviation (cells) of the filter that smooths the outline of the contact
 
 # Tensions that differ by less than this fraction of the largest tension count as equal, because
@@ -192,8 +195,9 @@ class Edge:
         surrounded = T[:-2, 1:-1] & T[2:, 1:-1] & T[1:-1, :-2] & T[1:-1, 2:]
         i, j = np.nonzero(touching & ~surrounded)
         side, node = np.nonzero(~T[i + 1 + _FACES[:, :1], j + 1 + _FACES[:, 1:]])
-        # A step outwards adds one number to a flat index. An index can leave the array only if the
-        # contact is at the edge of the grid, and this raises an error later.
+        # A step outwards adds a fixed number to the flat index of a node. The new index can be
+        # outside the array only if the contact reaches the edge of the grid, and this raises an
+        # error later.
         row = touching.shape[1]
         here = i[node] * row + j[node]
         outwards = (_FACES @ np.array([row, 1]))[side]

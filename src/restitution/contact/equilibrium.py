@@ -105,8 +105,8 @@ def solve_pressure(
     b = _overlap(contact, indentation, box, history)
     if contact.periodic and limit == math.inf and b.mean() >= 0:
         raise DomainError(
-            f"indentation: the contact is complete at {1e9 * (indentation - b.mean()):.6g} nm, "
-            "below this indentation; use a smaller indentation, or prescribe the pressure"
+            f"indentation: the contact is complete at {1e9 * (indentation - b.mean()):.6g} nm and "
+            "more; use a smaller indentation, or prescribe the pressure"
         )
     scale = _scale_of(contact, indentation, b)
     operators = _operators_of(contact)

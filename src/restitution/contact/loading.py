@@ -40,17 +40,18 @@ Array = NDArray[np.float64]
 
 # Retraction after each loading increment (m) (Ghanbarzadeh et al. 2019, §2.2).
 PULL_INCREMENT = 1e-10
-# Quadrature of a truncated force: tolerance relative to force times indentation, margin added to
-# the error (in tolerances), and number of initial intervals. The integrand can be zero up to first
-# yield, so with one interval it could be zero at all sampled depths.
+# Quadrature of the force of a truncated contact: tolerance as a fraction of force times
+# indentation, margin that is added to the error (in multiples of the tolerance), and number of
+# initial intervals. The integrand can be zero up to first yield, so with one interval it could be
+# zero at all sampled depths.
 _TRUNCATION_TOLERANCE, _TRUNCATION_MARGIN, _TRUNCATION_PANELS = 3e-5, 10.0, 4
 # Relative tolerance of the integral of an adhesive force. The force jumps as asperities attach,
 # which limits the accuracy. A relative error of 1.5e-3 of the loading work changes the restitution
 # by at most 0.00075.
 _ADHESIVE_TOLERANCE = 1.5e-3
-# Under a growing bound, the plastic work is a sum over depths. The first depth is _SHALLOW times
-# the indentation, and each further depth is at most _RATIO times the one before. The error estimate
-# of `plastic_work` holds up to this ratio.
+# If the pressure bound grows with deformation, the plastic work is a sum over depths. The first
+# depth is _SHALLOW times the indentation, and each further depth is at most _RATIO times the one
+# before, because the error estimate of `plastic_work` holds up to this ratio.
 _RATIO, _SHALLOW = 1.42, 0.2
 _WORK_RESIDUAL = 1e-6  # tolerance of intermediate solves; the force is far more accurate than this
 
@@ -265,8 +266,8 @@ def with_work(state: State, start: State | None) -> State:
     known = state.stored_energy + state.plastic_work
     if _adhesive_work_is_negligible(state):
         # The adhesive work is set to its largest possible value, the work of adhesion times the
-        # area. Where it was integrated instead, it was 0.37 to 0.93 of this value, in most cases
-        # above 0.7. The error covers this range.
+        # contact area. In contacts for which it was integrated, it was 0.37 to 0.93 times this
+        # value, and above 0.7 times in most of them. The error covers this range.
         return replace(state, adhesive_work=gain, work_error=0.65 * gain)
     if contact.adhesive and contact.approach != "hertzian":
         balanced = contact.approach == "equilibrium" and balances_are_reliable(state)

@@ -24,8 +24,8 @@ import numpy as np
 from restitution.contact.checks.resolution import tabor_parameter
 from restitution.contact.state import State
 
-# For each model of plasticity: values of the COR due to plasticity alone, and the largest relative
-# difference from finite elements at each of them.
+# For each model of plasticity with a constant bound: values of the COR due to plasticity alone, and
+# the largest relative difference from finite elements at each of these values.
 _CONSTANT = {
     "equilibrium": (
         (0.34, 0.5, 0.56, 0.68, 0.77, 0.86, 0.9999, 1.0),
@@ -36,16 +36,18 @@ _CONSTANT = {
         (0.3, 0.65, 0.65, 0.55, 0.45, 0.37, 0.3, 0.18, 0.17, 0.11, 0.07),
     ),
 }
-# For `expanding-cavity`: steepness ψ of the asperities, and the largest relative difference from
-# finite elements. Then the COR due to plasticity alone, and a factor on this difference.
+# For `expanding-cavity`: values of the steepness ψ of the asperities, and the largest relative
+# difference of COR from finite elements at each of these values.
 _STEEPNESS, _GROWING = (0.0, 4.0, 6.0), (0.03, 0.035, 0.045)
+# Values of the COR due to plasticity alone, and the factors by which this difference is multiplied.
 _NEAR_ONE = (0.94, 0.98, 1.0), (1.0, 0.5, 0.2)
-# Tabor parameter, and the energy that smooth elastic spheres dissipate in a cycle of contact, over
-# that of JKR (from an axisymmetric reference solution).
+# Values of the Tabor parameter, and the energy that smooth elastic spheres dissipate in a cycle of
+# contact, as a fraction of the energy dissipated in JKR theory. The fractions come from an
+# axisymmetric reference solution.
 _TABOR = (0.7, 1.0, 2.0, 3.0, 5.0)
 _HYSTERESIS = (0.0, 0.0347, 0.2039, 0.3198, 0.4581)
 _BEYOND = 0.44  # exponent of the extrapolation to larger Tabor parameters
-_ONSET = 1.6 / 2.8  # pressure at first yield over the yield pressure (full plasticity)
+_ONSET = 1.6 / 2.8  # ratio of the pressure at first yield to the pressure of full plasticity
 
 
 def model_error(state: State, restitution: float) -> float:
@@ -94,7 +96,8 @@ def _plasticity_error(state: State, restitution: float) -> float:
     returned = stored / (stored + lost) if stored + lost > 0 else 0.0
     error = largest_difference(state, math.sqrt(returned))
     # An error of the COR due to plasticity alone changes only the plastic loss of energy. The
-    # adhesive loss stays the same, so the squares of both COR change by the same amount.
+    # adhesive loss stays the same, so the square of the whole COR changes by the same amount as the
+    # square of the COR due to plasticity alone.
     high, low = (
         math.sqrt(max(restitution**2 + returned * ((1 + off) ** 2 - 1), 0.0))
         for off in (error, -error)

@@ -12,10 +12,11 @@ from restitution.numerics.box import Box
 
 Array = NDArray[np.float64]
 
-# The growth of the bound in a step adds a part to the plastic work, and the error of the work is a
-# fraction of this part. The fraction is _RULE_ERROR for nodes that had yielded before the step, and
-# _NEW_ERROR for nodes that begin to yield in the step. Both come from a comparison with 11 times as
-# many depths. For nodes that begin to yield, _NEW is the weight of the growth of the bound.
+# In each step, the pressure bound of a node grows. The error of the plastic work is a fraction of
+# the growth times the plastic displacement of the step. The fraction is _RULE_ERROR for nodes that
+# had yielded before the step, and _NEW_ERROR for nodes that begin to yield in the step. Both come
+# from a comparison with 11 times as many depths. At nodes that begin to yield in the step, the mean
+# bound is the initial bound plus _NEW times the growth.
 _RULE_ERROR, _NEW, _NEW_ERROR = 0.1, 0.8, 0.25
 
 

@@ -49,7 +49,7 @@ def solve_at_force(contact: Contact, force: float, *, start: State | None = None
     capacity = contact.hardness * contact.grid.cell_area * nx * ny
     if force >= capacity:
         raise DomainError(
-            f"force: {force:.4g} N is more than the whole grid carries at the yield pressure "
+            f"force: {force:.4g} N is more than the force of the whole grid at the yield pressure "
             f"({capacity:.4g} N); use a larger grid or a smaller force"
         )
     state = start
@@ -66,7 +66,7 @@ def solve_at_force(contact: Contact, force: float, *, start: State | None = None
 
     hertz = float(Hertz(contact.pair.radius, contact.pair.contact_modulus).indentation(force))
     low, high = 0.0, max(hertz, start.indentation if start is not None else 0.0)
-    if contact.cohesive:  # the last two states of one loading path bracket the force
+    if contact.cohesive:  # the last two states of a loading path enclose the force
         start, reached = load_until(
             contact, lambda state: state.force >= force, start=start, residual=RESIDUAL
         )

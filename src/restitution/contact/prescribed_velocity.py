@@ -150,8 +150,8 @@ class _Search:
         def excess(indentation: float) -> float:
             return self._excess(self.at(float(indentation))) if indentation else -1.0
 
-        # The work W grows as δ² to δ^2.5, so ΔV/V = ½ ΔW/W is Δδ/δ to 1.25 Δδ/δ. The relative
-        # tolerance of the velocity therefore serves as that of the depth, too.
+        # The work W grows with the depth δ as δ² to δ^2.5. So the relative change of the velocity,
+        # ΔV/V = ½ ΔW/W, is 1 to 1.25 times Δδ/δ, and both may have the same relative tolerance.
         return float(toms748(excess, low, high, xtol=tolerance * high, rtol=1e-12, k=1))
 
     def _step(self, state: State) -> float | None:

@@ -29,27 +29,31 @@ Array = NDArray[np.float64]
 
 RESTITUTION_ERROR = 0.002
 _ACCURACY = 1e-3  # tolerance of the solves as a fraction of the crack opening at the edge
-_STEPS_OF_RECOVERY = 8  # smallest number of steps over the elastic recovery
+_STEPS_OF_RECOVERY = 8  # smallest number of steps into which the elastic recovery is divided
 
-# Smallest number of steps over the pull-off displacement of a punch of the same area.
+# Smallest number of steps into which the pull-off displacement of a punch of the same area is
+# divided.
 _STEPS_OF_TENSION = {"crack-closure": 32, "pohrt-popov": 16}
-_FINEST = 400  # the shortest step is this pull-off displacement divided by _FINEST
+_FINEST = 400  # the shortest step is the pull-off displacement of this punch divided by _FINEST
 _REFINEMENTS = (1, 2, 4)  # factors on the number of steps, tried until the tolerance is met
 
-# If the error of the steps is below this fraction of the surface energy (work of adhesion times
-# contact area), the error of the grid is larger (see `collision`). Finer steps are then useless.
+# If the error due to the steps is below this fraction of the surface energy (work of adhesion times
+# contact area), the error due to the grid is larger (see `collision`). Finer steps are then
+# useless.
 _SMALL = {"crack-closure": 0.005, "pohrt-popov": 0.0}
 _MOST_STEPS = 3000  # steps after which unloading counts as not converged
 
-# Error of the unloading work as a fraction of the work of late release. To first order, the
-# integral of the force through the states after each release does not contain this work. In a
-# comparison with ten times finer steps, the fraction was below 0.1 with `crack-closure` and below
-# 1/3 with `pohrt-popov`, which releases nodes in larger jumps. The values include a margin of 1.5.
+# Error of the unloading work, as a fraction of the work that is lost by late release (see the top
+# of this file). The integral of the force through the states after each release excludes this loss
+# to first order. In a comparison with ten times finer steps, the fraction was below 0.1 with
+# `crack-closure` and below 1/3 with `pohrt-popov`, which releases nodes in larger jumps. The values
+# include a margin of 1.5.
 _LATENESS = {"crack-closure": 0.15, "pohrt-popov": 0.5}
-# For cohesive contacts: tolerance of the energy balance of a step (`accuracy` in `cohesive_path`),
-# as a fraction of the tolerance of the restitution; and relative error of the adhesive loss on the
-# coarsest grid allowed (docs/adhesion.md).
+# For cohesive contacts, the tolerance of the energy balance of a step (`accuracy` in
+# `cohesive_path`), as a fraction of the tolerance of the restitution.
 _UNACCOUNTED = 0.1
+# Relative error of the adhesive loss of cohesive contacts on the coarsest grid that is allowed
+# (docs/adhesion.md).
 _GRID_LOSS = 0.05
 
 
@@ -85,9 +89,10 @@ def separate(
         path = list(_unload(state, tolerance / finer, finer, known))
         separation = separation_of(path)
         returned, given = separation.unloading_work, state.loading_work
-        # From e = sqrt(W_u/W_l), the errors satisfy 2 de/e = dW_u/W_u + dW_l/W_l. For a pair that
-        # sticks, e = 0 and the number of steps does not matter. Finer steps do not reduce the error
-        # of the loading work, so this error is taken as at most half the tolerance.
+        # COR is e = sqrt(W_u/W_l) with the works of unloading and loading, so the errors satisfy
+        # 2 de/e = dW_u/W_u + dW_l/W_l. If the pair sticks, e = 0 and the number of steps does not
+        # matter. Finer steps do not reduce the part of the error that is due to the loading work,
+        # so this part counts with at most half of the tolerance.
         if returned <= 0 or given <= 0:
             break
         half = 0.5 * math.sqrt(returned / given)
@@ -251,8 +256,9 @@ def _late_force(state: State) -> float:
 def _plan(state: State, tolerance: float) -> tuple[float, float]:
     """Estimate the elastic recovery (m) and the largest allowed `_late_force` (N)."""
     stored, adhesion = state.stored_energy, state.contact.work_of_adhesion * state.contact_area
-    # The elastic recovery is estimated in two ways from the stored energy: as that of a punch of
-    # the same area and, with the force, as that of a Hertz-like contact. The smaller one is used.
+    # The elastic recovery is estimated in two ways, and the smaller value is used: from the stored
+    # energy as that of a punch of the same area, and from the stored energy and the force as that
+    # of a Hertz-like contact.
     a = math.sqrt(state.contact_area / math.pi)
     recovery = 1.5 * math.sqrt(stored / (state.contact.pair.contact_modulus * a))
     if state.force > 0:
@@ -262,8 +268,8 @@ def _plan(state: State, tolerance: float) -> tuple[float, float]:
     # For COR below 0.05, the value at COR = 0.05 is used.
     work = max(state.loading_work, 0.05 * stored)
     restitution = math.sqrt(max(stored - adhesion, 0.0) / work)
-    # From dCOR = dW/(2 W_l COR), the tolerance allows dW = 2 W_l COR dCOR. Half of it is reserved
-    # for the error of the loading work.
+    # With the loading work W_l, dCOR = dW/(2 W_l COR), so the tolerance allows an error of the work
+    # of dW = 2 W_l COR dCOR. Half of it is reserved for the error of the loading work.
     allowed = 1.0 * tolerance * max(restitution, 0.05) * work
     if balances_are_reliable(state):  # balances do not depend on late releases
         return recovery, math.inf

@@ -146,7 +146,9 @@ def shear(
     if not math.isfinite(displacement):
         raise CaseError(f"displacement: {displacement} m is not a finite length")
     if contact.adhesive:
-        raise CaseError("normal: is adhesive; Coulomb's law is solved only without adhesion")
+        raise CaseError(
+            "normal: this contact is adhesive; Coulomb's law is solved only without adhesion"
+        )
     if history is not None and history.normal.contact.grid != contact.grid:
         raise CaseError("history: is on another grid; give a state on the grid of this contact")
     box = union(

@@ -26,7 +26,7 @@ _SMOOTHED = 11  # number of points in each parabola that smooths the force
 # tension.
 _JUMP = 0.1
 # Smallest decrease of the indentation from the last balance to separation, as a fraction of the
-# decrease before.
+# decrease from the beginning of unloading to the last balance.
 _END = 1e-3
 # Two forces at one indentation count as equal if their difference is below this fraction of the
 # largest tension. The balances scatter by about as much.
@@ -187,8 +187,8 @@ class SharedUnloading:
         following = self._following(state)
         first = following[0]
         fallen = 0.5 * (state.force + first.force) * (state.indentation - first.indentation)
-        # The work from `state` to the first known state is computed from their forces. All later
-        # changes of the work are those of the known states.
+        # The work from `state` to the first known state is computed from the forces of these two
+        # states. All later changes of the work are those of the known states.
         offset = first.loading_work - (state.loading_work - fallen)
         for each in following:
             joined = replace(each, adhesive_work=each.adhesive_work + offset, convolutions=0)

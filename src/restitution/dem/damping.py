@@ -37,10 +37,12 @@ from scipy.optimize import brentq
 
 from restitution.laws.law import Law
 
-_NEARLY_ELASTIC = 1e-4  # below this value of 1 − e, only the leading terms of dV are used
+_NEARLY_ELASTIC = 1e-4  # below this value of 1 − e, only the first terms of a series of dV are used
 _TOLERANCE = 1e-12  # tolerance of root finding
-# Below this dV, the series e = 1 − ⅔ dV is used. The omitted terms are of the order (dV)², while
-# solving the equation for e would lose more digits to rounding.
+
+# If the dissipation d times the impact velocity V is below this value, the series e = 1 − ⅔ dV is
+# used. Its omitted terms are of the order (dV)². Solving the equation for e would lose more digits
+# to rounding.
 _SMALL = 1e-6
 # Largest ζ in the search for a given e; e is below 0.001 for ζ = 20.
 _LARGEST_DAMPING = 20.0

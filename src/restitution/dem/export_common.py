@@ -23,7 +23,7 @@ from restitution.dem.pair_table import PairTable
 from restitution.errors import CaseError, one_line
 from restitution.laws.law import Law, Particle
 
-FRICTION = 0.5  # placeholder for the friction of pairs whose case states none
+FRICTION = 0.5  # coefficient of friction of pairs whose case gives none; users should replace it
 STEPS = 5000  # number of time steps in a contact
 TIME_STEP = "the elastic contact time t_c = 2.87 (m*^2/(R* E*^2 V))^(1/5), for an accurate e"
 

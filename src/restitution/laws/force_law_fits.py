@@ -36,6 +36,7 @@ Begin = Callable[[str, int, int], None]
 """Function called before each fit with its name, its number (from 1) and the number of fits."""
 
 _MOST = 1e6  # largest ratio of unloading to loading stiffness
+
 # The parameters of each spring model, in the order of the arguments of its theory.
 _WALTON_BRAUN = ("loading_stiffness_N_per_m", "unloading_stiffness_N_per_m", "hardening_per_m")
 _LUDING = (

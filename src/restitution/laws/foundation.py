@@ -28,7 +28,7 @@ from restitution.laws.time_integration import StoredForce
 
 Array = NDArray[np.float64]
 
-_SPRINGS = 400  # number of springs on each half line
+_SPRINGS = 400  # number of springs on each half of the line
 _DEPTHS = 200  # number of depths of loading at which the loads of the springs are tabulated
 _ELASTIC = 1e-3  # a contact counts as elastic below this ratio of residual to largest indentation
 _POINTS = 400  # number of points of an unloading curve at which its slope is computed

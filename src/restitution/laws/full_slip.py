@@ -39,7 +39,8 @@ def full_slip_angle(friction: float, restitution: float, modulus_ratio: float) -
         Maw, Barber and Fawcett (1976) for e = 1; extended to e < 1 at the top of this module.
     """
     least = 3.5 * (1 + restitution) - restitution / modulus_ratio
-    # For ψ₁ < 1 the contact sticks at first (Maw, Barber and Fawcett), so full slip needs ψ₁ ≥ 1.
+    # If the dimensionless angle of impact ψ₁ is below 1, the contact sticks at first (Maw, Barber
+    # and Fawcett). So full slip needs ψ₁ ≥ 1.
     return math.atan(friction * max(least, 1 / modulus_ratio))
 
 

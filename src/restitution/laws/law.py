@@ -202,11 +202,11 @@ class Law(_Stored):
         if not (np.diff(V) > 0).all():
             raise ValueError("points: velocities must increase")
         if self.first.wall and self.second.wall:
-            raise ValueError("first, second: both are flat")
+            raise ValueError("first, second: both bodies are flat")
         radii = [body.radius for body in (self.first, self.second) if body.radius is not None]
         R = 1 / sum(1 / radius for radius in radii)
         if abs(self.radius / R - 1) > 1e-6:
-            raise ValueError("radius: is not R* of the two bodies")
+            raise ValueError("radius: is not the reduced radius R* of the two bodies")
         return self
 
     @property

@@ -35,19 +35,22 @@ from restitution.contact.bodies import Pair
 from restitution.laws.foundation import has_yielded
 from restitution.laws.time_integration import StoredForce
 
-# These numbers bound all differences found in the comparison. _NUMERICAL is the relative error of
-# the stiffness of smooth contacts for ν = 0, and _ROUGH the additional error of rough contacts.
-# _SHAPE is the relative error due to the shape of one patch, divided by χ. The error is the same
-# for up to _ALIGNED patches, and does not decrease beyond _INDEPENDENT patches, because small
-# patches are parts of larger ones.
+# All differences found in the comparison are within the errors that these constants give. The top
+# of this file defines χ and β.
+#
+# Relative error of the stiffness of smooth contacts for ν = 0, and additional error of rough ones.
 _NUMERICAL, _ROUGH = 0.005, 0.04
+# _SHAPE is the relative error due to the shape of one patch, divided by χ. The error is constant up
+# to _ALIGNED patches, and again above _INDEPENDENT patches, because small patches are then parts of
+# larger ones. In between it decreases.
 _SHAPE, _ALIGNED, _INDEPENDENT = 0.35, 4.0, 36.0
 # Relative errors of stiffness and impulse after yield. On rough contacts they are multiplied by
 # the largest ratio between the depths of neighbouring unloading curves.
 _YIELDED_STIFFNESS, _YIELDED_IMPULSE = 0.01, 0.1
 # Ratio of the relative error of the impulse in full slip to the relative stiffness error due to β.
 _TURNED = 0.15
-_SHALLOWEST = 0.2  # unloading curves below this fraction of the deepest depth are ignored
+# Unloading curves that start at less than this fraction of the deepest depth are ignored.
+_SHALLOWEST = 0.2
 
 
 @dataclass(frozen=True)

@@ -44,8 +44,8 @@ Array = NDArray[np.float64]
 Force = Callable[[float], float]
 
 _RTOL = 1e-10
-_SLACK = 1e-3  # allowed excess over the deepest depth (relative), for errors of the integration
-_STEEPEST = 6.0  # largest d ln W/d ln δ of a power law; above it, adhesion nearly cancels W
+_SLACK = 1e-3  # relative excess over the deepest stored depth, allowed for integration errors
+_STEEPEST = 6.0  # largest exponent of a power law of the work; above it, adhesion nearly cancels W
 _SAME = 1e-5  # largest relative difference of depths that count as equal
 
 
@@ -324,8 +324,8 @@ def _loading(depth: Array, force: Array, work: Array) -> Force:
     with np.errstate(divide="ignore", invalid="ignore"):
         powers = force * depth / work
     if (work > 0).all() and (powers > 0.5).all() and (powers < _STEEPEST).all():
-        # ln W is interpolated against ln δ. Below the first depth it is a straight line, so W is a
-        # power of δ there.
+        # ln W is interpolated against ln δ. From zero to the first depth, ln W is linear in ln δ,
+        # so W is a power of δ.
         L, slope = np.log(depth), powers
         log_work = _hermite(L, np.log(work), slope)
         first = float(L[0])

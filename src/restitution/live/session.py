@@ -12,7 +12,7 @@ from restitution.case.case_file import read_text
 from restitution.errors import CaseError
 from restitution.live.content import Content, content_of, scans_of
 
-LARGEST_SCAN = 2**28  # largest size of a scan that is dropped (bytes)
+LARGEST_SCAN = 2**28  # largest size (bytes) of a scan that the user drops on the page
 _ODD = re.compile(r"[^\w.()+-]+")  # characters of a file name that are replaced
 
 

@@ -107,8 +107,8 @@ class Family:
         if nodes > _MOST_NODES:
             raise CaseError(
                 f"grid: the waves of {self.name} need cells of {1e6 * spacing:.3g} um, and the "
-                f"contact needs a grid of {1e6 * width:.3g} um, so {nodes} nodes per edge; give "
-                "the table [grid], fewer velocities, or sizes that differ less"
+                f"contact needs a grid of {1e6 * width:.3g} um, which would have {nodes} nodes per "
+                "edge; give the table [grid], fewer velocities, or sizes that differ less"
             )
         return {"nodes": nodes, "spacing": f"{spacing!r} m", "refine": "auto"}
 

@@ -28,7 +28,8 @@ from numpy.typing import NDArray
 from restitution.numerics.convolution.operators import Convolution
 
 Array = NDArray[np.float64]
-# Function that returns φ, φ′ and φ″ of all nodes at u.
+# Function of the unknowns u that returns the potential φ of each node, and its derivatives φ′ and
+# φ″.
 NodePotential = Callable[[Array], tuple[Array, Array, Array]]
 
 MOST_STEPS = 300  # Newton steps after which the solve counts as not converged

@@ -25,7 +25,7 @@ from restitution.plots.figure import (
     Series,
 )
 
-_CURVE = 100  # points of a curve drawn from a closed form
+_CURVE = 100  # number of points of a curve that is drawn from a closed form
 _ROUNDS = 50  # number of fixed-point iterations for the angle of full slip
 
 

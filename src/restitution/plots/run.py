@@ -41,7 +41,9 @@ UNRESOLVED = f"open: not resolved (patches below {NODES_PER_PATCH} nodes)"
 _MARGIN = 1.2  # factor by which a logarithmic axis extends beyond the first and the last point
 _RIM = 4  # number of nodes between the contact and each edge of its map
 _UNIFORM = 0.01  # relative difference up to which a pressure counts as the largest pressure
-# If at least this share of the contact carries the largest pressure, the pressure map is left out.
+
+# If the pressure has its largest value on at least this fraction of the contact area, the pressure
+# map is left out.
 _SATURATED = 0.95
 _SMOOTH = "smooth, same model"
 _DASHES = (DOTTED, DASH_DOTTED, DASHED, SOLID)  # line styles of the coarser grids, coarsest first

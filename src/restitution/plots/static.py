@@ -37,13 +37,13 @@ from restitution.results.writer import replace_file
 
 Format = Literal["png", "svg", "pdf"]
 
-# Sizes in inches: width and height of a chart and of a map, and width of each further panel; then
-# the height of a row of the legend, and the width of a legend at the side.
+# Width and height of a chart and of a map, and width of each further panel (inches).
 _CHART, _MAP, _SECOND = (6.4, 4.0), (5.6, 4.6), 4.6
+# Height of a row of the legend, and width of a legend at the side (inches).
 _ROW, _SIDE = 0.2, 2.4
 # Largest number of entries of a legend below the axes; a longer legend is placed at the side.
 _MOST_BELOW = 8
-# Pairs (decades, digits): a logarithmic axis of at most this many decades is labelled at these
+# Pairs (decades, digits): a logarithmic axis of at most this many decades has labels at these
 # digits.
 _DIGITS: tuple[tuple[float, tuple[int, ...]], ...] = ((1.0, (1, 2, 3, 5, 7)), (3.0, (1, 2, 5)))
 _TICKS = 6  # approximate number of labels of a linear axis (at most one more)
@@ -78,6 +78,7 @@ def write_figure(path: Path, figure: Figure, file_format: Format = "png") -> Pat
     drawing, to_write = draw(figure), path.with_name(f"{path.name}.{file_format}")
     with warnings.catch_warnings(), matplotlib.rc_context({"svg.hashsalt": path.name}):
         matplotlib.rcParams["pdf.fonttype"] = 42  # embed TrueType fonts, as journals require
+
         # If the font lacks the script of a title, matplotlib draws boxes and warns.
         warnings.filterwarnings("ignore", message="Glyph .* missing from font")
         replace_file(

@@ -22,7 +22,7 @@ from restitution.surfaces import Surface
 from restitution.surfaces.psd import DirectedSpectrum
 from restitution.surfaces.texture import Autocorrelation, HeightDensity, MaterialRatio
 
-_ROUNDING = 1e-15  # densities below this fraction of the largest density are rounding errors
+_ROUNDING = 1e-15  # spectral densities below this fraction of the largest one are rounding errors
 
 
 def surface_map(surface: Surface, title: str = "") -> Figure:

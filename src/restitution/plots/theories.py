@@ -32,7 +32,7 @@ def theory_figure(
             label = name + " (fit)" * fitted
             series.append(Line(V, e, label, color=color, dash=dash, width=width))
     velocities = np.concatenate([V for _, _, V, _ in lines])
-    # The name of the lower mark is on its left, the name of the higher mark on its right.
+    # The mark at the highest velocity has its name on the right, other marks on the left.
     order = sorted(marks, key=marks.__getitem__)
     series += [
         Mark("x", V, name[0], name[-1], "right" if name == order[-1] else "left")

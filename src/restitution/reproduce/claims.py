@@ -28,7 +28,7 @@ Verdict = Literal["agrees", "agrees in part", "does not agree", "not decided"]
 R, E_STAR, P_Y, RADIUS = 250e-6, 112e9, 750e6, 500e-6
 SMOOTH = "1 pm"  # rms roughness of cases that represent the smooth sphere
 _VARIABLES = ("indentation", "restitution", "force", "pull_off_force", "resolved")
-_NEAR = 0.05  # relative difference of COR below which a rough sphere behaves as a smooth one
+_NEAR = 0.05  # a rough sphere behaves as a smooth one if their COR differ by less (relative)
 
 
 @dataclass(frozen=True)
@@ -75,9 +75,8 @@ def curves(study: xr.Dataset) -> list[Curve]:
 def _as_written(coordinate: xr.DataArray) -> dict[float | str, str]:
     """Map each value of a swept quantity to its text in the study file."""
     values = coordinate.values.tolist()
-    written = coordinate.attrs.get(
-        AS_WRITTEN
-    )  # missing in files of earlier versions, which stored texts
+    # Files of earlier versions lack this attribute, because they stored the values as texts.
+    written = coordinate.attrs.get(AS_WRITTEN)
     return dict(
         zip(values, map(str, values) if written is None else json.loads(written), strict=True)
     )

@@ -37,7 +37,9 @@ def compare(a: Path, b: Path) -> Comparison:
     """Compare the results in the folders `a` and `b`. Raises `OutputError`."""
     kinds = {_kind(a), _kind(b)}
     if len(kinds) > 1:
-        raise OutputError(f"{a}, {b}: are a run and a study; compare two runs or two studies")
+        raise OutputError(
+            f"cannot compare a run with a study ({a}, {b}); give two runs or two studies"
+        )
     if kinds == {"run"}:
         (of_a, case_a), (of_b, case_b) = _run(a), _run(b)
         rows, notes = _curves(of_a, of_b, {})
@@ -61,7 +63,7 @@ def _studies(a: Path, b: Path) -> Comparison:
     common = [key for key in of_a if key in of_b]
     if not common:
         raise OutputError(
-            f"{a}, {b}: no case has the same swept values in both studies; compare studies with "
+            f"no case has the same swept values in both studies ({a}, {b}); give studies with "
             "common values"
         )
     rows, notes = [], []

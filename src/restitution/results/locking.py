@@ -38,8 +38,8 @@ def locked(folder: Path) -> Iterator[None]:
         yield
     finally:
         with hold_signals():
-            # Remove the lock file while the lock is held. Another process cannot lock the removed
-            # file, because filelock checks that the file still exists.
+            # Remove the lock file while this process holds the lock. No other process can lock the
+            # removed file, because filelock checks that the file still exists.
             with suppress(OSError):
                 (folder / LOCK).unlink()
             lock.release()

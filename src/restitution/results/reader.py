@@ -336,9 +336,8 @@ def read_netcdf(path: Path) -> xr.Dataset:
 def _opened(path: Path) -> Iterator[xr.Dataset]:
     """Open a netCDF file; delay signals, which could leave locks of the netCDF library held."""
     with reading(path):
-        open(
-            path, "rb"
-        ).close()  # raises errors of the operating system, which the netCDF library hides
+        # Opening the file raises errors of the operating system, which the netCDF library hides.
+        open(path, "rb").close()
     check_file(path)
     try:
         with hold_signals(), xr.open_dataset(path, engine="netcdf4") as stored:

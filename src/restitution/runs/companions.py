@@ -31,10 +31,10 @@ Array = NDArray[np.float64]
 
 SURFACES = 7  # number of additional surfaces from which the scatter is estimated
 _TOLERANCE = 0.005  # allowed error of COR due to the steps of adhesive unloading
-_SHALLOWER, _DEEPER = (
-    0.5,
-    1.3,
-)  # factors for one more depth at each end; other surfaces reach the same work at other depths
+
+# Factors on the smallest and the largest depth that give one more depth at each end. These depths
+# are needed because other surfaces reach the same work at other depths.
+_SHALLOWER, _DEEPER = 0.5, 1.3
 
 
 @dataclass(frozen=True)

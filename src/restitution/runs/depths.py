@@ -85,8 +85,8 @@ def collision_at(
 def _levels(case: Case, folder: Path, deepest: Contact) -> Iterator[_Level]:
     """Yield the grids of a case with their depths, from the shallowest depths to the deepest."""
     factors, depths = case.factors(), case.depths()
-    # Coarse grids touch later. This difference is added to the stored indentations, so it is also
-    # needed for loads and velocities.
+    # On a coarse grid, first touch is at a larger approach. The difference is added to the stored
+    # indentations, so it is also needed if loads or velocities are prescribed.
     touches = later_touches(case, folder, set(factors)) if len(set(factors)) > 1 else {}
     for factor in sorted(set(factors), reverse=True):
         own = [depth for depth, its in zip(depths, factors, strict=True) if its == factor]

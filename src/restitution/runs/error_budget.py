@@ -45,6 +45,7 @@ Array = NDArray[np.float64]
 Row = dict[str, float]
 
 _BAND = 1.5  # safety factor on the change of COR expected from waves that the grid leaves out
+
 # The fraction s (see the top of this file) for resolved and for unresolved contacts. For unresolved
 # contacts it is interpolated between its values at 3 and at 7 nodes in the median patch.
 _SHARE_RESOLVED = 0.03
@@ -61,7 +62,9 @@ _SCATTER = 1.5
 # single differences may vanish by chance.
 _NEAR_GRID, _NEAR_SURFACE = 2.0, 1.0
 MOST_AFFORDABLE = 2**24  # largest recommended number of nodes (takes some minutes and 2 GB)
-MISSING_BAND = 0.03  # a row counts as resolved up to this error of COR due to omitted waves
+
+# A row counts as resolved only if the error of COR due to omitted waves is at most this value.
+MISSING_BAND = 0.03
 
 NOT_INCLUDED = (
     "the model (range of adhesion and model of plasticity: model_error; half-space), values that "

@@ -111,7 +111,8 @@ def message(found: Finding) -> str:
             return (
                 f"grid.spacing: {_nm(found['spacing'])} is too coarse for the range of the "
                 f'attraction; interface.adhesion = "cohesive" needs {_nm(found["needed"])} or less '
-                "(0.3 times the smaller of E* z0^2/w and sqrt(R* z0)): use a finer grid, "
+                "(0.3 times the smaller of E* z0^2/w and sqrt(R* z0), with the work of adhesion w "
+                "and the equilibrium separation z0): use a finer grid, "
                 + (
                     "or grid.refine"
                     if found["periodic"]

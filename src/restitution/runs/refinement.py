@@ -57,10 +57,10 @@ def settled(case: Case, folder: Path, warn: Say = ignore) -> Case:
         unit, scale = ("nm", 1e9) if case.indentation else ("N", 1) if case.load else ("m/s", 1)
         below = f" up to {scale * depths[unresolved - 1]:.4g} {unit}" if unresolved > 1 else ""
         warn(
-            f'grid.refine = "auto" ends at {finest} ({why}), and the contact at '
-            f"{scale * depths[0]:.4g} {unit}{below} is not resolved: half of it is in patches of "
-            f"fewer than {_MARGIN * NODES_PER_PATCH:.0f} nodes; begin deeper, or leave out short "
-            "waves (roughness.shortest)"
+            f'grid.refine = "auto" ends at {finest} ({why}), which does not resolve the contact at '
+            f"{scale * depths[0]:.4g} {unit}{below}: half of the contact is in patches of fewer "
+            f"than {_MARGIN * NODES_PER_PATCH:.0f} nodes; begin deeper, or leave out short waves "
+            "(roughness.shortest)"
         )
     found = [finest] * unresolved + factors
     refine = found[0] if len(set(found)) == 1 else tuple(found)

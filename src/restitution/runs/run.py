@@ -228,9 +228,8 @@ def _unbalance(state: State, end: State, work: float, lost: float) -> float:
 def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> dict[str, Any]:
     patches = [row["median_patch_nodes"] for row in out.rows]
     depths = [row["max_indentation_m"] for row in out.rows]
-    nodes = run.adhesive_nodes[
-        : len(depths)
-    ]  # one value more than rows if the last row could not be written
+    # If the last row could not be written, there is one value more than rows.
+    nodes = run.adhesive_nodes[: len(depths)]
     unresolved = unresolved_patches(depths, patches) + unresolved_adhesion(depths, nodes)
     found = [*map(message, unresolved), band_warning(contact.surface, run.band_errors)]
     found += [_imprecise(out, case), _velocities_missed(out, case, run.asked)]

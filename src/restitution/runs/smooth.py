@@ -16,10 +16,10 @@ from restitution.contact.loading import solve
 from restitution.numerics.grid import Grid
 from restitution.theory import FirstYield, Hertz
 
-# Nodes along each edge of the grids. With eight or more nodes over the contact radius, the error of
-# COR is below 0.3 %.
+# Number of nodes along each edge of the grids. With eight or more nodes per contact radius, the
+# error of COR is below 0.3 %.
 _NODES = 80
-_WIDTH = 2.5  # width of each grid (predicted contact radii)
+_WIDTH = 2.5  # ratio of the width of a grid to the predicted contact radius
 _DEPTHS = 20  # number of depths
 
 

@@ -44,7 +44,7 @@ def extend(
             fewer than 16 pixels along an axis or is smaller than two cells.
     """
     if how not in get_args(Extension):
-        raise SurfaceError(f"how: {how!r} is unknown; choose 'twin' or 'mirror'")
+        raise SurfaceError(f"how={how!r} is unknown; choose 'twin' or 'mirror'")
     grid = to if isinstance(to, Grid) else _with_pixels_of(surface, to)
     if how == "twin":
         if seed is None or seed < 0:
@@ -57,7 +57,7 @@ def extend(
 
 def _with_pixels_of(surface: Surface, size: tuple[float, float]) -> Grid:
     if not all(math.isfinite(edge) and edge > 0 for edge in size):
-        raise SurfaceError(f"to: {size} m are not two positive lengths")
+        raise SurfaceError(f"argument to: {size} m are not two positive lengths")
     nx, ny = (
         math.ceil(edge / h * (1 - 1e-9)) for edge, h in zip(size, surface.grid.spacing, strict=True)
     )

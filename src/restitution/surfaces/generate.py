@@ -171,8 +171,8 @@ def _heights(
     # The first mode is the mean, not a wave. A grid of one node has no other mode.
     if not H.ravel()[1:].any() or grid.nodes == (1, 1):
         raise SurfaceError(
-            f"grid: {grid.nodes[0]} x {grid.nodes[1]} nodes cannot carry a wave of this roughness; "
-            "give more nodes"
+            f"grid: {grid.nodes[0]} x {grid.nodes[1]} nodes cannot represent a wave of this "
+            "roughness; give more nodes"
         )
     made: dict[str, str | float] = {"method": "Hu and Tonder 1992"}
     z: Array | None = None

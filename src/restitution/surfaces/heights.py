@@ -61,7 +61,7 @@ def filtered(noise: Array, H: Array, skewness: float, kurtosis: float) -> Array 
         if abs(skew - skewness) < _CLOSE and abs(kurt - kurtosis) < _CLOSE * kurtosis:
             return z
         # Skewness and kurtosis of one realisation differ from their expected values. So the values
-        # asked of the noise are corrected by the difference.
+        # requested for the noise are corrected by the difference.
         asked = (
             asked[0] + (skewness - skew) / skewing if skewing else 0.0,
             asked[1] + (kurtosis - kurt) / peaking,

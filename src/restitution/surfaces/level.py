@@ -33,7 +33,7 @@ def level(surface: Surface, how: Levelling) -> Surface:
     """
     if how not in get_args(Levelling):
         raise SurfaceError(
-            f"how: {how!r} is unknown; choose one of {', '.join(get_args(Levelling))}"
+            f"how={how!r} is unknown; choose one of {', '.join(get_args(Levelling))}"
         )
     before = [str(surface.provenance["levelling"])] if "levelling" in surface.provenance else []
     done = [step for step in [*before, how] if step != "none"]

@@ -76,7 +76,7 @@ def read_surface(
             invalid.
     """
     if undefined not in get_args(UndefinedPixels):
-        raise SurfaceError(f"undefined: {undefined!r} is unknown; choose 'error' or 'interpolate'")
+        raise SurfaceError(f"undefined={undefined!r} is unknown; choose 'error' or 'interpolate'")
     if size is not None and not all(math.isfinite(side) and side > 0 for side in size):
         raise SurfaceError(
             f"size: {_text(size)} um are not two positive lengths; give the edge lengths of the "

@@ -18,9 +18,9 @@ from restitution.surfaces.surface import Surface, is_periodic
 Array = NDArray[np.float64]
 
 _BINS = 80  # number of bins of the density of heights
-_DECAY = 0.2  # value of the autocorrelation that defines Sal and Str (4.2)
+_DECAY = 0.2  # value of the autocorrelation that defines Sal and Str (clause 4.2)
 _DIRECTIONS = 180  # number of directions over a half turn
-_CORE = 0.4  # range of the material ratio that the secant through the core spans (5.2)
+_CORE = 0.4  # range of the material ratio that the secant through the core spans (clause 5.2)
 
 
 class Autocorrelation(NamedTuple):

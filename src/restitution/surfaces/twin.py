@@ -37,17 +37,21 @@ Array = NDArray[np.float64]
 
 LEAST_PIXELS = 16  # smallest number of pixels of a scan along each axis
 _UNADJUSTED = 0.01  # fraction of the mean square height in waves that are not adjusted
-_FIRST_BAND = 2**20  # largest number of nodes of the longest band
-# Smallest number of pixels along an edge of the scan after coarsening to the longest band.
+_FIRST_BAND = 2**20  # largest number of nodes of the grid for the band of the longest waves
+
+# Smallest number of pixels along an edge of the scan after it is coarsened to the cells of this
+# grid.
 _LEAST_FIRST = 8
 _WORK = 2**24  # limit on the number of nodes times the number of adjustments of a band
 _ADJUSTMENTS = 3, 60  # smallest and largest number of adjustments of a band
 _NEGLIGIBLE = 1e-3  # misfit of heights at which the adjustment ends
 _STANDSTILL = 0.05  # the adjustment ends if the misfit decreases by less than this fraction
+
 # Largest number of parts of the twin, each as large as the scan, for the comparison of spectra.
 _PARTS = 16
 _COMPARED = 2**23  # largest number of nodes of these parts together, if there is more than one part
 _UNLIKE = 0.5  # misfit of the spectrum above which the notice contains a warning
+
 # Probabilities of the quantiles that represent a distribution of heights, denser in the tails.
 _PROBABILITIES = 0.5 * (1 - np.cos(np.linspace(0, np.pi, 4097)))
 _TABLE = 2**14  # number of steps of the table that maps heights (see `_with_heights`)

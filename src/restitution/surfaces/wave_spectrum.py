@@ -42,11 +42,11 @@ class WaveSpectrum:
     """
 
     density: Array
-    waves: tuple[float, float]  # period of the twin over the size of the scan, along x and y
+    waves: tuple[float, float]  # period of the twin divided by the size of the scan, along x and y
     pixel: tuple[float, float]  # pixel of the scan (m)
     period: tuple[float, float]
-    flat: float = 1.0  # a in the factor a + b/k², where k is the number of waves per scan
-    steep: float = 0.0  # b in this factor
+    flat: float = 1.0  # a in the factor a + b/k² (see the top of this file)
+    steep: float = 0.0  # b in the factor a + b/k²
 
     def power(self, m: NDArray[np.int64], n: NDArray[np.int64]) -> Array:
         """Mean square height (m²) of each wave (m, n), shape (m.size, n.size)."""
@@ -102,8 +102,8 @@ def spectrum_of(scan: Surface, period: tuple[float, float]) -> WaveSpectrum:
     if abs(np.linalg.det(moments)) > 1e-9 * abs(moments[0, 0] * moments[1, 1]):
         a, b = (float(value) for value in np.linalg.solve(moments, wanted))
     spectrum = WaveSpectrum(C, raw.waves, raw.pixel, period, a, b)
-    # `power` sets negative values to zero, which changes the mean square height. The factors a and
-    # b are rescaled to correct this.
+    # `power` sets negative values to zero, which changes the mean square height. The coefficients a
+    # and b are rescaled to restore the mean square height.
     excess = _moments(spectrum, raw=False)[0, 0] / wanted[0]
     return WaveSpectrum(C, raw.waves, raw.pixel, period, a / excess, b / excess)
 

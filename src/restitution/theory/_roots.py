@@ -30,9 +30,8 @@ def increasing_root(excess: Callable[[Array], Array], low: Values, high: Values)
     root = np.where(below >= 0, low, np.where(above <= 0, high, low + high + below + above))
     inside = (below < 0) & (above > 0)
     if inside.any():
-        with np.errstate(
-            all="ignore"
-        ):  # converged elements divide by zero; their trials are unused
+        # Elements that have converged divide by zero, but their trial values are not used.
+        with np.errstate(all="ignore"):
             found = _chandrupatla(excess, low, high, below, above, inside)
         root = np.where(inside, found, root)
     return root

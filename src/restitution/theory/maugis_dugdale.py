@@ -28,8 +28,8 @@ import numpy as np
 from ._inputs import Array, Values, keep_positive, scalar_or_array
 from ._roots import increasing_root
 
-# Upper limit of the search for the normalised contact radius ā at pull-off. There, ā is below 1.15,
-# its value in the JKR limit.
+# Upper limit of the search for the normalised contact radius ā at pull-off, where ā is always below
+# 1.15, its value in the JKR limit.
 _LARGEST_RADIUS = 2.0
 _GOLDEN = 0.5 * (5**0.5 - 1)
 _SECTIONS = 60  # number of golden sections in this search
@@ -107,8 +107,8 @@ def _force(a: Array, parameter: Array) -> Array:
         found: Array = parameter * a**2 / 2 * inner + 4 / 3 * parameter**2 * a * outer - 1
         return found
 
-    # The unknown is ln(m − 1), where m is the outer radius of the ring over the contact radius:
-    # m − 1 ranges from 0 (JKR) to infinity (rigid spheres).
+    # The unknown is ln(m − 1), where m is the ratio of the outer radius of the ring to the contact
+    # radius. m − 1 ranges from 0 (JKR) to infinity (rigid spheres).
     width = increasing_root(excess, np.full_like(a, -40.0), np.full_like(a, 40.0))
     root, angle, m = _ring(width)
     force: Array = a**3 - parameter * a**2 * (root + m * m * angle)

@@ -57,7 +57,8 @@ from ._inputs import (
 from ._roots import increasing_root
 from .hertz import Hertz
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)  # 16 nodes: error of W_l within rounding
+# With 16 nodes, the error of the loading work is not larger than rounding errors.
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,7 +24,8 @@ from restitution.errors import CaseError
 
 from ._inputs import Array, Values, keep_positive, positive, scalar_or_array
 
-_COEFFICIENT = math.sqrt(math.pi**5 / 30)  # 3.19385: V_y in units of (p_y⁵R*³/(E*⁴m*))^½
+# Impact velocity at first yield in units of (p_y⁵R*³/(E*⁴m*))^½; its value is 3.19385.
+_COEFFICIENT = math.sqrt(math.pi**5 / 30)
 _EXP = np.vectorize(math.exp, otypes=[np.float64])  # same result on every processor, unlike np.exp
 
 

@@ -22,11 +22,11 @@ from restitution.theory import Hertz, Kendall
 _TILTED = 0.5  # fraction of the variance of the heights that a plane explains
 _OBLONG = 0.01  # relative difference of the edges of a pixel
 _STEEP = 0.5  # rms slope, beyond which small-slope theory is inaccurate
-_PRESSURES = (1e-5, 0.3)  # p_y/E*, from soft polymers to the ideal strength
-_NEAR_EDGE = 0.1  # distance of first touch from the edge (widths of the grid)
+_PRESSURES = (1e-5, 0.3)  # range of p_y/E*: from soft polymers to the ideal strength of solids
+_NEAR_EDGE = 0.1  # distance of first touch from the edge, as a fraction of the width of the grid
 
-# Factor on the displacement outside a smooth contact. It is below 1 because a rough contact carries
-# less force.
+# Factor on the displacement outside the contact of smooth bodies. It is below 1 because the force
+# of rough bodies at the same indentation is smaller.
 _DISPLACED = 0.7
 
 
@@ -136,7 +136,8 @@ def _closed_gap(contact: Contact, indentation: float, distance: float) -> float:
     """
     pair, p_y, w = contact.pair, contact.hardness, contact.work_of_adhesion
     E_star, deeper = pair.contact_modulus, indentation
-    for _ in range(10):  # fixed-point iteration, which converges as `deeper` grows with √radius
+    # Fixed-point iteration. It converges because `deeper` grows only with the root of the radius.
+    for _ in range(10):
         radius = predicted_radius(pair, deeper, p_y)
         if not contact.adhesive:
             break

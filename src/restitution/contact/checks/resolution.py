@@ -29,10 +29,10 @@ NODES_PER_PATCH = 20
 # With four or more nodes per pull-off radius and `crack-closure`, the pull-off force of smooth
 # spheres is within 2.3 % of JKR at all positions of the apex that were compared (docs/adhesion.md).
 ADHESIVE_NODES = 4
-# Relative error of the pull-off force of a cohesive contact whose grid resolves the range of the
+# Relative error of the pull-off force of a cohesive contact if the grid resolves the range of the
 # attraction.
 _COHESIVE_PULL_OFF = 0.01
-_HALF_SPACE = 0.2  # contact radius over R* beyond which the half-space approximation fails
+_HALF_SPACE = 0.2  # ratio of contact radius to R* above which the half-space approximation fails
 
 
 def predicted_radius(pair: Pair, indentation: float, yield_pressure: float = math.inf) -> float:

@@ -35,7 +35,7 @@ _TANGENTIAL = (
     "LIGGGHTS uses the full tangential stiffness of a contact that sticks. Its impacts that slide "
     "are exact, and impacts that stick return too much tangential velocity (docs/oblique.md)."
 )
-_HARD, _SOFT = 1e9, 5e6  # LIGGGHTS accepts E (Pa) outside this range only with a command
+_HARD, _SOFT = 1e9, 5e6  # limits of E (Pa); LIGGGHTS needs an extra command to accept other values
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:

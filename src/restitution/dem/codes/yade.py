@@ -45,7 +45,8 @@ _TANGENTIAL = (
     "contact slides first (docs/oblique.md)."
 )
 _STEPS = 2000
-_WALL_DENSITY = 1000.0  # density (kg/m³) for a wall without one: no effect, but needed by YADE
+# Density (kg/m³) of a wall whose case gives none. YADE needs a value, which has no effect.
+_WALL_DENSITY = 1000.0
 
 _FIT = (-1.23589, 0.202669, 0.0108748, 0.000410051, -3.09169e-5, -1.19887e-6)
 

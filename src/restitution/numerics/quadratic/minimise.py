@@ -34,8 +34,8 @@ from restitution.numerics.reductions import max_magnitude
 
 Array = NDArray[np.float64]
 
-# Bound on the rounding error of a product with K, in machine epsilons times the largest value of
-# the product. The largest error measured on 64² to 4096² nodes is 8 in this unit.
+# Bound on the rounding error of a product with K. The unit is the machine epsilon times the largest
+# value of the product. The largest error measured on 64² to 4096² nodes is 8 of these units.
 _ROUNDING = 10.0
 # Each step updates the gradient. The gradient is computed anew when the violation falls below this
 # multiple of the estimated error of the updated gradient.

@@ -47,12 +47,12 @@ _MIN_NODES_FOR_GUESS, _MIN_NODES_TO_COARSEN = 120, 80
 # because prolongation errors are larger.
 _COARSE_ACCURACY = 1e-2
 _COARSE_ITERATIONS = 60
-_MARGIN = 3  # nodes by which the window exceeds the guessed contact on each side
+_MARGIN = 3  # number of nodes by which the window is larger than the guessed contact on each side
 
 # Largest window, as a fraction of all nodes. A larger window saves less time than the check of all
 # nodes takes.
 _MAX_WINDOW_FRACTION = 0.7
-_PLACES = 8  # points along each axis around which local means are taken (see `local_mean`)
+_PLACES = 8  # number of places along each axis for which local means are computed (`local_mean`)
 
 # In a nearly fully plastic contact, the gradient is used to correct the contact edge of a guess.
 # First number: the guess is corrected if at most this fraction of the contact nodes is strictly
@@ -238,7 +238,7 @@ def _first_guess(
         prolong(found.point, guess)
         return guess
     # In a nearly fully plastic contact, the pressure jumps from the upper bound to zero between two
-    # nodes. The gradients at these two nodes are minus the plastic displacement and the gap. They
-    # show how far the jump is from each node.
+    # nodes. At the first node the gradient is minus the plastic displacement, and at the second
+    # node it is the gap. The two gradients show how far the jump is from each node.
     prolong(found.point - _GAP_FRACTION / K.diagonal * found.gradient, guess)
     return np.clip(guess, 0.0, upper, out=guess)

@@ -121,7 +121,7 @@ def minimise_at_mean(
         done = meets and found.residual <= tolerance
         if done or not found.converged:
             break
-        if meets:  # D is accurate enough; repeat the solve with a smaller tolerance
+        if meets:  # the mean is accurate enough, but the solve needs a smaller tolerance
             error = 0.0
             continue
         following = bracket.following(multiplier, mean - target.mean, 2 * found.residual)
