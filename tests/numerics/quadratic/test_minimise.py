@@ -123,6 +123,20 @@ def test_a_preconditioner_that_points_up_is_followed_down(minimise, random_matri
     assert_allclose(found.point, right.point, atol=1e-9)
 
 
+def test_a_preconditioner_perpendicular_to_the_gradient_does_not_stall_it(
+    minimise, random_matrix, random_bounds
+):
+    """Steps along the gradient itself replace steps that make no progress."""
+    rng = np.random.default_rng(19)
+    A, b = random_matrix(rng, 20), 3 * rng.normal(size=20)
+    bounds = random_bounds(rng, 20)
+    right, _ = minimise(A, b, *bounds)
+    turned = np.kron(np.eye(10), [[0.0, -1.0], [1.0, 0.0]])
+    found, _ = minimise(A, b, *bounds, inverse=turned, max_iterations=20_000)
+    assert found.converged
+    assert_allclose(found.point, right.point, atol=1e-9)
+
+
 def test_without_bounds_it_is_conjugate_gradients(minimise, random_matrix):
     """It takes at most n steps in exact arithmetic, and one step with the exact inverse."""
     rng = np.random.default_rng(3)

@@ -283,3 +283,26 @@ def test_coarser_grids_have_wider_cells_and_larger_tolerances(monkeypatch):
 def test_a_periodic_grid_is_coarsened_only_if_both_edges_are_even(shape, free, periodic):
     assert multilevel.may_coarsen(shape, periodic=False) == free
     assert multilevel.may_coarsen(shape, periodic=True) == periodic
+
+
+def test_the_first_guess_keeps_the_bound_of_each_node(monkeypatch):
+    """The product of K and a guess outside the bounds would belong to another point."""
+    starts = []
+
+    def watched(problem, **options):
+        if options.get("K_start") is not None:
+            starts.append((problem, options["start"].copy(), options["K_start"].copy()))
+        return minimise_quadratic(problem, **options)
+
+    monkeypatch.setattr(multilevel, "minimise_quadratic", watched)
+    b = bowl((201, 180))
+    b -= 0.5 * b.max()  # so that the contact fits into a window
+    upper = 3e-3 * np.random.default_rng(1).uniform(0.5, 4, b.shape)  # half of the contact yields
+    found, _ = nested(b, upper)
+    assert found.converged
+    assert_allclose(found.point, plain(b, upper).point, atol=1e-6 * found.point.max())
+    assert starts
+    for problem, start, product in starts:
+        assert (start <= problem.upper).all()
+        K, _ = system(start.shape, 0)
+        assert_allclose(product, K(start), atol=2e-6 * product.max())

@@ -30,7 +30,7 @@ from restitution.numerics.quadratic.fused_ops import (
     take_step,
     violates_bounds,
 )
-from restitution.numerics.reductions import max_magnitude
+from restitution.numerics.reductions import dot, max_magnitude
 
 Array = NDArray[np.float64]
 
@@ -48,6 +48,9 @@ _INITIAL_STEP = 0.3
 # Smallest and largest factor by which the trial length changes (before damping), and the exponent
 # that damps the change. Damping is needed because the optimal length oscillates from step to step.
 _MIN_STEP, _MAX_STEP, _STEP_DAMPING = 0.1, 3.0, 0.5
+# If the trial length has decreased to this value, the preconditioned gradient is almost
+# perpendicular to the gradient. One step then follows the gradient itself.
+_STALLED_LENGTH = 1e-8
 
 
 class Operator(Protocol):
@@ -102,14 +105,15 @@ def minimise_quadratic(
     """Solve `problem` by projected, preconditioned conjugate gradients (Polak–Ribière+).
 
     The search on the free nodes follows Polonsky and Keer (1999, Wear 231, 206–219) with bounds on
-    both sides and three changes. (1) The direction, with a trial length suggested by earlier steps,
+    both sides and four changes. (1) The direction, with a trial length suggested by earlier steps,
     is projected onto the bounds before the product with K, not after it. The step is the optimal
     fraction of the projected direction, so an iteration takes one product and the energy always
     falls. (2) The direction is not reset when nodes reach or leave a bound. Polak–Ribière's β is
     limited to the range from zero to the β of Fletcher and Reeves (Gilbert and Nocedal 1992, SIAM
     J. Optim. 2, 21–42). β decreases after a step that ends at a bound, because the length of such a
     step is not optimal. (3) The projected gradient is preconditioned by an approximate inverse of
-    K. This inverse may be unsymmetric and may give an ascent direction.
+    K. This inverse may be unsymmetric and may give an ascent direction. (4) If the preconditioned
+    gradient makes no progress, one step follows the gradient itself, so no solve stalls.
 
     `start` is the initial point, shape (nx, ny), and is overwritten. `precondition` is an
     approximate inverse of K. `tolerance` limits the violation of the optimality conditions and has
@@ -155,6 +159,9 @@ def minimise_quadratic(
             residual = measured(projected_gradient(p, g, b, bounds, r), r)
             continue
         z = precondition(r, out=z)
+        if trial_length < _STALLED_LENGTH:
+            z = np.multiply(r, math.sqrt(dot(z, z) / dot(r, r)), out=z)
+            trial_length, rz_old, step_change = _INITIAL_STEP, 0.0, 1.0
         rz, overlap = dot_products(z, r, r_old)
         beta = (rz - max(overlap, 0.0)) / rz_old if rz_old > 0 else 0.0
         beta = beta * step_change if beta > 0 else 0.0

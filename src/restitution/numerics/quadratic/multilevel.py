@@ -236,7 +236,8 @@ def _first_guess(
     _, free_nodes, contact_nodes = _between_the_bounds(found.point, bound)
     if free_nodes > _MAX_FREE_FRACTION * contact_nodes:
         prolong(found.point, guess)
-        return guess
+        # A node can have a smaller bound than the nodes of the coarser grid around it.
+        return np.minimum(guess, upper, out=guess) if _is_array(upper) else guess
     # In a nearly fully plastic contact, the pressure jumps from the upper bound to zero between two
     # nodes. At the first node the gradient is minus the plastic displacement, and at the second
     # node it is the gap. The two gradients show how far the jump is from each node.
