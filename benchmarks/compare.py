@@ -44,7 +44,7 @@ REPORT = """\
 {versions}.
 
 This page compares the time of restitution with that of other programs for the same contacts. Each
-ratio is the time of the program divided by the time of restitution in the same run. `make
+ratio is the time of the other program divided by the time of restitution in the same run. `make
 bench-peers` writes this page; [peers.csv](peers.csv) contains all columns.
 
 {table}
@@ -54,27 +54,28 @@ bench-peers` writes this page; [peers.csv](peers.csv) contains all columns.
 ## What is timed
 
 **Contacts.** All contacts have R* = 250 µm, E* = 112 GPa and {nodes} × {nodes} nodes with a spacing
-of 0.25 µm. The indentation is δ = a²/R*.
+of 0.25 µm. The indentation is δ = a²/R*, where a is the contact radius of smooth elastic spheres.
 
 * Elastic contacts have a = 10 µm.
 * Plastic contacts have p ≤ 750 MPa and a = 20 µm.
 * Rough surfaces have a Gaussian autocorrelation of length 2 µm and Rq = 0.1 µm (`seed = 1`).
-* "full" is the whole grid, as users of each program run it.
-* "cropped" gives the program only the bounding box of {{h₀ < δ}}, enlarged to sizes that are fast
-  to transform. restitution finds this box by itself.
+* "full": each program receives the whole grid, as in ordinary use.
+* "cropped": each program receives only the bounding box of the nodes whose initial gap h₀ is below
+  δ, enlarged to sizes that are fast to transform. restitution finds this box by itself also on the
+  whole grid.
 
 **Time.** A time is that of one complete solution in a process that is already running. It includes
 the set-up and the kernel. It does not include imports, compilation or reading the problem. Nothing
 is kept from earlier solutions, with one exception: FFTW keeps its plans, so SlipPy does most of its
-planning only once. "First" is the time of the start of the process with its imports, plus that of
-the first solution.
+planning only once. "first" is the time to start the process with its imports, plus the time of the
+first solution.
 
-**Accuracy.** Every program has its own tolerance. It runs with the largest power of ten as
-tolerance at which the contact conditions (0 ≤ p ≤ p_y) hold to {residual} δ. The conditions are
-checked from the pressures alone, by code that none of the programs use. This code computes the gap
-g = K p + h₀ − δ with Love's formula in extended precision and a zero-padded FFT over the whole
-grid. If a program needs more than {limit:.0f} s for a solution, or does not reach this accuracy at
-any tolerance, the table says so.
+**Accuracy.** Every program defines its tolerance in its own way. Each one runs with the loosest
+tolerance, a power of ten, with which the contact conditions (0 ≤ p ≤ p_y) hold to {residual} δ. The
+conditions are checked from the pressures alone, by code that none of the programs use. This code
+computes the gap g = K p + h₀ − δ with Love's formula in extended precision and a zero-padded FFT
+over the whole grid. If a program needs more than {limit:.0f} s for a solution, or does not reach
+this accuracy at any tolerance, the table says so.
 
 **Repetitions.** The programs take turns {rounds} times, in an order that is reversed each time.
 Times are medians. Ratios are computed for each turn, and the table shows their median
@@ -84,9 +85,10 @@ its median is {unit:.1f} ms ({least:.1f}–{largest:.1f}). A wide range means th
 ran at the same time, which slows down threads most.
 
 **Settings.** Each program runs with the best settings that were found, and in the units that suit
-it best (see the workers in `benchmarks/peers`). Tamaas does not accept an indentation on a free
-half-space. It is given the correct force instead, so it need not search for the force. Its package
-runs on one core. SlipPy uses one core on grids of up to 256², where its threads save no time.
+it best (see the workers in `benchmarks/peers`). For a half-space that is not periodic, Tamaas
+accepts only a force, not an indentation. It is given the correct force, so it need not search for
+it. The installed package of Tamaas runs on one core. SlipPy uses one core on grids of up to 256²,
+where its threads save no time.
 """
 
 

@@ -44,18 +44,20 @@ REPORT = """\
 {date}, {machine}. Written by `benchmarks/growing_bound.py`.
 
 Two steel spheres (R* = 250 µm, E* = 112 GPa) on {nodes}² nodes of 0.25 µm are loaded to 24 depths
-from 2 nm to 5 µm: the contacts of `benchmarks/steel.toml`. The constant bound is 750 MPa, and the
-bound that grows has Y = 268 MPa. The times are processor seconds of one thread, which other
-programs on the machine affect less than the elapsed time. They do not include the time to generate
-the surface. Both curves are computed {repeats} times in turn. The ratio is the median of the ratios
-of the repeats (smallest and largest in brackets).
+from 2 nm to 5 µm, as in `benchmarks/steel.toml`. The page compares two upper bounds of the contact
+pressure: a constant bound of 750 MPa, and a bound that grows with deformation, for the yield
+strength Y = 268 MPa. The times are CPU seconds of one thread, on which other programs on the
+machine have less effect than on the elapsed time. They do not include the time to generate the
+surface. Both curves are computed {repeats} times in turn. The ratio is the median of the ratios of
+the repeats (smallest and largest in brackets).
 
 | surface | curve | constant bound, s | bound that grows, s | ratio |
 |---|---|---|---|---|
 {rows}
 
-A depth under the bound that grows needs a second solve: the elastic contact at twice the depth, to
-a mean residual of 5e-5 (`contact/cavity.py`). The unloading is one solve per depth in both models.
+With the bound that grows, each depth needs a second solve: that of the elastic contact at twice the
+depth, to a root mean square residual of 5e-5 (`contact/cavity.py`). With both bounds, the unloading
+takes one solve for each depth.
 """
 
 

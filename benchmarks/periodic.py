@@ -38,25 +38,26 @@ REPORT = """\
 {versions}. {threads}
 
 This page compares the time of restitution with that of Tamaas and ContactMechanics for the same
-[periodic contacts](../periodic.md). Each ratio is the time of the program divided by the time of
-restitution in the same round. `make bench-periodic` writes this page;
+[periodic contacts](../periodic.md). Each ratio is the time of the other program divided by the time
+of restitution in the same round. `make bench-periodic` writes this page;
 [periodic.csv](periodic.csv) contains all columns.
 
 {table}
 
 All contacts are between flat steel bodies (E* = 112 GPa) on {nodes} × {nodes} nodes with a spacing
 of 0.25 µm. The surface is self-affine with H = 0.8, a roll-off at an eighth of the period and eight
-nodes in the shortest wave (`seed = 1`). Pressures are in units of E* times the rms slope.
+nodes in the shortest wave (`seed = 1`). Pressures (in brackets in the table) are in units of E*
+times the rms slope.
 
-The nominal pressure is prescribed in every program. Each program runs with the largest power of ten
-as tolerance at which the contact conditions hold to {residual} δ and the relative error of the
-force is below 1e-6. This is checked from the pressures alone, by code that none of the programs
-use. "force" is the relative difference of the force from the prescribed force, and "nodes" the
-difference of the number of nodes in contact from that of restitution. restitution always meets the
-prescribed pressure to 1e-8. This requires accurate solutions whatever tolerance is requested, so
-its own tolerance hardly matters. The programs take turns {rounds} times, in an order that is
-reversed each time; ratios are medians (smallest–largest). [Beside other programs](peers.md) says
-what a time includes.
+Every program solves for a prescribed nominal pressure. Each one runs with the loosest tolerance, a
+power of ten, with which the contact conditions hold to {residual} δ and the relative error of the
+force is below 1e-6. Both conditions are checked from the computed pressures alone, by code that
+none of the programs use. In the table, "force" is the relative difference between the computed and
+the prescribed force, and "nodes" is the number of nodes in contact minus that of restitution.
+restitution always meets the prescribed pressure to 1e-8, which requires accurate solutions, so its
+own tolerance hardly matters. The programs take turns {rounds} times, in an order that is reversed
+each time; ratios are medians (smallest–largest). [Beside other programs](peers.md) says what a time
+includes.
 
 Tamaas solves elastic contact by `PolonskyKeerRey` and plastic contact by `KatoSaturated`.
 ContactMechanics solves them by `minimize_proxy` with `external_force`. A program that needs more

@@ -38,29 +38,29 @@ REPORT = """\
 
 {date}, {machine}. Written by `make bench`; all columns are in [scaling.csv](scaling.csv).
 
-This page shows how time and memory grow with the size of the grid. Each row is one solution to 1e-8
-of a sphere (R* = 250 µm, E* = 112 GPa) with the same rough surface over 64 µm (Rq = 0.1 µm,
-Gaussian autocorrelation of length 2 µm). The surface is made on {coarsest}² nodes and refined by
-zero padding its spectrum. Each row was measured in a process of its own.
+This page shows how time and memory grow with the size of the grid. Each row is one contact of a
+sphere (R* = 250 µm, E* = 112 GPa), solved with a tolerance of 1e-8. All rows have the same rough
+surface with an edge length of 64 µm (Rq = 0.1 µm, Gaussian autocorrelation of length 2 µm). The
+surface is made on {coarsest}² nodes and refined by zero padding its spectrum. Each row was measured
+in a process of its own.
 
-* case: "a = 20 um" has an indentation of 20²/250 µm. "filling" has the indentation at which the
-  region {{h₀ < δ}} nearly reaches the edge of the grid ({filling:.2f} µm). Plastic contacts have
-  p ≤ 750 MPa.
+* case: "a = 20 um" has an indentation of 20²/250 µm. "filling" has the indentation δ at which the
+  region with an initial gap h₀ < δ nearly reaches the edge of the grid ({filling:.2f} µm). Plastic
+  contacts have p ≤ 750 MPa.
 * time: the median of {fewest} to {most} solutions, including the set-up and the kernel.
 * U: the time divided by that of one zero-padded convolution (forward and inverse) on the whole grid
   with scipy.fft, two workers and float64, measured just before.
-* least: the shortest of these times.
-* first: the time of the first solution of the process, which accesses its memory for the first
-  time. On a virtual machine whose host reclaims idle memory, like this one, the first access may
-  cost any program 1 to 2 s per GiB.
-* memory: the largest memory of the process, including Python and the surface, in GiB.
-* arrays per node: the same memory, divided by that of one float64 array of the whole grid.
+* least: the shortest of the times of these solutions.
+* first: the time of the first solution in the process, in which the process accesses its memory for
+  the first time. On a virtual machine whose host reclaims idle memory, like this one, the first
+  access may cost any program 1 to 2 s per GiB.
+* memory: the peak memory of the process, including Python and the surface, in GiB.
+* arrays per node: the peak memory, divided by the memory of one float64 array of the whole grid.
 
 {table}
 
-Time grows with the number of nodes to the power {exponents}.
-For the least times the powers are {least}.
-For the first solutions they are {first}.
+Time grows with the number of nodes to the power {exponents}. If the shortest times are used instead
+of the medians, the powers are {least}. For the times of the first solutions they are {first}.
 
 ![time and memory against nodes](scaling.png)
 """

@@ -27,7 +27,7 @@ REPORT = """\
 
 {date}, {machine}. Written by `make bench`.
 
-The table shows the time of whole Python processes, measured in turns: the median of {turns} runs
+The table shows the time of whole Python processes, which took turns: the median of {turns} runs
 (smallest and largest). The times include the start of Python itself, which takes {bare:.3f} s
 without any import.
 
