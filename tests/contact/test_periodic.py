@@ -186,6 +186,8 @@ def test_the_contact_conditions(nodes, seed, exponent, yield_pressure):
     assert state.residual <= 1e-8
     penetration, opening = violations(state)
     assert max(penetration, opening) <= 2e-8 * state.indentation
+    # The stated residual is relative to the indentation.
+    assert max(penetration, opening) <= 1.1 * state.residual * state.indentation + 1e-21
     # The area counts nodes, and solutions of the two problems are the same.
     if state.relative_area < 0.9:
         again = solve(contact, state.indentation)
