@@ -113,3 +113,9 @@ def test_read_case_names_the_file(tmp_path, case_text):
     (tmp_path / "bad.toml").write_text(case_text.replace("title", "titel"))
     with pytest.raises(CaseError, match=r"bad\.toml: titel: unknown key; did you mean \"title\""):
         read_case(tmp_path / "bad.toml")
+
+
+def test_two_tables_of_one_name_are_refused_with_the_way_to_write_them(case_text):
+    twice = case_text + '[roughness]\nkind = "gaussian"\n'
+    with pytest.raises(CaseError, match=r"begin each of them with \[\[roughness\]\]"):
+        parse_case(twice)

@@ -104,6 +104,7 @@ def test_a_sphere_too_small_for_a_half_space_is_found(contact):
 def test_a_grid_finer_than_the_scan_is_found(contact):
     deep = (5e-6) ** 2 / R
     assert resolution_findings(contact(pixel_x_m=0.2e-6), deep) == []
+    assert resolution_findings(contact(pixel_x_m=0.2015e-6), deep) == []  # rounded by the user
     found = resolution_findings(contact(pixel_x_m=0.5e-6), deep)
     assert found == [Finding("finer-than-scan", {"spacing": 0.2e-6, "pixel": 0.5e-6})]
 

@@ -155,3 +155,9 @@ def test_the_contact_time_is_that_of_a_hertzian_impact(law):
     # The substitution δ = δ_max sin^0.8 θ removes the singularity at the turning point.
     share, _ = quad(lambda t: 0.8 * math.sin(t) ** -0.2, 0, math.pi / 2)
     assert contact_time(found) == approx(2 * deepest * share, rel=2e-3)
+
+
+def test_the_comment_names_e_at_twice_the_velocity_up_to_the_end_of_the_law(law):
+    """Stored velocities differ from the prescribed ones in the last digits."""
+    text = export([law()], "lammps", 5.0 * (1 + 1e-8))["restitution.lmp"]
+    assert " at 10 m/s" in text

@@ -82,7 +82,9 @@ def parse_toml(text: str) -> dict[str, Any]:
     except RecursionError:
         raise _too_deep() from None
     except tomllib.TOMLDecodeError as error:
-        raise CaseError(f"not valid TOML: {error}") from None
+        twice = re.match(r"Cannot declare \('(\w+)',\) twice", str(error))
+        hint = f"; for several tables, begin each of them with [[{twice[1]}]]" if twice else ""
+        raise CaseError(f"not valid TOML: {error}{hint}") from None
     except ValueError:  # Python refuses to read an integer of more than 4300 digits
         raise CaseError("contains a number with thousands of digits; correct it") from None
 

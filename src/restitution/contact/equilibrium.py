@@ -157,7 +157,8 @@ def _require_converged(found: Minimum, indentation: float, residual: float, scal
         raise NotConvergedError(
             f"the solve at an indentation of {1e9 * indentation:.6g} nm stopped at a residual of "
             f"{found.residual / scale:.1e} (tolerance: {residual:.0e}) after {found.iterations} "
-            "iterations; increase the tolerance (residual), or smooth or refine the surface"
+            "iterations; use another grid spacing or a smoother surface (in Python, also a larger "
+            "residual)"
         )
 
 

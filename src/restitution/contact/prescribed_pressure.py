@@ -76,7 +76,7 @@ def solve_at_pressure(contact: Contact, pressure: float, *, residual: float = RE
     if not minimum.converged:
         raise NotConvergedError(
             f"pressure: {pressure:.6g} Pa was not reached at a tolerance of {residual:.0e}; "
-            "increase the tolerance (residual), or smooth or refine the surface"
+            "use another grid spacing or a smoother surface (in Python, also a larger residual)"
         )
     solution = Solution(
         indentation - contact.gap,

@@ -184,7 +184,8 @@ def shear(
         raise NotConvergedError(
             f"the tangential solve at a displacement of {1e9 * displacement:.6g} nm stopped at a "
             f"residual of {reached:.1e} (tolerance: {residual:.0e}) after {found.iterations} "
-            "iterations; increase the tolerance (residual), or smooth or refine the surface"
+            "iterations; use another grid spacing or a smoother surface (in Python, also a larger "
+            "residual)"
         )
     traction, gradient = device.get(found.point), device.get(found.gradient)
     twice = float(np.einsum("ij,ij->", before + traction, gradient))

@@ -12,6 +12,7 @@ import re
 import textwrap
 import unicodedata
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
@@ -20,7 +21,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from restitution.dem.adhesion import adhesion_lines
 from restitution.dem.pair_table import PairTable
-from restitution.errors import CaseError, one_line
+from restitution.errors import CaseError, DomainError, one_line
 from restitution.laws.law import Law, Particle
 
 FRICTION = 0.5  # coefficient of friction of pairs whose case gives none; users should replace it
@@ -279,9 +280,12 @@ def _warnings(pair: Pair, velocity: float) -> list[str]:
 
 
 def _elsewhere(law: Law, velocity: float) -> str:
-    others = [V for V in (velocity / 2, velocity * 2) if law.lowest <= V <= law.highest]
-    said = ", ".join(f"{law.at(V).restitution:.4g} at {V:.6g} m/s" for V in others)
-    return f" (but {said})" if said else ""
+    """Say what e is at half and at twice `velocity` (m/s), as far as the law has these values."""
+    said = []
+    for V in (velocity / 2, velocity * 2):
+        with suppress(DomainError):
+            said.append(f"{law.at(V).restitution:.4g} at {V:.6g} m/s")
+    return f" (but {', '.join(said)})" if said else ""
 
 
 def _failure(law: Law, e: float) -> str:

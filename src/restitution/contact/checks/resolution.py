@@ -32,6 +32,9 @@ ADHESIVE_NODES = 4
 # Relative error of the pull-off force of a cohesive contact if the grid resolves the range of the
 # attraction.
 _COHESIVE_PULL_OFF = 0.01
+# A grid spacing counts as finer than the pixel of a scan if it is smaller by more than this
+# fraction.
+_NEARLY_EQUAL = 0.01
 _HALF_SPACE = 0.2  # ratio of contact radius to R* above which the half-space approximation fails
 
 
@@ -167,7 +170,7 @@ def resolution_findings(contact: Contact, indentation: float) -> list[Finding]:
     if radius > _HALF_SPACE * pair.radius:
         values = {"radius": radius, "reduced_radius": pair.radius, "limit": _HALF_SPACE}
         found.append(Finding("no-half-space", values))
-    if min(grid.spacing) < 0.999 * pixel:
+    if min(grid.spacing) < (1 - _NEARLY_EQUAL) * pixel:
         found.append(Finding("finer-than-scan", {"spacing": min(grid.spacing), "pixel": pixel}))
     return found
 
