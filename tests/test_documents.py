@@ -153,6 +153,21 @@ def test_make_help_lists_every_target():
     assert [line.split()[0] for line in listed.splitlines()] == targets.split()
 
 
+def misread_lines(text):
+    """Lines of prose that MyST drops as comments (%), or makes items of a list (+)."""
+    prose = re.sub(r"^ *```.*?^ *```|\$\$.*?\$\$", "", text, flags=re.MULTILINE | re.DOTALL)
+    return re.findall(r"^ *%.*|(?<=\S\n) *\+ .*", prose, re.MULTILINE)
+
+
+@pytest.mark.parametrize("path", [*PAGES, ROOT / "CHANGELOG.md"], ids=page_id)
+def test_no_line_of_a_paragraph_is_a_comment_or_an_item(path):
+    assert misread_lines(path.read_text()) == []
+
+
+def test_lines_that_myst_misreads_are_found():
+    assert misread_lines("Within 7\n%.\n\ng = K p\n  + h\n\n```\n% x\n```\n") == ["%.", "  + h"]
+
+
 @pytest.mark.parametrize("path", sorted((ROOT / "examples").glob("*.toml")), ids=lambda p: p.name)
 def test_bundled_examples_are_valid(cli, path):
     status, said, warned = cli("check", path)
