@@ -1,6 +1,6 @@
 """Time one large solve on a GPU, and compare its pressure with that of the CPU.
 
-Needs CuPy and a GPU (`pip install "restitution[gpu]"`). `--device cpu` times the same solve on the
+Needs CuPy and a GPU (`pip install ".[gpu]"`). `--device cpu` times the same solve on the
 CPU. `--nodes` sets the size of the grid.
 """
 

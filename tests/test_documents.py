@@ -25,7 +25,7 @@ README = (ROOT / "README.md").read_text()
 # Blocks that are not run, by page and first line, and why.
 NOT_RUN = {
     ("README.md", 'pip install ".[app,measured]"'): "the page waits for Ctrl-C",
-    ("docs/app.md", 'pip install "restitution[app]"'): "the page waits for Ctrl-C",
+    ("docs/app.md", 'pip install ".[app]"'): "the page waits for Ctrl-C",
     ("README.md", "make demo"): "installs the package",
     ("README.md", "pip install ."): "installs the package",
     ("CONTRIBUTING.md", "make help"): "each target takes minutes",
