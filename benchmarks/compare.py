@@ -41,7 +41,7 @@ REPORT = """\
 # Beside other programs
 
 {date}, {machine}.
-{versions}.
+Measured versions: {versions}.
 
 This page compares the time of restitution with that of other programs for the same contacts. Each
 ratio is the time of the other program divided by the time of restitution in the same run. `make

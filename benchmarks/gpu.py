@@ -1,6 +1,6 @@
 """Time one large solve on a GPU, and compare its pressure with that of the CPU.
 
-Needs CuPy and a GPU (`pip install "restitution[gpu]"`). `--device cpu` times the same solve on the
+Needs CuPy and a GPU (`pip install ".[gpu]"`). `--device cpu` times the same solve on the
 CPU. `--nodes` sets the size of the grid.
 """
 
@@ -43,15 +43,15 @@ def least_seconds(n: int, products: int) -> float:
 
 
 def large(device: str, n: int) -> None:
-    """Time the elastic solve of `scaling.py` at a contact radius of 20 um on n × n nodes; print."""
+    """Time the elastic solve of `scaling.py` at a contact radius of 20 µm on n × n nodes; print."""
     contact = Contact(PAIR, surface_of(n))
-    depth = indentation("a = 20 um")
+    depth = indentation("a = 20 µm")
     assert contact.gap.shape == (n, n)
     with on_device(device):
         t, state = seconds(lambda: solve(contact, depth), 3)
     limit = least_seconds(n, state.convolutions)
     print(
-        f"{n} x {n} rough, elastic, a = 20 um: {t:.3f} s on {device}, {state.convolutions} "
+        f"{n} x {n} rough, elastic, a = 20 µm: {t:.3f} s on {device}, {state.convolutions} "
         f"products, residual {state.residual:.1e}; bandwidth alone {limit:.3f} s"
     )
     if device != "cpu":

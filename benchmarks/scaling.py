@@ -1,6 +1,6 @@
 """Time, convolutions and memory of one rough solve against the size of the grid.
 
-The contact is the same at every size: a sphere on a band-limited surface of 64 um, which is made on
+The contact is the same at every size: a sphere on a band-limited surface of 64 µm, which is made on
 256² nodes and refined by zero padding its spectrum. Writes scaling.csv, scaling.md and scaling.png
 into docs/benchmarks; `--largest 8192` adds one size.
 """
@@ -28,9 +28,9 @@ OUT = Path(__file__).parents[1] / "docs" / "benchmarks"
 COARSEST = 256
 DOMAIN = 64e-6
 STEEL = Body(radius=500e-6, youngs_modulus=210e9, poissons_ratio=0.25)
-PAIR = Pair(STEEL, STEEL)  # R* = 250 um, E* = 112 GPa
+PAIR = Pair(STEEL, STEEL)  # R* = 250 µm, E* = 112 GPa
 LIMITS = {"elastic": math.inf, "plastic": 750e6}
-DEPTHS = ("a = 20 um", "filling")
+DEPTHS = ("a = 20 µm", "filling")
 REPEAT_SECONDS, FEWEST, MOST = 3.0, 5, 25  # time for which a solve is repeated, and bounds
 
 REPORT = """\
@@ -44,7 +44,7 @@ surface with an edge length of 64 µm (Rq = 0.1 µm, Gaussian autocorrelation of
 surface is made on {coarsest}² nodes and refined by zero padding its spectrum. Each row was measured
 in a process of its own.
 
-* case: "a = 20 um" has an indentation of 20²/250 µm. "filling" has the indentation δ at which the
+* case: "a = 20 µm" has an indentation of 20²/250 µm. "filling" has the indentation δ at which the
   region with an initial gap h₀ < δ nearly reaches the edge of the grid ({filling:.2f} µm). Plastic
   contacts have p ≤ 750 MPa.
 * time: the median of {fewest} to {most} solutions, including the set-up and the kernel.
@@ -89,7 +89,7 @@ def surface_of(n: int) -> Surface:
 
 def indentation(depth: str) -> float:
     """The indentation δ (m), which is the same at every size."""
-    if depth == "a = 20 um":
+    if depth == "a = 20 µm":
         return (20e-6) ** 2 / PAIR.radius
     gap = Contact(PAIR, surface_of(COARSEST)).gap
     rim = min(gap[0].min(), gap[-1].min(), gap[:, 0].min(), gap[:, -1].min())

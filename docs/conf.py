@@ -5,6 +5,9 @@ import re
 import tomllib
 from pathlib import Path
 
+from docutils import nodes
+from sphinx import addnodes
+
 # Gallery scripts and their children solve on one thread: the page builds alike on busy machines.
 os.environ.setdefault("DUCC0_NUM_THREADS", "1")
 
@@ -75,12 +78,45 @@ sphinx_gallery_conf = {
 }
 
 
-def _escape_bars(app, what, name, value, options, lines):  # the signature is Sphinx'
-    """Let |z| in a docstring be an absolute value, not a substitution."""
+# What autodoc writes for types and defaults, and what the reader sees instead.
+SHORTER = {
+    r"(~numpy\.)?ndarray\[tuple\[(~typing\.)?Any, \.\.\.\], "
+    r"(~numpy\.)?dtype\[(~numpy\.)?(?P<kind>\w+)\]\]": r"NDArray[\g<kind>]",
+    r"TypeAliasForwardRef\('(\w+)'\)": r"\1",
+    r"<factory>": "{}",  # of the only dataclass whose default is made for each object
+}
+
+
+def _escape_docstring(app, what, name, value, options, lines):  # the signature is Sphinx'
+    """Let |z| be an absolute value and "K. L. Johnson" a name, not a substitution and a list."""
     for i, line in enumerate(lines):
-        lines[i] = re.sub(r"(`[^`]*`)|\|", lambda found: found[1] or r"\|", line)
+        bars = re.sub(r"(`[^`]*`)|\|", lambda found: found[1] or r"\|", line)
+        lines[i] = re.sub(r"^( *[A-Z])\. ", r"\1\. ", bars)
+
+
+def _shorten(text):
+    """Apply `SHORTER` to the text of a signature."""
+    for long, short in SHORTER.items():
+        text = re.sub(long, short, text)
+    return text
+
+
+def _shorten_signature(app, what, name, value, options, arguments, result):
+    """Show readable types in signatures, and no arguments of a protocol."""
+    if what == "class" and arguments == "(*args, **kwargs)":
+        return "", ""
+    return None if arguments is None else (_shorten(arguments), _shorten(result or ""))
+
+
+def _shorten_properties(app, doctree, page):
+    """Show readable types of properties, which are not in their signatures."""
+    for annotation in doctree.findall(addnodes.desc_annotation):
+        if (text := annotation.astext()) != (shorter := _shorten(text)):
+            annotation[:] = [nodes.Text(shorter)]
 
 
 def setup(app):
     """Called by Sphinx."""
-    app.connect("autodoc-process-docstring", _escape_bars)
+    app.connect("autodoc-process-docstring", _escape_docstring)
+    app.connect("autodoc-process-signature", _shorten_signature)
+    app.connect("doctree-resolved", _shorten_properties)

@@ -10,6 +10,7 @@ import re
 import subprocess
 import sys
 from functools import cache, cached_property
+from itertools import pairwise
 from pathlib import Path
 from types import ModuleType
 
@@ -119,6 +120,16 @@ def test_says_units(name):
     if NUMBER.search(str(result)):
         said = parsed.returns.description if parsed.returns else parsed.short_description
         assert UNIT.search(said or ""), "the result has no unit"
+
+
+@pytest.mark.parametrize("name", OURS)
+def test_napoleon_reads_no_description_as_a_type(name):
+    """Napoleon takes the text before a colon, in the first line of a property, as its type."""
+    lines = (inspect.getdoc(OURS[name]) or "").splitlines()
+    firsts = [after for line, after in pairwise(lines) if line == "Returns:"]
+    if isinstance(OURS[name], property | cached_property):
+        firsts += lines[:1]
+    assert not [line for line in firsts if re.search(r"(?<!:):(?!:)", line)]
 
 
 @pytest.mark.parametrize(

@@ -25,7 +25,7 @@ README = (ROOT / "README.md").read_text()
 # Blocks that are not run, by page and first line, and why.
 NOT_RUN = {
     ("README.md", 'pip install ".[app,measured]"'): "the page waits for Ctrl-C",
-    ("docs/app.md", 'pip install "restitution[app]"'): "the page waits for Ctrl-C",
+    ("docs/app.md", 'pip install ".[app]"'): "the page waits for Ctrl-C",
     ("README.md", "make demo"): "installs the package",
     ("README.md", "pip install ."): "installs the package",
     ("CONTRIBUTING.md", "make help"): "each target takes minutes",
@@ -151,6 +151,21 @@ def test_make_help_lists_every_target():
         ["make", "-s", "help"], cwd=ROOT, capture_output=True, text=True, check=True
     ).stdout
     assert [line.split()[0] for line in listed.splitlines()] == targets.split()
+
+
+def misread_lines(text):
+    """Lines of prose that MyST drops as comments (%), or makes items of a list (+)."""
+    prose = re.sub(r"^ *```.*?^ *```|\$\$.*?\$\$", "", text, flags=re.MULTILINE | re.DOTALL)
+    return re.findall(r"^ *%.*|(?<=\S\n) *\+ .*", prose, re.MULTILINE)
+
+
+@pytest.mark.parametrize("path", [*PAGES, ROOT / "CHANGELOG.md"], ids=page_id)
+def test_no_line_of_a_paragraph_is_a_comment_or_an_item(path):
+    assert misread_lines(path.read_text()) == []
+
+
+def test_lines_that_myst_misreads_are_found():
+    assert misread_lines("Within 7\n%.\n\ng = K p\n  + h\n\n```\n% x\n```\n") == ["%.", "  + h"]
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "examples").glob("*.toml")), ids=lambda p: p.name)

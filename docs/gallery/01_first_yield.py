@@ -5,8 +5,9 @@ First yield
 This figure shows the velocity at which a smooth sphere starts to lose energy. The largest pressure
 follows from the theory of Hertz, :math:`p_0 = 2 E^* a/(\pi R^*)`. The sphere yields below its
 surface when :math:`p_0` reaches 1.6 times the yield strength. The impact velocity at which this
-happens does not depend on the size of the particle. For most materials it is far below the
-velocities of a DEM simulation.
+happens does not depend on the size of the particle. For annealed stainless steel it is below the
+velocities of granular flow, for aluminium and hardened steel among them, and for the two plastics
+above them.
 """
 
 import matplotlib.pyplot as plt
@@ -14,10 +15,10 @@ import matplotlib.pyplot as plt
 import restitution as rs
 from restitution.theory import FirstYield, yield_coefficient
 
-names = ["polystyrene", "pmma", "aluminium", "stainless-steel", "steel"]
-velocities = []
-for name in names:
-    found = rs.material(name)
+names, velocities = [], []
+for key in ["polystyrene", "pmma", "aluminium", "stainless-steel", "steel"]:
+    found = rs.material(key)
+    names.append(found.name.partition(" (")[0])
     E, nu, rho = (
         quantity.value for quantity in (found.youngs_modulus, found.poissons_ratio, found.density)
     )
@@ -28,7 +29,7 @@ for name in names:
 
 fig, ax = plt.subplots(layout="constrained")
 ax.barh(names, velocities, color="C0")
-ax.axvspan(0.01, 1, color="C1", alpha=0.15, label="typical of granular flow")
+ax.axvspan(0.01, 1, color="C1", alpha=0.15, zorder=0, label="typical of granular flow")
 ax.set(xscale="log", xlabel="velocity of first yield, two equal spheres (m/s)")
 ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1))
 plt.show()

@@ -26,7 +26,8 @@ for i, (name, surface) in enumerate({"smooth": rs.smooth(grid), "rough": rough}.
         path = list(rs.unloading_path(state, steps=8))
         ax.plot([1e9 * one.indentation for one in path], [one.force for one in path], f"C{i}--")
         e = rs.collide(state).restitution
-        ax.annotate(f"{e:.2f}", (1e9 * state.indentation, state.force), ha="right")
+        at = (1e9 * state.indentation, state.force)
+        ax.annotate(f"{e:.2f}", at, (-5, 5), ha="right", textcoords="offset points")
 ax.set(xlabel="indentation (nm)", ylabel="force (N)")
 ax.legend(title="dashed: unloading, with COR")
 plt.show()

@@ -2,7 +2,7 @@
 Validation against finite elements
 ==================================
 
-This figure shows COR of three models of plasticity divided by COR of two references: axisymmetric
+This figure shows COR of three models of plasticity against COR of two references: axisymmetric
 finite elements (smooth spheres and spheres with waves), and a rough contact in 3D. The data are
 from ``validation/models.csv``. If a yield strength is given, the program uses the model
 ``expanding-cavity``.
@@ -30,7 +30,7 @@ for row in table():
 fig, ax = plt.subplots(layout="constrained")
 for marker, (model, pairs) in zip("^so", sorted(points.items(), reverse=True), strict=True):
     ax.plot(*zip(*pairs, strict=True), marker, ms=4, mfc="none", label=model)
-ax.plot([0, 1], [0, 1], "k", lw=0.8)
+ax.plot([0, 1], [0, 1], "k", lw=0.8, label="equal")
 ax.set(xlabel="COR of the reference", ylabel="COR of the model", xlim=(0.3, 1.03), ylim=(0.2, 1.03))
 ax.legend()
 plt.show()

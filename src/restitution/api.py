@@ -127,7 +127,7 @@ def law_of(results: Folder | RunResults) -> Law:
             already holds a law, this law is read and returned.
 
     Returns:
-        The law: COR, with its error, at each computed impact velocity.
+        The law, which is COR with its error at each computed impact velocity.
 
     Raises:
         CaseError: The results have no impact velocities.
@@ -166,8 +166,8 @@ def collide_obliquely(
             positive in the direction in which friction turns a body without spin.
 
     Returns:
-        The collision: normal and tangential restitution, angle of rebound, spins, losses, and time
-        series.
+        The collision, with normal and tangential restitution, angle of rebound, spins, losses, and
+        time series.
 
     Raises:
         CaseError: An argument is missing or outside its range, or the pair has adhesion.

@@ -56,7 +56,7 @@ class Collision:
 
     @property
     def sticks(self) -> bool:
-        """Whether the bodies stick: unloading returns no work, so they do not rebound."""
+        """Whether the bodies stick, that is, unloading returns no work and they do not rebound."""
         return self.unloading_work <= 0 or self.loading_work <= 0
 
     @property
@@ -127,8 +127,8 @@ def collide(
 
     Args:
         state: Deepest state of the collision, reached by loading.
-        unloading: States of unloading that `separate` has yielded. By default they are computed
-            here. Used only with adhesion.
+        unloading: States of unloading that `unloading_path` has yielded. By default they are
+            computed here. Used only with adhesion.
         method: Method for the work of unloading with adhesion.
         tolerance: Error of the coefficient of restitution (dimensionless) that the unloading steps
             may cause.

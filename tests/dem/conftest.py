@@ -150,7 +150,7 @@ def python_with() -> Callable[[str, str], Program]:
 
     def make(module, script):
         if importlib.util.find_spec(module) is None:
-            pytest.skip(f"{module} is not installed: pip install restitution[robotics]")
+            pytest.skip(f"{module} is not installed: pip install .[robotics]")
         return Program(sys.executable, [script], dict(os.environ))
 
     return make

@@ -103,7 +103,7 @@ def materials() -> dict[str, Material]:
     """List the materials of the library.
 
     Returns:
-        Materials by key: `materials()["steel"].youngs_modulus.value` (Pa).
+        Materials by key, for example `materials()["steel"].youngs_modulus.value` (Pa).
     """
     text = (files("restitution.case") / "materials.toml").read_text("utf-8")
     return {

@@ -30,8 +30,8 @@ def app(
         from restitution.live.serving import serve_page
     except ModuleNotFoundError as error:
         raise CaseError(
-            f"the page needs {error.name}, which is not installed; run: "
-            'pip install "restitution[app]"'
+            f"the page needs {error.name}, which is not installed; in a checkout, run: "
+            'pip install ".[app]"'
         ) from None
     session = Session(first_content(case), None if case is None else case.parent)
 

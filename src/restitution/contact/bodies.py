@@ -79,21 +79,24 @@ class Pair:
 
     @property
     def radius(self) -> float:
-        """Reduced radius R* (m): 1/R* = 1/R₁ + 1/R₂; inf if both bodies are flat."""
+        """Reduced radius R* (m) with 1/R* = 1/R₁ + 1/R₂; inf if both bodies are flat."""
         if self.flat:
             return math.inf
         return 1 / (1 / self.first.radius + 1 / self.second.radius)
 
     @property
     def contact_modulus(self) -> float:
-        """Contact modulus E* (Pa): 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂."""
+        """Contact modulus E* (Pa) with 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂."""
         return 1 / sum(
             (1 - body.poissons_ratio**2) / body.youngs_modulus for body in (self.first, self.second)
         )
 
     @property
     def tangential_modulus(self) -> float:
-        """Tangential modulus G* (Pa): 1/G* = (2 − ν₁)/(4 G₁) + (2 − ν₂)/(4 G₂), G = E/(2 + 2ν)."""
+        """Tangential modulus G* (Pa), with G = E/(2 + 2ν).
+
+        It follows from 1/G* = (2 − ν₁)/(4 G₁) + (2 − ν₂)/(4 G₂).
+        """
         return 1 / sum(
             (2 - body.poissons_ratio) * (1 + body.poissons_ratio) / (2 * body.youngs_modulus)
             for body in (self.first, self.second)
@@ -116,7 +119,7 @@ class Pair:
 
     @property
     def mass(self) -> float | None:
-        """Reduced mass m* (kg): 1/m* = 1/m₁ + 1/m₂.
+        """Reduced mass m* (kg) with 1/m* = 1/m₁ + 1/m₂.
 
         The result is inf if both bodies are flat, and None if the density of a sphere is missing.
         """

@@ -95,7 +95,7 @@ class State:
 
     @property
     def force(self) -> float:
-        """Normal force (N): the sum of the pressure over all nodes, times the cell area."""
+        """Normal force (N), the sum of the pressure over all nodes, times the cell area."""
         return float(self.box_pressure.sum()) * self.contact.grid.cell_area
 
     @property
@@ -111,7 +111,7 @@ class State:
 
     @property
     def contact_area(self) -> float:
-        """Real contact area (m²): number of nodes in contact times cell area."""
+        """Real contact area (m²), number of nodes in contact times cell area."""
         return self.contact_nodes * self.contact.grid.cell_area
 
     @property
@@ -126,7 +126,7 @@ class State:
 
     @property
     def mean_gap(self) -> float:
-        """Mean of the deformed gap (m): the distance of the mean planes of the two surfaces.
+        """Mean of the deformed gap (m), the distance of the mean planes of the two surfaces.
 
         Raises:
             CaseError: The contact is not periodic.
@@ -144,12 +144,12 @@ class State:
 
     @property
     def plastic_volume(self) -> float:
-        """Plastic volume (m³): plastic displacement, summed over the nodes, times cell area."""
+        """Plastic volume (m³), the plastic displacement summed over the nodes, times cell area."""
         return float(self.plastic_displacement.sum()) * self.contact.grid.cell_area
 
     @property
     def loading_work(self) -> float:
-        """Work done on the bodies so far (J): elastic energy + plastic work − adhesive work."""
+        """Work done on the bodies so far (J), elastic energy + plastic work − adhesive work."""
         return self.stored_energy + self.plastic_work - self.adhesive_work
 
     @property

@@ -75,7 +75,7 @@ class TangentialState:
 
     @property
     def force(self) -> float:
-        """Tangential force (N): the sum of the traction over all nodes, times the cell area."""
+        """Tangential force (N), the sum of the traction over all nodes, times the cell area."""
         return float(self.box_traction.sum()) * self.normal.contact.grid.cell_area
 
     @property

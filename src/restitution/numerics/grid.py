@@ -59,7 +59,7 @@ class Grid:
 
     @property
     def size(self) -> tuple[float, float]:
-        """Edge lengths of the domain (m): number of nodes times spacing."""
+        """Edge lengths of the domain (m), number of nodes times spacing."""
         return self.nodes[0] * self.spacing[0], self.nodes[1] * self.spacing[1]
 
     @property

@@ -195,7 +195,7 @@ class JKR:
 
     @property
     def break_force(self) -> Array:
-        """Force (N) at which the contact breaks at fixed grips: −5/9 of the pull-off force."""
+        """Force (N) at which the contact breaks at fixed grips, −5/9 of the pull-off force."""
         return -5 / 9 * self.pull_off_force
 
     @cached_property
@@ -211,7 +211,7 @@ class JKR:
 
     @property
     def jump_in_force(self) -> Array:
-        """Force (N) right after the jump into contact at δ = 0: −8/9 of the pull-off force."""
+        """Force (N) right after the jump into contact at δ = 0, −8/9 of the pull-off force."""
         return -8 / 9 * self.pull_off_force
 
     @property
