@@ -60,6 +60,17 @@ def surface_of(kind, grid):
     return generate_surface(grid, kind=kind, rms=3e-9, correlation_length=1.5e-6, seed=5)
 
 
+def loaded(state):
+    """The numbers of a loaded contact."""
+    return {
+        "force": state.force,
+        "area": state.contact_area,
+        "stored_energy": state.stored_energy,
+        "loading_work": state.loading_work,
+        "loading_work_error": state.work_error,
+    }
+
+
 def compute_adhesive(approach, surface, yield_pressure, plasticity, depth):
     """The numbers of one cycle."""
     contact = Contact(
@@ -74,12 +85,7 @@ def compute_adhesive(approach, surface, yield_pressure, plasticity, depth):
     state = solve(contact, depth)
     path = list(separate(state))
     collision = collide(state, path)
-    return {
-        "force": state.force,
-        "area": state.contact_area,
-        "stored_energy": state.stored_energy,
-        "loading_work": state.loading_work,
-        "loading_work_error": state.work_error,
+    return loaded(state) | {
         "unloading_work": collision.unloading_work,
         "unloading_work_error": collision.unloading_work_error,
         "pull_off_force": collision.pull_off_force,
@@ -95,12 +101,7 @@ def compute_nonadhesive(grid, surface, yield_pressure, plasticity):
     contact = Contact(Pair(STEEL, STEEL), surface_of(surface, grid), yield_pressure, plasticity)
     state = solve(contact, DEPTH)
     collision = collide(state)
-    return {
-        "force": state.force,
-        "area": state.contact_area,
-        "stored_energy": state.stored_energy,
-        "loading_work": state.loading_work,
-        "loading_work_error": state.work_error,
+    return loaded(state) | {
         "unloading_work": collision.unloading_work,
         "restitution": collision.restitution,
         "separation": collision.separation_indentation,

@@ -36,6 +36,16 @@ def subtract_local_mean(r: Array, share: float, sums: Array, nodes: Array, out: 
     np.multiply(r - share * total / (count + (r == 0)), r != 0, out=out)
 
 
+def damp_local_mean(r: Array, share: float, places: int, out: Array) -> None:
+    """Write r minus `share` times its local mean into `out`, and zero where r = 0.
+
+    There are `places` points of the lattice along each axis. `out` may be `r`.
+    """
+    sums, nodes = np.empty_like(r, dtype=np.float64, shape=(2, places, places))
+    local_sums(r, sums, nodes)
+    subtract_local_mean(r, share, sums, nodes, out)
+
+
 def _hat_weights(r: Array, places: Array) -> list[Array]:
     """Linear weights of the nodes of `r` at the places: one matrix along x and one along y."""
     hats = []

@@ -22,7 +22,7 @@ from restitution.numerics.box import Box, bounding_box, shape_of, union, widen
 from restitution.numerics.convolution.operators import Convolution, SpectralFilter
 from restitution.numerics.quadratic.fused_ops import Bound
 from restitution.numerics.quadratic.grid_transfer import prolong, restrict
-from restitution.numerics.quadratic.local_mean import local_sums, subtract_local_mean
+from restitution.numerics.quadratic.local_mean import damp_local_mean
 from restitution.numerics.quadratic.minimise import (
     BoundedQuadratic,
     Minimum,
@@ -42,12 +42,12 @@ Operators = Callable[[tuple[int, int], int], tuple[Convolution, SpectralFilter]]
 # A grid starts from a guess on the next coarser grid if its shorter edge has at least this number
 # of nodes: the first number for the finest grid, the second for coarser grids. On smaller grids the
 # guess costs more time than it saves.
-_MIN_NODES_FOR_GUESS, _MIN_NODES_TO_COARSEN = 120, 80
+MIN_NODES_FOR_GUESS, _MIN_NODES_TO_COARSEN = 120, 80
 # Tolerance on coarser grids, as a fraction of the largest b. A smaller tolerance gains nothing,
 # because prolongation errors are larger.
 _COARSE_ACCURACY = 1e-2
-_COARSE_ITERATIONS = 60
-_MARGIN = 3  # number of nodes by which the window is larger than the guessed contact on each side
+COARSE_ITERATIONS = 60  # largest number of iterations on a coarser grid
+MARGIN = 3  # number of nodes by which the window is larger than the guessed contact on each side
 
 # Largest window, as a fraction of all nodes. A larger window saves less time than the check of all
 # nodes takes.
@@ -90,7 +90,7 @@ def solve_multilevel(
     p, Kp, products = np.zeros_like(b), None, 0
     # The operator of the whole grid is built first, because smaller windows reuse its coefficients.
     whole_K, whole_inverse = operators(size, 0)
-    if min(size) >= _MIN_NODES_FOR_GUESS:
+    if min(size) >= MIN_NODES_FOR_GUESS:
         p = _first_guess(operators, b, upper, 1, periodic)
     window = None if periodic else bounding_box(p > 0)
     if window is not None and _is_worth_its_check(window, size):
@@ -98,7 +98,7 @@ def solve_multilevel(
         # guess has no pressure but the bodies overlap.
         Kp = whole_K.single_precision(p)
         window = bounding_box((p > 0) | (Kp < b))
-    window = whole_grid if window is None else widen(window, _MARGIN, size)
+    window = whole_grid if window is None else widen(window, MARGIN, size)
     while True:
         if not _is_worth_its_check(window, size):
             window = whole_grid
@@ -132,7 +132,7 @@ def solve_multilevel(
         Kp = np.add(g, b, out=g)
         # If the window would not grow, the violation is due to rounding errors. The problem is then
         # solved on the whole grid.
-        window = whole_grid if wider is None or wider == window else widen(wider, _MARGIN, size)
+        window = whole_grid if wider is None or wider == window else widen(wider, MARGIN, size)
 
 
 def mean_damped_preconditioner(inverse: Operator, p: Array, b: Array, upper: Bound) -> Operator:
@@ -140,9 +140,9 @@ def mean_damped_preconditioner(inverse: Operator, p: Array, b: Array, upper: Bou
 
     If `inverse` does not overestimate the response to a mean, it is returned without damping.
 
-    The part of a residual that equals its mean is constant on the contact nodes and drops to zero
-    at the contact edge. The inverse of a smoothing operator amplifies the short waves of this drop,
-    more so on finer grids (McLean and Steinbach 1999, Adv. Comput. Math. 11, 271–286). So `inverse`
+    The mean of a residual, as a field, is constant on the contact nodes and drops to zero at the
+    contact edge. The inverse of a smoothing operator amplifies the short waves of this drop, more
+    so on finer grids (McLean and Steinbach 1999, Adv. Comput. Math. 11, 271–286). So `inverse`
     overestimates the response to the constant part, by up to 30 times on rough contacts. Conjugate
     gradients would have to correct this part again whenever nodes reach or leave a bound. The
     damping factor follows from the guess `p`, for which K p = b on the free nodes. The nearly
@@ -154,9 +154,7 @@ def mean_damped_preconditioner(inverse: Operator, p: Array, b: Array, upper: Bou
 
     def damped(r: Array, out: Array | None = None) -> Array:
         result = np.empty_like(r) if out is None else out
-        sums, nodes = np.empty_like(b, shape=(2, _PLACES, _PLACES))
-        local_sums(r, sums, nodes)
-        subtract_local_mean(r, 1.0 - factor, sums, nodes, result)
+        damp_local_mean(r, 1.0 - factor, _PLACES, result)
         return inverse(result, out=result)
 
     return damped
@@ -229,7 +227,7 @@ def _first_guess(
         if periodic
         else mean_damped_preconditioner(inverse, start, coarse, bound),
         tolerance=_COARSE_ACCURACY * max(float(b.max()), 0.0),
-        max_iterations=_COARSE_ITERATIONS,
+        max_iterations=COARSE_ITERATIONS,
         accept_estimated_gradient=True,
     )
     guess = np.empty_like(b, order="C")

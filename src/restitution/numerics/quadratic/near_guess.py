@@ -24,7 +24,11 @@ from restitution.numerics.box import Box, bounding_box, shape_of, widen
 from restitution.numerics.convolution.operators import Convolution
 from restitution.numerics.quadratic.fused_ops import as_rows, projected_gradient
 from restitution.numerics.quadratic.grid_transfer import prolong
-from restitution.numerics.quadratic.local_mean import local_sums, subtract_local_mean
+from restitution.numerics.quadratic.local_mean import (
+    damp_local_mean,
+    local_sums,
+    subtract_local_mean,
+)
 from restitution.numerics.quadratic.minimise import (
     BoundedQuadratic,
     Minimum,
@@ -32,6 +36,9 @@ from restitution.numerics.quadratic.minimise import (
     minimise_quadratic,
 )
 from restitution.numerics.quadratic.multilevel import (
+    COARSE_ITERATIONS,
+    MARGIN,
+    MIN_NODES_FOR_GUESS,
     Operators,
     coarsened,
     may_coarsen,
@@ -40,11 +47,8 @@ from restitution.numerics.quadratic.multilevel import (
 
 Array = NDArray[np.float64]
 
-_MIN_NODES_FOR_GUESS = 120  # along the shorter edge of the finest grid; on smaller ones p = 0
 _COARSE_ACCURACY = 1e-3  # tolerance on coarser grids, as a fraction of the largest b
-_COARSE_ITERATIONS = 60
-_MARGIN = 3  # nodes by which the window exceeds the guessed contact on each side
-_PLACES = 12  # points along each axis around which local means are taken (see `local_mean`)
+_PLACES = 12  # number of places along each axis for which local means are computed (`local_mean`)
 _PASSES = 4  # steps of Newton's method for the local means of the guess
 
 
@@ -54,23 +58,29 @@ def solve_near_guess(
     """Minimise ½ pᵀK p − pᵀb with 0 ≤ p approximately, on a window around a guess.
 
     The arguments are those of `solve_multilevel`, but `tolerance` limits the root mean square of
-    the violation, because the largest violation is often that of a few nodes that hardly matter.
-    The window includes the nodes where the guess has pressure and the nodes that would overlap
-    under the displacement of the coarser grid. The other nodes are neither solved nor checked.
-    Return the result on the window, the window, and the number of products with K.
+    the violation, because the largest violation often occurs at a few nodes that hardly affect the
+    result. The window includes the nodes where the guess has pressure, and the nodes that overlap
+    if the bodies are displaced as on the coarser grid. The other nodes are neither solved nor
+    checked. Return the result on the window, the window, and the number of products with K.
     """
     size = b.shape[0], b.shape[1]
     p, displacement, window = np.zeros_like(b), np.zeros_like(b), None
-    if min(size) >= _MIN_NODES_FOR_GUESS:
+    if min(size) >= MIN_NODES_FOR_GUESS:
         p, displacement = _guess(operators, b, 1)
         window = bounding_box((p > 0) | (displacement < b))
     if window is None:
         window = slice(0, size[0]), slice(0, size[1])
-    window = widen(window, _MARGIN, size)
+    window = widen(window, MARGIN, size)
     K, inverse = operators(shape_of(window), 0)
-    limits = tolerance, max_iterations
-    guess = p[window], displacement[window]
-    return _solve_from(guess, K, inverse, b[window], limits), window, K.count
+    found = _solve_from(
+        p[window],
+        displacement[window],
+        (K, inverse),
+        b[window],
+        tolerance=tolerance,
+        max_iterations=max_iterations,
+    )
+    return found, window, K.count
 
 
 def _guess(operators: Operators, b: Array, level: int) -> tuple[Array, Array]:
@@ -78,10 +88,13 @@ def _guess(operators: Operators, b: Array, level: int) -> tuple[Array, Array]:
     if not may_coarsen(b.shape, periodic=False):
         return np.zeros_like(b), np.zeros_like(b)
     coarse = coarsened(b)
-    K, inverse = operators((coarse.shape[0], coarse.shape[1]), level)
-    start = _guess(operators, coarse, level + 1)
-    limits = _COARSE_ACCURACY * max(float(b.max()), 0.0), _COARSE_ITERATIONS
-    found = _solve_from(start, K, inverse, coarse, limits)
+    found = _solve_from(
+        *_guess(operators, coarse, level + 1),
+        operators((coarse.shape[0], coarse.shape[1]), level),
+        coarse,
+        tolerance=_COARSE_ACCURACY * max(float(b.max()), 0.0),
+        max_iterations=COARSE_ITERATIONS,
+    )
     p, displacement = np.empty_like(b, order="C"), np.empty_like(b, order="C")
     prolong(found.point, p)
     prolong(np.add(found.gradient, coarse, out=coarse), displacement)
@@ -89,17 +102,17 @@ def _guess(operators: Operators, b: Array, level: int) -> tuple[Array, Array]:
 
 
 def _solve_from(
-    guess: tuple[Array, Array],
-    K: Convolution,
-    inverse: Operator,
+    guess: Array,
+    displacement: Array,
+    operators: tuple[Convolution, Operator],
     b: Array,
-    limits: tuple[float, int],
+    *,
+    tolerance: float,
+    max_iterations: int,
 ) -> Minimum:
-    """Minimise from p and K p of the coarser grid; `limits` are the tolerance and iterations."""
-    start = guess[0]
-    if start.any():
-        start = add_short_waves(*guess, inverse, b)
-    tolerance, max_iterations = limits
+    """Minimise from the `guess` of p and its `displacement` K p, both of the coarser grid."""
+    K, inverse = operators
+    start = add_short_waves(guess, displacement, inverse, b) if guess.any() else guess
     return minimise_quadratic(
         BoundedQuadratic(K, b, 0.0, math.inf, K.single_precision),
         start=start,
@@ -132,10 +145,10 @@ def add_short_waves(guess: Array, displacement: Array, inverse: Operator, b: Arr
 
 
 def balanced_preconditioner(inverse: Operator, p: Array, b: Array) -> Operator:
-    """Return `inverse` with a damped response to local means and from other waves to local means.
+    """Return `inverse` with damped local means, both of its argument and of its result.
 
-    The factor by which the response to a mean is damped is that of `mean_damped_preconditioner`.
-    Its square root damps the means of the argument and then those of the result.
+    In total, the response to a local mean is damped by the factor of `mean_damped_preconditioner`:
+    the means of the argument and of the result are each damped by its square root.
     """
     share = 1.0 - math.sqrt(mean_damping(inverse, p, b, math.inf))
     if share == 0.0:
@@ -143,13 +156,10 @@ def balanced_preconditioner(inverse: Operator, p: Array, b: Array) -> Operator:
 
     def balanced(r: Array, out: Array | None = None) -> Array:
         result = np.empty_like(r) if out is None else out
-        sums, nodes = np.empty_like(b, shape=(2, _PLACES, _PLACES))
-        local_sums(r, sums, nodes)
-        subtract_local_mean(r, share, sums, nodes, result)
+        damp_local_mean(r, share, _PLACES, result)
         inverse(result, out=result)
         result *= r != 0
-        local_sums(result, sums, nodes)
-        subtract_local_mean(result, share, sums, nodes, result)
+        damp_local_mean(result, share, _PLACES, result)
         return result
 
     return balanced
