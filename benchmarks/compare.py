@@ -57,7 +57,7 @@ bench-peers` writes this page; [peers.csv](peers.csv) contains all columns.
 of 0.25 µm. The indentation is δ = a²/R*, where a is the contact radius of smooth elastic spheres.
 
 * Elastic contacts have a = 10 µm.
-* Plastic contacts have p ≤ 750 MPa and a = 20 µm.
+* In plastic contacts the pressure is limited to 750 MPa, and the contact radius a is 20 µm.
 * Rough surfaces have a Gaussian autocorrelation of length 2 µm and Rq = 0.1 µm (`seed = 1`).
 * "full": each program receives the whole grid, as in ordinary use.
 * "cropped": each program receives only the bounding box of the nodes whose initial gap h₀ is below

@@ -1,9 +1,15 @@
 """The stored force of smooth elastic spheres, for tests of collisions in time."""
 
+import math
+
 import numpy as np
 
+from restitution import Body
 from restitution.laws.time_integration import StoredForce
 from restitution.theory import Hertz
+
+ALUMINA = Body(2.5e-3, 380e9, 0.23, 4000)
+GLASS_WALL = Body(math.inf, 70e9, 0.22)
 
 
 def elastic(pair, velocity):

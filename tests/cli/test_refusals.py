@@ -104,7 +104,7 @@ def refused_case(refused, case_text, tmp_path):
         ('"2 um"', '"0.1 um"', "roughness.correlation_length", "below the grid spacing"),
         ('"2 um"', '"200 um"', "roughness.correlation_length", "above half of the domain"),
         ('rms = "0.05 um"', "", "roughness.rms", "is missing"),
-        ("steps = 4", "", "indentation", "give from, to and steps"),
+        ("steps = 4", "", "indentation", "give `from`, `to` and `steps`"),
         ('to = "300 nm"', 'to = "3 nm"', "indentation", "`from` must be smaller than `to`"),
         ("steps = 4", 'scale = "cubic"', "indentation.scale", "'log' or 'linear'"),
         (
@@ -138,7 +138,7 @@ def test_nothing_says_how_deep(refused_case, case_text):
         ('velocity = "1 m/h^2"', "is not a velocity"),
         ('velocity = "-1 m/s"', "greater than zero"),
         ("velocity = []", "impact.velocity"),
-        ('from = "1 m/s"', "give from, to and steps (or velocity = [...])"),
+        ('from = "1 m/s"', "give `from`, `to` and `steps` (or `velocity = [...]`)"),
         ('velocity = "20 m/s"', "grid"),
         ('velocity = "90 m/s"', "beyond R* = 250 um"),
     ],

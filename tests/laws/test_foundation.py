@@ -6,20 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from elastic_force import elastic
-from restitution import Body, Pair
+from elastic_force import ALUMINA, elastic
+from restitution import Pair
 from restitution.laws.foundation import Foundation, has_yielded
 from restitution.theory import Hertz
 from tolerance import approx
 
-ALUMINA = Body(2.5e-3, 380e9, 0.23, 4000)
-GLASS_WALL = Body(math.inf, 70e9, 0.22)
 MU = 0.3
-
-
-@pytest.fixture(scope="module")
-def wall():
-    return elastic(Pair(ALUMINA, GLASS_WALL), 3.9)
 
 
 @pytest.fixture(scope="module")

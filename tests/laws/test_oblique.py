@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from elastic_force import elastic
-from restitution import Body, Pair
+from elastic_force import ALUMINA, elastic
+from restitution import Pair
 from restitution.errors import CaseError, DomainError
 from restitution.laws.foundation import Foundation
 from restitution.laws.oblique import collide_obliquely, course
@@ -16,14 +16,7 @@ from restitution.laws.time_integration import stored_force
 from restitution.theory import Hertz
 from tolerance import approx
 
-ALUMINA = Body(2.5e-3, 380e9, 0.23, 4000)
-GLASS_WALL = Body(math.inf, 70e9, 0.22)
 MU = 0.3
-
-
-@pytest.fixture(scope="module")
-def wall():
-    return elastic(Pair(ALUMINA, GLASS_WALL), 3.9)
 
 
 def test_full_slip_follows_the_impulse_exactly(wall):

@@ -60,7 +60,7 @@ def test_a_message_about_a_table_is_told_beside_a_field(page):
     expect(page.locator("#field-indentation-from-problem")).to_contain_text("must be smaller")
     for end in ("from", "to", "steps"):
         page.locator(f"#field-indentation-{end}").fill("")
-    expect(page.locator("#field-indentation-from-problem")).to_contain_text("give from, to and")
+    expect(page.locator("#field-indentation-from-problem")).to_contain_text("give `from`, `to` and")
     expect(page.locator("#field-depths")).to_have_value("indentation")
 
 

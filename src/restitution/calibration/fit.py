@@ -143,8 +143,8 @@ def _check_points(measured: Measured, parameters: int) -> None:
         )
     if points == parameters and measured.deviation is None:
         raise CaseError(
-            f"--free: {parameters} keys and as many measured points leave no residuals from which "
-            "the noise could be estimated; add the column restitution_std, or measure more"
+            f"--free: with {parameters} keys and as many measured points there are no residuals "
+            "from which to estimate the noise; add the column restitution_std, or measure more"
         )
 
 

@@ -237,7 +237,8 @@ class InterfaceTable(Table):
         name, body = ("first", first) if found[0] is None else ("second", second)
         raise CaseError(
             f"interface.yield_strength: is missing, and {_named(name, body)}, the softer body, "
-            "has no yield_strength; give one of them, or a yield_pressure"
+            "has no yield_strength; give interface.yield_strength, the yield_strength of this "
+            "body, or a yield_pressure"
         )
 
     def _growing(self, yield_strength: float, source: str) -> Yielding:

@@ -51,8 +51,8 @@ def read_text(path: Path) -> str:
             )
         if kind.st_size > _LARGEST:
             raise CaseError(
-                f"{path}: has {kind.st_size} bytes, and a case file may have at most {_LARGEST}; "
-                "give a case file"
+                f"{path}: has {kind.st_size} bytes, but a case file may have at most {_LARGEST}; "
+                "check that this is the right file"
             )
         return path.read_text(encoding="utf-8-sig")  # editors on Windows write a byte order mark
     except UnicodeDecodeError:

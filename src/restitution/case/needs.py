@@ -20,7 +20,7 @@ _SKEWED = 115.0  # a generated surface with skewness or kurtosis
 _MARGIN = 60.0  # per node of the enlarged grid from which a non-periodic surface is cut
 _SCAN = 60.0  # per pixel of a scan: reading, levelling and its spectrum
 _TWIN = 75.0  # a statistical twin of a scan
-_BAND = 90.0  # per node of the finest band of waves that is adjusted to make a twin
+_BAND = 90.0  # per node of the grid on which the shortest waves of a twin are adjusted
 _DESCRIBED = 150.0  # autocorrelation, spectrum and page of `restitution surface`
 
 # A run without adhesion, for each model of plasticity.

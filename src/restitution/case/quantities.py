@@ -44,7 +44,7 @@ _NAMES = {
     "rad/s": "a spin",
     "m/s": "a velocity",
 }
-# Usual units. They are suggested if a unit is written with wrong upper or lower case.
+# Usual units. They are suggested if only the capitalisation of a unit is wrong.
 _USUAL = {
     "m": ("m", "cm", "mm", "um", "µm", "nm", "pm"),
     "Pa": ("Pa", "kPa", "MPa", "GPa", "N/mm^2", "N/mm2"),

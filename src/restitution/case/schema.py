@@ -122,9 +122,11 @@ class Series(Table, Generic[Quantity]):
         span = (self.from_, self.to, self.steps)
         if self.values is not None:
             if span != (None, None, None):
-                raise ValueError(f"give either {self.list_key} or from, to and steps, not both")
+                raise ValueError(
+                    f"give either `{self.list_key}`, or `from`, `to` and `steps`, but not both"
+                )
         elif None in span:
-            raise ValueError(f"give from, to and steps (or {self.list_key} = [...])")
+            raise ValueError(f"give `from`, `to` and `steps` (or `{self.list_key} = [...]`)")
         elif self.from_ == self.to:
             raise ValueError(
                 f"from and to are equal; for a single value use {self.list_key} = [...]"

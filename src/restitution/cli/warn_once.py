@@ -49,4 +49,4 @@ def warn_once() -> Iterator[Warn]:
             named = some_of(subjects)
             numbers = " with other numbers" if kind in differing else ""
             which = f" ({named})" if named else ""
-            warn(f'repeated{numbers} for {len(subjects)} more{which}: "{start}"')
+            warn(f'the same warning{numbers} applies to {len(subjects)} more{which}: "{start}"')

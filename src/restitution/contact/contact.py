@@ -146,8 +146,8 @@ class Contact:
         softest = min(body.youngs_modulus for body in (self.pair.first, self.pair.second))
         if not 0 <= self.tangent_modulus < softest:
             raise CaseError(
-                f"tangent_modulus: {self.tangent_modulus:g} Pa must not be negative and must be "
-                f"below Young's modulus, {softest:g} Pa"
+                f"tangent_modulus: {self.tangent_modulus:g} Pa is not between 0 and Young's "
+                f"modulus, {softest:g} Pa"
             )
         if self.tangent_modulus and not grows:
             raise CaseError("tangent_modulus: hardening needs a yield_strength")
@@ -320,7 +320,7 @@ class Contact:
     def mean_offset(self) -> float:
         """Gap (m) at the apex between the mean surfaces, when the rough bodies first touch.
 
-        The mean surfaces are the smooth bodies at the mean height of the rough surface.
+        Each mean surface has the shape of the smooth body, at the mean height of its roughness.
         """
         at = tuple(n // 2 for n in self.grid.nodes)  # the origin
         r2 = sum(along**2 for along in self.apex)

@@ -114,7 +114,8 @@ def step(state: State, indentation: float, *, residual: float = RESIDUAL) -> Sta
         raise CaseError(f"indentation: {indentation} m is not a finite depth")
     if contact.plasticity == "truncated" and indentation > state.indentation:
         raise CaseError(
-            "indentation: a truncated contact can only be unloaded; use solve to load it deeper"
+            'indentation: a contact with plasticity "truncated" can only be unloaded; for a larger '
+            "indentation, solve it anew from the undeformed bodies"
         )
     if isinstance(state, CohesiveState):
         return step_cohesive(state, indentation, residual=residual)

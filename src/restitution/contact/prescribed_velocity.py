@@ -168,8 +168,8 @@ class _Search:
     def _excess(self, state: State) -> float:
         """Return a measure of how far the loading work of `state` is above the prescribed work.
 
-        It has the sign of the difference and is nearly linear in the indentation δ, because the
-        work grows as δ² to δ^2.5.
+        It has the sign of the difference. The work grows as δ² to δ^2.5 with the indentation δ, so
+        its power 0.4 is nearly linear in δ.
         """
         work = state.loading_work
         return math.copysign((abs(work) / self._work) ** 0.4, work) - 1

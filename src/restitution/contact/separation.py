@@ -44,8 +44,9 @@ _SMALL = {"crack-closure": 0.005, "pohrt-popov": 0.0}
 _MOST_STEPS = 3000  # steps after which unloading counts as not converged
 
 # Error of the unloading work, as a fraction of the work that is lost by late release (see the top
-# of this file). The integral of the force through the states after each release excludes this loss
-# to first order. In a comparison with ten times finer steps, the fraction was below 0.1 with
+# of this file). The unloading work is the integral of the force along the states that are reached
+# after each release. To first order, this integral does not contain the loss, so only a fraction of
+# the loss is an error. In a comparison with ten times finer steps, this fraction was below 0.1 with
 # `crack-closure` and below 1/3 with `pohrt-popov`, which releases nodes in larger jumps. The values
 # include a margin of 1.5.
 _LATENESS = {"crack-closure": 0.15, "pohrt-popov": 0.5}
@@ -92,7 +93,7 @@ def separate(
         # COR is e = sqrt(W_u/W_l) with the works of unloading and loading, so the errors satisfy
         # 2 de/e = dW_u/W_u + dW_l/W_l. If the pair sticks, e = 0 and the number of steps does not
         # matter. Finer steps do not reduce the part of the error that is due to the loading work,
-        # so this part counts with at most half of the tolerance.
+        # so at most half of the tolerance is reserved for this part.
         if returned <= 0 or given <= 0:
             break
         half = 0.5 * math.sqrt(returned / given)

@@ -25,8 +25,8 @@ _SMOOTHED = 11  # number of points in each parabola that smooths the force
 # A change of the force between two points is a jump if it exceeds this fraction of the largest
 # tension.
 _JUMP = 0.1
-# Smallest decrease of the indentation from the last balance to separation, as a fraction of the
-# decrease from the beginning of unloading to the last balance.
+# The indentation decreases by at least this fraction between the last balance and separation,
+# relative to its decrease between the beginning of unloading and the last balance.
 _END = 1e-3
 # Two forces at one indentation count as equal if their difference is below this fraction of the
 # largest tension. The balances scatter by about as much.

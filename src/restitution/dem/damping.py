@@ -68,8 +68,8 @@ def hunt_crossley_dissipation(restitution: float) -> float:
     if 1 - e < _NEARLY_ELASTIC:
         return 1.5 * (1 - e**2) / (1 + e**3)
 
-    # For small e, ec (with c = dV) is so close to 1 that rounding spoils 1 − ec. So solve for u
-    # with ec = 1 − exp(−u).
+    # Let c = dV. For small e, the product e·c is so close to 1 that rounding spoils 1 − e·c.
+    # Therefore solve for u with e·c = 1 − exp(−u).
     def excess(u: float) -> float:
         c = -math.expm1(-u) / e
         return c * (1 + e) - math.log1p(c) - u

@@ -34,7 +34,7 @@ _COUNTS = 0.01  # decrease of e² due to adhesion at the velocity `adhesive_belo
 
 
 def compact_fit(law: Law) -> CompactFit | None:
-    """Fit the compact formula to the resolved points of `law`; None if fewer than four remain."""
+    """Fit the compact formula to the resolved points of `law`; None if there are too few points."""
     V, ratio = law.column("velocity", resolved=True), law.column("ratio", resolved=True)
     lossless = law.work_of_adhesion == 0
     first = 0

@@ -47,7 +47,8 @@ _SHAPE, _ALIGNED, _INDEPENDENT = 0.35, 4.0, 36.0
 # Relative errors of stiffness and impulse after yield. On rough contacts they are multiplied by
 # the largest ratio between the depths of neighbouring unloading curves.
 _YIELDED_STIFFNESS, _YIELDED_IMPULSE = 0.01, 0.1
-# Ratio of the relative error of the impulse in full slip to the relative stiffness error due to β.
+# Relative error of the impulse in full slip, divided by the relative error of the stiffness, both
+# due to β (the measure of unlike materials defined at the top of this file).
 _TURNED = 0.15
 # Unloading curves that start at less than this fraction of the deepest depth are ignored.
 _SHALLOWEST = 0.2

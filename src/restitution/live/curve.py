@@ -67,7 +67,7 @@ class LiveCurves:
             yield curve.maps.line(min(max(depth, 0), len(curve.maps) - 1))
 
     def beside(self, tab: str, shown: str, check: Callable[[], None]) -> Iterator[str]:
-        """Yield the curve of the smooth bodies of the last case, and the surface of this case.
+        """Yield the curve of the smooth bodies and the surface, both of the latest case.
 
         The surface is left out if its key is `shown`, because the page then shows it already.
         """

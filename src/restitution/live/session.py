@@ -67,7 +67,9 @@ def _bring_scans(content: Content, folder: Path, scans: Path) -> None:
     for name in scans_of(content):
         source = (folder / name).resolve()
         if not source.is_file():
-            raise CaseError(f"roughness.file: {folder / name} is not a file; name a scan")
+            raise CaseError(
+                f"roughness.file: {folder / name} is not a file; give the path of a scan"
+            )
         link = scans / source.name
         if not link.exists():
             link.symlink_to(source)

@@ -72,8 +72,8 @@ def _refine(
     f_l, f_r = f(0.5 * (a + m)), f(0.5 * (m + b))
     whole = h / 6 * (f_a + 4 * f_m + f_b)
     halves = h / 12 * (f_a + 4 * f_l + 2 * f_m + 4 * f_r + f_b)
-    # For a smooth integrand, the error is a fifteenth of this difference. The whole difference is
-    # used, because the integrand may have kinks.
+    # For a smooth integrand, the error of `halves` is |halves − whole|/15. The estimate is 15 times
+    # as large, because the integrand may have kinks.
     error = abs(halves - whole)
     if error <= tolerance or depth == 0:
         return halves + (halves - whole) / 15, error

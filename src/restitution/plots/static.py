@@ -47,7 +47,7 @@ _MOST_BELOW = 8
 # digits.
 _DIGITS: tuple[tuple[float, tuple[int, ...]], ...] = ((1.0, (1, 2, 3, 5, 7)), (3.0, (1, 2, 5)))
 _TICKS = 6  # approximate number of labels of a linear axis (at most one more)
-_LINEAR = 0.5  # a logarithmic axis of fewer decades has linear ticks
+_LINEAR = 0.5  # a logarithmic axis that spans fewer decades than this has linear ticks
 _PLAIN = (0.9e-3, 1e4)  # values in this range are labelled without powers of ten
 _MARKERS = {
     "circle": "o",

@@ -55,11 +55,12 @@ def settled(case: Case, folder: Path, warn: Say = ignore) -> Case:
             break
     if unresolved := len(depths) - len(factors):
         unit, scale = ("nm", 1e9) if case.indentation else ("N", 1) if case.load else ("m/s", 1)
-        below = f" up to {scale * depths[unresolved - 1]:.4g} {unit}" if unresolved > 1 else ""
+        first_depth, last_depth = (f"{scale * depths[k]:.4g}" for k in (0, unresolved - 1))
+        where = f"at {first_depth}" if unresolved == 1 else f"from {first_depth} to {last_depth}"
         warn(
-            f'grid.refine = "auto" ends at {finest} ({why}), which does not resolve the contact at '
-            f"{scale * depths[0]:.4g} {unit}{below}: half of the contact is in patches of fewer "
-            f"than {_MARGIN * NODES_PER_PATCH:.0f} nodes; begin deeper, or leave out short waves "
+            f'grid.refine = "auto" ends at {finest} ({why}). This grid does not resolve the '
+            f"contact {where} {unit}: half of the contact is in patches of fewer than "
+            f"{_MARGIN * NODES_PER_PATCH:.0f} nodes; begin deeper, or leave out short waves "
             "(roughness.shortest)"
         )
     found = [finest] * unresolved + factors

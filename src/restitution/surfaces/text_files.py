@@ -155,7 +155,7 @@ def _read_header(
     """Read the header lines.
 
     Returns the edge lengths (m), the unit of the heights in metres, details for the provenance, and
-    the numbers of values per line and of lines.
+    two counts: values per line, and lines.
     """
     sides: dict[str, float] = {}
     metres_per_value = 1.0

@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 Modes = NDArray[np.complex128]
 
 _SUMMED = 2**20  # approximate largest number of waves that `_moments` sums one by one
-_LEAST = 2  # waves of at most this many wavelengths per scan are always summed one by one
+_LEAST = 2  # waves with at most this many periods per scan are always summed one by one
 _ROWS = 2**20  # number of waves computed at a time, to limit the memory
 _ROUNDING = 1e-9
 

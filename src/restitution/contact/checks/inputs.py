@@ -22,11 +22,11 @@ from restitution.theory import Hertz, Kendall
 _TILTED = 0.5  # fraction of the variance of the heights that a plane explains
 _OBLONG = 0.01  # relative difference of the edges of a pixel
 _STEEP = 0.5  # rms slope, beyond which small-slope theory is inaccurate
-_PRESSURES = (1e-5, 0.3)  # range of p_y/E*: from soft polymers to the ideal strength of solids
+_PRESSURES = (1e-5, 0.3)  # range of p_y/E*: from very soft metals to the ideal strength of solids
 _NEAR_EDGE = 0.1  # distance of first touch from the edge, as a fraction of the width of the grid
 
-# Factor on the displacement outside the contact of smooth bodies. It is below 1 because the force
-# of rough bodies at the same indentation is smaller.
+# The displacement outside the contact is computed for smooth bodies and multiplied by this factor.
+# It is below 1, because the force of rough bodies at the same indentation is smaller.
 _DISPLACED = 0.7
 
 
