@@ -26,7 +26,7 @@ demo: $(VENV)/demo.installed  ## run the bundled example
 test: $(VENV)/test.installed  ## the tests of the package, under five minutes on two cores
 	DUCC0_NUM_THREADS=1 $(BIN)/pytest -n auto --dist worksteal -m "not programs"
 
-test-programs: $(VENV)/test.installed  ## the tests that start a browser or a DEM code, or run the blocks of a page
+test-programs: $(VENV)/test.installed  ## the tests that start other programs: a browser, DEM codes, runs in their own processes
 	DUCC0_NUM_THREADS=1 $(BIN)/pytest -n auto --dist worksteal -m programs
 
 # CONTRIBUTING.md says what this leaves out.

@@ -19,8 +19,12 @@ from restitution.laws.law import Law, Particle, Point
 from restitution.numerics import kernels
 
 SOURCES = Path(__file__).parents[1] / "src" / "restitution" / "numerics"
-# Fixtures that start another program: a browser, or a DEM code.
-PROGRAMS = {"browser", "opened", "lammps", "lammps_environment", "liggghts", "yade", "python_with"}
+# Fixtures that start another program: a browser, the server of the live page, a cluster or a DEM
+# code. Tests that run a case in a process of its own are marked one by one.
+PROGRAMS = {
+    *("browser", "opened", "app", "own_app", "cluster"),
+    *("lammps", "lammps_environment", "liggghts", "yade", "python_with"),
+}
 
 
 def pytest_collection_modifyitems(items):

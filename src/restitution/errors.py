@@ -39,7 +39,7 @@ def one_line(text: str) -> str:
 
 
 def shown(value: object, limit: int = 60) -> str:
-    """Format a value that the user gave for a message, on one line of at most `limit` characters.
+    """Format a user's value for use in a message, on one line of at most `limit` characters.
 
     Strings are put in quotes.
     """

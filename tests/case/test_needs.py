@@ -26,6 +26,7 @@ finally:
 """
 
 
+@pytest.mark.programs
 @pytest.mark.skipif(sys.platform != "linux", reason="sizes are those of Linux")
 @pytest.mark.parametrize("yields", ['yield_pressure = "750 MPa"', 'yield_strength = "300 MPa"'])
 @pytest.mark.parametrize("nodes", [128, 900])

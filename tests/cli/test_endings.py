@@ -138,6 +138,7 @@ def test_a_full_disk(monkeypatch, case_text, cli, tmp_path):
     assert "Traceback" not in said
 
 
+@pytest.mark.programs
 @pytest.mark.parametrize(
     ("sent", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)]
 )

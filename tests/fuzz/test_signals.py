@@ -86,6 +86,7 @@ def cases(tiny_case, tmp_path_factory):
     return at
 
 
+@pytest.mark.programs
 @pytest.mark.skipif(os.name != "posix", reason="needs signals")
 @pytest.mark.parametrize("number", range(COUNT), ids=lambda number: f"signal-{number}")
 def test_a_signal_at_a_random_moment_of_saving(number, cases, tmp_path):

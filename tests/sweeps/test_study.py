@@ -238,6 +238,7 @@ def begin(folder, *more):
     )
 
 
+@pytest.mark.programs
 def test_kill_9_at_any_moment_loses_the_cases_in_flight_at_most(text, tmp_path):
     text = text.replace("[1, 2, 3]", "[1, 2, 3, 4]")
     (tmp_path / "whole").mkdir()
@@ -290,6 +291,7 @@ def command_of(pid):
         return ""
 
 
+@pytest.mark.programs
 @pytest.mark.skipif(not os.path.isdir("/proc/self"), reason="finds workers through /proc")
 def test_a_worker_that_dies_is_replaced_and_none_outlives_its_study(whole, text, tmp_path):
     (tmp_path / "study.toml").write_text(text.replace("nodes = [72, 64]", "nodes = [72, 64]"))
@@ -320,6 +322,7 @@ def test_a_worker_that_dies_is_replaced_and_none_outlives_its_study(whole, text,
     assert not any("spawn_main" in command_of(pid) for pid in workers)
 
 
+@pytest.mark.programs
 def test_interruption_says_how_to_go_on(whole, text, tmp_path):
     (tmp_path / "study.toml").write_text(text)
     process = begin(tmp_path)
