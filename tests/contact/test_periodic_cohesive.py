@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from restitution import Body, Contact, Grid, Pair, Surface, solve, solve_at_pressure, step
@@ -143,9 +143,26 @@ def test_equilibrium_at_every_node():
     assert gap.min() == approx(state.smallest_gap)
 
 
+def _finer(path):
+    """The path with three further states in each step that loses no energy.
+
+    Between two states of the program the force may have its largest tension. The count of jumps
+    does not show where energy is lost, because it also counts steps whose solve only passed a
+    negative curvature.
+    """
+    states = [path[0]]
+    for a, b in pairwise(path):
+        if a.adhesive_loss == b.adhesive_loss:
+            for part in (0.25, 0.5, 0.75):
+                place = a.indentation + part * (b.indentation - a.indentation)
+                states.append(step(states[-1], place))
+        states.append(b)
+    return states
+
+
 def _work_of_force(path):
     """Integral of the force, by the trapezium rule over each jump, and the error of this rule."""
-    jumps = [k for k, (a, b) in enumerate(pairwise(path), 1) if b.jumps > a.jumps]
+    jumps = [k for k, (a, b) in enumerate(pairwise(path), 1) if b.adhesive_loss > a.adhesive_loss]
     work = error = 0.0
     for first, last in pairwise([0, *jumps, len(path)]):
         part = path[first:last]
@@ -166,6 +183,8 @@ def _work_of_force(path):
     st.integers(0, 1000),
     st.sampled_from([math.inf, 3e9]),
 )
+@example((32, 1), 3.0, 0.5, 205, math.inf)  # one step agreed with the energies by chance
+@example((24, 12), 1.0, 0.734375, 0, math.inf)  # the first step was too long
 def test_the_energies_of_a_closed_cycle_balance(nodes, height, share, seed, hard):
     contact = rough(nodes, height, seed=seed, yield_pressure=hard)
     start = rigid_start(contact, limit=hard, residual=1e-8)
@@ -174,7 +193,7 @@ def test_the_energies_of_a_closed_cycle_balance(nodes, height, share, seed, hard
     assert solve(contact, target).force == approx(down[-1].force)
     up = list(unloading_path(down[-1]))
     end = up[-1]
-    works, errors = zip(_work_of_force(down), _work_of_force(up), strict=True)
+    works, errors = zip(*(_work_of_force(_finer(path)) for path in (down, up)), strict=True)
     spent = sum(works)
     scale = max(state.stored_energy - state.interaction_energy for state in down + up)
     lost = spent + start.potential_energy - end.potential_energy

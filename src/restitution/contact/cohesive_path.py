@@ -41,6 +41,10 @@ Array = NDArray[np.float64]
 # In each step, the work of the force must equal the change of energy. This is the largest accepted
 # difference, as a fraction of the energies of the contact.
 ACCURACY = 2e-4
+# In a step without a jump, the parabola through three forces and the trapezium rule must agree
+# within this multiple of the accepted difference. Otherwise, the parabola could have the right work
+# by chance although the force jumped.
+_CORRECTION = 10.0
 _FIRST_STEP = 0.25  # length of the first step, in units of the equilibrium separation z₀
 
 # Longest step of unloading under tension, in units of z₀ plus the adhesive length.
@@ -194,7 +198,8 @@ def follow(
             continue
         allowed = accuracy * _scale(step.state, loading=sign > 0)
         off = step.by_parabola - step.change
-        smooth = abs(off) <= allowed
+        correction = abs(step.by_parabola - step.by_trapezium)
+        smooth = abs(off) <= allowed and correction <= _CORRECTION * allowed
         if not smooth and step.uncertainty > allowed and length > _LEAST_STEP * z0:
             length /= 2 if step.uncertainty < 4 * allowed else 4
             rejected += step.state.convolutions
