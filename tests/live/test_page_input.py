@@ -113,8 +113,24 @@ def test_a_text_that_is_no_case_is_told_and_changes_nothing(page):
     assert page.locator("#field-first-radius").input_value() == "100 um"
 
 
+def test_a_text_that_arrives_late_does_not_replace_a_selection(page, live_case):
+    """Else a text that is pasted over the selection would be added to the late one."""
+    rest(page)
+    held = []
+    page.route("**/api/text", lambda route: held.append(route))
+    with page.expect_request("**/api/text"):
+        page.locator("#case-file summary").click()
+    page.locator("#case-text").press("Control+A")
+    (late,) = held
+    with page.expect_response("**/api/text") as answer:
+        late.continue_()
+    answer.value.finished()
+    page.keyboard.insert_text(live_case)
+    assert page.locator("#case-text").input_value() == live_case
+
+
 def test_a_case_as_a_text_fills_the_form(page, live_case):
-    rest(page)  # an answer on the way may write the text
+    rest(page)
     page.locator("#case-file summary").click()
     page.locator("#case-text").fill(live_case.replace('"100 um"', '"120 um"'))
     page.get_by_role("button", name="Use this text").click()

@@ -640,11 +640,14 @@ async function upload(file) {
 
 let textEdited = false; // the user has edited the text and not used it yet
 
+// A new value would clear what the user has typed or selected.
+const editsText = () => textEdited || document.activeElement === $("case-text");
+
 async function updateText() {
-  if (!$("case-file").open || textEdited) return;
+  if (!$("case-file").open || editsText()) return;
   try {
     const found = await (await post("text", { content })).json();
-    if (!textEdited) $("case-text").value = found.text; // the user may have begun to edit it meanwhile
+    if (!editsText()) $("case-text").value = found.text;
   } catch (error) { $("text-problem").textContent = error.message; }
 }
 
@@ -727,6 +730,7 @@ function listen() {
   $("form").addEventListener("submit", (event) => event.preventDefault());
   $("case-file").addEventListener("toggle", updateText);
   $("case-text").addEventListener("input", () => { textEdited = true; });
+  $("case-text").addEventListener("blur", updateText);
   $("use-text").addEventListener("click", useText);
   $("finer").addEventListener("click", runFiner);
   $("cancel").addEventListener("click", () => finer && finer.abort());
