@@ -1,4 +1,4 @@
-"""Do the total errors of COR hold? Random cases against finer grids, other surfaces, finer steps.
+r"""Do the total errors of COR hold? Random cases against finer grids, other surfaces, finer steps.
 
 Each case is run as `restitution run` does, which states a total error at each of its depths. The
 reference is the mean COR over other surfaces of the same kind (other seeds, or other places of the
@@ -9,9 +9,11 @@ as 1000 to 1104 and 2000 to 2079; the seeds of the table had not been used befor
 
     python docs/studies/blind_errors.py --topographies ../shared/topographies
 
-writes blind_errors.csv beside this file, a row for each COR. `--summary` reads it again. The stored
-cases 3000 to 3091 were drawn before the growing bound was added; `--first 4000 --skip-adhesive` and
-`--table blind_errors_4000.csv` repeat the others.
+writes blind_errors.csv beside this file, a row for each COR. `--summary` reads it again. Cases 3000
+to 3091 in this file have a constant bound of the pressure. In cases from 4000, the bound may grow:
+
+    python docs/studies/blind_errors.py --topographies ../shared/topographies --first 4000 \
+        --cases 92 --skip-adhesive --table docs/studies/blind_errors_4000.csv
 """
 
 from __future__ import annotations
