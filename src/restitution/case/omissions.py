@@ -74,9 +74,11 @@ def _lowest_velocity(case: Case) -> float:
 
 def _no_shortest_wave(case: Case) -> str | None:
     for part in case.roughness:
-        if not isinstance(part, GeneratedRoughness) or part.kind == "gaussian":
-            continue
-        if part.shortest is None:
+        if (
+            isinstance(part, GeneratedRoughness)
+            and part.kind != "gaussian"
+            and part.shortest is None
+        ):
             return (
                 f'roughness.shortest is left out: kind = "{part.kind}" has no shortest wave, so '
                 "the shortest wave is two grid spacings; COR of shallow contacts depends on the "
