@@ -107,7 +107,7 @@ def _write_results(
             "adhesion": contact.adhesion if contact.adhesive else "none",
             "half_space": "periodic, 2/(E* |q|), no mean displacement, FFT without padding",
             **asdict(contact.grid),
-            "refine": case.grid.refine if case.grid else 1,
+            "refine": case.grid.refine,
             "yield_pressure": case.yielding().source,
         },
         "conventions": CONVENTIONS,
