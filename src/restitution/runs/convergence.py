@@ -80,7 +80,8 @@ def run_convergence(
             case = with_chosen_adhesion(case, case.contact(folder), log.warn)
         unsettled[:] = log.warnings
         for factor, later in _levels(case, folder, grids).items():
-            part, refined = out.part(f"refine-{factor}"), _pressed_less(case, later)
+            part = ResultsFolder(out.path / f"refine-{factor}")
+            refined = _pressed_less(case, later)
             if not refined.depths():
                 warn(f"refine = {factor}: this grid has no contact at any depth and is left out")
                 part.discard()
