@@ -95,14 +95,12 @@ MOST_FRICTION = 10.0  # largest accepted coefficient of friction; a larger value
 _CONSTANT_BOUND = ("equilibrium", "truncated")  # models with a constant bound of the pressure
 
 
-def _pressure_or_rule(value: Any) -> float | YieldRule | None:
+def _pressure_or_rule(value: Any) -> float | YieldRule:
     """Read a yield pressure: a pressure (Pa; infinite for "elastic") or a rule.
 
     A rule is a factor and the quantity that the factor multiplies. "2.8 Y" gives
     (2.8, "yield_strength"), and "hardness" gives (1.0, "hardness").
     """
-    if value is None:
-        return None
     if value == "elastic":
         return math.inf
     if value == "hardness":
@@ -190,8 +188,11 @@ class InterfaceTable(Table):
     @property
     def needs_jkr(self) -> bool:
         """Whether approach, detachment or plasticity has a value that needs `adhesion = "jkr"`."""
-        plain = self.approach == "equilibrium" and self.detachment == "crack-closure"
-        return not plain or self.plasticity == "truncated"
+        return (
+            self.approach != "equilibrium"
+            or self.detachment != "crack-closure"
+            or self.plasticity == "truncated"
+        )
 
     @property
     def adhesive_energy(self) -> float:
@@ -253,13 +254,13 @@ class InterfaceTable(Table):
                 found.append((factor * Y, f"{factor:g} Y {of}, Y = {1e-6 * Y:.6g} MPa"))
             elif body.hardness is not None:
                 found.append((body.hardness, f"hardness {of}, {1e-6 * body.hardness:.6g} MPa"))
+            elif self.yield_pressure is None:
+                raise CaseError(
+                    "interface.yield_strength: is missing, and so are "
+                    f"{name}.yield_strength and {name}.hardness; give one of them, or write "
+                    'yield_pressure = "elastic" for bodies that do not yield'
+                )
             else:
-                if self.yield_pressure is None:
-                    raise CaseError(
-                        "interface.yield_strength: is missing, and so are "
-                        f"{name}.yield_strength and {name}.hardness; give one of them, or write "
-                        'yield_pressure = "elastic" for bodies that do not yield'
-                    )
                 raise CaseError(
                     f"interface.yield_pressure: needs {name}.{quantity}, which is not given"
                     + (f", and the library has none for {body.material}" if body.material else "")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Annotated, Any, cast
+from typing import Annotated, cast
 
 from pydantic import BeforeValidator, model_validator
 
@@ -21,12 +21,6 @@ from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface, composite
 from restitution.surfaces.refine import divided
 
-
-def _one_or_more(value: Any) -> Any:
-    """Return a tuple of the tables in a list, or of one single table."""
-    return tuple(value) if isinstance(value, list) else (value,)
-
-
 DEPTHS = ("indentation", "load", "impact", "pressure")  # tables that can prescribe the depths
 
 
@@ -38,7 +32,10 @@ class Case(Table):
     first: BodyTable
     second: BodyTable | None = None
     interface: InterfaceTable = InterfaceTable()
-    roughness: Annotated[tuple[Roughness, ...], BeforeValidator(_one_or_more)] = ()
+    roughness: Annotated[
+        tuple[Roughness, ...],
+        BeforeValidator(lambda value: tuple(value) if isinstance(value, list) else (value,)),
+    ] = ()
     grid: GridTable = GridTable()
     indentation: Series[Length] | None = None
     load: Series[Force] | None = None
@@ -121,14 +118,12 @@ class Case(Table):
         for part in self.roughness:
             if isinstance(part, GeneratedRoughness) and not part.periodic:
                 raise ValueError("roughness.periodic: must be true if the grid is periodic")
-        series = self.pressure
-        if series is not None and math.isfinite(yielding.hardness):
-            highest = max(series.series())
-            if highest >= yielding.hardness:
-                raise ValueError(
-                    f"pressure: {1e-6 * highest:.4g} MPa is not below the yield pressure, "
-                    f"{1e-6 * yielding.hardness:.4g} MPa"
-                )
+        highest = 0.0 if self.pressure is None else max(self.pressure.series())
+        if highest >= yielding.hardness:
+            raise ValueError(
+                f"pressure: {1e-6 * highest:.4g} MPa is not below the yield pressure, "
+                f"{1e-6 * yielding.hardness:.4g} MPa"
+            )
 
     def _check_attraction(self) -> None:
         """Raise `ValueError` for keys that cannot be combined with periodic adhesion."""
@@ -198,8 +193,9 @@ class Case(Table):
 
     def variant(self, number: int) -> Case:
         """Return this case with other surfaces: add `number` to each seed or place on a scan."""
-        parts = tuple(part.variant(number) for part in self.roughness)
-        return self.model_copy(update={"roughness": parts})
+        return self.model_copy(
+            update={"roughness": tuple(part.variant(number) for part in self.roughness)}
+        )
 
     def has_library_values(self) -> bool:
         """Whether any value of the bodies is from the materials library, so its spread is known."""
@@ -207,8 +203,7 @@ class Case(Table):
 
     def refined(self, factor: int) -> Case:
         """Return this case with cells `factor` times smaller than those of [grid]."""
-        grid = self.grid.model_copy(update={"refine": factor})
-        return self.model_copy(update={"grid": grid})
+        return self.model_copy(update={"grid": self.grid.model_copy(update={"refine": factor})})
 
     def factors(self) -> list[int]:
         """Refinement factor of every depth, from the shallowest to the deepest."""
@@ -231,8 +226,7 @@ class Case(Table):
 
     def pair(self) -> Pair:
         """The two bodies. Raises `CaseError` if both are flat and the grid is not periodic."""
-        first = self.first.body()
-        pair = Pair(first, first if self.second is None else self.second.body())
+        pair = Pair(*(table.body() for table in self._bodies().values()))
         if pair.flat and not self.periodic:
             if self.second is None:
                 raise CaseError(
@@ -308,6 +302,5 @@ class Case(Table):
 
         They are indentations (m), loads (N), impact velocities (m/s) or nominal pressures (Pa).
         """
-        table = self.indentation or self.load or self.impact or self.pressure
-        assert table is not None  # checked by _whole
-        return table.series()
+        tables = (self.indentation, self.load, self.impact, self.pressure)
+        return next(table.series() for table in tables if table is not None)  # only one is given

@@ -93,9 +93,9 @@ def _too_deep() -> CaseError:
 
 def _check_dots(text: str) -> None:
     """Reject dotted keys with very many parts, which `tomllib` takes minutes to parse."""
-    for word in re.split(r"[^\w.\-\"']+", text):
-        if word.count(".") > _DEEPEST and ".." not in word.strip("."):
-            raise _too_deep()
+    words = re.split(r"[^\w.\-\"']+", text)
+    if any(word.count(".") > _DEEPEST and ".." not in word.strip(".") for word in words):
+        raise _too_deep()
 
 
 def _check_depth(content: dict[str, Any]) -> None:

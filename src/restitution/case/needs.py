@@ -41,10 +41,9 @@ def nodes_of(grid: Grid) -> int:
 
 def require(needed: float, grid: Grid) -> None:
     """Raise `CaseError` if the `needed` bytes for `grid` exceed the available memory."""
-    nx, ny = grid.nodes
     memory.require(
         needed,
-        f"grid: {nx} x {ny} nodes",
+        f"grid: {grid.nodes[0]} x {grid.nodes[1]} nodes",
         "use fewer nodes, a smaller refine, or a machine with more memory",
     )
 

@@ -98,9 +98,7 @@ class GridTable(Table):
 
     def grid(self) -> Grid | None:
         """The grid before refinement; None if the scan defines the grid."""
-        if self.nodes is None or self.spacing is None:
-            return None
-        return Grid(self.nodes, self.spacing)
+        return Grid(self.nodes, self.spacing) if self.nodes and self.spacing else None
 
 
 Quantity = TypeVar("Quantity")
