@@ -101,9 +101,9 @@ def open_results(folder: Folder) -> RunResults | StudyResults | PeriodicResults:
     Raises:
         OutputError: The folder does not hold results, or a file is damaged.
     """
-    from restitution.results.kinds import is_periodic
     from restitution.results.periodic import PeriodicResults
     from restitution.results.reader import StudyResults, read_run
+    from restitution.results.tables import is_periodic
 
     path = Path(folder)
     if is_periodic(path):

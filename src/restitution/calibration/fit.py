@@ -151,11 +151,10 @@ def _check_points(measured: Measured, parameters: int) -> None:
 def _settle_grid(model: CaseModel, start: Array) -> None:
     """Replace `grid.refine = "auto"` by the factor that resolves the case with the first guess."""
     case = model.case(start)
-    if case.grid is not None and case.grid.refine == "auto":
-        factor = settled(case, model.folder).grid
-        assert factor is not None  # a case with `refine` has a table [grid]
+    if case.grid.refine == "auto":
+        factor = settled(case, model.folder).grid.factor
         content: dict[str, Any] = dict(model.content)
-        content["grid"] = {**content["grid"], "refine": factor.factor}
+        content["grid"] = {**content["grid"], "refine": factor}
         model.content = content
 
 

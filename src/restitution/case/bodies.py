@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from restitution.case.materials import Property, material
+from restitution.case.materials import PoissonsRatio, Property, material
 from restitution.case.quantities import (
     LONGEST,
     Density,
@@ -42,10 +42,6 @@ FROM_LIBRARY = {
 _STRENGTHS = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*(?:\*\s*)?Y\s*")
 
 
-def _none_if_flat(value: Any) -> Any:
-    return None if value == "flat" else value
-
-
 class BodyTable(Table):
     """The tables `[first]` and `[second]`.
 
@@ -53,9 +49,11 @@ class BodyTable(Table):
     """
 
     material: str | None = None
-    radius: Annotated[Length | None, BeforeValidator(_none_if_flat)]
+    radius: Annotated[
+        Length | None, BeforeValidator(lambda value: None if value == "flat" else value)
+    ]
     youngs_modulus: Pressure
-    poissons_ratio: Annotated[float, Field(gt=-1, le=0.5)]
+    poissons_ratio: PoissonsRatio
     density: Density | None = None
     yield_strength: Pressure | None = None
     hardness: Pressure | None = None
@@ -85,32 +83,30 @@ class BodyTable(Table):
         if self.material is None:
             return {}
         known = material(self.material)
-        found = {key: getattr(known, key) for key in FROM_LIBRARY}
         return {
-            key: each for key, each in found.items() if each and each.value == getattr(self, key)
+            key: found
+            for key in FROM_LIBRARY
+            if (found := getattr(known, key)) and found.value == getattr(self, key)
         }
 
 
 YieldRule = tuple[float, Literal["yield_strength", "hardness"]]
 MOST_FRICTION = 10.0  # largest accepted coefficient of friction; a larger value must be a mistake
-DEFAULT_RULE: YieldRule = (FULL_CONSTRAINT, "yield_strength")
+_CONSTANT_BOUND = ("equilibrium", "truncated")  # models with a constant bound of the pressure
 
 
-def _pressure_or_rule(value: Any) -> float | YieldRule | None:
+def _pressure_or_rule(value: Any) -> float | YieldRule:
     """Read a yield pressure: a pressure (Pa; infinite for "elastic") or a rule.
 
     A rule is a factor and the quantity that the factor multiplies. "2.8 Y" gives
     (2.8, "yield_strength"), and "hardness" gives (1.0, "hardness").
     """
-    if value is None:
-        return None
     if value == "elastic":
         return math.inf
     if value == "hardness":
         return 1.0, "hardness"
     short = isinstance(value, str) and len(value) <= LONGEST
-    match = _STRENGTHS.fullmatch(value) if short else None
-    if match is None:
+    if not (short and (match := _STRENGTHS.fullmatch(value))):
         return read_positive(value, "Pa")
     if not 0.5 <= (factor := float(match[1])) <= 10:
         raise ValueError(
@@ -137,9 +133,7 @@ class Yielding:
 
     def arguments(self) -> dict[str, Any]:
         """The arguments of `Contact` that define its yield model."""
-        found = asdict(self)
-        del found["source"]
-        return found
+        return {key: value for key, value in asdict(self).items() if key != "source"}
 
 
 class InterfaceTable(Table):
@@ -161,27 +155,24 @@ class InterfaceTable(Table):
 
     @model_validator(mode="after")
     def _one_model(self) -> InterfaceTable:
-        grows = self.plasticity == "expanding-cavity"
-        if self.yield_pressure is not None:
-            for key in ("yield_strength", "tangent_modulus"):
-                if getattr(self, key) is not None:
-                    raise ValueError(
-                        f"yield_pressure, {key}: give only one of them; with yield_pressure the "
-                        "contact pressure has a constant bound, and with yield_strength (of a "
-                        "tensile test) the bound grows with deformation"
-                    )
-            if grows:
-                raise ValueError(
-                    'yield_pressure: is not used with plasticity = "expanding-cavity"; give '
-                    "yield_strength (of a tensile test) instead"
-                )
-        elif self.plasticity is not None and not grows:
-            for key in ("yield_strength", "tangent_modulus"):
-                if getattr(self, key) is not None:
-                    raise ValueError(
-                        f'{key}: plasticity = "{self.plasticity}" takes a yield_pressure instead, '
-                        "about 2.8 times the yield strength"
-                    )
+        keys = ("yield_strength", "tangent_modulus")
+        growing = [key for key in keys if getattr(self, key) is not None]
+        if self.yield_pressure is not None and growing:
+            raise ValueError(
+                f"yield_pressure, {growing[0]}: give only one of them; with yield_pressure the "
+                "contact pressure has a constant bound, and with yield_strength (of a tensile "
+                "test) the bound grows with deformation"
+            )
+        if self.yield_pressure is not None and self.plasticity == "expanding-cavity":
+            raise ValueError(
+                'yield_pressure: is not used with plasticity = "expanding-cavity"; give '
+                "yield_strength (of a tensile test) instead"
+            )
+        if growing and self.plasticity in _CONSTANT_BOUND:
+            raise ValueError(
+                f'{growing[0]}: plasticity = "{self.plasticity}" takes a yield_pressure instead, '
+                "about 2.8 times the yield strength"
+            )
         return self
 
     @model_validator(mode="after")
@@ -197,8 +188,11 @@ class InterfaceTable(Table):
     @property
     def needs_jkr(self) -> bool:
         """Whether approach, detachment or plasticity has a value that needs `adhesion = "jkr"`."""
-        plain = self.approach == "equilibrium" and self.detachment == "crack-closure"
-        return not plain or self.plasticity == "truncated"
+        return (
+            self.approach != "equilibrium"
+            or self.detachment != "crack-closure"
+            or self.plasticity == "truncated"
+        )
 
     @property
     def adhesive_energy(self) -> float:
@@ -212,29 +206,21 @@ class InterfaceTable(Table):
         A body for which only a hardness is known (such as glass) yields at its hardness. Raises
         `CaseError` if a value that the model needs is unknown.
         """
-        if self.plasticity in ("equilibrium", "truncated"):
-            rule = DEFAULT_RULE if self.yield_pressure is None else self.yield_pressure
-            return self._at_a_pressure(rule, first, second)
-        if self.yield_pressure is not None:
-            return self._at_a_pressure(self.yield_pressure, first, second)
+        if self.yield_pressure is not None or self.plasticity in _CONSTANT_BOUND:
+            return self._at_a_pressure(first, second)
         if self.yield_strength is not None:
             return self._growing(self.yield_strength, "given")
-        found = [
-            (
-                body.yield_strength,
-                f"Y of {_named(name, body)}, {1e-6 * body.yield_strength:.6g} MPa",
-            )
-            if body.yield_strength is not None
-            else None
+        known = [
+            (Y, f"Y of {_named(name, body)}, {1e-6 * Y:.6g} MPa")
             for name, body in (("first", first), ("second", second))
+            if (Y := body.yield_strength) is not None
         ]
-        known = [each for each in found if each is not None]
-        pressure = self._at_a_pressure(DEFAULT_RULE, first, second)
-        if known and pressure.yield_pressure >= (1 - 1e-12) * DEFAULT_RULE[0] * min(known)[0]:
+        pressure = self._at_a_pressure(first, second)
+        if known and pressure.yield_pressure >= (1 - 1e-12) * FULL_CONSTRAINT * min(known)[0]:
             return self._growing(*min(known))
         if self.plasticity is None and self.tangent_modulus is None:
             return pressure
-        name, body = ("first", first) if found[0] is None else ("second", second)
+        name, body = ("first", first) if first.yield_strength is None else ("second", second)
         raise CaseError(
             f"interface.yield_strength: is missing, and {_named(name, body)}, the softer body, "
             "has no yield_strength; give interface.yield_strength, the yield_strength of this "
@@ -249,18 +235,17 @@ class InterfaceTable(Table):
             tangent_modulus=self.tangent_modulus or 0.0,
         )
 
-    def _at_a_pressure(
-        self, rule: float | YieldRule, first: BodyTable, second: BodyTable
-    ) -> Yielding:
-        """Make the model with the constant yield pressure that `rule` gives for the softer body.
+    def _at_a_pressure(self, first: BodyTable, second: BodyTable) -> Yielding:
+        """Make the model with a constant yield pressure: given, or that of the softer body.
 
-        A body without a yield strength Y yields at its hardness.
+        By default, the yield pressure is 2.8 Y. A body without a yield strength Y yields at its
+        hardness.
         """
         model = self.plasticity or "equilibrium"
-        if isinstance(rule, float):
-            source = "elastic" if math.isinf(rule) else "given"
-            return Yielding(source, model, yield_pressure=rule)
-        factor, quantity = rule
+        if isinstance(self.yield_pressure, float):
+            source = "elastic" if math.isinf(self.yield_pressure) else "given"
+            return Yielding(source, model, yield_pressure=self.yield_pressure)
+        factor, quantity = self.yield_pressure or (FULL_CONSTRAINT, "yield_strength")
         found = []
         for name, body in (("first", first), ("second", second)):
             of = f"of {_named(name, body)}"
@@ -269,13 +254,13 @@ class InterfaceTable(Table):
                 found.append((factor * Y, f"{factor:g} Y {of}, Y = {1e-6 * Y:.6g} MPa"))
             elif body.hardness is not None:
                 found.append((body.hardness, f"hardness {of}, {1e-6 * body.hardness:.6g} MPa"))
+            elif self.yield_pressure is None:
+                raise CaseError(
+                    "interface.yield_strength: is missing, and so are "
+                    f"{name}.yield_strength and {name}.hardness; give one of them, or write "
+                    'yield_pressure = "elastic" for bodies that do not yield'
+                )
             else:
-                if self.yield_pressure is None:
-                    raise CaseError(
-                        "interface.yield_strength: is missing, and so are "
-                        f"{name}.yield_strength and {name}.hardness; give one of them, or write "
-                        'yield_pressure = "elastic" for bodies that do not yield'
-                    )
                 raise CaseError(
                     f"interface.yield_pressure: needs {name}.{quantity}, which is not given"
                     + (f", and the library has none for {body.material}" if body.material else "")

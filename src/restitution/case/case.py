@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Annotated, Any, cast
+from typing import Annotated, cast
 
 from pydantic import BeforeValidator, model_validator
 
@@ -21,12 +21,6 @@ from restitution.numerics.grid import Grid
 from restitution.surfaces import Surface, composite
 from restitution.surfaces.refine import divided
 
-
-def _one_or_more(value: Any) -> Any:
-    """Return a tuple of the tables in a list, or of one single table."""
-    return tuple(value) if isinstance(value, list) else (value,)
-
-
 DEPTHS = ("indentation", "load", "impact", "pressure")  # tables that can prescribe the depths
 
 
@@ -38,8 +32,11 @@ class Case(Table):
     first: BodyTable
     second: BodyTable | None = None
     interface: InterfaceTable = InterfaceTable()
-    roughness: Annotated[tuple[Roughness, ...], BeforeValidator(_one_or_more)] = ()
-    grid: GridTable | None = None
+    roughness: Annotated[
+        tuple[Roughness, ...],
+        BeforeValidator(lambda value: tuple(value) if isinstance(value, list) else (value,)),
+    ] = ()
+    grid: GridTable = GridTable()
     indentation: Series[Length] | None = None
     load: Series[Force] | None = None
     impact: ImpactTable | None = None
@@ -72,10 +69,14 @@ class Case(Table):
                 'interface.plasticity = "truncated" needs a yield_pressure, which is "elastic" '
                 "here; give a pressure, or remove plasticity"
             )
-        if self._own_grid() is None:
+        if self.grid.nodes is None:
             self._check_scan_brings_grid()
-        if self.grid is not None and isinstance(self.grid.refine, tuple):
-            self._check_factors(self.grid.refine)
+        factors, depths = len(self.factors()), len(self.depths())
+        if factors != depths:
+            raise ValueError(
+                f"grid.refine: {factors} values for {depths} depths; give one for each depth, or "
+                '"auto"'
+            )
         if len({part.realisations for part in self.roughness} - {1}) > 1:
             raise ValueError(
                 "roughness.realisations: differs between the tables; give the same number in all"
@@ -84,8 +85,8 @@ class Case(Table):
 
     def _check_period(self) -> None:
         """Raise `ValueError` for keys that cannot be combined with a periodic grid."""
-        for name, body in (("first", self.first), ("second", self.second)):
-            if body is not None and body.radius is not None:
+        for name, body in self._bodies().items():
+            if body.radius is not None:
                 raise ValueError(f'{name}.radius: must be "flat" if the grid is periodic')
         if self.impact is not None:
             raise ValueError(
@@ -103,7 +104,6 @@ class Case(Table):
                 "interface.yield_pressure: is missing; a periodic contact needs a constant "
                 'pressure (such as "2.8 Y" or "hardness"), or "elastic"'
             )
-        assert self.grid is not None  # a periodic case has a table [grid]
         if not isinstance(self.grid.refine, int):
             raise ValueError("grid.refine: must be one number if the grid is periodic")
         if not self.roughness:
@@ -118,14 +118,12 @@ class Case(Table):
         for part in self.roughness:
             if isinstance(part, GeneratedRoughness) and not part.periodic:
                 raise ValueError("roughness.periodic: must be true if the grid is periodic")
-        series = self.pressure
-        if series is not None and math.isfinite(yielding.hardness):
-            highest = max(series.series())
-            if highest >= yielding.hardness:
-                raise ValueError(
-                    f"pressure: {1e-6 * highest:.4g} MPa is not below the yield pressure, "
-                    f"{1e-6 * yielding.hardness:.4g} MPa"
-                )
+        highest = 0.0 if self.pressure is None else max(self.pressure.series())
+        if highest >= yielding.hardness:
+            raise ValueError(
+                f"pressure: {1e-6 * highest:.4g} MPa is not below the yield pressure, "
+                f"{1e-6 * yielding.hardness:.4g} MPa"
+            )
 
     def _check_attraction(self) -> None:
         """Raise `ValueError` for keys that cannot be combined with periodic adhesion."""
@@ -141,17 +139,9 @@ class Case(Table):
                 "because its indentation jumps if the load or the pressure is prescribed"
             )
 
-    def _check_factors(self, factors: tuple[int, ...]) -> None:
-        depths = len(self.depths())
-        if len(factors) != depths:
-            raise ValueError(
-                f"grid.refine: {len(factors)} values for {depths} depths; give one for each depth, "
-                'or "auto"'
-            )
-
     def _check_masses(self) -> None:
-        for name, body in (("first", self.first), ("second", self.second)):
-            if body is not None and body.radius is not None and body.density is None:
+        for name, body in self._bodies().items():
+            if body.radius is not None and body.density is None:
                 raise ValueError(
                     f"{name}.density: is missing; give it, because [impact] needs the mass"
                 )
@@ -168,8 +158,7 @@ class Case(Table):
                 f"{key}: oblique impacts are computed for pairs without adhesion only; remove "
                 "this key, or interface.work_of_adhesion"
             )
-        bodies = (("first", self.first), ("second", self.second or self.first))
-        for (name, body), spin in zip(bodies, impact.spins(), strict=True):
+        for (name, body), spin in zip(self._bodies().items(), impact.spins(), strict=True):
             if body.radius is None and spin != 0:
                 raise ValueError(f'impact.spin: {name} is a wall and does not turn; give "0 rad/s"')
 
@@ -182,12 +171,13 @@ class Case(Table):
             why = "only a single measured surface defines its own grid"
         else:
             why = "only a measured surface defines its own grid"
-        if self.grid is None:
+        if "grid" not in self.model_fields_set:
             raise ValueError(f"the table [grid] is missing; {why}: give nodes and spacing")
         raise ValueError(f"grid: nodes and spacing are missing; {why}: give both")
 
-    def _own_grid(self) -> Grid | None:
-        return None if self.grid is None else self.grid.grid()
+    def _bodies(self) -> dict[str, BodyTable]:
+        """The tables of both bodies; the second body is like the first if it is left out."""
+        return {"first": self.first, "second": self.second or self.first}
 
     @property
     def realisations(self) -> int:
@@ -197,34 +187,29 @@ class Case(Table):
     def realisation(self, number: int) -> Case:
         """Return the case of the single surface `number`, counted from 0."""
         parts = tuple(
-            part.variant(number).model_copy(update={"realisations": 1})
-            if part.realisations > 1
-            else part
-            for part in self.roughness
+            part.variant(number) if part.realisations > 1 else part for part in self.roughness
         )
         return self.model_copy(update={"roughness": parts})
 
     def variant(self, number: int) -> Case:
         """Return this case with other surfaces: add `number` to each seed or place on a scan."""
-        parts = tuple(
-            part.variant(number).model_copy(update={"realisations": 1}) for part in self.roughness
+        return self.model_copy(
+            update={"roughness": tuple(part.variant(number) for part in self.roughness)}
         )
-        return self.model_copy(update={"roughness": parts})
 
     def has_library_values(self) -> bool:
         """Whether any value of the bodies is from the materials library, so its spread is known."""
-        return any(body.from_library() for body in (self.first, self.second) if body is not None)
+        return any(body.from_library() for body in self._bodies().values())
 
     def refined(self, factor: int) -> Case:
         """Return this case with cells `factor` times smaller than those of [grid]."""
-        grid = (self.grid or GridTable()).model_copy(update={"refine": factor})
-        return self.model_copy(update={"grid": grid})
+        return self.model_copy(update={"grid": self.grid.model_copy(update={"refine": factor})})
 
     def factors(self) -> list[int]:
         """Refinement factor of every depth, from the shallowest to the deepest."""
-        if self.grid is not None and isinstance(self.grid.refine, tuple):
+        if isinstance(self.grid.refine, tuple):
             return list(self.grid.refine)
-        return [1 if self.grid is None else self.grid.factor] * len(self.depths())
+        return [self.grid.factor] * len(self.depths())
 
     def require_impact(self) -> None:
         """Raise `CaseError` for a periodic contact, which has no impact and no restitution."""
@@ -237,12 +222,11 @@ class Case(Table):
     @property
     def periodic(self) -> bool:
         """Whether the contact is periodic."""
-        return self.grid is not None and self.grid.periodic
+        return self.grid.periodic
 
     def pair(self) -> Pair:
         """The two bodies. Raises `CaseError` if both are flat and the grid is not periodic."""
-        first = self.first.body()
-        pair = Pair(first, first if self.second is None else self.second.body())
+        pair = Pair(*(table.body() for table in self._bodies().values()))
         if pair.flat and not self.periodic:
             if self.second is None:
                 raise CaseError(
@@ -256,11 +240,11 @@ class Case(Table):
 
     def yielding(self) -> Yielding:
         """The yield model of the contact. Raises `CaseError` if a value for it is missing."""
-        return self.interface.yielding(self.first, self.second or self.first)
+        return self.interface.yielding(**self._bodies())
 
     def surface(self, folder: Path) -> Surface:
         """Make the composite roughness on the grid; file names are relative to `folder`."""
-        grid, factor = self._own_grid(), 1 if self.grid is None else self.grid.factor
+        grid, factor = self.grid.grid(), self.grid.factor
         if grid is None:
             (scan,) = cast(tuple[MeasuredRoughness], self.roughness)  # checked by _whole
             return scan.surface(None, folder, factor)
@@ -274,8 +258,8 @@ class Case(Table):
         Raises `CaseError` if a run needs more memory than is available.
         """
         self.pair()  # refuse two flat bodies before making a surface
-        if grid := self._own_grid():
-            fine = divided(grid, self.grid.factor if self.grid else 1)
+        if grid := self.grid.grid():
+            fine = divided(grid, self.grid.factor)
             needs.require(self.run_bytes(fine), fine)
         return self.contact_on(self.surface(folder))
 
@@ -301,28 +285,22 @@ class Case(Table):
         if interface.adhesion is not None:
             return interface.adhesion
         w, z0 = interface.adhesive_energy, interface.equilibrium_separation
-        if w == 0:
+        if w == 0 or (interface.needs_jkr and not self.periodic):
             return "jkr"
-        if self.periodic:
-            return "cohesive"
-        if interface.needs_jkr:
-            return "jkr"
-        needed = coarsest_spacing(self.pair(), w, z0)
-        return "cohesive" if max(grid.spacing) <= needed else "jkr"
+        fine = self.periodic or max(grid.spacing) <= coarsest_spacing(self.pair(), w, z0)
+        return "cohesive" if fine else "jkr"
 
     def run_bytes(self, grid: Grid) -> float:
         """Memory (bytes) of a run on `grid`."""
         yielding = self.yielding()
         plasticity = "none" if math.isinf(yielding.hardness) else yielding.plasticity
-        adhesive = self.interface.adhesive_energy > 0
-        cohesive = adhesive and self._adhesion_on(grid) == "cohesive"
-        return needs.run_bytes(grid, plasticity=plasticity, adhesive=adhesive, cohesive=cohesive)
+        adhesion = self._adhesion_on(grid) if self.interface.adhesive_energy > 0 else "none"
+        return needs.run_bytes(grid, plasticity=plasticity, adhesion=adhesion)
 
     def depths(self) -> list[float]:
         """The values that prescribe the depths, in increasing order.
 
         They are indentations (m), loads (N), impact velocities (m/s) or nominal pressures (Pa).
         """
-        table = self.indentation or self.load or self.impact or self.pressure
-        assert table is not None  # checked by _whole
-        return table.series()
+        tables = (self.indentation, self.load, self.impact, self.pressure)
+        return next(table.series() for table in tables if table is not None)  # only one is given

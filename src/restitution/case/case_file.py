@@ -72,13 +72,9 @@ def naming(path: Path) -> Iterator[None]:
 
 def parse_toml(text: str) -> dict[str, Any]:
     """Parse a TOML text. Raises `CaseError`."""
+    _check_dots(text)
     try:
-        _check_dots(text)
         content = tomllib.loads(text)
-        _check_depth(content)
-        return content
-    except CaseError:  # also a ValueError, but must not reach the handler of ValueError below
-        raise
     except RecursionError:
         raise _too_deep() from None
     except tomllib.TOMLDecodeError as error:
@@ -87,6 +83,8 @@ def parse_toml(text: str) -> dict[str, Any]:
         raise CaseError(f"not valid TOML: {error}{hint}") from None
     except ValueError:  # Python refuses to read an integer of more than 4300 digits
         raise CaseError("contains a number with thousands of digits; correct it") from None
+    _check_depth(content)
+    return content
 
 
 def _too_deep() -> CaseError:
@@ -95,9 +93,9 @@ def _too_deep() -> CaseError:
 
 def _check_dots(text: str) -> None:
     """Reject dotted keys with very many parts, which `tomllib` takes minutes to parse."""
-    for word in re.split(r"[^\w.\-\"']+", text):
-        if word.count(".") > _DEEPEST and ".." not in word.strip("."):
-            raise _too_deep()
+    words = re.split(r"[^\w.\-\"']+", text)
+    if any(word.count(".") > _DEEPEST and ".." not in word.strip(".") for word in words):
+        raise _too_deep()
 
 
 def _check_depth(content: dict[str, Any]) -> None:
@@ -128,16 +126,13 @@ def problems_of(content: dict[str, Any]) -> dict[str, str]:
     try:
         Case.model_validate(content)
     except ValidationError as error:
-        problems = error.errors(include_url=False)
-        return {_key_of(each): _without_key(each) for each in reversed(problems)}
+        return {
+            (key := _key_of(each)): _in_words(each, Case).removeprefix(f"{key}: ")
+            for each in reversed(error.errors(include_url=False))
+        }
     except CaseError as error:
         return {"": str(error)}
     return {}
-
-
-def _without_key(problem: Any) -> str:
-    """Describe a pydantic error in one line, without its key."""
-    return _in_words(problem, Case).removeprefix(f"{_key_of(problem)}: ")
 
 
 def in_words(error: ValidationError, root: type[Table] = Case, before: str = "") -> str:
@@ -230,7 +225,6 @@ def _keys_of(path: list[str], loc: tuple[Any, ...], root: type[Table]) -> list[s
         "unloading": UnloadingTable,
         "roughness": MeasuredRoughness if "measured" in loc else GeneratedRoughness,
     }
-    if path and path[0] not in tables:
-        return []
-    model = tables[path[0]] if path else root
-    return [field.alias or name for name, field in model.model_fields.items()]
+    model = tables.get(path[0]) if path else root
+    fields = {} if model is None else model.model_fields
+    return [field.alias or name for name, field in fields.items()]

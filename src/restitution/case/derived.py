@@ -44,9 +44,11 @@ def derived_quantities(case: Case, contact: Contact) -> dict[str, float | None]:
     radius = predicted_radius(pair, deepest, p_y)
     elastic = math.isinf(p_y)
     mass = pair.mass
-    first = None
-    if not elastic:
-        first = FirstYield(pair.radius, pair.contact_modulus, contact.first_yield_pressure)
+    first = (
+        None
+        if elastic
+        else FirstYield(pair.radius, pair.contact_modulus, contact.first_yield_pressure)
+    )
     return {
         "reduced_radius_m": pair.radius,
         "contact_modulus_Pa": pair.contact_modulus,

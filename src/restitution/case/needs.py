@@ -23,13 +23,12 @@ _TWIN = 75.0  # a statistical twin of a scan
 _BAND = 90.0  # per node of the grid on which the shortest waves of a twin are adjusted
 _DESCRIBED = 150.0  # autocorrelation, spectrum and page of `restitution surface`
 
-# A run without adhesion, for each model of plasticity.
-_MODELS = {"none": 115.0, "equilibrium": 140.0, "expanding-cavity": 190.0, "truncated": 190.0}
-_ADHESIVE = 150.0  # a run with adhesion
+# A run needs the larger of these values for its models of plasticity and of adhesion. A run with an
+# attraction of finite range ("cohesive") keeps the pressure and the displacement of some 100 states
+# of unloading (16 bytes for each state), besides the arrays of the solver.
+_PLASTICITY = {"none": 115.0, "equilibrium": 140.0, "expanding-cavity": 190.0, "truncated": 190.0}
+_ADHESION = {"none": 0.0, "jkr": 150.0, "cohesive": 1800.0}
 
-# A run with an attraction of finite range keeps the pressure and the displacement of some 100
-# states of unloading (16 bytes for each state), besides the arrays of the solver.
-_COHESIVE = 1800.0
 # A non-periodic surface is generated on an enlarged grid with at most about this many times the
 # nodes (`generate._enlarged`: twice the nodes along each axis, rounded up to a fast FFT length).
 _ENLARGED = 4.0
@@ -42,23 +41,19 @@ def nodes_of(grid: Grid) -> int:
 
 def require(needed: float, grid: Grid) -> None:
     """Raise `CaseError` if the `needed` bytes for `grid` exceed the available memory."""
-    nx, ny = grid.nodes
     memory.require(
         needed,
-        f"grid: {nx} x {ny} nodes",
+        f"grid: {grid.nodes[0]} x {grid.nodes[1]} nodes",
         "use fewer nodes, a smaller refine, or a machine with more memory",
     )
 
 
-def run_bytes(grid: Grid, *, plasticity: str, adhesive: bool, cohesive: bool = False) -> float:
+def run_bytes(grid: Grid, *, plasticity: str, adhesion: str) -> float:
     """Memory (bytes) of a run on `grid`, without making the surface.
 
-    `plasticity` is the model of plasticity, or "none" for elastic bodies.
+    `plasticity` and `adhesion` are the models, or "none" for elastic bodies and without adhesion.
     """
-    per_node = max(_MODELS[plasticity], _ADHESIVE if adhesive else 0.0)
-    if cohesive:
-        per_node = _COHESIVE
-    return _PROCESS + per_node * nodes_of(grid)
+    return _PROCESS + max(_PLASTICITY[plasticity], _ADHESION[adhesion]) * nodes_of(grid)
 
 
 def described_bytes(grid: Grid) -> float:

@@ -18,21 +18,7 @@ _MATTERS = 8.5
 
 def omissions(case: Case) -> list[str]:
     """Make a warning for each omitted key that is replaced by a default or ideal value."""
-    lines = (_default_yield(case), _no_adhesion(case), _no_shortest_wave(case))
-    return [line for line in lines if line]
-
-
-def adhesion_matters_below(case: Case) -> float | None:
-    """Impact velocity (m/s) below which adhesion would change COR by more than about 0.01.
-
-    The velocity is computed for smooth bodies, so it is an upper bound for rough bodies. None if
-    the case gives a work of adhesion or lacks a density.
-    """
-    pair = case.pair()
-    if case.interface.work_of_adhesion is not None or pair.mass is None:
-        return None
-    smooth = JKR(pair.radius, pair.contact_modulus, TYPICAL_ADHESION)
-    return _MATTERS * float(smooth.sticking_velocity(pair.mass))
+    return list(filter(None, (_default_yield(case), _no_adhesion(case), _no_shortest_wave(case))))
 
 
 def _default_yield(case: Case) -> str | None:
@@ -40,9 +26,11 @@ def _default_yield(case: Case) -> str | None:
     if interface.yield_pressure is not None or interface.yield_strength is not None:
         return None
     yielding = case.yielding()
-    how = f"at the pressure {1e-6 * yielding.yield_pressure:.4g} MPa ({yielding.source})"
-    if math.isfinite(yielding.yield_strength):
-        how = f"according to {yielding.source}"
+    how = (
+        f"according to {yielding.source}"
+        if math.isfinite(yielding.yield_strength)
+        else f"at the pressure {1e-6 * yielding.yield_pressure:.4g} MPa ({yielding.source})"
+    )
     return (
         f"interface.yield_strength is left out: the contact yields {how}; write a strength or a "
         'pressure, or yield_pressure = "elastic" for bodies that do not yield'
@@ -50,8 +38,13 @@ def _default_yield(case: Case) -> str | None:
 
 
 def _no_adhesion(case: Case) -> str | None:
-    below = adhesion_matters_below(case)
-    if below is None or _lowest_velocity(case) >= below:
+    pair = case.pair()
+    if case.interface.work_of_adhesion is not None or pair.mass is None:
+        return None
+    smooth = JKR(pair.radius, pair.contact_modulus, TYPICAL_ADHESION)
+    # Rough bodies adhere less, so this velocity of smooth bodies is an upper bound.
+    below = _MATTERS * float(smooth.sticking_velocity(pair.mass))
+    if _lowest_velocity(case, pair.mass) >= below:
         return None
     return (
         "interface.work_of_adhesion is left out, so there is no adhesion: a typical value of "
@@ -60,23 +53,24 @@ def _no_adhesion(case: Case) -> str | None:
     )
 
 
-def _lowest_velocity(case: Case) -> float:
+def _lowest_velocity(case: Case, mass: float) -> float:
     """The lowest impact velocity (m/s): prescribed, or computed for smooth elastic bodies."""
     first, pair = case.depths()[0], case.pair()
     if case.impact is not None:
         return first
-    assert pair.mass is not None  # checked by adhesion_matters_below
     smooth = Hertz(pair.radius, pair.contact_modulus)
     if case.load is not None:
         first = float(smooth.indentation(first))
-    return float(smooth.impact_velocity(first, pair.mass))
+    return float(smooth.impact_velocity(first, mass))
 
 
 def _no_shortest_wave(case: Case) -> str | None:
     for part in case.roughness:
-        if not isinstance(part, GeneratedRoughness) or part.kind == "gaussian":
-            continue
-        if part.shortest is None:
+        if (
+            isinstance(part, GeneratedRoughness)
+            and part.kind != "gaussian"
+            and part.shortest is None
+        ):
             return (
                 f'roughness.shortest is left out: kind = "{part.kind}" has no shortest wave, so '
                 "the shortest wave is two grid spacings; COR of shallow contacts depends on the "

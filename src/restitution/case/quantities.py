@@ -67,6 +67,8 @@ _BOUNDS = {
     "J/m^2": (1e-9, 1e4),
     "m/s": (1e-9, 1e4),
 }
+# Errors that pint raises for texts that are not a unit: AssertionError for "¼", KeyError for "m⁰".
+_UNIT_ERRORS = (pint.PintError, ValueError, TypeError, AttributeError, AssertionError, KeyError)
 
 
 @lru_cache(maxsize=1)
@@ -100,13 +102,11 @@ def read_quantity(value: object, unit: str) -> float:
     try:
         quantity = _registry().Quantity(1.0, _POWER.sub(r"**\1", name))
         factor = float(quantity.m_as(unit))
-    except pint.DimensionalityError:
+    except _UNIT_ERRORS as error:
+        known = isinstance(error, pint.DimensionalityError)
+        problem = f"is not {_NAMES[unit]}" if known else "has an unknown unit"
         remedy = _other_case(match[2], unit) or example
-        raise ValueError(f"{shown(value)} is not {_NAMES[unit]}; {remedy}") from None
-    except (pint.PintError, ValueError, TypeError, AttributeError, AssertionError, KeyError):
-        # pint raises AssertionError for "¼" and KeyError for "m⁰".
-        remedy = _other_case(match[2], unit) or example
-        raise ValueError(f"{shown(value)} has an unknown unit; {remedy}") from None
+        raise ValueError(f"{shown(value)} {problem}; {remedy}") from None
     if unit == "rad/s" and not any(word in str(quantity.units) for word in _TURNS):
         # In pint, 1 Hz is 1 rad/s, but most users mean one turn per second.
         raise ValueError(f"{shown(value)} is not a spin, because its unit has no angle; {example}")
@@ -125,10 +125,8 @@ def scaled(value: str, factor: float, digits: int = 17) -> str:
 
 def _other_case(name: str, unit: str) -> str | None:
     """Return advice if `name` differs from a usual unit only in upper and lower case ("gpa")."""
-    for usual in _USUAL[unit]:
-        if usual.lower() == name.lower() and usual != name:
-            return f"did you mean {usual}?"
-    return None
+    alike = (usual for usual in _USUAL[unit] if usual.lower() == name.lower() and usual != name)
+    return next((f"did you mean {usual}?" for usual in alike), None)
 
 
 def read_positive(value: Any, unit: str, *, or_zero: bool = False) -> float:
@@ -172,6 +170,6 @@ SurfaceEnergy = Annotated[float, _positive("J/m^2", or_zero=True)]
 Force = Annotated[float, _positive("N")]
 Velocity = Annotated[float, _positive("m/s")]
 Angle = Annotated[float, BeforeValidator(lambda value: read_quantity(value, "rad"))]
-ImpactAngle = Annotated[float, BeforeValidator(lambda value: read_impact_angle(value))]
+ImpactAngle = Annotated[float, BeforeValidator(read_impact_angle)]
 Spin = Annotated[float, BeforeValidator(lambda value: read_quantity(value, "rad/s"))]
 Position = Annotated[float, BeforeValidator(lambda value: read_quantity(value, "m"))]

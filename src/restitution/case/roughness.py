@@ -106,8 +106,8 @@ class GeneratedRoughness(Table):
     periodic: bool = True
 
     def variant(self, number: int) -> Self:
-        """Return the table of another surface with the same statistics; 0 returns this surface."""
-        return self.model_copy(update={"seed": self.seed + number})
+        """Return the table of a single other surface with the same statistics; 0 keeps the seed."""
+        return self.model_copy(update={"seed": self.seed + number, "realisations": 1})
 
     def surface(self, grid: Grid, _: Path, factor: int = 1) -> Surface:
         """Generate the surface on `grid` and interpolate it to cells `factor` times smaller."""
@@ -158,11 +158,10 @@ class MeasuredRoughness(Table):
         return self
 
     def variant(self, number: int) -> Self:
-        """Return the table of another twin, or of another place on the scan; 0 changes nothing."""
-        if self.extend == "twin":
-            assert self.seed is not None  # checked by _twins
-            return self.model_copy(update={"seed": self.seed + number})
-        return self.model_copy(update={"place": self.place + number})
+        """Return the table of a single other twin, or another place on the scan; 0 keeps both."""
+        if self.seed is None:  # only a twin has a seed
+            return self.model_copy(update={"place": self.place + number, "realisations": 1})
+        return self.model_copy(update={"seed": self.seed + number, "realisations": 1})
 
     def scan(self, folder: Path) -> Surface:
         """Read, clean and level the scan; `file` is relative to `folder`."""

@@ -98,9 +98,7 @@ class GridTable(Table):
 
     def grid(self) -> Grid | None:
         """The grid before refinement; None if the scan defines the grid."""
-        if self.nodes is None or self.spacing is None:
-            return None
-        return Grid(self.nodes, self.spacing)
+        return Grid(self.nodes, self.spacing) if self.nodes and self.spacing else None
 
 
 Quantity = TypeVar("Quantity")
@@ -146,11 +144,11 @@ class Series(Table, Generic[Quantity]):
             return sorted(cast(set[float], set(self.values)))
         space = np.geomspace if self.scale == "log" else np.linspace
         first, last = cast(float, self.from_), cast(float, self.to)
-        return [float(v) for v in space(first, last, cast(int, self.steps))]
+        return cast(list[float], space(first, last, cast(int, self.steps)).tolist())
 
 
-def _listed(value: Any) -> Any:
-    return value if isinstance(value, list) else [value]
+_Listed = BeforeValidator(lambda value: value if isinstance(value, list) else [value])
+_Many = Field(min_length=1, max_length=MOST_STEPS)
 
 
 class ImpactTable(Series[Velocity]):
@@ -162,17 +160,11 @@ class ImpactTable(Series[Velocity]):
 
     values: Annotated[
         list[Velocity] | None,
-        BeforeValidator(_listed),
+        _Listed,
         Field(alias="velocity", min_length=1, max_length=MOST_STEPS),
     ] = None
-    angle: Annotated[
-        list[ImpactAngle] | None,
-        BeforeValidator(_listed),
-        Field(min_length=1, max_length=MOST_STEPS),
-    ] = None
-    spin: Annotated[
-        list[Spin] | None, BeforeValidator(_listed), Field(min_length=1, max_length=MOST_STEPS)
-    ] = None
+    angle: Annotated[list[ImpactAngle] | None, _Listed, _Many] = None
+    spin: Annotated[list[Spin] | None, _Listed, _Many] = None
 
     list_key: ClassVar[str] = "velocity"
 
@@ -215,10 +207,10 @@ class ImpactTable(Series[Velocity]):
         normal = [V * math.cos(angle) for V in listed for angle in self.angles()]
         found: list[float] = []
         for V in sorted({*listed, *normal}):
-            if found and V / found[-1] - 1 < _SAME:
-                found[-1] = V if V in listed else found[-1]
-            else:
+            if not found or V / found[-1] - 1 >= _SAME:
                 found.append(V)
+            elif V in listed:
+                found[-1] = V
         return found
 
 

@@ -110,7 +110,7 @@ def _table(case: Case, contact: Contact) -> Table:
     table.add_column(justify="left")
     nx, ny = contact.grid.nodes
     hx, hy = contact.grid.spacing
-    auto = ", before refine" if case.grid is not None and case.grid.refine == "auto" else ""
+    auto = ", before refine" if case.grid.refine == "auto" else ""
     table.add_row("grid", f"{nx} x {ny}", f"nodes of {1e6 * hx:.4g} um x {1e6 * hy:.4g} um{auto}")
     provenance = contact.surface.provenance
     kind = provenance.get("kind") or provenance["source"]

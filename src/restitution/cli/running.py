@@ -134,9 +134,9 @@ def _draw(out: Path, figures: FigureFormat) -> list[Path]:
     from restitution.plots.periodic import periodic_figures
     from restitution.plots.run import run_figures
     from restitution.plots.static import write_figures
-    from restitution.results.kinds import is_periodic
     from restitution.results.periodic import PeriodicResults
     from restitution.results.reader import RunResults
+    from restitution.results.tables import is_periodic
 
     if is_periodic(out):
         return write_figures(out, periodic_figures(PeriodicResults(out).dataset), figures.value)

@@ -38,8 +38,7 @@ def _known(folder: Path) -> dict[str, str]:
     path = folder / CHECKSUMS
     try:
         lines = path.read_text(encoding="utf-8").splitlines()
-        pairs = [line.split("  ", 1) for line in lines]
-        return {name: checksum for checksum, name in pairs}
+        return {name: checksum for checksum, name in (line.split("  ", 1) for line in lines)}
     except (FileNotFoundError, NotADirectoryError):
         return {}
     except (OSError, ValueError):

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from restitution.case.case_file import parse_toml
 from restitution.errors import OutputError
@@ -66,13 +67,11 @@ def _studies(a: Path, b: Path) -> Comparison:
             f"no case has the same swept values in both studies ({a}, {b}); give studies with "
             "common values"
         )
-    rows, notes = [], []
-    for key in common:
-        found, said = _curves(of_a[key], of_b[key], dict(key))
-        rows += found
-        notes += [note for note in said if note not in notes]
+    compared = [_curves(of_a[key], of_b[key], dict(key)) for key in common]
+    rows = [row for found, _ in compared for row in found]
+    notes = list(dict.fromkeys(note for _, said in compared for note in said))
     for name, this, other in ((a, of_a, of_b), (b, of_b, of_a)):
-        if alone := len(this) - len([key for key in this if key in other]):
+        if alone := len(this.keys() - other.keys()):
             notes.append(f"{alone} of {len(this)} cases are in {name} only")
     return Comparison(rows, _inputs(*(study.text for study in studies)), notes)
 
@@ -85,45 +84,16 @@ def _curves(
     The curve `b` is interpolated. Depths of `a` outside the range of `b` are left out.
     """
     depth_b = np.array([row["max_indentation_m"] for row in b])
-    rows, between, beyond = [], 0, 0
-    for row in a:
-        depth = row["max_indentation_m"]
-        same = np.flatnonzero(np.abs(depth_b - depth) <= _SAME * depth)
-        if same.size:
-            k = int(same[0])
-            other, weights = [b[k]], [1.0]
-        elif depth_b.size > 1 and depth_b[0] < depth < depth_b[-1]:
-            k = int(np.searchsorted(depth_b, depth))
-            other, between = [b[k - 1], b[k]], between + 1
-            # Between neighbouring depths COR is nearly linear in the logarithm of depth.
-            share = math.log(depth / depth_b[k - 1]) / math.log(depth_b[k] / depth_b[k - 1])
-            weights = [1 - share, share]
-        else:
-            beyond += 1
-            continue
-
-        def of_b(name: str, other: Any = other, weights: Any = weights) -> float:
-            return float(np.dot(weights, [o[name] for o in other]))
-
-        cor_a, cor_b = row["restitution"], of_b("restitution")
-        error = math.hypot(_error(row), max(map(_error, other)))
-        rows.append(
-            {
-                **swept,
-                "max_indentation_m": depth,
-                "restitution_a": cor_a,
-                "restitution_b": cor_b,
-                "difference": cor_b - cor_a,
-                "error": error,
-                "significant": abs(cor_b - cor_a) > error,
-                "resolved": all(one["resolved"] for one in (row, *other)),
-                "force_ratio": _ratio(of_b("force_N"), row["force_N"]),
-            }
-        )
+    weights = [_weights(depth_b, row["max_indentation_m"]) for row in a]
+    rows = [
+        {**swept, **_difference(row, [b[k] for k in weight], list(weight.values()))}
+        for row, weight in zip(a, weights, strict=True)
+        if weight
+    ]
     notes = []
-    if between:
+    if any(len(weight) > 1 for weight in weights):
         notes.append("depths differ: the second result is interpolated")
-    if beyond:
+    if not all(weights):
         notes.append("depths of the first result outside the range of the second are left out")
     if any(math.isnan(row["discretisation_error"]) for row in (*a, *b)):
         notes.append(
@@ -133,16 +103,45 @@ def _curves(
     return rows, notes
 
 
+def _weights(depths: NDArray[np.float64], depth: float) -> dict[int, float]:
+    """Weights of the rows of a curve for interpolation at `depth`; empty outside its range."""
+    same = np.flatnonzero(np.abs(depths - depth) <= _SAME * depth)
+    if same.size:
+        return {int(same[0]): 1.0}
+    if depths.size < 2 or not depths[0] < depth < depths[-1]:
+        return {}
+    k = int(np.searchsorted(depths, depth))
+    # Between neighbouring depths COR is nearly linear in the logarithm of depth.
+    share = math.log(depth / depths[k - 1]) / math.log(depths[k] / depths[k - 1])
+    return {k - 1: 1 - share, k: share}
+
+
+def _difference(row: _Row, other: Sequence[_Row], weights: Sequence[float]) -> dict[str, Any]:
+    """Compare a row with the weighted mean of the rows `other`."""
+    cor_a = row["restitution"]
+    cor_b, force_b = (
+        float(np.dot(weights, [each[name] for each in other]))
+        for name in ("restitution", "force_N")
+    )
+    error = math.hypot(_error(row), max(map(_error, other)))
+    return {
+        "max_indentation_m": row["max_indentation_m"],
+        "restitution_a": cor_a,
+        "restitution_b": cor_b,
+        "difference": cor_b - cor_a,
+        "error": error,
+        "significant": abs(cor_b - cor_a) > error,
+        "resolved": all(each["resolved"] for each in (row, *other)),
+        "force_ratio": force_b / row["force_N"] if row["force_N"] else math.nan,
+    }
+
+
 def _error(row: _Row) -> float:
     """Error of COR: root sum of squares of its numerical error, grid error and ensemble error."""
     parts = [row["restitution_error"], row["discretisation_error"]]
     if "restitution_low" in row:
         parts.append(0.5 * (row["restitution_high"] - row["restitution_low"]))
     return math.hypot(*(part for part in parts if not math.isnan(part)))
-
-
-def _ratio(over: float, under: float) -> float:
-    return over / under if under else math.nan
 
 
 def _complete_cases(

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
 
-_SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")  # Windows has no SIGHUP
+_NAMES = ("SIGINT", "SIGTERM", "SIGHUP")  # Windows has no SIGHUP
 _Handler = Callable[[int, FrameType | None], object]
 
 _depth = 0  # number of nested `hold_signals`
@@ -46,10 +46,9 @@ def hold_signals() -> Iterator[None]:
 
 
 def _install() -> None:
-    for name in _SIGNALS:
-        number = getattr(signal, name, None)
-        handler = None if number is None else signal.getsignal(number)
-        if number is not None and callable(handler) and handler is not _note:
+    for number in (getattr(signal, name) for name in _NAMES if hasattr(signal, name)):
+        handler = signal.getsignal(number)
+        if callable(handler) and handler is not _note:
             _handlers[number] = handler
             signal.signal(number, _note)
 

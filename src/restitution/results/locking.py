@@ -22,18 +22,16 @@ def locked(folder: Path) -> Iterator[None]:
     `OutputError` if another process holds the lock or the folder cannot be written.
     """
     lock = FileLock(folder / LOCK)
-    try:
-        with writing(folder):
-            new = not folder.exists()
-            folder.mkdir(parents=True, exist_ok=True)
+    with writing(folder):
+        new = not folder.exists()
+        folder.mkdir(parents=True, exist_ok=True)
+        try:
             lock.acquire(blocking=False)
-    except OutputError as error:
-        if not isinstance(error.__cause__, Timeout):
-            raise
-        raise OutputError(
-            f"{folder}: another process is writing to this folder; wait for it or stop it, or name "
-            "another folder with -o"
-        ) from None
+        except Timeout:
+            raise OutputError(
+                f"{folder}: another process is writing to this folder; wait for it or stop it, or "
+                "name another folder with -o"
+            ) from None
     try:
         yield
     finally:

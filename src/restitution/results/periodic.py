@@ -19,6 +19,7 @@ from restitution.contact.state import State
 from restitution.display import quantity, summary_html, summary_text
 from restitution.results.reader import read_json, read_netcdf
 from restitution.results.schema import Column
+from restitution.results.writer import dataset_with_maps
 
 _PATCH = "nodes in the patch of the median contact node"
 COLUMNS = {
@@ -105,28 +106,13 @@ def periodic_row(state: State) -> dict[str, float]:
 
 def periodic_dataset(rows: Sequence[Mapping[str, float]], deepest: State) -> xr.Dataset:
     """Make the content of `results.nc`, with units: the curve, and maps of the deepest state."""
-    grid = deepest.contact.grid
     data = {
-        column.variable: (
-            "depth",
-            np.array([row[name] for row in rows]),
-            {"units": column.unit, "long_name": column.meaning},
-        )
+        column.variable: column.labelled("depth", np.array([row[name] for row in rows]))
         for name, column in COLUMNS.items()
     }
-    maps = {
-        "height": (deepest.contact.surface.height, "m", "composite roughness"),
-        "pressure": (deepest.pressure, "Pa", "contact pressure at the deepest state"),
-        "plastic_displacement": (deepest.plastic_displacement, "m", "lowering by yielding"),
-    }
-    along = {"x": ("x", grid.x, {"units": "m"}), "y": ("y", grid.y, {"units": "m"})}
-    return xr.Dataset(
-        {
-            **data,
-            **{
-                name: (("x", "y"), values, {"units": unit, "long_name": meaning})
-                for name, (values, unit, meaning) in maps.items()
-            },
-        },
-        along,
+    return dataset_with_maps(
+        data,
+        deepest,
+        pressure="contact pressure at the deepest state",
+        lowering="lowering by yielding",
     )

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -21,16 +22,23 @@ from restitution.display import counted, quantity, summary_html, summary_text
 from restitution.errors import CaseError, OutputError
 from restitution.results.checksums import check_file
 from restitution.results.interruption import hold_signals
-from restitution.results.kinds import require_restitution
 from restitution.results.schema import (
+    ALL_COLUMNS,
     COLUMNS,
     OBLIQUE_COLUMNS,
     OBLIQUE_FILE,
     OBLIQUE_SPREAD_COLUMNS,
     STATUS,
+    Column,
 )
-from restitution.results.summaries import curve_lines, run_lines, study_lines
-from restitution.results.tables import check_number, damaged, read_cells, read_numbers, reading
+from restitution.results.tables import (
+    check_number,
+    damaged,
+    read_cells,
+    read_numbers,
+    reading,
+    require_restitution,
+)
 
 Array = NDArray[np.float64]
 
@@ -43,29 +51,31 @@ class Curve:
     cells: list[dict[str, str]]
 
     def _summary(self) -> list[str]:
-        return curve_lines(self.rows)
+        columns = f": {', '.join(list(self.rows[0])[:3])}, …" if self.rows else ""
+        return [f"{counted(len(self.rows), 'row')}{columns}"]
 
     __repr__ = summary_text
     _repr_html_ = summary_html
 
 
-class _Model(BaseModel):
+class _Stored(BaseModel):
     model_config = ConfigDict(extra="allow", strict=True)
+
+
+class _Model(_Stored):
     plasticity: str
     adhesion: str
     nodes: Annotated[list[int], Field(min_length=2, max_length=2)]
     spacing: Annotated[list[FiniteFloat], Field(min_length=2, max_length=2)]
 
 
-class _Diagnostics(BaseModel):
-    model_config = ConfigDict(extra="allow", strict=True)
+class _Diagnostics(_Stored):
     largest_residual: FiniteFloat
 
 
-class _Summary(BaseModel):
+class _Summary(_Stored):
     """The keys of `summary.json` that readers use."""
 
-    model_config = ConfigDict(extra="allow", strict=True)
     title: str
     status: str
     reason: str
@@ -107,11 +117,7 @@ class RunResults:
     @cached_property
     def curve(self) -> Curve:
         """The rows of `curve.csv`."""
-        path = self.folder / "curve.csv"
-        cells = read_cells(path, COLUMNS)
-        curve = Curve([read_numbers(path, line, row) for line, row in enumerate(cells, 2)], cells)
-        check_file(path)
-        return curve
+        return _read_table(self.folder / "curve.csv", COLUMNS, ALL_COLUMNS)
 
     @cached_property
     def summary(self) -> dict[str, Any]:
@@ -181,11 +187,7 @@ class RunResults:
         path = self.folder / OBLIQUE_FILE
         if not path.exists():
             return []
-        cells = read_cells(path, OBLIQUE_COLUMNS)
-        columns = OBLIQUE_COLUMNS | OBLIQUE_SPREAD_COLUMNS
-        rows = [read_numbers(path, line, row, columns) for line, row in enumerate(cells, 2)]
-        check_file(path)
-        return rows
+        return _read_table(path, OBLIQUE_COLUMNS, OBLIQUE_COLUMNS | OBLIQUE_SPREAD_COLUMNS).rows
 
     @property
     def _netcdf(self) -> Path:
@@ -211,15 +213,23 @@ class RunResults:
 
     def _summary(self) -> list[str]:
         try:
-            return run_lines(self.folder, self.curve.rows, self.summary)
+            rows, summary = self.curve.rows, self.summary
         except OutputError as error:
             return [str(error)]
+        depths = [row["max_indentation_m"] for row in rows]
+        e = [row["restitution"] for row in rows]
+        span = f" to {quantity(max(depths), 'm')}, COR {min(e):.4f} to {max(e):.4f}" if e else ""
+        warned = counted(len(summary["warnings"]), "warning")
+        return [
+            f'"{summary["title"]}", {summary["status"]}, {warned}; {self.folder}',
+            f"{len(rows)} of {counted(summary['depths_asked'], 'depth')}{span}",
+        ]
 
     __repr__ = summary_text
     _repr_html_ = summary_html
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class EnsembleResults(RunResults):
     """The results of one case on several surfaces; each row is a mean over the surfaces."""
 
@@ -227,8 +237,6 @@ class EnsembleResults(RunResults):
     def surfaces(self) -> int:
         """Number of surfaces, including failed ones."""
         return len(self.summary["realisations"])
-
-    __repr__ = summary_text
 
 
 @dataclass(frozen=True)
@@ -294,9 +302,13 @@ class StudyResults:
     def _summary(self) -> list[str]:
         try:
             cases = self.cases
-            return study_lines(self.folder, [c.status for c in cases], [c.swept for c in cases])
         except OutputError as error:
             return [str(error)]
+        ends = Counter(case.status for case in cases)
+        values = {key: len({case.swept[key] for case in cases}) for key in cases[0].swept}
+        count = ", ".join(f"{number} {status}" for status, number in ends.items())
+        keys = ", ".join(f"{key} ({counted(number, 'value')})" for key, number in values.items())
+        return [f"{counted(len(cases), 'case')}, {count}; {self.folder}", f"swept: {keys}"]
 
     __repr__ = summary_text
     _repr_html_ = summary_html
@@ -307,6 +319,14 @@ def read_run(folder: Path) -> RunResults:
     require_restitution(folder)
     run = RunResults(folder)
     return EnsembleResults(folder) if "realisations" in run.summary else run
+
+
+def _read_table(path: Path, required: Iterable[str], columns: Mapping[str, Column]) -> Curve:
+    """Read and check a table: its cells, and as numbers those in `columns`."""
+    cells = read_cells(path, required)
+    rows = [read_numbers(path, line, row, columns) for line, row in enumerate(cells, 2)]
+    check_file(path)
+    return Curve(rows, cells)
 
 
 def read_text(path: Path) -> str:

@@ -24,6 +24,10 @@ class Column:
     optional: bool = False
     flag: bool = False
 
+    def labelled(self, along: str | tuple[str, ...], values: object) -> tuple[object, ...]:
+        """Make the variable of `results.nc`: `values` along the dimensions, unit and meaning."""
+        return along, values, {"units": self.unit, "long_name": self.meaning}
+
 
 COLUMNS = {
     "max_indentation_m": Column("indentation", "m", "maximum indentation"),
@@ -142,6 +146,7 @@ SPREAD_COLUMNS = {
     ),
 }
 ALL_COLUMNS = COLUMNS | SPREAD_COLUMNS
+PERIODIC_FILE = "periodic.csv"  # the curve of a periodic contact, instead of curve.csv
 OBLIQUE_FILE = "oblique.csv"
 # Columns of the table of oblique impacts. The tangential restitution and the angle of rebound refer
 # to the velocity of the centres of the bodies.

@@ -1,4 +1,7 @@
-"""Read the tables of stored results as text and as numbers, and report damaged files."""
+"""Read the tables of stored results as text and as numbers, and report damaged files.
+
+Also find out whether a folder holds a periodic contact, whose tables have other columns.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,21 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from restitution.errors import OutputError, one_line
-from restitution.results.schema import ALL_COLUMNS, Column
+from restitution.results.schema import ALL_COLUMNS, PERIODIC_FILE, Column
+
+
+def is_periodic(folder: Path) -> bool:
+    """Whether `folder` holds the results of a periodic contact."""
+    return (folder / PERIODIC_FILE).is_file()
+
+
+def require_restitution(folder: Path) -> None:
+    """Raise `OutputError` if `folder` holds a periodic contact, which has no restitution."""
+    if is_periodic(folder):
+        raise OutputError(
+            f"{folder}: holds the results of a periodic contact, which has no restitution; read "
+            f"{PERIODIC_FILE} and results.nc"
+        )
 
 
 def damaged(path: Path, why: object) -> OutputError:
@@ -61,24 +78,26 @@ def read_numbers(
 
     Raises `OutputError` for a cell that a run cannot have written.
     """
-    found = {}
-    for name, column in columns.items():
-        if name not in cells:
-            continue
-        text, where = cells[name], f"line {line}: {name}"
-        if column.flag:
-            if text not in ("true", "false"):
-                raise damaged(path, f"{where} is {text!r}, not true or false")
-            found[name] = float(text == "true")
-            continue
-        try:
-            found[name] = float(text) if text else math.nan
-        except ValueError:
-            raise damaged(path, f"{where} is {text!r}, not a number") from None
-        if text and math.isnan(found[name]):
-            raise damaged(path, f"{where} is {text!r}, not a number")
-        check_number(path, where, column, found[name])
-    return found
+    return {
+        name: _number(path, f"line {line}: {name}", column, cells[name])
+        for name, column in columns.items()
+        if name in cells
+    }
+
+
+def _number(path: Path, where: str, column: Column, text: str) -> float:
+    if column.flag:
+        if text not in ("true", "false"):
+            raise damaged(path, f"{where} is {text!r}, not true or false")
+        return float(text == "true")
+    try:
+        value = float(text) if text else math.nan
+    except ValueError:
+        raise damaged(path, f"{where} is {text!r}, not a number") from None
+    if text and math.isnan(value):
+        raise damaged(path, f"{where} is {text!r}, not a number")
+    check_number(path, where, column, value)
+    return value
 
 
 def check_number(path: Path, where: str, column: Column, value: float) -> None:

@@ -17,6 +17,7 @@ import os
 import platform
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from itertools import zip_longest
 from pathlib import Path
 from typing import IO, Any
 
@@ -44,6 +45,7 @@ from restitution.results.schema import (
     OBLIQUE_FILE,
     OBLIQUE_SPREAD_COLUMNS,
     UNLOADING_COLUMNS,
+    Column,
 )
 
 _BLOCK = 1 << 16  # bytes written to find out whether the disk is full
@@ -59,7 +61,6 @@ def curve_row(
     """
     patches = state.patch_sizes()
     median = median_patch(patches)
-    velocity = collision.impact_velocity
     values = (
         state.indentation + touch,
         state.force,
@@ -69,7 +70,7 @@ def curve_row(
         collision.loading_work,
         collision.unloading_work,
         collision.restitution,
-        math.nan if velocity is None else velocity,
+        math.nan if collision.impact_velocity is None else collision.impact_velocity,
         state.contact_nodes,
         patches.size,
         int(patches[0]) if patches.size else 0,
@@ -92,8 +93,8 @@ def curve_row(
 def versions() -> dict[str, str]:
     """Versions of this program and of the packages that its results depend on."""
     packages = ("restitution", "numpy", "scipy", "ducc0", "xarray", "netCDF4")
-    found = {name: importlib.metadata.version(name) for name in packages}
-    return {**found, "python": platform.python_version()}
+    python = {"python": platform.python_version()}
+    return {name: importlib.metadata.version(name) for name in packages} | python
 
 
 class ResultsFolder:
@@ -126,10 +127,6 @@ class ResultsFolder:
         with hold_signals():
             _write_row(self._curve, [format_cell(value) for value in row.values()])
             self.rows.append(row)
-
-    def part(self, name: str) -> ResultsFolder:
-        """Make a results folder inside this folder, for one of several runs."""
-        return ResultsFolder(self.path / name)
 
     def put_curve(self, rows: list[dict[str, float]]) -> None:
         """Replace the whole of `curve.csv` with `rows`."""
@@ -275,10 +272,8 @@ def results_dataset(folder: ResultsFolder, deepest: State) -> xr.Dataset:
     if folder.unloading:
         depths, curves = zip(*folder.unloading, strict=True)
         # Pad shorter curves with NaN.
-        points = np.full((len(curves), max(map(len, curves)), 2), np.nan)
-        for k, curve in enumerate(curves):
-            points[k, : len(curve)] = curve
-        indentation, force = np.moveaxis(points, -1, 0)
+        steps = np.array(list(zip_longest(*curves, fillvalue=(math.nan, math.nan))))
+        indentation, force = steps.transpose(2, 1, 0)
         along = ("unloading", "unloading_step")
         data["unloading_from"] = (
             "unloading",
@@ -287,31 +282,39 @@ def results_dataset(folder: ResultsFolder, deepest: State) -> xr.Dataset:
         )
         data["unloading_indentation"] = (along, indentation, {"units": "m"})
         data["unloading_force"] = (along, force, {"units": "N"})
+    return dataset_with_maps(
+        data,
+        deepest,
+        pressure="contact pressure at the deepest indentation",
+        lowering="lowering of the surface by yielding",
+    )
+
+
+def dataset_with_maps(
+    data: Mapping[str, Any], deepest: State, *, pressure: str, lowering: str
+) -> xr.Dataset:
+    """Make a dataset of the variables `data` and of maps of the deepest state.
+
+    `pressure` and `lowering` are the meanings of the maps of pressure and plastic displacement.
+    """
     grid = deepest.contact.grid
     coordinates = {"x": ("x", grid.x, {"units": "m"}), "y": ("y", grid.y, {"units": "m"})}
-    maps = {
-        "height": (deepest.contact.surface.height, "m", "composite roughness"),
-        "pressure": (deepest.pressure, "Pa", "contact pressure at the deepest indentation"),
-        "plastic_displacement": (
-            deepest.plastic_displacement,
-            "m",
-            "lowering of the surface by yielding",
-        ),
-    }
-    for name, (values, unit, meaning) in maps.items():
-        data[name] = (("x", "y"), values, {"units": unit, "long_name": meaning})
-    return xr.Dataset(data, coordinates)
+    maps = (
+        (Column("height", "m", "composite roughness"), deepest.contact.surface.height),
+        (Column("pressure", "Pa", pressure), deepest.pressure),
+        (Column("plastic_displacement", "m", lowering), deepest.plastic_displacement),
+    )
+    labelled = {column.variable: column.labelled(("x", "y"), values) for column, values in maps}
+    return xr.Dataset({**data, **labelled}, coordinates)
 
 
 def curve_variables(rows: Sequence[Mapping[str, float]]) -> dict[str, Any]:
     """Make the variables of `results.nc` for the rows of a curve."""
-    data: dict[str, Any] = {}
-    for name, column in ALL_COLUMNS.items():
-        if rows and name in rows[0]:
-            values = np.array([row[name] for row in rows])
-            attributes = {"units": column.unit, "long_name": column.meaning}
-            data[column.variable] = ("indentation_max", values, attributes)
-    return data
+    return {
+        column.variable: column.labelled("indentation_max", np.array([row[name] for row in rows]))
+        for name, column in ALL_COLUMNS.items()
+        if rows and name in rows[0]
+    }
 
 
 def oblique_variables(rows: Sequence[Mapping[str, float]]) -> dict[str, Any]:
@@ -322,23 +325,22 @@ def oblique_variables(rows: Sequence[Mapping[str, float]]) -> dict[str, Any]:
     """
     if not rows:
         return {}
-    columns = OBLIQUE_COLUMNS | OBLIQUE_SPREAD_COLUMNS
-    keys = list(columns)[:2]
-    along = [sorted({row[key] for row in rows}) for key in keys]
-    at = tuple(
-        [values.index(row[key]) for row in rows] for key, values in zip(keys, along, strict=True)
-    )
-    data: dict[str, Any] = {}
-    for name, column in columns.items():
-        if name not in rows[0]:
-            continue
-        attributes = {"units": column.unit, "long_name": column.meaning}
-        if name in keys:
-            data[column.variable] = (column.variable, along[keys.index(name)], attributes)
-            continue
-        values = np.full([len(each) for each in along], np.nan)
-        values[at] = [row[name] for row in rows]
-        data[column.variable] = ([columns[key].variable for key in keys], values, attributes)
+    cells = {
+        column: [row[name] for row in rows]
+        for name, column in (OBLIQUE_COLUMNS | OBLIQUE_SPREAD_COLUMNS).items()
+        if name in rows[0]
+    }
+    axes, others = list(cells)[:2], list(cells)[2:]
+    ticks, at = zip(*(np.unique(cells[axis], return_inverse=True) for axis in axes), strict=True)
+    along = tuple(axis.variable for axis in axes)
+    data = {
+        axis.variable: axis.labelled(axis.variable, values)
+        for axis, values in zip(axes, ticks, strict=True)
+    }
+    for column in others:
+        values = np.full([each.size for each in ticks], np.nan)
+        values[at] = cells[column]
+        data[column.variable] = column.labelled(along, values)
     return data
 
 

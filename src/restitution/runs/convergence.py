@@ -80,7 +80,8 @@ def run_convergence(
             case = with_chosen_adhesion(case, case.contact(folder), log.warn)
         unsettled[:] = log.warnings
         for factor, later in _levels(case, folder, grids).items():
-            part, refined = out.part(f"refine-{factor}"), _pressed_less(case, later)
+            part = ResultsFolder(out.path / f"refine-{factor}")
+            refined = _pressed_less(case, later)
             if not refined.depths():
                 warn(f"refine = {factor}: this grid has no contact at any depth and is left out")
                 part.discard()
@@ -132,9 +133,9 @@ def _levels(case: Case, folder: Path, grids: int) -> dict[int, float]:
         raise CaseError(
             "roughness.realisations: a convergence study uses one surface; remove this key"
         )
-    coarsest = case.grid.factor if case.grid else 1
+    coarsest = case.grid.factor
     factors = [coarsest * 2**k for k in range(grids)]
-    own = case.grid.grid() if case.grid else None
+    own = case.grid.grid()
     nx, ny = own.nodes if own else case.refined(1).surface(folder).grid.nodes
     if nx * ny * factors[-1] ** 2 > MOST_NODES:
         raise CaseError(

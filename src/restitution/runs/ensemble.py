@@ -97,7 +97,7 @@ class _Ensemble:
         name = f"realisation {number + 1} of {self.case.realisations}"
         case = self.case.realisation(number)
         title = f"{case.title}, {name}" if case.title else name
-        part = self.out.part(f"realisation-{number + 1}")
+        part = ResultsFolder(self.out.path / f"realisation-{number + 1}")
         reason = ""
         try:
             # Most input warnings are the same for all surfaces, so only those of the first

@@ -155,7 +155,7 @@ def add_errors(
     band: list[float] = []
     for factor in dict.fromkeys(int(row["refine"]) for row in rows):
         level = [row for row in rows if row["refine"] == factor and row["loading_work_J"] > 0]
-        own = case.grid is None or case.grid.factor == factor
+        own = case.grid.factor == factor
         its, of = (case, surface) if own else (case.refined(factor), None)
         if level:
             of = its.surface(folder) if of is None else of

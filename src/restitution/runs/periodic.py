@@ -19,8 +19,8 @@ from restitution.contact.state import State
 from restitution.numerics.convolution.device import current
 from restitution.numerics.kernels import instruction_set
 from restitution.results.interruption import hold_signals
-from restitution.results.kinds import PERIODIC_FILE
 from restitution.results.periodic import periodic_dataset, periodic_row
+from restitution.results.schema import PERIODIC_FILE
 from restitution.results.writer import ResultsFolder, versions, write_table
 from restitution.runs.log import RunLog, Say, ignore
 from restitution.runs.messages import input_warnings, message, naming_keys, require_possible
@@ -107,7 +107,7 @@ def _write_results(
             "adhesion": contact.adhesion if contact.adhesive else "none",
             "half_space": "periodic, 2/(E* |q|), no mean displacement, FFT without padding",
             **asdict(contact.grid),
-            "refine": case.grid.refine if case.grid else 1,
+            "refine": case.grid.refine,
             "yield_pressure": case.yielding().source,
         },
         "conventions": CONVENTIONS,

@@ -32,7 +32,7 @@ def settled(case: Case, folder: Path, warn: Say = ignore) -> Case:
     up to `MOST_NODES` nodes resolves a depth, the depth gets the finest grid, and `warn` is called.
     Raises the errors of `solve`.
     """
-    if case.grid is None or case.grid.refine != "auto":
+    if case.grid.refine != "auto":
         return case
     depths = case.depths()
     factors: list[int] = []  # factors found so far: those of the deepest depths

@@ -248,7 +248,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> d
             **_adhesion_of(contact, case),
             "half_space": "free, Love cells, zero-padded FFT",
             **asdict(contact.grid),
-            "refine": case.grid.refine if case.grid else 1,
+            "refine": case.grid.refine,
             "yield_pressure": case.yielding().source,
         },
         "materials": _materials(case),
