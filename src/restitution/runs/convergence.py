@@ -28,6 +28,7 @@ from restitution.results.reader import RunResults
 from restitution.results.schema import COLUMNS
 from restitution.results.total_error import total
 from restitution.results.writer import ResultsFolder, curve_variables, write_table
+from restitution.runs.depths import later_touches
 from restitution.runs.error_budget import (
     MISSING_BAND,
     Band,
@@ -36,7 +37,7 @@ from restitution.runs.error_budget import (
     widened_error,
 )
 from restitution.runs.log import RunLog, Say, ignore
-from restitution.runs.refinement import later_touches, settled, with_chosen_adhesion
+from restitution.runs.refinement import settled, with_chosen_adhesion
 from restitution.runs.run import run_case
 
 _Row = dict[str, float]

@@ -31,17 +31,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.case.case import Case
 from restitution.contact.checks.resolution import resolves
 from restitution.results.total_error import total
-from restitution.runs.companions import SURFACES, Companions
+from restitution.runs.companions import SURFACES, Array, Companions
 from restitution.runs.log import Say, ignore
 from restitution.surfaces import Surface, rms_slope
 from restitution.surfaces.refine import coarsen
 
-Array = NDArray[np.float64]
 Row = dict[str, float]
 
 _BAND = 1.5  # safety factor on the change of COR expected from waves that the grid leaves out

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from pathlib import Path
 
 from restitution.case.case import Case
@@ -11,7 +10,7 @@ from restitution.contact.checks.resolution import NODES_PER_PATCH, median_patch
 from restitution.contact.cohesive import resolves_range
 from restitution.contact.contact import Contact
 from restitution.errors import DomainError, NotConvergedError
-from restitution.runs.loading import load_to
+from restitution.runs.depths import load_to
 from restitution.runs.log import Say, ignore
 from restitution.runs.messages import no_range
 
@@ -80,19 +79,6 @@ def with_chosen_adhesion(case: Case, contact: Contact, warn: Say = ignore) -> Ca
         warn(line)
     interface = case.interface.model_copy(update={"adhesion": contact.adhesion})
     return case.model_copy(update={"interface": interface})
-
-
-def later_touches(case: Case, folder: Path, factors: Iterable[int]) -> dict[int, float]:
-    """Extra approach (m) to first touch on each grid, compared with the finest of these grids.
-
-    A coarse grid touches later because the highest point of the surface lies between its nodes.
-    """
-    R, touch = case.pair().radius, {}
-    for factor in factors:
-        surface = case.refined(factor).surface(folder)
-        x, y = surface.grid.x[:, None], surface.grid.y[None, :]
-        touch[factor] = float(((x * x + y * y) / (2 * R) - surface.height).min())
-    return {factor: touch[factor] - touch[max(touch)] for factor in touch}
 
 
 def _first_resolved(case: Case, contact: Contact, depths: list[float]) -> int:

@@ -24,6 +24,7 @@ from restitution.numerics.quadratic.fused_ops import Bound
 from restitution.numerics.quadratic.grid_transfer import prolong, restrict
 from restitution.numerics.quadratic.local_mean import damp_local_mean
 from restitution.numerics.quadratic.minimise import (
+    Array,
     BoundedQuadratic,
     Minimum,
     Operator,
@@ -32,7 +33,6 @@ from restitution.numerics.quadratic.minimise import (
 )
 from restitution.numerics.reductions import dot
 
-Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 # Function that builds the operator and its approximate inverse for a shape (nodes) and a level n.

@@ -18,7 +18,6 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.numerics.box import Box, bounding_box, shape_of, widen
 from restitution.numerics.convolution.operators import Convolution
@@ -30,6 +29,7 @@ from restitution.numerics.quadratic.local_mean import (
     subtract_local_mean,
 )
 from restitution.numerics.quadratic.minimise import (
+    Array,
     BoundedQuadratic,
     Minimum,
     Operator,
@@ -44,8 +44,6 @@ from restitution.numerics.quadratic.multilevel import (
     may_coarsen,
     mean_damping,
 )
-
-Array = NDArray[np.float64]
 
 _COARSE_ACCURACY = 1e-3  # tolerance on coarser grids, as a fraction of the largest b
 _PLACES = 12  # number of places along each axis for which local means are computed (`local_mean`)

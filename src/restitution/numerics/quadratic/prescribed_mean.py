@@ -14,13 +14,15 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.numerics.quadratic.grid_transfer import prolong
-from restitution.numerics.quadratic.minimise import BoundedQuadratic, Minimum, minimise_quadratic
+from restitution.numerics.quadratic.minimise import (
+    Array,
+    BoundedQuadratic,
+    Minimum,
+    minimise_quadratic,
+)
 from restitution.numerics.quadratic.multilevel import Operators, coarsened, may_coarsen
-
-Array = NDArray[np.float64]
 
 _MAX_SOLVES = 60  # solves on one grid after which the search counts as not converged
 
