@@ -100,7 +100,13 @@ def collision_at(
     followed = state.contact.adhesive and case.unloading.method == "path"
     back: list[State] = []
     if followed or unload:
-        steps, tolerance = case.unloading.steps, case.unloading.restitution_error
         with naming_keys():
-            back = list(unloading_path(state, steps=steps, tolerance=tolerance, known=known))
+            back = list(
+                unloading_path(
+                    state,
+                    steps=case.unloading.steps,
+                    tolerance=case.unloading.restitution_error,
+                    known=known,
+                )
+            )
     return collide(state, back if followed else None, method=case.unloading.method), back

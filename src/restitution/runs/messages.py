@@ -38,8 +38,7 @@ _KEYS = {"force": "load", "velocity": "impact"}  # key of the case file for argu
 
 def require_possible(contact: Contact, indentation: float) -> None:
     """Raise `CaseError` or `SurfaceError` if results at `indentation` (m) would be meaningless."""
-    found = impossible(contact, indentation)
-    if found is not None:
+    if (found := impossible(contact, indentation)) is not None:
         raise _ERRORS[found.code](message(found))
 
 

@@ -45,10 +45,9 @@ def run_periodic(
     """
     log, deepest = RunLog(progress, warn), list[State]()
 
-    def keep() -> dict[str, Any] | None:
-        return _write_results(case, text, out, log, deepest[-1]) if deepest else None
-
-    with log.record(out, keep):
+    with log.record(
+        out, lambda: _write_results(case, text, out, log, deepest[-1]) if deepest else {}
+    ):
         contact = case.contact(folder)
         last = deepest_indentation(case)
         require_possible(contact, last)
@@ -62,7 +61,6 @@ def run_periodic(
                 deepest[:] = [state]
                 write_table(out.path / PERIODIC_FILE, out.rows)
             progress(f"{number} of {len(depths)} depths")
-    assert log.summary is not None  # if there is no depth, an error was raised above
     return log.summary
 
 

@@ -66,9 +66,8 @@ def solve_near_guess(
     if min(size) >= MIN_NODES_FOR_GUESS:
         p, displacement = _guess(operators, b, 1)
         window = bounding_box((p > 0) | (displacement < b))
-    if window is None:
-        window = slice(0, size[0]), slice(0, size[1])
-    window = widen(window, MARGIN, size)
+    whole_grid = slice(0, size[0]), slice(0, size[1])
+    window = whole_grid if window is None else widen(window, MARGIN, size)
     K, inverse = operators(shape_of(window), 0)
     found = _solve_from(
         p[window],
