@@ -25,8 +25,7 @@ def available() -> float:
 
 def require(needed: float, what: str, remedy: str) -> None:
     """Raise `CaseError` if `what` needs more memory (`needed`, bytes) than is available."""
-    there = available()
-    if needed > there:
+    if needed > (there := available()):
         raise CaseError(
             f"{what} take about {in_words(needed)} of memory, but {in_words(there)} are available; "
             f"{remedy}"

@@ -52,13 +52,11 @@ class Curve:
         """
         from scipy.interpolate import PchipInterpolator
 
-        if self.work.size == 0:
-            return np.full(np.shape(work), math.nan)
-        if self.work.size == 1:
-            return np.full(np.shape(work), self.restitution[0])
+        if self.work.size < 2:
+            return np.full(np.shape(work), self.restitution[0] if self.work.size else math.nan)
         inside = np.clip(work, self.work[0], self.work[-1])
-        found: Array = PchipInterpolator(np.log(self.work), self.restitution)(np.log(inside))
-        return found
+        between = PchipInterpolator(np.log(self.work), self.restitution)
+        return np.asarray(between(np.log(inside)))
 
 
 def curve_of(

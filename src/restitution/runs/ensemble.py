@@ -21,7 +21,7 @@ from restitution.results.writer import (
     oblique_variables,
     write_table,
 )
-from restitution.runs.error_budget import MISSING_BAND, add_errors, total_error_summary
+from restitution.runs.error_budget import MISSING_BAND, Row, add_errors, total_error_summary
 from restitution.runs.log import RunLog, Say, ignore
 from restitution.runs.messages import message
 from restitution.runs.oblique import mean_oblique
@@ -30,7 +30,6 @@ from restitution.runs.refinement import settled
 from restitution.runs.run import run_case
 
 CONFIDENCE = 0.95
-_Row = dict[str, float]
 # Columns of an ensemble's curve that are not means, and the functions that combine the surfaces.
 _WORST: dict[str, Callable[[list[float]], float]] = {
     "residual": max,
@@ -79,11 +78,11 @@ class _Ensemble:
         self, case: Case, text: str, folder: Path, out: ResultsFolder, log: RunLog
     ) -> None:
         self.case, self.text, self.folder, self.out, self.log = case, text, folder, out, log
-        self.curves: dict[int, list[_Row]] = {}
-        self.oblique: list[list[_Row]] = []
+        self.curves: dict[int, list[Row]] = {}
+        self.oblique: list[list[Row]] = []
         self.failures: list[RestitutionError] = []
         self.ended: list[dict[str, Any]] = []
-        self.errors: list[_Row] = []
+        self.errors: list[Row] = []
         self.band_errors: list[float] = []
 
     def compute(self) -> None:
@@ -163,8 +162,11 @@ class _Ensemble:
         summary = self._summary(one.summary)
         self.out.put_oblique(mean_oblique(self.oblique))
         dataset = one.smooth().assign(curve_variables(rows) | oblique_variables(self.out.oblique))
-        dataset.attrs |= {key: summary[key] for key in ("title", "status")}
-        dataset.attrs["warnings"] = "\n".join(summary["warnings"])
+        dataset.attrs |= {
+            "title": self.case.title,
+            "status": self.log.status,
+            "warnings": "\n".join(summary["warnings"]),
+        }
         self.out.write(dataset, summary)
         return summary
 
@@ -201,7 +203,7 @@ class _Ensemble:
             "seconds": self.log.seconds,
         }
 
-    def _result_warnings(self, whole: list[_Row]) -> Iterator[str]:
+    def _result_warnings(self, whole: list[Row]) -> Iterator[str]:
         """Yield the warnings about the rows of all surfaces (`whole`) and about their means."""
         depths = [row["max_indentation_m"] for row in whole]
         patches = [row["median_patch_nodes"] for row in whole]
@@ -220,7 +222,7 @@ class _Ensemble:
             )
 
 
-def mean_rows(curves: Sequence[Sequence[_Row]], errors: Sequence[_Row] = ()) -> list[_Row]:
+def mean_rows(curves: Sequence[Sequence[Row]], errors: Sequence[Row] = ()) -> list[Row]:
     """Make the curve of an ensemble: for each depth, a row of means over the surfaces.
 
     A row is computed from the surfaces that reached its depth.
@@ -239,7 +241,7 @@ def mean_rows(curves: Sequence[Sequence[_Row]], errors: Sequence[_Row] = ()) -> 
     rows = []
     for depth in range(max(map(len, curves), default=0)):
         of = [curve[depth] for curve in curves if len(curve) > depth]
-        row: _Row = {}
+        row: Row = {}
         for name in COLUMNS:
             values = [surface[name] for surface in of]
             if name in _ALL:

@@ -203,9 +203,11 @@ def band_warning(surface: Surface, band_errors: Sequence[float]) -> Iterator[str
         return
     band = Band.of(surface)
     nodes = [math.ceil(edge / band.pixel) for edge in surface.grid.size]
-    remedy = "use a smaller grid.spacing or a larger grid.refine"
-    if nodes[0] * nodes[1] > MOST_AFFORDABLE:
-        remedy = "this is too large, so use a smaller grid, or only the larger depths"
+    remedy = (
+        "this is too large, so use a smaller grid, or only the larger depths"
+        if nodes[0] * nodes[1] > MOST_AFFORDABLE
+        else "use a smaller grid.spacing or a larger grid.refine"
+    )
     yield (
         f"the grid leaves out waves of the scan with {band.removed_slope:.0%} of its rms slope, "
         f"and {len(lacking)} of {len(band_errors)} depths are not resolved because of this (COR "
@@ -267,5 +269,4 @@ def _smoothed(values: Array, work: Array, near: float) -> Array:
     """
     L = np.log(work)
     weights = np.exp(-np.abs(L[:, None] - L) / near)
-    smoothed: Array = weights @ values / weights.sum(axis=1)
-    return smoothed
+    return np.asarray(weights @ values / weights.sum(axis=1))

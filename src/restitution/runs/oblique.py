@@ -86,10 +86,9 @@ def _force(case: Case, surface: Surface, out: ResultsFolder) -> StoredForce:
     ]
     if not curves:
         raise OutputError("the run has no unloading curves")
-    grid = surface.grid
     results = xr.Dataset(
         curve_variables(out.rows) | {"height": (("x", "y"), surface.height)},
-        coords={"x": grid.x, "y": grid.y},
+        coords={"x": surface.grid.x, "y": surface.grid.y},
     )
     return force_of(case.pair(), results, curves)
 

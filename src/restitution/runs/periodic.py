@@ -79,8 +79,9 @@ def _write_results(
     case: Case, text: str, out: ResultsFolder, log: RunLog, deepest: State
 ) -> dict[str, Any]:
     contact, rows = deepest.contact, out.rows
-    depths = [row["indentation_m"] for row in rows]
-    found = unresolved_patches(depths, [row["median_patch_nodes"] for row in rows])
+    found = unresolved_patches(
+        [row["indentation_m"] for row in rows], [row["median_patch_nodes"] for row in rows]
+    )
     summary: dict[str, Any] = {
         "title": case.title,
         "status": log.status,

@@ -212,7 +212,6 @@ def _unbalance(state: State, end: State, work: float, lost: float) -> float:
 
 
 def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> dict[str, Any]:
-    elastic = math.isinf(contact.hardness)
     return {
         "title": case.title,
         "status": run.status,
@@ -221,7 +220,7 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> d
         "depths_computed": len(out.rows),
         "warnings": [*run.warnings, *_result_warnings(case, contact, out, run)],
         "model": {
-            "plasticity": "none" if elastic else contact.plasticity,
+            "plasticity": "none" if math.isinf(contact.hardness) else contact.plasticity,
             **_adhesion_of(contact, case),
             "half_space": "free, Love cells, zero-padded FFT",
             **asdict(contact.grid),
@@ -253,13 +252,12 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> d
 
 def _materials(case: Case) -> dict[str, Any]:
     """Material values that come from the library, with their spread and source."""
-    bodies = {"first": case.first, "second": case.second or case.first}
     return {
         name: {
             "material": body.material,
             **{key: found.model_dump() for key, found in body.from_library().items()},
         }
-        for name, body in bodies.items()
+        for name, body in (("first", case.first), ("second", case.second or case.first))
         if body.material is not None
     }
 
@@ -285,9 +283,11 @@ def _imprecise(out: ResultsFolder, case: Case) -> Iterator[str]:
     missed = [row for row in out.rows if row["restitution_error"] > asked]
     if missed:
         worst = max(missed, key=lambda row: row["restitution_error"])
-        why = "contact forms and breaks in jumps at these depths; use a finer grid"
-        if case.unloading.method == "energy-estimate":
-            why = 'unloading is an estimate; set unloading.method = "path"'
+        why = (
+            'unloading is an estimate; set unloading.method = "path"'
+            if case.unloading.method == "energy-estimate"
+            else "contact forms and breaks in jumps at these depths; use a finer grid"
+        )
         yield (
             f"restitution_error is above {asked:g} at {len(missed)} of {len(out.rows)} depths, "
             f"at worst {worst['restitution_error']:.2g} at {1e9 * worst['max_indentation_m']:.4g} "
@@ -315,9 +315,9 @@ def _adhesion_of(contact: Contact, case: Case) -> dict[str, Any]:
     if not contact.adhesive:
         return {"adhesion": "none"}
     if contact.cohesive:
-        z0 = 1e9 * contact.equilibrium_separation
         return {
-            "adhesion": f"Lennard-Jones between half-spaces, z0 = {z0:.4g} nm",
+            "adhesion": "Lennard-Jones between half-spaces, "
+            f"z0 = {1e9 * contact.equilibrium_separation:.4g} nm",
             "unloading": case.unloading.method,
         }
     return {

@@ -137,8 +137,7 @@ def add_short_waves(guess: Array, displacement: Array, inverse: Operator, b: Arr
         np.maximum(p, 0.0, out=p)
         local_sums(p, sums, nodes)
         subtract_local_mean(p, 1.0, sums - wanted, nodes, p)
-    start: Array = np.maximum(p, 0.0, dtype=np.float64)
-    return start
+    return np.maximum(p, 0.0, dtype=np.float64)  # type: ignore[no-any-return]
 
 
 def balanced_preconditioner(inverse: Operator, p: Array, b: Array) -> Operator:
