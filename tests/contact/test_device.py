@@ -29,7 +29,7 @@ from restitution import (
 from restitution.contact.influence import half_space, inverse_half_space, periodic_half_space
 from restitution.errors import CaseError
 from restitution.numerics.convolution import device as device_module
-from restitution.numerics.convolution.device import accelerator, current, on_device
+from restitution.numerics.convolution.device import _LibraryDevice, current, on_device
 from tolerance import approx
 
 DEPTH = 40e-9
@@ -120,7 +120,7 @@ class _Transforms:
         return lambda *args, **options: _call(getattr(scipy.fft, name), args, options)
 
 
-STAND_IN = accelerator("elsewhere", _Arrays(), _Transforms())
+STAND_IN = _LibraryDevice("elsewhere", _Arrays(), _Transforms())
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 7), (9, 4), (40, 33), (64, 64), (400, 191)])

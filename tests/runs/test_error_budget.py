@@ -10,7 +10,7 @@ from restitution.case.case_file import parse_case
 from restitution.errors import NotConvergedError
 from restitution.results.total_error import total
 from restitution.results.writer import ResultsFolder
-from restitution.runs import loading
+from restitution.runs import depths as depths_module
 from restitution.runs.companions import Companions, Curve
 from restitution.runs.convergence import run_convergence
 from restitution.runs.ensemble import run_realisations
@@ -114,7 +114,7 @@ def test_what_no_companion_tells_is_not_known():
 
 
 def test_a_depth_that_fails_leaves_the_others_a_total_error(case_text, tmp_path, monkeypatch):
-    real, calls = loading.solve, []
+    real, calls = depths_module.solve, []
 
     def solve(*arguments, **options):
         calls.append(arguments)
@@ -122,7 +122,7 @@ def test_a_depth_that_fails_leaves_the_others_a_total_error(case_text, tmp_path,
             raise NotConvergedError("the second depth")
         return real(*arguments, **options)
 
-    monkeypatch.setattr(loading, "solve", solve)
+    monkeypatch.setattr(depths_module, "solve", solve)
     out = ResultsFolder(tmp_path / "out")
     with pytest.raises(NotConvergedError, match="the second depth"):
         run_realisations(parse_case(case_text), case_text, tmp_path, out)

@@ -40,7 +40,7 @@ def test_it_says_how_a_run_ended_and_keeps_what_there_is(error, status, reason, 
 
 def test_a_folder_without_results_is_taken_back(tmp_path):
     out = ResultsFolder(tmp_path / "out")
-    with pytest.raises(DomainError), RunLog().record(out, lambda: None):
+    with pytest.raises(DomainError), RunLog().record(out, dict):
         raise DomainError("the edge")
     assert not out.path.exists()
 

@@ -11,8 +11,9 @@ from restitution.errors import CaseError
 from restitution.results.reader import RunResults
 from restitution.results.writer import ResultsFolder
 from restitution.runs import refinement
+from restitution.runs.depths import later_touches
 from restitution.runs.ensemble import run_realisations
-from restitution.runs.refinement import later_touches, settled
+from restitution.runs.refinement import settled
 from restitution.runs.run import run_case
 from tolerance import approx
 

@@ -61,12 +61,16 @@ def reframe(values: NDArray[Scalar], box: Box, wanted: Box) -> NDArray[Scalar]:
     if box == wanted:
         return values
     framed: NDArray[Any] = np.zeros(shape_of(wanted), dtype=values.dtype)
-    into, out_of = [], []
-    for have, want in zip(box, wanted, strict=True):
-        start, stop = max(have.start, want.start), min(have.stop, want.stop)
-        if stop <= start:
-            return framed
-        into.append(slice(start - want.start, stop - want.start))
-        out_of.append(slice(start - have.start, stop - have.start))
-    framed[tuple(into)] = values[tuple(out_of)]
+    shared = [
+        (max(have.start, want.start), min(have.stop, want.stop))
+        for have, want in zip(box, wanted, strict=True)
+    ]
+    if all(start < stop for start, stop in shared):
+        framed[_within(wanted, shared)] = values[_within(box, shared)]
     return framed
+
+
+def _within(box: Box, ranges: list[tuple[int, int]]) -> tuple[slice, ...]:
+    """Slices of an array on `box` for the `ranges` of grid indices along x and y."""
+    pairs = zip(box, ranges, strict=True)
+    return tuple(slice(start - part.start, stop - part.start) for part, (start, stop) in pairs)

@@ -25,9 +25,6 @@ from restitution.errors import CaseError, one_line, shown
 VARIABLE = "RESTITUTION_KERNELS"
 INSTRUCTION_SETS = {"avx512": "AVX-512", "avx2": "AVX2", "plain": "plain"}
 
-_COMPILE = "install with a C++ compiler (GCC or Clang), or from a wheel"
-
-
 Arguments = ParamSpec("Arguments")
 Result = TypeVar("Result")
 
@@ -55,7 +52,7 @@ def _load() -> tuple[Any, str]:
             f"{VARIABLE}: {wanted} kernels cannot be loaded ({reason}); unset this environment "
             "variable"
         )
-    return None, f"{reason}; {_COMPILE}"
+    return None, f"{reason}; install with a C++ compiler (GCC or Clang), or from a wheel"
 
 
 loops, _reason = _load()
@@ -88,6 +85,9 @@ def use_loop(expression: Callable[Arguments, Result]) -> Callable[Arguments, Res
 
 def loop_takes(values: Any) -> bool:
     """Whether loops are loaded and `values` is a 2D NumPy array with contiguous rows."""
-    if loops is None or type(values) is not np.ndarray or values.ndim != 2:
-        return False
-    return values.strides[1] == values.itemsize or values.shape[1] < 2
+    return (
+        loops is not None
+        and type(values) is np.ndarray
+        and values.ndim == 2
+        and (values.strides[1] == values.itemsize or values.shape[1] < 2)
+    )

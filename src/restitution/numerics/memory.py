@@ -25,8 +25,7 @@ def available() -> float:
 
 def require(needed: float, what: str, remedy: str) -> None:
     """Raise `CaseError` if `what` needs more memory (`needed`, bytes) than is available."""
-    there = available()
-    if needed > there:
+    if needed > (there := available()):
         raise CaseError(
             f"{what} take about {in_words(needed)} of memory, but {in_words(there)} are available; "
             f"{remedy}"
@@ -53,22 +52,17 @@ def _of_control_groups(groups: str = "/proc/self/cgroup") -> float:
     except OSError:
         return least
     for line in lines:
-        _, first, rest = line.partition(":")
-        controllers, second, path = rest.partition(":")
-        if not (first and second):
-            continue
-        if controllers == "":  # control groups of version 2
-            root, file = _GROUPS, "memory.max"
-        elif "memory" in controllers.split(","):  # control groups of version 1
-            root, file = _GROUPS / "memory", "memory.limit_in_bytes"
-        else:
-            continue
+        match line.split(":", 2):
+            case [_, "", path]:  # control groups of version 2
+                root, file = _GROUPS, "memory.max"
+            case [_, controllers, path] if "memory" in controllers.split(","):  # version 1
+                root, file = _GROUPS / "memory", "memory.limit_in_bytes"
+            case _:
+                continue
         group = root / path.lstrip("/")
         # In a container, `path` may belong to the host and not exist here, but `root` exists.
-        for folder in (group, *group.parents):
-            least = min(least, _limit(folder / file))
-            if folder == root:
-                break
+        folders = [each for each in (group, *group.parents) if each.is_relative_to(root)]
+        least = min(least, *(_limit(each / file) for each in folders))
     return least
 
 

@@ -20,9 +20,9 @@ def integrate_curve(x: ArrayLike, f: ArrayLike) -> float:
     x, f = np.asarray(x, dtype=float), np.asarray(f, dtype=float)
     if x.size < 2:
         return 0.0
-    sign = 1.0 if x[-1] > x[0] else -1.0
-    order = slice(None) if sign > 0 else slice(None, None, -1)
-    return sign * float(PchipInterpolator(x[order], f[order]).integrate(x.min(), x.max()))
+    if x[0] > x[-1]:
+        return -integrate_curve(x[::-1], f[::-1])
+    return float(PchipInterpolator(x, f).integrate(x[0], x[-1]))
 
 
 def integrate_adaptively(

@@ -23,8 +23,6 @@ def read_only(values: NDArray[Scalar]) -> NDArray[Scalar]:
     returned. Otherwise the result is a copy, and `values` stays writeable for its owner.
     """
     owner: object = values
-    while isinstance(owner, np.ndarray):
-        if owner.flags.writeable:
-            return freeze(values.copy())
+    while isinstance(owner, np.ndarray) and not owner.flags.writeable:
         owner = owner.base
     return values if owner is None else freeze(values.copy())

@@ -23,11 +23,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from restitution.numerics.convolution.operators import Convolution
+from restitution.numerics.convolution.operators import Array, Convolution
 
-Array = NDArray[np.float64]
 # Function of the unknowns u that returns the potential φ of each node, and its derivatives φ′ and
 # φ″.
 NodePotential = Callable[[Array], tuple[Array, Array, Array]]

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -51,13 +52,11 @@ class Curve:
         """
         from scipy.interpolate import PchipInterpolator
 
-        if self.work.size == 0:
-            return np.full(np.shape(work), math.nan)
-        if self.work.size == 1:
-            return np.full(np.shape(work), self.restitution[0])
+        if self.work.size < 2:
+            return np.full(np.shape(work), self.restitution[0] if self.work.size else math.nan)
         inside = np.clip(work, self.work[0], self.work[-1])
-        found: Array = PchipInterpolator(np.log(self.work), self.restitution)(np.log(inside))
-        return found
+        between = PchipInterpolator(np.log(self.work), self.restitution)
+        return np.asarray(between(np.log(inside)))
 
 
 def curve_of(
@@ -98,8 +97,9 @@ class Companions:
     folder: Path
     depths: Sequence[float]
 
+    @cached_property
     def own(self) -> Curve:
-        """Compute the curve of the case's own surface on cells twice as large."""
+        """The curve of the case's own surface on cells twice as large."""
         return self._curve(self._coarse(self.case))
 
     def others(self, progress: Say = ignore) -> Iterator[Curve]:
@@ -118,8 +118,7 @@ class Companions:
         """
         coarse = self._coarse(self.case)
         ends = [_spread(self.case, end) for end in ("low", "high")]
-        curve = self._curve(coarse)
-        here, mass = curve.at(work), coarse.pair.mass
+        here, mass = self.own.at(work), coarse.pair.mass
         changes = []
         stiff = [replace(coarse, pair=_with_modulus_of(coarse.pair, case.pair())) for case in ends]
         strong = [replace(coarse, **_yielding(case).arguments()) for case in ends]
@@ -129,7 +128,7 @@ class Companions:
                 changes.append(np.maximum(*(np.abs(values - here) for values in found)))
         masses = [case.pair().mass for case in ends]
         if mass is not None and any(m != mass for m in masses):
-            moved = [curve.at(work * m / mass) for m in masses if m is not None]
+            moved = [self.own.at(work * m / mass) for m in masses if m is not None]
             changes.append(np.max([np.abs(values - here) for values in moved], axis=0))
         return changes
 
@@ -152,11 +151,12 @@ def coarser_contact(contact: Contact) -> Contact:
 
 def _with_modulus_of(pair: Pair, other: Pair) -> Pair:
     """Return a pair with the elasticity of `other` and the masses and radii of `pair`."""
-    first, second = (
-        replace(body, youngs_modulus=its.youngs_modulus, poissons_ratio=its.poissons_ratio)
-        for body, its in ((pair.first, other.first), (pair.second, other.second))
+    return Pair(
+        *(
+            replace(body, youngs_modulus=its.youngs_modulus, poissons_ratio=its.poissons_ratio)
+            for body, its in ((pair.first, other.first), (pair.second, other.second))
+        )
     )
-    return Pair(first, second)
 
 
 def _yielding(case: Case) -> Yielding:
@@ -176,7 +176,5 @@ def _spread(case: Case, end: str) -> Case:
         found = body.from_library()
         return body.model_copy(update={key: getattr(its, end) for key, its in found.items()})
 
-    bodies = {"first": moved(case.first)}
-    if case.second is not None:
-        bodies["second"] = moved(case.second)
-    return case.model_copy(update=bodies)
+    second = moved(case.second) if case.second else None
+    return case.model_copy(update={"first": moved(case.first), "second": second})

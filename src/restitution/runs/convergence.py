@@ -28,21 +28,22 @@ from restitution.results.reader import RunResults
 from restitution.results.schema import COLUMNS
 from restitution.results.total_error import total
 from restitution.results.writer import ResultsFolder, curve_variables, write_table
+from restitution.runs.depths import later_touches
 from restitution.runs.error_budget import (
     MISSING_BAND,
     Band,
+    Row,
     add_errors,
     total_error_summary,
     widened_error,
 )
 from restitution.runs.log import RunLog, Say, ignore
-from restitution.runs.refinement import later_touches, settled, with_chosen_adhesion
+from restitution.runs.refinement import settled, with_chosen_adhesion
 from restitution.runs.run import run_case
 
-_Row = dict[str, float]
 # For each refinement factor: the additional approach to first touch (m), compared with the finest
 # grid, and the rows of the curve.
-_Runs = dict[int, tuple[float, list[_Row]]]
+_Runs = dict[int, tuple[float, list[Row]]]
 
 
 def run_convergence(
@@ -70,10 +71,9 @@ def run_convergence(
     log, runs = RunLog(progress, warn), _Runs()
     unsettled: list[str] = []
 
-    def keep() -> dict[str, Any] | None:
-        return _write_results(case, folder, out, runs, log, unsettled) if runs else None
-
-    with log.record(out, keep):
+    with log.record(
+        out, lambda: _write_results(case, folder, out, runs, log, unsettled) if runs else {}
+    ):
         case = settled(case, folder, log.warn)
         case = case.refined(max(case.factors()))
         if case.interface.adhesive_energy and case.interface.adhesion is None:
@@ -101,7 +101,6 @@ def run_convergence(
                     runs[factor] = later, part.rows
         if case.total_error and runs:
             _add_errors(case, folder, runs, progress)
-    assert log.summary is not None  # the finest grid has contact at every depth
     return log.summary
 
 
@@ -191,8 +190,7 @@ def _write_results(
         "seconds": log.seconds,
         "convolutions": sum(int(row["convolutions"]) for _, rows in runs.values() for row in rows),
     }
-    errors = [row["discretisation_error"] for row in finest]
-    known = [error for error in errors if not math.isnan(error)]
+    known = [e for row in finest if not math.isnan(e := row["discretisation_error"])]
     summary["diagnostics"] = {
         **one.summary["diagnostics"],
         "largest_discretisation_error": max(known, default=None),
@@ -203,9 +201,9 @@ def _write_results(
             f"{lacking} of {len(finest)} depths are not resolved: even the finest grid leaves out "
             "waves of the scan that change COR; give more grids, or a smaller grid.spacing"
         )
-    if len(known) < len(errors):
+    if len(known) < len(finest):
         summary["warnings"].append(
-            f"{len(errors) - len(known)} of {len(errors)} depths have no discretisation_error: "
+            f"{len(finest) - len(known)} of {len(finest)} depths have no discretisation_error: "
             "coarser grids have no contact there; begin deeper, or with a finer grid (grid.refine)"
         )
     dataset = one.dataset.assign(curve_variables(out.rows))
@@ -224,13 +222,16 @@ def _write_results(
         {"units": "1", "long_name": "coefficient of restitution on coarser grids"},
     )
     dataset["refine"] = coarser
-    dataset.attrs |= {"title": case.title, "status": log.status}
-    dataset.attrs["warnings"] = "\n".join(summary["warnings"])
+    dataset.attrs |= {
+        "title": case.title,
+        "status": log.status,
+        "warnings": "\n".join(summary["warnings"]),
+    }
     out.write(dataset, summary)
     return summary
 
 
-def _with_grid_errors(case: Case, folder: Path, rows: list[_Row]) -> int:
+def _with_grid_errors(case: Case, folder: Path, rows: list[Row]) -> int:
     """Add two parts to the discretisation error of `rows`, the rows of the finest grid.
 
     One part is a lower limit, because differences of COR between grids may vanish by chance. The
@@ -250,10 +251,10 @@ def _with_grid_errors(case: Case, folder: Path, rows: list[_Row]) -> int:
     return lacking
 
 
-def _by_depth(case: Case, runs: _Runs) -> list[dict[int, _Row]]:
+def _by_depth(case: Case, runs: _Runs) -> list[dict[int, Row]]:
     """Return for each depth the rows of all grids that reached it, with grid error and order."""
     asked = case.depths()
-    found: list[dict[int, _Row]] = [{} for _ in asked]
+    found: list[dict[int, Row]] = [{} for _ in asked]
     for factor, (later, rows) in sorted(runs.items()):
         # A coarse grid lacks the shallowest depths, and an interrupted run lacks the deepest.
         missed = sum(depth <= later for depth in asked) if case.indentation else 0
@@ -289,7 +290,7 @@ def discretisation(values: Sequence[float]) -> tuple[float, float]:
     return max(1.5 * abs(last), 0.5 * abs(before)), order
 
 
-def observed_order(depths: Sequence[dict[int, _Row]]) -> float:
+def observed_order(depths: Sequence[dict[int, Row]]) -> float:
     """Observed order of the last three grids, from differences of COR (rms over depths).
 
     The rms is used because the orders of single depths scatter. Only depths that the finest grid

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from restitution.case.case import Case
 from restitution.collision import Collision, collide
 from restitution.contact.contact import Contact
+from restitution.contact.loading import solve
 from restitution.contact.path import unloading_path
+from restitution.contact.prescribed_force import solve_at_force
+from restitution.contact.prescribed_pressure import solve_at_pressure
+from restitution.contact.prescribed_velocity import solve_at_velocity
 from restitution.contact.state import State
 from restitution.errors import DomainError, NotConvergedError
-from restitution.runs.loading import load_to
 from restitution.runs.messages import naming_keys
-from restitution.runs.refinement import later_touches
 
 
 @dataclass(frozen=True)
@@ -33,22 +35,35 @@ class Depth:
     error: NotConvergedError | DomainError | None = None
 
 
-@dataclass(frozen=True)
-class _Level:
-    """The contact on one grid, and the depths that are computed on it."""
+def later_touches(case: Case, folder: Path, factors: Iterable[int]) -> dict[int, float]:
+    """Extra approach (m) to first touch on each grid, compared with the finest of these grids.
 
-    contact: Contact
-    refine: int
-    depths: list[float]
-    touch: float
+    A coarse grid touches later because the highest point of the surface lies between its nodes.
+    """
+    R, touch = case.pair().radius, {}
+    for factor in factors:
+        surface = case.refined(factor).surface(folder)
+        x, y = surface.grid.x[:, None], surface.grid.y[None, :]
+        touch[factor] = float(((x * x + y * y) / (2 * R) - surface.height).min())
+    return {factor: touch[factor] - touch[max(touch)] for factor in touch}
 
-    def load(self, case: Case, depth: float, start: State | None) -> Depth:
-        own = depth - self.touch if case.indentation else depth
-        try:
-            state = load_to(case, self.contact, own, start)
-        except (NotConvergedError, DomainError) as error:
-            return Depth(depth, self.refine, self.touch, error=error)
-        return Depth(depth, self.refine, self.touch, state)
+
+def load_to(case: Case, contact: Contact, depth: float, start: State | None = None) -> State:
+    """Load `contact` to `depth`, one of `case.depths()`.
+
+    Depending on the case, `depth` is an indentation (m), a force (N), an impact velocity (m/s) or a
+    nominal pressure (Pa). `start` is the state at a shallower depth; it saves time, but not at a
+    prescribed pressure. Raises the errors of `solve`, `solve_at_force`, `solve_at_velocity` or
+    `solve_at_pressure`.
+    """
+    with naming_keys():
+        if case.pressure is not None:
+            return solve_at_pressure(contact, depth)
+        if case.load is not None:
+            return solve_at_force(contact, depth, start=start)
+        if case.impact is not None:
+            return solve_at_velocity(contact, depth, start=start)
+        return solve(contact, depth, start=start)
 
 
 def loaded_depths(case: Case, folder: Path, contact: Contact) -> Iterator[Depth]:
@@ -57,12 +72,21 @@ def loaded_depths(case: Case, folder: Path, contact: Contact) -> Iterator[Depth]
     `contact` is the contact on the grid of the deepest depth, and files are relative to `folder`.
     Each load starts from the previous state on the same grid.
     """
-    for level in _levels(case, folder, contact):
-        before: State | None = None
-        for depth in level.depths:
-            loaded = level.load(case, depth, before)
-            before = loaded.state or before
-            yield loaded
+    factors = case.factors()
+    # On a coarse grid, first touch is at a larger approach. The difference is added to the stored
+    # indentations, so it is also needed if loads or velocities are prescribed.
+    touches = later_touches(case, folder, set(factors)) if len(set(factors)) > 1 else {}
+    for factor in sorted(set(factors), reverse=True):
+        last = factor == factors[-1]
+        level = contact if last else case.refined(factor).contact(folder)
+        touch, state = touches.get(factor, 0.0), None
+        for asked in [d for d, its in zip(case.depths(), factors, strict=True) if its == factor]:
+            try:
+                state = load_to(case, level, asked - touch if case.indentation else asked, state)
+            except (NotConvergedError, DomainError) as error:
+                yield Depth(asked, factor, touch, error=error)
+            else:
+                yield Depth(asked, factor, touch, state)
 
 
 def collision_at(
@@ -76,20 +100,13 @@ def collision_at(
     followed = state.contact.adhesive and case.unloading.method == "path"
     back: list[State] = []
     if followed or unload:
-        steps, tolerance = case.unloading.steps, case.unloading.restitution_error
         with naming_keys():
-            back = list(unloading_path(state, steps=steps, tolerance=tolerance, known=known))
+            back = list(
+                unloading_path(
+                    state,
+                    steps=case.unloading.steps,
+                    tolerance=case.unloading.restitution_error,
+                    known=known,
+                )
+            )
     return collide(state, back if followed else None, method=case.unloading.method), back
-
-
-def _levels(case: Case, folder: Path, deepest: Contact) -> Iterator[_Level]:
-    """Yield the grids of a case with their depths, from the shallowest depths to the deepest."""
-    factors, depths = case.factors(), case.depths()
-    # On a coarse grid, first touch is at a larger approach. The difference is added to the stored
-    # indentations, so it is also needed if loads or velocities are prescribed.
-    touches = later_touches(case, folder, set(factors)) if len(set(factors)) > 1 else {}
-    for factor in sorted(set(factors), reverse=True):
-        own = [depth for depth, its in zip(depths, factors, strict=True) if its == factor]
-        last = factor == factors[-1]
-        contact = deepest if last else case.refined(factor).contact(folder)
-        yield _Level(contact, factor, own, touches.get(factor, 0.0))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +21,7 @@ from restitution.results.writer import (
     oblique_variables,
     write_table,
 )
-from restitution.runs.error_budget import MISSING_BAND, add_errors, total_error_summary
+from restitution.runs.error_budget import MISSING_BAND, Row, add_errors, total_error_summary
 from restitution.runs.log import RunLog, Say, ignore
 from restitution.runs.messages import message
 from restitution.runs.oblique import mean_oblique
@@ -30,7 +30,6 @@ from restitution.runs.refinement import settled
 from restitution.runs.run import run_case
 
 CONFIDENCE = 0.95
-_Row = dict[str, float]
 # Columns of an ensemble's curve that are not means, and the functions that combine the surfaces.
 _WORST: dict[str, Callable[[list[float]], float]] = {
     "residual": max,
@@ -67,7 +66,7 @@ def run_realisations(
     ensemble = _Ensemble(case, text, folder, out, RunLog(progress, warn))
     with ensemble.log.record(out, ensemble.keep):
         ensemble.compute()
-    if ensemble.log.summary is None:
+    if not ensemble.log.summary:
         raise ensemble.failures[0]
     return ensemble.log.summary
 
@@ -79,11 +78,11 @@ class _Ensemble:
         self, case: Case, text: str, folder: Path, out: ResultsFolder, log: RunLog
     ) -> None:
         self.case, self.text, self.folder, self.out, self.log = case, text, folder, out, log
-        self.curves: dict[int, list[_Row]] = {}
-        self.oblique: list[list[_Row]] = []
+        self.curves: dict[int, list[Row]] = {}
+        self.oblique: list[list[Row]] = []
         self.failures: list[RestitutionError] = []
         self.ended: list[dict[str, Any]] = []
-        self.errors: list[_Row] = []
+        self.errors: list[Row] = []
         self.band_errors: list[float] = []
 
     def compute(self) -> None:
@@ -122,8 +121,9 @@ class _Ensemble:
             if part.rows:
                 self.curves[number] = part.rows
                 self.oblique.append(part.oblique)
-            depths = len(part.rows)
-            self.ended.append({"realisation": number + 1, "depths": depths, "reason": reason})
+            self.ended.append(
+                {"realisation": number + 1, "depths": len(part.rows), "reason": reason}
+            )
 
     def _add_errors(self) -> None:
         """Estimate the errors of grid and materials on the surface that reached the most depths.
@@ -148,10 +148,10 @@ class _Ensemble:
             self.log.warnings.append(f"total_error is unknown: {error}")
         self.errors = alone
 
-    def keep(self) -> dict[str, Any] | None:
+    def keep(self) -> dict[str, Any]:
         """Write the curve of the ensemble, its summary and the table of all surfaces."""
         if not self.curves:
-            return None
+            return {}
         rows = mean_rows(list(self.curves.values()), self.errors)
         self.out.put_curve(rows)
         write_table(
@@ -161,27 +161,17 @@ class _Ensemble:
         one = RunResults(self.out.path / f"realisation-{min(self.curves) + 1}")
         summary = self._summary(one.summary)
         self.out.put_oblique(mean_oblique(self.oblique))
-        variables = curve_variables(rows) | oblique_variables(self.out.oblique)
-        dataset = one.smooth().assign(variables)
-        dataset.attrs |= {key: summary[key] for key in ("title", "status")}
-        dataset.attrs["warnings"] = "\n".join(summary["warnings"])
+        dataset = one.smooth().assign(curve_variables(rows) | oblique_variables(self.out.oblique))
+        dataset.attrs |= {
+            "title": self.case.title,
+            "status": self.log.status,
+            "warnings": "\n".join(summary["warnings"]),
+        }
         self.out.write(dataset, summary)
         return summary
 
     def _summary(self, one: dict[str, Any]) -> dict[str, Any]:
         whole = [row for of in self.curves.values() for row in of]
-        unresolved = unresolved_patches(
-            [row["max_indentation_m"] for row in whole],
-            [row["median_patch_nodes"] for row in whole],
-        )
-        warnings = [*map(message, unresolved), self._unlike()]
-        lacking = sum(error > MISSING_BAND for error in self.band_errors)
-        if lacking:
-            warnings.append(
-                f"{lacking} of {len(self.band_errors)} depths are not resolved: the grid leaves "
-                "out waves of the scan that change COR; use a smaller grid.spacing or a larger "
-                "grid.refine"
-            )
         return {
             "title": self.case.title,
             "status": self.log.status,
@@ -191,7 +181,7 @@ class _Ensemble:
             "confidence": CONFIDENCE,
             "depths_asked": len(self.case.depths()),
             "depths_computed": len(self.out.rows),
-            "warnings": self.log.warnings + [warning for warning in warnings if warning],
+            "warnings": [*self.log.warnings, *self._result_warnings(whole)],
             **{
                 key: one[key]
                 for key in (
@@ -213,18 +203,26 @@ class _Ensemble:
             "seconds": self.log.seconds,
         }
 
-    def _unlike(self) -> str | None:
-        """A warning about depths that not all surfaces have reached, or None."""
-        numbers = [row["realisations"] for row in self.out.rows]
-        if not numbers or min(numbers) == self.case.realisations:
-            return None
-        return (
-            f"some depths are means of only {min(numbers):.0f} of {self.case.realisations} "
-            "surfaces (column realisations of curve.csv): the others ended earlier"
-        )
+    def _result_warnings(self, whole: list[Row]) -> Iterator[str]:
+        """Yield the warnings about the rows of all surfaces (`whole`) and about their means."""
+        depths = [row["max_indentation_m"] for row in whole]
+        patches = [row["median_patch_nodes"] for row in whole]
+        yield from map(message, unresolved_patches(depths, patches))
+        fewest = min((row["realisations"] for row in self.out.rows), default=math.inf)
+        if fewest < self.case.realisations:
+            yield (
+                f"some depths are means of only {fewest:.0f} of {self.case.realisations} surfaces "
+                "(column realisations of curve.csv): the others ended earlier"
+            )
+        if lacking := sum(error > MISSING_BAND for error in self.band_errors):
+            yield (
+                f"{lacking} of {len(self.band_errors)} depths are not resolved: the grid leaves "
+                "out waves of the scan that change COR; use a smaller grid.spacing or a larger "
+                "grid.refine"
+            )
 
 
-def mean_rows(curves: Sequence[Sequence[_Row]], errors: Sequence[_Row] = ()) -> list[_Row]:
+def mean_rows(curves: Sequence[Sequence[Row]], errors: Sequence[Row] = ()) -> list[Row]:
     """Make the curve of an ensemble: for each depth, a row of means over the surfaces.
 
     A row is computed from the surfaces that reached its depth.
@@ -243,7 +241,7 @@ def mean_rows(curves: Sequence[Sequence[_Row]], errors: Sequence[_Row] = ()) -> 
     rows = []
     for depth in range(max(map(len, curves), default=0)):
         of = [curve[depth] for curve in curves if len(curve) > depth]
-        row: _Row = {}
+        row: Row = {}
         for name in COLUMNS:
             values = [surface[name] for surface in of]
             if name in _ALL:

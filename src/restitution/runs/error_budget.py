@@ -26,22 +26,20 @@ checked on other cases (docs/error.md).
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.case.case import Case
 from restitution.contact.checks.resolution import resolves
 from restitution.results.total_error import total
-from restitution.runs.companions import SURFACES, Companions
+from restitution.runs.companions import SURFACES, Array, Companions
 from restitution.runs.log import Say, ignore
 from restitution.surfaces import Surface, rms_slope
 from restitution.surfaces.refine import coarsen
 
-Array = NDArray[np.float64]
 Row = dict[str, float]
 
 _BAND = 1.5  # safety factor on the change of COR expected from waves that the grid leaves out
@@ -153,13 +151,13 @@ def add_errors(
     total. Returns the errors due to waves that the grid leaves out, one for each row with errors.
     """
     band: list[float] = []
-    for factor in dict.fromkeys(int(row["refine"]) for row in rows):
-        level = [row for row in rows if row["refine"] == factor and row["loading_work_J"] > 0]
+    reached = [row for row in rows if row["loading_work_J"] > 0]
+    for factor in dict.fromkeys(int(row["refine"]) for row in reached):
+        level = [row for row in reached if row["refine"] == factor]
         own = case.grid.factor == factor
-        its, of = (case, surface) if own else (case.refined(factor), None)
-        if level:
-            of = its.surface(folder) if of is None else of
-            band += _add_errors(its, folder, of, level, progress, scattered=scattered)
+        its = case if own else case.refined(factor)
+        of = surface if own else its.surface(folder)
+        band += _add_errors(its, folder, of, level, progress, scattered=scattered)
     return band
 
 
@@ -177,7 +175,7 @@ def _add_errors(
     restitution = np.array([row["restitution"] for row in reached])
     companions = Companions(case, folder, sorted(row["max_indentation_m"] for row in reached))
     progress("error: cells twice as large")
-    own = companions.own().at(work)
+    own = companions.own.at(work)
     errors, band = grid_error(restitution - own, work, reached, Band.of(surface).octaves)
     columns = {"discretisation_error": errors}
     if case.roughness and scattered:
@@ -195,26 +193,26 @@ def _add_errors(
     return [float(error) for error in band]
 
 
-def band_warning(surface: Surface, band_errors: Sequence[float]) -> str | None:
-    """Return a warning if waves that the grid leaves out of a scan change COR, otherwise None.
+def band_warning(surface: Surface, band_errors: Sequence[float]) -> Iterator[str]:
+    """Yield a warning if waves that the grid leaves out of a scan change COR.
 
     The warning states which grid would resolve these waves, and whether such a grid is too large.
     """
-    band = Band.of(surface)
     lacking = [error for error in band_errors if error > MISSING_BAND]
     if not lacking:
-        return None
+        return
+    band = Band.of(surface)
     nodes = [math.ceil(edge / band.pixel) for edge in surface.grid.size]
-    needed = (
-        f"cells of {1e6 * band.pixel:.3g} um ({nodes[0]} x {nodes[1]} nodes) would resolve them"
+    remedy = (
+        "this is too large, so use a smaller grid, or only the larger depths"
+        if nodes[0] * nodes[1] > MOST_AFFORDABLE
+        else "use a smaller grid.spacing or a larger grid.refine"
     )
-    remedy = "use a smaller grid.spacing or a larger grid.refine"
-    if nodes[0] * nodes[1] > MOST_AFFORDABLE:
-        remedy = "this is too large, so use a smaller grid, or only the larger depths"
-    return (
+    yield (
         f"the grid leaves out waves of the scan with {band.removed_slope:.0%} of its rms slope, "
         f"and {len(lacking)} of {len(band_errors)} depths are not resolved because of this (COR "
-        f"may be off by {max(lacking):.2g}): {needed}; {remedy}"
+        f"may be off by {max(lacking):.2g}): cells of {1e6 * band.pixel:.3g} um ({nodes[0]} x "
+        f"{nodes[1]} nodes) would resolve them; {remedy}"
     )
 
 
@@ -271,5 +269,4 @@ def _smoothed(values: Array, work: Array, near: float) -> Array:
     """
     L = np.log(work)
     weights = np.exp(-np.abs(L[:, None] - L) / near)
-    smoothed: Array = weights @ values / weights.sum(axis=1)
-    return smoothed
+    return np.asarray(weights @ values / weights.sum(axis=1))

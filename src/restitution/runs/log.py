@@ -34,7 +34,7 @@ class RunLog:
     status: str = "failed"
     reason: str = "stopped by an unexpected error"
     began: float = field(default_factory=time.perf_counter)
-    summary: dict[str, Any] | None = None
+    summary: dict[str, Any] = field(default_factory=dict)
 
     @property
     def seconds(self) -> float:
@@ -64,13 +64,11 @@ class RunLog:
         return say
 
     @contextmanager
-    def record(
-        self, out: ResultsFolder, keep: Callable[[], dict[str, Any] | None]
-    ) -> Iterator[None]:
+    def record(self, out: ResultsFolder, keep: Callable[[], dict[str, Any]]) -> Iterator[None]:
         """Record how the `with` body ends, let `keep` write the results, and issue new warnings.
 
         `keep` returns the summary, which is stored in the attribute `summary`. If nothing was
-        computed, `keep` returns None and the folder is removed. Errors of the body are raised
+        computed, the summary is empty and the folder is removed. Errors of the body are raised
         again.
         """
         try:
@@ -79,17 +77,15 @@ class RunLog:
         except KeyboardInterrupt:
             self.status, self.reason = "interrupted", "stopped by the user"
             raise
-        except RestitutionError as error:
-            self.reason = str(error)
-            raise
         except Exception as error:
-            self.reason = one_line(f"{self.reason}: {type(error).__name__} {error}".strip())
+            bug = f"{self.reason}: {type(error).__name__} {error}".strip()
+            self.reason = str(error) if isinstance(error, RestitutionError) else one_line(bug)
             raise
         finally:
             with hold_signals():  # do not lose results if Ctrl-C arrives while writing
                 self.summary = keep()
-                if self.summary is None:
+                if not self.summary:
                     out.discard()
-            for warning in self.summary["warnings"] if self.summary else ():
+            for warning in self.summary.get("warnings", ()):
                 if warning not in self.warnings:
                     self.tell(warning)

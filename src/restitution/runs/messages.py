@@ -38,8 +38,7 @@ _KEYS = {"force": "load", "velocity": "impact"}  # key of the case file for argu
 
 def require_possible(contact: Contact, indentation: float) -> None:
     """Raise `CaseError` or `SurfaceError` if results at `indentation` (m) would be meaningless."""
-    found = impossible(contact, indentation)
-    if found is not None:
+    if (found := impossible(contact, indentation)) is not None:
         raise _ERRORS[found.code](message(found))
 
 
@@ -139,16 +138,16 @@ def message(found: Finding) -> str:
                 f"{_um(found['half_width'])}: use {larger} or stop earlier"
             )
         case "few-nodes":
-            spacing, radius = found["spacing"], found["radius"]
             return (
-                f"the spacing {_um(spacing)} puts {radius / spacing:.2g} nodes on the smooth "
-                f"contact radius {_um(radius)} at the deepest point ({NODES_PER_RADIUS} are "
+                f"the spacing {_um(found['spacing'])} puts "
+                f"{found['radius'] / found['spacing']:.2g} nodes on the smooth contact radius "
+                f"{_um(found['radius'])} at the deepest point ({NODES_PER_RADIUS} are "
                 "needed): use a finer grid or scan"
             )
         case "no-half-space":
-            radius, R = found["radius"], found["reduced_radius"]
             return (
-                f"the contact radius {_um(radius)} is {radius / R:.4g} of R*: the half-space "
+                f"the contact radius {_um(found['radius'])} is "
+                f"{found['radius'] / found['reduced_radius']:.4g} of R*: the half-space "
                 f"approximation holds up to about {found['limit']} R* (a tenth of the radius of "
                 "two equal spheres)"
             )
@@ -181,12 +180,11 @@ def message(found: Finding) -> str:
                 "check the size"
             )
         case "coarser-than-scan":
-            spacing = found["spacing"]
             return (
-                f"the grid spacing {_um(spacing)} is coarser than the scan's pixel "
+                f"the grid spacing {_um(found['spacing'])} is coarser than the scan's pixel "
                 f"{_um(found['pixel'])} along {found['axis']}: waves shorter than "
-                f"{_um(2 * spacing)} are left out; to keep them, make cells as small as the pixel "
-                "(grid.refine)"
+                f"{_um(2 * found['spacing'])} are left out; to keep them, make cells as small as "
+                "the pixel (grid.refine)"
             )
         case "surface-notice":
             return str(found["notice"])

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import chain, groupby, product
+from operator import itemgetter
 
 import numpy as np
 import xarray as xr
 
 from restitution.case.case import Case
-from restitution.case.schema import ImpactTable
 from restitution.errors import CaseError, DomainError, NotConvergedError, OutputError
 from restitution.laws.oblique import ObliqueCollision, collide_obliquely, spin_per_impulse
 from restitution.laws.time_integration import StoredForce, force_of
@@ -45,12 +46,11 @@ def oblique_rows(case: Case, surface: Surface, out: ResultsFolder) -> tuple[list
         return [], f"oblique impacts are not computed: {error}"
     rows: list[_Row] = []
     failures: list[str] = []
-    for velocity in impact.velocities():
-        for angle in impact.angles():
-            try:
-                rows.append(_row(law, out.rows, impact, (velocity, angle), friction))
-            except (DomainError, NotConvergedError) as error:
-                failures.append(f"{velocity:.4g} m/s at {math.degrees(angle):.4g} deg ({error})")
+    for velocity, angle in product(impact.velocities(), impact.angles()):
+        try:
+            rows.append(_row(law, out.rows, impact.spins(), velocity, angle, friction))
+        except (DomainError, NotConvergedError) as error:
+            failures.append(f"{velocity:.4g} m/s at {math.degrees(angle):.4g} deg ({error})")
     if not failures:
         return rows, None
     more = f" and {len(failures) - 1} more" if len(failures) > 1 else ""
@@ -63,12 +63,10 @@ def mean_oblique(tables: Sequence[Sequence[_Row]]) -> list[_Row]:
     `slides` is true if the contact slides on all surfaces. Additional columns are the number of
     surfaces and the standard deviation of the tangential restitution (NaN for one surface).
     """
-    found: dict[tuple[float, float], list[_Row]] = {}
-    for table in tables:
-        for row in table:
-            found.setdefault((row["impact_velocity_m_per_s"], row["angle_rad"]), []).append(row)
     means = []
-    for _, of in sorted(found.items()):
+    impact = itemgetter("impact_velocity_m_per_s", "angle_rad")
+    for _, group in groupby(sorted(chain(*tables), key=impact), impact):
+        of = list(group)
         row = {name: float(np.mean([each[name] for each in of])) for name in of[0]}
         row["slides"] = all(each["slides"] for each in of)
         row["realisations"] = len(of)
@@ -82,17 +80,15 @@ def mean_oblique(tables: Sequence[Sequence[_Row]]) -> list[_Row]:
 
 def _force(case: Case, surface: Surface, out: ResultsFolder) -> StoredForce:
     """Make a force law from the rows and unloading curves that a run has computed so far."""
-    curves = []
-    for start, points in out.unloading:
-        indentation, force = np.array(points)[::-1].T
-        curves.append(UnloadingCurve(start, indentation, force))
-    curves.sort(key=lambda curve: curve.start)
+    curves = [
+        UnloadingCurve(start, *np.array(points)[::-1].T)
+        for start, points in sorted(out.unloading, key=itemgetter(0))
+    ]
     if not curves:
         raise OutputError("the run has no unloading curves")
-    grid = surface.grid
     results = xr.Dataset(
         curve_variables(out.rows) | {"height": (("x", "y"), surface.height)},
-        coords={"x": grid.x, "y": grid.y},
+        coords={"x": surface.grid.x, "y": surface.grid.y},
     )
     return force_of(case.pair(), results, curves)
 
@@ -100,8 +96,9 @@ def _force(case: Case, surface: Surface, out: ResultsFolder) -> StoredForce:
 def _row(
     law: StoredForce,
     rows: Sequence[_Row],
-    impact: ImpactTable,
-    velocity_and_angle: tuple[float, float],
+    spins: tuple[float, float],
+    velocity: float,
+    angle: float,
     friction: float,
 ) -> _Row:
     """Compute one impact.
@@ -109,7 +106,6 @@ def _row(
     If a row of the curve has nearly the prescribed normal velocity, the impact is computed at the
     velocity of this row, and the total error of this row is the error of the normal restitution.
     """
-    velocity, angle = velocity_and_angle
     normal = velocity * math.cos(angle)
     nearest = min(rows, key=lambda row: _apart(row, normal))
     error = math.nan
@@ -118,8 +114,8 @@ def _row(
         # the velocity that it reached.
         normal = nearest["impact_velocity_m_per_s"]
         error = nearest["total_error"]
-    found = collide_obliquely(law, normal / math.cos(angle), angle, friction, impact.spins())
-    return _cells(found, velocity, impact.spins(), error) | _errors(law, found, error)
+    found = collide_obliquely(law, normal / math.cos(angle), angle, friction, spins)
+    return _cells(found, velocity, spins, error) | _errors(law, found, error)
 
 
 def _apart(row: _Row, normal: float) -> float:

@@ -11,10 +11,6 @@ from restitution.case.case import Case
 from restitution.case.derived import deepest_indentation, derived_quantities
 from restitution.case.roughness import MeasuredRoughness
 from restitution.contact.checks.resolution import unresolved_patches
-from restitution.contact.contact import Contact
-from restitution.contact.loading import solve
-from restitution.contact.prescribed_force import solve_at_force
-from restitution.contact.prescribed_pressure import solve_at_pressure
 from restitution.contact.state import State
 from restitution.numerics.convolution.device import current
 from restitution.numerics.kernels import instruction_set
@@ -22,8 +18,9 @@ from restitution.results.interruption import hold_signals
 from restitution.results.periodic import periodic_dataset, periodic_row
 from restitution.results.schema import PERIODIC_FILE
 from restitution.results.writer import ResultsFolder, versions, write_table
+from restitution.runs.depths import load_to
 from restitution.runs.log import RunLog, Say, ignore
-from restitution.runs.messages import input_warnings, message, naming_keys, require_possible
+from restitution.runs.messages import input_warnings, message, require_possible
 from restitution.surfaces import describe
 
 CONVENTIONS = {
@@ -48,10 +45,9 @@ def run_periodic(
     """
     log, deepest = RunLog(progress, warn), list[State]()
 
-    def keep() -> dict[str, Any] | None:
-        return _write_results(case, text, out, log, deepest[-1]) if deepest else None
-
-    with log.record(out, keep):
+    with log.record(
+        out, lambda: _write_results(case, text, out, log, deepest[-1]) if deepest else {}
+    ):
         contact = case.contact(folder)
         last = deepest_indentation(case)
         require_possible(contact, last)
@@ -59,23 +55,13 @@ def run_periodic(
             log.warn(warning)
         depths = case.depths()
         for number, depth in enumerate(depths, 1):
-            with naming_keys():
-                state = _load(case, contact, depth, deepest[-1] if deepest else None)
+            state = load_to(case, contact, depth, deepest[-1] if deepest else None)
             with hold_signals():  # an interruption leaves a complete row or no row
                 out.rows.append(periodic_row(state))
                 deepest[:] = [state]
                 write_table(out.path / PERIODIC_FILE, out.rows)
             progress(f"{number} of {len(depths)} depths")
-    assert log.summary is not None  # if there is no depth, an error was raised above
     return log.summary
-
-
-def _load(case: Case, contact: Contact, depth: float, start: State | None) -> State:
-    if case.pressure is not None:
-        return solve_at_pressure(contact, depth)
-    if case.load is not None:
-        return solve_at_force(contact, depth)
-    return solve(contact, depth, start=start)
 
 
 def _edges_of_scans(case: Case) -> list[str]:
@@ -93,8 +79,9 @@ def _write_results(
     case: Case, text: str, out: ResultsFolder, log: RunLog, deepest: State
 ) -> dict[str, Any]:
     contact, rows = deepest.contact, out.rows
-    depths = [row["indentation_m"] for row in rows]
-    found = unresolved_patches(depths, [row["median_patch_nodes"] for row in rows])
+    found = unresolved_patches(
+        [row["indentation_m"] for row in rows], [row["median_patch_nodes"] for row in rows]
+    )
     summary: dict[str, Any] = {
         "title": case.title,
         "status": log.status,

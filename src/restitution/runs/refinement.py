@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from bisect import bisect_left
+from functools import partial
 from pathlib import Path
 
 from restitution.case.case import Case
@@ -11,7 +12,7 @@ from restitution.contact.checks.resolution import NODES_PER_PATCH, median_patch
 from restitution.contact.cohesive import resolves_range
 from restitution.contact.contact import Contact
 from restitution.errors import DomainError, NotConvergedError
-from restitution.runs.loading import load_to
+from restitution.runs.depths import load_to
 from restitution.runs.log import Say, ignore
 from restitution.runs.messages import no_range
 
@@ -49,7 +50,7 @@ def settled(case: Case, folder: Path, warn: Say = ignore) -> Case:
         if contact.cohesive and not resolves_range(contact):
             continue
         left = depths[: len(depths) - len(factors)]
-        first = _first_resolved(finer, contact, left)
+        first = bisect_left(left, True, key=partial(_resolves, finer, contact))
         factors = [factor] * (len(left) - first) + factors
         if first == 0:
             break
@@ -82,34 +83,12 @@ def with_chosen_adhesion(case: Case, contact: Contact, warn: Say = ignore) -> Ca
     return case.model_copy(update={"interface": interface})
 
 
-def later_touches(case: Case, folder: Path, factors: Iterable[int]) -> dict[int, float]:
-    """Extra approach (m) to first touch on each grid, compared with the finest of these grids.
-
-    A coarse grid touches later because the highest point of the surface lies between its nodes.
-    """
-    R, touch = case.pair().radius, {}
-    for factor in factors:
-        surface = case.refined(factor).surface(folder)
-        x, y = surface.grid.x[:, None], surface.grid.y[None, :]
-        touch[factor] = float(((x * x + y * y) / (2 * R) - surface.height).min())
-    return {factor: touch[factor] - touch[max(touch)] for factor in touch}
-
-
-def _first_resolved(case: Case, contact: Contact, depths: list[float]) -> int:
-    """Index of the shallowest depth that the grid resolves; len(depths) if it resolves none."""
-    low, high = 0, len(depths)
-    while low < high:
-        middle = (low + high) // 2
-        try:
-            patch = median_patch(load_to(case, contact, depths[middle]).patch_sizes())
-        except DomainError:  # the contact reaches the edge; the run will report this
-            high = middle
-            continue
-        except NotConvergedError:  # the work jumps, because the contact has too few nodes
-            low = middle + 1
-            continue
-        if patch >= _MARGIN * NODES_PER_PATCH:
-            high = middle
-        else:
-            low = middle + 1
-    return low
+def _resolves(case: Case, contact: Contact, depth: float) -> bool:
+    """Whether the grid of `contact` resolves the contact at a depth of `case`."""
+    try:
+        patches = load_to(case, contact, depth).patch_sizes()
+    except DomainError:  # the contact reaches the edge; the run will report this
+        return True
+    except NotConvergedError:  # the work jumps, because the contact has too few nodes
+        return False
+    return median_patch(patches) >= _MARGIN * NODES_PER_PATCH

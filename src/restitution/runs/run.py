@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -35,7 +35,7 @@ from restitution.runs.messages import input_warnings, message, require_possible
 from restitution.runs.oblique import is_oblique, oblique_rows
 from restitution.runs.refinement import settled, with_chosen_adhesion
 from restitution.runs.smooth import smooth_curve
-from restitution.surfaces import Surface, describe
+from restitution.surfaces import describe
 
 CONVENTIONS = {
     "end_of_contact": "separation, where the force is back to zero",
@@ -96,10 +96,9 @@ def run_case(
     case.require_impact()
     run = _Run(progress, warn)
 
-    def keep() -> dict[str, Any] | None:
-        return None if run.deepest is None else _write_results(case, text, out, run, run.deepest)
-
-    with run.record(out, keep):
+    with run.record(
+        out, lambda: _write_results(case, text, out, run, run.deepest) if run.deepest else {}
+    ):
         case = settled(case, folder, run.warn)
         contact = case.contact(folder)
         case = with_chosen_adhesion(case, contact, run.warn)
@@ -112,14 +111,17 @@ def run_case(
                 loaded_depths(case, folder, contact), case, out, run, go_on=errors
             )
         if errors and case.total_error and out.rows:
-            _add_errors(case, folder, contact.surface, out, run)
+            try:
+                run.band_errors = add_errors(case, folder, contact.surface, out.rows, run.progress)
+            except RestitutionError as error:
+                run.warnings.append(f"total_error is unknown: {error}")
+            out.put_curve(out.rows)
         if is_oblique(case) and out.rows:
             oblique, missing = oblique_rows(case, contact.surface, out)
             out.put_oblique(oblique)
             run.warnings += [missing] if missing else []
         if failure is not None:
             raise failure
-    assert run.summary is not None  # if there is no depth, an error was raised above
     return run.summary
 
 
@@ -183,31 +185,15 @@ def _keep(
         run.unloading_checks.append(_check(state, back, collision))
 
 
-def _add_errors(
-    case: Case,
-    folder: Path,
-    surface: Surface,
-    out: ResultsFolder,
-    run: _Run,
-) -> None:
-    """Add the total error to the rows; store its part due to omitted waves in `run`."""
-    try:
-        run.band_errors = add_errors(case, folder, surface, out.rows, run.progress)
-    except RestitutionError as error:
-        run.warnings.append(f"total_error is unknown: {error}")
-    out.put_curve(out.rows)
-
-
 def _check(state: State, back: Sequence[State], collision: Collision) -> dict[str, float]:
     """Check the energy balance of an unloading curve."""
     work = unloading_curve(list(back)).work()
-    estimate = collide(state, method="energy-estimate")
     return {
         "max_indentation_m": state.indentation,
         "unloading_work_J": work,
         "adhesive_loss_J": collision.adhesive_loss,
         "relative_to_stored_energy": _unbalance(state, back[-1], work, collision.adhesive_loss),
-        "restitution_from_energy_estimate": estimate.restitution,
+        "restitution_from_energy_estimate": collide(state, method="energy-estimate").restitution,
         "separation_indentation_m": back[-1].indentation,
     }
 
@@ -226,25 +212,15 @@ def _unbalance(state: State, end: State, work: float, lost: float) -> float:
 
 
 def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> dict[str, Any]:
-    patches = [row["median_patch_nodes"] for row in out.rows]
-    depths = [row["max_indentation_m"] for row in out.rows]
-    # If the last row could not be written, there is one value more than rows.
-    nodes = run.adhesive_nodes[: len(depths)]
-    unresolved = unresolved_patches(depths, patches) + unresolved_adhesion(depths, nodes)
-    found = [*map(message, unresolved), band_warning(contact.surface, run.band_errors)]
-    found += [_imprecise(out, case), _velocities_missed(out, case, run.asked)]
-    if not contact.adhesive:
-        found.append(_unbalanced(run.unloading_checks))
-    elastic = math.isinf(contact.hardness)
     return {
         "title": case.title,
         "status": run.status,
         "reason": run.reason,
         "depths_asked": len(case.depths()),
         "depths_computed": len(out.rows),
-        "warnings": run.warnings + [warning for warning in found if warning],
+        "warnings": [*run.warnings, *_result_warnings(case, contact, out, run)],
         "model": {
-            "plasticity": "none" if elastic else contact.plasticity,
+            "plasticity": "none" if math.isinf(contact.hardness) else contact.plasticity,
             **_adhesion_of(contact, case),
             "half_space": "free, Love cells, zero-padded FFT",
             **asdict(contact.grid),
@@ -276,58 +252,72 @@ def _summarise(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> d
 
 def _materials(case: Case) -> dict[str, Any]:
     """Material values that come from the library, with their spread and source."""
-    bodies = {"first": case.first, "second": case.second or case.first}
     return {
         name: {
             "material": body.material,
             **{key: found.model_dump() for key, found in body.from_library().items()},
         }
-        for name, body in bodies.items()
+        for name, body in (("first", case.first), ("second", case.second or case.first))
         if body.material is not None
     }
 
 
-def _imprecise(out: ResultsFolder, case: Case) -> str | None:
-    """Return a warning if the COR of some depths is less precise than requested, otherwise None."""
+def _result_warnings(case: Case, contact: Contact, out: ResultsFolder, run: _Run) -> Iterator[str]:
+    """Yield the warnings about the results of the run."""
+    depths = [row["max_indentation_m"] for row in out.rows]
+    patches = [row["median_patch_nodes"] for row in out.rows]
+    # If the last row could not be written, there is one value more than rows.
+    nodes = run.adhesive_nodes[: len(depths)]
+    unresolved = unresolved_patches(depths, patches) + unresolved_adhesion(depths, nodes)
+    yield from map(message, unresolved)
+    yield from band_warning(contact.surface, run.band_errors)
+    yield from _imprecise(out, case)
+    yield from _velocities_missed(out, case, run.asked)
+    if not contact.adhesive:
+        yield from _unbalanced(run.unloading_checks)
+
+
+def _imprecise(out: ResultsFolder, case: Case) -> Iterator[str]:
+    """Yield a warning if the COR of some depths is less precise than requested."""
     asked = max(_IMPRECISE, case.unloading.restitution_error)
     missed = [row for row in out.rows if row["restitution_error"] > asked]
-    if not missed:
-        return None
-    worst = max(missed, key=lambda row: row["restitution_error"])
-    why = "contact forms and breaks in jumps at these depths; use a finer grid"
-    if case.unloading.method == "energy-estimate":
-        why = 'unloading is an estimate; set unloading.method = "path"'
-    depth = 1e9 * worst["max_indentation_m"]
-    return (
-        f"restitution_error is above {asked:g} at {len(missed)} of {len(out.rows)} depths, "
-        f"at worst {worst['restitution_error']:.2g} at {depth:.4g} nm: {why}"
-    )
+    if missed:
+        worst = max(missed, key=lambda row: row["restitution_error"])
+        why = (
+            'unloading is an estimate; set unloading.method = "path"'
+            if case.unloading.method == "energy-estimate"
+            else "contact forms and breaks in jumps at these depths; use a finer grid"
+        )
+        yield (
+            f"restitution_error is above {asked:g} at {len(missed)} of {len(out.rows)} depths, "
+            f"at worst {worst['restitution_error']:.2g} at {1e9 * worst['max_indentation_m']:.4g} "
+            f"nm: {why}"
+        )
 
 
-def _velocities_missed(out: ResultsFolder, case: Case, computed: list[float]) -> str | None:
-    """Return a warning if impact velocities differ from the prescribed values, otherwise None."""
+def _velocities_missed(out: ResultsFolder, case: Case, computed: list[float]) -> Iterator[str]:
+    """Yield a warning if impact velocities differ from the prescribed values."""
     if case.impact is None:
-        return None
+        return
     pairs = zip((row["impact_velocity_m_per_s"] for row in out.rows), computed, strict=False)
     off = {asked: abs(met / asked - 1) for met, asked in pairs}
     missed = [asked for asked, miss in off.items() if not miss <= _VELOCITY]
-    if not missed:
-        return None
-    worst = max(missed, key=lambda asked: off[asked])
-    return (
-        f"{len(missed)} of {len(off)} impact velocities differ from the requested values because "
-        f"of the error of the loading work, at worst by {off[worst]:.1%} at {worst:g} m/s: use the "
-        "velocities in curve.csv"
-    )
+    if missed:
+        worst = max(missed, key=lambda asked: off[asked])
+        yield (
+            f"{len(missed)} of {len(off)} impact velocities differ from the requested values "
+            f"because of the error of the loading work, at worst by {off[worst]:.1%} at {worst:g} "
+            "m/s: use the velocities in curve.csv"
+        )
 
 
 def _adhesion_of(contact: Contact, case: Case) -> dict[str, Any]:
     if not contact.adhesive:
         return {"adhesion": "none"}
     if contact.cohesive:
-        z0 = 1e9 * contact.equilibrium_separation
         return {
-            "adhesion": f"Lennard-Jones between half-spaces, z0 = {z0:.4g} nm",
+            "adhesion": "Lennard-Jones between half-spaces, "
+            f"z0 = {1e9 * contact.equilibrium_separation:.4g} nm",
             "unloading": case.unloading.method,
         }
     return {
@@ -338,17 +328,16 @@ def _adhesion_of(contact: Contact, case: Case) -> dict[str, Any]:
     }
 
 
-def _unbalanced(checks: list[dict[str, float]]) -> str | None:
-    """Return a warning if the energy balance of an unloading curve is off, otherwise None."""
+def _unbalanced(checks: list[dict[str, float]]) -> Iterator[str]:
+    """Yield a warning if the energy balance of an unloading curve is off."""
     off = [check for check in checks if not abs(check["relative_to_stored_energy"]) <= _BALANCE]
-    if not off:
-        return None
-    worst = max(off, key=lambda check: abs(check["relative_to_stored_energy"]))
-    return (
-        f"the work of {len(off)} of {len(checks)} unloading curves differs from the stored energy, "
-        f"at worst by {worst['relative_to_stored_energy']:+.1%} from "
-        f"{1e9 * worst['max_indentation_m']:.4g} nm: raise unloading.steps, or refine the grid"
-    )
+    if off:
+        worst = max(off, key=lambda check: abs(check["relative_to_stored_energy"]))
+        yield (
+            f"the work of {len(off)} of {len(checks)} unloading curves differs from the stored "
+            f"energy, at worst by {worst['relative_to_stored_energy']:+.1%} from "
+            f"{1e9 * worst['max_indentation_m']:.4g} nm: raise unloading.steps, or refine the grid"
+        )
 
 
 def _attributes(summary: dict[str, Any], text: str) -> dict[str, str]:

@@ -43,8 +43,9 @@ def smooth_curve(
     # at a smaller depth.
     least = min(row["loading_work_J"] for row in rows)
     hertz = Hertz(R, E_star)
-    same_work = float(hertz.indentation_from_energy(least))
-    first = min(same_work, *(row["max_indentation_m"] for row in rows))
+    first = min(
+        float(hertz.indentation_from_energy(least)), *(row["max_indentation_m"] for row in rows)
+    )
     first_yield = contact.first_yield_pressure
     elastic = math.isinf(first_yield)
     onset = math.inf if elastic else float(FirstYield(R, E_star, first_yield).indentation)

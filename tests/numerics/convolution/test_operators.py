@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 from restitution.contact.influence import half_space
-from restitution.numerics.convolution.device import accelerator
+from restitution.numerics.convolution.device import _LibraryDevice
 from restitution.numerics.convolution.operators import (
     FreeConvolution,
     PeriodicConvolution,
@@ -259,7 +259,7 @@ def test_compiled_convolution_is_that_of_whole_arrays(kinds, both, data, scale, 
     module = loops()
     workspace = np.empty((1, module.workspace_bytes(shape[1], both[0] // 2 + 1)), np.uint8)
     module.convolve(values, 1 / scale, spectrum, *both, workspace, scale, found)
-    plain = accelerator("plain", np, scipy.fft)
+    plain = _LibraryDevice("plain", np, scipy.fft)
     plain.convolve(values.astype("d"), spectrum.astype("d"), both, scale, workspace, expected)
     # Bound of any value: the sum of the amplitudes of all waves.
     largest = np.abs(values).sum() * np.abs(spectrum).max() * both[0] * both[1]
@@ -277,7 +277,7 @@ def test_waves_too_many_for_the_cache(kind):
     workspace = np.empty((1, module.workspace_bytes(shape[1], periods[0] // 2 + 1)), np.uint8)
     found, expected = np.empty(shape), np.empty(shape)
     module.convolve(values, 1.0, spectrum, *periods, workspace, 1.0, found)
-    plain = accelerator("plain", np, scipy.fft)
+    plain = _LibraryDevice("plain", np, scipy.fft)
     plain.convolve(values, spectrum.astype("d"), periods, 1.0, workspace, expected)
     assert_allclose(found, expected, atol=(1e-14 if kind == "d" else 2e-6) * np.abs(expected).max())
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Hashable
-from threading import Lock
+from threading import RLock
 from typing import Any, Protocol
 
 
@@ -26,7 +26,7 @@ class OperatorCache:
     def __init__(self, max_bytes: int, max_items: int) -> None:
         self._max_bytes, self._max_items = max_bytes, max_items
         self._values: OrderedDict[Hashable, HasBytes] = OrderedDict()
-        self._lock = Lock()
+        self._lock = RLock()
 
     @property
     def max_bytes(self) -> int:
@@ -43,7 +43,7 @@ class OperatorCache:
     def nbytes(self) -> int:
         """Total size of all values (bytes)."""
         with self._lock:
-            return self._size()
+            return sum(value.nbytes for value in self._values.values())
 
     def __len__(self) -> int:
         return len(self._values)
@@ -51,32 +51,25 @@ class OperatorCache:
     def get(self, key: Hashable) -> Any:
         """Return the value for `key`, or None."""
         with self._lock:
-            if key not in self._values:
-                return None
-            self._values.move_to_end(key)
-            return self._values[key]
+            if key in self._values:
+                self._values.move_to_end(key)
+            return self._values.get(key)
 
     def put(self, key: Hashable, value: HasBytes) -> None:
         """Store `value`, unless it alone exceeds `max_bytes`."""
         with self._lock:
-            if value.nbytes > self._max_bytes:
-                return
-            self._values[key] = value
-            self._values.move_to_end(key)
-            self._shrink()
+            if value.nbytes <= self._max_bytes:
+                self._values[key] = value
+                self._values.move_to_end(key)
+                self._shrink()
 
     def clear(self) -> None:
         """Drop all values. A running solve that uses a dropped value keeps it."""
         with self._lock:
             self._values.clear()
 
-    def _size(self) -> int:
-        return sum(value.nbytes for value in self._values.values())
-
     def _shrink(self) -> None:
-        while self._values and (
-            len(self._values) > self._max_items or self._size() > self._max_bytes
-        ):
+        while self._values and (len(self) > self._max_items or self.nbytes > self._max_bytes):
             self._values.popitem(last=False)
 
 

@@ -11,7 +11,7 @@ convolution of arrays, so these are methods of a `Device`. Solves run on the `cu
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from functools import lru_cache
 from typing import Any, Literal, Protocol
@@ -74,54 +74,8 @@ class Device(Protocol):
         """
 
 
-class _Compiled:
-    """CPU device: NumPy arrays, convolved by the compiled loops."""
-
-    name = "cpu"
-
-    def __init__(self, loops: Any, library: Device) -> None:
-        # The compiled transforms need periods without prime factors other than 2, 3, 5 and 7.
-        # `library` convolves arrays with other periods.
-        self._loops, self._library = loops, library
-        # Use as many threads as ducc0; the environment variable DUCC0_NUM_THREADS sets the number.
-        loops.use_threads(ducc0.misc.thread_pool_size())
-
-    def put(self, values: Array) -> Array:
-        return values
-
-    def get(self, values: Array) -> Array:
-        return values
-
-    def arange(self, n: int) -> Array:
-        return np.arange(n)
-
-    def even_spectrum(self, quadrant: Array) -> Array:
-        threads = self._loops.threads_for(quadrant.nbytes)
-        ducc0.fft.dct(quadrant, type=1, inorm=2, out=quadrant, nthreads=threads)
-        return quadrant
-
-    def workspace(self, shape: tuple[int, int], periods: tuple[int, int]) -> Array:
-        return np.empty((1, self._loops.workspace_bytes(shape[1], periods[0] // 2 + 1)), np.uint8)
-
-    def convolve(
-        self,
-        values: Array,
-        spectrum: Array,
-        periods: tuple[int, int],
-        scale: float,
-        workspace: Array,
-        out: Array,
-    ) -> None:
-        if not all(is_fast(period) for period in periods):
-            self._library.convolve(values, spectrum, periods, scale, workspace, out)
-            return
-        if values.strides[-1] != values.itemsize:
-            values = np.ascontiguousarray(values)
-        self._loops.convolve(values, 1 / scale, spectrum, *periods, workspace, scale, out)
-
-
-class _Arrays:
-    """Device that uses a library like NumPy (`arrays`) and a library like scipy.fft (`fft`)."""
+class _LibraryDevice:
+    """Device of a library like NumPy or CuPy (`arrays`) and its version of scipy.fft (`fft`)."""
 
     def __init__(self, name: str, arrays: Any, fft: Any) -> None:
         self.name = name
@@ -131,8 +85,7 @@ class _Arrays:
         return self._arrays.asarray(values)  # type: ignore[no-any-return]
 
     def get(self, values: Array) -> Array:
-        here: Array = getattr(self._arrays, "asnumpy", np.asarray)(values)
-        return here
+        return getattr(self._arrays, "asnumpy", np.asarray)(values)
 
     def arange(self, n: int) -> Array:
         return self._arrays.arange(n)  # type: ignore[no-any-return]
@@ -175,9 +128,39 @@ class _Arrays:
         np.multiply(padded[:, :ny], scale, out=out, dtype=out.dtype)
 
 
-def accelerator(name: str, arrays: Any, fft: Any) -> Device:
-    """Make a device from a library like CuPy (`arrays`) and its version of scipy.fft (`fft`)."""
-    return _Arrays(name, arrays, fft)
+class _Compiled(_LibraryDevice):
+    """CPU device: NumPy arrays, convolved by the compiled loops."""
+
+    def __init__(self, loops: Any) -> None:
+        super().__init__("cpu", np, _LazyFFT())
+        self._loops = loops
+        # Use as many threads as ducc0; the environment variable DUCC0_NUM_THREADS sets the number.
+        loops.use_threads(ducc0.misc.thread_pool_size())
+
+    def even_spectrum(self, quadrant: Array) -> Array:
+        threads = self._loops.threads_for(quadrant.nbytes)
+        ducc0.fft.dct(quadrant, type=1, inorm=2, out=quadrant, nthreads=threads)
+        return quadrant
+
+    def workspace(self, shape: tuple[int, int], periods: tuple[int, int]) -> Array:
+        return np.empty((1, self._loops.workspace_bytes(shape[1], periods[0] // 2 + 1)), np.uint8)
+
+    def convolve(
+        self,
+        values: Array,
+        spectrum: Array,
+        periods: tuple[int, int],
+        scale: float,
+        workspace: Array,
+        out: Array,
+    ) -> None:
+        # The compiled transforms need periods without prime factors other than 2, 3, 5 and 7.
+        if not all(is_fast(period) for period in periods):
+            super().convolve(values, spectrum, periods, scale, workspace, out)
+            return
+        if values.strides[-1] != values.itemsize:
+            values = np.ascontiguousarray(values)
+        self._loops.convolve(values, 1 / scale, spectrum, *periods, workspace, scale, out)
 
 
 class _LazyFFT:
@@ -189,12 +172,9 @@ class _LazyFFT:
         return getattr(scipy.fft, name)
 
 
-def _host() -> Device:
-    library = _Arrays("cpu", np, _LazyFFT())
-    return library if kernels.loops is None else _Compiled(kernels.loops, library)
-
-
-CPU = _host()
+CPU: Device = (
+    _LibraryDevice("cpu", np, _LazyFFT()) if kernels.loops is None else _Compiled(kernels.loops)
+)
 _current: ContextVar[Device] = ContextVar("device", default=CPU)
 
 
@@ -225,15 +205,11 @@ def on_device(device: DeviceName | Device) -> Iterator[Device]:
         _current.reset(token)
 
 
-def _named(name: str) -> Device:
-    if name == "cpu":
-        return CPU
-    try:
-        return _gpu()
-    except CaseError:
-        if name == "auto":
-            return CPU
-        raise
+def _named(name: DeviceName) -> Device:
+    if name == "auto":
+        with suppress(CaseError):
+            return _gpu()
+    return _gpu() if name == "gpu" else CPU
 
 
 @lru_cache
@@ -253,4 +229,4 @@ def _gpu() -> Device:
         raise CaseError(
             f"device: no usable GPU ({reason}); check the GPU driver, or use the device cpu"
         ) from error
-    return accelerator("gpu", cupy, cupyx.scipy.fft)
+    return _LibraryDevice("gpu", cupy, cupyx.scipy.fft)

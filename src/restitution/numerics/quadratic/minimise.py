@@ -206,5 +206,4 @@ def _root_mean_square(largest: float, r: Array) -> float:
     """Root mean square of the nonzero values of `r`, whose largest magnitude is `largest`."""
     if not largest > 0:
         return largest
-    squares, _ = dot_products(r, r, r)
-    return math.sqrt(squares / np.count_nonzero(r))
+    return math.sqrt(dot_products(r, r, r)[0] / np.count_nonzero(r))

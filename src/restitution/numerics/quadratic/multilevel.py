@@ -24,6 +24,7 @@ from restitution.numerics.quadratic.fused_ops import Bound
 from restitution.numerics.quadratic.grid_transfer import prolong, restrict
 from restitution.numerics.quadratic.local_mean import damp_local_mean
 from restitution.numerics.quadratic.minimise import (
+    Array,
     BoundedQuadratic,
     Minimum,
     Operator,
@@ -32,7 +33,6 @@ from restitution.numerics.quadratic.minimise import (
 )
 from restitution.numerics.reductions import dot
 
-Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 # Function that builds the operator and its approximate inverse for a shape (nodes) and a level n.
@@ -102,9 +102,8 @@ def solve_multilevel(
     while True:
         if not _is_worth_its_check(window, size):
             window = whole_grid
-        K, inverse = whole_K, whole_inverse
-        if window != whole_grid:
-            K, inverse = operators(shape_of(window), 0)
+        whole = window == whole_grid
+        K, inverse = (whole_K, whole_inverse) if whole else operators(shape_of(window), 0)
         bound = upper[window] if _is_array(upper) else upper
         found = minimise_quadratic(
             BoundedQuadratic(K, b[window], 0.0, bound, K.single_precision),
@@ -116,9 +115,9 @@ def solve_multilevel(
             max_iterations=max_iterations,
             K_start=None if Kp is None else Kp[window],
             # A window is followed by the check of all nodes, which computes the exact gradient.
-            accept_estimated_gradient=window != whole_grid,
+            accept_estimated_gradient=not whole,
         )
-        if window == whole_grid:
+        if whole:
             return found, products + whole_K.count
         products += K.count
         iterations, converged = found.iterations, found.converged
@@ -126,8 +125,10 @@ def solve_multilevel(
         g = whole_K(p, out=Kp)
         residual = violation(p, g, b, 0.0, upper)
         if residual <= tolerance or not converged:
-            checked = Minimum(p, g, residual, iterations, residual <= tolerance)
-            return checked, products + whole_K.count
+            return (
+                Minimum(p, g, residual, iterations, residual <= tolerance),
+                products + whole_K.count,
+            )
         wider = union(window, bounding_box(g < -tolerance))
         Kp = np.add(g, b, out=g)
         # If the window would not grow, the violation is due to rounding errors. The problem is then

@@ -18,7 +18,6 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.numerics.box import Box, bounding_box, shape_of, widen
 from restitution.numerics.convolution.operators import Convolution
@@ -30,6 +29,7 @@ from restitution.numerics.quadratic.local_mean import (
     subtract_local_mean,
 )
 from restitution.numerics.quadratic.minimise import (
+    Array,
     BoundedQuadratic,
     Minimum,
     Operator,
@@ -44,8 +44,6 @@ from restitution.numerics.quadratic.multilevel import (
     may_coarsen,
     mean_damping,
 )
-
-Array = NDArray[np.float64]
 
 _COARSE_ACCURACY = 1e-3  # tolerance on coarser grids, as a fraction of the largest b
 _PLACES = 12  # number of places along each axis for which local means are computed (`local_mean`)
@@ -68,9 +66,8 @@ def solve_near_guess(
     if min(size) >= MIN_NODES_FOR_GUESS:
         p, displacement = _guess(operators, b, 1)
         window = bounding_box((p > 0) | (displacement < b))
-    if window is None:
-        window = slice(0, size[0]), slice(0, size[1])
-    window = widen(window, MARGIN, size)
+    whole_grid = slice(0, size[0]), slice(0, size[1])
+    window = whole_grid if window is None else widen(window, MARGIN, size)
     K, inverse = operators(shape_of(window), 0)
     found = _solve_from(
         p[window],
@@ -140,8 +137,7 @@ def add_short_waves(guess: Array, displacement: Array, inverse: Operator, b: Arr
         np.maximum(p, 0.0, out=p)
         local_sums(p, sums, nodes)
         subtract_local_mean(p, 1.0, sums - wanted, nodes, p)
-    start: Array = np.maximum(p, 0.0, dtype=np.float64)
-    return start
+    return np.maximum(p, 0.0, dtype=np.float64)  # type: ignore[no-any-return]
 
 
 def balanced_preconditioner(inverse: Operator, p: Array, b: Array) -> Operator:

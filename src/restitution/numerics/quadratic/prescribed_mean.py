@@ -14,13 +14,15 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.numerics.quadratic.grid_transfer import prolong
-from restitution.numerics.quadratic.minimise import BoundedQuadratic, Minimum, minimise_quadratic
+from restitution.numerics.quadratic.minimise import (
+    Array,
+    BoundedQuadratic,
+    Minimum,
+    minimise_quadratic,
+)
 from restitution.numerics.quadratic.multilevel import Operators, coarsened, may_coarsen
-
-Array = NDArray[np.float64]
 
 _MAX_SOLVES = 60  # solves on one grid after which the search counts as not converged
 
@@ -90,12 +92,11 @@ def minimise_at_mean(
     multiplier = target.compliance * target.mean + 0.5 * float(h.mean())
     slope = 2 * target.compliance
     if may_coarsen(h.shape, periodic=True):
-        coarser = replace(target, precision=_COARSE_MEAN, residual=_COARSE_RESIDUAL)
         coarse = minimise_at_mean(
             operators,
             coarsened(h),
             upper,
-            coarser,
+            replace(target, precision=_COARSE_MEAN, residual=_COARSE_RESIDUAL),
             max_iterations=max_iterations,
             level=level + 1,
         )
@@ -126,8 +127,7 @@ def minimise_at_mean(
             continue
         following = bracket.following(multiplier, mean - target.mean, 2 * found.residual)
         multiplier, error = following, abs(following - multiplier)
-    minimum = replace(found, converged=done)
-    return MeanSolution(minimum, multiplier, bracket.slope, K.count)
+    return MeanSolution(replace(found, converged=done), multiplier, bracket.slope, K.count)
 
 
 class _Bracket:
