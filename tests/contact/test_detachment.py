@@ -8,13 +8,12 @@ from scipy.integrate import dblquad
 from scipy.ndimage import label
 
 from restitution import Body, Contact, Grid, Pair, Surface, solve
-from restitution.contact import detachment
+from restitution.contact import adhesion, detachment
 from restitution.contact.adhesion import release_nodes
 from restitution.contact.detachment import (
-    CrackClosure,
-    TensionLimit,
-    criterion,
-    energy_release_rate,
+    Edge,
+    released_beyond,
+    released_by_closure,
     tension_limit,
 )
 from restitution.contact.influence import half_space
@@ -85,7 +84,7 @@ def test_the_edge_of_a_punch_is_a_crack(nodes):
     contact, disc, radius = punch(nodes)
     E, w = contact.pair.contact_modulus, 0.1
     state, fields = drawn(contact, disc, float(Kendall(E, w).pull_off_displacement(radius)))
-    G = energy_release_rate(*fields)[1]
+    G = Edge.of(*fields).G
     expected = state.force**2 / (8 * math.pi * E * radius**3)
     assert expected == approx(w, rel=0.02)
     assert G.mean() == approx(expected, rel=0.03)
@@ -117,7 +116,8 @@ def test_a_straight_edge_releases_k_squared_over_two_e():
     p = np.zeros(n)
     p.flat[inside] = x
     u = K(p)
-    (_, j), G = energy_release_rate(p, u, np.zeros(n), touching)
+    edge = Edge.of(p, u, np.zeros(n), touching)
+    G, (_, j) = edge.G, edge.nodes
     middle = abs(j - (long - 1) / 2) < 20
     P = p[:, long // 2 - 20 : long // 2 + 20].sum(axis=0).mean() * h
     c = (half + 0.5) * h
@@ -128,7 +128,7 @@ def test_geometry_outside_the_contact_is_no_opening():
     rates = []
     for depth in (1e-9, 1e-6, 1e-3):
         contact, disc, _ = punch(12.2, depth)
-        rates.append(energy_release_rate(*drawn(contact, disc, 2e-8)[1])[1])
+        rates.append(Edge.of(*drawn(contact, disc, 2e-8)[1]).G)
     assert rates[0] == approx(rates[1], rel=1e-6)
     assert rates[1] == approx(rates[2], rel=1e-6)
 
@@ -177,7 +177,8 @@ def test_a_patch_without_tension_has_no_rate_beside_one_with():
     left = touching & (np.arange(24) < 9)[None, :] & (np.arange(20) < 12)[:, None]
     p[left] = -1e8
     u[~touching] = 1e-9
-    (i, j), G = energy_release_rate(p, u, np.zeros(touching.shape), touching)
+    edge = Edge.of(p, u, np.zeros(touching.shape), touching)
+    G, (i, j) = edge.G, edge.nodes
     assert (G[left[i, j]] > 0).all()
     assert not G[~left[i, j]].any()
 
@@ -187,19 +188,30 @@ def test_the_tension_limit_releases_exactly_what_is_beyond_it():
     touching = random.random((30, 31)) < 0.6
     p = np.where(touching, random.normal(0, 2.0, touching.shape), 0.0)
     p[0, 0], touching[0, 0] = -1.5, True  # exactly at the limit: not released
-    rule = TensionLimit(1.5)
-    released = rule.releases(p, p, p, touching)
+    released = released_beyond(1.5, p, touching)
     assert np.array_equal(released, touching & (p < -1.5))
     assert released.any()
 
 
 @pytest.mark.parametrize(
-    ("name", "kind"), [("crack-closure", CrackClosure), ("pohrt-popov", TensionLimit)]
+    ("name", "rule"), [("crack-closure", "released_by_closure"), ("pohrt-popov", "released_beyond")]
 )
-def test_criteria_by_name(name, kind):
-    rule = criterion(name, E_STAR, W, (1e-7, 2e-7))
-    assert isinstance(rule, kind)
-    assert rule.limit == tension_limit(E_STAR, W, (1e-7, 2e-7))
+def test_criteria_by_name(name, rule, monkeypatch):
+    """Each criterion calls its own function, with the tension limit of the grid."""
+    contact, disc, _ = punch(6.2, detachment=name)
+    calls = []
+    for function in (released_by_closure, released_beyond):
+
+        def recorded(*given, function=function):
+            calls.append((function.__name__, given))
+            return function(*given)
+
+        monkeypatch.setattr(adhesion, function.__name__, recorded)
+    whole = slice(0, disc.shape[0]), slice(0, disc.shape[1])
+    release_nodes(contact, -1e-9, whole, disc, limit=math.inf, residual=1e-9)
+    assert {called for called, _ in calls} == {rule}
+    limit = tension_limit(contact.pair.contact_modulus, 0.1, contact.grid.spacing)
+    assert all(limit in [each for each in given if np.ndim(each) == 0] for _, given in calls)
 
 
 def test_crack_closure_releases_nodes_apart_from_each_other():
@@ -208,15 +220,15 @@ def test_crack_closure_releases_nodes_apart_from_each_other():
     E, w = contact.pair.contact_modulus, 0.1
     limit = float(Kendall(E, w).pull_off_displacement(radius))
     _, (p, u, h, touching) = drawn(contact, disc, 1.025 * limit)
-    released = CrackClosure(w, math.inf).releases(p, u, h, touching)
+    released = released_by_closure(Edge.of(p, u, h, touching), p, w, math.inf)
     assert 1 <= released.sum() < 40
     assert not (released & ~touching).any()
     i, j = np.nonzero(released)
     apart = np.maximum(abs(i[:, None] - i), abs(j[:, None] - j))
     assert apart[~np.eye(i.size, dtype=bool)].min(initial=9) > 3
     assert p[released].max() < 0
-    _, fields = drawn(contact, disc, 0.8 * limit)
-    assert not CrackClosure(w, math.inf).releases(*fields).any()
+    _, (p, u, h, touching) = drawn(contact, disc, 0.8 * limit)
+    assert not released_by_closure(Edge.of(p, u, h, touching), p, w, math.inf).any()
 
 
 def test_an_edge_far_from_balance_recedes_by_a_strip():
@@ -227,7 +239,7 @@ def test_an_edge_far_from_balance_recedes_by_a_strip():
     widths = []
     for factor in (1.15, 1.4):
         _, (p, u, h, touching) = drawn(contact, disc, factor * limit)
-        released = CrackClosure(w, math.inf).releases(p, u, h, touching)
+        released = released_by_closure(Edge.of(p, u, h, touching), p, w, math.inf)
         widths.append(released.sum() / (2 * math.pi * 20.4))
         assert released[touching & (p == p[touching].min())].all()
     assert 1 < widths[0] < widths[1]
@@ -239,7 +251,7 @@ def test_the_rim_under_tension_is_measured():
     r = np.hypot(x[:, None], x)
     touching = r < 20
     p = np.where(touching & (r > 15), -1.0, np.where(touching, 1.0, 0.0))
-    edge = detachment.Edge.of(p, p, p, touching)
+    edge = Edge.of(p, p, p, touching)
     width = edge.tensile_width(p < 0)
     assert width.sum() == approx((p < 0).sum(), rel=1e-9)
     strip = edge.strip(np.full(edge.G.size, 2.0))
@@ -252,7 +264,7 @@ def test_the_curvature_of_an_edge():
     x = np.arange(101.0) - 50
     touching = np.hypot(x[:, None] - 20, x - 20) < 25
     touching |= np.hypot(x[:, None] + 35, x + 35) < 8
-    edge = detachment.Edge.of(*(np.zeros(touching.shape) for _ in range(3)), touching)
+    edge = Edge.of(*(np.zeros(touching.shape) for _ in range(3)), touching)
     i, j = edge.nodes
     faces = sum(
         (~np.roll(touching, step, axis)[i, j]).astype(int) for step in (-1, 1) for axis in (0, 1)
@@ -274,7 +286,7 @@ def test_rounding_does_not_choose_between_nodes():
     far = 1.3 * float(Kendall(E, w).pull_off_displacement(radius))
     _, (p, u, h, touching) = drawn(contact, disc, far)
     released = [
-        CrackClosure(w, math.inf).releases(noisy, u, h, touching)
+        released_by_closure(Edge.of(noisy, u, h, touching), noisy, w, math.inf)
         for noisy in (p, p * (1 + 1e-9 * np.random.default_rng(0).normal(size=p.shape)))
     ]
     assert released[0].any()

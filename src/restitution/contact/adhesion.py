@@ -17,9 +17,10 @@ from numpy.typing import NDArray
 from restitution.contact.checks.resolution import adhesive_nodes
 from restitution.contact.contact import Contact
 from restitution.contact.detachment import (
+    Edge,
     Mask,
-    criterion,
-    energy_release_rate,
+    released_beyond,
+    released_by_closure,
     tension_limit,
 )
 from restitution.contact.equilibrium import (
@@ -80,31 +81,30 @@ def release_nodes(
     gap = contact.gap[around]
     if history is not None:
         gap = gap + history.plastic_displacement[around]
-    rule = criterion(
-        contact.detachment, pair.contact_modulus, contact.work_of_adhesion, grid.spacing
-    )
-    # The lower bound of the pressure. Nodes beyond the tension limit are released, so a bound of
-    # twice this limit never restricts the result. The solver is faster with a finite bound than
-    # without a bound.
-    tension = 2 * tension_limit(pair.contact_modulus, contact.work_of_adhesion, grid.spacing)
+    w = contact.work_of_adhesion
+    tension = tension_limit(pair.contact_modulus, w, grid.spacing)
     before_release: State | None = None
     convolutions = 0
     # A coarse tolerance is enough to decide which nodes are released. Only the last solve needs the
     # requested tolerance.
     accuracy = residual
-    if contact.detachment == "crack-closure":
+    closure = contact.detachment == "crack-closure"
+    if closure:
         opening = contact.crack_opening / contact.residual_length(indentation)
         accuracy = _ACCURACY * opening
         if accuracy < 2 * residual:
             accuracy = residual  # a second solve at the end would hardly be more accurate
     while True:
+        # The lower bound of the pressure is twice the tension limit. Nodes beyond this limit are
+        # released, so the bound never restricts the result. The solver is faster with a finite
+        # bound than without a bound.
         state = solve_pressure(
             contact,
             indentation,
             around,
             limit=limit,
             history=history,
-            held=HeldNodes(held, tension, first_guess),
+            held=HeldNodes(held, 2 * tension, first_guess),
             residual=accuracy,
         )
         convolutions += state.convolutions
@@ -113,7 +113,11 @@ def release_nodes(
         pressure = state.box_pressure
         # From now on, nodes that have come into compression are also held.
         held |= pressure > 0
-        released = rule.releases(pressure, state.box_displacement, gap, held)
+        if closure:
+            edge = Edge.of(pressure, state.box_displacement, gap, held)
+            released = released_by_closure(edge, pressure, w, tension)
+        else:
+            released = released_beyond(tension, pressure, held)
         if not released.any():
             if accuracy == residual:
                 return before_release, state
@@ -279,7 +283,7 @@ def _balance(state: State, retracted: State) -> tuple[float, float] | None:
     for each in (state, retracted):
         gap = contact.gap[each.box] + state.plastic_displacement[each.box]
         mask = reframe(touching, state.box, each.box)
-        rates.append(energy_release_rate(each.box_pressure, each.box_displacement, gap, mask)[1])
+        rates.append(Edge.of(each.box_pressure, each.box_displacement, gap, mask).G)
     active = np.maximum(*rates) > _ACTIVE * contact.work_of_adhesion
     if not active.any():
         return None

@@ -35,10 +35,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, Protocol
+from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from restitution.numerics.diffusion import diffuse
 
@@ -92,94 +92,55 @@ def tension_limit(
     return math.sqrt(2 * math.pi * contact_modulus * work_of_adhesion * hx * hy / twice)
 
 
-class Criterion(Protocol):
-    """Selects the nodes in contact that are released next."""
-
-    def releases(self, p: Array, u: Array, h: Array, touching: Mask) -> Mask:
-        """Select nodes from pressure p, displacement u and the gap h before displacement."""
+def released_beyond(limit: float, p: Array, touching: Mask) -> Mask:
+    """Select all nodes in contact whose tension exceeds `limit` (Pa): the rule of `pohrt-popov`."""
+    return touching & (p < -limit)
 
 
-@dataclass(frozen=True)
-class TensionLimit:
-    """The criterion `pohrt-popov`."""
+def released_by_closure(edge: Edge, p: Array, work_of_adhesion: float, limit: float) -> Mask:
+    """Select nodes to release by `crack-closure`, from the pressure `p` and the contact `edge`.
 
-    limit: float
-
-    def releases(self, p: Array, u: Array, h: Array, touching: Mask) -> Mask:
-        """Select all nodes whose tension exceeds the limit."""
-        return touching & (p < -self.limit)
-
-
-@dataclass(frozen=True)
-class CrackClosure:
-    """The criterion `crack-closure`; on coarse grids it also applies the tension limit."""
-
-    work_of_adhesion: float
-    limit: float
-
-    def releases(self, p: Array, u: Array, h: Array, touching: Mask) -> Mask:
-        """Select nodes to release until the energy release rate falls to the work of adhesion.
-
-        `_recession` estimates how far the edge must recede for this at each edge node. All nodes
-        under tension within this distance of the smoothed outline are released. If this strip is
-        narrow or contains no node, single nodes under the largest tension are released instead.
-        """
-        edge = Edge.of(p, u, h, touching)
-        tensile = touching & (p < 0)
-        fine = bool(np.count_nonzero(tensile) > _RESOLVED_RIM * edge.G.size)
-        released = np.zeros_like(touching) if fine else touching & (p < -self.limit)
-        recession = self._recession(edge, tensile, fine)
-        if not recession.any():
-            return released
-        if recession.max() > _LEAST_STRIP and (strip := edge.strip(recession) & tensile).any():
-            return released | strip
-        alone = _apart(edge.nodes, np.where(recession > 0, p[edge.nodes], 0.0), recession)
-        released[edge.nodes[0][alone], edge.nodes[1][alone]] = True
-        return released
-
-    def _recession(self, edge: Edge, tensile: Mask, fine: bool) -> Array:
-        """Distance (cells) by which each edge node must recede; zero if its patch is at rest.
-
-        At a fixed indentation, sqrt(G) falls linearly as the edge recedes, where G is the energy
-        release rate. In a smooth contact (JKR), receding by the small distance d reduces sqrt(G) by
-        the fraction d/(2t), where t is the width of the rim under tension.
-        """
-        largest = (1.0 if fine else _LARGEST_ON_COARSE_GRIDS) * self.work_of_adhesion
-        moves = (largest < edge.G) & tensile[edge.nodes]
-        excess = np.zeros(edge.G.size)
-        excess[moves] = 1 - np.sqrt(largest / edge.G[moves])
-        if fine:
-            excess[edge.patch_mean(excess) < _AT_REST] = 0.0
-        return 2 * edge.tensile_width(tensile) * excess if excess.any() else excess
-
-
-def criterion(
-    detachment: Detachment,
-    contact_modulus: float,
-    work_of_adhesion: float,
-    spacing: tuple[float, float],
-) -> Criterion:
-    """Make the criterion named `detachment`."""
-    limit = tension_limit(contact_modulus, work_of_adhesion, spacing)
-    if detachment == "pohrt-popov":
-        return TensionLimit(limit)
-    return CrackClosure(work_of_adhesion, limit)
-
-
-def energy_release_rate(p: Array, u: Array, h: Array, touching: Mask) -> tuple[Nodes, Array]:
-    """Return the edge nodes of the contact and their energy release rate G (J/m²).
-
-    The nodes are given by their indices. G is averaged along the edge.
+    Nodes are released until the energy release rate falls to the work of adhesion. `_recession`
+    estimates how far the edge must recede for this at each edge node. All nodes under tension
+    within this distance of the smoothed outline are released. If this strip is narrow or contains
+    no node, single nodes under the largest tension are released instead. On coarse grids, nodes
+    whose tension exceeds `limit` (Pa) are also released.
     """
-    edge = Edge.of(p, u, h, touching)
-    return edge.nodes, edge.G
+    tensile = edge.touching & (p < 0)
+    fine = bool(np.count_nonzero(tensile) > _RESOLVED_RIM * edge.G.size)
+    released = np.zeros_like(tensile) if fine else released_beyond(limit, p, edge.touching)
+    recession = _recession(edge, tensile, work_of_adhesion, fine)
+    if not recession.any():
+        return released
+    if recession.max() > _LEAST_STRIP and (strip := edge.strip(recession) & tensile).any():
+        return released | strip
+    alone = _apart(edge.nodes, np.where(recession > 0, p[edge.nodes], 0.0), recession)
+    released[edge.nodes[0][alone], edge.nodes[1][alone]] = True
+    return released
+
+
+def _recession(edge: Edge, tensile: Mask, work_of_adhesion: float, fine: bool) -> Array:
+    """Distance (cells) by which each edge node must recede; zero if its patch is at rest.
+
+    At a fixed indentation, sqrt(G) falls linearly as the edge recedes, where G is the energy
+    release rate. In a smooth contact (JKR), receding by the small distance d reduces sqrt(G) by the
+    fraction d/(2t), where t is the width of the rim under tension.
+    """
+    largest = (1.0 if fine else _LARGEST_ON_COARSE_GRIDS) * work_of_adhesion
+    moves = (largest < edge.G) & tensile[edge.nodes]
+    excess = np.zeros(edge.G.size)
+    excess[moves] = 1 - np.sqrt(largest / edge.G[moves])
+    if fine:
+        excess[edge.patch_mean(excess) < _AT_REST] = 0.0
+    return 2 * edge.tensile_width(tensile) * excess if excess.any() else excess
 
 
 @dataclass(frozen=True)
 class Edge:
     """The edge nodes of a contact (indices), and the energy release rate G (J/m²) at each of them.
 
-    `diffusion` holds the neighbours and weights that average values along the edge (`_diffusion`).
+    G is averaged along the edge. `diffusion` holds the neighbours and weights for this average
+    (`_diffusion`).
     """
 
     touching: Mask
@@ -189,9 +150,8 @@ class Edge:
 
     @classmethod
     def of(cls, p: Array, u: Array, h: Array, touching: Mask) -> Edge:
-        """Find the edge and the energy release rate along it."""
-        T = np.zeros((touching.shape[0] + 2, touching.shape[1] + 2), dtype=bool)
-        T[1:-1, 1:-1] = touching
+        """Find the edge from pressure p, displacement u and the gap h before displacement."""
+        T = np.pad(touching, 1)
         surrounded = T[:-2, 1:-1] & T[2:, 1:-1] & T[1:-1, :-2] & T[1:-1, 2:]
         i, j = np.nonzero(touching & ~surrounded)
         side, node = np.nonzero(~T[i + 1 + _FACES[:, :1], j + 1 + _FACES[:, 1:]])
@@ -224,12 +184,8 @@ class Edge:
 
     def tensile_width(self, tensile: Mask) -> Array:
         """Width (cells) of the rim of the contact under tension, averaged along the edge."""
-        _, nearest = self._distance
-        under = np.bincount(nearest[self.touching & tensile], minlength=self.G.size)
-        sums = np.column_stack([under, np.ones(self.G.size)])
-        diffuse(*self.diffusion, _SMOOTHING_STEPS, sums)
-        width: Array = sums[:, 0] / sums[:, 1]
-        return width
+        under = self._nearest[self.touching & tensile]
+        return self._averaged(np.bincount(under, minlength=self.G.size))
 
     def strip(self, width: Array) -> Mask:
         """Mask of the contact nodes at most `width` (cells) deep inside the smoothed outline.
@@ -237,15 +193,19 @@ class Edge:
         `width` has one value for each edge node. A contact node uses the value of the nearest edge
         node.
         """
-        _, nearest = self._distance
-        near: Mask = self._depth <= width[nearest]
-        return self.touching & near
+        return self.touching & (self._depth <= width[self._nearest])
 
     def patch_mean(self, values: Array) -> Array:
         """Mean of `values`, one for each edge node, over the edge nodes of the same patch."""
         patch = _patch_numbers(self.touching, self.nodes)
         means = np.bincount(patch, weights=values) / np.maximum(np.bincount(patch), 1)
         return np.asarray(means[patch])
+
+    def _averaged(self, values: ArrayLike) -> Array:
+        """Average `values`, one for each edge node, along the edge."""
+        sums = np.column_stack([values, np.ones(self.G.size)])
+        diffuse(*self.diffusion, _SMOOTHING_STEPS, sums)
+        return np.asarray(sums[:, 0] / sums[:, 1])
 
     @cached_property
     def _depth(self) -> Array:
@@ -260,26 +220,19 @@ class Edge:
         signed -= 0.5 * np.sign(signed)
         smooth = gaussian_filter(signed, _SMOOTHED, truncate=2.0)
         smooth = smooth[_SMOOTHED:-_SMOOTHED, _SMOOTHED:-_SMOOTHED]
-        sums = np.column_stack([smooth[self.nodes], np.ones(self.G.size)])
-        diffuse(*self.diffusion, _SMOOTHING_STEPS, sums)
-        _, nearest = self._distance
-        depth: Array = smooth - (sums[:, 0] / sums[:, 1] - 0.5)[nearest]
-        return depth
+        return np.asarray(smooth - (self._averaged(smooth[self.nodes]) - 0.5)[self._nearest])
 
     @cached_property
-    def _distance(self) -> tuple[Array, NDArray[np.intp]]:
-        """Distance (cells) of each node of the box to the nearest edge node, and its number.
-
-        The number is the position of this edge node in `nodes`.
-        """
+    def _nearest(self) -> NDArray[np.intp]:
+        """Position in `nodes` of the edge node nearest to each node of the box."""
         from scipy.ndimage import distance_transform_edt
 
         beside = np.ones(self.touching.shape, dtype=bool)
         beside[self.nodes] = False
         number = np.zeros(beside.shape, dtype=np.intp)
         number[self.nodes] = np.arange(self.G.size)
-        distance, nearest = distance_transform_edt(beside, return_indices=True)
-        return np.asarray(distance), number[tuple(nearest)]
+        nearest = distance_transform_edt(beside, return_distances=False, return_indices=True)
+        return np.asarray(number[tuple(nearest)])
 
 
 def _curvature(touching: Mask, nodes: Nodes, faces: NDArray[np.intp]) -> Array:
