@@ -10,9 +10,10 @@ with 2/(E* |q|) times its amplitude (Johnson 1985, *Contact Mechanics*, §13.2).
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable
-from typing import TypeVar
+from typing import ParamSpec, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,12 +29,32 @@ from restitution.numerics.multipoles import multipoles
 
 Array = NDArray[np.float64]
 Operator = TypeVar("Operator", FreeConvolution, PeriodicConvolution, SpectralFilter)
-Moduli = TypeVar("Moduli", float, tuple[float, float])
+Arguments = ParamSpec("Arguments")
 
 # Distance (in cell diagonals) beyond which the series of `far_displacement` is used. Beyond this
 # distance the relative error of the series is under 2e-12. The relative error of Love's formula
 # grows, due to cancellation, as the square of the distance.
 _FAR = 32.0
+# Largest operator and largest block of coefficients that are cached, as fractions of the size of
+# the cache. If larger operators were cached too, a few of them would fill the cache as a contact
+# grows. With the default size of the cache, operators of up to 1400² nodes are cached.
+_MAX_OPERATOR, _MAX_COEFFICIENTS = 1 / 15, 2 / 3
+
+
+def _cached(build: Callable[Arguments, Operator]) -> Callable[Arguments, Operator]:
+    """Take the operator from the cache or build it; return it with a separate workspace."""
+
+    @functools.wraps(build)
+    def cached(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Operator:
+        key = build, args, tuple(kwargs.items()), current()
+        operator: Operator | None = operator_cache.get(key)
+        if operator is None:
+            operator = build(*args, **kwargs)
+            if operator.nbytes <= _MAX_OPERATOR * operator_cache.max_bytes:
+                operator_cache.put(key, operator)
+        return operator.with_own_workspace()
+
+    return cached
 
 
 def love_displacement(x: Array, y: Array, hx: float, hy: float, contact_modulus: float) -> Array:
@@ -130,6 +151,7 @@ def influence_coefficients(
     return scaled
 
 
+@_cached
 def half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
 ) -> FreeConvolution:
@@ -137,9 +159,16 @@ def half_space(
 
     The operator takes and returns arrays of the given `shape` (nodes) on the current device.
     """
-    return _operator(_half_space, shape, spacing, contact_modulus)
+    device = current()
+
+    def kernel(i: NDArray[np.int64], j: NDArray[np.int64]) -> Array:
+        # FreeConvolution passes i as a row and j as a column.
+        return influence_coefficients(j, i, spacing[::-1], contact_modulus, device)
+
+    return FreeConvolution(kernel, shape, device)
 
 
+@_cached
 def inverse_half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
 ) -> SpectralFilter:
@@ -148,9 +177,20 @@ def inverse_half_space(
     It multiplies a displacement wave of the angular wave number |q| by |q| E*/2. This inverse is
     exact for a periodic half-space (Johnson 1985).
     """
-    return _operator(_inverse_half_space, shape, spacing, contact_modulus)
+
+    def symbol(qx: Array, qy: Array) -> Array:
+        q = _wave_numbers(qx, qy, spacing)
+        # The displacement due to a mean pressure is not defined on a periodic half-space. For the
+        # mean, half the wave number of the longest wave is used.
+        longest = [2 * np.pi / min(spacing), *map(float, q[1:2, 0]), *map(float, q[0, 1:2])]
+        q[0, 0] = 0.5 * min(longest)
+        q *= 0.5 * contact_modulus
+        return q
+
+    return SpectralFilter(symbol, shape, current())
 
 
+@_cached
 def shear_half_space(
     shape: tuple[int, int], spacing: tuple[float, float], compliances: tuple[float, float]
 ) -> FreeConvolution:
@@ -159,9 +199,16 @@ def shear_half_space(
     The operator takes and returns arrays of the given `shape` (nodes). `compliances` (1/Pa) are
     those of `Pair.shear_compliances`.
     """
-    return _operator(_shear_half_space, shape, spacing, compliances)
+    hx, hy = spacing
+
+    def kernel(i: NDArray[np.int64], j: NDArray[np.int64]) -> Array:
+        x, y = (np.asarray(h * lag, dtype=np.float64) for h, lag in ((hx, i), (hy, j)))
+        return cerruti_displacement(x, y, hx, hy, compliances)
+
+    return FreeConvolution(kernel, shape, current())
 
 
+@_cached
 def periodic_half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
 ) -> PeriodicConvolution:
@@ -170,9 +217,10 @@ def periodic_half_space(
     Displacement is measured from its mean, so its mean is zero, and a uniform pressure causes no
     displacement.
     """
-    return _operator(_periodic_half_space, shape, spacing, contact_modulus)
+    return _with_mean(0.0, shape, spacing, contact_modulus)
 
 
+@_cached
 def sprung_half_space(
     shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float
 ) -> PeriodicConvolution:
@@ -182,7 +230,8 @@ def sprung_half_space(
     pressure. In contrast to `periodic_half_space`, this operator is positive definite.
     `inverse_half_space` is its inverse if the FFT of this shape needs no padding.
     """
-    return _operator(_sprung_half_space, shape, spacing, contact_modulus)
+    compliance = foundation_compliance(shape, spacing, contact_modulus)
+    return _with_mean(compliance, shape, spacing, contact_modulus)
 
 
 def foundation_compliance(
@@ -195,28 +244,6 @@ def foundation_compliance(
     """
     q = math.pi / max(n * h for n, h in zip(shape, spacing, strict=True))
     return 2 / (contact_modulus * q)
-
-
-# Largest operator and largest block of coefficients that are cached, as fractions of the size of
-# the cache. If larger operators were cached too, a few of them would fill the cache as a contact
-# grows. With the default size of the cache, operators of up to 1400² nodes are cached.
-_MAX_OPERATOR, _MAX_COEFFICIENTS = 1 / 15, 2 / 3
-
-
-def _operator(
-    build: Callable[[tuple[int, int], tuple[float, float], Moduli, Device], Operator],
-    shape: tuple[int, int],
-    spacing: tuple[float, float],
-    moduli: Moduli,
-) -> Operator:
-    """Take the operator from the cache or build it; return it with a separate workspace."""
-    key = build, shape, spacing, moduli, current()
-    operator: Operator | None = operator_cache.get(key)
-    if operator is None:
-        operator = build(*key[1:])
-        if operator.nbytes <= _MAX_OPERATOR * operator_cache.max_bytes:
-            operator_cache.put(key, operator)
-    return operator.with_own_workspace()
 
 
 def _unit_coefficients(lags: tuple[int, int], aspect: float, device: Device) -> Array:
@@ -258,68 +285,11 @@ def _compute_coefficients(
     return u
 
 
-def _half_space(
-    shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float, device: Device
-) -> FreeConvolution:
-    def kernel(i: NDArray[np.int64], j: NDArray[np.int64]) -> Array:
-        # FreeConvolution passes i as a row and j as a column.
-        return influence_coefficients(j, i, spacing[::-1], contact_modulus, device)
-
-    return FreeConvolution(kernel, shape, device)
-
-
-def _shear_half_space(
-    shape: tuple[int, int],
-    spacing: tuple[float, float],
-    compliances: tuple[float, float],
-    device: Device,
-) -> FreeConvolution:
-    hx, hy = spacing
-
-    def kernel(i: NDArray[np.int64], j: NDArray[np.int64]) -> Array:
-        x, y = (np.asarray(h * lag, dtype=np.float64) for h, lag in ((hx, i), (hy, j)))
-        return cerruti_displacement(x, y, hx, hy, compliances)
-
-    return FreeConvolution(kernel, shape, device)
-
-
-def _inverse_half_space(
-    shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float, device: Device
-) -> SpectralFilter:
-
-    def symbol(qx: Array, qy: Array) -> Array:
-        q = _wave_numbers(qx, qy, spacing)
-        # The displacement due to a mean pressure is not defined on a periodic half-space. For the
-        # mean, half the wave number of the longest wave is used.
-        longest = [2 * np.pi / min(spacing)]
-        longest += [float(q[1, 0])] if q.shape[0] > 1 else []
-        longest += [float(q[0, 1])] if q.shape[1] > 1 else []
-        q[0, 0] = 0.5 * min(longest)
-        q *= 0.5 * contact_modulus
-        return q
-
-    return SpectralFilter(symbol, shape, device)
-
-
-def _periodic_half_space(
-    shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float, device: Device
-) -> PeriodicConvolution:
-    return _with_mean(0.0, shape, spacing, contact_modulus, device)
-
-
-def _sprung_half_space(
-    shape: tuple[int, int], spacing: tuple[float, float], contact_modulus: float, device: Device
-) -> PeriodicConvolution:
-    compliance = foundation_compliance(shape, spacing, contact_modulus)
-    return _with_mean(compliance, shape, spacing, contact_modulus, device)
-
-
 def _with_mean(
     compliance: float,
     shape: tuple[int, int],
     spacing: tuple[float, float],
     contact_modulus: float,
-    device: Device,
 ) -> PeriodicConvolution:
     """Build a periodic half-space with a mean displacement of `compliance` times mean pressure.
 
@@ -333,7 +303,7 @@ def _with_mean(
         displacement[0, 0] = compliance
         return displacement
 
-    return PeriodicConvolution(symbol, shape, device)
+    return PeriodicConvolution(symbol, shape, current())
 
 
 def _wave_numbers(qx: Array, qy: Array, spacing: tuple[float, float]) -> Array:
