@@ -58,6 +58,7 @@ from numpy.typing import NDArray
 
 from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import elastic_pressure
+from restitution.contact.state import State
 from restitution.numerics.box import Box
 from restitution.numerics.read_only import freeze
 from restitution.theory import Hertz
@@ -106,6 +107,28 @@ def yield_bound(contact: Contact, indentation: float, residual: float) -> tuple[
     bounds[apart] = bound_of(contact, measure[apart] * depth_ratio ** separate[apart], ridge)
     bound[box][nodes] = bounds
     return freeze(bound), convolutions
+
+
+def pressure_bound(
+    contact: Contact, indentation: float, residual: float
+) -> tuple[Array | float, int]:
+    """Return the pressure bound (Pa) of a solve, and the number of convolutions that it took."""
+    if contact.grows:
+        return yield_bound(contact, max(indentation, 0.0), residual)
+    return contact.yield_pressure, 0
+
+
+def bound_after(state: State, indentation: float, residual: float) -> tuple[Array | float, int]:
+    """Return the results of `pressure_bound` for a step from `state`, where the bound cannot fall.
+
+    The convolutions do not include those of `state`.
+    """
+    if indentation <= state.indentation:
+        return state.bound, 0
+    limit, convolutions = pressure_bound(state.contact, indentation, residual)
+    if isinstance(limit, np.ndarray):
+        limit = freeze(np.maximum(limit, state.bound))
+    return limit, convolutions
 
 
 def bound_of(contact: Contact, measure: Array, ridge: Array | float = 0.0) -> Array:

@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.contact.cavity import yield_bound
+from restitution.contact.cavity import bound_after, pressure_bound
 from restitution.contact.checks.edge import require_inside_grid
 from restitution.contact.cohesive import (
     CohesiveState,
@@ -33,8 +33,7 @@ from restitution.contact.contact import Contact
 from restitution.contact.plastic_work import plastic_work
 from restitution.contact.state import State
 from restitution.errors import NotConvergedError
-from restitution.numerics.box import Box, union
-from restitution.numerics.read_only import freeze
+from restitution.numerics.box import union
 
 Array = NDArray[np.float64]
 
@@ -72,21 +71,28 @@ def load_cohesive(
     Raises `CaseError` if the grid is too coarse, and `NotConvergedError`.
     """
     require_fine_grid(contact)
-    state: CohesiveState | None = None
-    if isinstance(start, CohesiveState) and start.is_first_loading:
-        state = start if start.indentation <= indentation else None
-    convolutions = 0
-    if state is None:
-        limit, convolutions = _bound(contact, -math.inf, residual)
-        state = rigid_start(contact, limit=limit, residual=residual)
-        if state.indentation > indentation:
-            return replace(state, convolutions=convolutions)
-    else:
-        state = replace(state, convolutions=0)
-    begin = state
-    for state in follow(begin, indentation, residual=residual, accuracy=accuracy):
-        convolutions += state.convolutions
-    return replace(state, convolutions=convolutions)
+    if (
+        isinstance(start, CohesiveState)
+        and start.is_first_loading
+        and start.indentation <= indentation
+    ):
+        return _move(start, indentation, residual, accuracy)
+    limit, convolutions = pressure_bound(contact, -math.inf, residual)
+    begin = rigid_start(contact, limit=limit, residual=residual)
+    if begin.indentation > indentation:
+        return replace(begin, convolutions=convolutions)
+    end = _move(begin, indentation, residual, accuracy)
+    return replace(end, convolutions=convolutions + end.convolutions)
+
+
+def _move(
+    state: CohesiveState, indentation: float, residual: float, accuracy: float = ACCURACY
+) -> CohesiveState:
+    """Follow the path from `state` to `indentation`; return its end with all its convolutions."""
+    end, convolutions = state, 0
+    for end in follow(state, indentation, residual=residual, accuracy=accuracy):
+        convolutions += end.convolutions
+    return replace(end, convolutions=convolutions)
 
 
 def load_until(
@@ -115,11 +121,7 @@ def load_until(
 
 def step_cohesive(state: CohesiveState, indentation: float, *, residual: float) -> CohesiveState:
     """Move a deformed contact to another indentation, deeper or shallower."""
-    convolutions = 0
-    new = replace(state, convolutions=0)
-    for new in follow(state, indentation, residual=residual):
-        convolutions += new.convolutions
-    return replace(new, convolutions=convolutions, is_first_loading=False)
+    return replace(_move(state, indentation, residual), is_first_loading=False)
 
 
 def separate_cohesive(state: CohesiveState, *, accuracy: float = ACCURACY) -> Iterator[State]:
@@ -137,8 +139,7 @@ def separate_cohesive(state: CohesiveState, *, accuracy: float = ACCURACY) -> It
     for new in path:
         tension = max(tension, -new.force)
         yield new
-        done = new.contact_nodes == 0 and -new.force <= _FARTHEST * tension
-        if done and is_unique(new):
+        if new.contact_nodes == 0 and -new.force <= _FARTHEST * tension and is_unique(new):
             return
 
 
@@ -236,11 +237,7 @@ def _accounted(state: CohesiveState, step: _Step, smooth: bool) -> CohesiveState
 def _try(previous: CohesiveState | None, state: CohesiveState, at: float, residual: float) -> _Step:
     """Make a trial step to the indentation `at`, starting from an extrapolation of two states."""
     contact, box = state.contact, state.box
-    limit, convolutions = state.bound, 0
-    if at > state.indentation:
-        limit, convolutions = _bound(contact, at, residual)
-        if isinstance(limit, np.ndarray):
-            limit = freeze(np.maximum(limit, state.bound))
+    limit, convolutions = bound_after(state, at, residual)
     p, u = state.box_pressure, state.box_displacement
     if previous is not None and previous.box == box:
         ratio = (at - state.indentation) / (state.indentation - previous.indentation)
@@ -261,9 +258,7 @@ def _try(previous: CohesiveState | None, state: CohesiveState, at: float, residu
     )
     way, force, before = at - state.indentation, new.force, state.force
     trapezium = 0.5 * (force + before) * way
-    parabola = trapezium
-    if previous is not None:
-        parabola = _parabola(previous, state, new)
+    parabola = trapezium if previous is None else _parabola(previous, state, new)
     return _Step(
         new,
         trapezium,
@@ -289,23 +284,11 @@ def _scale(state: CohesiveState, *, loading: bool) -> float:
 
 def _on_wider_box(state: CohesiveState, at: float, residual: float) -> CohesiveState:
     """Move `state` to a larger box if bodies at the indentation `at` interact outside its box."""
-    contact, history = state.contact, state
-    needed = interacting_box(contact, at, history)
-    if _within(needed, state.box):
+    needed = interacting_box(state.contact, at, state)
+    if union(state.box, needed) == state.box:
         return state
-    z0 = contact.equilibrium_separation
-    wider = interacting_box(contact, at + (_WIDER - 1) * (max(at, 0.0) + 10 * z0), history)
+    z0 = state.contact.equilibrium_separation
+    wider = interacting_box(state.contact, at + (_WIDER - 1) * (max(at, 0.0) + 10 * z0), state)
     box = union(state.box, union(needed, wider))
     assert box is not None
     return on_box(state, box, residual=residual)
-
-
-def _within(inner: Box, outer: Box) -> bool:
-    return all(a.start >= b.start and a.stop <= b.stop for a, b in zip(inner, outer, strict=True))
-
-
-def _bound(contact: Contact, indentation: float, residual: float) -> tuple[Array | float, int]:
-    """Pressure bound (Pa) at `indentation`, and the number of convolutions that it took."""
-    if contact.grows:
-        return yield_bound(contact, max(indentation, 0.0), residual)
-    return contact.yield_pressure, 0

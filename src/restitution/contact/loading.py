@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from restitution.contact.adhesion import balances_are_reliable, grow_contact, unload_adhesive
 from restitution.contact.adhesive_work import pinning_error, work_by_balance, work_by_force
-from restitution.contact.cavity import yield_bound
+from restitution.contact.cavity import bound_after, pressure_bound
 from restitution.contact.checks.edge import require_inside_grid
 from restitution.contact.cohesive import CohesiveState
 from restitution.contact.cohesive_path import load_cohesive, step_cohesive
@@ -82,8 +82,8 @@ def solve(
         raise CaseError(f"indentation: {indentation} m is not a positive depth")
     if start is not None and start.contact.grid != contact.grid:
         raise CaseError("start: is on another grid; give a state on the grid of this contact")
-    state = solve_without_work(contact, indentation, start=start, residual=residual)
-    state = with_work(state, start)
+    unfinished = solve_without_work(contact, indentation, start=start, residual=residual)
+    state = with_work(unfinished, start)
     require_inside_grid(state)
     return state
 
@@ -122,10 +122,7 @@ def step(state: State, indentation: float, *, residual: float = RESIDUAL) -> Sta
     if contact.adhesive:
         new = unload_adhesive(state, indentation, residual=residual)
     else:
-        limit, convolutions = state.bound, 0
-        if contact.grows and indentation > state.indentation:
-            grown, convolutions = yield_bound(contact, indentation, residual)
-            limit = freeze(np.maximum(limit, grown))
+        limit, convolutions = bound_after(state, indentation, residual)
         new = solve_nonadhesive(contact, indentation, limit, residual, history=state)
         if contact.grows:
             work, _ = plastic_work(state, new)
@@ -148,25 +145,23 @@ def solve_without_work(
     """
     if contact.cohesive:
         return load_cohesive(contact, indentation, start=start, residual=residual)
-    limit, convolutions = _limit_at(contact, indentation, residual)
+    limit, convolutions = pressure_bound(contact, indentation, residual)
+    if contact.truncates:
+        limit = math.inf  # the pressure is truncated after the solve
     if contact.adhesive and contact.approach == "equilibrium":
         shallower = start if start is not None and start.indentation <= indentation else None
-        if shallower is None:
-            held = contact.gap <= indentation
-            box = bounding_box(held)
-            assert box is not None  # the gap is zero at first touch
-            held = held[box]
-        elif contact.detachment == "pohrt-popov":
+        if shallower is not None and contact.detachment == "pohrt-popov":
             box, held = shallower.box, shallower.box_pressure != 0
         else:
             # A contact that grows from a smaller one may stop before the energy release rate along
             # its edge has fallen to the work of adhesion. So the search starts from all nodes that
             # overlap at this indentation, and then releases nodes.
             inside = contact.gap <= indentation
-            inside[shallower.box] |= shallower.box_pressure != 0
-            box = bounding_box(inside)
-            assert box is not None
-            held = inside[box]
+            if shallower is not None:
+                inside[shallower.box] |= shallower.box_pressure != 0
+            found = bounding_box(inside)
+            assert found is not None  # the gap is zero at first touch
+            box, held = found, inside[found]
         state = grow_contact(
             contact,
             indentation,
@@ -186,16 +181,6 @@ def solve_without_work(
     if contact.truncates:
         state = truncate_pressure(state)
     return replace(state, convolutions=state.convolutions + convolutions)
-
-
-def _limit_at(contact: Contact, indentation: float, residual: float) -> tuple[Array | float, int]:
-    """Return the pressure bound of a solve (Pa), and the number of convolutions that it took.
-
-    The bound is infinite if the pressure is truncated after the solve.
-    """
-    if contact.grows:
-        return yield_bound(contact, max(indentation, 0.0), residual)
-    return (math.inf if contact.truncates else contact.yield_pressure), 0
 
 
 def solve_nonadhesive(
@@ -242,8 +227,10 @@ def truncate_pressure(elastic: State) -> State:
 
 def work_is_integrated(contact: Contact) -> bool:
     """Whether the loading work of `contact` is integrated numerically and so has an error."""
-    if contact.truncates or contact.grows:
-        return True
+    return contact.truncates or contact.grows or _adheres_on_approach(contact)
+
+
+def _adheres_on_approach(contact: Contact) -> bool:
     return contact.adhesive and contact.approach != "hertzian"
 
 
@@ -259,18 +246,15 @@ def with_work(state: State, start: State | None) -> State:
         start = None
     gain = contact.work_of_adhesion * state.contact_area
     if contact.grows:
-        plastic, error, convolutions = _work_by_increments(state, start)
-        convolutions += state.convolutions
-        state = replace(state, plastic_work=plastic, convolutions=convolutions)
-        if not contact.adhesive or contact.approach == "hertzian":
-            return replace(state, work_error=error)
-    known = state.stored_energy + state.plastic_work
+        state = _with_increments(state, start)
+        if not _adheres_on_approach(contact):
+            return state
     if _adhesive_work_is_negligible(state):
         # The adhesive work is set to its largest possible value, the work of adhesion times the
         # contact area. In contacts for which it was integrated, it was 0.37 to 0.93 times this
         # value, and above 0.7 times in most of them. The error covers this range.
         return replace(state, adhesive_work=gain, work_error=0.65 * gain)
-    if contact.adhesive and contact.approach != "hertzian":
+    if _adheres_on_approach(contact):
         balanced = contact.approach == "equilibrium" and balances_are_reliable(state)
         if balanced and not contact.truncates:
             work, error, convolutions = work_by_balance(
@@ -296,7 +280,8 @@ def with_work(state: State, start: State | None) -> State:
             work_error=error,
             convolutions=convolutions,
         )
-    return replace(state, adhesive_work=known - work, work_error=error, convolutions=convolutions)
+    adhesive_work = state.stored_energy + state.plastic_work - work
+    return replace(state, adhesive_work=adhesive_work, work_error=error, convolutions=convolutions)
 
 
 def _adhesive_work_is_negligible(state: State) -> bool:
@@ -306,20 +291,20 @@ def _adhesive_work_is_negligible(state: State) -> bool:
     work on approach is not integrated.
     """
     contact = state.contact
-    if not contact.adhesive or contact.approach != "equilibrium":
-        return False
-    if contact.truncates or contact.grows:
+    if contact.approach != "equilibrium" or contact.truncates or contact.grows:
         return False
     gain = contact.work_of_adhesion * state.contact_area
-    return gain <= 2 * _ADHESIVE_TOLERANCE * (state.stored_energy + state.plastic_work)
+    return contact.adhesive and gain <= 2 * _ADHESIVE_TOLERANCE * (
+        state.stored_energy + state.plastic_work
+    )
 
 
 def _intermediate(contact: Contact, depth: float, start: State | None = None) -> State:
     return solve_without_work(contact, depth, start=start, residual=_WORK_RESIDUAL)
 
 
-def _work_by_increments(state: State, start: State | None) -> tuple[float, float, int]:
-    """Return the plastic work (J) under a growing bound, its error (J), and the convolutions.
+def _with_increments(state: State, start: State | None) -> State:
+    """Add the plastic work under a growing bound and its error.
 
     The work is summed over increasing depths, beginning at `start` or, if None, at `_SHALLOW` times
     the indentation, where little has yielded.
@@ -332,13 +317,11 @@ def _work_by_increments(state: State, start: State | None) -> tuple[float, float
     if start is not None:
         work, error, depths = start.plastic_work, start.work_error, depths[1:]
     for depth in (*map(float, depths), indentation):
-        now = state
-        if depth != indentation:
-            now = solve_without_work(contact, depth, start=None, residual=_WORK_RESIDUAL)
-            convolutions += now.convolutions
+        now = state if depth == indentation else _intermediate(contact, depth)
+        convolutions += now.convolutions
         increment, its_error = plastic_work(before, now)
         work, error, before = work + increment, error + its_error, now
-    return work, error, convolutions
+    return replace(state, plastic_work=work, work_error=error, convolutions=convolutions)
 
 
 def _work_by_truncation(state: State, start: State | None) -> tuple[float, float, int]:
