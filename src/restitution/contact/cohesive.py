@@ -136,8 +136,7 @@ def coarsest_spacing(pair: Pair, work_of_adhesion: float, z0: float) -> float:
 
 def needed_spacing(contact: Contact) -> float:
     """The `coarsest_spacing` (m) of `contact`."""
-    w, z0 = contact.work_of_adhesion, contact.equilibrium_separation
-    return coarsest_spacing(contact.pair, w, z0)
+    return coarsest_spacing(contact.pair, contact.work_of_adhesion, contact.equilibrium_separation)
 
 
 def resolves_range(contact: Contact) -> bool:
@@ -165,13 +164,14 @@ def solve_cohesive(
     box: Box,
     *,
     p: Array,
-    u: Array,
+    u: Array | None = None,
     limit: Array | float,
     history: State | None,
     residual: float,
 ) -> CohesiveState:
-    """Descend from the pressure `p` and displacement `u` = K p on `box` to an equilibrium.
+    """Descend from the pressure `p` on `box` to an equilibrium.
 
+    The displacement `u` = K p is computed unless it is given.
     `limit` is the largest pressure (Pa), a number or an array of the shape of the grid. The plastic
     work and the work error of the result are copied from `history` (zero if None), and its adhesive
     work is zero. The caller updates all three. Raises `NotConvergedError`, and `DomainError` if the
@@ -186,7 +186,7 @@ def solve_cohesive(
         K,
         law,
         p=p,
-        u=u,
+        u=K(p) if u is None else u,
         length=0.5 * z0,
         tolerance=max(_TOLERANCE * residual, _LEAST_TOLERANCE) * z0,
         zero_mean=contact.periodic,
@@ -246,29 +246,15 @@ def rigid_start(contact: Contact, *, limit: Array | float, residual: float) -> C
     gap, convolutions = 2 * z0, 0
     while True:
         indentation = z0 - gap
-        state = from_rigid(contact, indentation, limit=limit, residual=residual)
-        convolutions += state.convolutions + 1
+        box = interacting_box(contact, indentation)
+        p = rigid_pressure(contact, indentation, box)
+        state = solve_cohesive(
+            contact, indentation, box, p=p, limit=limit, history=None, residual=residual
+        )
+        convolutions += state.convolutions
         if is_unique(state):
-            return replace(state, convolutions=convolutions)
+            return with_interaction(replace(state, convolutions=convolutions))
         gap *= 1.5
-
-
-def from_rigid(
-    contact: Contact,
-    indentation: float,
-    *,
-    limit: Array | float,
-    residual: float,
-    box: Box | None = None,
-) -> CohesiveState:
-    """Find the equilibrium at `indentation`, starting from the pressure between rigid bodies."""
-    box = box or interacting_box(contact, indentation)
-    p = rigid_pressure(contact, indentation, box)
-    K = _operator(contact, box)
-    state = solve_cohesive(
-        contact, indentation, box, p=p, u=K(p), limit=limit, history=None, residual=residual
-    )
-    return with_interaction(state)
 
 
 def rigid_pressure(contact: Contact, indentation: float, box: Box) -> Array:
@@ -309,23 +295,14 @@ def on_box(state: CohesiveState, box: Box, *, residual: float) -> CohesiveState:
         reframe(state.box_pressure, state.box, box),
         rigid_pressure(contact, indentation, box),
     )
-    K = _operator(contact, box)
     new = solve_cohesive(
-        contact,
-        indentation,
-        box,
-        p=p,
-        u=K(p),
-        limit=state.bound,
-        history=state,
-        residual=residual,
+        contact, indentation, box, p=p, limit=state.bound, history=state, residual=residual
     )
     new = replace(
         new,
         adhesive_loss=state.adhesive_loss,
         jumps=state.jumps,
         unaccounted=state.unaccounted,
-        convolutions=new.convolutions + 1,
     )
     return with_interaction(new)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -46,17 +47,18 @@ def loading_path(
         NotConvergedError: A tolerance was not reached.
         DomainError: The contact reaches the edge of the grid.
     """
-    if sum(given is not None for given in (indentations, forces, velocities)) != 1:
+    ways = (
+        (indentations, partial(solve, residual=residual)),
+        (forces, solve_at_force),
+        (velocities, solve_at_velocity),
+    )
+    given = [(values, load) for values, load in ways if values is not None]
+    if len(given) != 1:
         raise CaseError("a loading path takes exactly one of indentations, forces and velocities")
+    ((values, load),) = given
     state: State | None = None
-    for depth in () if indentations is None else indentations:
-        state = solve(contact, depth, start=state, residual=residual)
-        yield state
-    for force in () if forces is None else forces:
-        state = solve_at_force(contact, force, start=state)
-        yield state
-    for velocity in () if velocities is None else velocities:
-        state = solve_at_velocity(contact, velocity, start=state)
+    for value in values:
+        state = load(contact, value, start=state)
         yield state
 
 

@@ -53,17 +53,7 @@ def solve_at_velocity(contact: Contact, velocity: float, *, start: State | None 
     work = 0.5 * mass * velocity**2
     tolerance = _INTEGRATED_TOLERANCE if work_is_integrated(contact) else VELOCITY_TOLERANCE
     search = _Search(contact, work, start)
-    depth, sharp = search.first_depth(), 0.3 * tolerance
-    for _ in range(_MOST_STEPS):
-        if search.miss(search.at(depth)) <= sharp:
-            break
-        following = search.newton(depth)
-        if following is None:
-            depth = search.bracketed(sharp)
-            break
-        depth = following
-    else:
-        depth = search.bracketed(sharp)
+    depth = search.depth(0.3 * tolerance)
     state = search.at(depth)
     require_inside_grid(state)
     miss = search.miss(state)
@@ -88,6 +78,17 @@ class _Search:
     def __init__(self, contact: Contact, work: float, start: State | None) -> None:
         self._contact, self._work, self._start = contact, work, start
         self.found: dict[float, State] = {}
+
+    def depth(self, tolerance: float) -> float:
+        """Find the depth (m), within the relative `tolerance` of the velocity."""
+        depth: float | None = self.first_depth()
+        for _ in range(_MOST_STEPS):
+            if depth is None or self.miss(self.at(depth)) <= tolerance:
+                break
+            depth = self.newton(depth)
+        else:
+            depth = None
+        return self.bracketed(tolerance) if depth is None else depth
 
     def at(self, indentation: float) -> State:
         """Return the state at an indentation (m), solved from the next shallower known state."""
@@ -120,12 +121,13 @@ class _Search:
         if self._start is not None and (depth := self._step(self._start)) is not None:
             return depth
         contact = self._contact
+        # Hertz's depth is only a first guess: yield and roughness make the contact deeper.
+        smooth = Hertz(contact.pair.radius, contact.pair.contact_modulus)
+        depth = float(smooth.indentation_from_energy(self._work))
         balanced = contact.approach == "equilibrium" and contact.detachment == "crack-closure"
         if contact.adhesive and balanced:
-            return _adhesive_depth(contact, self._work)
-        # Hertz's depth is only a first guess: yield and roughness make the contact deeper.
-        smooth = Hertz(self._contact.pair.radius, self._contact.pair.contact_modulus)
-        return float(smooth.indentation_from_energy(self._work))
+            return _adhesive_depth(contact, self._work, depth)
+        return depth
 
     def newton(self, depth: float) -> float | None:
         """Return the depth (m) after a Newton step from `depth`; None if outside the bracket.
@@ -133,8 +135,7 @@ class _Search:
         The bracket extends from the deepest depth tried so far with too little work to the
         shallowest one with too much work.
         """
-        following = self._step(self.at(depth))
-        low = max((d for d, s in self.found.items() if self._excess(s) < 0), default=0.0)
+        following, low = self._step(self.at(depth)), self._deepest_below()
         high = min((d for d, s in self.found.items() if self._excess(s) >= 0), default=math.inf)
         return following if following is not None and low < following < high else None
 
@@ -142,7 +143,7 @@ class _Search:
         """Find the depth (m) with a bracketing root finder, within the relative `tolerance`."""
         from scipy.optimize import toms748
 
-        low = max((d for d, s in self.found.items() if self._excess(s) < 0), default=0.0)
+        low = self._deepest_below()
         high = max(low, self.first_depth())
         while (above := self._excess(self.at(high))) < 0:
             low, high = high, high * min(_MAX_GROWTH, max(1.05, 1.05 / max(1 + above, 1e-9)))
@@ -153,6 +154,10 @@ class _Search:
         # The work W grows with the depth δ as δ² to δ^2.5. So the relative change of the velocity,
         # ΔV/V = ½ ΔW/W, is 1 to 1.25 times Δδ/δ, and both may have the same relative tolerance.
         return float(toms748(excess, low, high, xtol=tolerance * high, rtol=1e-12, k=1))
+
+    def _deepest_below(self) -> float:
+        """Return the deepest depth (m) tried so far with too little work."""
+        return max((d for d, s in self.found.items() if self._excess(s) < 0), default=0.0)
 
     def _step(self, state: State) -> float | None:
         """Return the depth (m) after a Newton step from `state`.
@@ -175,12 +180,14 @@ class _Search:
         return math.copysign((abs(work) / self._work) ** 0.4, work) - 1
 
 
-def _adhesive_depth(contact: Contact, work: float) -> float:
-    """Indentation (m) at which the loading work of smooth JKR bodies is `work` (J)."""
+def _adhesive_depth(contact: Contact, work: float, shallow: float) -> float:
+    """Indentation (m) at which the loading work of smooth JKR bodies is `work` (J).
+
+    `shallow` is the indentation (m) without adhesion.
+    """
     from scipy.optimize import brentq
 
     pair = contact.pair
     smooth = JKR(pair.radius, pair.contact_modulus, contact.work_of_adhesion)
-    shallow = float(Hertz(pair.radius, pair.contact_modulus).indentation_from_energy(work))
     deep = shallow + 10 * abs(float(smooth.break_indentation))
     return float(brentq(lambda depth: float(smooth.loading_work(depth)) - work, shallow, deep))
