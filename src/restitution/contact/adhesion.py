@@ -220,7 +220,8 @@ def unload_adhesive(
     )
     lost = before_release.stored_energy - settled.stored_energy
     balance = None
-    if state.contact.detachment == "crack-closure" and _released(before_release, settled):
+    closure = state.contact.detachment == "crack-closure"
+    if closure and 0 < before_release.contact_nodes != settled.contact_nodes:
         balance = _balance(state, before_release)
     return replace(
         settled,
@@ -231,16 +232,16 @@ def unload_adhesive(
     )
 
 
-def _released(before: State, after: State) -> bool:
-    """Whether `before` is in contact and `after` has a different number of contact nodes."""
-    return 0 < before.contact_nodes != after.contact_nodes
+def pull_off_of_punch(state: State) -> tuple[float, float]:
+    """Pull-off displacement (m) and force (N) of a flat punch with the contact area of `state`."""
+    punch = Kendall(state.contact.pair.contact_modulus, state.contact.work_of_adhesion)
+    a = math.sqrt(state.contact_area / math.pi)
+    return float(punch.pull_off_displacement(a)), float(punch.pull_off_force(a))
 
 
 def balances_are_reliable(state: State) -> bool:
     """Whether the grid is fine enough to compute balances of the contact areas of `state`."""
-    if state.contact.detachment == "pohrt-popov":
-        return False
-    return adhesive_nodes(state) >= _RESOLVED
+    return state.contact.detachment != "pohrt-popov" and adhesive_nodes(state) >= _RESOLVED
 
 
 def balance_of(state: State) -> tuple[float, float]:
@@ -253,8 +254,7 @@ def balance_of(state: State) -> tuple[float, float]:
     contact = state.contact
     if state.contact_nodes == 0:
         return state.indentation, state.force
-    punch = Kendall(contact.pair.contact_modulus, contact.work_of_adhesion)
-    retreat = float(punch.pull_off_displacement(math.sqrt(state.contact_area / math.pi)))
+    retreat, _ = pull_off_of_punch(state)
     held = state.box_pressure != 0
     retracted = solve_pressure(
         contact,

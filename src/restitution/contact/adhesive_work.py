@@ -124,7 +124,10 @@ def _integral(points: list[Point], first: float, last: float) -> float:
     """
     from scipy.interpolate import CubicSpline
 
-    x, F = np.array(_increasing(points)).T
+    x, F = np.array(points).T
+    # Drop each point whose indentation does not exceed that of all points before it.
+    kept = np.append(True, x[1:] > np.maximum.accumulate(x)[:-1])
+    x, F = x[kept], F[kept]
     if x.size == 1:
         return float(F[0]) * (last - first)
     slopes = np.diff(F) / np.diff(x)
@@ -132,12 +135,3 @@ def _integral(points: list[Point], first: float, last: float) -> float:
     ends = F[0] * before - 0.5 * slopes[0] * before**2
     ends += F[-1] * after + 0.5 * slopes[-1] * after**2
     return float(CubicSpline(x, F).integrate(x[0], x[-1])) + float(ends)
-
-
-def _increasing(points: list[Point]) -> list[Point]:
-    """Drop each point whose indentation does not exceed that of the point kept before it."""
-    kept = points[:1]
-    for point in points[1:]:
-        if point[0] > kept[-1][0]:
-            kept.append(point)
-    return kept

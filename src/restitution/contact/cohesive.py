@@ -34,7 +34,7 @@ from numpy.typing import NDArray
 
 from restitution.contact.bodies import Pair
 from restitution.contact.cohesive_law import BoundedLaw, largest_softening, law_of, stiffness
-from restitution.contact.contact import Contact
+from restitution.contact.contact import Contact, whole_grid
 from restitution.contact.influence import half_space, periodic_half_space
 from restitution.contact.state import State
 from restitution.errors import CaseError, DomainError, NotConvergedError
@@ -275,8 +275,7 @@ def with_interaction(state: CohesiveState) -> CohesiveState:
 def interacting_box(contact: Contact, indentation: float, history: State | None = None) -> Box:
     """Return the box of all nodes whose gap is small enough for the attraction to deform them."""
     if contact.periodic:
-        rows, columns = (slice(0, n) for n in contact.grid.nodes)
-        return rows, columns
+        return whole_grid(contact)
     reach = _REACH * contact.equilibrium_separation + contact.adhesive_length
     gap = contact.gap if history is None else contact.gap + history.plastic_displacement
     box = bounding_box(gap < max(indentation + reach, reach * 1e-3))

@@ -22,6 +22,7 @@ from restitution.contact.bodies import Pair
 from restitution.contact.detachment import Detachment
 from restitution.display import quantity, summary_html, summary_text
 from restitution.errors import CaseError
+from restitution.numerics.box import Box
 from restitution.numerics.grid import Grid
 from restitution.numerics.read_only import freeze
 from restitution.surfaces import Surface, rms_slope
@@ -128,10 +129,9 @@ class Contact:
             "equilibrium_separation",
         ):
             object.__setattr__(self, name, float(getattr(self, name)))
-        if not self.yield_pressure > 0:
-            raise CaseError(f"yield_pressure: {self.yield_pressure} Pa is not positive")
-        if not self.yield_strength > 0:
-            raise CaseError(f"yield_strength: {self.yield_strength} Pa is not positive")
+        for name in ("yield_pressure", "yield_strength"):
+            if not (value := getattr(self, name)) > 0:
+                raise CaseError(f"{name}: {value} Pa is not positive")
         grows = math.isfinite(self.yield_strength)
         if self.plasticity is None:
             model = "expanding-cavity" if grows else "equilibrium"
@@ -356,6 +356,12 @@ def require_cohesive(approach: str, detachment: str, plasticity: str | None) -> 
             'plasticity: "truncated" is not defined with adhesion = "cohesive"; use "equilibrium", '
             'or adhesion = "jkr"'
         )
+
+
+def whole_grid(contact: Contact) -> Box:
+    """Return the whole grid of `contact` as a box."""
+    nx, ny = contact.grid.nodes
+    return slice(0, nx), slice(0, ny)
 
 
 def _kind(value: object) -> str:

@@ -22,12 +22,13 @@ of the deformed gap. An elastic contact is therefore complete at δ = mean(h).
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.contact.contact import Contact
+from restitution.contact.contact import Contact, whole_grid
 from restitution.contact.influence import half_space, inverse_half_space, periodic_half_space
 from restitution.contact.state import State
 from restitution.errors import DomainError, NotConvergedError
@@ -109,7 +110,7 @@ def solve_pressure(
             "more; use a smaller indentation, or prescribe the pressure"
         )
     scale = _scale_of(contact, indentation, b)
-    operators = _operators_of(contact)
+    operators = operators_of(contact)
     upper = limit
     if isinstance(limit, np.ndarray):
         upper = device.put(np.ascontiguousarray(limit[box]))
@@ -179,7 +180,7 @@ def elastic_pressure(
     b = _overlap(contact, indentation, box)
     scale = _scale_of(contact, indentation, b)
     found, window, convolutions = solve_near_guess(
-        _operators_of(contact),
+        operators_of(contact),
         device.put(b),
         tolerance=residual * scale,
         max_iterations=MAX_ITERATIONS,
@@ -205,10 +206,13 @@ def _scale_of(contact: Contact, indentation: float, b: Array) -> float:
     return contact.residual_length(indentation) if contact.adhesive else float(b.max())
 
 
-def _operators_of(contact: Contact) -> Operators:
-    """Return a function that makes the operator and its approximate inverse for a grid level."""
+def operators_of(contact: Contact, make: Callable[..., Convolution] | None = None) -> Operators:
+    """Return a function that makes the operator and its approximate inverse for a grid level.
+
+    `make` makes the operator, by default the one of the free or periodic half-space.
+    """
     E_star, (hx, hy) = contact.pair.contact_modulus, contact.grid.spacing
-    make = periodic_half_space if contact.periodic else half_space
+    make = make or (periodic_half_space if contact.periodic else half_space)
 
     def operators(shape: tuple[int, int], level: int) -> tuple[Convolution, SpectralFilter]:
         cells = 2**level * hx, 2**level * hy
@@ -265,19 +269,17 @@ def candidate_box(contact: Contact, indentation: float, history: State | None = 
 
     The box contains every contact without adhesion. For a periodic contact, it is the whole grid.
     """
-    nodes = contact.grid.nodes
+    whole = region = whole_grid(contact)
+    gap = contact.gap
+    if history is not None:
+        if indentation <= history.indentation and not contact.periodic:
+            # On unloading, no new contact arises outside the box.
+            region = widen(history.box, 2, contact.grid.nodes)
+        gap = gap[region] + history.plastic_displacement[region]
+    below = gap < indentation
     if contact.periodic:
-        gap = contact.gap if history is None else contact.gap + history.plastic_displacement
-        whole = slice(0, nodes[0]), slice(0, nodes[1])
-        return whole if bool((gap < indentation).any()) else None
-    if history is None:
-        return bounding_box(contact.gap < indentation)
-    if indentation <= history.indentation:  # on unloading, no new contact arises outside the box
-        region = widen(history.box, 2, nodes)
-    else:
-        region = (slice(0, nodes[0]), slice(0, nodes[1]))
-    gap = contact.gap[region] + history.plastic_displacement[region]
-    return bounding_box(gap < indentation, region)
+        return whole if below.any() else None
+    return bounding_box(below, region)
 
 
 def separated_state(contact: Contact, indentation: float, history: State | None = None) -> State:

@@ -13,6 +13,7 @@ import math
 
 import numpy as np
 
+from restitution.contact.contact import whole_grid
 from restitution.contact.state import State
 from restitution.numerics.box import reframe
 
@@ -21,8 +22,7 @@ _EXCESS = (math.pi - 1 + math.log(2)) / 24
 
 def corrected_area(state: State) -> float:
     """Contact area (m²) of a periodic contact, with the correction for the staircase edge."""
-    rows, columns = (slice(0, n) for n in state.contact.grid.nodes)
-    touching = reframe(state.box_touching, state.box, (rows, columns))
+    touching = reframe(state.box_touching, state.box, whole_grid(state.contact))
     hx, hy = state.contact.grid.spacing
     # A face of the staircase edge has the length hy and separates cells of the width hx, or the
     # other way round. So length times spacing is hx hy for each face.

@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import math
 
-from restitution.contact.contact import Contact
-from restitution.contact.equilibrium import MAX_ITERATIONS, RESIDUAL, Solution, build_state
+from restitution.contact.contact import Contact, whole_grid
+from restitution.contact.equilibrium import (
+    MAX_ITERATIONS,
+    RESIDUAL,
+    Solution,
+    build_state,
+    operators_of,
+)
 from restitution.contact.influence import (
     foundation_compliance,
-    inverse_half_space,
     sprung_half_space,
 )
 from restitution.contact.state import State
 from restitution.errors import CaseError, DomainError, NotConvergedError
 from restitution.numerics.convolution.device import current
-from restitution.numerics.convolution.operators import Convolution, SpectralFilter
 from restitution.numerics.quadratic.prescribed_mean import MeanTarget, minimise_at_mean
 
 PRESSURE_TOLERANCE = 1e-8
@@ -56,16 +60,11 @@ def solve_at_pressure(contact: Contact, pressure: float, *, residual: float = RE
             f"pressure: {pressure:.4g} Pa is not below the yield pressure, "
             f"{contact.yield_pressure:.4g} Pa; use a smaller pressure"
         )
-    E_star, (hx, hy), nodes = contact.pair.contact_modulus, contact.grid.spacing, contact.grid.nodes
-
-    def operators(shape: tuple[int, int], level: int) -> tuple[Convolution, SpectralFilter]:
-        cells = 2**level * hx, 2**level * hy
-        return sprung_half_space(shape, cells, E_star), inverse_half_space(shape, cells, E_star)
-
-    compliance = foundation_compliance(nodes, contact.grid.spacing, E_star)
+    grid = contact.grid
+    compliance = foundation_compliance(grid.nodes, grid.spacing, contact.pair.contact_modulus)
     device = current()
     found = minimise_at_mean(
-        operators,
+        operators_of(contact, sprung_half_space),
         device.put(contact.gap),
         contact.yield_pressure,
         MeanTarget(pressure, PRESSURE_TOLERANCE, compliance, residual),
@@ -85,7 +84,11 @@ def solve_at_pressure(contact: Contact, pressure: float, *, residual: float = RE
         minimum.residual / indentation,
         found.products,
     )
-    whole = slice(0, nodes[0]), slice(0, nodes[1])
     return build_state(
-        contact, indentation, whole, solution, limit=contact.yield_pressure, history=None
+        contact,
+        indentation,
+        whole_grid(contact),
+        solution,
+        limit=contact.yield_pressure,
+        history=None,
     )

@@ -15,7 +15,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.contact.adhesion import balances_are_reliable, unload_adhesive
+from restitution.contact.adhesion import (
+    balances_are_reliable,
+    pull_off_of_punch,
+    unload_adhesive,
+)
 from restitution.contact.checks.edge import require_inside_grid
 from restitution.contact.cohesive import COARSEST, CohesiveState, cohesive_length
 from restitution.contact.cohesive_path import separate_cohesive
@@ -23,7 +27,6 @@ from restitution.contact.state import State
 from restitution.contact.unloading_curve import SharedUnloading, complete_curve, unloading_curve
 from restitution.errors import NotConvergedError
 from restitution.numerics.quadrature import integrate_curve
-from restitution.theory import Kendall
 
 Array = NDArray[np.float64]
 
@@ -123,13 +126,13 @@ def _unload(
     if state.contact_nodes == 0:
         return  # with `approach = "pull-increments"`, loading can end with all nodes released
     recovery, allowed = _plan(state, tolerance)
-    step = recovery / (finer * _STEPS_OF_RECOVERY)
+    step = math.inf
     previous: State | None = None
     for _ in range(_MOST_STEPS):
-        reach = _tension_reach(state)
+        reach, punch_force = pull_off_of_punch(state)
         longest = recovery / (finer * _STEPS_OF_RECOVERY)
         shortened = reach / (finer * _STEPS_OF_TENSION[contact.detachment])
-        if state.force < 0.1 * abs(_punch_force(state)):
+        if state.force < 0.1 * abs(punch_force):
             longest = min(longest, shortened)
         elif previous is not None:
             # End the step before the force reaches zero, because tension requires shorter steps. In
@@ -139,13 +142,12 @@ def _unload(
             if slope > 0:
                 longest = min(longest, max(1.3 * state.force / slope, shortened))
         step = min(step, longest)
-        length = contact.residual_length(state.indentation - step)
-        accuracy = _ACCURACY * contact.crack_opening / length
+        at = state.indentation - step
         new = unload_adhesive(
             state,
-            state.indentation - step,
+            at,
             first_guess=_predict(previous, state, step),
-            residual=accuracy,
+            residual=_ACCURACY * contact.crack_opening / contact.residual_length(at),
         )
         late = _late_force(new)
         if new.contact_nodes == 0:
@@ -264,7 +266,7 @@ def _plan(state: State, tolerance: float) -> tuple[float, float]:
     recovery = 1.5 * math.sqrt(stored / (state.contact.pair.contact_modulus * a))
     if state.force > 0:
         recovery = min(recovery, 2.2 * stored / state.force)
-    recovery = max(recovery, _tension_reach(state))
+    recovery = max(recovery, pull_off_of_punch(state)[0])
     # The allowed error of the work is proportional to COR, so it would vanish for pairs that stick.
     # For COR below 0.05, the value at COR = 0.05 is used.
     work = max(state.loading_work, 0.05 * stored)
@@ -275,25 +277,6 @@ def _plan(state: State, tolerance: float) -> tuple[float, float]:
     if balances_are_reliable(state):  # balances do not depend on late releases
         return recovery, math.inf
     return recovery, allowed / (_LATENESS[state.contact.detachment] * recovery)
-
-
-def _tension_reach(state: State) -> float:
-    """Pull-off displacement (m) of a flat punch with the contact area of `state` (Kendall 1971)."""
-    punch, a = _punch(state)
-    return float(punch.pull_off_displacement(a))
-
-
-def _punch_force(state: State) -> float:
-    """Pull-off force (N) of a flat punch with the contact area of `state` (Kendall 1971)."""
-    punch, a = _punch(state)
-    return float(punch.pull_off_force(a))
-
-
-def _punch(state: State) -> tuple[Kendall, float]:
-    """Return Kendall's law and the radius (m) of a flat punch with the contact area of `state`."""
-    contact = state.contact
-    punch = Kendall(contact.pair.contact_modulus, contact.work_of_adhesion)
-    return punch, math.sqrt(state.contact_area / math.pi)
 
 
 def _predict(previous: State | None, state: State, step: float) -> NDArray[np.float64] | None:

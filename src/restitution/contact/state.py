@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.contact.contact import Contact
+from restitution.contact.contact import Contact, whole_grid
 from restitution.display import counted, quantity, summary_html, summary_text
 from restitution.errors import CaseError
 from restitution.numerics.box import Box, reframe
@@ -79,8 +79,7 @@ class State:
     @property
     def pressure(self) -> Array:
         """Pressure on the whole grid (Pa), shape `grid.nodes`."""
-        rows, columns = (slice(0, n) for n in self.contact.grid.nodes)
-        return self.pressure_on((rows, columns))
+        return self.pressure_on(whole_grid(self.contact))
 
     def pressure_on(self, box: Box) -> Array:
         """Pressure on a block of the grid.

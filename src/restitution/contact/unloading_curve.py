@@ -68,10 +68,9 @@ class UnloadingCurve:
 
     def largest_tension(self) -> float:
         """Largest tension (N). Balances scatter, so their force is smoothed first."""
-        F = self.force
+        F, largest = self.force, -float(self.force.min())
         if not self.balanced:
-            return -float(F.min())
-        largest = -float(F.min())
+            return largest
         # Where contacts snap apart, the force jumps. The curve is smoothed only between the jumps.
         jumps = np.flatnonzero(np.abs(np.diff(F)) > _JUMP * largest) + 1
         smoothed = [
@@ -119,11 +118,9 @@ def complete_curve(path: Sequence[State]) -> list[tuple[float, float]]:
     curve, begin, end = unloading_curve(list(path)), path[0], path[-1]
     if not curve.balanced:
         return [(state.indentation, state.force) for state in path]
-    points = [(begin.indentation, begin.force)]
     limited = np.maximum(curve.force, -curve.largest_tension())
-    for x, force in zip(curve.indentation, limited, strict=True):
-        if x < points[-1][0]:
-            points.append((float(x), float(force)))
+    limited[0] = begin.force
+    points = list(zip(curve.indentation.tolist(), limited.tolist(), strict=True))
     last = points[-1][0]
     below = last - _END * (begin.indentation - last)
     return [*points, (min(end.indentation, below), 0.0)]
@@ -191,10 +188,12 @@ class SharedUnloading:
         # states. All later changes of the work are those of the known states.
         offset = first.loading_work - (state.loading_work - fallen)
         for each in following:
-            joined = replace(each, adhesive_work=each.adhesive_work + offset, convolutions=0)
-            if each is first:
-                joined = replace(joined, force_before_release=each.force)
-            yield joined
+            yield replace(
+                each,
+                adhesive_work=each.adhesive_work + offset,
+                convolutions=0,
+                force_before_release=first.force if each is first else each.force_before_release,
+            )
 
     def _following(self, state: State) -> list[State]:
         started = next((k for k, each in enumerate(self.states) if each.balance is not None), None)

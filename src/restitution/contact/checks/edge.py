@@ -42,19 +42,13 @@ def require_inside_grid(state: State) -> None:
     """
     if state.contact.periodic:
         return
-    p, grid = state.box_touching, state.contact.grid
-    (top, left), (bottom, right) = (
-        (part.start for part in state.box),
-        (part.stop for part in state.box),
-    )
-    nx, ny = grid.nodes
-    reached = (
-        (top == 0 and p[:1].any())
-        or (bottom == nx and p[-1:].any())
-        or (left == 0 and p[:, :1].any())
-        or (right == ny and p[:, -1:].any())
-    )
-    if reached:
+    touching, (rows, columns), (nx, ny) = state.box_touching, state.box, state.contact.grid.nodes
+    if (
+        (rows.start == 0 and touching[:1].any())
+        or (rows.stop == nx and touching[-1:].any())
+        or (columns.start == 0 and touching[:, :1].any())
+        or (columns.stop == ny and touching[:, -1:].any())
+    ):
         raise EdgeReachedError(
             Finding("edge-reached", edge_values(state.contact, state.indentation))
         )

@@ -152,27 +152,27 @@ def resolution_findings(contact: Contact, indentation: float) -> list[Finding]:
     radius = predicted_radius(pair, indentation, contact.hardness)
     pixel = _coarsest_pixel(contact)
     half_width, coarsest = 0.5 * min(grid.size), max(pixel, *grid.spacing)
-    found = []
-    if radius >= half_width:
-        found.append(
-            Finding(
-                "contact-beyond-grid",
-                {
-                    "radius": radius,
-                    "indentation": indentation,
-                    "half_width": half_width,
-                    "whole_scan": grid_of_a_scan(contact),
-                },
-            )
-        )
-    if radius < NODES_PER_RADIUS * coarsest:
-        found.append(Finding("few-nodes", {"spacing": coarsest, "radius": radius}))
-    if radius > _HALF_SPACE * pair.radius:
-        values = {"radius": radius, "reduced_radius": pair.radius, "limit": _HALF_SPACE}
-        found.append(Finding("no-half-space", values))
-    if min(grid.spacing) < (1 - _NEARLY_EQUAL) * pixel:
-        found.append(Finding("finer-than-scan", {"spacing": min(grid.spacing), "pixel": pixel}))
-    return found
+    beyond_grid = {
+        "radius": radius,
+        "indentation": indentation,
+        "half_width": half_width,
+        "whole_scan": grid_of_a_scan(contact),
+    }
+    half_space = {"radius": radius, "reduced_radius": pair.radius, "limit": _HALF_SPACE}
+    finest = min(grid.spacing)
+    checks = (
+        (radius >= half_width, Finding("contact-beyond-grid", beyond_grid)),
+        (
+            radius < NODES_PER_RADIUS * coarsest,
+            Finding("few-nodes", {"spacing": coarsest, "radius": radius}),
+        ),
+        (radius > _HALF_SPACE * pair.radius, Finding("no-half-space", half_space)),
+        (
+            finest < (1 - _NEARLY_EQUAL) * pixel,
+            Finding("finer-than-scan", {"spacing": finest, "pixel": pixel}),
+        ),
+    )
+    return [finding for found, finding in checks if found]
 
 
 def median_patch(patches: NDArray[np.int64]) -> int:
