@@ -12,7 +12,6 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.contact.checks.resolution import adhesive_nodes
 from restitution.contact.contact import Contact
@@ -29,11 +28,9 @@ from restitution.contact.equilibrium import (
     separated_state,
     solve_pressure,
 )
-from restitution.contact.state import State
+from restitution.contact.state import Array, State
 from restitution.numerics.box import Box, bounding_box, reframe, union, widen
 from restitution.theory import Kendall
-
-Array = NDArray[np.float64]
 
 _ACCURACY = 1e-3  # tolerance of solves between releases, as a fraction of the crack opening
 

@@ -58,12 +58,11 @@ from numpy.typing import NDArray
 
 from restitution.contact.contact import Contact
 from restitution.contact.equilibrium import elastic_pressure
-from restitution.contact.state import State
+from restitution.contact.state import Array, State
 from restitution.numerics.box import Box
 from restitution.numerics.read_only import freeze
 from restitution.theory import Hertz
 
-Array = NDArray[np.float64]
 Nodes = tuple[NDArray[np.intp], ...]  # indices of rows and columns
 
 # Coefficients of the ratio of the pressure bound to the yield strength, for round asperities:

@@ -36,15 +36,13 @@ from restitution.contact.bodies import Pair
 from restitution.contact.cohesive_law import BoundedLaw, largest_softening, law_of, stiffness
 from restitution.contact.contact import Contact, whole_grid
 from restitution.contact.influence import half_space, periodic_half_space
-from restitution.contact.state import State
+from restitution.contact.state import Array, State
 from restitution.errors import CaseError, DomainError, NotConvergedError
 from restitution.numerics.box import Box, bounding_box, reframe, shape_of
 from restitution.numerics.convolution.device import CPU, on_device
 from restitution.numerics.convolution.operators import Convolution
 from restitution.numerics.read_only import freeze
 from restitution.numerics.truncated_newton import minimise_locally
-
-Array = NDArray[np.float64]
 
 # Largest ratio of the spacing to the shorter of two lengths: the length of the cohesive zone,
 # E*z₀²/w, and sqrt(R*z₀). On coarser grids the edge of the contact is pinned between nodes, which

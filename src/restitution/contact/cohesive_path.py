@@ -15,7 +15,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.contact.cavity import bound_after, pressure_bound
 from restitution.contact.checks.edge import require_inside_grid
@@ -34,8 +33,6 @@ from restitution.contact.plastic_work import plastic_work
 from restitution.contact.state import State
 from restitution.errors import NotConvergedError
 from restitution.numerics.box import union
-
-Array = NDArray[np.float64]
 
 # In each step, the work of the force must equal the change of energy. This is the largest accepted
 # difference, as a fraction of the energies of the contact.

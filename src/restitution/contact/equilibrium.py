@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 
 from restitution.contact.contact import Contact, whole_grid
 from restitution.contact.influence import half_space, inverse_half_space, periodic_half_space
-from restitution.contact.state import State
+from restitution.contact.state import Array, State
 from restitution.errors import DomainError, NotConvergedError
 from restitution.numerics.box import NOWHERE, Box, bounding_box, shape_of, widen
 from restitution.numerics.convolution.device import current
@@ -44,7 +44,6 @@ from restitution.numerics.quadratic.multilevel import Operators, solve_multileve
 from restitution.numerics.quadratic.near_guess import solve_near_guess
 from restitution.numerics.read_only import freeze
 
-Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 # Default tolerance on the violation of the contact conditions, relative to the largest overlap of

@@ -13,7 +13,6 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.contact.adhesion import balances_are_reliable, grow_contact, unload_adhesive
 from restitution.contact.adhesive_work import pinning_error, work_by_balance, work_by_force
@@ -30,13 +29,11 @@ from restitution.contact.equilibrium import (
 )
 from restitution.contact.influence import half_space
 from restitution.contact.plastic_work import plastic_work
-from restitution.contact.state import State
+from restitution.contact.state import Array, State
 from restitution.errors import CaseError
 from restitution.numerics.box import bounding_box, shape_of
 from restitution.numerics.quadrature import integrate_adaptively
 from restitution.numerics.read_only import freeze
-
-Array = NDArray[np.float64]
 
 # Retraction after each loading increment (m) (Ghanbarzadeh et al. 2019, §2.2).
 PULL_INCREMENT = 1e-10

@@ -5,12 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-from restitution.contact.state import State
+from restitution.contact.state import Array, State
 from restitution.numerics.box import Box
-
-Array = NDArray[np.float64]
 
 # In each step, the pressure bound of a node grows. The error of the plastic work is a fraction of
 # the growth times the plastic displacement of the step. The fraction is _RULE_ERROR for nodes that

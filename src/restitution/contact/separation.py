@@ -28,8 +28,6 @@ from restitution.contact.unloading_curve import SharedUnloading, complete_curve,
 from restitution.errors import NotConvergedError
 from restitution.numerics.quadrature import integrate_curve
 
-Array = NDArray[np.float64]
-
 RESTITUTION_ERROR = 0.002
 _ACCURACY = 1e-3  # tolerance of the solves as a fraction of the crack opening at the edge
 _STEPS_OF_RECOVERY = 8  # smallest number of steps into which the elastic recovery is divided

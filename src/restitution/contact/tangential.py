@@ -30,15 +30,13 @@ from numpy.typing import NDArray
 
 from restitution.contact.equilibrium import MAX_ITERATIONS, RESIDUAL
 from restitution.contact.influence import inverse_half_space, shear_half_space
-from restitution.contact.state import State
+from restitution.contact.state import Array, State
 from restitution.display import quantity, summary_html, summary_text
 from restitution.errors import CaseError, NotConvergedError
 from restitution.numerics.box import NOWHERE, Box, bounding_box, reframe, shape_of, union
 from restitution.numerics.convolution.device import current
 from restitution.numerics.quadratic.minimise import BoundedQuadratic, minimise_quadratic
 from restitution.numerics.read_only import freeze, read_only
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

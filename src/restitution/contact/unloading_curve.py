@@ -11,13 +11,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.contact.adhesion import balances_are_reliable
-from restitution.contact.state import State
+from restitution.contact.state import Array, State
 from restitution.numerics.quadrature import integrate_curve
-
-Array = NDArray[np.float64]
 
 _FEW_NODES = 10  # a contact of fewer nodes has too few edge nodes to compute a balance
 _SMOOTHED = 11  # number of points in each parabola that smooths the force
