@@ -145,10 +145,9 @@ def grow_contact(
     closure = contact.detachment == "crack-closure"
 
     def release(box: Box, held: Mask, first_guess: Array | None) -> State:
-        _, state = release_nodes(
+        return release_nodes(
             contact, indentation, box, held, limit=limit, first_guess=first_guess, residual=residual
-        )
-        return state
+        )[1]
 
     state = release(box, held, first_guess)
     convolutions = state.convolutions
@@ -180,8 +179,7 @@ def _surrounded(touching: Mask, cells: int) -> Mask:
     """Return the contact nodes `touching` together with a ring of nodes of width `cells`."""
     from scipy.ndimage import distance_transform_edt
 
-    within: Mask = distance_transform_edt(~touching) < cells + 0.5
-    return within
+    return np.asarray(distance_transform_edt(~touching) < cells + 0.5)
 
 
 def _is_better(wider: State, state: State) -> bool:

@@ -146,8 +146,7 @@ def bound_of(contact: Contact, measure: Array, ridge: Array | float = 0.0) -> Ar
     if contact.hardening_modulus > 0:
         strain = _TABOR * math.pi / 2 * (beyond - 1) * c_0 * Y / contact.pair.contact_modulus
         flow_stress = Y + contact.hardening_modulus * strain
-    bound: Array = factor * flow_stress
-    return bound
+    return factor * flow_stress
 
 
 def _depth_ratio(crest_gap: Array, indentation: float) -> Array:
@@ -156,8 +155,7 @@ def _depth_ratio(crest_gap: Array, indentation: float) -> Array:
     h_c is the `crest_gap` (m), and δ the `indentation` (m). The result is 0 where δ < h_c.
     """
     depth = np.maximum(indentation - crest_gap, 0)
-    ratio: Array = _DEPTH_FACTOR * depth / (_DEPTH_FACTOR * indentation - crest_gap)
-    return ratio
+    return _DEPTH_FACTOR * depth / (_DEPTH_FACTOR * indentation - crest_gap)
 
 
 def _smooth_pressure(contact: Contact, box: Box, nodes: Nodes, force: float) -> Array:

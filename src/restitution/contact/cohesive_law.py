@@ -32,8 +32,7 @@ def stiffness(contact: Contact, x: Array) -> Array:
     equilibrium separation to the gap.
     """
     scale = 8 * contact.work_of_adhesion / contact.equilibrium_separation**2
-    slope: Array = scale * x**4 * (3 * x**6 - 1)
-    return slope
+    return scale * x**4 * (3 * x**6 - 1)
 
 
 def largest_softening(contact: Contact, smallest_gap: float) -> float:
@@ -85,14 +84,12 @@ class BoundedLaw:
 
         If the bodies yield, it is the plastic displacement.
         """
-        yielded: Array = np.maximum(self.least - self.base - u, 0.0)
-        return yielded
+        return np.maximum(self.least - self.base - u, 0.0)
 
     def continuation(self, u: Array) -> Array:
         """Energy (J/m²) of the linear continuation beyond the limit, for bodies without yield."""
         below = -self.beyond(u)
-        energy: Array = below * (self._slope + 0.5 * self._stiff * below)
-        return energy
+        return below * (self._slope + 0.5 * self._stiff * below)
 
 
 def _cubic_root(c: Array) -> Array:
@@ -100,5 +97,4 @@ def _cubic_root(c: Array) -> Array:
     t = 1.5 * math.sqrt(3) * c
     inside = np.cos(np.arccos(np.minimum(t, 1.0)) / 3)
     beyond = np.cosh(np.arccosh(np.maximum(t, 1.0)) / 3)
-    root: Array = 2 / math.sqrt(3) * np.where(t < 1, inside, beyond)
-    return root
+    return 2 / math.sqrt(3) * np.where(t < 1, inside, beyond)

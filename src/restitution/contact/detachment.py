@@ -168,8 +168,7 @@ class Edge:
             There is one value for each face. A face is a side of an edge node's cell beyond which
             there is no contact. Outwards means across this side; negative `cells` mean inwards.
             """
-            found: Array = np.take(values, here + cells * outwards, mode="clip")
-            return found
+            return np.asarray(np.take(values, here + cells * outwards, mode="clip"))
 
         opening = values_at(u, 1) - 2 * values_at(u, 0) + values_at(u, -1)
         inside = np.take(touching, here - outwards, mode="clip")
@@ -243,8 +242,7 @@ def _curvature(touching: Mask, nodes: Nodes, faces: NDArray[np.intp]) -> Array:
     """
     patch = _patch_numbers(touching, nodes)
     total = np.bincount(patch, weights=faces)[patch]
-    curvature: Array = np.minimum(8 / total, _LARGEST_CURVATURE)
-    return curvature
+    return np.minimum(8 / total, _LARGEST_CURVATURE)
 
 
 def _patch_numbers(touching: Mask, nodes: Nodes) -> NDArray[np.intp]:
@@ -254,8 +252,7 @@ def _patch_numbers(touching: Mask, nodes: Nodes) -> NDArray[np.intp]:
     """
     from scipy.ndimage import label
 
-    numbers: NDArray[np.intp] = label(touching, structure=np.ones((3, 3)))[0][nodes]
-    return numbers
+    return np.asarray(label(touching, structure=np.ones((3, 3)))[0][nodes])
 
 
 def _apart(nodes: Nodes, pressure: Array, recession: Array) -> NDArray[np.intp]:

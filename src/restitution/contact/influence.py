@@ -308,5 +308,4 @@ def _with_mean(
 
 def _wave_numbers(qx: Array, qy: Array, spacing: tuple[float, float]) -> Array:
     """Magnitude of the wave vector (rad/m) for wave numbers `qx` and `qy` in rad per cell."""
-    q: Array = np.sqrt((qx / spacing[0]) ** 2 + (qy / spacing[1]) ** 2)
-    return q
+    return np.sqrt((qx / spacing[0]) ** 2 + (qy / spacing[1]) ** 2)

@@ -100,8 +100,7 @@ class State:
     @property
     def box_touching(self) -> NDArray[np.bool_]:
         """Whether each node of `box` is in contact (bool), that is, its pressure is not 0."""
-        touching: NDArray[np.bool_] = self.box_pressure != 0
-        return touching
+        return np.asarray(self.box_pressure != 0)
 
     @property
     def contact_nodes(self) -> int:
@@ -199,5 +198,4 @@ def _joined(labels: NDArray[np.int32], count: int) -> NDArray[np.int32]:
     edges = np.hstack([[labels[0], labels[-1]], [labels[:, 0], labels[:, -1]]])
     pairs = edges[:, edges.all(axis=0)] - 1
     graph = coo_array((np.ones(pairs.shape[1]), pairs), shape=(count, count))
-    found: NDArray[np.int32] = connected_components(graph, directed=False)[1]
-    return found
+    return np.asarray(connected_components(graph, directed=False)[1])
