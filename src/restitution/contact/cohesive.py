@@ -106,10 +106,8 @@ class CohesiveState(State):
 
 def box_gap(state: State) -> Array:
     """Gap between the deformed surfaces on the box of `state` (m)."""
-    contact, box = state.contact, state.box
-    base = _base(contact, state.indentation, box, state.plastic_displacement)
-    gap: Array = base + state.box_displacement
-    return gap
+    base = _base(state.contact, state.indentation, state.box, state.plastic_displacement)
+    return base + state.box_displacement
 
 
 def cohesive_length(contact: Contact) -> float:

@@ -134,8 +134,7 @@ class Contact:
                 raise CaseError(f"{name}: {value} Pa is not positive")
         grows = math.isfinite(self.yield_strength)
         if self.plasticity is None:
-            model = "expanding-cavity" if grows else "equilibrium"
-            object.__setattr__(self, "plasticity", model)
+            object.__setattr__(self, "plasticity", "expanding-cavity" if grows else "equilibrium")
         if grows != (self.plasticity == "expanding-cavity"):
             raise CaseError(
                 f'plasticity: "{self.plasticity}" takes a '
@@ -240,8 +239,8 @@ class Contact:
         """Length scale of adhesion (w²R*/E*²)^⅓ (m); 0 without adhesion or between flat bodies."""
         if not self.adhesive or self.pair.flat:
             return 0.0
-        pair = self.pair
-        return float(JKR(pair.radius, pair.contact_modulus, self.work_of_adhesion).adhesive_length)
+        R, E_star = self.pair.radius, self.pair.contact_modulus
+        return float(JKR(R, E_star, self.work_of_adhesion).adhesive_length)
 
     @property
     def crack_opening(self) -> float:

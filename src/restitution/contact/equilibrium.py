@@ -110,9 +110,7 @@ def solve_pressure(
         )
     scale = _scale_of(contact, indentation, b)
     operators = operators_of(contact)
-    upper = limit
-    if isinstance(limit, np.ndarray):
-        upper = device.put(np.ascontiguousarray(limit[box]))
+    upper = device.put(np.ascontiguousarray(limit[box])) if isinstance(limit, np.ndarray) else limit
     if held is None:
         found, convolutions = solve_multilevel(
             operators,
@@ -140,7 +138,9 @@ def solve_pressure(
             accept_estimated_gradient=contact.detachment == "crack-closure",
         )
         convolutions = K.count
-    _require_converged(found, indentation, residual, scale)
+    require_converged(
+        found, f"the solve at an indentation of {1e9 * indentation:.6g} nm", residual, scale
+    )
     solution = Solution(
         b,
         device.get(found.point),
@@ -151,14 +151,13 @@ def solve_pressure(
     return build_state(contact, indentation, box, solution, limit=limit, history=history)
 
 
-def _require_converged(found: Minimum, indentation: float, residual: float, scale: float) -> None:
-    """Raise `NotConvergedError` if the solve has not reached `residual`."""
+def require_converged(found: Minimum, solve: str, residual: float, scale: float) -> None:
+    """Raise `NotConvergedError` if a solve has not reached `residual`; `solve` names the solve."""
     if not found.converged:
         raise NotConvergedError(
-            f"the solve at an indentation of {1e9 * indentation:.6g} nm stopped at a residual of "
-            f"{found.residual / scale:.1e} (tolerance: {residual:.0e}) after {found.iterations} "
-            "iterations; use another grid spacing or a smoother surface (in Python, also a larger "
-            "residual)"
+            f"{solve} stopped at a residual of {found.residual / scale:.1e} (tolerance: "
+            f"{residual:.0e}) after {found.iterations} iterations; use another grid "
+            "spacing or a smoother surface (in Python, also a larger residual)"
         )
 
 
@@ -184,7 +183,9 @@ def elastic_pressure(
         tolerance=residual * scale,
         max_iterations=MAX_ITERATIONS,
     )
-    _require_converged(found, indentation, residual, scale)
+    require_converged(
+        found, f"the solve at an indentation of {1e9 * indentation:.6g} nm", residual, scale
+    )
     rows, columns = (
         slice(side.start + part.start, side.start + part.stop)
         for side, part in zip(box, window, strict=True)

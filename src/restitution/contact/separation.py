@@ -209,12 +209,11 @@ def _cohesive_separation(start: CohesiveState, end: CohesiveState, path: list[St
     lost = end.adhesive_loss - start.adhesive_loss
     plastic = end.plastic_work - start.plastic_work
     fineness = max(start.contact.grid.spacing) / (COARSEST * cohesive_length(start.contact))
-    touching = [state.contact_nodes > 0 for state in path]
     work = start.potential_energy - lost - plastic
     depth, force = ([getattr(state, key) for state in path] for key in ("indentation", "force"))
     by_force = end.potential_energy - integrate_curve(depth, force)
     steps = max(abs(end.work_error - start.work_error), abs(by_force - work))
-    last = max((k for k, touches in enumerate(touching) if touches), default=0)
+    last = max((k for k, state in enumerate(path) if state.contact_nodes), default=0)
     return Separation(
         unloading_work=work,
         error=steps + _GRID_LOSS * fineness**2 * lost,

@@ -28,11 +28,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.contact.equilibrium import MAX_ITERATIONS, RESIDUAL
+from restitution.contact.equilibrium import MAX_ITERATIONS, RESIDUAL, require_converged
 from restitution.contact.influence import inverse_half_space, shear_half_space
 from restitution.contact.state import Array, State
 from restitution.display import quantity, summary_html, summary_text
-from restitution.errors import CaseError, NotConvergedError
+from restitution.errors import CaseError
 from restitution.numerics.box import NOWHERE, Box, bounding_box, reframe, shape_of, union
 from restitution.numerics.convolution.device import current
 from restitution.numerics.quadratic.minimise import BoundedQuadratic, minimise_quadratic
@@ -177,14 +177,8 @@ def shear(
         tolerance=residual * scale,
         max_iterations=MAX_ITERATIONS,
     )
-    reached = found.residual / scale if scale > 0 else 0.0
-    if not found.converged:
-        raise NotConvergedError(
-            f"the tangential solve at a displacement of {1e9 * displacement:.6g} nm stopped at a "
-            f"residual of {reached:.1e} (tolerance: {residual:.0e}) after {found.iterations} "
-            "iterations; use another grid spacing or a smoother surface (in Python, also a larger "
-            "residual)"
-        )
+    solve = f"the tangential solve at a displacement of {1e9 * displacement:.6g} nm"
+    require_converged(found, solve, residual, scale)
     traction, gradient = device.get(found.point), device.get(found.gradient)
     twice = float(np.einsum("ij,ij->", before + traction, gradient))
     return TangentialState(
@@ -195,7 +189,7 @@ def shear(
         box_traction=freeze(traction),
         box_displacement=freeze(gradient + target),
         friction_loss=loss - 0.5 * twice * contact.grid.cell_area,
-        residual=reached,
+        residual=found.residual / scale if scale > 0 else 0.0,
         convolutions=K.count,
     )
 

@@ -156,9 +156,13 @@ class SharedUnloading:
     @classmethod
     def of(cls, state: State, known: Sequence[State]) -> SharedUnloading | None:
         """Return the unloading `known` if unloading from `state` can join it, otherwise None."""
-        if not known or known[0].contact is not state.contact or known[-1].contact_nodes:
-            return None
-        if state.plastic_displacement.any() or known[0].plastic_displacement.any():
+        if (
+            not known
+            or known[0].contact is not state.contact
+            or known[-1].contact_nodes
+            or state.plastic_displacement.any()
+            or known[0].plastic_displacement.any()
+        ):
             return None
         curve = unloading_curve(list(known))
         return cls(known, curve) if curve.balanced and balances_are_reliable(state) else None

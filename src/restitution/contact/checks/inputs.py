@@ -52,8 +52,10 @@ def impossible(contact: Contact, indentation: float) -> Finding | None:
         return Finding("roughness-above-radius", {"radius": radius, "peak": peak})
     predicted = predicted_radius(pair, indentation, contact.hardness)
     if predicted > pair.radius:
-        values = {"radius": predicted, "indentation": indentation, "reduced_radius": pair.radius}
-        return Finding("contact-beyond-radius", values)
+        return Finding(
+            "contact-beyond-radius",
+            {"radius": predicted, "indentation": indentation, "reduced_radius": pair.radius},
+        )
     return _coarse_range(contact) or coarse_scan(contact, indentation)
 
 
@@ -92,9 +94,14 @@ def doubtful(contact: Contact, indentation: float) -> list[Finding]:
 def _coarse_range(contact: Contact) -> Finding | None:
     if not contact.cohesive or resolves_range(contact):
         return None
-    spacing, needed = max(contact.grid.spacing), needed_spacing(contact)
-    values = {"spacing": spacing, "needed": needed, "periodic": contact.periodic}
-    return Finding("range-unresolved", values)
+    return Finding(
+        "range-unresolved",
+        {
+            "spacing": max(contact.grid.spacing),
+            "needed": needed_spacing(contact),
+            "periodic": contact.periodic,
+        },
+    )
 
 
 def _tilt(contact: Contact) -> Finding | None:

@@ -201,8 +201,9 @@ def unresolved_patches(depths: Sequence[float], median_patches: Sequence[float])
     few = [depth for depth, n in zip(depths, median_patches, strict=True) if not resolves(n)]
     if not few:
         return []
-    values = {"few": len(few), "depths": len(depths), "deepest": max(few)}
-    return [Finding("patches-unresolved", values)]
+    return [
+        Finding("patches-unresolved", {"few": len(few), "depths": len(depths), "deepest": max(few)})
+    ]
 
 
 def unresolved_adhesion(depths: Sequence[float], nodes: Sequence[float]) -> list[Finding]:
@@ -215,8 +216,9 @@ def unresolved_adhesion(depths: Sequence[float], nodes: Sequence[float]) -> list
     few = sum(n < ADHESIVE_NODES for _, n in zip(depths, nodes, strict=True))
     if not few:
         return []
-    values = {"few": few, "depths": len(depths), "nodes": min(nodes)}
-    return [Finding("adhesion-unresolved", values)]
+    return [
+        Finding("adhesion-unresolved", {"few": few, "depths": len(depths), "nodes": min(nodes)})
+    ]
 
 
 def grid_of_a_scan(contact: Contact) -> bool:
