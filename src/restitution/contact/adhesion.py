@@ -250,14 +250,13 @@ def balance_of(state: State) -> tuple[float, float]:
     if state.contact_nodes == 0:
         return state.indentation, state.force
     retreat, _ = pull_off_of_punch(state)
-    held = state.box_pressure != 0
     retracted = solve_pressure(
         contact,
         state.indentation - _RETREAT * retreat,
         state.box,
         limit=state.bound,
         history=state,
-        held=HeldNodes(held, math.inf, state.box_pressure),
+        held=HeldNodes(state.box_pressure != 0, math.inf, state.box_pressure),
         residual=_BALANCE_RESIDUAL,
     )
     return _balance(state, retracted) or (state.indentation, state.force)
@@ -285,8 +284,8 @@ def _balance(state: State, retracted: State) -> tuple[float, float] | None:
     first, last = (math.sqrt(max(float(G[active].mean()), 0.0)) for G in rates)
     if last <= first:
         return None
-    part = (math.sqrt(contact.work_of_adhesion) - first) / (last - first)
-    part = min(max(part, _EARLIEST), 1.0)
+    at_balance = (math.sqrt(contact.work_of_adhesion) - first) / (last - first)
+    part = min(max(at_balance, _EARLIEST), 1.0)
     return (
         state.indentation + part * (retracted.indentation - state.indentation),
         state.force + part * (retracted.force - state.force),

@@ -110,12 +110,12 @@ class Pair:
         beside the force and by β Q/r ahead of it and behind it. With the shear moduli G and sums
         over the bodies, α = Σ (1 − ν)/(2πG) and β = Σ 1/(2πG). The mean of α and β is 1/(πG*).
         """
-        across, along = 0.0, 0.0
-        for body in (self.first, self.second):
-            # With the shear modulus G, this is 1/(2πG).
-            one = (1 + body.poissons_ratio) / (math.pi * body.youngs_modulus)
-            across, along = across + (1 - body.poissons_ratio) * one, along + one
-        return across, along
+        # Poisson's ratio of each body and, with its shear modulus G, 1/(2πG).
+        parts = [
+            (body.poissons_ratio, (1 + body.poissons_ratio) / (math.pi * body.youngs_modulus))
+            for body in (self.first, self.second)
+        ]
+        return sum((1 - nu) * one for nu, one in parts), sum(one for _, one in parts)
 
     @property
     def mass(self) -> float | None:

@@ -9,12 +9,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.contact.contact import Contact
+from restitution.contact.state import Array
 from restitution.theory import LennardJones
-
-Array = NDArray[np.float64]
 
 # Ratio of the equilibrium separation to the gap where the attraction weakens most steeply.
 _SOFTEST = (2 / 15) ** (1 / 6)

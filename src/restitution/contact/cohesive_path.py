@@ -221,14 +221,15 @@ def _accounted(state: CohesiveState, step: _Step, smooth: bool) -> CohesiveState
     lost = 0.0 if smooth else max(step.by_trapezium - step.change, 0.0)
     error = 0.0 if smooth else min(step.uncertainty, max(lost, abs(step.change)))
     unaccounted = state.unaccounted + (step.by_parabola - step.change if smooth else 0.0)
-    new = replace(
-        step.state,
-        adhesive_loss=state.adhesive_loss + lost,
-        jumps=state.jumps + int(not smooth),
-        unaccounted=unaccounted,
-        work_error=step.state.work_error + abs(unaccounted) - abs(state.unaccounted) + error,
+    return with_interaction(
+        replace(
+            step.state,
+            adhesive_loss=state.adhesive_loss + lost,
+            jumps=state.jumps + int(not smooth),
+            unaccounted=unaccounted,
+            work_error=step.state.work_error + abs(unaccounted) - abs(state.unaccounted) + error,
+        )
     )
-    return with_interaction(new)
 
 
 def _try(previous: CohesiveState | None, state: CohesiveState, at: float, residual: float) -> _Step:

@@ -26,9 +26,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.contact.contact import Contact, whole_grid
+from restitution.contact.detachment import Mask
 from restitution.contact.influence import half_space, inverse_half_space, periodic_half_space
 from restitution.contact.state import Array, State
 from restitution.errors import DomainError, NotConvergedError
@@ -43,8 +43,6 @@ from restitution.numerics.quadratic.minimise import (
 from restitution.numerics.quadratic.multilevel import Operators, solve_multilevel
 from restitution.numerics.quadratic.near_guess import solve_near_guess
 from restitution.numerics.read_only import freeze
-
-Mask = NDArray[np.bool_]
 
 # Default tolerance on the violation of the contact conditions, relative to the largest overlap of
 # the undeformed surfaces.

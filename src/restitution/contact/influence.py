@@ -144,10 +144,9 @@ def influence_coefficients(
     hx, hy = spacing
     lags, aspect, scale = (i.size, j.size), hy / hx, hx / contact_modulus
     if i.size * j.size <= _most_coefficients():
-        scaled: Array = _unit_coefficients(lags, aspect, device) * scale
-    else:
-        scaled = _compute_coefficients(lags, (1.0, aspect), device)
-        scaled *= scale
+        return _unit_coefficients(lags, aspect, device) * scale
+    scaled = _compute_coefficients(lags, (1.0, aspect), device)
+    scaled *= scale
     return scaled
 
 

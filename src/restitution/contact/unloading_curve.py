@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import dropwhile
 
 import numpy as np
 
@@ -197,7 +198,5 @@ class SharedUnloading:
             )
 
     def _following(self, state: State) -> list[State]:
-        started = next((k for k, each in enumerate(self.states) if each.balance is not None), None)
-        if started is None:
-            return []
-        return [each for each in self.states[started:] if each.indentation < state.indentation]
+        started = dropwhile(lambda each: each.balance is None, self.states)
+        return [each for each in started if each.indentation < state.indentation]

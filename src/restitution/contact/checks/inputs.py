@@ -157,17 +157,16 @@ def _closed_gap(contact: Contact, indentation: float, distance: float) -> float:
 
 def _steepness(contact: Contact) -> Finding | None:
     slope = rms_slope(contact.surface)
-    if slope <= _STEEP:
-        return None
-    return Finding("steep-surface", {"slope": slope, "limit": _STEEP})
+    values = {"slope": slope, "limit": _STEEP}
+    return None if slope <= _STEEP else Finding("steep-surface", values)
 
 
 def _yield_pressure(contact: Contact) -> Finding | None:
     ratio = contact.hardness / contact.pair.contact_modulus
     low, high = _PRESSURES
-    if math.isinf(ratio) or low <= ratio <= high:
-        return None
-    return Finding("unusual-yield-pressure", {"ratio": ratio, "low": low, "high": high})
+    usual = math.isinf(ratio) or low <= ratio <= high
+    values = {"ratio": ratio, "low": low, "high": high}
+    return None if usual else Finding("unusual-yield-pressure", values)
 
 
 def _oblong(contact: Contact) -> Finding | None:
@@ -179,8 +178,9 @@ def _oblong(contact: Contact) -> Finding | None:
         of = key.removesuffix("pixel_x_m")
         hy = float(provenance[f"{of}pixel_y_m"])
         if abs(float(hx) / hy - 1) > _OBLONG and (f"{of}file" in provenance):
-            file = provenance[f"{of}file"]
-            return Finding("oblong-pixels", {"file": file, "x": float(hx), "y": hy})
+            return Finding(
+                "oblong-pixels", {"file": provenance[f"{of}file"], "x": float(hx), "y": hy}
+            )
     return None
 
 
