@@ -293,13 +293,14 @@ def on_box(state: CohesiveState, box: Box, *, residual: float) -> CohesiveState:
     new = solve_cohesive(
         contact, indentation, box, p=p, limit=state.bound, history=state, residual=residual
     )
-    new = replace(
-        new,
-        adhesive_loss=state.adhesive_loss,
-        jumps=state.jumps,
-        unaccounted=state.unaccounted,
+    return with_interaction(
+        replace(
+            new,
+            adhesive_loss=state.adhesive_loss,
+            jumps=state.jumps,
+            unaccounted=state.unaccounted,
+        )
     )
-    return with_interaction(new)
 
 
 def is_unique(state: CohesiveState) -> bool:

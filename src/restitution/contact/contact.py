@@ -239,8 +239,9 @@ class Contact:
         """Length scale of adhesion (w²R*/E*²)^⅓ (m); 0 without adhesion or between flat bodies."""
         if not self.adhesive or self.pair.flat:
             return 0.0
-        R, E_star = self.pair.radius, self.pair.contact_modulus
-        return float(JKR(R, E_star, self.work_of_adhesion).adhesive_length)
+        return float(
+            JKR(self.pair.radius, self.pair.contact_modulus, self.work_of_adhesion).adhesive_length
+        )
 
     @property
     def crack_opening(self) -> float:

@@ -79,8 +79,9 @@ def solve(
         raise CaseError(f"indentation: {indentation} m is not a positive depth")
     if start is not None and start.contact.grid != contact.grid:
         raise CaseError("start: is on another grid; give a state on the grid of this contact")
-    unfinished = solve_without_work(contact, indentation, start=start, residual=residual)
-    state = with_work(unfinished, start)
+    state = with_work(
+        solve_without_work(contact, indentation, start=start, residual=residual), start
+    )
     require_inside_grid(state)
     return state
 

@@ -232,5 +232,4 @@ def grid_of_a_scan(contact: Contact) -> bool:
 
 def _coarsest_pixel(contact: Contact) -> float:
     """The coarsest pixel (m) in the provenance of the surface; 0 for a surface without pixels."""
-    provenance = contact.surface.provenance
-    return max(float(provenance.get(key, 0.0)) for key in ("pixel_x_m", "pixel_y_m"))
+    return max(float(contact.surface.provenance.get(f"pixel_{a}_m", 0.0)) for a in "xy")
