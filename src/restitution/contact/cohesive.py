@@ -167,11 +167,11 @@ def solve_cohesive(
 ) -> CohesiveState:
     """Descend from the pressure `p` on `box` to an equilibrium.
 
-    The displacement `u` = K p is computed unless it is given.
-    `limit` is the largest pressure (Pa), a number or an array of the shape of the grid. The plastic
-    work and the work error of the result are copied from `history` (zero if None), and its adhesive
-    work is zero. The caller updates all three. Raises `NotConvergedError`, and `DomainError` if the
-    pressure in a periodic contact without yield exceeds E*.
+    The displacement `u` = K p is computed unless it is given. `limit` is the largest pressure (Pa),
+    a number or an array of the shape of the grid. The plastic work and the work error of the result
+    are copied from `history` (zero if None), and its adhesive work is zero. The caller updates all
+    three. Raises `NotConvergedError`, and `DomainError` if the pressure in a periodic contact
+    without yield exceeds E*.
     """
     K = _operator(contact, box)
     before = np.zeros(contact.grid.nodes) if history is None else history.plastic_displacement

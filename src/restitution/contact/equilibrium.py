@@ -137,7 +137,10 @@ def solve_pressure(
         )
         convolutions = K.count
     require_converged(
-        found, f"the solve at an indentation of {1e9 * indentation:.6g} nm", residual, scale
+        found,
+        f"the solve at an indentation of {1e9 * indentation:.6g} nm",
+        residual,
+        found.residual / scale,
     )
     solution = Solution(
         b,
@@ -149,13 +152,16 @@ def solve_pressure(
     return build_state(contact, indentation, box, solution, limit=limit, history=history)
 
 
-def require_converged(found: Minimum, solve: str, residual: float, scale: float) -> None:
-    """Raise `NotConvergedError` if a solve has not reached `residual`; `solve` names the solve."""
+def require_converged(found: Minimum, solve: str, residual: float, reached: float) -> None:
+    """Raise `NotConvergedError` if a solve has not `reached` the tolerance `residual`.
+
+    `solve` names the solve in the message.
+    """
     if not found.converged:
         raise NotConvergedError(
-            f"{solve} stopped at a residual of {found.residual / scale:.1e} (tolerance: "
-            f"{residual:.0e}) after {found.iterations} iterations; use another grid "
-            "spacing or a smoother surface (in Python, also a larger residual)"
+            f"{solve} stopped at a residual of {reached:.1e} (tolerance: {residual:.0e}) "
+            f"after {found.iterations} iterations; use another grid spacing or a smoother surface "
+            "(in Python, also a larger residual)"
         )
 
 
@@ -182,7 +188,10 @@ def elastic_pressure(
         max_iterations=MAX_ITERATIONS,
     )
     require_converged(
-        found, f"the solve at an indentation of {1e9 * indentation:.6g} nm", residual, scale
+        found,
+        f"the solve at an indentation of {1e9 * indentation:.6g} nm",
+        residual,
+        found.residual / scale,
     )
     rows, columns = (
         slice(side.start + part.start, side.start + part.stop)

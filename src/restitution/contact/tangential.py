@@ -177,8 +177,13 @@ def shear(
         tolerance=residual * scale,
         max_iterations=MAX_ITERATIONS,
     )
-    solve = f"the tangential solve at a displacement of {1e9 * displacement:.6g} nm"
-    require_converged(found, solve, residual, scale)
+    reached = found.residual / scale if scale > 0 else 0.0
+    require_converged(
+        found,
+        f"the tangential solve at a displacement of {1e9 * displacement:.6g} nm",
+        residual,
+        reached,
+    )
     traction, gradient = device.get(found.point), device.get(found.gradient)
     twice = float(np.einsum("ij,ij->", before + traction, gradient))
     return TangentialState(
@@ -189,7 +194,7 @@ def shear(
         box_traction=freeze(traction),
         box_displacement=freeze(gradient + target),
         friction_loss=loss - 0.5 * twice * contact.grid.cell_area,
-        residual=found.residual / scale if scale > 0 else 0.0,
+        residual=reached,
         convolutions=K.count,
     )
 
