@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from restitution.surfaces.surface import Array
 
 
-def fill_harmonically(
-    height: NDArray[np.float64], spacing: tuple[float, float]
-) -> NDArray[np.float64]:
+def fill_harmonically(height: Array, spacing: tuple[float, float]) -> Array:
     """Fill NaN pixels with the solution of Laplace's equation between the defined pixels.
 
     `height` has shape (nx, ny) and at least one defined pixel; `spacing` is (hx, hy) in m. The

@@ -15,7 +15,6 @@ import math
 from typing import Literal, TypedDict, Unpack
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
@@ -23,9 +22,8 @@ from restitution.surfaces.heights import adjusted, distribution, filtered, in_or
 from restitution.surfaces.johnson import LEAST_KURTOSIS, possible
 from restitution.surfaces.noise import white_noise
 from restitution.surfaces.spectra import Autocorrelated, SelfAffine, Spectrum
-from restitution.surfaces.surface import Surface
+from restitution.surfaces.surface import Array, Surface
 
-Array = NDArray[np.float64]
 RoughnessKind = Literal["exponential", "gaussian", "self-affine"]
 
 # A non-periodic surface is cut from a periodic surface that is larger by this margin (in units of

@@ -18,15 +18,11 @@ heights, so their distribution is exact and the amplitudes are approximate.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.surfaces.johnson import possible, translation
-
-Array = NDArray[np.float64]
-Waves = Callable[[Array], Array]
+from restitution.surfaces.surface import Array
 
 _STRONGEST = 3.0, 40.0  # largest skewness and kurtosis of the noise in `filtered`
 _CLOSE = 0.02  # tolerance on skewness (absolute) and kurtosis (relative) in `filtered`

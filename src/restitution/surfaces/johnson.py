@@ -16,9 +16,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from restitution.surfaces.surface import Array
 
 # Smallest allowed value of kurtosis − skewness². For any distribution this difference is at least
 # 1. Near 1, nearly all heights take one of two values.

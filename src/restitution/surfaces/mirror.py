@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.numerics.grid import Grid
 from restitution.surfaces.resample import (
@@ -13,9 +12,7 @@ from restitution.surfaces.resample import (
     same_spacing,
     spline,
 )
-from restitution.surfaces.surface import Surface
-
-Array = NDArray[np.float64]
+from restitution.surfaces.surface import Array, Surface
 
 
 def mirrored(scan: Surface, grid: Grid) -> Surface:

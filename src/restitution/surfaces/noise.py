@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.surfaces.surface import Array
 
-def white_noise(shape: tuple[int, int], seed: int) -> NDArray[np.float64]:
+
+def white_noise(shape: tuple[int, int], seed: int) -> Array:
     """Return independent standard normal numbers in an array of this shape."""
     from scipy.special import ndtri
 
@@ -16,11 +18,11 @@ def white_noise(shape: tuple[int, int], seed: int) -> NDArray[np.float64]:
     # infinite. With 53 bits u could round to 1.
     raw = np.random.PCG64(seed).random_raw(shape[0] * shape[1])
     u = ((raw >> np.uint64(12)).astype(np.float64) + 0.5) * 2.0**-52
-    noise: NDArray[np.float64] = ndtri(u).reshape(shape)
+    noise: Array = ndtri(u).reshape(shape)
     return noise
 
 
-def wave_phases(seed: int, numbers: NDArray[np.int64], count: int) -> NDArray[np.float64]:
+def wave_phases(seed: int, numbers: NDArray[np.int64], count: int) -> Array:
     """Random phases (rad) of the waves (m, n) with m in `numbers` and n in 0 … `count` − 1.
 
     The shape is (numbers.size, count). A phase depends only on `seed`, m and n. So a finer grid

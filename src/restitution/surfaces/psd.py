@@ -16,11 +16,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from restitution.surfaces.surface import Surface, is_periodic
-
-Array = NDArray[np.float64]
+from restitution.surfaces.surface import Array, Surface, is_periodic
 
 _TAPERS = 3  # number of sine tapers along each axis
 _BANDS_PER_OCTAVE = 4  # bands of the radial spectrum per factor of two in wave number

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
-from restitution.surfaces.surface import Surface, is_periodic
-
-Array = NDArray[np.float64]
+from restitution.surfaces.surface import Array, Surface, is_periodic
 
 
 def refine(surface: Surface, factor: int) -> Surface:

@@ -6,14 +6,11 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.numerics.grid import Grid
 from restitution.surfaces.describe import rms_slope
 from restitution.surfaces.refused import RefusedSurfaceError
-from restitution.surfaces.surface import Surface
-
-Array = NDArray[np.float64]
+from restitution.surfaces.surface import Array, Surface
 
 _ROUNDING = 1e-9  # largest relative difference of two lengths that count as equal
 

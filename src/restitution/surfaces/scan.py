@@ -6,8 +6,7 @@ import unicodedata
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-import numpy as np
-from numpy.typing import NDArray
+from restitution.surfaces.surface import Array
 
 # Number of units per metre. Values are divided by these numbers, because 10/1e6 is exactly 1e-05,
 # but 10 times 1e-6 is not.
@@ -42,7 +41,7 @@ class Scan:
     picture.
     """
 
-    height: NDArray[np.float64]
+    height: Array
     size: tuple[float | None, float | None] = (None, None)
     details: Mapping[str, str | float] = field(default_factory=dict)
 

@@ -13,6 +13,8 @@ from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.numerics.read_only import read_only
 
+Array = NDArray[np.float64]
+
 
 @dataclass(frozen=True, eq=False)
 class Surface:
@@ -31,7 +33,7 @@ class Surface:
         SurfaceError: The shape does not fit the grid, or a height is undefined.
     """
 
-    height: NDArray[np.float64]
+    height: Array
     grid: Grid
     provenance: Mapping[str, str | float] = field(default_factory=dict)
 

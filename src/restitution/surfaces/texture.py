@@ -11,11 +11,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from restitution.surfaces.surface import Surface, is_periodic
-
-Array = NDArray[np.float64]
+from restitution.surfaces.surface import Array, Surface, is_periodic
 
 _BINS = 80  # number of bins of the density of heights
 _DECAY = 0.2  # value of the autocorrelation that defines Sal and Str (clause 4.2)

@@ -23,17 +23,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.numerics.grid import Grid
 from restitution.surfaces.describe import describe, rms_slope
 from restitution.surfaces.psd import power_spectral_density, radial_spectrum
 from restitution.surfaces.refused import RefusedSurfaceError
 from restitution.surfaces.resample import carried, crop_to, left_out, place_on_grid
-from restitution.surfaces.surface import Surface
+from restitution.surfaces.surface import Array, Surface
 from restitution.surfaces.wave_spectrum import Modes, WaveSpectrum, spectrum_of
-
-Array = NDArray[np.float64]
 
 LEAST_PIXELS = 16  # smallest number of pixels of a scan along each axis
 _UNADJUSTED = 0.01  # fraction of the mean square height in waves that are not adjusted

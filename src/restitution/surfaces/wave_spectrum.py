@@ -22,9 +22,8 @@ from numpy.typing import NDArray
 from restitution.surfaces.describe import rms_slope
 from restitution.surfaces.noise import wave_phases
 from restitution.surfaces.psd import power_spectral_density
-from restitution.surfaces.surface import Surface
+from restitution.surfaces.surface import Array, Surface
 
-Array = NDArray[np.float64]
 Modes = NDArray[np.complex128]
 
 _SUMMED = 2**20  # approximate largest number of waves that `_moments` sums one by one
