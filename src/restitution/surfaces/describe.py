@@ -66,10 +66,12 @@ def describe(surface: Surface) -> dict[str, float | None]:
     # Rounding can make the heights of a flat surface differ from their mean.
     if Sq > 8 * np.finfo(np.float64).eps * float(np.abs(height).max()):
         unit = z / Sq
-        values["Ssk"] = float(np.mean(unit**3))
-        values["Sku"] = float(np.mean(unit**4))
-        values["correlation_length_x_m"] = _correlation_length(unit, hx)
-        values["correlation_length_y_m"] = _correlation_length(unit.T, hy)
+        values |= {
+            "Ssk": float(np.mean(unit**3)),
+            "Sku": float(np.mean(unit**4)),
+            "correlation_length_x_m": _correlation_length(unit, hx),
+            "correlation_length_y_m": _correlation_length(unit.T, hy),
+        }
     return values
 
 
