@@ -13,6 +13,7 @@ fourth power of the wave number. The resolution in frequency is ±1.5/size.
 from __future__ import annotations
 
 import math
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -55,10 +56,8 @@ def power_spectral_density(surface: Surface) -> Array:
     if is_periodic(surface):
         power += np.abs(fft2(z)) ** 2
     else:
-        across = [_tapers(n) for n in z.shape]
-        for a in across[0]:
-            for b in across[1]:
-                power += np.abs(fft2(z * a[:, None] * b[None, :])) ** 2 / _TAPERS**2
+        for a, b in product(*(_tapers(n) for n in z.shape)):
+            power += np.abs(fft2(z * a[:, None] * b[None, :])) ** 2 / _TAPERS**2
     power *= surface.grid.cell_area / z.size
     return power
 
@@ -75,11 +74,10 @@ def radial_spectrum(surface: Surface, density: Array | None = None) -> RadialSpe
     least, most = 2 * math.pi / min(surface.grid.size), math.pi / max(surface.grid.spacing)
     count = max(1, round(_BANDS_PER_OCTAVE * math.log2(max(most / least, 1.0))))
     edges = np.geomspace(0.999 * least, 1.001 * most, count + 1)
-    band = np.digitize(q.ravel(), edges)
-    known = np.isfinite(C.ravel())
-    band = np.where(known, band, 0)
+    # Band 0 is left out. It contains waves that are longer than all bands or have no density.
+    band = np.where(np.isfinite(C), np.digitize(q, edges), 0).ravel()
     size = np.bincount(band, minlength=count + 2)[1:-1]
-    sums = (np.bincount(band, np.where(known, v.ravel(), 0), count + 2)[1:-1] for v in (q, C))
+    sums = (np.bincount(band, values.ravel(), count + 2)[1:-1] for values in (q, C))
     mean_q, mean_C = (values[size > 0] / size[size > 0] for values in sums)
     return RadialSpectrum(mean_q, mean_C)
 
