@@ -34,8 +34,8 @@ def level(surface: Surface, how: Levelling) -> Surface:
         raise SurfaceError(
             f"how={how!r} is unknown; choose one of {', '.join(get_args(Levelling))}"
         )
-    before = [str(surface.provenance["levelling"])] if "levelling" in surface.provenance else []
-    done = [step for step in [*before, how] if step != "none"]
+    before = str(surface.provenance.get("levelling", "none"))
+    done = [step for step in (before, how) if step != "none"]
     height = surface.height
     if how != "none":
         height = height - _least_squares_form(height, _DEGREE[how])
@@ -56,8 +56,7 @@ def _least_squares_form(height: Array, degree: int) -> Array:
     coefficients = P.T @ height @ Q
     power_x, power_y = np.indices(coefficients.shape)
     coefficients[power_x + power_y > degree] = 0.0
-    form: Array = P @ coefficients @ Q.T
-    return form
+    return np.asarray(P @ coefficients @ Q.T)
 
 
 def _orthonormal_polynomials(n: int, degree: int) -> Array:
