@@ -30,6 +30,7 @@ _COLUMNS = frozenset({"nx", "columns", "values per line"})
 _LINES = frozenset({"ny", "rows", "lines"})
 _OWN_KEYS = frozenset({"width", "height", "value units"})
 _BOTH = re.compile(r"(\d{1,9})\s{0,9}[x×,\s]\s{0,9}(\d{1,9})")
+_STATEMENT = re.compile(r"#(?P<key>[^:=]*)[:=](?P<value>.*)")
 _UNDEFINED = frozenset({"", "bad", "nan", "inf", "-inf", "infinite"})
 _Counts = dict[str, int]
 
@@ -198,11 +199,8 @@ def _statement(comment: str) -> tuple[str, str]:
 
     For any other comment, return two empty texts.
     """
-    text = comment[1:]
-    ends = [at for at in (text.find(":"), text.find("=")) if at >= 0]
-    if not ends:
-        return "", ""
-    return text[: min(ends)].strip().lower(), text[min(ends) + 1 :].strip()
+    entry = _STATEMENT.fullmatch(comment)
+    return (entry["key"].strip().lower(), entry["value"].strip()) if entry else ("", "")
 
 
 def _counts(key: str, value: str) -> _Counts:
