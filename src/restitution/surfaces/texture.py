@@ -94,15 +94,13 @@ def autocorrelation(surface: Surface) -> Autocorrelation:
 
     z = surface.height - surface.height.mean()
     (nx, ny), (hx, hy) = z.shape, surface.grid.spacing
+    lag_x, lag_y = np.arange(nx) - nx // 2, np.arange(ny) - ny // 2
     if is_periodic(surface):
-        R = irfft2(np.abs(rfft2(z)) ** 2, s=z.shape) / z.size
+        padded, pairs = z.shape, z.size
     else:
         padded = next_fast_len(2 * nx, real=True), next_fast_len(2 * ny, real=True)
-        R = irfft2(np.abs(rfft2(z, s=padded)) ** 2, s=padded)
-    lag_x, lag_y = np.arange(nx) - nx // 2, np.arange(ny) - ny // 2
-    R = R[np.ix_(lag_x, lag_y)]
-    if not is_periodic(surface):
-        R = R / ((nx - np.abs(lag_x))[:, None] * (ny - np.abs(lag_y))[None, :])
+        pairs = (nx - np.abs(lag_x))[:, None] * (ny - np.abs(lag_y))[None, :]
+    R = irfft2(np.abs(rfft2(z, s=padded)) ** 2, s=padded)[np.ix_(lag_x, lag_y)] / pairs
     whole = R[nx // 2, ny // 2]
     return Autocorrelation(lag_x * hx, lag_y * hy, R / whole if whole > 0 else np.zeros_like(R))
 
