@@ -182,8 +182,7 @@ def _heights(
     if (translated := filtered(noise, H, *wanted)) is not None:
         z, made["method"] = translated, "Hu and Tonder 1992, Johnson-translated noise"
     else:
-        heights = distribution(z.size, *wanted)
-        if heights is None:
+        if (heights := distribution(z.size, *wanted)) is None:
             raise SurfaceError(
                 f"kurtosis: no Johnson distribution was found with a skewness of "
                 f"{wanted[0]:g} and a kurtosis of {wanted[1]:g}; ask for a larger kurtosis"
