@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import unicodedata
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from restitution.surfaces.surface import Array
 
@@ -42,8 +42,8 @@ class Scan:
     """
 
     height: Array
-    size: tuple[float | None, float | None] = (None, None)
-    details: Mapping[str, str | float] = field(default_factory=dict)
+    size: tuple[float | None, float | None]
+    details: Mapping[str, str | float]
 
 
 def in_metres(value: float, unit: object) -> float | None:
