@@ -132,8 +132,7 @@ def _check_readable(file: Path) -> None:
                 f"{file}: has {kind.st_size} bytes, more than the {_LARGEST} that a scan may have; "
                 "crop it, or save fewer pixels"
             )
-        with file.open("rb"):
-            length = kind.st_size
+        file.open("rb").close()
     except SurfaceError:
         raise
     except FileNotFoundError as error:
@@ -143,7 +142,7 @@ def _check_readable(file: Path) -> None:
         raise SurfaceError(
             f"{shown(str(file), 200)}: cannot be opened ({why}); check the path"
         ) from error
-    if length == 0:
+    if kind.st_size == 0:
         raise SurfaceError(f"{file}: is empty; export the topography again")
 
 

@@ -72,15 +72,15 @@ def twin(scan: Surface, grid: Grid, seed: int) -> Surface:
     cells that are too large for any wave of the scan.
     """
     _check(scan, grid)
-    repeats = tuple(
-        math.ceil(s / g * (1 - 1e-9)) for s, g in zip(scan.grid.size, grid.size, strict=True)
+    nx, ny = (
+        n * math.ceil(s / g * (1 - 1e-9))
+        for n, s, g in zip(grid.nodes, scan.grid.size, grid.size, strict=True)
     )
-    nodes = repeats[0] * grid.nodes[0], repeats[1] * grid.nodes[1]
-    whole = Grid(nodes, grid.spacing)
+    whole = Grid((nx, ny), grid.spacing)
     spectrum = spectrum_of(scan, whole.size)
-    height = _heights(_adjusted(spectrum, scan, whole, seed), nodes)
+    height = _heights(_adjusted(spectrum, scan, whole, seed), whole.nodes)
     made = Surface(crop_to(height, grid.nodes), grid)
-    return replace(made, provenance=_provenance(scan, made, seed, periodic=nodes == grid.nodes))
+    return replace(made, provenance=_provenance(scan, made, seed, periodic=whole == grid))
 
 
 def _check(scan: Surface, grid: Grid) -> None:
