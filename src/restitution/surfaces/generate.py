@@ -142,14 +142,12 @@ def _spectrum(kind: RoughnessKind, waves: Waves) -> Spectrum:
             raise SurfaceError(f"{name}: does not belong to kind = {kind!r}; leave it out")
     shortest = waves.get("shortest")
     if kind == "self-affine":
-        hurst = waves.get("hurst")
-        if hurst is None:
+        if (hurst := waves.get("hurst")) is None:
             raise SurfaceError(
                 "hurst: missing; a self-affine surface needs a Hurst exponent, such as 0.8"
             )
         return SelfAffine(hurst, waves.get("rolloff"), shortest)
-    beta = waves.get("correlation_length")
-    if beta is None:
+    if (beta := waves.get("correlation_length")) is None:
         raise SurfaceError(
             f"correlation_length: missing; kind = {kind!r} needs the length over which "
             "the autocorrelation falls to 10 %, such as 2 um"
