@@ -78,8 +78,7 @@ def radial_spectrum(surface: Surface, density: Array | None = None) -> RadialSpe
     band = np.where(np.isfinite(C), np.digitize(q, edges), 0).ravel()
     size = np.bincount(band, minlength=count + 2)[1:-1]
     sums = (np.bincount(band, values.ravel(), count + 2)[1:-1] for values in (q, C))
-    mean_q, mean_C = (values[size > 0] / size[size > 0] for values in sums)
-    return RadialSpectrum(mean_q, mean_C)
+    return RadialSpectrum(*(total[size > 0] / size[size > 0] for total in sums))
 
 
 def directed_spectra(surface: Surface) -> list[DirectedSpectrum]:
