@@ -33,7 +33,7 @@ class Surface:
         SurfaceError: The shape does not fit the grid, or a height is undefined.
     """
 
-    height: Array
+    height: NDArray[np.float64]
     grid: Grid
     provenance: Mapping[str, str | float] = field(default_factory=dict)
 
