@@ -3,10 +3,10 @@ Laws of DEM codes beside a computed curve
 =========================================
 
 This figure compares the computed COR of a rough bead with three laws of DEM codes: a constant, and
-two laws with the same yield strength (Thornton and Ning, and ``mdr`` of LAMMPS). Laws of smooth
-spheres lose no energy below their yield velocity, but the rough bead loses the largest share of its
-energy there.
-``restitution fit-law`` fits seven laws to a computed curve and prints the error of each law.
+two laws with the same yield strength (Thornton and Ning, and ``mdr`` of LAMMPS). Laws for smooth
+spheres predict no loss of energy below the yield velocity, but the rough bead loses the largest
+share of its energy there. ``restitution fit-law`` fits seven laws to a computed curve and prints
+the error of each law.
 """
 
 import matplotlib.pyplot as plt
