@@ -6,10 +6,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from rich.table import Column, Table
 
 if TYPE_CHECKING:
-    from rich.table import Table
-
     from restitution.case.case import Case
     from restitution.contact.contact import Contact
 
@@ -98,16 +97,11 @@ def _read(path: Path) -> tuple[Case, int]:
 
 
 def _table(case: Case, contact: Contact) -> Table:
-    from rich.table import Table
-
     from restitution.case.derived import derived_quantities
     from restitution.numerics.memory import available, in_words
     from restitution.surfaces import describe
 
-    table = Table(box=None, show_header=False)
-    table.add_column(justify="left")
-    table.add_column(justify="right")
-    table.add_column(justify="left")
+    table = Table("", Column(justify="right"), "", box=None, show_header=False)
     nx, ny = contact.grid.nodes
     hx, hy = contact.grid.spacing
     auto = ", before refine" if case.grid.refine == "auto" else ""

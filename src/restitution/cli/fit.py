@@ -4,12 +4,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from rich.table import Column, Table
 
 from restitution.cli.parameters import FigureFormat, Figures, OutFolder
 
 if TYPE_CHECKING:
-    from rich.table import Table
-
     from restitution.calibration.fit import Fit
     from restitution.calibration.measured import Measured
 
@@ -106,15 +105,12 @@ def _fit(text: str, folder: Path, table: "Measured", names: list[str]) -> "Fit":
         )
 
 
-def _table(found: "Fit") -> "Table":
-    from rich.table import Table
-
+def _table(found: "Fit") -> Table:
     from restitution.calibration.findings import identifiable, interval_in_words
+    from restitution.cli.console import table_of_numbers
 
-    table = Table(box=None, header_style="bold")
-    table.add_column("parameter", overflow="fold")
-    for name in ("fitted", "95 % interval", "± model", "± one place"):
-        table.add_column(name, justify="right", no_wrap=True)
+    heads = ("fitted", "95 % interval", "± model", "± one place")
+    table = table_of_numbers(Column("parameter", overflow="fold"), *heads)
     by = found.uncertainty
     for k, parameter in enumerate(found.parameters):
         table.add_row(

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from rich.table import Column, Table
 
 from restitution.cli.parameters import FigureFormat, Figures
 
@@ -97,14 +98,15 @@ def _in_words(law: "Law") -> list[str]:
     return lines
 
 
-def _table(laws: "tuple[FittedLaw, ...]") -> object:
-    from rich.table import Table
-
-    table = Table(box=None, header_style="bold")
-    table.add_column("fitted law")
-    table.add_column("parameters", overflow="fold")
-    table.add_column("COR: rms", justify="right")
-    table.add_column("worst", justify="right")
+def _table(laws: "tuple[FittedLaw, ...]") -> Table:
+    table = Table(
+        "fitted law",
+        Column("parameters", overflow="fold"),
+        Column("COR: rms", justify="right"),
+        Column("worst", justify="right"),
+        box=None,
+        header_style="bold",
+    )
     for each in laws:
         parameters = ", ".join(f"{name} {value:.4g}" for name, value in each.parameters.items())
         table.add_row(each.name, parameters, f"{each.rms:.3f}", f"{each.worst:.3f}")

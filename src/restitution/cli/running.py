@@ -7,12 +7,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import typer
+from rich.table import Table
 
 from restitution.cli.parameters import Device, FigureFormat
 
 if TYPE_CHECKING:
-    from rich.table import Table
-
     from restitution.case.case import Case
     from restitution.results.writer import ResultsFolder
 

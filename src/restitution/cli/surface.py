@@ -1,6 +1,7 @@
 """`restitution surface`: make or read the surface of a case and describe it."""
 
 import typer
+from rich.table import Table
 
 from restitution.cli.parameters import CaseFile, FigureFormat, Figures, OutFolder
 
@@ -13,7 +14,6 @@ def surface(
 ) -> None:
     """Write the surface of CASE to OUT: heights, ISO 25178 statistics, a figure and a page."""
     import xarray as xr
-    from rich.table import Table
 
     from restitution.case import needs
     from restitution.case.case_file import naming, read_case
