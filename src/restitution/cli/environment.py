@@ -20,20 +20,17 @@ def prepare(arguments: Sequence[str]) -> None:
     # backend.
     os.environ["MPLBACKEND"] = "agg"
     _check_threads()
-    for path in (*arguments, _current_folder()):
+    try:
+        current = os.getcwd()
+    except OSError:
+        raise CaseError("the current folder was removed; change to another folder") from None
+    for path in (*arguments, current):
         try:
             path.encode()
         except UnicodeEncodeError:
             raise CaseError(
                 f"{shown(path, 200)}: the name is not UTF-8, which netCDF requires; rename it"
             ) from None
-
-
-def _current_folder() -> str:
-    try:
-        return os.getcwd()
-    except OSError:
-        raise CaseError("the current folder was removed; change to another folder") from None
 
 
 def _check_threads() -> None:

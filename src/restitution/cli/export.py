@@ -6,20 +6,10 @@ from typing import Annotated
 
 import typer
 
-
-class Code(StrEnum):
-    """DEM codes and formats to which laws can be exported."""
-
-    lammps = "lammps"
-    liggghts = "liggghts"
-    yade = "yade"
-    mercurydpm = "mercurydpm"
-    edem = "edem"
-    mujoco = "mujoco"
-    drake = "drake"
-    csv = "csv"
-
-
+# DEM codes and formats to which laws can be exported.
+Code = StrEnum(
+    "Code", ["lammps", "liggghts", "yade", "mercurydpm", "edem", "mujoco", "drake", "csv"]
+)
 _CODES = f"DEM code: {', '.join(Code)}."
 
 

@@ -10,7 +10,6 @@ from restitution.cli.parameters import FigureFormat, Figures, OutFolder
 
 if TYPE_CHECKING:
     from restitution.calibration.fit import Fit
-    from restitution.calibration.measured import Measured
 
 
 def fit(
@@ -44,6 +43,7 @@ def fit(
     figures: Figures = FigureFormat.png,
 ) -> None:
     """Find the values of KEYS in CASE that explain the restitution in MEASURED."""
+    from restitution.calibration import fit as calibration
     from restitution.calibration.findings import findings
     from restitution.calibration.fit_files import write_fit
     from restitution.calibration.measured import read_measured
@@ -57,6 +57,7 @@ def fit(
         say_written,
         warn,
     )
+    from restitution.cli.progress import spinner
     from restitution.plots.fit import fit_figure
     from restitution.plots.static import write_figure
     from restitution.results.writer import make_folder
@@ -67,8 +68,10 @@ def fit(
     new = make_folder(out)
     hint_at_kernels()
     try:
-        with naming(case):
-            found = _fit(text, case.parent, table, names)
+        with naming(case), spinner("fitting") as show:
+            found = calibration.fit(
+                text, case.parent, table, names, lambda words: show(f"fitting: {words}")
+            )
     except BaseException:
         if new:
             out.rmdir()
@@ -76,33 +79,15 @@ def fit(
     written = write_fit(found, text, out)
     written.append(write_figure(out / "fit", fit_figure(found), figures.value))
     answers.print(_table(found))
-    points = found.measured.velocity.size
     rms = float((found.residuals**2).mean() ** 0.5)
     say(
-        f"{points} points, rms residual of COR {rms:.2g}, {found.model.evaluations} curves computed"
+        f"{found.measured.velocity.size} points, rms residual of COR {rms:.2g}, "
+        f"{found.model.evaluations} curves computed"
     )
     for sentence in findings(found):
         warn(sentence)
     say_written(out, [path.name for path in written])
     say_next(command("run", out / "case.toml", "-o", "RESULTS"))
-
-
-def _fit(text: str, folder: Path, table: "Measured", names: list[str]) -> "Fit":
-    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
-
-    from restitution.calibration import fit as calibration
-    from restitution.cli.console import errors
-
-    columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
-    with Progress(*columns, console=errors, transient=True) as bar:
-        task = bar.add_task("fitting")
-        return calibration.fit(
-            text,
-            folder,
-            table,
-            names,
-            lambda words: bar.update(task, description=f"fitting: {words}", refresh=True),
-        )
 
 
 def _table(found: "Fit") -> Table:

@@ -68,11 +68,9 @@ def _list(found: dict[str, Material]) -> Table:
     name, material = Column("name", no_wrap=True), Column("material", overflow="fold")
     table = table_of_numbers(name, *heads, material)
     for key, each in found.items():
-        values = []
-        for quantity, (_, _, scale, _) in _QUANTITIES.items():
-            known = getattr(each, quantity)
-            values.append("-" if known is None else f"{scale * known.value:.5g}")
-        table.add_row(key, *values, each.name)
+        known = ((getattr(each, name), scale) for name, (_, _, scale, _) in _QUANTITIES.items())
+        cells = ("-" if of is None else f"{scale * of.value:.5g}" for of, scale in known)
+        table.add_row(key, *cells, each.name)
     return table
 
 

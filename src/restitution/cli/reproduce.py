@@ -21,8 +21,8 @@ def reproduce(
     resume: Resume = False,
 ) -> None:
     """Compute Figures 5 to 14 of Ghanbarzadeh et al. (2019) and check the claims of the paper."""
-    from restitution.cli.cases_progress import cases_progress
     from restitution.cli.console import answers, command, say_written
+    from restitution.cli.progress import cases_progress
     from restitution.errors import CaseError
     from restitution.reproduce.report import write_reproduction
     from restitution.reproduce.studies import NAMES, Size, bundled

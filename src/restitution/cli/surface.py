@@ -37,15 +37,12 @@ def surface(
         statistics = describe(made) | texture(made)
     hx, hy = made.grid.spacing
     provenance = {**made.provenance, "spacing_x_m": hx, "spacing_y_m": hy}
-    height = xr.DataArray(
-        made.height,
+    labels = {"units": "m", "long_name": "composite roughness"}
+    dataset = xr.Dataset(
+        {"height": (("x", "y"), made.height, labels)},
         {"x": ("x", made.grid.x, {"units": "m"}), "y": ("y", made.grid.y, {"units": "m"})},
-        ("x", "y"),
-        name="height",
-        attrs={"units": "m", "long_name": "composite roughness"},
+        {"title": read.title, "case": text, **provenance},
     )
-    dataset = height.to_dataset()
-    dataset.attrs = {"title": read.title, "case": text, **provenance}
     with waiting("writing the results"):
         with hold_signals():
             write_netcdf(out / "surface.nc", dataset)
