@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -66,13 +65,12 @@ class Family:
     @cached_property
     def meetings(self) -> tuple[Meeting, ...]:
         """All pairs of sizes that can meet, without repetition."""
-        return tuple(_meeting(one, two) for one, two in self._sizes())
-
-    def _sizes(self) -> Iterable[tuple[Particle, Particle]]:
-        ours = _particles(self.first)
+        ours, theirs = _particles(self.first), _particles(self.second)
         if self.second is self.first:
-            return itertools.combinations_with_replacement(ours, 2)
-        return itertools.product(ours, _particles(self.second))
+            return tuple(
+                itertools.starmap(_meeting, itertools.combinations_with_replacement(ours, 2))
+            )
+        return tuple(itertools.starmap(_meeting, itertools.product(ours, theirs)))
 
     @cached_property
     def radii(self) -> tuple[float, ...]:
@@ -154,7 +152,9 @@ class Family:
 
 def families(mixture: Mixture) -> list[Family]:
     """Make the families of a mixture. Raises `CaseError` if the case of a pair is invalid."""
-    found = [Family(mixture, first, second) for first, second in mixture.families()]
+    pairs = itertools.combinations_with_replacement(mixture.components, 2)
+    # Walls follow the materials, so that a wall is always the second component.
+    found = [Family(mixture, first, second) for first, second in pairs if not first.wall]
     for family in found:
         for radius in (family.radii[0], family.radii[-1]):
             family._parsed(family._content(radius, family._grid))
@@ -205,10 +205,10 @@ def _particles(component: Component) -> list[Particle]:
 
 
 def _meeting(first: Particle, second: Particle) -> Meeting:
-    bodies = [
+    bodies = (
         Body(body.radius or math.inf, body.youngs_modulus, body.poissons_ratio, body.density)
         for body in (first, second)
-    ]
+    )
     pair = Pair(*bodies)
     assert pair.mass is not None  # `parse_mixture` requires the density of every material
     return Meeting(first, second, pair.radius, pair.mass)

@@ -8,10 +8,11 @@ from pathlib import Path
 
 from restitution.display import some_of, without_numbers
 from restitution.laws.law_files import LAWS, MIXTURE_FILE, write_law
-from restitution.mixtures.mixture import PairLaw, empty_study
+from restitution.mixtures.mixture import PairLaw
 from restitution.mixtures.mixture_file import Mixture
 from restitution.results.writer import write_json, write_table, writing
 from restitution.sweeps.study_folder import STUDY_FILE, StudyFolder, prepare_folder
+from restitution.sweeps.sweep import Study
 
 RUNS, PAIRS = "runs", "pairs.csv"
 
@@ -24,7 +25,10 @@ def open_mixture_folder(out: Path, mixture: Mixture, *, resume: bool) -> StudyFo
     """
     prepare_folder(out, MIXTURE_FILE, mixture.text, resume=resume, what="mixture")
     begun = (out / RUNS / STUDY_FILE).is_file()
-    return StudyFolder(out / RUNS, empty_study(mixture), resume=begun)
+    without_cases = Study(
+        mixture.title, mixture.text, {"pair": [], "reduced_radius": []}, "paired", ()
+    )
+    return StudyFolder(out / RUNS, without_cases, resume=begun)
 
 
 def write_mixture(
