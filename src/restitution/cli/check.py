@@ -54,11 +54,11 @@ def check(
     """Validate CASE and print derived quantities, such as first yield; solve nothing."""
     from restitution.case.case_file import naming
     from restitution.case.derived import deepest_indentation
-    from restitution.cli.console import answers, command, say, say_next, waiting, warn
+    from restitution.cli.console import answers, command, errors, say, say_next, warn
     from restitution.runs.messages import input_warnings, no_range, require_possible
 
     read, cases = _read(case)
-    with naming(case), waiting("making the surface"):
+    with naming(case), errors.status("making the surface"):
         contact = read.contact(case.parent)
         table = _table(read, contact)
     answers.print(table)
@@ -66,7 +66,7 @@ def check(
         say(f"Yield of the contact is set by {from_where}.")
     deepest = deepest_indentation(read)
     require_possible(contact, deepest)
-    with waiting("checking the surface"):
+    with errors.status("checking the surface"):
         warnings = input_warnings(contact, deepest)
         if read.interface.adhesion is None and contact.adhesive:
             warnings += no_range(contact)

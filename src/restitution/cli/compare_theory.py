@@ -57,10 +57,12 @@ def compare_theory(
         missing = theories.left_out(read, points)
     written = []
     if out is not None:
-        written.append(write_theories(velocities, found, out))
         lines = theories.theory_lines(read, velocities, found)
         figure = theory_figure(read.title, lines, theories.marks(read), points)
-        written.append(write_figure(out / "theory", figure, figures.value))
+        written += [
+            write_theories(velocities, found, out),
+            write_figure(out / "theory", figure, figures.value),
+        ]
 
     say('COR of the smooth bodies at impact velocities (m/s); "-": outside the range of a theory')
     for table in _tables(velocities.tolist(), found, answers.width):

@@ -6,7 +6,6 @@ from functools import cache
 from pathlib import Path
 
 from rich.console import Console
-from rich.status import Status
 from rich.table import Column, Table
 
 from restitution.errors import one_line
@@ -47,11 +46,6 @@ def hint_at_kernels() -> None:
 
     if current() is CPU and (why := missing()):
         say(f"Hint: {why}", errors)
-
-
-def waiting(words: str) -> Status:
-    """Show a spinner with `words` on the standard error of a terminal during a `with` body."""
-    return errors.status(words)
 
 
 def command(verb: str, *arguments: object) -> str:

@@ -34,12 +34,10 @@ def prepare(arguments: Sequence[str]) -> None:
 
 
 def _check_threads() -> None:
-    name = next((name for name in _THREADS if name in os.environ), None)
-    if name is None:
-        return
-    text = os.environ[name]
+    name = next((name for name in _THREADS if name in os.environ), _THREADS[0])
+    text = os.environ.get(name, "")
     if not text.strip():
-        del os.environ[name]
+        os.environ.pop(name, None)
         return
     # OpenMP accepts a list of numbers of threads; the first is for the outermost parallel level.
     first = text.split(",")[0].strip() if name == "OMP_NUM_THREADS" else text.strip()

@@ -10,7 +10,6 @@ import typer
 Code = StrEnum(
     "Code", ["lammps", "liggghts", "yade", "mercurydpm", "edem", "mujoco", "drake", "csv"]
 )
-_CODES = f"DEM code: {', '.join(Code)}."
 
 
 def export(
@@ -24,7 +23,10 @@ def export(
             readable=False,
         ),
     ],
-    to: Annotated[Code, typer.Option(metavar="CODE", help=_CODES, show_default=False)],
+    to: Annotated[
+        Code,
+        typer.Option(metavar="CODE", help=f"DEM code: {', '.join(Code)}.", show_default=False),
+    ],
     out: Annotated[
         Path,
         typer.Option("-o", "--out", metavar="OUT", help="Folder for the files.", readable=False),

@@ -76,8 +76,10 @@ def fit(
         if new:
             out.rmdir()
         raise
-    written = write_fit(found, text, out)
-    written.append(write_figure(out / "fit", fit_figure(found), figures.value))
+    written = [
+        *write_fit(found, text, out),
+        write_figure(out / "fit", fit_figure(found), figures.value),
+    ]
     answers.print(_table(found))
     rms = float((found.residuals**2).mean() ** 0.5)
     say(

@@ -8,7 +8,7 @@ repeated until no error exceeds the limit.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -94,7 +94,7 @@ def _computed(
 
 def _first_radii(family: Family) -> list[float]:
     radii = family.radii
-    middle = radii[_nearest(radii, float(np.sqrt(radii[0] * radii[-1])))]
+    middle = _nearest(radii, float(np.sqrt(radii[0] * radii[-1])))
     return sorted({radii[0], middle, radii[-1]})
 
 
@@ -108,11 +108,11 @@ def _more_radii(computed: Computed) -> Iterator[float]:
     for low, high in zip(computed.radii[:-1], computed.radii[1:], strict=True):
         if any(low < radius < high for radius in poor):
             inside = [r for r in family.radii if low < r < high and not computed.has(r)]
-            yield inside[_nearest(inside, float(np.sqrt(low * high)))]
+            yield _nearest(inside, float(np.sqrt(low * high)))
 
 
-def _nearest(radii: list[float] | tuple[float, ...], radius: float) -> int:
-    return int(np.abs(np.log(np.array(radii) / radius)).argmin())
+def _nearest(radii: Sequence[float], radius: float) -> float:
+    return radii[int(np.abs(np.log(np.array(radii) / radius)).argmin())]
 
 
 def _pair_law(computed: Computed, meeting: Meeting) -> PairLaw:

@@ -70,13 +70,14 @@ class Sizes(Table):
 class Component:
     """A material with its sizes, or a wall.
 
-    `body` has the keys of the table `[first]` of a case, without `radius`. `roughness` contains the
-    roughness tables. `radii` (m) increase and are empty for a wall. `fractions` are the fractions
-    by number of the sizes; their sum is 1.
+    `body` has the keys of the table `[first]` of a case, without `radius`, and `material` has their
+    checked values. `roughness` contains the roughness tables. `radii` (m) increase and are empty
+    for a wall. `fractions` are the fractions by number of the sizes; their sum is 1.
     """
 
     name: str
     body: dict[str, Any]
+    material: BodyTable
     roughness: list[dict[str, Any]]
     radii: tuple[float, ...]
     fractions: tuple[float, ...]
@@ -193,12 +194,12 @@ def _component(key: str, name: str, table: Any) -> Component:
     else:
         radii = _radii(key, sizes)
     fractions = number_fractions(key, body, sizes, radii)
-    checked = _validated(BodyTable, {**body, "radius": "flat"}, key)
-    if radii and checked.density is None:
+    material = _validated(BodyTable, {**body, "radius": "flat"}, key)
+    if radii and material.density is None:
         raise CaseError(f"{key}.density: is missing; the impact velocity depends on it")
     order = sorted(range(len(radii)), key=radii.__getitem__)
     increasing, shares = (tuple(values[k] for k in order) for values in (radii, fractions))
-    return Component(name, body, rough, increasing, shares)
+    return Component(name, body, material, rough, increasing, shares)
 
 
 class _Rough(Table):

@@ -46,23 +46,23 @@ def write_mixture(
     for number, pair in enumerate(pairs, 1):
         name = f"pair-{number:03d}"
         write_law(pair.law, out / LAWS / name)
-        for point in pair.law.points:
-            rows.append(
-                {
-                    "law": name,
-                    "first": pair.law.first.name,
-                    "first_radius_m": pair.law.first.radius or float("inf"),
-                    "second": pair.law.second.name,
-                    "second_radius_m": pair.law.second.radius or float("inf"),
-                    "reduced_radius_m": pair.law.radius,
-                    "reduced_mass_kg": pair.law.mass,
-                    "computed": pair.computed,
-                    "velocity_m_per_s": point.velocity,
-                    "restitution": point.restitution,
-                    "restitution_error": point.error,
-                    "resolved": point.resolved,
-                }
-            )
+        rows += [
+            {
+                "law": name,
+                "first": pair.law.first.name,
+                "first_radius_m": pair.law.first.radius or float("inf"),
+                "second": pair.law.second.name,
+                "second_radius_m": pair.law.second.radius or float("inf"),
+                "reduced_radius_m": pair.law.radius,
+                "reduced_mass_kg": pair.law.mass,
+                "computed": pair.computed,
+                "velocity_m_per_s": point.velocity,
+                "restitution": point.restitution,
+                "restitution_error": point.error,
+                "resolved": point.resolved,
+            }
+            for point in pair.law.points
+        ]
     write_table(out / PAIRS, rows)
     write_json(
         out / "summary.json",
