@@ -59,11 +59,7 @@ def run_with_progress(
     hint_at_kernels()
     depths = len(read.depths())
     try:
-        with (
-            naming(case),
-            warn_once() as warn,
-            progress_bar() as bar,
-        ):
+        with naming(case), warn_once() as warn, progress_bar() as bar:
             more = 0 if read.periodic else steps(read)
             task = bar.add_task("reading the surface", total=depths * runs(read) + more)
             summary = start(
