@@ -18,11 +18,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ._inputs import Array, Values, keep_positive, positive, scalar_or_array, touching
+from ._inputs import Array, PositiveFields, Values, positive, scalar_or_array, touching
 
 
 @dataclass(frozen=True, eq=False)
-class Hertz:
+class Hertz(PositiveFields):
     """Hertz contact of smooth elastic spheres.
 
     The fields and arguments may be arrays and broadcast (see `restitution.theory`).
@@ -40,9 +40,6 @@ class Hertz:
 
     radius: Values
     contact_modulus: Values
-
-    def __post_init__(self) -> None:
-        keep_positive(self, "radius", "contact_modulus")
 
     def force(self, indentation: Values) -> Array:
         """Normal force at an indentation.

@@ -61,7 +61,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ._inputs import Array, Values, keep_positive, positive, scalar_or_array, touching
+from ._inputs import Array, PositiveFields, Values, positive, scalar_or_array, touching
 from .hertz import Hertz
 from .kendall import Kendall
 
@@ -72,7 +72,7 @@ _AT_JUMP_IN = -24 / 5 * 4 * math.cbrt(4)
 
 
 @dataclass(frozen=True, eq=False)
-class JKR:
+class JKR(PositiveFields):
     """JKR contact of elastic spheres with adhesion.
 
     The fields and arguments may be arrays and broadcast (see `restitution.theory`).
@@ -92,9 +92,6 @@ class JKR:
     radius: Values
     contact_modulus: Values
     work_of_adhesion: Values
-
-    def __post_init__(self) -> None:
-        keep_positive(self, "radius", "contact_modulus", "work_of_adhesion")
 
     def force(self, indentation: Values) -> Array:
         """Normal force of spheres in contact, on the branch that is stable at fixed grips.

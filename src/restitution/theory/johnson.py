@@ -27,14 +27,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ._inputs import Array, Values, keep_positive, positive, scalar_or_array, touching
+from ._inputs import Array, PositiveFields, Values, positive, scalar_or_array, touching
 
 COEFFICIENT = 3.8
 """Coefficient printed by Johnson; the derived value is (3π^{5/4} 4^{3/4}/10)^½ 3^{5/8} = 3.743."""
 
 
 @dataclass(frozen=True, eq=False)
-class Johnson:
+class Johnson(PositiveFields):
     """Fully plastic impact of a sphere at a contact pressure of three times the yield strength.
 
     The fields and arguments may be arrays and broadcast (see `restitution.theory`).
@@ -54,9 +54,6 @@ class Johnson:
     radius: Values
     contact_modulus: Values
     yield_strength: Values
-
-    def __post_init__(self) -> None:
-        keep_positive(self, "radius", "contact_modulus", "yield_strength")
 
     def restitution(self, velocity: Values, mass: Values) -> Array:
         """Coefficient of restitution after an impact.

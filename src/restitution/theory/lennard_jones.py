@@ -26,11 +26,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ._inputs import Array, Values, keep_positive, positive, scalar_or_array
+from ._inputs import Array, PositiveFields, Values, positive, scalar_or_array
 
 
 @dataclass(frozen=True, eq=False)
-class LennardJones:
+class LennardJones(PositiveFields):
     """Lennard-Jones traction between two surfaces, and the force between rigid spheres.
 
     Attributes:
@@ -46,9 +46,6 @@ class LennardJones:
 
     work_of_adhesion: Values
     equilibrium_separation: Values
-
-    def __post_init__(self) -> None:
-        keep_positive(self, "work_of_adhesion", "equilibrium_separation")
 
     def traction(self, gap: Values) -> Array:
         """Attractive force per area between two surfaces.

@@ -25,7 +25,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ._inputs import Array, Values, keep_positive, scalar_or_array
+from ._inputs import Array, PositiveFields, Values, scalar_or_array
 from ._roots import increasing_root
 
 # Upper limit of the search for the normalised contact radius ā at pull-off, where ā is always below
@@ -36,7 +36,7 @@ _SECTIONS = 60  # number of golden sections in this search
 
 
 @dataclass(frozen=True, eq=False)
-class MaugisDugdale:
+class MaugisDugdale(PositiveFields):
     """Elastic spheres with a constant attraction of finite range (Dugdale).
 
     The fields may be arrays and broadcast (see `restitution.theory`).
@@ -58,9 +58,6 @@ class MaugisDugdale:
     contact_modulus: Values
     work_of_adhesion: Values
     traction: Values
-
-    def __post_init__(self) -> None:
-        keep_positive(self, "radius", "contact_modulus", "work_of_adhesion", "traction")
 
     @property
     def transition_parameter(self) -> Array:

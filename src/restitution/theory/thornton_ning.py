@@ -31,13 +31,13 @@ from functools import cached_property
 
 import numpy as np
 
-from ._inputs import Array, Values, keep_positive, positive, scalar_or_array, touching
+from ._inputs import Array, PositiveFields, Values, positive, scalar_or_array, touching
 from .hertz import Hertz
 from .yielding import FirstYield
 
 
 @dataclass(frozen=True, eq=False)
-class ThorntonNing:
+class ThorntonNing(PositiveFields):
     """Impact of elastic, perfectly plastic spheres without adhesion.
 
     The fields and arguments may be arrays and broadcast (see `restitution.theory`).
@@ -58,9 +58,6 @@ class ThorntonNing:
     radius: Values
     contact_modulus: Values
     yield_pressure: Values
-
-    def __post_init__(self) -> None:
-        keep_positive(self, "radius", "contact_modulus", "yield_pressure")
 
     @cached_property
     def elastic(self) -> Hertz:
