@@ -130,7 +130,7 @@ class JKR(PositiveFields):
         Returns:
             Normal force F (N), positive in compression.
         """
-        pressed = self._pressed.force_at_contact_radius(contact_radius)
+        pressed = Hertz(self.radius, self.contact_modulus).force_at_contact_radius(contact_radius)
         return pressed - self._drawn.pull_off_force(contact_radius)
 
     def indentation_at_contact_radius(self, contact_radius: Values) -> Array:
@@ -340,10 +340,6 @@ class JKR(PositiveFields):
         """
         (z0,) = positive(equilibrium_separation=equilibrium_separation)
         return self.adhesive_length / z0
-
-    @property
-    def _pressed(self) -> Hertz:
-        return Hertz(self.radius, self.contact_modulus)
 
     @property
     def _drawn(self) -> Kendall:

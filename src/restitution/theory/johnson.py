@@ -27,7 +27,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ._inputs import Array, PositiveFields, Values, positive, scalar_or_array, touching
+from ._inputs import Array, PositiveFields, Values, positive, scalar_or_array
+from .law import impact_energy
 
 COEFFICIENT = 3.8
 """Coefficient printed by Johnson; the derived value is (3π^{5/4} 4^{3/4}/10)^½ 3^{5/8} = 3.743."""
@@ -70,8 +71,7 @@ class Johnson(PositiveFields):
         Raises:
             CaseError: `mass` is not positive and finite.
         """
-        (m,) = positive(mass=mass)
-        reduced = 0.5 * m * touching(velocity) ** 2 / (self.yield_strength * self.radius**3)
+        reduced = impact_energy(velocity, mass) / (self.yield_strength * self.radius**3)
         unity = self._energy_of_unity
         return scalar_or_array((unity / np.maximum(reduced, unity)) ** 0.125)
 

@@ -112,8 +112,7 @@ class LennardJones(PositiveFields):
         """
         (R,) = positive(radius=radius)
         x2 = self._ratio(gap) ** 2
-        force = -8 / 3 * math.pi * self.work_of_adhesion * R * x2 * (1 - x2**3 / 4)
-        return scalar_or_array(force)
+        return scalar_or_array(-8 / 3 * math.pi * self.work_of_adhesion * R * x2 * (1 - x2**3 / 4))
 
     def rigid_sphere_energy(self, gap: Values, radius: Values) -> Array:
         """Interaction energy of rigid spheres, ∫F dg from the gap to infinity.
@@ -130,8 +129,7 @@ class LennardJones(PositiveFields):
         """
         (R,) = positive(radius=radius)
         x, z0 = self._ratio(gap), self.equilibrium_separation
-        energy = -8 / 3 * math.pi * self.work_of_adhesion * R * z0 * (x - x**7 / 28)
-        return scalar_or_array(energy)
+        return scalar_or_array(-8 / 3 * math.pi * self.work_of_adhesion * R * z0 * (x - x**7 / 28))
 
     def rigid_pull_off_force(self, radius: Values) -> Array:
         """Largest tension between rigid spheres (Bradley 1932).

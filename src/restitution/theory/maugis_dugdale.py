@@ -101,15 +101,13 @@ def _force(a: Array, parameter: Array) -> Array:
         root, angle, m = _ring(log_width)
         inner = root + (m * m - 2) * angle
         outer = root * angle - m + 1
-        found: Array = parameter * a**2 / 2 * inner + 4 / 3 * parameter**2 * a * outer - 1
-        return found
+        return parameter * a**2 / 2 * inner + 4 / 3 * parameter**2 * a * outer - 1
 
     # The unknown is ln(m − 1), where m is the ratio of the outer radius of the ring to the contact
     # radius. m − 1 ranges from 0 (JKR) to infinity (rigid spheres).
     width = increasing_root(excess, np.full_like(a, -40.0), np.full_like(a, 40.0))
     root, angle, m = _ring(width)
-    force: Array = a**3 - parameter * a**2 * (root + m * m * angle)
-    return force
+    return a**3 - parameter * a**2 * (root + m * m * angle)
 
 
 def _ring(log_width: Array) -> tuple[Array, Array, Array]:

@@ -153,8 +153,9 @@ class ThorntonNing(PositiveFields):
         d, R_p = touching(indentation), self.unloading_radius(maximum_indentation)
         left = d - self.residual_indentation(maximum_indentation)
         unloading = (R_p / self.radius) ** 0.5 * self.elastic.force(left)
-        beyond = d > touching(maximum_indentation)
-        return scalar_or_array(np.where(beyond, self.loading_force(d), unloading))
+        return scalar_or_array(
+            np.where(d > touching(maximum_indentation), self.loading_force(d), unloading)
+        )
 
     def unloading_work(self, maximum_indentation: Values) -> Array:
         """Work that the contact returns on unloading from `maximum_indentation` to separation.
@@ -168,8 +169,9 @@ class ThorntonNing(PositiveFields):
         d, first = touching(maximum_indentation), self.first_yield
         x = self._yielded(d)
         plastic = 0.4 * first.force * first.indentation * _line(x) ** 2 / x**0.5
-        elastic = self.elastic.stored_energy(d)
-        return scalar_or_array(np.where(d <= first.indentation, elastic, plastic))
+        return scalar_or_array(
+            np.where(d <= first.indentation, self.elastic.stored_energy(d), plastic)
+        )
 
     def impact_velocity(self, maximum_indentation: Values, mass: Values) -> Array:
         """Impact velocity that is just large enough to reach an indentation.
@@ -256,8 +258,7 @@ class ThorntonNing(PositiveFields):
         At x = 1 the formulas for the flattened radius, the residual indentation and the restitution
         give the values of a Hertz contact, which hold up to first yield.
         """
-        x: Array = np.maximum(touching(maximum_indentation) / self.first_yield.indentation, 1.0)
-        return x
+        return np.maximum(touching(maximum_indentation) / self.first_yield.indentation, 1.0)
 
 
 def _line(x: Array) -> Array:
