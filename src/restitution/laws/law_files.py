@@ -10,12 +10,10 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
 from pydantic import ValidationError
 
 from restitution.errors import CaseError, OutputError
-from restitution.laws.law import Law
+from restitution.laws.law import Array, Law
 from restitution.laws.theories import Theory
 from restitution.results.checksums import check_file
 from restitution.results.interruption import hold_signals
@@ -92,7 +90,7 @@ def _of_mixture(folder: Path) -> list[Path]:
     return sorted((folder / LAWS).iterdir())
 
 
-def write_theories(velocities: NDArray[np.float64], found: list[Theory], out: Path) -> Path:
+def write_theories(velocities: Array, found: list[Theory], out: Path) -> Path:
     """Write `theory.csv` into `out`, which must be new or empty. Raises `OutputError`.
 
     `found` contains the restitution of each theory at `velocities` (m/s).

@@ -27,7 +27,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.contact.bodies import Pair
 from restitution.display import quantity, summary_html, summary_text
@@ -40,9 +39,7 @@ from restitution.laws.time_integration import (
     collide_in_time,
     stored_force,
 )
-from restitution.results.reader import RunResults
-
-Array = NDArray[np.float64]
+from restitution.results.reader import Array, RunResults
 
 _STEPS = 4000  # number of time steps of a collision
 _LEAST = 1e-3  # fraction of the largest normal force below which `sticking` is set to 0

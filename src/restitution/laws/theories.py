@@ -7,15 +7,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.case.case import Case
 from restitution.errors import CaseError
 from restitution.laws.closed_forms import FORMS, SOURCES, Bodies, speed, within
-from restitution.laws.law import LOSS, FittedLaw, Law
+from restitution.laws.law import LOSS, Array, FittedLaw, Law
 from restitution.theory import Brilliantov
-
-Array = NDArray[np.float64]
 
 STEPS = 25
 """Number of velocities in a table over the span of a case."""

@@ -27,7 +27,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from restitution.contact.bodies import Pair
 from restitution.errors import (
@@ -37,10 +36,9 @@ from restitution.errors import (
     OutputError,
     RestitutionError,
 )
-from restitution.results.reader import RunResults, UnloadingCurve
+from restitution.results.reader import Array, RunResults, UnloadingCurve
 from restitution.results.tables import damaged
 
-Array = NDArray[np.float64]
 Force = Callable[[float], float]
 
 _RTOL = 1e-10
