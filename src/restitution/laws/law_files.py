@@ -10,6 +10,7 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
 from pydantic import ValidationError
 
 from restitution.errors import CaseError, OutputError
@@ -106,9 +107,8 @@ def write_theories(velocities: Array, found: list[Theory], out: Path) -> Path:
 
 def law_rows(law: Law) -> list[dict[str, float | str]]:
     """Return a table row for each point of `law`; every row repeats the values of the whole law."""
-    fit = [math.nan] * len(law.points)
-    if law.fit is not None:
-        fit = [float(e) for e in law.fit.restitution(law.column("velocity"))]
+    V = law.column("velocity")
+    fit = np.full(V.shape, math.nan) if law.fit is None else law.fit.restitution(V)
     return [
         {
             "velocity_m_per_s": point.velocity,
@@ -132,7 +132,7 @@ def law_rows(law: Law) -> list[dict[str, float | str]]:
             "yield_pressure_convention": law.conventions.yield_pressure,
             "end_of_contact": law.conventions.end_of_contact,
         }
-        for point, fitted in zip(law.points, fit, strict=True)
+        for point, fitted in zip(law.points, fit.tolist(), strict=True)
     ]
 
 

@@ -241,8 +241,7 @@ def collide_in_time(law: StoredForce, velocity: float) -> ReferenceCollision:
     sticks = up.t_events[1].size > 0
     closing = np.concatenate([down.y[2] - down.y[3], up.y[2] - up.y[3]])
     depth = np.concatenate([down.y[0] - down.y[1], up.y[0] - up.y[1]])
-    force = [law.loading(x) for x in down.y[0] - down.y[1]]
-    force += [back(x) for x in up.y[0] - up.y[1]]
+    force = [*map(law.loading, down.y[0] - down.y[1]), *map(back, up.y[0] - up.y[1])]
     return ReferenceCollision(
         velocity=velocity,
         restitution=0.0 if sticks else float(-closing[-1] / velocity),
