@@ -74,7 +74,7 @@ class Bodies:
                     f'for example density = "2500 kg/m^3" in [{name}]'
                 )
         assert pair.mass is not None  # the loop above checked both densities
-        tables = case.first, case.second or case.first
+        tables = tuple(case.bodies().values())
         # A yield strength of the interface overrides those of the bodies.
         own = case.interface.yield_strength is None
         Y_1, Y_2 = (table.yield_strength if own else None for table in tables)
@@ -181,9 +181,8 @@ _ELASTIC = "the case is elastic: nothing yields"
 
 
 def _hertz(b: Bodies, V: Array) -> Form:
-    limit = min(b.yield_velocity, b.small_velocity)
     return Form(
-        within(limit >= V, np.ones_like(V)),
+        within(min(b.yield_velocity, b.small_velocity) >= V, np.ones_like(V)),
         f"nothing yields and the contact is small, {_elastic_range(b)}",
         {} if b.elastic else {"yield_pressure_Pa": b.p_y},
     )
@@ -291,8 +290,8 @@ def _elastic_range(b: Bodies) -> str:
 
 def _tabor(b: Bodies) -> str:
     mu = float(b.sticking.tabor_parameter(b.separation))
-    beside = f"here {mu:.2g}" + (", so the true V_s is lower" if mu < 5 else "")
-    return f"JKR holds for a Tabor parameter above 5 ({beside})"
+    lower = ", so the true V_s is lower" if mu < 5 else ""
+    return f"JKR holds for a Tabor parameter above 5 (here {mu:.2g}{lower})"
 
 
 def within(inside: NDArray[np.bool_], e: Array) -> Array:

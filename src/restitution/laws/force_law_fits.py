@@ -110,14 +110,12 @@ def _thornton_ning(law: Law) -> Iterator[FittedLaw]:
     )
 
     scale = law.lowest
-    e = _seen(law, "restitution")
     adhesive = V_s > 0
-
-    def misfit(x: Array) -> Array:
-        return restitution(V, math.exp(x[0]), scale * x[1] if adhesive else 0.0) - e
-
-    x = _least_squares(
-        misfit, [begin, V_s / scale][: 1 + adhesive], low=[-np.inf, 0.0][: 1 + adhesive]
+    x = _fit(
+        law,
+        lambda v, x: restitution(v, math.exp(x[0]), scale * x[1] if adhesive else 0.0),
+        [begin, V_s / scale][: 1 + adhesive],
+        [-np.inf, 0.0][: 1 + adhesive],
     )
     found = scale * float(x[1]) if adhesive else 0.0
     yield _judged(
