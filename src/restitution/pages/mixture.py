@@ -32,8 +32,7 @@ def write_mixture_page(out: Path) -> Path:
         warnings=summary["warnings"],
         parts=parts,
     )
-    write_page(out / "report.html", page)
-    return out / "report.html"
+    return write_page(out / "report.html", page)
 
 
 def _drawing(laws: list[Law]) -> Drawing:

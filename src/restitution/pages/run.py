@@ -51,8 +51,7 @@ def write_run_page(out: Path) -> Path:
         warnings=summary["warnings"],
         parts=parts,
     )
-    write_page(out / "report.html", page)
-    return out / "report.html"
+    return write_page(out / "report.html", page)
 
 
 def _in_words(run: RunResults) -> str:

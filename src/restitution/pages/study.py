@@ -47,8 +47,7 @@ def write_study_page(out: Path) -> Path:
         warnings=_warnings(cases, count),
         parts=parts,
     )
-    write_page(out / "report.html", page)
-    return out / "report.html"
+    return write_page(out / "report.html", page)
 
 
 def _warnings(cases: list[StoredCase], count: dict[str, int]) -> list[str]:

@@ -91,8 +91,7 @@ def write_surface_page(out: Path) -> Path:
             _methods(surface),
         ],
     )
-    write_page(out / "surface.html", page)
-    return out / "surface.html"
+    return write_page(out / "surface.html", page)
 
 
 def _map(surface: Surface) -> Drawing:
