@@ -19,11 +19,7 @@ from restitution.contact.state import State
 from restitution.display import quantity
 from restitution.plots import interactive
 from restitution.plots.figure import Axis, Colours, Figure, Map
-from restitution.plots.run import (
-    load_displacement,
-    restitution_against_indentation,
-    restitution_against_velocity,
-)
+from restitution.plots.run import abscissae, load_displacement, restitution_figure
 from restitution.plots.surface import surface_map
 from restitution.results.writer import curve_variables
 from restitution.surfaces import Surface, describe
@@ -39,14 +35,11 @@ class Raw(str):
 def as_json(content: Mapping[str, Any]) -> str:
     """Format `content` as one line of JSON; NaN and infinity become null."""
     parts = [
-        f"{json.dumps(key)}: {value if isinstance(value, Raw) else _dump(value)}"
+        f"{json.dumps(key)}: "
+        + (value if isinstance(value, Raw) else json.dumps(_finite(value), allow_nan=False))
         for key, value in content.items()
     ]
     return "{" + ", ".join(parts) + "}"
-
-
-def _dump(value: Any) -> str:
-    return json.dumps(_finite(value), allow_nan=False)
 
 
 def _finite(value: Any) -> Any:
@@ -67,19 +60,16 @@ def live_dataset(case: Case, contact: Contact, rows: Sequence[Mapping[str, float
 
 def curve_figures(results: xr.Dataset) -> Raw:
     """Draw the figures of COR and of force as JSON; omit figures without data."""
-    found: dict[str, Figure] = {}
-    if results.sizes["indentation_max"]:
-        found["indentation"] = restitution_against_indentation(results)
-        if (results["impact_velocity"] > 0).any():
-            found["velocity"] = restitution_against_velocity(results)
-        found["force"] = load_displacement(results)
-    drawn = {name: drawing(figure) for name, figure in found.items()}
-    return Raw(as_json(drawn))
+    if not results.sizes["indentation_max"]:
+        return Raw("{}")
+    found = {each.name: restitution_figure(results, each) for each in abscissae(results)}
+    found["force"] = load_displacement(results)
+    return Raw(as_json({name: drawing(figure) for name, figure in found.items()}))
 
 
-def drawing(figure: Figure, panel: int = 0) -> Raw:
-    """Convert one panel of `figure` to JSON for the plotting library."""
-    return Raw(interactive.draw(figure.panels[panel], figure).to_json())
+def drawing(figure: Figure) -> Raw:
+    """Convert the first panel of `figure` to JSON for the plotting library."""
+    return Raw(interactive.draw(figure.panels[0], figure).to_json())
 
 
 def surface_content(surface: Surface) -> dict[str, Any]:
