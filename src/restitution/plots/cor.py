@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from restitution.plots.figure import Array, Axis, Band, Mark, Points, Series, has_error
+from restitution.plots.figure import Array, Axis, Band, Chart, Mark, Points, Series, has_error
 
 _STEP = 0.1  # the ends of the axis are multiples of this value
 _MARGIN = 0.02  # smallest distance of the values from the ends of the axis
@@ -55,6 +55,11 @@ def cor_axis(series: Sequence[Series]) -> Axis:
         low=-_MARGIN if values.min() <= 0 else float(low),
         high=float(high) if high < 1 else 1.05,
     )
+
+
+def cor_chart(x: Axis, series: Sequence[Series], title: str = "") -> Chart:
+    """Make a chart of COR with the axis of `cor_axis`."""
+    return Chart(x, cor_axis(series), series, title)
 
 
 def bars(cor: Array, error: Array) -> tuple[Array, str]:

@@ -15,7 +15,7 @@ from restitution.laws.references import (
     restitution_references_by_indentation,
     restitution_references_by_velocity,
 )
-from restitution.plots.cor import IMPACT_VELOCITY, INDENTATION, Abscissa, bars, cor_axis
+from restitution.plots.cor import IMPACT_VELOCITY, INDENTATION, Abscissa, bars, cor_chart
 from restitution.plots.figure import (
     DASH_DOTTED,
     DASHED,
@@ -161,10 +161,10 @@ def restitution_figure(results: xr.Dataset, abscissa: Abscissa) -> Figure:
         series += [
             Line(x, cor + sign * std, "± standard deviation", dash=DOTTED) for sign in (1, -1)
         ]
-    for coarser, dash in zip(results.get("coarser_restitution", ()), _DASHES, strict=False):
-        series.append(
-            Line(x, coarser.values, f"refine = {int(coarser['refine'])}", color=ORANGE, dash=dash)
-        )
+    series += [
+        Line(x, coarser.values, f"refine = {int(coarser['refine'])}", color=ORANGE, dash=dash)
+        for coarser, dash in zip(results.get("coarser_restitution", ()), _DASHES, strict=False)
+    ]
     error, error_label = bars(cor, results["total_error"].values)
     series.append(
         Points(
@@ -184,7 +184,7 @@ def restitution_figure(results: xr.Dataset, abscissa: Abscissa) -> Figure:
     series += _references(_REFERENCES[abscissa](results), scale)
     inside = x[x > 0]
     axis = replace(abscissa.axis, low=inside.min() / _MARGIN, high=inside.max() * _MARGIN)
-    return Figure(results.attrs.get("title", ""), [Chart(axis, cor_axis(series), series)])
+    return Figure(results.attrs.get("title", ""), [cor_chart(axis, series)])
 
 
 def _references(found: list[Reference], scale: float) -> list[Series]:

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from restitution.plots.cor import Abscissa, cor_axis
-from restitution.plots.figure import PALETTE, SYMBOLS, Chart, Figure, Points
+from restitution.plots.cor import Abscissa, cor_chart
+from restitution.plots.figure import PALETTE, SYMBOLS, Figure, Points
 from restitution.results.reader import StoredCase
 
 MOST_LINES = 60  # largest number of lines in a figure; more cannot be distinguished
@@ -39,4 +39,4 @@ def study_figure(cases: Sequence[StoredCase], abscissa: Abscissa) -> Figure:
                 open=np.array([not row["resolved"] for row in rows]),
             )
         )
-    return Figure("", [Chart(abscissa.axis, cor_axis(series), series)])
+    return Figure("", [cor_chart(abscissa.axis, series)])
