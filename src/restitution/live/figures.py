@@ -126,7 +126,6 @@ class ContactMaps:
         indentation, pressed, yielded = self._maps[number]
         largest = [np.nanmax(each.values, initial=0.0) for each in (pressed, yielded)]
         content: dict[str, Any] = {
-            "depth": number,
             "indentation_m": indentation,
             "largest": {"pressure_MPa": largest[0], "plastic_nm": largest[1]},
             "pressure": self._drawn(pressed),
