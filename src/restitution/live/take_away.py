@@ -40,8 +40,10 @@ def case_file(text: str, scans: Path, out: Path) -> Path:
 def take(what: str, results: Path, out: Path, code: str, velocity: str) -> Path:
     """Write the download `what` from the folder `results` into `out`; return the file.
 
-    The input of the DEM code `code` is written for an impact velocity, unless it is "". Raises
-    `CaseError` if `what` is unknown.
+    `code` and `velocity` are the DEM code and the impact velocity of the download "export"; the
+    velocity may be left out ("").
+
+    Raises `CaseError` if `what` is unknown.
     """
     if what == "report":
         return Path(shutil.copy(write_report(results), out))
