@@ -84,8 +84,7 @@ def write_reproduction(out: Path, size: Size) -> tuple[Path, list[Finding]]:
             methods(stored["roughness"].run("case-00002").summary),
         ],
     )
-    write_page(out / "report.html", page)
-    return out / "report.html", findings
+    return write_page(out / "report.html", page), findings
 
 
 def _warnings(size: Size) -> list[str]:
