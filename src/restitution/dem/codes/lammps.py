@@ -31,7 +31,7 @@ from restitution.dem.export_common import (
 )
 from restitution.dem.friction import STIFFNESS_SHARE, friction_note, mindlin_stiffness
 from restitution.dem.pair_table import PairTable
-from restitution.dem.velocity_matching import SCRIPT, Target, matching_script
+from restitution.dem.velocity_matching import SCRIPT, matching_script
 
 CODE = "LAMMPS"
 LOWEST = 0.001  # smallest e that is reproduced within 0.5 %, with `STEPS` time steps in a contact
@@ -41,7 +41,6 @@ _GRAINS = 500  # number of spheres of the packing
 _FALLS = 0.25  # ratio of the duration of the run to the falling time of the highest sphere
 _FILLED = 0.12  # fraction of the initial volume that the spheres fill
 KOKKOS = "restitution_kokkos.lmp"
-_MATCHED = Target(CODE, "lmp -in my.in", FRAGMENT, "matched.lmp", LOWEST)
 _ENDS = (
     "the overlap is back to zero. The force is tensile shortly before, due to damping; do not add "
     "limit_damping, which cuts off the tension and raises e (from 0.8 to 0.808)."
@@ -92,7 +91,15 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
             spring=linear_spring(pairs, velocity),
             velocity=velocity,
         ),
-        SCRIPT: matching_script(_MATCHED, pairs, commented(short, "#")),
+        SCRIPT: matching_script(
+            pairs,
+            commented(short, "#"),
+            code=CODE,
+            command="lmp -in my.in",
+            fragment=FRAGMENT,
+            matched="matched.lmp",
+            lowest=LOWEST,
+        ),
         COLLISION: render(
             COLLISION,
             comments=commented(short, "#"),
