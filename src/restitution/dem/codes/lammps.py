@@ -22,7 +22,6 @@ from restitution.dem.export_common import (
     STEPS,
     Pair,
     commented,
-    contact_time,
     header,
     number,
     pairs_at,
@@ -67,6 +66,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
     if not walls_only:
         table.require_spheres(CODE)
     pairs = pairs_at(table, velocity, CODE, LOWEST)
+    spheres = [pair for pair in pairs if not pair.wall]
     head = header(table, pairs, velocity, code=CODE, ends=_ENDS)
     short = summary(pairs, velocity, code=CODE, ends=_ENDS, fragment=FRAGMENT)
     kokkos = summary(
@@ -78,17 +78,17 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
             comments=commented(head, "#"),
             friction_note=friction_note(pairs, "#", _TANGENTIAL),
             tangential=_tangential,
-            spheres=[pair for pair in pairs if not pair.wall],
+            spheres=spheres,
             walls=[pair for pair in pairs if pair.wall],
-            mdr=mdr_offers(pairs, velocity),
+            mdr=mdr_offers(pairs),
         ),
         KOKKOS: render(
             KOKKOS,
             comments=commented(kokkos, "#"),
             friction_note=friction_note(pairs, "#"),
-            spheres=[pair for pair in pairs if not pair.wall],
-            damping=velocity_damping(pairs, velocity),
-            spring=linear_spring(pairs, velocity),
+            spheres=spheres,
+            damping=[velocity_damping(pair) for pair in pairs],
+            spring=linear_spring(spheres[0]) if len(spheres) == 1 else None,
             velocity=velocity,
         ),
         SCRIPT: matching_script(
@@ -115,9 +115,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
         size = table.largest_radius
         edge = 24 * size
         height = _GRAINS * 4.2 * size**3 / (_FILLED * edge**2)
-        step = (
-            min(contact_time(law) for _, _, law in table.pairs()) * velocity**-0.2 / _PACKING_STEPS
-        )
+        step = min(pair.contact_time for pair in pairs) / _PACKING_STEPS
         files[PACKING] = render(
             PACKING,
             comments=commented(short, "#"),
@@ -158,7 +156,6 @@ def _counts(table: PairTable) -> list[int]:
 def _floor(table: PairTable) -> int | None:
     """Type number of the first wall that has a law with every type of sphere; None without one."""
     count = len(table.spheres)
-    for wall in range(count + 1, len(table.particles) + 1):
-        if all((k, wall) in table.laws for k in range(1, count + 1)):
-            return wall
-    return None
+    walls = range(count + 1, len(table.particles) + 1)
+    with_all = (w for w in walls if all((k, w) in table.laws for k in range(1, count + 1)))
+    return next(with_all, None)
