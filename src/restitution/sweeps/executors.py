@@ -15,7 +15,6 @@ from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from multiprocessing.managers import SyncManager
-from queue import Empty
 from typing import Any
 
 from restitution.errors import CaseError, OutputError
@@ -76,12 +75,8 @@ def local_workers(count: int | None) -> Iterator[Workers]:
         queue = manager.Queue()
 
         def heard() -> list[tuple[int, int]]:
-            messages = []
-            while True:
-                try:
-                    messages.append(queue.get_nowait())
-                except Empty:
-                    return messages
+            # Only this process takes messages, so those that are counted do not disappear.
+            return [queue.get_nowait() for _ in range(queue.qsize())]
 
         try:
             yield Workers(begin(places), places, threads, queue, heard, begin)
@@ -168,8 +163,7 @@ def cluster_workers(address: str) -> Iterator[Workers]:
         queue = Queue(client=client)
 
         def heard() -> list[tuple[int, int]]:
-            messages: list[tuple[int, int]] = queue.get(batch=True)
-            return [(number, done) for number, done in messages]
+            return [(number, done) for number, done in queue.get(batch=True)]
 
         # Dask itself repeats the tasks of dead workers (a limited number of times), so no new
         # executor is needed.

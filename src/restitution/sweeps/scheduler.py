@@ -52,8 +52,11 @@ def run_study(
         for case in study.cases
         if known[case.number] is None or (retry_failed and known[case.number])
     ]
-    tally = Tally(len(study.cases), done=len(study.cases) - len(missing))
-    tally.failed = sum(bool(known[c.number]) for c in study.cases if c not in missing)
+    tally = Tally(
+        len(study.cases),
+        done=len(study.cases) - len(missing),
+        failed=0 if retry_failed else sum(map(bool, known.values())),
+    )
     progress(tally)
     try:
         _compute_all(deque(missing), folder, out, workers, tally, progress)
@@ -95,7 +98,7 @@ def _compute_all(
         done, _ = wait(running, timeout=_POLL, return_when=FIRST_COMPLETED)
         for future in done:
             case = running.pop(future)
-            tally.in_flight.pop(case.number, None)
+            del tally.in_flight[case.number]
             try:
                 outcome = future.result()
             except BrokenExecutor:
@@ -114,10 +117,9 @@ def _compute_all(
             tally.failed += bool(outcome.reason)
         if broken:
             # The other running cases were lost with the executor.
-            for case in running.values():
-                suspects.append(case)
-                tally.in_flight.pop(case.number, None)
+            suspects.extend(running.values())
             running.clear()
+            tally.in_flight.clear()
         for number, depths in workers.heard():
             if number in tally.in_flight:
                 tally.in_flight[number] = depths
