@@ -96,7 +96,7 @@ def search(model: CaseModel, data: Data, start: Array, cost: Cost = "full") -> M
         except RestitutionError:
             return np.full(data.velocity.size, _FAILED)
 
-    _residuals(model, data, start, cost)
+    _residuals(model, data, start, cost)  # raises if the case cannot be solved at the start
     found = least_squares(
         safe,
         start,

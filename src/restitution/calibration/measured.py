@@ -75,7 +75,11 @@ def _rows(path: Path) -> list[tuple[int, dict[str, str]]]:
         with open(path, newline="", encoding="utf-8-sig") as file:
             reader = csv.DictReader(file, strict=True, skipinitialspace=True)
             columns = reader.fieldnames = [name.strip() for name in reader.fieldnames or ()]
-            rows = [(reader.line_num, row) for row in reader if any(map(_filled, row.values()))]
+            rows = [
+                (reader.line_num, row)
+                for row in reader
+                if any(str(cell or "").strip() for cell in row.values())
+            ]
     except OSError as error:
         raise CaseError(f"{path}: cannot be read ({error.strerror or error})") from None
     except (UnicodeDecodeError, csv.Error) as error:
@@ -90,10 +94,6 @@ def _rows(path: Path) -> list[tuple[int, dict[str, str]]]:
         if columns.count(name) > 1:
             raise CaseError(f"{path}: has two columns {name}; remove one of them")
     return rows
-
-
-def _filled(cell: object) -> bool:
-    return bool(cell.strip()) if isinstance(cell, str) else bool(cell)
 
 
 def _number(path: Path, line: int, row: dict[str, str], column: str) -> float:

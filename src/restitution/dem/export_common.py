@@ -73,6 +73,11 @@ class Pair:
         )
 
     @property
+    def mindlin_stiffness(self) -> float:
+        """Mindlin's tangential stiffness per contact radius, 8 G* (Pa)."""
+        return 8 * self.shear_modulus
+
+    @property
     def twin(self) -> tuple[float, float]:
         """E (Pa) and ν of a material that, used for both bodies, gives the E* and G* of this pair.
 

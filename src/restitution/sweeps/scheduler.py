@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, wait
 from dataclasses import dataclass, field
@@ -74,7 +74,7 @@ def _compute_all(
     tally: Tally,
     progress: Callable[[Tally], None],
 ) -> None:
-    executor, size, deaths = workers.executor, workers.places, dict[int, int]()
+    executor, size, deaths = workers.executor, workers.places, Counter[int]()
     suspects: deque[SweptCase] = deque()
     running: dict[Future[Outcome], SweptCase] = {}
     broken = False
@@ -103,7 +103,7 @@ def _compute_all(
                 outcome = future.result()
             except BrokenExecutor:
                 broken = True
-                deaths[case.number] = deaths.get(case.number, 0) + 1
+                deaths[case.number] += 1
                 if deaths[case.number] < _DEATHS:
                     suspects.append(case)
                     continue

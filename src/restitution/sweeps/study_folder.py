@@ -87,17 +87,15 @@ class StudyFolder:
     def put(self, case: SweptCase, outcome: Outcome) -> None:
         """Store the outcome of a case. Raises `OutputError` if it cannot be written."""
         part, whole = self._cases / f".{case.name}", self.folder_of(case)
+        files = outcome.files | {"case.toml": case.text.encode()}
+        if outcome.reason:
+            files[FAILED] = json.dumps({"reason": outcome.reason}, ensure_ascii=False).encode()
         with hold_signals(), writing(self.path):
             shutil.rmtree(part, ignore_errors=True)
-            for name, content in outcome.files.items():
+            for name, content in files.items():
                 file = part / name
                 file.parent.mkdir(parents=True, exist_ok=True)
                 file.write_bytes(content)
-            part.mkdir(exist_ok=True)
-            (part / "case.toml").write_text(case.text, encoding="utf-8")
-            if outcome.reason:
-                why = json.dumps({"reason": outcome.reason}, ensure_ascii=False)
-                (part / FAILED).write_text(why, encoding="utf-8")
             shutil.rmtree(whole, ignore_errors=True)
             part.rename(whole)
 

@@ -28,7 +28,7 @@ from restitution.dem.export_common import (
     render,
     summary,
 )
-from restitution.dem.friction import STIFFNESS_SHARE, friction_note, mindlin_stiffness
+from restitution.dem.friction import STIFFNESS_SHARE, friction_note
 from restitution.dem.pair_table import PairTable
 from restitution.dem.velocity_matching import SCRIPT, matching_script
 
@@ -136,7 +136,7 @@ def _tangential(pair: Pair) -> str:
     """The tangential model of a pair; LAMMPS' default stiffness if the case has no friction."""
     if pair.law.friction is None:
         return f"mindlin NULL 1.0 {pair.friction}"
-    stiffness = STIFFNESS_SHARE * mindlin_stiffness(pair)
+    stiffness = STIFFNESS_SHARE * pair.mindlin_stiffness
     return f"mindlin_rescale/force {number(stiffness)} 1.0 {number(pair.friction)}"
 
 

@@ -20,7 +20,6 @@ from dataclasses import dataclass
 
 from restitution.dem.damping import hertz_damping, hertz_restitution_at
 from restitution.dem.export_common import Pair
-from restitution.dem.friction import mindlin_stiffness
 
 
 @dataclass(frozen=True)
@@ -34,11 +33,6 @@ class VelocityDamping:
     def normal_stiffness(self) -> float:
         """The coefficient Kn (Pa) of the style `hertz` of LAMMPS."""
         return 4 / 3 * self.pair.law.contact_modulus
-
-    @property
-    def tangential_stiffness(self) -> float:
-        """The coefficient Kt (Pa) of the style `mindlin` of LAMMPS."""
-        return mindlin_stiffness(self.pair)
 
     def restitution(self, share: float) -> float:
         """Return the coefficient of restitution at `share` times the velocity of the export."""
