@@ -114,7 +114,7 @@ def _correlated(found: Fit) -> Iterator[str]:
 
 def _bounds(found: Fit) -> Iterator[str]:
     for parameter, x in zip(found.parameters, found.x.tolist(), strict=True):
-        if abs(x) > 0.99 * math.log(RANGE):
+        if abs(x) > 0.99 * math.log(RANGE):  # x = ln(value/first guess)
             side = "above" if x > 0 else "below"
             yield (
                 f"{parameter.key} ended at the limit of the search, a factor of {RANGE:g} {side} "

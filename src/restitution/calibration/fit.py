@@ -122,7 +122,8 @@ def fit(
     given = measured.deviation
     data = Data(V, measured.restitution, np.full(V.size, _EQUAL) if given is None else given)
     minima = search_widely(model, data)
-    # These minima were found on cells twice as large. Search on the grid of the case.
+    # The minima were found on cells twice as large. Now search on the grid of the case, from the
+    # best of them at which the case can be solved on this grid.
     best = next(searches(model, data, [each.x for each in minima]))
     # Give less weight to points whose COR differs between surfaces or grids.
     noise = _noise(measured, model.restitution(best.x, V), best.x.size)
