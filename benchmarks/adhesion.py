@@ -1,4 +1,4 @@
-"""Time adhesive impacts near sticking, and `converge`, in two versions of the source.
+"""Time adhesive impacts near sticking, and `converge`, with two versions of the program.
 
 `python benchmarks/adhesion.py OTHER` measures this version and the version in the folder OTHER, in
 turn and in separate processes. To make OTHER, use `git archive COMMIT src | tar x -C OTHER` and
@@ -86,7 +86,11 @@ def measure(name: str) -> dict[str, float]:
 
 
 def main() -> None:
-    """Measure the cases named after the folder, by default all of them, with both sources."""
+    """Measure cases with both versions of the program, and print a table.
+
+    The arguments of the command are the folder of the other version and then the names of the
+    cases, by default all of them.
+    """
     if sys.argv[1] == "--measure":
         print(json.dumps(measure(sys.argv[2])))
         return

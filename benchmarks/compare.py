@@ -49,7 +49,7 @@ bench-peers` writes this page; [peers.csv](peers.csv) contains all columns.
 
 {table}
 
-![time over that of restitution](peers.png)
+![time divided by that of restitution](peers.png)
 
 ## What is timed
 
@@ -61,34 +61,35 @@ of 0.25 µm. The indentation is δ = a²/R*, where a is the contact radius of sm
 * Rough surfaces have a Gaussian autocorrelation of length 2 µm and Rq = 0.1 µm (`seed = 1`).
 * "full": each program receives the whole grid, as in ordinary use.
 * "cropped": each program receives only the bounding box of the nodes whose initial gap h₀ is below
-  δ, enlarged to sizes that are fast to transform. restitution finds this box by itself also on the
-  whole grid.
+  δ, enlarged to sizes for which the FFT is fast. If restitution receives the whole grid, it finds
+  this box by itself.
 
 **Time.** A time is that of one complete solution in a process that is already running. It includes
-the set-up and the kernel. It does not include imports, compilation or reading the problem. Nothing
-is kept from earlier solutions, with one exception: FFTW keeps its plans, so SlipPy does most of its
-planning only once. "first" is the time to start the process with its imports, plus the time of the
-first solution.
+the set-up and the computation of the kernel. It does not include imports, compilation or reading
+the problem. Nothing is kept from earlier solutions, with one exception: FFTW keeps its plans, so
+SlipPy does most of its planning only once. "first" is the time to start the process with its
+imports, plus the time of the first solution.
 
-**Accuracy.** Every program defines its tolerance in its own way. Each one runs with the loosest
-tolerance, a power of ten, with which the contact conditions (0 ≤ p ≤ p_y) hold to {residual} δ. The
-conditions are checked from the pressures alone, by code that none of the programs use. This code
-computes the gap g = K p + h₀ − δ with Love's formula in extended precision and a zero-padded FFT
-over the whole grid. If a program needs more than {limit:.0f} s for a solution, or does not reach
-this accuracy at any tolerance, the table says so.
+**Accuracy.** Every program defines its tolerance in its own way. Each program runs with the loosest
+tolerance, among the powers of ten, with which the contact conditions (0 ≤ p ≤ p_y) hold to
+{residual} δ. The conditions are checked from the pressures alone, by code that none of the programs
+use. This code computes the gap g = K p + h₀ − δ with Love's formula in extended precision and a
+zero-padded FFT over the whole grid. If a program needs more than {limit:.0f} s for a solution, or
+does not reach this accuracy at any tolerance, the table says so.
 
 **Repetitions.** The programs take turns {rounds} times, in an order that is reversed each time.
 Times are medians. Ratios are computed for each turn, and the table shows their median
-(smallest–largest). U is the time of one zero-padded convolution (forward and inverse) of
-{nodes} × {nodes} nodes with scipy.fft, two workers and float64. It is measured at every turn, and
-its median is {unit:.1f} ms ({least:.1f}–{largest:.1f}). A wide range means that other processes
-ran at the same time, which slows down threads most.
+(smallest–largest). The column U is the time divided by that of one zero-padded convolution (forward
+and inverse) of {nodes} × {nodes} nodes with scipy.fft, two workers and float64. The time of this
+convolution is measured at every turn, and its median is {unit:.1f} ms ({least:.1f}–{largest:.1f}).
+A wide range means that other processes ran at the same time, which slows down programs with several
+threads most.
 
 **Settings.** Each program runs with the best settings that were found, and in the units that suit
 it best (see the workers in `benchmarks/peers`). For a half-space that is not periodic, Tamaas
-accepts only a force, not an indentation. It is given the correct force, so it need not search for
-it. The installed package of Tamaas runs on one core. SlipPy uses one core on grids of up to 256²,
-where its threads save no time.
+accepts only a force, not an indentation. It receives the correct force, so it need not search for
+the force. The installed package of Tamaas runs on one core. SlipPy uses one core on grids of up to
+256², where its threads save no time.
 """
 
 

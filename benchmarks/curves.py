@@ -53,10 +53,11 @@ REPORT = """\
 {date}, {machine}. Written by `make bench`.
 
 All contacts are those of two steel spheres (R* = 250 µm, E* = 112 GPa, p_y = 750 MPa) on {nodes}²
-nodes of 0.25 µm. The times do not include making the contact; they do include computing the kernels
-of the convolutions. The times are medians of {repeats} runs (smallest and largest). Fig. 10 was run
-once. U is the time of one zero-padded convolution (forward and inverse) on the same grid with
-scipy.fft, two workers and float64. It was measured between the runs and is {unit_ms:.0f} ms.
+nodes of 0.25 µm. The times include the computation of the kernels of the convolutions, but not the
+creation of the contact. They are medians of {repeats} runs (smallest and largest). The curves of
+Fig. 10 were computed once. The column U is the time divided by that of one zero-padded convolution
+(forward and inverse) on the same grid with scipy.fft, two workers and float64. The time of this
+convolution was measured between the runs and is {unit_ms:.0f} ms.
 
 | what | time, s | U | convolutions | largest error of COR |
 |---|---|---|---|---|
@@ -64,10 +65,10 @@ scipy.fft, two workers and float64. It was measured between the runs and is {uni
 
 "Fig. 10" means the five curves of Fig. 10 in Ghanbarzadeh et al. (2019), with the work of adhesion
 w = 0.09 J/m². One surface is smooth, and four are rough with Rq = 0.1, 0.2, 0.5 and 1 µm (Gaussian,
-correlation length 2 µm). Each contact is loaded to 24 depths from 10 nm to 1 µm, and unloaded from
-each depth step by step until separation. The last row is the time of one `restitution study`
+correlation length 2 µm). Each contact is loaded to 24 depths from 10 nm to 1 µm. From each depth it
+is unloaded step by step until separation. The last row is the time of one `restitution study`
 command, including its start and the writing of its tables. This command distributes the five
-surfaces among its processes. In its input the smooth surface has Rq = 1 pm.
+surfaces among its processes. In the input of this command the smooth surface has Rq = 1 pm.
 """
 
 

@@ -1,4 +1,4 @@
-"""Time of a curve with a growing pressure bound, over the time with a constant bound.
+"""Time of a curve with a growing pressure bound, relative to the time with a constant bound.
 
 Writes docs/benchmarks/growing-bound.md. `--repeats 1` is quicker.
 """
@@ -46,10 +46,10 @@ REPORT = """\
 Two steel spheres (R* = 250 µm, E* = 112 GPa) on {nodes}² nodes of 0.25 µm are loaded to 24 depths
 from 2 nm to 5 µm, as in `benchmarks/steel.toml`. The page compares two upper bounds of the contact
 pressure: a constant bound of 750 MPa, and a bound that grows with deformation, for the yield
-strength Y = 268 MPa. The times are CPU seconds of one thread, on which other programs on the
-machine have less effect than on the elapsed time. They do not include the time to generate the
-surface. Both curves are computed {repeats} times in turn. The ratio is the median of the ratios of
-the repeats (smallest and largest in brackets).
+strength Y = 268 MPa. The times are CPU times of one thread, because other programs on the machine
+affect them less than the elapsed times. They do not include the time to generate the surface. The
+curves with both bounds are computed {repeats} times in turn. The ratio is the median of the ratios
+of the repeats (smallest and largest in brackets).
 
 | surface | curve | constant bound, s | bound that grows, s | ratio |
 |---|---|---|---|---|
@@ -107,7 +107,7 @@ def main() -> None:
     repeats = parser.parse_args().repeats
     about, rows = machine(), []
     for name, surface in surfaces().items():
-        for curve, work in {"loading": load, "and unloading": load_and_unload}.items():
+        for curve, work in {"loading": load, "loading and unloading": load_and_unload}.items():
             work(
                 surface, CONSTANT
             )  # not timed, because it also computes the influence coefficients

@@ -43,16 +43,17 @@ REPORT = """\
 {date}, {machine}. Written by `benchmarks/page.py`.
 
 The page of `restitution app` ran in Chromium (headless, without a GPU) on the same machine. The
-slider of Rq moved {changes} times, and each move waited until the previous curve was drawn. Each
-curve has 24 depths on 512² nodes. The time ends when the browser has painted the new curve of COR.
-The table shows the median time in ms (largest time in brackets), and the parts of this time.
+slider of Rq moved {changes} times, each time after the previous curve had been drawn. Each curve
+has 24 depths on 512² nodes. The time from a move ends when the browser has painted the new curve of
+COR. The table shows the median of this time in ms (largest time in brackets), and the parts of the
+time.
 
 | case | whole | solve | server and transfer | drawing |
 |---|---|---|---|---|
 {rows}
 
-The upper limit ("bound") of the contact pressure is constant, or grows with deformation. With the
-growing bound each depth takes two solutions; see [their time](growing-bound.md).
+The upper limit ("bound") of the contact pressure either is constant or grows with deformation. With
+the growing bound each depth takes two solutions; see [their time](growing-bound.md).
 
 Memory of the server and its processes, with the constant bound: {before:.0f} MiB after {changes}
 changes, and {after:.0f} MiB after {many} more.

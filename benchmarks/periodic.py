@@ -45,19 +45,20 @@ of restitution in the same round. `make bench-periodic` writes this page;
 {table}
 
 All contacts are between flat steel bodies (E* = 112 GPa) on {nodes} × {nodes} nodes with a spacing
-of 0.25 µm. The surface is self-affine with H = 0.8, a roll-off at an eighth of the period and eight
-nodes in the shortest wave (`seed = 1`). Pressures (in brackets in the table) are in units of E*
-times the rms slope.
+of 0.25 µm. The surface is self-affine with the Hurst exponent H = 0.8, a roll-off wavelength of an
+eighth of the period and eight nodes per shortest wavelength (`seed = 1`). The numbers in brackets
+in the table are the nominal pressures divided by E* times the rms slope.
 
-Every program solves for a prescribed nominal pressure. Each one runs with the loosest tolerance, a
-power of ten, with which the contact conditions hold to {residual} δ and the relative error of the
-force is below 1e-6. Both conditions are checked from the computed pressures alone, by code that
-none of the programs use. In the table, "force" is the relative difference between the computed and
-the prescribed force, and "nodes" is the number of nodes in contact minus that of restitution.
+Every program solves for a prescribed nominal pressure. Each program runs with the loosest
+tolerance, among the powers of ten, with which the contact conditions hold to {residual} δ and the
+relative error of the force is below 1e-6. Both requirements are checked from the computed pressures
+alone, by code that none of the programs use. In the table, "residual" is the largest violation of
+the contact conditions divided by δ. "force" is the relative difference between the computed and the
+prescribed force, and "nodes" is the number of nodes in contact minus that of restitution.
 restitution always meets the prescribed pressure to 1e-8, which requires accurate solutions, so its
 own tolerance hardly matters. The programs take turns {rounds} times, in an order that is reversed
-each time; ratios are medians (smallest–largest). [Beside other programs](peers.md) says what a time
-includes.
+each time; ratios are medians (smallest–largest). [Beside other programs](peers.md) states what a
+time includes.
 
 Tamaas solves elastic contact by `PolonskyKeerRey` and plastic contact by `KatoSaturated`.
 ContactMechanics solves them by `minimize_proxy` with `external_force`. A program that needs more

@@ -47,13 +47,14 @@ in a process of its own.
 * case: "a = 20 µm" has an indentation of 20²/250 µm. "filling" has the indentation δ at which the
   region with an initial gap h₀ < δ nearly reaches the edge of the grid ({filling:.2f} µm). Plastic
   contacts have p ≤ 750 MPa.
-* time: the median of {fewest} to {most} solutions, including the set-up and the kernel.
+* time: the median time of {fewest} to {most} solutions, including the set-up and the computation of
+  the kernel.
 * U: the time divided by that of one zero-padded convolution (forward and inverse) on the whole grid
   with scipy.fft, two workers and float64, measured just before.
-* least: the shortest of the times of these solutions.
-* first: the time of the first solution in the process, in which the process accesses its memory for
-  the first time. On a virtual machine whose host reclaims idle memory, like this one, the first
-  access may cost any program 1 to 2 s per GiB.
+* least: the shortest time of these solutions.
+* first: the time of the first solution in the process, during which the process accesses its memory
+  for the first time. On a virtual machine whose host reclaims idle memory, like this machine, the
+  first access may cost any program 1 to 2 s per GiB.
 * memory: the peak memory of the process, including Python and the surface, in GiB.
 * arrays per node: the peak memory, divided by the memory of one float64 array of the whole grid.
 

@@ -27,9 +27,9 @@ REPORT = """\
 
 {date}, {machine}. Written by `make bench`.
 
-The table shows the time of whole Python processes, which took turns: the median of {turns} runs
-(smallest and largest). The times include the start of Python itself, which takes {bare:.3f} s
-without any import.
+The table shows the time of whole Python processes: the median of {turns} runs (smallest and
+largest). The processes ran in turn. The times include the start of Python itself, which takes
+{bare:.3f} s without any import.
 
 | process | time, s | ratio to {base} |
 |---|---|---|

@@ -32,6 +32,7 @@ QUANTITIES = ("force_N", "contact_area_m2", "loading_work_J", "unloading_work_J"
 EXTRAPOLATED = ("restitution", "force_N")
 NODES, NODES_ON_WAVES, NODES_PER_WAVE = 192, 304, 32
 _RATIO = 1.3  # of successive depths
+_ROUGH_RATIO = 1.17  # the same for rough contacts
 
 
 def extrapolations() -> dict[tuple[str, float], dict[str, str]]:
@@ -121,7 +122,8 @@ def axisymmetric(reference: dict) -> list[dict]:
 def rough(reference: dict, folder: Path) -> list[dict]:
     """Rows of one rough contact in 3D, on the grid of the reference, at the same forces.
 
-    Both count the indentation from first touch, which is between the nodes of the coarse grid.
+    The indentation of the reference does not count from first touch. The curve therefore ends where
+    its force exceeds that of the reference.
     """
     from scipy.interpolate import PchipInterpolator
 
@@ -133,16 +135,24 @@ def rough(reference: dict, folder: Path) -> list[dict]:
     height = np.load(folder / reference["heights_file"]).astype(float)
     spacing = reference["grid"]["spacing_m"]
     grid = Grid(height.shape, (spacing, spacing))
-    depths = [row["indentation_m"] for row in reference["summary"]]
+    deepest, most = (
+        max(row[name] for row in reference["summary"]) for name in ("indentation_m", "force_N")
+    )
     for name in MODELS:
         contact = Contact(pair_of(model), Surface(height, grid), **material(model, name))
-        states = list(loading_path(contact, np.geomspace(0.003 * depths[-1], 1.2 * depths[-1], 40)))
+        states = []
+        for state in loading_path(contact, 0.003 * deepest * _ROUGH_RATIO ** np.arange(60)):
+            states.append(state)
+            if state.force > most:
+                break
         curve = [_quantities(state, collide(state)) for state in states]
         force = np.log([each["force_N"] for each in curve])
         for row in reference["summary"]:
             mine = {
                 name: float(
-                    PchipInterpolator(force, [q[name] for q in curve])(np.log(row["force_N"]))
+                    PchipInterpolator(force, [q[name] for q in curve], extrapolate=False)(
+                        np.log(row["force_N"])
+                    )
                 )
                 for name in QUANTITIES
             }

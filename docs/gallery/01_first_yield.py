@@ -5,9 +5,9 @@ First yield
 This figure shows the velocity at which a smooth sphere starts to lose energy. The largest pressure
 follows from the theory of Hertz, :math:`p_0 = 2 E^* a/(\pi R^*)`. The sphere yields below its
 surface when :math:`p_0` reaches 1.6 times the yield strength. The impact velocity at which this
-happens does not depend on the size of the particle. For annealed stainless steel it is below the
-velocities of granular flow, for aluminium and hardened steel among them, and for the two plastics
-above them.
+happens does not depend on the size of the particle. This velocity is below the range of granular
+flow for annealed stainless steel, within this range for aluminium and hardened steel, and above it
+for the two plastics.
 """
 
 import matplotlib.pyplot as plt

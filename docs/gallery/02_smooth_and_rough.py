@@ -20,7 +20,7 @@ velocities = np.geomspace(0.005, 2, 10)
 
 
 def median_patch(state):
-    """Nodes of the patch in which the median node of the contact lies."""
+    """Number of nodes of the patch that contains the median contact node."""
     sizes = state.patch_sizes()
     return sizes[np.searchsorted(sizes.cumsum(), sizes.sum() / 2)]
 

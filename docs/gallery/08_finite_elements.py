@@ -2,9 +2,9 @@
 Validation against finite elements
 ==================================
 
-This figure shows COR of three models of plasticity against COR of two references: axisymmetric
-finite elements (smooth spheres and spheres with waves), and a rough contact in 3D. The data are
-from ``validation/models.csv``. If a yield strength is given, the program uses the model
+This figure compares COR of three models of plasticity with COR of two reference computations:
+axisymmetric finite elements (smooth spheres and spheres with waves), and a rough contact in 3D. The
+data are from ``validation/models.csv``. If a yield strength is given, the program uses the model
 ``expanding-cavity``.
 """
 

@@ -3,7 +3,7 @@ Surface statistics
 ==================
 
 This figure shows three generated surfaces with the same Rq: a section, the distribution of heights
-and the power spectral density. The power spectral density determines COR at low velocity.
+and the power spectral density. COR at low velocity depends on the power spectral density.
 """
 
 import matplotlib.pyplot as plt

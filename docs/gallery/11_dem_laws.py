@@ -3,10 +3,10 @@ Laws of DEM codes beside a computed curve
 =========================================
 
 This figure compares the computed COR of a rough bead with three laws of DEM codes: a constant, and
-two laws with the same yield strength (Thornton and Ning, and ``mdr`` of LAMMPS). Laws of smooth
-spheres lose no energy below their yield velocity, but the rough bead loses the largest share of its
-energy there.
-``restitution fit-law`` fits seven laws to a computed curve and prints the error of each law.
+two laws with the same yield strength (Thornton and Ning, and ``mdr`` of LAMMPS). Laws for smooth
+spheres predict no loss of energy below the yield velocity, but the rough bead loses the largest
+share of its energy there. ``restitution fit-law`` fits seven laws to a computed curve and prints
+the error of each law.
 """
 
 import matplotlib.pyplot as plt
@@ -29,7 +29,7 @@ ax.axhline(np.mean(e), color="C0", label="a constant")
 V = np.geomspace(0.01, 1, 100)
 R, E, m, Y = pair.radius, pair.contact_modulus, pair.mass, 290e6
 ax.plot(V, ThorntonNing(R, E, 2.8 * Y).restitution(V, m), "C1", label="Thornton–Ning, 2.8 Y")
-# Two equal spheres are two impacts of one sphere on a rigid wall, each at half the velocity.
+# Each of two equal spheres moves as if it hit a rigid wall at half the relative velocity.
 mdr = MDR(steel.radius, steel.youngs_modulus, steel.poissons_ratio, Y)
 ax.plot(V, mdr.restitution(V / 2, steel.mass), "C2", label="mdr")
 ax.set(xscale="log", xlabel="impact velocity (m/s)", ylabel="COR", ylim=(0.3, 1.02))

@@ -4,7 +4,8 @@ An ensemble of rough surfaces
 
 This figure shows COR of twelve surfaces with the same statistics: the mean, the standard deviation
 between surfaces, and single curves. The standard deviation is largest where a few asperities carry
-the load. ``realisations = 12`` in a case computes the mean with its confidence interval.
+the load. With ``realisations = 12`` in a case, the program computes the mean with its confidence
+interval.
 """
 
 import matplotlib.pyplot as plt

@@ -162,9 +162,9 @@ def collide(
         )
     path = list(separate(state, tolerance=tolerance) if unloading is None else unloading)
     separation = separation_of(path)
-    release_error = 0.0
-    if not contact.cohesive:  # cohesive contacts have no detachment criterion
-        release_error = _RELEASE_ERROR[contact.detachment] * contact.work_of_adhesion
+    # Cohesive contacts have no detachment criterion.
+    release_share = 0.0 if contact.cohesive else _RELEASE_ERROR[contact.detachment]
+    release_error = release_share * contact.work_of_adhesion
     return replace(
         elastic,
         unloading_work=separation.unloading_work,

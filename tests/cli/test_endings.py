@@ -10,7 +10,7 @@ import time
 import pytest
 import xarray as xr
 
-from restitution.runs import loading, run
+from restitution.runs import depths, run
 
 CALL = "from restitution.cli import main; main()"
 
@@ -28,7 +28,7 @@ def call(*arguments, before="", **options):
 
 
 def fail_at_the_third_depth(monkeypatch, error):
-    real, calls = loading.solve, []
+    real, calls = depths.solve, []
 
     def solve(*arguments, **options):
         calls.append(arguments)
@@ -36,7 +36,7 @@ def fail_at_the_third_depth(monkeypatch, error):
             raise error
         return real(*arguments, **options)
 
-    monkeypatch.setattr(loading, "solve", solve)
+    monkeypatch.setattr(depths, "solve", solve)
 
 
 def test_an_unforeseen_error_is_recorded(cli, case, tmp_path, monkeypatch):

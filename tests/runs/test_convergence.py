@@ -11,6 +11,7 @@ import xarray as xr
 from restitution.case.case_file import parse_case
 from restitution.errors import CaseError
 from restitution.results.writer import ResultsFolder
+from restitution.runs import convergence
 from restitution.runs.convergence import discretisation, observed_order, run_convergence
 from tolerance import approx
 
@@ -162,3 +163,18 @@ def test_interruption_keeps_the_grids_that_are_done(case_text, tmp_path):
     out = ResultsFolder.__new__(ResultsFolder)
     out.path = tmp_path / "out"
     assert len(table_of(out, "curve.csv")) == 3
+
+
+def test_converge_adds_the_yielding_that_no_grid_shows(case_text, tmp_path, monkeypatch):
+    def study(name, unseen):
+        (tmp_path / name).mkdir()
+        monkeypatch.setattr(
+            convergence, "unseen_yield", lambda _, __, rows: np.full(len(rows), unseen)
+        )
+        out, _ = converge(case_text, tmp_path / name, 2)
+        return np.array([each["discretisation_error"] for each in out.rows])
+
+    without = study("without", 0.0)
+    known = np.isfinite(without)
+    assert known.any()
+    assert study("with", 0.05)[known] == approx(np.hypot(without[known], 0.05), rel=1e-9)

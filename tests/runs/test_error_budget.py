@@ -2,11 +2,13 @@
 
 import json
 import math
+import re
 
 import numpy as np
 import pytest
 
 from restitution.case.case_file import parse_case
+from restitution.contact.path import loading_path
 from restitution.errors import NotConvergedError
 from restitution.results.total_error import total
 from restitution.results.writer import ResultsFolder
@@ -14,14 +16,23 @@ from restitution.runs import depths as depths_module
 from restitution.runs.companions import Companions, Curve
 from restitution.runs.convergence import run_convergence
 from restitution.runs.ensemble import run_realisations
-from restitution.runs.error_budget import Band, grid_error, scatter, widened_error
+from restitution.runs.error_budget import (
+    Band,
+    grid_error,
+    scatter,
+    unseen_yield,
+    widened_error,
+)
 from tolerance import approx
 
 PARTS = ("restitution_error", "discretisation_error", "surface_scatter", "material_error")
 
+NONE = np.zeros(4)
+
 
 def row(**more):
     values = {"median_patch_nodes": 500.0, "adhesion_resolved": True, "restitution": 0.5}
+    values |= {"stored_energy_J": 1e-9, "plastic_work_J": 1e-9}
     return {**values, **dict.fromkeys(PARTS, 0.0), **more}
 
 
@@ -90,26 +101,56 @@ def test_scatter_is_that_of_the_surfaces(case_text, tmp_path):
 def test_a_difference_that_is_zero_by_chance_makes_no_error_zero():
     work = np.geomspace(1e-9, 1e-6, 4)
     change = np.array([0.04, 0.0, 0.04, 0.04])
-    error, band = grid_error(change, work, [row()] * 4, octaves=0.0)
+    error, band = grid_error(change, NONE, work, [row()] * 4, octaves=0.0)
     assert error[1] > 0.015
     assert (band == 0).all()
     for nodes, least in ((1, 0.4), (5, 0.05), (500, 1e-4)):
-        unseen, _ = grid_error(np.zeros(4), work, [row(median_patch_nodes=nodes)] * 4, 0.0)
+        unseen, _ = grid_error(NONE, NONE, work, [row(median_patch_nodes=nodes)] * 4, 0.0)
         assert (unseen > least).all()
 
 
 def test_waves_beyond_the_grid_count_by_the_slope_they_have():
     work = np.geomspace(1e-9, 1e-6, 3)
     change = np.full(3, 0.02)
-    without, _ = grid_error(change, work, [row()] * 3, octaves=0.0)
-    error, band = grid_error(change, work, [row()] * 3, octaves=2.0)
+    without, _ = grid_error(change, NONE[:3], work, [row()] * 3, octaves=0.0)
+    error, band = grid_error(change, NONE[:3], work, [row()] * 3, octaves=2.0)
     assert band == approx(np.full(3, 0.06), rel=1e-12)
     assert error == approx(np.hypot(without, 0.06), rel=1e-12)
 
 
+def test_an_elastic_contact_counts_what_a_lower_yield_pressure_would_change():
+    class Falling:
+        """COR falls by 0.1 with the yield pressure, at any work."""
+
+        own = Curve(np.array([1e-9]), np.array([0.9]))
+
+        def weaker(self, factor):
+            return Curve(np.array([1e-9]), np.array([0.8 + 0.1 * factor]))
+
+    waves = Band(octaves=0.0, coarser_slope=0.5, removed_slope=0.0, pixel=1e-9)
+    rows = [row(loading_work_J=1e-9, plastic_work_J=p) for p in (0.0, 1e-9, 3e-9)]
+    unseen = unseen_yield(Falling(), waves, rows)
+    assert unseen == approx(np.array([1.0, 1 / 4, 1 / 16]) * 0.1 * 0.75, rel=1e-12)
+    work = np.geomspace(1e-9, 1e-6, 3)
+    without, _ = grid_error(NONE[:3], NONE[:3], work, rows, octaves=0.0)
+    error, _ = grid_error(NONE[:3], unseen, work, rows, octaves=0.0)
+    assert error == approx(np.hypot(without, unseen), rel=1e-12)
+
+
+def test_a_rough_contact_just_below_its_yield_pressure_has_no_vanishing_error(case_text, tmp_path):
+    """On the grid of the case and on larger cells nothing yields, but nodes of a finer grid do."""
+    just = re.sub("yield_pressure = .*", 'yield_pressure = "JUST Pa"', case_text)
+    elastic, _ = run(just.replace("JUST", "1e15"), tmp_path / "elastic")
+    contact = parse_case(just.replace("JUST", "1e15")).contact(tmp_path)
+    (state,) = loading_path(contact, [elastic[-1]["max_indentation_m"]])
+    rows, _ = run(just.replace("JUST", str(1.02 * state.pressure.max())), tmp_path / "just")
+    assert rows[-1]["restitution"] == approx(1.0, rel=1e-9)
+    assert rows[-1]["discretisation_error"] > 3 * elastic[-1]["discretisation_error"]
+
+
 def test_what_no_companion_tells_is_not_known():
     work = np.geomspace(1e-9, 1e-6, 3)
-    assert np.isnan(grid_error(np.full(3, math.nan), work, [row()] * 3, 0.0)[0]).all()
+    assert np.isnan(grid_error(np.full(3, math.nan), NONE[:3], work, [row()] * 3, 0.0)[0]).all()
     assert np.isnan(scatter(np.array([[0.5, 0.5, 0.5], [math.nan] * 3]), work)).all()
 
 
@@ -148,7 +189,7 @@ def test_a_curve_is_not_extrapolated():
 
 def test_resolved_contacts_keep_a_small_error_of_the_grid():
     """The floor is 3 % of the error of 90 % of contacts with such patches: 0.05 at 30 nodes."""
-    error, _ = widened_error(0.0, 0.0, row(median_patch_nodes=30.0), 0.0)
+    error, _ = widened_error(0.0, 0.0, 0.0, row(median_patch_nodes=30.0), 0.0)
     assert error == approx(0.03 * 0.05, rel=1e-9)
 
 
@@ -165,7 +206,7 @@ def test_the_changes_by_materials_add_as_squares(case_text, tmp_path, monkeypatc
 
 def test_grids_that_agree_without_resolving_have_an_error():
     """Both grids give COR = 1.0000, but cells 16 times finer give 0.979."""
-    error, _ = widened_error(0.0, 0.0, row(median_patch_nodes=1, restitution=1.0), 0.0)
+    error, _ = widened_error(0.0, 0.0, 0.0, row(median_patch_nodes=1, restitution=1.0), 0.0)
     assert error > 0.4
 
 

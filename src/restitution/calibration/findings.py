@@ -6,12 +6,9 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.calibration.fit import Fit
-from restitution.calibration.least_squares import DISTANCE, RANGE, at_bound
-
-Array = NDArray[np.float64]
+from restitution.calibration.least_squares import DISTANCE, RANGE
 
 WIDEST = 4.0
 """Ratio of the ends of a 95 % interval above which a parameter is not identifiable."""
@@ -106,20 +103,18 @@ def product_in_words(exponents: dict[str, float], half: float) -> str:
 
 def _correlated(found: Fit) -> Iterator[str]:
     r = found.uncertainty.correlation
-    for i in range(found.x.size):
-        for j in range(i):
-            both = identifiable(found, i) and identifiable(found, j)
-            if both and abs(r[i, j]) > _CORRELATED:
-                one, other = found.parameters[j].key, found.parameters[i].key
-                yield (
-                    f"{one} and {other} cannot be told apart by these data (correlation "
-                    f"{r[i, j]:.3f}): a change of one compensates for a change of the other"
-                )
+    for i, j in np.argwhere(np.tril(np.abs(r) > _CORRELATED, -1)).tolist():
+        if identifiable(found, i) and identifiable(found, j):
+            one, other = found.parameters[j].key, found.parameters[i].key
+            yield (
+                f"{one} and {other} cannot be told apart by these data (correlation "
+                f"{r[i, j]:.3f}): a change of one compensates for a change of the other"
+            )
 
 
 def _bounds(found: Fit) -> Iterator[str]:
     for parameter, x in zip(found.parameters, found.x.tolist(), strict=True):
-        if at_bound(x):
+        if abs(x) > 0.99 * math.log(RANGE):  # x = ln(value/first guess)
             side = "above" if x > 0 else "below"
             yield (
                 f"{parameter.key} ended at the limit of the search, a factor of {RANGE:g} {side} "
@@ -150,10 +145,9 @@ def _unexplained(found: Fit) -> Iterator[str]:
 
     if found.measured.deviation is None or found.freedom < 1:
         return
-    weights = np.hypot(found.weights, found.deviations.model)
-    squares = float(np.sum((found.residuals / weights) ** 2))
-    if squares > chi2.ppf(1 - _UNLIKELY, found.freedom):
-        rms = math.sqrt(float(np.mean((found.residuals / weights) ** 2)))
+    squares = (found.residuals / np.hypot(found.weights, found.deviations.model)) ** 2
+    if squares.sum() > chi2.ppf(1 - _UNLIKELY, found.freedom):
+        rms = math.sqrt(squares.mean())
         yield (
             f"the case does not explain the data: residuals are {rms:.2g} times their standard "
             "deviations, which include those due to surface, grid and model; check the values that "

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,19 +15,18 @@ from restitution.calibration.least_squares import (
     Minimum,
     distinct,
     jacobian,
-    search,
     search_widely,
+    searches,
 )
 from restitution.calibration.measured import Measured
-from restitution.calibration.model import CaseModel
+from restitution.calibration.model import Array, CaseModel
 from restitution.calibration.parameters import Parameter, free_parameters
 from restitution.calibration.uncertainty import Deviations, Uncertainty
 from restitution.case.case_file import parse_case, parse_toml
 from restitution.errors import CaseError, RestitutionError
 from restitution.runs.log import Say, ignore
 from restitution.runs.refinement import settled
-
-Array = NDArray[np.float64]
+from restitution.sweeps.sweep import put
 
 _FINE = 60  # number of velocities of the fitted curve
 _EQUAL = 0.02  # initial standard deviation of COR if the table of measurements has none
@@ -118,19 +115,20 @@ def fit(
     V = measured.velocity
     model = CaseModel(content, folder, parameters, float(V[0]), float(V[-1]), progress)
     start = np.zeros(len(parameters))
-    _settle_grid(model, start)
+    case = model.case(start)
+    if case.grid.refine == "auto":  # use the factor that resolves the case with the first guess
+        put(content, "grid.refine", settled(case, folder).grid.factor)
     model.require_possible(start)
     given = measured.deviation
     data = Data(V, measured.restitution, np.full(V.size, _EQUAL) if given is None else given)
     minima = search_widely(model, data)
-    best = _best(model, data, minima)
+    # The minima were found on cells twice as large. Now search on the grid of the case, from the
+    # best of them at which the case can be solved on this grid.
+    best = next(searches(model, data, [each.x for each in minima]))
     # Give less weight to points whose COR differs between surfaces or grids.
     noise = _noise(measured, model.restitution(best.x, V), best.x.size)
     data = replace(data, deviation=np.hypot(noise, _deviations(model, best.x, V).systematic))
-    ends = [search(model, data, best.x)]
-    for other in distinct([best, *minima])[1:]:
-        with suppress(RestitutionError):
-            ends.append(search(model, data, other.x))
+    ends = searches(model, data, [each.x for each in distinct([best, *minima])])
     return _result(model, measured, data, sorted(ends, key=lambda end: end.squares))
 
 
@@ -146,32 +144,6 @@ def _check_points(measured: Measured, parameters: int) -> None:
             f"--free: with {parameters} keys and as many measured points there are no residuals "
             "from which to estimate the noise; add the column restitution_std, or measure more"
         )
-
-
-def _settle_grid(model: CaseModel, start: Array) -> None:
-    """Replace `grid.refine = "auto"` by the factor that resolves the case with the first guess."""
-    case = model.case(start)
-    if case.grid.refine == "auto":
-        factor = settled(case, model.folder).grid.factor
-        content: dict[str, Any] = dict(model.content)
-        content["grid"] = {**content["grid"], "refine": factor}
-        model.content = content
-
-
-def _best(model: CaseModel, data: Data, minima: Sequence[Minimum]) -> Minimum:
-    """Search on the grid of the case, starting from the best of the `minima`.
-
-    The `minima` were found on cells twice as large. If the case cannot be solved at the best one,
-    the search starts from the next one.
-    """
-    failure: RestitutionError | None = None
-    for start in minima:
-        try:
-            return search(model, data, start.x)
-        except RestitutionError as error:
-            failure = failure or error
-    assert failure is not None  # `search_widely` returns a minimum
-    raise failure
 
 
 def _deviations(model: CaseModel, x: Array, velocity: Array) -> Deviations:

@@ -51,8 +51,7 @@ def fitted_case(found: Fit, out: Path) -> str:
     for part in rough if isinstance(rough, list) else [rough]:
         part["realisations"] = found.model.surfaces
         if "file" in part:
-            file = os.path.relpath(found.model.folder / part["file"], out)
-            part["file"] = Path(file).as_posix()
+            part["file"] = Path(os.path.relpath(found.model.folder / part["file"], out)).as_posix()
     return tomli_w.dumps(content)
 
 

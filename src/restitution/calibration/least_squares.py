@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from restitution.calibration.model import CaseModel, Cost
+from restitution.calibration.model import Array, CaseModel, Cost
 from restitution.errors import CaseError, RestitutionError
-
-Array = NDArray[np.float64]
 
 RANGE = 30.0  # values from 1/30 to 30 times the first guess are searched
 
@@ -89,20 +86,17 @@ def search(model: CaseModel, data: Data, start: Array, cost: Cost = "full") -> M
     """
     from scipy.optimize import least_squares
 
-    def residuals(x: Array) -> Array:
-        return (model.restitution(x, data.velocity, cost) - data.restitution) / data.deviation
-
     def safe(x: Array) -> Array:
         """Return the residuals.
 
         If the case cannot be solved, return residuals so large that the step is rejected.
         """
         try:
-            return residuals(x)
+            return _residuals(model, data, x, cost)
         except RestitutionError:
             return np.full(data.velocity.size, _FAILED)
 
-    residuals(start)
+    _residuals(model, data, start, cost)  # raises if the case cannot be solved at the start
     found = least_squares(
         safe,
         start,
@@ -118,25 +112,44 @@ def search(model: CaseModel, data: Data, start: Array, cost: Cost = "full") -> M
     return Minimum(np.asarray(found.x), 2 * float(found.cost))
 
 
+def searches(
+    model: CaseModel, data: Data, starts: Sequence[Array], cost: Cost = "full"
+) -> Iterator[Minimum]:
+    """Search from each of `starts`, except from those at which the case cannot be solved.
+
+    If the case cannot be solved at any of them, the `RestitutionError` of the first one is raised.
+    """
+    failures: list[RestitutionError] = []
+    for start in starts:
+        try:
+            yield search(model, data, start, cost)
+        except RestitutionError as error:
+            failures.append(error)
+    if len(failures) == len(starts):
+        raise failures[0]
+
+
 def search_widely(model: CaseModel, data: Data) -> list[Minimum]:
     """Return the minima of searches with `cost="quick"`, the best first.
 
-    The searches start from the first guess and from the best points of a scan over the range of the
-    parameters. Raises `CaseError` if the case cannot be solved at any of these starting points.
+    The searches start from the first guess and from the best of `_SCANNED` points, which are spread
+    evenly over the range of the parameters. Raises `CaseError` if the case cannot be solved at any
+    of these starting points.
     """
-    guess, *others = _scan(len(model.parameters))
-    found, failure = [], ""
-    scanned = [(squares(model, data, x), k) for k, x in enumerate(others)]
+    from scipy.stats.qmc import Halton
+
+    guess = np.zeros(len(model.parameters))
+    # Skip the first point of the sequence, which is at a corner of the range.
+    even = Halton(guess.size, scramble=False).random(_SCANNED + 1)[1:]
+    others = math.log(RANGE) * (2 * even - 1)
+    scanned = [(_squares(model, data, x), k) for k, x in enumerate(others)]
     best = [others[k] for value, k in sorted(scanned)[:_STARTS] if math.isfinite(value)]
-    for start in (guess, *best):
-        try:
-            found.append(search(model, data, start, "quick"))
-        except RestitutionError as error:
-            failure = failure or str(error)
-    if not found:
+    try:
+        found = list(searches(model, data, [guess, *best], "quick"))
+    except RestitutionError as error:
         raise CaseError(
-            f"the case cannot be solved at the first guess of the parameters: {failure}"
-        )
+            f"the case cannot be solved at the first guess of the parameters: {error}"
+        ) from None
     return sorted(found, key=lambda minimum: minimum.squares)
 
 
@@ -156,24 +169,14 @@ def distinct(minima: Sequence[Minimum]) -> list[Minimum]:
     return kept
 
 
-def squares(model: CaseModel, data: Data, x: Array) -> float:
+def _residuals(model: CaseModel, data: Data, x: Array, cost: Cost) -> Array:
+    """Differences between computed and measured COR, divided by their standard deviations."""
+    return (model.restitution(x, data.velocity, cost) - data.restitution) / data.deviation
+
+
+def _squares(model: CaseModel, data: Data, x: Array) -> float:
     """Sum of squared weighted residuals with `cost="quick"`; inf if the case cannot be solved."""
     try:
-        off = model.restitution(x, data.velocity, "quick") - data.restitution
+        return float(np.sum(_residuals(model, data, x, "quick") ** 2))
     except RestitutionError:
         return math.inf
-    return float(np.sum((off / data.deviation) ** 2))
-
-
-def at_bound(x: float) -> bool:
-    """Whether x = ln(value/first guess) is at a limit of the search."""
-    return abs(x) > 0.99 * math.log(RANGE)
-
-
-def _scan(parameters: int) -> Sequence[Array]:
-    """Return the first guess and `_SCANNED` points, spread evenly over the range of the search."""
-    from scipy.stats.qmc import Halton
-
-    # Skip the first point of the sequence, which is at a corner of the range.
-    even = Halton(parameters, scramble=False).random(_SCANNED + 1)[1:]
-    return [np.zeros(parameters), *(math.log(RANGE) * (2 * even - 1))]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import math
 import stat
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,7 +19,15 @@ Array = NDArray[np.float64]
 VELOCITY, RESTITUTION = "velocity_m_per_s", "restitution"
 # Columns with the standard deviation of COR. If the file has both, the first one is used.
 DEVIATIONS = ("restitution_std", "restitution_error")
-_BOUNDS = 1e-9, 1e4  # range of velocities (m/s), as in a case file
+# Which values a column accepts, and what is wrong with the others. The range of velocities is that
+# of a case file.
+_ACCEPTED: dict[str, tuple[Callable[[float], bool], str]] = {
+    VELOCITY: (lambda V: 1e-9 <= V <= 1e4, "is not a velocity of 1e-09 to 10000 m/s"),
+    RESTITUTION: (lambda e: 0 <= e <= 1, "is outside 0 to 1"),
+    **dict.fromkeys(
+        DEVIATIONS, (lambda std: 0 < std < 1, "is not a standard deviation between 0 and 1")
+    ),
+}
 _LARGEST = 2**24  # largest size of a file (bytes)
 
 
@@ -41,30 +50,15 @@ def read_measured(path: Path) -> Measured:
     Columns that `Measured` does not need are ignored.
     """
     rows = _rows(path)
-    columns = list(rows[0][1]) if rows else []
-    deviation = next((name for name in DEVIATIONS if name in columns), None)
+    if not rows:
+        raise CaseError(f"{path}: has no rows; write a row for each impact velocity")
+    deviations = [name for name in DEVIATIONS if name in rows[0][1]]
+    columns = [VELOCITY, RESTITUTION, *deviations[:1]]
     found = []
     for line, row in rows:
-        V = _number(path, line, row, VELOCITY)
-        if not _BOUNDS[0] <= V <= _BOUNDS[1]:
-            raise _wrong(
-                path, line, VELOCITY, row, f"is not a velocity of {_BOUNDS[0]:g} to 10000 m/s"
-            )
-        e = _number(path, line, row, RESTITUTION)
-        if not 0 <= e <= 1:
-            raise _wrong(path, line, RESTITUTION, row, "is outside 0 to 1")
-        std = math.nan
-        if deviation is not None:
-            std = _number(path, line, row, deviation)
-            if not 0 < std < 1:
-                raise _wrong(
-                    path, line, deviation, row, "is not a standard deviation between 0 and 1"
-                )
-        found.append((V, e, std))
-    if not found:
-        raise CaseError(f"{path}: has no rows; write a row for each impact velocity")
-    V, e, std = np.array(sorted(found)).T
-    return Measured(V, e, None if deviation is None else std)
+        found.append([_number(path, line, row, column) for column in columns])
+    V, e, *std = np.array(sorted(found)).T
+    return Measured(V, e, std[0] if std else None)
 
 
 def _rows(path: Path) -> list[tuple[int, dict[str, str]]]:
@@ -80,9 +74,12 @@ def _rows(path: Path) -> list[tuple[int, dict[str, str]]]:
             )
         with open(path, newline="", encoding="utf-8-sig") as file:
             reader = csv.DictReader(file, strict=True, skipinitialspace=True)
-            reader.fieldnames = [name.strip() for name in reader.fieldnames or ()]
-            columns = list(reader.fieldnames)
-            rows = [(reader.line_num, row) for row in reader if any(map(_filled, row.values()))]
+            columns = reader.fieldnames = [name.strip() for name in reader.fieldnames or ()]
+            rows = [
+                (reader.line_num, row)
+                for row in reader
+                if any(str(cell or "").strip() for cell in row.values())
+            ]
     except OSError as error:
         raise CaseError(f"{path}: cannot be read ({error.strerror or error})") from None
     except (UnicodeDecodeError, csv.Error) as error:
@@ -99,10 +96,6 @@ def _rows(path: Path) -> list[tuple[int, dict[str, str]]]:
     return rows
 
 
-def _filled(cell: object) -> bool:
-    return bool(cell.strip()) if isinstance(cell, str) else bool(cell)
-
-
 def _number(path: Path, line: int, row: dict[str, str], column: str) -> float:
     try:
         value = float(row[column])
@@ -111,6 +104,9 @@ def _number(path: Path, line: int, row: dict[str, str], column: str) -> float:
     if not math.isfinite(value):
         unit = " in m/s, without the unit" if column == VELOCITY else ""
         raise _wrong(path, line, column, row, f"is not a number; write a number{unit}")
+    accepts, wrong = _ACCEPTED[column]
+    if not accepts(value):
+        raise _wrong(path, line, column, row, wrong)
     return value
 
 

@@ -11,7 +11,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal
 
@@ -57,35 +56,26 @@ class Curve:
     """COR of one surface at increasing impact velocities (m/s), shape (depths,).
 
     `ratio` is W_u/W_l, the work of unloading divided by the work of loading. `solver_error` and
-    `model_error` are errors of COR. `resolved` says whether the grid resolves the contact.
+    `model_error` are errors of COR. `resolved` is 1 if the grid resolves the contact, else 0.
     """
 
-    velocity: Array
-    ratio: Array
+    ratio: RatioCurve
     solver_error: Array
     model_error: Array
-    resolved: NDArray[np.bool_]
-    adhesive: bool
-
-    @cached_property
-    def _between(self) -> RatioCurve:
-        return RatioCurve(self.velocity, self.ratio, adhesive=self.adhesive)
+    resolved: Array
 
     def restitution(self, velocity: Array) -> Array:
         """COR at `velocity` (m/s), by interpolation."""
-        inside = np.clip(velocity, self.velocity[0], self.velocity[-1])
-        ratios = np.array([self._between.at(V) for V in inside.tolist()])
+        inside = np.clip(velocity, self.ratio.velocities[0], self.ratio.velocities[-1])
+        ratios = np.array([self.ratio.at(V) for V in inside.tolist()])
         return np.asarray(np.sqrt(np.clip(ratios, 0.0, 1.0)))
 
-    def error(self, velocity: Array, name: Literal["solver_error", "model_error"]) -> Array:
-        """Solver error or model error of COR at `velocity` (m/s), by interpolation."""
-        known = getattr(self, name)
-        return np.asarray(np.interp(np.log(velocity), np.log(self.velocity), known))
-
-    def resolved_at(self, velocity: Array) -> NDArray[np.bool_]:
-        """Whether the grid resolves the two computed contacts that enclose `velocity` (m/s)."""
-        known = self.resolved.astype(float)
-        return np.asarray(np.interp(np.log(velocity), np.log(self.velocity), known) > 1 - 1e-9)
+    def interpolated(
+        self, name: Literal["solver_error", "model_error", "resolved"], velocity: Array
+    ) -> Array:
+        """Interpolate one of the fields at `velocity` (m/s)."""
+        V = self.ratio.velocities
+        return np.asarray(np.interp(np.log(velocity), np.log(V), getattr(self, name)))
 
 
 @dataclass(frozen=True)
@@ -100,11 +90,16 @@ class Mean:
 
     def error(self, velocity: Array, name: Literal["solver_error", "model_error"]) -> Array:
         """Solver error or model error of COR at `velocity` (m/s): the largest of all surfaces."""
-        return np.asarray(np.max([each.error(velocity, name) for each in self.curves], axis=0))
+        errors = [each.interpolated(name, velocity) for each in self.curves]
+        return np.asarray(np.max(errors, axis=0))
 
     def resolved_at(self, velocity: Array) -> NDArray[np.bool_]:
-        """Whether the contact of every surface is resolved at `velocity` (m/s)."""
-        return np.asarray(np.all([each.resolved_at(velocity) for each in self.curves], axis=0))
+        """Whether the grid resolves the two computed contacts that enclose `velocity` (m/s).
+
+        True only if it resolves them for every surface.
+        """
+        resolved = [each.interpolated("resolved", velocity) for each in self.curves]
+        return np.asarray(np.min(resolved, axis=0) > 1 - 1e-9)
 
 
 def curve_of(
@@ -125,7 +120,6 @@ def curve_of(
             while (collide(state).impact_velocity or 0.0) > low:
                 state = solve(contact, state.indentation / _RATIO)
         rows = [_row(state, unloading)]
-        depths = [state.indentation]
         # If `low` equals `high`, one depth is enough, although its velocity can be slightly below
         # `high`.
         while rows[-1][0] < high and low < high:
@@ -133,18 +127,17 @@ def curve_of(
             row = _row(state, unloading)
             if row[0] > rows[-1][0]:
                 rows.append(row)
-                depths.append(state.indentation)
     first = max(sum(row[0] <= low for row in rows) - 1, 0)
-    V, ratio, solver, model, resolved = np.array(rows[first:]).T
-    curve = Curve(V, ratio, solver, model, resolved.astype(bool), contact.adhesive)
-    return curve, depths[first]
+    V, ratio, solver, model, resolved, depth = np.array(rows[first:]).T
+    curve = Curve(RatioCurve(V, ratio, adhesive=contact.adhesive), solver, model, resolved)
+    return curve, float(depth[0])
 
 
 def _row(state: State, unloading: UnloadingTable) -> tuple[float, ...]:
-    """Return the values of a `Curve` at one depth.
+    """Return the values of a `Curve` at one depth, and the depth.
 
-    They are the impact velocity (m/s), W_u/W_l, the solver error and the model error of COR, and
-    whether the grid resolves the contact.
+    They are the impact velocity (m/s), W_u/W_l, the solver error and the model error of COR,
+    whether the grid resolves the contact, and the depth (m).
     """
     collision = collide(state, method=unloading.method, tolerance=unloading.restitution_error)
     fine = adhesive_nodes(state) >= ADHESIVE_NODES
@@ -154,6 +147,7 @@ def _row(state: State, unloading: UnloadingTable) -> tuple[float, ...]:
         collision.restitution_error,
         model_error(state, collision.restitution),
         fine and resolves(median_patch(state.patch_sizes())),
+        state.indentation,
     )
 
 
@@ -197,22 +191,8 @@ class CaseModel:
     def at(self, x: Array, cost: Cost = "full") -> Mean:
         """Compute the mean curve of the surfaces at `x`. Raises the errors of `curve_of`."""
         key = (x.tobytes(), cost)
-        if key not in self._known:
-            self._known[key] = self._computed(x, cost)
-        return self._known[key]
-
-    @property
-    def surfaces(self) -> int:
-        """Number of surfaces: the realisations of the case if there are several, else `SURFACES`.
-
-        A case without roughness has one surface.
-        """
-        case = self.case(np.zeros(len(self.parameters)))
-        if not case.roughness:
-            return 1
-        return case.realisations if case.realisations > 1 else SURFACES
-
-    def _computed(self, x: Array, cost: Cost) -> Mean:
+        if key in self._known:
+            return self._known[key]
         case = self.case(x)
         curves = []
         for number in range(min(_FEW, self.surfaces) if cost == "quick" else self.surfaces):
@@ -225,7 +205,19 @@ class CaseModel:
             curves.append(curve)
         self.evaluations += len(curves)
         self.progress(f"{self.evaluations} curves")
-        return Mean(tuple(curves))
+        self._known[key] = Mean(tuple(curves))
+        return self._known[key]
+
+    @property
+    def surfaces(self) -> int:
+        """Number of surfaces: the realisations of the case if there are several, else `SURFACES`.
+
+        A case without roughness has one surface.
+        """
+        case = self.case(np.zeros(len(self.parameters)))
+        if not case.roughness:
+            return 1
+        return case.realisations if case.realisations > 1 else SURFACES
 
     def require_possible(self, x: Array) -> None:
         """Raise `CaseError` or `SurfaceError` if results at parameters `x` would be meaningless."""

@@ -180,8 +180,7 @@ class Uncertainty:
 
         The result contains its coefficients; the coefficient of largest magnitude is 1.
         """
-        _, _, Vt = np.linalg.svd(self.scaled, full_matrices=False)
-        direction: Array = Vt[0]
+        direction = np.linalg.svd(self.scaled, full_matrices=False).Vh[0]
         return np.asarray(direction / direction[np.abs(direction).argmax()])
 
     def effect(self, parameter: int) -> float:

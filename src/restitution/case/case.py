@@ -85,7 +85,7 @@ class Case(Table):
 
     def _check_period(self) -> None:
         """Raise `ValueError` for keys that cannot be combined with a periodic grid."""
-        for name, body in self._bodies().items():
+        for name, body in self.bodies().items():
             if body.radius is not None:
                 raise ValueError(f'{name}.radius: must be "flat" if the grid is periodic')
         if self.impact is not None:
@@ -140,7 +140,7 @@ class Case(Table):
             )
 
     def _check_masses(self) -> None:
-        for name, body in self._bodies().items():
+        for name, body in self.bodies().items():
             if body.radius is not None and body.density is None:
                 raise ValueError(
                     f"{name}.density: is missing; give it, because [impact] needs the mass"
@@ -158,7 +158,7 @@ class Case(Table):
                 f"{key}: oblique impacts are computed for pairs without adhesion only; remove "
                 "this key, or interface.work_of_adhesion"
             )
-        for (name, body), spin in zip(self._bodies().items(), impact.spins(), strict=True):
+        for (name, body), spin in zip(self.bodies().items(), impact.spins(), strict=True):
             if body.radius is None and spin != 0:
                 raise ValueError(f'impact.spin: {name} is a wall and does not turn; give "0 rad/s"')
 
@@ -175,7 +175,7 @@ class Case(Table):
             raise ValueError(f"the table [grid] is missing; {why}: give nodes and spacing")
         raise ValueError(f"grid: nodes and spacing are missing; {why}: give both")
 
-    def _bodies(self) -> dict[str, BodyTable]:
+    def bodies(self) -> dict[str, BodyTable]:
         """The tables of both bodies; the second body is like the first if it is left out."""
         return {"first": self.first, "second": self.second or self.first}
 
@@ -199,7 +199,7 @@ class Case(Table):
 
     def has_library_values(self) -> bool:
         """Whether any value of the bodies is from the materials library, so its spread is known."""
-        return any(body.from_library() for body in self._bodies().values())
+        return any(body.from_library() for body in self.bodies().values())
 
     def refined(self, factor: int) -> Case:
         """Return this case with cells `factor` times smaller than those of [grid]."""
@@ -226,7 +226,7 @@ class Case(Table):
 
     def pair(self) -> Pair:
         """The two bodies. Raises `CaseError` if both are flat and the grid is not periodic."""
-        pair = Pair(*(table.body() for table in self._bodies().values()))
+        pair = Pair(*(table.body() for table in self.bodies().values()))
         if pair.flat and not self.periodic:
             if self.second is None:
                 raise CaseError(
@@ -240,7 +240,7 @@ class Case(Table):
 
     def yielding(self) -> Yielding:
         """The yield model of the contact. Raises `CaseError` if a value for it is missing."""
-        return self.interface.yielding(**self._bodies())
+        return self.interface.yielding(**self.bodies())
 
     def surface(self, folder: Path) -> Surface:
         """Make the composite roughness on the grid; file names are relative to `folder`."""

@@ -6,10 +6,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from rich.table import Column, Table
 
 if TYPE_CHECKING:
-    from rich.table import Table
-
     from restitution.case.case import Case
     from restitution.contact.contact import Contact
 
@@ -55,11 +54,11 @@ def check(
     """Validate CASE and print derived quantities, such as first yield; solve nothing."""
     from restitution.case.case_file import naming
     from restitution.case.derived import deepest_indentation
-    from restitution.cli.console import answers, command, say, say_next, waiting, warn
+    from restitution.cli.console import answers, command, errors, say, say_next, warn
     from restitution.runs.messages import input_warnings, no_range, require_possible
 
     read, cases = _read(case)
-    with naming(case), waiting("making the surface"):
+    with naming(case), errors.status("making the surface"):
         contact = read.contact(case.parent)
         table = _table(read, contact)
     answers.print(table)
@@ -67,7 +66,7 @@ def check(
         say(f"Yield of the contact is set by {from_where}.")
     deepest = deepest_indentation(read)
     require_possible(contact, deepest)
-    with waiting("checking the surface"):
+    with errors.status("checking the surface"):
         warnings = input_warnings(contact, deepest)
         if read.interface.adhesion is None and contact.adhesive:
             warnings += no_range(contact)
@@ -98,16 +97,11 @@ def _read(path: Path) -> tuple[Case, int]:
 
 
 def _table(case: Case, contact: Contact) -> Table:
-    from rich.table import Table
-
     from restitution.case.derived import derived_quantities
     from restitution.numerics.memory import available, in_words
     from restitution.surfaces import describe
 
-    table = Table(box=None, show_header=False)
-    table.add_column(justify="left")
-    table.add_column(justify="right")
-    table.add_column(justify="left")
+    table = Table("", Column(justify="right"), "", box=None, show_header=False)
     nx, ny = contact.grid.nodes
     hx, hy = contact.grid.spacing
     auto = ", before refine" if case.grid.refine == "auto" else ""

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.table import Column, Table
 
 
 def compare(
@@ -22,7 +23,6 @@ def compare(
 ) -> None:
     """Print the differences between the results in A and B, with their errors."""
     from rich.markup import escape
-    from rich.table import Table
 
     from restitution.cli.console import answers, say
     from restitution.results.compare import compare as compared
@@ -33,19 +33,16 @@ def compare(
     if out is not None:
         write_table(out, found.rows)
     if found.inputs:
-        inputs = Table(box=None, header_style="bold")
-        for name in ("input", "A", "B"):
-            inputs.add_column(name, overflow="fold")
+        heads = (Column(name, overflow="fold") for name in ("input", "A", "B"))
+        inputs = Table(*heads, box=None, header_style="bold")
         for differing in found.inputs:
             inputs.add_row(*(escape(cell) for cell in differing))
         answers.print(inputs)
         answers.print()
     swept = [key for key in (found.rows[0] if found.rows else {}) if "." in key or key == "title"]
-    table = Table(box=None, header_style="bold")
-    for name in swept:
-        table.add_column(escape(name))
-    for name in ("indentation (nm)", "COR A", "COR B", "difference", "error", "force B/A", ""):
-        table.add_column(name, justify="right")
+    names = ("indentation (nm)", "COR A", "COR B", "difference", "error", "force B/A", "")
+    numbers = (Column(name, justify="right") for name in names)
+    table = Table(*map(escape, swept), *numbers, box=None, header_style="bold")
     for row in found.rows:
         marks = ("" if row["significant"] else "within error") if row["resolved"] else "unresolved"
         table.add_row(

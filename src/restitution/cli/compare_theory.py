@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from rich.table import Column, Table
 
 from restitution.cli.parameters import CaseFile, FigureFormat, Figures
 
@@ -56,10 +57,12 @@ def compare_theory(
         missing = theories.left_out(read, points)
     written = []
     if out is not None:
-        written.append(write_theories(velocities, found, out))
         lines = theories.theory_lines(read, velocities, found)
         figure = theory_figure(read.title, lines, theories.marks(read), points)
-        written.append(write_figure(out / "theory", figure, figures.value))
+        written += [
+            write_theories(velocities, found, out),
+            write_figure(out / "theory", figure, figures.value),
+        ]
 
     say('COR of the smooth bodies at impact velocities (m/s); "-": outside the range of a theory')
     for table in _tables(velocities.tolist(), found, answers.width):
@@ -81,10 +84,8 @@ def compare_theory(
         say_next(command("compare-theory", case, "--law", "LAW") + " (adds computed points)")
 
 
-def _tables(velocities: list[float], found: "list[Theory]", width: int) -> Iterator[object]:
+def _tables(velocities: list[float], found: "list[Theory]", width: int) -> Iterator[Table]:
     """Make a column for each theory, and as many tables as the width of the terminal requires."""
-    from rich.table import Table
-
     heads = ["\n".join(textwrap.wrap(each.name, 9, break_long_words=False)) for each in found]
     start = 0
     while start < len(found):
@@ -92,10 +93,8 @@ def _tables(velocities: list[float], found: "list[Theory]", width: int) -> Itera
         while end < len(found) and (end == start or left >= _width(heads[end])):
             left -= _width(heads[end])
             end += 1
-        table = Table(box=None, header_style="bold", pad_edge=False)
-        table.add_column("m/s", justify="right", no_wrap=True)
-        for head in heads[start:end]:
-            table.add_column(head, justify="right", no_wrap=True)
+        columns = (Column(h, justify="right", no_wrap=True) for h in ("m/s", *heads[start:end]))
+        table = Table(*columns, box=None, header_style="bold", pad_edge=False)
         for k, V in enumerate(velocities):
             cells = (float(each.restitution[k]) for each in found[start:end])
             table.add_row(f"{V:.4g}", *("-" if math.isnan(e) else f"{e:.4f}" for e in cells))

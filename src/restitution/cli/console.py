@@ -4,15 +4,11 @@ import shlex
 from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from rich.console import Console
+from rich.table import Column, Table
 
 from restitution.errors import one_line
-
-if TYPE_CHECKING:
-    from rich.status import Status
-    from rich.table import Table
 
 answers = Console(highlight=False)
 errors = Console(stderr=True, highlight=False)
@@ -23,14 +19,13 @@ def say(text: str, console: Console = answers, style: str | None = None) -> None
     console.print(text, style=style, markup=False, soft_wrap=True)
 
 
-def table_of_numbers(*columns: str) -> "Table":
-    """Make an empty table with right-aligned columns."""
-    from rich.table import Table
-
-    table = Table(box=None, header_style="bold")
-    for name in columns:
-        table.add_column(name, justify="right", no_wrap=True)
-    return table
+def table_of_numbers(*columns: str | Column) -> Table:
+    """Make an empty table, whose columns are right-aligned unless they are given as `Column`."""
+    each = (
+        column if isinstance(column, Column) else Column(column, justify="right", no_wrap=True)
+        for column in columns
+    )
+    return Table(*each, box=None, header_style="bold")
 
 
 def warn(message: str) -> None:
@@ -51,11 +46,6 @@ def hint_at_kernels() -> None:
 
     if current() is CPU and (why := missing()):
         say(f"Hint: {why}", errors)
-
-
-def waiting(words: str) -> "Status":
-    """Show a spinner with `words` on the standard error of a terminal during a `with` body."""
-    return errors.status(words)
 
 
 def command(verb: str, *arguments: object) -> str:

@@ -20,7 +20,11 @@ def prepare(arguments: Sequence[str]) -> None:
     # backend.
     os.environ["MPLBACKEND"] = "agg"
     _check_threads()
-    for path in (*arguments, _current_folder()):
+    try:
+        current = os.getcwd()
+    except OSError:
+        raise CaseError("the current folder was removed; change to another folder") from None
+    for path in (*arguments, current):
         try:
             path.encode()
         except UnicodeEncodeError:
@@ -29,20 +33,11 @@ def prepare(arguments: Sequence[str]) -> None:
             ) from None
 
 
-def _current_folder() -> str:
-    try:
-        return os.getcwd()
-    except OSError:
-        raise CaseError("the current folder was removed; change to another folder") from None
-
-
 def _check_threads() -> None:
-    name = next((name for name in _THREADS if name in os.environ), None)
-    if name is None:
-        return
-    text = os.environ[name]
+    name = next((name for name in _THREADS if name in os.environ), _THREADS[0])
+    text = os.environ.get(name, "")
     if not text.strip():
-        del os.environ[name]
+        os.environ.pop(name, None)
         return
     # OpenMP accepts a list of numbers of threads; the first is for the outermost parallel level.
     first = text.split(",")[0].strip() if name == "OMP_NUM_THREADS" else text.strip()

@@ -6,21 +6,10 @@ from typing import Annotated
 
 import typer
 
-
-class Code(StrEnum):
-    """DEM codes and formats to which laws can be exported."""
-
-    lammps = "lammps"
-    liggghts = "liggghts"
-    yade = "yade"
-    mercurydpm = "mercurydpm"
-    edem = "edem"
-    mujoco = "mujoco"
-    drake = "drake"
-    csv = "csv"
-
-
-_CODES = f"DEM code: {', '.join(Code)}."
+# DEM codes and formats to which laws can be exported.
+Code = StrEnum(
+    "Code", ["lammps", "liggghts", "yade", "mercurydpm", "edem", "mujoco", "drake", "csv"]
+)
 
 
 def export(
@@ -34,7 +23,10 @@ def export(
             readable=False,
         ),
     ],
-    to: Annotated[Code, typer.Option(metavar="CODE", help=_CODES, show_default=False)],
+    to: Annotated[
+        Code,
+        typer.Option(metavar="CODE", help=f"DEM code: {', '.join(Code)}.", show_default=False),
+    ],
     out: Annotated[
         Path,
         typer.Option("-o", "--out", metavar="OUT", help="Folder for the files.", readable=False),

@@ -4,14 +4,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from rich.table import Column, Table
 
 from restitution.cli.parameters import FigureFormat, Figures, OutFolder
 
 if TYPE_CHECKING:
-    from rich.table import Table
-
     from restitution.calibration.fit import Fit
-    from restitution.calibration.measured import Measured
 
 
 def fit(
@@ -45,6 +43,7 @@ def fit(
     figures: Figures = FigureFormat.png,
 ) -> None:
     """Find the values of KEYS in CASE that explain the restitution in MEASURED."""
+    from restitution.calibration import fit as calibration
     from restitution.calibration.findings import findings
     from restitution.calibration.fit_files import write_fit
     from restitution.calibration.measured import read_measured
@@ -58,6 +57,7 @@ def fit(
         say_written,
         warn,
     )
+    from restitution.cli.progress import spinner
     from restitution.plots.fit import fit_figure
     from restitution.plots.static import write_figure
     from restitution.results.writer import make_folder
@@ -68,19 +68,23 @@ def fit(
     new = make_folder(out)
     hint_at_kernels()
     try:
-        with naming(case):
-            found = _fit(text, case.parent, table, names)
+        with naming(case), spinner("fitting") as show:
+            found = calibration.fit(
+                text, case.parent, table, names, lambda words: show(f"fitting: {words}")
+            )
     except BaseException:
         if new:
             out.rmdir()
         raise
-    written = write_fit(found, text, out)
-    written.append(write_figure(out / "fit", fit_figure(found), figures.value))
+    written = [
+        *write_fit(found, text, out),
+        write_figure(out / "fit", fit_figure(found), figures.value),
+    ]
     answers.print(_table(found))
-    points = found.measured.velocity.size
     rms = float((found.residuals**2).mean() ** 0.5)
     say(
-        f"{points} points, rms residual of COR {rms:.2g}, {found.model.evaluations} curves computed"
+        f"{found.measured.velocity.size} points, rms residual of COR {rms:.2g}, "
+        f"{found.model.evaluations} curves computed"
     )
     for sentence in findings(found):
         warn(sentence)
@@ -88,33 +92,12 @@ def fit(
     say_next(command("run", out / "case.toml", "-o", "RESULTS"))
 
 
-def _fit(text: str, folder: Path, table: "Measured", names: list[str]) -> "Fit":
-    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
-
-    from restitution.calibration import fit as calibration
-    from restitution.cli.console import errors
-
-    columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
-    with Progress(*columns, console=errors, transient=True) as bar:
-        task = bar.add_task("fitting")
-        return calibration.fit(
-            text,
-            folder,
-            table,
-            names,
-            lambda words: bar.update(task, description=f"fitting: {words}", refresh=True),
-        )
-
-
-def _table(found: "Fit") -> "Table":
-    from rich.table import Table
-
+def _table(found: "Fit") -> Table:
     from restitution.calibration.findings import identifiable, interval_in_words
+    from restitution.cli.console import table_of_numbers
 
-    table = Table(box=None, header_style="bold")
-    table.add_column("parameter", overflow="fold")
-    for name in ("fitted", "95 % interval", "± model", "± one place"):
-        table.add_column(name, justify="right", no_wrap=True)
+    heads = ("fitted", "95 % interval", "± model", "± one place")
+    table = table_of_numbers(Column("parameter", overflow="fold"), *heads)
     by = found.uncertainty
     for k, parameter in enumerate(found.parameters):
         table.add_row(

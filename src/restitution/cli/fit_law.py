@@ -1,9 +1,11 @@
 """`restitution fit-law`: COR against impact velocity, and the force laws fitted to it."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from rich.table import Column, Table
 
 from restitution.cli.parameters import FigureFormat, Figures
 
@@ -30,25 +32,10 @@ def fit_law(
     figures: Figures = FigureFormat.png,
 ) -> None:
     """Write the restitution law of RESULTS to OUT: table, compact fit and fitted force laws."""
-    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+    from restitution.cli.console import answers, command, say, say_next, say_written, warn
+    from restitution.cli.progress import spinner
 
-    from restitution.cli.console import (
-        answers,
-        command,
-        errors,
-        say,
-        say_next,
-        say_written,
-        warn,
-    )
-
-    columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
-    with Progress(*columns, console=errors, transient=True) as bar:
-        task = bar.add_task("reading the results")
-
-        def show(words: str) -> None:
-            bar.update(task, description=words, refresh=True)
-
+    with spinner("reading the results") as show:
         from restitution.laws.from_results import law_of
         from restitution.laws.law_files import write_law
         from restitution.plots.law import law_figure
@@ -72,44 +59,39 @@ def fit_law(
     say_written(out, [path.name for path in written])
     if found.sticks_everywhere:
         return
-    speed = f"{_middle(found):.2g} m/s"
+    middle = (max(found.lowest, found.sticks_below or 0.0) * found.highest) ** 0.5
+    speed = f"{middle:.2g} m/s"
     say_next(command("export", out, "--to", "lammps", "--velocity", speed, "-o", "OUT"))
 
 
-def _in_words(law: "Law") -> list[str]:
+def _in_words(law: "Law") -> Iterator[str]:
     from restitution.laws.law import LOSS
 
-    lines = []
     if law.sticks_below is not None:
-        lines.append(f"sticks below {law.sticks_below:.4g} m/s")
+        yield f"sticks below {law.sticks_below:.4g} m/s"
     if law.fit is None and law.column("restitution").min() > 1 - LOSS:
-        lines.append("COR is 1 at all of these velocities: there is nothing to fit")
+        yield "COR is 1 at all of these velocities: there is nothing to fit"
     elif law.fit is None:
-        lines.append("no compact fit: too few resolved velocities (four or more are needed)")
+        yield "no compact fit: too few resolved velocities (four or more are needed)"
     else:
-        lines.append(
+        yield (
             f"compact fit: {len(law.fit.coefficients)} coefficients, within {law.fit.worst:.1g} of "
             f"COR at the velocities, {law.fit.between:.1g} between them"
         )
-    unresolved = sum(not point.resolved for point in law.points)
-    if unresolved:
-        lines.append(f"{unresolved} of {len(law.points)} velocities are not resolved by the grid")
-    return lines
+    if unresolved := sum(not point.resolved for point in law.points):
+        yield f"{unresolved} of {len(law.points)} velocities are not resolved by the grid"
 
 
-def _table(laws: "tuple[FittedLaw, ...]") -> object:
-    from rich.table import Table
-
-    table = Table(box=None, header_style="bold")
-    table.add_column("fitted law")
-    table.add_column("parameters", overflow="fold")
-    table.add_column("COR: rms", justify="right")
-    table.add_column("worst", justify="right")
+def _table(laws: "tuple[FittedLaw, ...]") -> Table:
+    table = Table(
+        "fitted law",
+        Column("parameters", overflow="fold"),
+        Column("COR: rms", justify="right"),
+        Column("worst", justify="right"),
+        box=None,
+        header_style="bold",
+    )
     for each in laws:
         parameters = ", ".join(f"{name} {value:.4g}" for name, value in each.parameters.items())
         table.add_row(each.name, parameters, f"{each.rms:.3f}", f"{each.worst:.3f}")
     return table
-
-
-def _middle(law: "Law") -> float:
-    return float((max(law.lowest, law.sticks_below or 0.0) * law.highest) ** 0.5)

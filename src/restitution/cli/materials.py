@@ -5,10 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from rich.table import Column, Table
 
 if TYPE_CHECKING:
-    from rich.table import Table
-
     from restitution.case.materials import Material
 
 # For each key of the library: name, symbol, factor from SI, unit.
@@ -66,31 +65,27 @@ def _list(found: dict[str, Material]) -> Table:
     heads = [
         f"{symbol} ({unit})" if unit else symbol for _, symbol, _, unit in _QUANTITIES.values()
     ]
-    table = table_of_numbers("name", *heads)
-    table.columns[0].justify = "left"
-    table.add_column("material", overflow="fold")
+    name, material = Column("name", no_wrap=True), Column("material", overflow="fold")
+    table = table_of_numbers(name, *heads, material)
     for key, each in found.items():
-        values = []
-        for quantity, (_, _, scale, _) in _QUANTITIES.items():
-            known = getattr(each, quantity)
-            values.append("-" if known is None else f"{scale * known.value:.5g}")
-        table.add_row(key, *values, each.name)
+        known = ((getattr(each, name), scale) for name, (_, _, scale, _) in _QUANTITIES.items())
+        cells = ("-" if of is None else f"{scale * of.value:.5g}" for of, scale in known)
+        table.add_row(key, *cells, each.name)
     return table
 
 
 def _values(material: Material) -> Table:
     from rich.markup import escape
-    from rich.table import Table
 
-    table = Table(box=None, header_style="bold")
-    for head in ("quantity", "value", "spread", "unit", "source"):
-        numbers = head in ("value", "spread")
-        table.add_column(
-            head,
-            justify="right" if numbers else "left",
-            no_wrap=head != "source",
-            overflow="fold",
-        )
+    from restitution.cli.console import table_of_numbers
+
+    table = table_of_numbers(
+        Column("quantity", no_wrap=True, overflow="fold"),
+        Column("value", justify="right", no_wrap=True, overflow="fold"),
+        Column("spread", justify="right", no_wrap=True, overflow="fold"),
+        Column("unit", no_wrap=True, overflow="fold"),
+        Column("source", overflow="fold"),
+    )
     for key, (label, _, scale, unit) in _QUANTITIES.items():
         if (known := getattr(material, key)) is not None:
             spread = f"{scale * known.low:.5g} to {scale * known.high:.5g}"

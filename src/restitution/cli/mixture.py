@@ -27,8 +27,8 @@ def mixture(
     """Compute the restitution law of every pair in MIXTURE; write all laws to OUT."""
     import time
 
-    from restitution.cli.cases_progress import cases_progress
     from restitution.cli.console import command, say, say_next, say_written, warn
+    from restitution.cli.progress import cases_progress
     from restitution.mixtures.mixture import run_mixture
     from restitution.mixtures.mixture_file import read_mixture
     from restitution.mixtures.mixture_folder import (
@@ -59,8 +59,7 @@ def mixture(
     names.append(write_figure(out / "restitution", picture, figures.value).name)
     for warning in condensed_warnings(pairs):
         warn(warning)
-    unresolved = sum(any(not point.resolved for point in pair.law.points) for pair in pairs)
-    if unresolved:
+    if unresolved := sum(not all(point.resolved for point in pair.law.points) for pair in pairs):
         warn(f"{unresolved} of {len(pairs)} laws have velocities that the grid does not resolve")
     worst = max(pair.interpolation_error for pair in pairs)
     say(

@@ -21,5 +21,4 @@ def report(
     from restitution.cli.console import say_written
     from restitution.pages.report import write_report
 
-    page = write_report(results)
-    say_written(page)
+    say_written(write_report(results))

@@ -4,8 +4,9 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.table import Column, Table
 
-from restitution.cli.parameters import OutFolder, Workers
+from restitution.cli.parameters import OutFolder, Resume, Workers
 
 
 def reproduce(
@@ -17,15 +18,11 @@ def reproduce(
         bool, typer.Option("--refined", help="Halve the grid spacing of rough contacts.")
     ] = False,
     workers: Workers = None,
-    resume: Annotated[
-        bool, typer.Option("--resume", help="Compute the cases that OUT does not hold yet.")
-    ] = False,
+    resume: Resume = False,
 ) -> None:
     """Compute Figures 5 to 14 of Ghanbarzadeh et al. (2019) and check the claims of the paper."""
-    from rich.table import Table
-
-    from restitution.cli.cases_progress import cases_progress
     from restitution.cli.console import answers, command, say_written
+    from restitution.cli.progress import cases_progress
     from restitution.errors import CaseError
     from restitution.reproduce.report import write_reproduction
     from restitution.reproduce.studies import NAMES, Size, bundled
@@ -57,9 +54,8 @@ def reproduce(
                 run_study(study, Path(), folder, there, show)
             done += len(study.cases)
     page, findings = write_reproduction(out, size)
-    table = Table(box=None, header_style="bold")
-    for column in ("figure", "claim", "verdict"):
-        table.add_column(column, overflow="fold")
+    heads = (Column(name, overflow="fold") for name in ("figure", "claim", "verdict"))
+    table = Table(*heads, box=None, header_style="bold")
     for finding in findings:
         table.add_row(finding.figure, finding.claim, finding.verdict)
     answers.print(table)

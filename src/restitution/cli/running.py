@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import typer
+from rich.table import Table
 
 from restitution.cli.parameters import Device, FigureFormat
 
 if TYPE_CHECKING:
-    from rich.table import Table
-
     from restitution.case.case import Case
     from restitution.results.writer import ResultsFolder
 
@@ -32,14 +32,6 @@ def run_with_progress(
     also returns. `runs(case)` is the number of curves, for the progress bar. If a run is
     interrupted or fails, the depths computed so far are stored and drawn.
     """
-    from rich.progress import (
-        BarColumn,
-        Progress,
-        TextColumn,
-        TimeElapsedColumn,
-        TimeRemainingColumn,
-    )
-
     from restitution.case.case_file import naming, read_case
     from restitution.cli.console import (
         answers,
@@ -50,7 +42,8 @@ def run_with_progress(
         say_next,
         say_written,
     )
-    from restitution.cli.signals import Stopped, received
+    from restitution.cli.progress import progress_bar
+    from restitution.cli.signals import received
     from restitution.cli.warn_once import warn_once
     from restitution.numerics.convolution.device import on_device
     from restitution.results.locking import locked
@@ -64,19 +57,9 @@ def run_with_progress(
     folder = ResultsFolder(out)
     say(f"Results go to {out}", errors)
     hint_at_kernels()
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TimeElapsedColumn(),
-        TimeRemainingColumn(),
-    )
     depths = len(read.depths())
     try:
-        with (
-            naming(case),
-            warn_once() as warn,
-            Progress(*columns, console=errors, transient=True) as bar,
-        ):
+        with naming(case), warn_once() as warn, progress_bar() as bar:
             more = 0 if read.periodic else steps(read)
             task = bar.add_task("reading the surface", total=depths * runs(read) + more)
             summary = start(
@@ -96,10 +79,10 @@ def run_with_progress(
             markup=False,
         )
         drawn = {path.name for path in _draw(out, figures)}
-    except KeyboardInterrupt as stop:
+    except KeyboardInterrupt:
         errors.print("Interrupted.", style="red")
         _draw_partial_results(folder, depths, figures)
-        raise typer.Exit(stop.status if isinstance(stop, Stopped) else 130) from None
+        raise typer.Exit(130) from None  # `main` sets another status after SIGTERM
     except BaseException:
         if received:
             errors.print("Interrupted.", style="red")
@@ -152,12 +135,12 @@ def _curve(rows: list[dict[str, float]]) -> Table:
         "depth (nm)", "force (N)", "V (m/s)", "COR", "± model", "nodes", "resolved"
     )
     for row in rows:
-        velocity = row["impact_velocity_m_per_s"]
+        velocity, error = row["impact_velocity_m_per_s"], row["total_error"]
         table.add_row(
             f"{1e9 * row['max_indentation_m']:.4g}",
             f"{row['force_N']:.4g}",
-            "-" if velocity != velocity else f"{velocity:.4g}",
-            f"{row['restitution']:.4f}{_uncertainty(row)}",
+            "-" if math.isnan(velocity) else f"{velocity:.4g}",
+            f"{row['restitution']:.4f}" + ("" if math.isnan(error) else f" ± {error:.4f}"),
             f"{row['model_error']:.3f}",
             f"{row['contact_nodes']:.0f}",
             "yes" if row["resolved"] and row["adhesion_resolved"] else "no",
@@ -181,9 +164,3 @@ def _periodic_curve(rows: list[dict[str, float]]) -> Table:
             "yes" if row["resolved"] else "no",
         )
     return table
-
-
-def _uncertainty(row: dict[str, float]) -> str:
-    """Format the total error with a leading ±; empty if it is unknown."""
-    error = row["total_error"]
-    return "" if error != error else f" ± {error:.4f}"

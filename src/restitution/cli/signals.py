@@ -53,12 +53,10 @@ def stoppable() -> Iterator[None]:
         timer.start()
 
     sys.unraisablehook = drop_or_repeat
-    before = {}
     # Windows has no SIGHUP.
-    for name in ("SIGTERM", "SIGHUP"):
-        number = getattr(signal, name, None)
-        if number is not None and signal.getsignal(number) == signal.SIG_DFL:
-            before[number] = signal.signal(number, stop)
+    numbers = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
+    defaults = [number for number in numbers if signal.getsignal(number) == signal.SIG_DFL]
+    before = {number: signal.signal(number, stop) for number in defaults}
     try:
         yield
     finally:

@@ -82,12 +82,10 @@ def simulate(
         _oblique(run, velocity or [], angle or [], spin or [], friction, out)
         return
     force = stored_force(results)
-    velocities = [velocity_of(text) for text in velocity or []]
-    unloaded = force.unloading_from
-    velocities = velocities or [
+    velocities = [velocity_of(text) for text in velocity or []] or [
         point.velocity
         for point in law.points
-        if (abs(unloaded / point.indentation - 1) < 1e-6).any()
+        if (abs(force.unloading_from / point.indentation - 1) < 1e-6).any()
     ]
     table = table_of_numbers(
         "V (m/s)",

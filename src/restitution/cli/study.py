@@ -28,8 +28,8 @@ def study(
 ) -> None:
     """Run all cases of STUDY; write their results and one table of them to OUT."""
     from restitution.case.case_file import parse_case
-    from restitution.cli.cases_progress import cases_progress
     from restitution.cli.console import command, say, say_next, say_written, warn
+    from restitution.cli.progress import cases_progress
     from restitution.sweeps.executors import chosen_workers
     from restitution.sweeps.scheduler import Tally, run_study
     from restitution.sweeps.study_folder import StudyFolder

@@ -1,6 +1,7 @@
 """`restitution surface`: make or read the surface of a case and describe it."""
 
 import typer
+from rich.table import Table
 
 from restitution.cli.parameters import CaseFile, FigureFormat, Figures, OutFolder
 
@@ -13,11 +14,10 @@ def surface(
 ) -> None:
     """Write the surface of CASE to OUT: heights, ISO 25178 statistics, a figure and a page."""
     import xarray as xr
-    from rich.table import Table
 
     from restitution.case import needs
     from restitution.case.case_file import naming, read_case
-    from restitution.cli.console import answers, command, say_next, say_written, waiting
+    from restitution.cli.console import answers, command, errors, say_next, say_written
     from restitution.pages.surface import write_surface_page
     from restitution.plots.static import write_figure
     from restitution.plots.surface import surface_map
@@ -28,25 +28,22 @@ def surface(
     from restitution.surfaces.texture import texture
 
     read, text = read_case(case)
-    with naming(case), waiting("making the surface"):
+    with naming(case), errors.status("making the surface"):
         made = read.surface(case.parent)
         needs.require(needs.described_bytes(made.grid), made.grid)
     context.with_resource(locked(out))
     ResultsFolder(out)
-    with waiting("describing the surface"):
+    with errors.status("describing the surface"):
         statistics = describe(made) | texture(made)
     hx, hy = made.grid.spacing
     provenance = {**made.provenance, "spacing_x_m": hx, "spacing_y_m": hy}
-    height = xr.DataArray(
-        made.height,
+    labels = {"units": "m", "long_name": "composite roughness"}
+    dataset = xr.Dataset(
+        {"height": (("x", "y"), made.height, labels)},
         {"x": ("x", made.grid.x, {"units": "m"}), "y": ("y", made.grid.y, {"units": "m"})},
-        ("x", "y"),
-        name="height",
-        attrs={"units": "m", "long_name": "composite roughness"},
+        {"title": read.title, "case": text, **provenance},
     )
-    dataset = height.to_dataset()
-    dataset.attrs = {"title": read.title, "case": text, **provenance}
-    with waiting("writing the results"):
+    with errors.status("writing the results"):
         with hold_signals():
             write_netcdf(out / "surface.nc", dataset)
             write_json(out / "statistics.json", {**statistics, "provenance": provenance})

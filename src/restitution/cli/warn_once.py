@@ -27,26 +27,24 @@ def warn_once() -> Iterator[Warn]:
     from restitution.display import some_of, without_numbers
 
     first: dict[str, str] = {}
-    repeated: dict[str, list[str]] = {}
-    differing: set[str] = set()  # kinds of warnings that were repeated with other numbers
+    repeated: dict[str, list[tuple[str, str]]] = {}  # messages and subjects of each kind
 
     def warn_or_count(message: str, subject: str = "") -> None:
         kind = without_numbers(message)
         if kind in first:
-            repeated.setdefault(kind, []).append(subject)
-            if message != first[kind]:
-                differing.add(kind)
-            return
-        first[kind] = message
-        warn(f"{subject}: {message}" if subject else message)
+            repeated.setdefault(kind, []).append((message, subject))
+        else:
+            first[kind] = message
+            warn(f"{subject}: {message}" if subject else message)
 
     try:
         yield warn_or_count
     finally:
-        for kind, subjects in repeated.items():
-            start = first[kind]
-            start = start if len(start) <= _QUOTED else f"{start[:_QUOTED].rstrip()}…"
-            named = some_of(subjects)
-            numbers = " with other numbers" if kind in differing else ""
+        for kind, others in repeated.items():
+            whole = first[kind]
+            start = whole if len(whole) <= _QUOTED else f"{whole[:_QUOTED].rstrip()}…"
+            differ = any(message != whole for message, _ in others)
+            numbers = " with other numbers" if differ else ""
+            named = some_of(subject for _, subject in others)
             which = f" ({named})" if named else ""
-            warn(f'the same warning{numbers} applies to {len(subjects)} more{which}: "{start}"')
+            warn(f'the same warning{numbers} applies to {len(others)} more{which}: "{start}"')

@@ -27,8 +27,7 @@ def pull_off_force(law: Law, velocity: float) -> float:
     The force is interpolated between the computed points, linearly in the logarithm of the
     velocity. NaN if one of the two neighbouring points has no pull-off force.
     """
-    forces = [math.nan if p.pull_off_force is None else p.pull_off_force for p in law.points]
-    V = law.column("velocity")
+    V, forces = law.column("velocity"), law.column("pull_off_force")
     return float(np.interp(math.log(velocity), np.log(V), forces))
 
 

@@ -87,16 +87,17 @@ def _table(table: PairTable, velocity: float | None) -> str:
             "second": str(law.second),
             "friction": math.nan if law.friction is None else law.friction,
         }
+        points = law_rows(law)
         if velocity is None:
-            rows += [{**pair, **row} for row in law_rows(law)]
-            continue
-        estimate = law.at(velocity)
-        values: dict[str, float | str] = {
-            "velocity_m_per_s": velocity,
-            "restitution": estimate.restitution,
-            "restitution_error": estimate.error,
-            "resolved": estimate.resolved,
-            "pull_off_force_N": pull_off_force(law, velocity),
-        }
-        rows.append({**pair, **values, **{key: law_rows(law)[0][key] for key in _WHOLE}})
+            rows += [pair | row for row in points]
+        else:
+            estimate = law.at(velocity)
+            pair |= {
+                "velocity_m_per_s": velocity,
+                "restitution": estimate.restitution,
+                "restitution_error": estimate.error,
+                "resolved": estimate.resolved,
+                "pull_off_force_N": pull_off_force(law, velocity),
+            }
+            rows.append(pair | {key: points[0][key] for key in _WHOLE})
     return table_text(rows)

@@ -22,11 +22,10 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from restitution.dem.adhesion import adhesion_lines
 from restitution.dem.pair_table import PairTable
 from restitution.errors import CaseError, DomainError, one_line
-from restitution.laws.law import Law, Particle
+from restitution.laws.law import FittedLaw, Law, Particle
 
 FRICTION = 0.5  # coefficient of friction of pairs whose case gives none; users should replace it
 STEPS = 5000  # number of time steps in a contact
-TIME_STEP = "the elastic contact time t_c = 2.87 (m*^2/(R* E*^2 V))^(1/5), for an accurate e"
 
 _WIDTH = 98
 _SIGNS = str.maketrans({'"': "'", "`": "'", "\\": "/", "&": "+", "{": "(", "}": ")", "$": "%"})
@@ -37,13 +36,17 @@ _PLAIN = str.maketrans("–—−‐‑’‘“”·×≈→µ", "-----''''.x~>
 
 @dataclass(frozen=True)
 class Pair:
-    """A pair of particle types `i` ≤ `j`: bodies, law, and e at the velocity of the export."""
+    """A pair of particle types `i` ≤ `j`: its bodies, its law, and e at `velocity` (m/s).
+
+    `velocity` is the velocity of the export.
+    """
 
     i: int
     j: int
     first: Particle
     second: Particle
     law: Law
+    velocity: float
     restitution: float
 
     @property
@@ -57,12 +60,22 @@ class Pair:
         return FRICTION if self.law.friction is None else self.law.friction
 
     @property
+    def contact_time(self) -> float:
+        """Contact time (s) of an elastic impact at the velocity of the export."""
+        return float(contact_time(self.law) * self.velocity**-0.2)
+
+    @property
     def shear_modulus(self) -> float:
         """Mindlin's G* (Pa): 1/G* = Σ 2 (2 − ν)(1 + ν)/E."""
         bodies = self.first, self.second
         return 1 / sum(
             2 * (2 - b.poissons_ratio) * (1 + b.poissons_ratio) / b.youngs_modulus for b in bodies
         )
+
+    @property
+    def mindlin_stiffness(self) -> float:
+        """Mindlin's tangential stiffness per contact radius, 8 G* (Pa)."""
+        return 8 * self.shear_modulus
 
     @property
     def twin(self) -> tuple[float, float]:
@@ -74,6 +87,10 @@ class Pair:
         k = self.shear_modulus / self.law.contact_modulus
         nu = min(max((1 - 4 * k) / (1 - 2 * k), 0.0), 0.5)
         return 2 * (1 - nu**2) * self.law.contact_modulus, nu
+
+    def fitted(self, name: str) -> FittedLaw | None:
+        """Return the force law `name` that was fitted to the law of the pair, or None."""
+        return next((fit for fit in self.law.laws if fit.name == name), None)
 
 
 def pairs_at(table: PairTable, velocity: float, code: str, lowest: float) -> list[Pair]:
@@ -91,7 +108,7 @@ def pairs_at(table: PairTable, velocity: float, code: str, lowest: float) -> lis
                 f"coefficient of restitution below {lowest:g}; export at a higher velocity, or "
                 "use an adhesive contact model"
             )
-        found.append(Pair(i, j, table.particles[i - 1], table.particles[j - 1], law, e))
+        found.append(Pair(i, j, table.particles[i - 1], table.particles[j - 1], law, velocity, e))
     return found
 
 
@@ -121,8 +138,8 @@ def identifier(particle: Particle, number: int) -> str:
         .strip("_")[:24]
         .rstrip("_")
         .lower()
+        or "type"
     )
-    word = word or "type"
     return f"{word if word[0].isalpha() else f'p_{word}'}_{number}"
 
 
@@ -144,7 +161,7 @@ def header(
     lines += ["", "Types:"]
     lines += [f"  {k}: {particle}" for k, particle in enumerate(table.particles, 1)]
     for pair in pairs:
-        lines += ["", *_about(pair, velocity, code)]
+        lines += ["", *_about(pair, code)]
     return wrapped(lines)
 
 
@@ -166,7 +183,7 @@ def summary(
         f"The comments in {fragment} give the origin of e.",
     ]
     for pair in pairs:
-        lines += _warnings(pair, velocity)
+        lines += _warnings(pair)
     return wrapped(lines)
 
 
@@ -223,7 +240,8 @@ def _environment() -> Environment:
     )
     environment.filters |= {"number": number, "comment_text": comment_text}
     environment.globals |= {
-        "time_step": TIME_STEP,
+        "time_step": "the elastic contact time t_c = 2.87 (m*^2/(R* E*^2 V))^(1/5), for an "
+        "accurate e",
         "contact_time": contact_time,
         "density_of": density_of,
         "identifier": identifier,
@@ -232,9 +250,11 @@ def _environment() -> Environment:
 
 
 def _origin(velocity: float, code: str, ends: str, constant: bool) -> list[str]:
-    reason = f"e is constant in {code}, but the e of the pairs depends on the velocity."
-    if not constant:
-        reason = f"at other velocities e in {code} differs from the e of the pairs."
+    reason = (
+        f"e is constant in {code}, but the e of the pairs depends on the velocity."
+        if constant
+        else f"at other velocities e in {code} differs from the e of the pairs."
+    )
     return [
         f"Coefficients of restitution for {code}, written by restitution {program_version()}.",
         f"They hold at the impact velocity {velocity:.6g} m/s only: {reason} Export again for "
@@ -244,28 +264,27 @@ def _origin(velocity: float, code: str, ends: str, constant: bool) -> list[str]:
     ]
 
 
-def _about(pair: Pair, velocity: float, code: str) -> list[str]:
-    law, at = pair.law, pair.law.at(velocity)
+def _about(pair: Pair, code: str) -> list[str]:
+    law, velocity = pair.law, pair.velocity
     p_y = "none (elastic)" if law.yield_pressure is None else f"{law.yield_pressure:.6g} Pa"
     lines = [
         f"Pair {pair.i} {pair.j}: {pair.first} and {pair.second}",
         f"  title: {textwrap.shorten(comment_text(law.title), 200, placeholder=' ...')}",
-        f"  e = {at.restitution:.6g} +/- {at.error:.2g} at {velocity:.6g} m/s"
+        f"  e = {pair.restitution:.6g} +/- {law.at(velocity).error:.2g} at {velocity:.6g} m/s"
         + _elsewhere(law, velocity),
         f"  R* = {law.radius:.6g} m, E* = {law.contact_modulus:.6g} Pa, m* = {law.mass:.6g} kg",
         f"  yield pressure p_y: {p_y}; convention: {law.conventions.yield_pressure}",
         f"  end of contact assumed for e: {law.conventions.end_of_contact}",
         f"  the error of e includes: {law.conventions.restitution_error}",
-        f"  elastic contact time: {contact_time(law) * velocity**-0.2:.3g} s; a time step of 1/50 "
+        f"  elastic contact time: {pair.contact_time:.3g} s; a time step of 1/50 "
         "of this time keeps e within 1 % in LAMMPS",
         f"  computed from {law.lowest:.4g} to {law.highest:.4g} m/s; nothing is extrapolated",
     ]
-    lines += adhesion_lines(law, velocity, code)
-    return lines + _warnings(pair, velocity)
+    return lines + adhesion_lines(law, velocity, code) + _warnings(pair)
 
 
-def _warnings(pair: Pair, velocity: float) -> list[str]:
-    lines = []
+def _warnings(pair: Pair) -> list[str]:
+    lines, velocity = [], pair.velocity
     if not pair.law.at(velocity).resolved:
         lines.append(
             f"WARNING: unresolved at {velocity:.6g} m/s (pair {pair.i} {pair.j}): the grid was too "

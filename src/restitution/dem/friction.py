@@ -17,11 +17,6 @@ from restitution.dem.export_common import FRICTION, Pair, commented, wrapped
 STIFFNESS_SHARE = 0.8  # factor on Mindlin's tangential stiffness; see the top of this file
 
 
-def mindlin_stiffness(pair: Pair) -> float:
-    """Mindlin's tangential stiffness per contact radius, 8 G* (Pa)."""
-    return 8 * pair.shear_modulus
-
-
 def friction_note(pairs: Sequence[Pair], sign: str = "", tangential: str = "") -> str:
     """Write comments on the origin of the coefficients of friction.
 

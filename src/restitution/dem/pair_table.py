@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import combinations_with_replacement, product
 
@@ -32,10 +32,9 @@ class PairTable:
         """The radius of the largest sphere, m."""
         return max(body.radius or 0.0 for body in self.spheres)
 
-    def pairs(self) -> Iterator[tuple[int, int, Law]]:
+    def pairs(self) -> list[tuple[int, int, Law]]:
         """The type numbers and the law of every pair, in order."""
-        for (i, j), law in sorted(self.laws.items()):
-            yield i, j, law
+        return [(i, j, law) for (i, j), law in sorted(self.laws.items())]
 
     def require_spheres(self, code: str) -> None:
         """Raise `CaseError` if a pair of types of spheres has no law; `code` needs all of them."""

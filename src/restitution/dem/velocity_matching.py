@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -15,33 +15,31 @@ _TOLERANCE = 0.005  # change of e below which the script stops
 _SAMPLES = 4  # number of intervals of the exported table between two computed velocities
 
 
-@dataclass(frozen=True)
-class Target:
-    """A DEM code, the command that runs it, and the files of its export.
+def matching_script(
+    pairs: list[Pair],
+    comments: str,
+    *,
+    code: str,
+    command: str,
+    fragment: str,
+    matched: str,
+    lowest: float,
+) -> str:
+    """Make the text of `match_velocity.py` for the file `fragment` of the export to `code`.
 
-    `fragment` is the exported file, `matched` the file with the matched e, and `lowest` the
-    smallest e that the code accepts.
+    `command` runs the code, `matched` is the name of the file with the matched e, and `lowest` is
+    the smallest e that the code accepts.
     """
-
-    code: str
-    command: str
-    fragment: str
-    matched: str
-    lowest: float
-
-
-def matching_script(target: Target, pairs: list[Pair], comments: str) -> str:
-    """Make the text of `match_velocity.py` for the fragment of `target`."""
     return render(
         SCRIPT,
         comments=comments,
-        code=target.code,
-        command=target.command,
-        fragment=target.fragment,
-        matched=target.matched,
-        lowest=target.lowest,
+        code=code,
+        command=command,
+        fragment=fragment,
+        matched=matched,
+        lowest=lowest,
         pairs=pairs,
-        points=lambda law: law_points(law, target.lowest),
+        points=partial(law_points, lowest=lowest),
         rounds=_ROUNDS,
         tolerance=_TOLERANCE,
     )

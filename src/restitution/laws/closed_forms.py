@@ -48,7 +48,7 @@ class Bodies:
     """The smooth bodies of a case: the arguments of the theories, in SI units.
 
     `R`, `E` and `m` are the reduced radius R*, the contact modulus E* and the reduced mass m*. `w`
-    is the work of adhesion, and `walls` the number of flat bodies.
+    is the work of adhesion.
     """
 
     R: float
@@ -56,12 +56,11 @@ class Bodies:
     m: float
     p_y: float  # contact pressure at yield; infinite for elastic bodies
     w: float
-    walls: int
+    wall: int | None  # which body is flat (0 or 1); None for two spheres
     equal: bool  # two identical spheres
     sphere_poisson: float
     strengths: tuple[float, float] | None  # Y of both bodies; None unless both have one
     labels: tuple[str, str]
-    sphere_is_first: bool
     separation: float
 
     @classmethod
@@ -75,23 +74,23 @@ class Bodies:
                     f'for example density = "2500 kg/m^3" in [{name}]'
                 )
         assert pair.mass is not None  # the loop above checked both densities
-        tables = case.first, case.second or case.first
+        tables = tuple(case.bodies().values())
         # A yield strength of the interface overrides those of the bodies.
         own = case.interface.yield_strength is None
         Y_1, Y_2 = (table.yield_strength if own else None for table in tables)
-        walls = [math.isinf(body.radius) for body in (pair.first, pair.second)]
+        radii = [pair.first.radius, pair.second.radius]
+        wall = radii.index(math.inf) if math.inf in radii else None
         return cls(
             R=pair.radius,
             E=pair.contact_modulus,
             m=pair.mass,
             p_y=case.yielding().hardness,
             w=case.interface.adhesive_energy,
-            walls=sum(walls),
-            equal=not any(walls) and pair.first == pair.second and Y_1 == Y_2,
-            sphere_poisson=(pair.second if walls[0] else pair.first).poissons_ratio,
+            wall=wall,
+            equal=pair.first == pair.second and Y_1 == Y_2,
+            sphere_poisson=(pair.second if wall == 0 else pair.first).poissons_ratio,
             strengths=None if Y_1 is None or Y_2 is None else (Y_1, Y_2),
             labels=(tables[0].material or "first", tables[1].material or "second"),
-            sphere_is_first=not walls[0],
             separation=case.interface.equilibrium_separation,
         )
 
@@ -118,16 +117,12 @@ class Bodies:
     @cached_property
     def yield_velocity(self) -> float:
         """Yield velocity V_y (m/s); infinite if elastic."""
-        if self.elastic:
-            return math.inf
-        return float(self.yielding.first_yield.velocity(self.m))
+        return math.inf if self.elastic else float(self.yielding.first_yield.velocity(self.m))
 
     @cached_property
     def sticking_velocity(self) -> float:
         """Sticking velocity V_s (m/s); zero without adhesion."""
-        if self.w == 0:
-            return 0.0
-        return float(self.sticking.sticking_velocity(self.m))
+        return 0.0 if self.w == 0 else float(self.sticking.sticking_velocity(self.m))
 
     @cached_property
     def small_velocity(self) -> float:
@@ -144,24 +139,22 @@ class Bodies:
         """State the value of `strength` and its origin, in words."""
         if self.strengths is None:
             return f"Y = p_y/{STRENGTHS:g} = {1e-6 * self.strength:.4g} MPa"
-        softer = self.labels[int(self.strengths[1] < self.strengths[0])]
+        softer = self.labels[self.strengths.index(self.strength)]
         return f"Y = {1e-6 * self.strength:.4g} MPa, the yield_strength of {softer}"
 
     @property
     def yielding_wall(self) -> bool | None:
         """Whether the wall is softer than the sphere; None if unknown, or if there is no wall."""
-        if not self.walls or self.strengths is None or self.strengths[0] == self.strengths[1]:
+        if self.wall is None or self.strengths is None or self.strengths[0] == self.strengths[1]:
             return None
-        return (self.strengths[1] < self.strengths[0]) == self.sphere_is_first
+        return self.strengths[self.wall] == self.strength
 
     def velocity(self, indentation: Array) -> Array:
         """Impact velocity (m/s) that reaches `indentation` (m).
 
         The theory is that of Thornton and Ning, or of Hertz if the bodies are elastic.
         """
-        if self.elastic:
-            return self.hertz.impact_velocity(indentation, self.m)
-        return self.yielding.impact_velocity(indentation, self.m)
+        return (self.hertz if self.elastic else self.yielding).impact_velocity(indentation, self.m)
 
     def depth_under(self, force: Array) -> Array:
         """Indentation (m) under `force` (N), from the same theories as in `velocity`."""
@@ -188,9 +181,8 @@ _ELASTIC = "the case is elastic: nothing yields"
 
 
 def _hertz(b: Bodies, V: Array) -> Form:
-    limit = min(b.yield_velocity, b.small_velocity)
     return Form(
-        within(limit >= V, np.ones_like(V)),
+        within(min(b.yield_velocity, b.small_velocity) >= V, np.ones_like(V)),
         f"nothing yields and the contact is small, {_elastic_range(b)}",
         {} if b.elastic else {"yield_pressure_Pa": b.p_y},
     )
@@ -257,7 +249,7 @@ def _johnson(b: Bodies, V: Array) -> Form | str:
 def _mdr(b: Bodies, V: Array) -> Form | str:
     if b.elastic:
         return _ELASTIC
-    if not b.walls and not b.equal:
+    if b.wall is None and not b.equal:
         return "it needs equal spheres, or a sphere and a wall"
     if b.yielding_wall:
         return "the wall is softer than the sphere, but the model assumes a rigid wall"
@@ -298,8 +290,8 @@ def _elastic_range(b: Bodies) -> str:
 
 def _tabor(b: Bodies) -> str:
     mu = float(b.sticking.tabor_parameter(b.separation))
-    beside = f"here {mu:.2g}" + (", so the true V_s is lower" if mu < 5 else "")
-    return f"JKR holds for a Tabor parameter above 5 ({beside})"
+    lower = ", so the true V_s is lower" if mu < 5 else ""
+    return f"JKR holds for a Tabor parameter above 5 (here {mu:.2g}{lower})"
 
 
 def within(inside: NDArray[np.bool_], e: Array) -> Array:

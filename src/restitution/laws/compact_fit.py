@@ -19,11 +19,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-from restitution.laws.law import CompactFit, Law
-
-Array = NDArray[np.float64]
+from restitution.laws.law import Array, CompactFit, Law
 
 _HIGHEST_DEGREE = 8
 _FEWEST = 4  # smallest number of points for a fit
@@ -36,23 +33,20 @@ _COUNTS = 0.01  # decrease of e² due to adhesion at the velocity `adhesive_belo
 def compact_fit(law: Law) -> CompactFit | None:
     """Fit the compact formula to the resolved points of `law`; None if there are too few points."""
     V, ratio = law.column("velocity", resolved=True), law.column("ratio", resolved=True)
-    lossless = law.work_of_adhesion == 0
-    first = 0
-    while lossless and first < V.size and ratio[first] > 1 - _NO_LOSS:
-        first += 1
+    lossless = int(np.append(ratio <= 1 - _NO_LOSS, True).argmax())  # number of points
     # Keep the last lossless (or sticking) point, because it fixes the polynomial at the low end.
-    first = max(first - 1, 0)
+    first = max(lossless - 1, 0) if law.work_of_adhesion == 0 else 0
     sticks = law.sticks_below
-    used = slice(first, None)
-    if sticks is not None:
-        used = slice(max(int(np.searchsorted(V, sticks)) - 1, 0), None)
-    v, e2 = V[used], ratio[used]
+    begin = first if sticks is None else max(int(np.searchsorted(V, sticks)) - 1, 0)
+    v, e2 = V[begin:], ratio[begin:]
     if v.size < _FEWEST:
         return None
     centre = math.sqrt(v[0] * v[-1])
     width = 0.5 * math.log(v[-1] / v[0])
-    degree, adhesion = _best(v, e2, centre, width, law.work_of_adhesion > 0)
-    solution = _solve(v, e2, centre, width, degree, adhesion)
+    L = np.log(v / centre) / width
+    degree, adhesion = _best(v, L, e2, law.work_of_adhesion > 0)
+    basis = _basis(v, L, degree, adhesion)
+    solution = _solve(basis, e2)
     s = float(solution[-1]) if adhesion else 0.0
     fit = CompactFit(
         coefficients=tuple(float(c) for c in solution[: degree + 1]),
@@ -65,57 +59,50 @@ def compact_fit(law: Law) -> CompactFit | None:
         lowest=float(V[0]),
         highest=float(V[-1]),
         worst=0.0,
-        between=_left_out(v, e2, centre, width, degree, adhesion),
+        between=_left_out(basis, e2),
     )
     worst = np.abs(fit.restitution(V) - law.column("restitution", resolved=True)).max()
     return fit.model_copy(update={"worst": float(worst), "between": max(fit.between, float(worst))})
 
 
-def _best(v: Array, e2: Array, centre: float, width: float, adhesive: bool) -> tuple[int, bool]:
+def _best(v: Array, L: Array, e2: Array, adhesive: bool) -> tuple[int, bool]:
     """Choose the lowest degree with a small error, and whether to include the adhesion term."""
-    errors = {
-        (degree, adhesion): max(
-            _left_out(v, e2, centre, width, degree, adhesion),
-            _misfit(v, e2, centre, width, degree, adhesion),
-        )
+    bases = {
+        (degree, adhesion): _basis(v, L, degree, adhesion)
         for degree in range(min(_HIGHEST_DEGREE, v.size - 3) + 1)
         for adhesion in {False, adhesive}
-        if _solve(v, e2, centre, width, degree, adhesion)[-1] >= 0 or not adhesion
+    }
+    errors = {
+        key: max(_left_out(basis, e2), _misfit(basis @ _solve(basis, e2), e2))
+        for key, basis in bases.items()
+        if _solve(basis, e2)[-1] >= 0 or not key[1]
     }
     good = max(_SIMPLER * min(errors.values()), _GOOD)
     return min(key for key, error in errors.items() if error <= good)
 
 
-def _basis(v: Array, centre: float, width: float, degree: int, adhesion: bool) -> Array:
-    L = np.log(v / centre) / width
+def _basis(v: Array, L: Array, degree: int, adhesion: bool) -> Array:
+    """Terms of the fit at the velocities `v`, one column for each coefficient."""
     basis = np.vander(L, degree + 1, increasing=True)
     return np.column_stack([basis, -1 / v**2]) if adhesion else basis
 
 
-def _solve(v: Array, e2: Array, centre: float, width: float, degree: int, adhesion: bool) -> Array:
-    basis = _basis(v, centre, width, degree, adhesion)
+def _solve(basis: Array, e2: Array) -> Array:
     scale = np.abs(basis).max(axis=0)
     solution: Array = np.linalg.lstsq(basis / scale, e2, rcond=None)[0] / scale
     return solution
 
 
-def _misfit(v: Array, e2: Array, centre: float, width: float, degree: int, adhesion: bool) -> float:
-    """Largest residual of e at the points."""
-    fitted = _basis(v, centre, width, degree, adhesion) @ _solve(
-        v, e2, centre, width, degree, adhesion
-    )
+def _misfit(fitted: Array, e2: Array) -> float:
+    """Largest difference between the fitted and the given e."""
     return float(np.abs(np.sqrt(np.clip(fitted, 0, 1)) - np.sqrt(np.clip(e2, 0, 1))).max())
 
 
-def _left_out(
-    v: Array, e2: Array, centre: float, width: float, degree: int, adhesion: bool
-) -> float:
+def _left_out(basis: Array, e2: Array) -> float:
     """Largest leave-one-out residual of e at the inner points."""
     worst = 0.0
-    for k in range(1, v.size - 1):
-        keep = np.arange(v.size) != k
-        solution = _solve(v[keep], e2[keep], centre, width, degree, adhesion)
-        e2_k = float((_basis(v[k : k + 1], centre, width, degree, adhesion) @ solution)[0])
-        miss = math.sqrt(min(max(e2_k, 0.0), 1.0)) - math.sqrt(min(max(float(e2[k]), 0.0), 1.0))
-        worst = max(worst, abs(miss))
+    for k in range(1, e2.size - 1):
+        others = np.arange(e2.size) != k
+        fitted = basis[k : k + 1] @ _solve(basis[others], e2[others])
+        worst = max(worst, _misfit(fitted, e2[k : k + 1]))
     return worst

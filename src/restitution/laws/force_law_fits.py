@@ -11,15 +11,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from functools import partial
 from itertools import product
+from operator import attrgetter
 
 import numpy as np
-from numpy.typing import NDArray
 
-from restitution.laws.law import LOSS, FittedLaw, Law
-from restitution.theory import EEPA, JKR, MDR, Luding, ThorntonNing, WaltonBraun
+from restitution.laws.law import LOSS, Array, FittedLaw, Law
+from restitution.theory import EEPA, JKR, MDR, ImpactLaw, Luding, ThorntonNing, WaltonBraun
 
-Array = NDArray[np.float64]
 Parameters = dict[str, float]
 
 NAMES = (
@@ -36,22 +36,6 @@ Begin = Callable[[str, int, int], None]
 """Function called before each fit with its name, its number (from 1) and the number of fits."""
 
 _MOST = 1e6  # largest ratio of unloading to loading stiffness
-
-# The parameters of each spring model, in the order of the arguments of its theory.
-_WALTON_BRAUN = ("loading_stiffness_N_per_m", "unloading_stiffness_N_per_m", "hardening_per_m")
-_LUDING = (
-    "loading_stiffness_N_per_m",
-    "limit_stiffness_N_per_m",
-    "adhesive_stiffness_N_per_m",
-    "plasticity_depth",
-)
-_EEPA = (
-    "loading_stiffness_N_per_m_n",
-    "unloading_stiffness_N_per_m_n",
-    "adhesive_stiffness_N_per_m_n",
-    "constant_force_N",
-    "exponent",
-)
 _AT_FORCE_ZERO = "separation, where the force is back to zero"
 
 
@@ -126,14 +110,12 @@ def _thornton_ning(law: Law) -> Iterator[FittedLaw]:
     )
 
     scale = law.lowest
-    e = _seen(law, "restitution")
     adhesive = V_s > 0
-
-    def misfit(x: Array) -> Array:
-        return restitution(V, math.exp(x[0]), scale * x[1] if adhesive else 0.0) - e
-
-    x = _least_squares(
-        misfit, [begin, V_s / scale][: 1 + adhesive], low=[-np.inf, 0.0][: 1 + adhesive]
+    x = _fit(
+        law,
+        lambda v, x: restitution(v, math.exp(x[0]), scale * x[1] if adhesive else 0.0),
+        [begin, V_s / scale][: 1 + adhesive],
+        [-np.inf, 0.0][: 1 + adhesive],
     )
     found = scale * float(x[1]) if adhesive else 0.0
     yield _judged(
@@ -165,18 +147,20 @@ def _walton_braun(law: Law) -> FittedLaw:
     # At the highest velocity, a hardening of this size adds k1 to the unloading stiffness k2.
     scale = math.sqrt(k1 / law.mass) / law.highest
 
-    def springs(x: Array) -> tuple[float, float, float]:
-        return k1, k1 * math.exp(x[0]), scale * float(x[1]) ** 2
+    def springs(x: Array) -> Parameters:
+        return {
+            "loading_stiffness_N_per_m": k1,
+            "unloading_stiffness_N_per_m": k1 * math.exp(x[0]),
+            "hardening_per_m": scale * float(x[1]) ** 2,
+        }
 
-    def restitution(V: Array, x: Array) -> Array:
-        return WaltonBraun(*springs(x)).restitution(V, law.mass)
-
-    x = _fit(law, restitution, [0.1, 1.0], [0.0, 0.0])
-    return _judged(
+    return _fitted_springs(
         law,
         "walton-braun",
-        lambda V: restitution(V, x),
-        dict(zip(_WALTON_BRAUN, springs(x), strict=True)),
+        WaltonBraun,
+        springs,
+        [0.1, 1.0],
+        [0.0, 0.0],
         source="O. R. Walton, R. L. Braun, J. Rheology 30 (1986) 949-980; k2 = k_u + S F_max",
         ends=_AT_FORCE_ZERO,
     )
@@ -186,21 +170,23 @@ def _luding(law: Law) -> FittedLaw:
     k1 = _stiffness(law, exponent=1.0)
     deepest = law.highest * math.sqrt(law.mass / k1)
 
-    def springs(x: Array) -> tuple[float, float, float, float]:
-        k_c = k1 * float(x[2]) if adhesive else 0.0
-        return k1, k1 * math.exp(x[0]), k_c, deepest / (2 * law.radius) * math.exp(x[1])
-
-    def restitution(V: Array, x: Array) -> Array:
-        return Luding(law.radius, *springs(x)).restitution(V, law.mass)
+    def springs(x: Array) -> Parameters:
+        return {
+            "loading_stiffness_N_per_m": k1,
+            "limit_stiffness_N_per_m": k1 * math.exp(x[0]),
+            "adhesive_stiffness_N_per_m": k1 * float(x[2]) if adhesive else 0.0,
+            "plasticity_depth": deepest / (2 * law.radius) * math.exp(x[1]),
+        }
 
     adhesive = [0.1] if law.work_of_adhesion > 0 else []
     stiff = -2 * math.log(max(float(_seen(law, "restitution").mean()), 0.05))
-    x = _fit(law, restitution, [stiff, -2.0, *adhesive], [1e-9, -15.0, *(0.0 for _ in adhesive)])
-    return _judged(
+    return _fitted_springs(
         law,
         "luding",
-        lambda V: restitution(V, x),
-        dict(zip(_LUDING, springs(x), strict=True)),
+        partial(Luding, law.radius),
+        springs,
+        [stiff, -2.0, *adhesive],
+        [1e-9, -15.0, *(0.0 for _ in adhesive)],
         source="S. Luding, Granular Matter 10 (2008) 235-246; plasticity depth of 2 R*",
         ends="indentation zero" if adhesive else _AT_FORCE_ZERO,
     )
@@ -211,24 +197,49 @@ def _eepa(law: Law) -> FittedLaw:
     k1 = _stiffness(law, exponent=n)
     force = float(np.abs(_seen(law, "force")).min()) or 1.0
 
-    def springs(x: Array) -> tuple[float, float, float, float, float]:
-        k_adh, f0 = (k1 * float(x[1]), -force * float(x[2])) if adhesive else (0.0, 0.0)
-        return k1, k1 * math.exp(x[0]), k_adh, f0, n
-
-    def restitution(V: Array, x: Array) -> Array:
-        return EEPA(*springs(x)).restitution(V, law.mass)
+    def springs(x: Array) -> Parameters:
+        return {
+            "loading_stiffness_N_per_m_n": k1,
+            "unloading_stiffness_N_per_m_n": k1 * math.exp(x[0]),
+            "adhesive_stiffness_N_per_m_n": k1 * float(x[1]) if adhesive else 0.0,
+            "constant_force_N": -force * float(x[2]) if adhesive else 0.0,
+            "exponent": n,
+        }
 
     adhesive = [0.01, 0.01] if law.work_of_adhesion > 0 else []
-    x = _fit(law, restitution, [1.0, *adhesive], [0.0, *(0.0 for _ in adhesive)])
-    return _judged(
+    return _fitted_springs(
         law,
         "eepa",
-        lambda V: restitution(V, x),
-        dict(zip(_EEPA, springs(x), strict=True)),
+        EEPA,
+        springs,
+        [1.0, *adhesive],
+        [0.0, *(0.0 for _ in adhesive)],
         source="S. C. Thakur et al., Granular Matter 16 (2014) 383-400; exponent fixed at 3/2",
         ends="indentation zero" if adhesive else _AT_FORCE_ZERO,
         note="" if adhesive else "without adhesion e is the same at every velocity",
     )
+
+
+def _fitted_springs(
+    law: Law,
+    name: str,
+    theory: Callable[..., ImpactLaw],
+    springs: Callable[[Array], Parameters],
+    start: list[float],
+    low: list[float],
+    **words: str,
+) -> FittedLaw:
+    """Fit a spring model to COR.
+
+    `springs` returns the parameters of the model in the order of the arguments of `theory`. Its
+    argument is searched from `start` and stays above `low`. `words` are passed to `_judged`.
+    """
+
+    def restitution(V: Array, x: Array) -> Array:
+        return theory(*springs(x).values()).restitution(V, law.mass)
+
+    x = _fit(law, restitution, start, low)
+    return _judged(law, name, lambda V: restitution(V, x), springs(x), **words)
 
 
 def _mdr(law: Law) -> FittedLaw | None:
@@ -237,8 +248,7 @@ def _mdr(law: Law) -> FittedLaw | None:
     The model describes a sphere on a rigid flat. Two equal spheres are like two such contacts in
     series.
     """
-    sphere = law.second if law.first.wall else law.first
-    assert sphere.radius is not None  # a pair has at most one wall
+    sphere = law.second if law.first.wall else law.first  # a pair has at most one wall
     nu = max(sphere.poissons_ratio, 0.0)
     E = law.contact_modulus * (1 - nu**2)
     if law.first.wall or law.second.wall:
@@ -312,16 +322,15 @@ def _least_squares(
 
     low = [-np.inf] * len(start) if low is None else low
     high = [math.log(_MOST) if bound > -20 else np.inf for bound in low] if high is None else high
-    best = None
-    ways = product((0.0, 1.5, 3.0), (0.0, -4.0, -2.0, 1.0, 2.0)) if len(start) > 1 else [(0.0,)]
-    for shift in ways:
-        others = np.zeros(len(start) - len(shift))
-        begin = np.clip(np.add(start, np.append(shift, others)), low, high)
-        found = least_squares(misfit, begin, bounds=(low, high), x_scale="jac", xtol=1e-10)
-        if best is None or found.cost < best.cost:
-            best = found
-    assert best is not None
-    x: Array = best.x
+    shifts: list[tuple[float, ...]] = [(0.0,)] * len(start)
+    if len(start) > 1:
+        shifts[:2] = (0.0, 1.5, 3.0), (0.0, -4.0, -2.0, 1.0, 2.0)
+    begins = (np.clip(np.add(start, shift), low, high) for shift in product(*shifts))
+    fits = (
+        least_squares(misfit, begin, bounds=(low, high), x_scale="jac", xtol=1e-10)
+        for begin in begins
+    )
+    x: Array = min(fits, key=attrgetter("cost")).x
     return x
 
 

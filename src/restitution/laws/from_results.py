@@ -56,7 +56,7 @@ def _law(out: Path, run: RunResults) -> Law:
             f"{out}: has no impact velocities, because its case gives no density; give "
             "first.density (and second.density) and run the case again"
         )
-    points = _points(run, case.total_error)
+    points = _points(run)
     if not points:
         raise CaseError(f"{out}: no stored depth has an impact velocity; add deeper indentations")
     warnings = list(summary["warnings"])
@@ -145,7 +145,7 @@ def _error_includes(diagnostics: Mapping[str, object]) -> str:
     return f"{includes}; not: {excludes}{error}"
 
 
-def _points(run: RunResults, asked: bool) -> list[Point]:
+def _points(run: RunResults) -> list[Point]:
     found: list[Point] = []
     for row in run.curve.rows:
         velocity, work = row["impact_velocity_m_per_s"], row["loading_work_J"]
@@ -156,7 +156,7 @@ def _points(run: RunResults, asked: bool) -> list[Point]:
             Point(
                 velocity=velocity,
                 restitution=row["restitution"],
-                error=_error(row, asked=asked),
+                error=_error(row, asked=run.case.total_error),
                 ratio=_ratio(row, work, means=isinstance(run, EnsembleResults)),
                 loading_work=work,
                 indentation=row["max_indentation_m"],
@@ -184,8 +184,7 @@ def _error(row: _Row, *, asked: bool) -> float:
     largest possible error of COR is returned. If the case did not ask for it, the sum of the known
     parts is returned.
     """
-    known = row.get("total_error", math.nan)
-    if not math.isnan(known):
+    if not math.isnan(known := row.get("total_error", math.nan)):
         return known
     return max(row["restitution"], 1 - row["restitution"]) if asked else total(row)
 

@@ -117,8 +117,8 @@ class CompactFit(_Stored):
         """
         V = np.asarray(velocity, dtype=float)
         L = np.log(V / self.centre) / self.width
-        e2 = np.polynomial.polynomial.polyval(L, self.coefficients) - self.adhesion / V**2
-        e2 = np.clip(e2, 0.0, 1.0)
+        polynomial = np.polynomial.polynomial.polyval(L, self.coefficients)
+        e2 = np.clip(polynomial - self.adhesion / V**2, 0.0, 1.0)
         if self.elastic_below is not None:
             e2 = np.where(self.elastic_below >= V, 1.0, e2)
         if self.sticks_below is not None:
@@ -198,13 +198,12 @@ class Law(_Stored):
 
     @model_validator(mode="after")
     def _holds_together(self) -> Self:
-        V = self.column("velocity")
-        if not (np.diff(V) > 0).all():
+        if not (np.diff(self.column("velocity")) > 0).all():
             raise ValueError("points: velocities must increase")
         if self.first.wall and self.second.wall:
             raise ValueError("first, second: both bodies are flat")
-        radii = [body.radius for body in (self.first, self.second) if body.radius is not None]
-        R = 1 / sum(1 / radius for radius in radii)
+        bodies = self.first, self.second
+        R = 1 / sum(1 / body.radius for body in bodies if body.radius is not None)
         if abs(self.radius / R - 1) > 1e-6:
             raise ValueError("radius: is not the reduced radius R* of the two bodies")
         return self
@@ -250,8 +249,7 @@ class Law(_Stored):
                 f"({self.lowest:.4g} to {self.highest:.4g} m/s), and nothing is extrapolated; "
                 "choose a velocity in this range, or compute a law for more velocities"
             )
-        V = self.column("velocity")
-        nearest = self.points[int(np.abs(V / velocity - 1).argmin())]
+        nearest = min(self.points, key=lambda point: abs(point.velocity / velocity - 1))
         if abs(nearest.velocity / velocity - 1) <= _SAME:
             return Estimate(nearest.restitution, nearest.error, nearest.resolved)
         curve = self.curve()
@@ -285,9 +283,8 @@ class Law(_Stored):
     def _summary(self) -> list[str]:
         low, high = quantity(self.lowest, "m/s"), quantity(self.highest, "m/s")
         e = self.column("restitution")
-        sticks = quantity(self.sticks_below, "m/s") if self.sticks_below else None
         parts = [
-            f"sticks below {sticks}" if sticks else "",
+            f"sticks below {quantity(self.sticks_below, 'm/s')}" if self.sticks_below else "",
             f"fits: {', '.join(each.name for each in self.laws)}" if self.laws else "not fitted",
             counted(len(self.warnings), "warning") if self.warnings else "",
         ]

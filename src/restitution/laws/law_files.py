@@ -11,11 +11,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import ValidationError
 
 from restitution.errors import CaseError, OutputError
-from restitution.laws.law import Law
+from restitution.laws.law import Array, Law
 from restitution.laws.theories import Theory
 from restitution.results.checksums import check_file
 from restitution.results.interruption import hold_signals
@@ -92,7 +91,7 @@ def _of_mixture(folder: Path) -> list[Path]:
     return sorted((folder / LAWS).iterdir())
 
 
-def write_theories(velocities: NDArray[np.float64], found: list[Theory], out: Path) -> Path:
+def write_theories(velocities: Array, found: list[Theory], out: Path) -> Path:
     """Write `theory.csv` into `out`, which must be new or empty. Raises `OutputError`.
 
     `found` contains the restitution of each theory at `velocities` (m/s).
@@ -108,9 +107,8 @@ def write_theories(velocities: NDArray[np.float64], found: list[Theory], out: Pa
 
 def law_rows(law: Law) -> list[dict[str, float | str]]:
     """Return a table row for each point of `law`; every row repeats the values of the whole law."""
-    fit = [math.nan] * len(law.points)
-    if law.fit is not None:
-        fit = [float(e) for e in law.fit.restitution(law.column("velocity"))]
+    V = law.column("velocity")
+    fit = np.full(V.shape, math.nan) if law.fit is None else law.fit.restitution(V)
     return [
         {
             "velocity_m_per_s": point.velocity,
@@ -134,7 +132,7 @@ def law_rows(law: Law) -> list[dict[str, float | str]]:
             "yield_pressure_convention": law.conventions.yield_pressure,
             "end_of_contact": law.conventions.end_of_contact,
         }
-        for point, fitted in zip(law.points, fit, strict=True)
+        for point, fitted in zip(law.points, fit.tolist(), strict=True)
     ]
 
 

@@ -27,7 +27,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.contact.bodies import Pair
 from restitution.display import quantity, summary_html, summary_text
@@ -40,9 +39,7 @@ from restitution.laws.time_integration import (
     collide_in_time,
     stored_force,
 )
-from restitution.results.reader import RunResults
-
-Array = NDArray[np.float64]
+from restitution.results.reader import Array, RunResults
 
 _STEPS = 4000  # number of time steps of a collision
 _LEAST = 1e-3  # fraction of the largest normal force below which `sticking` is set to 0
@@ -148,23 +145,19 @@ def collide_obliquely(
         raise CaseError(f"friction: {friction} is not a coefficient of friction; give 0 or more")
     if not all(map(math.isfinite, spins)):
         raise CaseError("spins: must be finite numbers (rad/s)")
-    if any(
-        math.isinf(body.radius) and spin != 0
-        for body, spin in zip((law.pair.first, law.pair.second), spins, strict=True)
-    ):
+    bodies = list(zip((law.pair.first, law.pair.second), spins, strict=True))
+    if any(math.isinf(body.radius) and spin != 0 for body, spin in bodies):
         raise CaseError("spins: a wall does not rotate; give 0 for the wall")
     V_n, V_t = velocity * math.cos(angle), velocity * math.sin(angle)
     normal = collide_in_time(law, V_n)
-    bodies = law.pair.first, law.pair.second
-    arms = [0.0 if math.isinf(body.radius) else body.radius for body in bodies]
-    rolling = sum(R * spin for R, spin in zip(arms, spins, strict=True))
+    rolling = sum(body.radius * spin for body, spin in bodies if not math.isinf(body.radius))
     mass = law.pair.mass
     assert mass is not None  # checked by StoredForce
     error = tangential_error(law, min(normal.largest_indentation, law.deepest), friction)
-    course = _slide(law, normal, V_t - rolling, friction, error.stiffness)
-    J, e = course.impulse, normal.restitution
+    series, J, spread, loss = _slide(law, normal, V_t - rolling, friction, error.stiffness)
+    e = normal.restitution
     sliding = friction * (1 + e) * mass * V_n  # impulse of full slip
-    dJ = course.impulse_error + error.sliding * abs(J)
+    dJ = spread + error.sliding * abs(J)
     if sliding > 0:
         dJ += error.impulse * abs(J) * max(1 - abs(J) / sliding, 0.0)
     turns = spin_per_impulse(law.pair)
@@ -183,14 +176,10 @@ def collide_obliquely(
             abs(math.atan2(after + change / mass, e * V_n) - rebound) for change in (-dJ, dJ)
         ),
         spin_errors=(dJ * turns[0], dJ * turns[1]),
-        friction_loss=course.loss,
+        friction_loss=loss,
         normal_loss=0.5 * mass * V_n**2 * (1 - e**2),
-        sliding=bool(course.sticking[1:-1].max(initial=0.0) == 0),
-        time=course.time,
-        normal_force=course.normal,
-        tangential_force=course.force,
-        slip_velocity=course.slip,
-        sticking=course.sticking,
+        sliding=bool(series["sticking"][1:-1].max(initial=0.0) == 0),
+        **series,
     )
 
 
@@ -224,14 +213,6 @@ def oblique_force(run: RunResults, key: str = "angle") -> StoredForce:
 
 def course(collision: ObliqueCollision) -> list[dict[str, float | str]]:
     """Convert the time series of a collision to table rows."""
-    columns = zip(
-        collision.time,
-        collision.normal_force,
-        collision.tangential_force,
-        collision.slip_velocity,
-        collision.sticking,
-        strict=True,
-    )
     return [
         {
             "impact_velocity_m_per_s": collision.velocity,
@@ -242,33 +223,24 @@ def course(collision: ObliqueCollision) -> list[dict[str, float | str]]:
             "slip_velocity_m_per_s": float(slip),
             "sticking": float(sticking),
         }
-        for time, normal, tangential, slip, sticking in columns
+        for time, normal, tangential, slip, sticking in zip(
+            collision.time,
+            collision.normal_force,
+            collision.tangential_force,
+            collision.slip_velocity,
+            collision.sticking,
+            strict=True,
+        )
     ]
-
-
-@dataclass(frozen=True, eq=False)
-class _Course:
-    """Time series of an oblique impact, with its tangential impulse and friction loss.
-
-    `impulse` and `impulse_error` are in N s, `loss` in J.
-    """
-
-    time: Array
-    normal: Array
-    force: Array
-    slip: Array
-    sticking: Array
-    impulse: float
-    impulse_error: float
-    loss: float
 
 
 def _slide(
     law: StoredForce, normal: ReferenceCollision, slip: float, friction: float, error: float
-) -> _Course:
+) -> tuple[dict[str, Array], float, float, float]:
     """Integrate the tangential motion, beginning with the slip velocity `slip` (m/s).
 
-    `error` is the relative error of the tangential stiffness.
+    `error` is the relative error of the tangential stiffness. Returns the time series of
+    `ObliqueCollision`, the tangential impulse (N s), its error (N s) and the friction loss (J).
     """
     from scipy.interpolate import CubicHermiteSpline
 
@@ -299,4 +271,11 @@ def _slide(
         U[k] = 0.5 * (before[0] + speed[0])
     impulses = (slip - speed) * dt / slowing
     spread = float(np.abs(impulses - impulses[0]).max())
-    return _Course(t, F, T, U, stick, float(impulses[0]), spread, loss)
+    series = {
+        "time": t,
+        "normal_force": F,
+        "tangential_force": T,
+        "slip_velocity": U,
+        "sticking": stick,
+    }
+    return series, float(impulses[0]), spread, loss

@@ -41,22 +41,30 @@ def force_references(results: xr.Dataset) -> list[Reference]:
         reach = np.append(np.linspace(float(jkr.break_indentation), 0, 60), indentation)
         found = [Reference(_JKR, reach, jkr.force(reach), False)]
     if np.isfinite(p_y):
-        force = ThorntonNing(R, E_star, p_y).loading_force(indentation)
-        found.append(Reference(_THORNTON_NING, indentation, force, True))
+        found.append(
+            Reference(
+                _THORNTON_NING,
+                indentation,
+                ThorntonNing(R, E_star, p_y).loading_force(indentation),
+                True,
+            )
+        )
     return found
 
 
 def restitution_references_by_indentation(results: xr.Dataset) -> list[Reference]:
     """Closed forms of COR against the largest indentation (m)."""
     R, E_star, p_y, w = _parameters(results)
-    fine, found = _between(results["indentation"].values), []
+    laws: dict[str, ThorntonNing | JKR] = {}
     if np.isfinite(p_y):
-        cor = ThorntonNing(R, E_star, p_y).restitution_at_indentation(fine)
-        found.append(Reference(_THORNTON_NING, fine, cor, True))
+        laws[_THORNTON_NING] = ThorntonNing(R, E_star, p_y)
     if w > 0:
-        cor = JKR(R, E_star, w).restitution_at_indentation(fine)
-        found.append(Reference(_JKR, fine, cor, False))
-    return found
+        laws[_JKR] = JKR(R, E_star, w)
+    fine = _between(results["indentation"].values)
+    return [
+        Reference(label, fine, law.restitution_at_indentation(fine), label == _THORNTON_NING)
+        for label, law in laws.items()
+    ]
 
 
 def restitution_references_by_velocity(results: xr.Dataset) -> list[Reference]:

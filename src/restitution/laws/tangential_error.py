@@ -107,9 +107,8 @@ def dundurs(pair: Pair) -> float:
 def _largest_gap(law: StoredForce, deepest: float) -> float:
     """Largest ratio of the depths of neighbouring unloading curves, up to the depth `deepest`."""
     depths = law.unloading_from
-    below = depths[(depths > _SHALLOWEST * deepest) & (depths < deepest)]
-    ends = [depths[depths <= _SHALLOWEST * deepest][-1:], below, depths[depths >= deepest][:1]]
-    if not ends[0].size:
-        ends[0] = np.array([_SHALLOWEST * deepest])
-    inside = np.concatenate(ends)
+    if depths[0] > _SHALLOWEST * deepest:
+        depths = np.append(_SHALLOWEST * deepest, depths)
+    first = np.searchsorted(depths, _SHALLOWEST * deepest, side="right") - 1
+    inside = depths[first : np.searchsorted(depths, deepest) + 1]
     return float((inside[1:] / inside[:-1]).max()) if inside.size > 1 else 1.0

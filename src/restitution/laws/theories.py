@@ -7,15 +7,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.case.case import Case
 from restitution.errors import CaseError
 from restitution.laws.closed_forms import FORMS, SOURCES, Bodies, speed, within
-from restitution.laws.law import LOSS, FittedLaw, Law
+from restitution.laws.law import LOSS, Array, FittedLaw, Law
 from restitution.theory import Brilliantov
-
-Array = NDArray[np.float64]
 
 STEPS = 25
 """Number of velocities in a table over the span of a case."""
@@ -81,15 +78,12 @@ def theory_lines(
     Closed forms are evaluated at many velocities between the first and the last of `velocities`,
     and fits only at `velocities`. The computed points are left out.
     """
-    closed: dict[str, Array] = {}
     V = velocities
     if velocities.size > 1:
         V = np.geomspace(velocities[0], velocities[-1], _FINE)
-        closed = {each.name: each.restitution for each in theories(case, V)}
+    closed = {each.name: (V, each.restitution) for each in theories(case, V)}
     return [
-        (each.name, each.name not in FORMS, V, closed[each.name])
-        if each.name in closed
-        else (each.name, each.name not in FORMS, velocities, each.restitution)
+        (each.name, each.name not in FORMS, *closed.get(each.name, (velocities, each.restitution)))
         for each in found
         if each.name != COMPUTED
     ]
@@ -161,30 +155,28 @@ def _of_law(bodies: Bodies, law: Law, V: Array) -> Iterator[Theory]:
     def fitted(of_points: Array) -> Array:
         return values(within(law.fits_hold_at(own), of_points))
 
-    parameters = {}
-    if law.yield_pressure is not None:
-        parameters["yield_pressure_Pa"] = law.yield_pressure
-    if law.work_of_adhesion > 0:
-        parameters["work_of_adhesion_J_per_m2"] = law.work_of_adhesion
+    own_interface = {
+        "yield_pressure_Pa": law.yield_pressure,
+        "work_of_adhesion_J_per_m2": law.work_of_adhesion,
+    }
     yield Theory(
         COMPUTED,
         f"this program, {law.title or law.pair}",
         f"at its {own.size} velocities{_unresolved(law)}{_other_interface(bodies, law)}",
-        parameters,
+        {name: value for name, value in own_interface.items() if value},
         values(law.column("restitution")),
     )
     low, high = law.fitted_range or (math.nan, math.nan)
     span = f"fitted to the computed e from {low:.3g} to {speed(high)}, and empty outside"
-    for name in _FITTED:
-        for each in law.laws:
-            if each.name == name:
-                yield Theory(
-                    name,
-                    each.source,
-                    f"{span}, {_judged(each)}",
-                    each.parameters,
-                    fitted(_restitution_of(each)),
-                )
+    for each in law.laws:
+        if each.name in _FITTED:
+            yield Theory(
+                each.name,
+                each.source,
+                f"{span}, {_judged(each)}",
+                each.parameters,
+                fitted(np.array(each.restitution, dtype=float)),  # None becomes NaN
+            )
     if not _cannot_fit(law):
         beta = _dissipation(law)
         e = Brilliantov(beta).restitution(own)
@@ -220,10 +212,6 @@ def _other_interface(bodies: Bodies, law: Law) -> str:
 def _judged(each: FittedLaw) -> str:
     note = f"; {each.note}" if each.note else ""
     return f"rms {each.rms:.2g}, worst {each.worst:.2g}; ends: {each.ends}{note}"
-
-
-def _restitution_of(each: FittedLaw) -> Array:
-    return np.array([math.nan if e is None else e for e in each.restitution])
 
 
 def _cannot_fit(law: Law) -> str:

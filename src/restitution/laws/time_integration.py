@@ -27,7 +27,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from restitution.contact.bodies import Pair
 from restitution.errors import (
@@ -37,10 +36,9 @@ from restitution.errors import (
     OutputError,
     RestitutionError,
 )
-from restitution.results.reader import RunResults, UnloadingCurve
+from restitution.results.reader import Array, RunResults, UnloadingCurve
 from restitution.results.tables import damaged
 
-Array = NDArray[np.float64]
 Force = Callable[[float], float]
 
 _RTOL = 1e-10
@@ -139,8 +137,8 @@ class StoredForce:
         if near.size or after in (0, depths.size):
             return upper, False
         lower = _shape(*self.unloading[after - 1])
-        between = math.log(depths[after] / depths[after - 1])
-        share = math.log(deepest / depths[after - 1]) / between
+        below = depths[after - 1]
+        share = math.log(deepest / below) / math.log(depths[after] / below)
         return lambda s: (1 - share) * lower(s) + share * upper(s), True
 
 
@@ -214,15 +212,14 @@ def collide_in_time(law: StoredForce, velocity: float) -> ReferenceCollision:
     assert m2 is not None
     share = 1.0 if math.isinf(m2) else 0.0 if math.isinf(m1) else m2 / (m1 + m2)
     start = np.array([0.0, 0.0, share * velocity, (share - 1) * velocity])
-    scale = law.deepest
 
     def stop(t: float, y: Array) -> float:
         return float(y[2] - y[3])
 
     def too_deep(t: float, y: Array) -> float:
-        return float(y[0] - y[1]) - scale * (1 + _SLACK)
+        return float(y[0] - y[1]) - law.deepest * (1 + _SLACK)
 
-    down = _integrate(law.loading, m1, m2, start, scale, velocity, (stop, too_deep))
+    down = _integrate(law.loading, m1, m2, start, law.deepest, velocity, (stop, too_deep))
     if down.t_events[1].size:
         raise NotConvergedError(
             f"velocity: at {velocity:.6g} m/s the stored loading curve ends before the particles "
@@ -230,7 +227,7 @@ def collide_in_time(law: StoredForce, velocity: float) -> ReferenceCollision:
         )
     turn = down.y[:, -1]
     deepest = float(turn[0] - turn[1])
-    back, end, blended = law.branch(min(deepest, scale))
+    back, end, blended = law.branch(min(deepest, law.deepest))
 
     def parted(t: float, y: Array) -> float:
         return float(y[0] - y[1]) - end
@@ -239,12 +236,11 @@ def collide_in_time(law: StoredForce, velocity: float) -> ReferenceCollision:
         return float(y[2] - y[3]) - 1e-9 * velocity
 
     held.direction = 1.0  # type: ignore[attr-defined]
-    up = _integrate(back, m1, m2, turn, scale, velocity, (parted, held))
+    up = _integrate(back, m1, m2, turn, law.deepest, velocity, (parted, held))
     sticks = up.t_events[1].size > 0
     closing = np.concatenate([down.y[2] - down.y[3], up.y[2] - up.y[3]])
-    depth = np.concatenate([down.y[0] - down.y[1], up.y[0] - up.y[1]])
-    force = [law.loading(x) for x in down.y[0] - down.y[1]]
-    force += [back(x) for x in up.y[0] - up.y[1]]
+    loaded, unloaded = down.y[0] - down.y[1], up.y[0] - up.y[1]
+    force = [*map(law.loading, loaded), *map(back, unloaded)]
     return ReferenceCollision(
         velocity=velocity,
         restitution=0.0 if sticks else float(-closing[-1] / velocity),
@@ -255,7 +251,7 @@ def collide_in_time(law: StoredForce, velocity: float) -> ReferenceCollision:
         rebound_second=float(up.y[3, -1]),
         blended=blended,
         time=np.concatenate([down.t, down.t[-1] + up.t]),
-        indentation=depth,
+        indentation=np.concatenate([loaded, unloaded]),
         force=np.array(force),
         closing_velocity=closing,
     )
@@ -263,13 +259,6 @@ def collide_in_time(law: StoredForce, velocity: float) -> ReferenceCollision:
 
 def course(collision: ReferenceCollision) -> list[dict[str, float | str]]:
     """Convert the time series of a collision to table rows."""
-    columns = zip(
-        collision.time,
-        collision.indentation,
-        collision.force,
-        collision.closing_velocity,
-        strict=True,
-    )
     return [
         {
             "impact_velocity_m_per_s": collision.velocity,
@@ -278,7 +267,13 @@ def course(collision: ReferenceCollision) -> list[dict[str, float | str]]:
             "force_N": float(force),
             "closing_velocity_m_per_s": float(closing),
         }
-        for time, depth, force, closing in columns
+        for time, depth, force, closing in zip(
+            collision.time,
+            collision.indentation,
+            collision.force,
+            collision.closing_velocity,
+            strict=True,
+        )
     ]
 
 
@@ -299,16 +294,14 @@ def _integrate(
 
     for event in events:
         event.terminal = True  # type: ignore[attr-defined]
-    long = 1e3 * scale / velocity
-    absolute = [_RTOL * scale] * 2 + [_RTOL * velocity] * 2
     found = solve_ivp(
         rates,
-        (0.0, long),
+        (0.0, 1e3 * scale / velocity),
         start,
         method="DOP853",
         events=events,
         rtol=_RTOL,
-        atol=absolute,
+        atol=[_RTOL * scale] * 2 + [_RTOL * velocity] * 2,
         max_step=scale / velocity,
     )
     if found.status != 1:
@@ -373,9 +366,6 @@ def _separation(results: xr.Dataset, depth: Array) -> Callable[[float], float]:
             "the results have no unloading to separation; run the case with "
             'unloading.method = "path"'
         )
-    if known.sum() < 2:
-        only: float = ratio[known][0]
-        return lambda x: only * x
     share = _pchip(np.log(depth[known]), ratio[known])
     return lambda x: share(math.log(x)) * x
 
@@ -393,8 +383,4 @@ def _pchip(x: Array, y: Array) -> Force:
     curve = PchipInterpolator(x, y)
     low, high = float(x[0]), float(x[-1])
     # The integrator also evaluates trial points slightly beyond the ends.
-
-    def at(where: Any) -> Any:
-        return curve(np.minimum(np.maximum(where, low), high))
-
-    return at
+    return lambda where: curve(np.minimum(np.maximum(where, low), high))

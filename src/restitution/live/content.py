@@ -41,10 +41,10 @@ def text_of(content: Content) -> str:
     """
     tables = dict(content)
     parts = tables.get("roughness")
-    if isinstance(parts, list):
-        tables["roughness"] = parts[0] if len(parts) == 1 else parts
-        if not parts:
-            del tables["roughness"]
+    if parts == []:
+        del tables["roughness"]
+    elif isinstance(parts, list) and len(parts) == 1:
+        tables["roughness"] = parts[0]
     try:
         return tomli_w.dumps(tables)
     except (TypeError, ValueError) as error:
@@ -57,22 +57,20 @@ def problems_in(text: str, folder: Path) -> dict[str, str]:
         content = parse_toml(text)
     except CaseError as error:
         return {"": str(error)}
-    return problems_of(content) or _foreign_files(content, folder)
-
-
-def scans_of(content: Content) -> list[str]:
-    """List the file names of the scans in the tables `content`."""
-    parts = content.get("roughness", [])
-    tables = parts if isinstance(parts, list) else [parts]
-    return [table["file"] for table in tables if isinstance(table, dict) and "file" in table]
-
-
-def _foreign_files(content: Content, folder: Path) -> dict[str, str]:
-    """Report a scan outside `folder`, because the page reads only files that the user gave it."""
-    for name in scans_of(content):
+    if problems := problems_of(content):
+        return problems
+    for name in (table["file"] for table in scans_of(content)):
+        # The page reads only files that the user gave it.
         if PurePath(name).name != name or not (folder / name).is_file():
             return {
                 "roughness.file": f'"{name}" is not a scan of this page; drop the file onto the '
                 "page, or start restitution app with the case file that names it"
             }
     return {}
+
+
+def scans_of(content: Content) -> list[Content]:
+    """List the tables of scans in the tables `content`; each has the key `file`."""
+    parts = content.get("roughness", [])
+    tables = parts if isinstance(parts, list) else [parts]
+    return [table for table in tables if isinstance(table, dict) and "file" in table]

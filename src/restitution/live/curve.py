@@ -56,7 +56,7 @@ class LiveCurves:
         curve = _Curve(case, contact, warnings)
         self._curves.pop(tab, None)
         self._curves[tab] = curve
-        while len(self._curves) > _TABS:
+        if len(self._curves) > _TABS:
             del self._curves[next(iter(self._curves))]
         yield from curve.compute(folder, check)
 
@@ -78,7 +78,10 @@ class LiveCurves:
 
     def _contact(self, case: Case, folder: Path) -> Contact:
         """Make the contact of `case`; reuse the last surface, which most sliders do not change."""
-        key = repr((case.roughness, case.grid, _stamps(case, folder)))
+        scans = [folder / part.file for part in case.roughness if part.kind == "measured"]
+        # The times and sizes of the scans show whether a file was replaced.
+        stamps = [(each.stat().st_mtime_ns, each.stat().st_size) for each in scans]
+        key = repr((case.roughness, case.grid, stamps))
         if self._surface is not None and self._surface[0] == key:
             return case.contact_on(self._surface[1])
         contact = case.contact(folder)
@@ -92,7 +95,7 @@ class _Curve:
     def __init__(self, case: Case, contact: Contact, warnings: list[str]) -> None:
         self.case, self.contact, self.warnings = case, contact, warnings
         self.rows: list[dict[str, float]] = []
-        self.maps = ContactMaps()
+        self.maps = ContactMaps(contact)
         self.failure: RestitutionError | None = None
 
     def compute(self, folder: Path, check: Callable[[], None]) -> Iterator[str]:
@@ -144,9 +147,3 @@ class _Curve:
         if key != shown:
             check()
             yield as_json({"surface_key": key, **surface_content(surface)})
-
-
-def _stamps(case: Case, folder: Path) -> list[tuple[int, int]]:
-    """Modification times and sizes of the scans; they show whether a file was replaced."""
-    found = [folder / part.file for part in case.roughness if part.kind == "measured"]
-    return [(each.stat().st_mtime_ns, each.stat().st_size) for each in found]

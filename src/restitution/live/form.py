@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 from typing import Any, get_args
 
 from restitution.case.bodies import FROM_LIBRARY
@@ -50,7 +50,7 @@ class Group:
     """Fields under one heading."""
 
     title: str
-    fields: tuple[Field, ...] = field(default_factory=tuple)
+    fields: tuple[Field, ...]
     closed: bool = False
 
 

@@ -12,7 +12,6 @@ import multiprocessing
 import threading
 from collections.abc import AsyncGenerator
 from contextlib import suppress
-from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
@@ -42,33 +41,24 @@ class Process:
 
     async def ask(self, tab: str, kind: str, **values: Any) -> AsyncGenerator[str]:
         """Yield the lines of JSON that answer a request. Closing the generator cancels it."""
-        asked = True
-        while asked:
-            asked = False
-            running = self._started()
-            number, lines = next(self._numbers), _Lines()
+        line: str | None = _AGAIN
+        while line is _AGAIN:
+            if self._running is None or not self._running.usable:
+                self._running = _Running(*self._folders)
+            running, number, lines = self._running, next(self._numbers), _Lines()
             running.waiting[number] = lines
             try:
                 running.send(Request(number, tab, kind, values))
-                while (line := await lines.get()) is not None:
-                    if line is _AGAIN:
-                        asked = True
-                    else:
-                        yield line
-                number = 0
-            finally:
-                if number:
-                    running.give_up(number, lines)
+                while (line := await lines.get()) not in (None, _AGAIN):
+                    yield line
+            except BaseException:
+                running.give_up(number, lines)
+                raise
 
     def stop(self) -> None:
         """End the process."""
         if self._running is not None:
             self._running.end(_CLOSED)
-
-    def _started(self) -> _Running:
-        if self._running is None or not self._running.usable:
-            self._running = _Running(*self._folders)
-        return self._running
 
 
 class _Running:
@@ -84,7 +74,7 @@ class _Running:
         self._last_words = ""  # last line for waiting requests, if the process is ended on purpose
         self._watching: set[asyncio.Task[None]] = set()
         self._loop = asyncio.get_running_loop()
-        threading.Thread(target=self._receive, args=(self._connection,), daemon=True).start()
+        threading.Thread(target=self._receive, daemon=True).start()
 
     @property
     def usable(self) -> bool:
@@ -121,12 +111,11 @@ class _Running:
         for task in self._watching - {asyncio.current_task()}:
             task.cancel()
 
-    def _receive(self, connection: Connection) -> None:
+    def _receive(self) -> None:
         """Pass answers to the waiting requests; tell all of them when the process has ended."""
         with suppress(EOFError, OSError, RuntimeError):  # RuntimeError: the loop is closed
             while True:
-                number, line = connection.recv()
-                self._loop.call_soon_threadsafe(self._put, number, line)
+                self._loop.call_soon_threadsafe(self._put, *self._connection.recv())
         with suppress(RuntimeError):
             self._loop.call_soon_threadsafe(self._lose)
 

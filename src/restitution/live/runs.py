@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from tempfile import mkdtemp
-from typing import Any
 
 from restitution.case.case_file import parse_case
 from restitution.errors import RestitutionError
@@ -36,7 +35,7 @@ class Runs:
         key = hashlib.blake2b(f"{grids}\n{text}".encode()).hexdigest()
         if key not in self._folders:
             self._folders[key] = self._compute(text, folder, check, grids)
-            while len(self._folders) > _KEPT:
+            if len(self._folders) > _KEPT:
                 shutil.rmtree(self._folders.pop(next(iter(self._folders))), ignore_errors=True)
         return self._folders[key]
 
@@ -48,21 +47,19 @@ class Runs:
                 run_realisations(case, text, folder, ResultsFolder(out), check)
             else:
                 run_convergence(case, text, folder, ResultsFolder(out), grids, check)
-        except RestitutionError:
-            if not (out / "results.nc").is_file():  # nothing was computed
+        except BaseException as error:
+            # Keep the depths that were computed before an error that the user can fix.
+            if not (isinstance(error, RestitutionError) and (out / "results.nc").is_file()):
                 shutil.rmtree(out, ignore_errors=True)
                 raise
-        except BaseException:
-            shutil.rmtree(out, ignore_errors=True)
-            raise
         return out
 
 
-def results_line(out: Path) -> Iterator[str]:
+def results_line(out: Path) -> str:
     """The figures, rows and warnings of the results in `out`, as a line of JSON."""
     run = read_run(out)
-    summary: dict[str, Any] = run.summary
-    yield as_json(
+    summary = run.summary
+    return as_json(
         {
             "results": run.curve.rows,
             "figures": curve_figures(run.dataset),

@@ -13,8 +13,7 @@ import json
 import secrets
 import shutil
 from collections.abc import AsyncGenerator, AsyncIterator, Awaitable, Callable
-from contextlib import asynccontextmanager
-from functools import cache
+from functools import cache, partial
 from importlib.resources import files
 from typing import Any
 from urllib.parse import unquote
@@ -22,6 +21,7 @@ from urllib.parse import unquote
 from plotly.offline import get_plotlyjs
 from starlette.applications import Starlette
 from starlette.background import BackgroundTask
+from starlette.datastructures import MutableHeaders
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect, Request
 from starlette.responses import FileResponse, JSONResponse, Response, StreamingResponse
@@ -43,6 +43,14 @@ _HEADERS = {
     "Cross-Origin-Resource-Policy": "same-origin",
     "Cache-Control": "no-store",
 }
+# The values, with their types, of the requests that a process answers.
+_ASKED: dict[str, dict[str, type]] = {
+    "curve": {"tab": str, "content": dict},
+    "beside": {"tab": str, "shown": str},
+    "maps": {"tab": str, "depth": int},
+    "run": {"tab": str, "content": dict, "grids": int},
+    "take": {"tab": str, "content": dict, "what": str, "code": str, "velocity": str, "grids": int},
+}
 _STATIC = {"app.js": "text/javascript", "app.css": "text/css"}
 Handler = Callable[[Request], Awaitable[Response]]
 
@@ -53,8 +61,8 @@ class Server:
     Live curves, complete runs and finer runs have a process each, so they do not delay each other.
     """
 
-    def __init__(self, session: Session, port: int) -> None:
-        self._session, self._port = session, port
+    def __init__(self, session: Session) -> None:
+        self._session = session
         self._live, self._runs, self._finer = (
             Process(session.scans, session.room) for _ in range(3)
         )
@@ -67,20 +75,7 @@ class Server:
                 Route("/", self._page),
                 Route("/{name}", self._static),
             ],
-            lifespan=self._lifespan,
         )
-
-    @property
-    def hosts(self) -> tuple[str, ...]:
-        """The Host headers that a browser on this machine sends."""
-        return tuple(f"{name}:{self._port}" for name in ("127.0.0.1", "localhost"))
-
-    @asynccontextmanager
-    async def _lifespan(self, _: Starlette) -> AsyncIterator[None]:
-        try:
-            yield
-        finally:
-            self.stop()
 
     def stop(self) -> None:
         """End the processes, and with them all unfinished requests."""
@@ -92,10 +87,7 @@ class Server:
             "start": self._start,
             "content": self._content,
             "text": self._text,
-            "curve": self._curve,
-            "beside": self._beside,
-            "maps": self._maps,
-            "run": self._run,
+            **{name: partial(self._stream, name) for name in ("curve", "beside", "maps", "run")},
             "take": self._take,
             "upload": self._upload,
         }
@@ -125,14 +117,16 @@ class Server:
             f"style-src 'self' 'nonce-{nonce}'; style-src-attr 'unsafe-inline'; "
             "form-action 'none'; base-uri 'none'; frame-ancestors 'none'"
         )
-        text = _file("page.html").replace("{{ nonce }}", nonce)
-        headers = {"Content-Security-Policy": policy}
-        return Response(text, media_type="text/html", headers=headers)
+        return Response(
+            _file("page.html").replace("{{ nonce }}", nonce),
+            media_type="text/html",
+            headers={"Content-Security-Policy": policy},
+        )
 
     async def _static(self, request: Request) -> Response:
         name = request.path_params["name"]
         if name == "plotly.js":
-            return Response(_plotly(), media_type="text/javascript")
+            return Response(get_plotlyjs(), media_type="text/javascript")
         if name not in _STATIC:
             raise HTTPException(404, "there is no such page")
         return Response(_file(name), media_type=_STATIC[name])
@@ -153,41 +147,29 @@ class Server:
         values = await _values(request, {"content": dict})
         return JSONResponse({"text": _text(values["content"])})
 
-    async def _curve(self, request: Request) -> Response:
-        values = await _values(request, {"tab": str, "content": dict})
-        text = _text(values["content"])
-        return _streamed(request, self._live.ask(values["tab"], "curve", text=text))
+    async def _stream(self, name: str, request: Request) -> Response:
+        """Stream the lines with which a process answers the request `name`."""
+        return _streamed(request, await self._ask(name, request))
 
-    async def _beside(self, request: Request) -> Response:
-        values = await _values(request, {"tab": str, "shown": str})
-        return _streamed(request, self._live.ask(**values, kind="beside"))
-
-    async def _maps(self, request: Request) -> Response:
-        values = await _values(request, {"tab": str, "depth": int})
-        return _streamed(request, self._live.ask(values["tab"], "maps", depth=values["depth"]))
-
-    async def _run(self, request: Request) -> Response:
-        values = await _values(request, {"tab": str, "content": dict, "grids": int})
-        text, grids = _text(values["content"]), values["grids"]
-        process = self._runs if grids == 1 else self._finer
-        return _streamed(request, process.ask(values["tab"], "run", text=text, grids=grids))
+    async def _ask(self, name: str, request: Request) -> AsyncGenerator[str]:
+        """Pass the request `name` to its process; only complete and finer runs have `grids`."""
+        values = await _values(request, _ASKED[name])
+        if "content" in values:
+            values["text"] = _text(values.pop("content"))
+        process = {None: self._live, 1: self._runs}.get(values.get("grids"), self._finer)
+        return process.ask(kind=name, **values)
 
     async def _take(self, request: Request) -> Response:
-        kinds = {"tab": str, "content": dict, "what": str, "code": str, "velocity": str}
-        values = await _values(request, {**kinds, "grids": int})
-        text = _text(values.pop("content"))
-        process = self._runs if values["grids"] == 1 else self._finer
+        """Return a file to download, or an error message as JSON."""
         error = "there is no file"
-        async for line in process.ask(values.pop("tab"), "take", text=text, **values):
+        async for line in await self._ask("take", request):
             found = json.loads(line)
             if "file" in found:
                 file = self._session.room / found["file"]
                 tidy = BackgroundTask(shutil.rmtree, file.parent, ignore_errors=True)
                 return FileResponse(file, filename=file.name, background=tidy)
-            problems = found.get("problems", {})
-            error = found.get("error") or next(
-                (f"{key}: {words}" for key, words in problems.items()), error
-            )
+            problems = (f"{key}: {words}" for key, words in found.get("problems", {}).items())
+            error = found.get("error") or next(problems, error)
         return JSONResponse({"error": error})
 
     async def _upload(self, request: Request) -> Response:
@@ -199,9 +181,8 @@ class Server:
         except BaseException:
             file.unlink(missing_ok=True)
             raise
-        tab = request.headers.get("x-tab", "")
         found: dict[str, Any] = {}
-        async for line in self._live.ask(tab, "read", file=name):
+        async for line in self._live.ask(request.headers.get("x-tab", ""), "read", file=name):
             found.update(json.loads(line))
         if "nodes" not in found and not found.get("needs_size"):
             file.unlink(missing_ok=True)
@@ -211,22 +192,22 @@ class Server:
 class OwnHostOnly:
     """Refuse requests whose Host is not this machine, and requests from pages of other sites."""
 
-    def __init__(self, app: ASGIApp, hosts: tuple[str, ...]) -> None:
-        self._app, self._hosts = app, hosts
+    def __init__(self, app: ASGIApp, port: int) -> None:
+        # The Host headers that a browser on this machine sends.
+        self._app, self._hosts = app, (f"127.0.0.1:{port}", f"localhost:{port}")
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass on a request if `_refused` finds no objection, and add headers to the response."""
+        app = self._app
         if scope["type"] == "http" and (why := self._refused(dict(scope["headers"]))):
-            await JSONResponse({"error": why}, 403, headers=_HEADERS)(scope, receive, send)
-            return
+            app = JSONResponse({"error": why}, 403)
 
         async def with_headers(message: Any) -> None:
             if message["type"] == "http.response.start":
-                own = [(k.lower().encode(), v.encode()) for k, v in _HEADERS.items()]
-                message["headers"] = [*message["headers"], *own]
+                MutableHeaders(scope=message).update(_HEADERS)
             await send(message)
 
-        await self._app(scope, receive, with_headers)
+        await app(scope, receive, with_headers)
 
     def _refused(self, headers: dict[bytes, bytes]) -> str:
         host, origin = (headers.get(name, b"").decode("latin-1") for name in (b"host", b"origin"))
@@ -247,9 +228,7 @@ def _streamed(request: Request, lines: AsyncGenerator[str]) -> Response:
             while True:
                 line = asyncio.ensure_future(anext(lines, None))
                 await asyncio.wait({line, gone}, return_when=asyncio.FIRST_COMPLETED)
-                if not line.done():
-                    return
-                if (text := line.result()) is None:
+                if not line.done() or (text := line.result()) is None:
                     return
                 yield text + "\n"
         finally:
@@ -310,8 +289,3 @@ async def _store(request: Request, file: Any) -> None:
 @cache
 def _file(name: str) -> str:
     return (files("restitution.live") / "static" / name).read_text("utf-8")
-
-
-@cache
-def _plotly() -> str:
-    return str(get_plotlyjs())

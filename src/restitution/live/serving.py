@@ -48,9 +48,9 @@ def serve_page(session: Session, port: int, ready: Callable[[str], Any]) -> None
         raise CaseError(f"--port: {port} cannot be used ({error.strerror}); give another") from None
     with listening:
         port = listening.getsockname()[1]
-        server = Server(session, port)
+        server = Server(session)
         config = uvicorn.Config(
-            OwnHostOnly(server.app, server.hosts),
+            OwnHostOnly(server.app, port),
             log_level="error",
             server_header=False,
             timeout_graceful_shutdown=1,

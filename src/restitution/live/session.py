@@ -64,15 +64,12 @@ def first_content(case: Path | None) -> Content:
 
 def _bring_scans(content: Content, folder: Path, scans: Path) -> None:
     """Link the scans of `content` into `scans`; in `content`, replace paths by file names."""
-    for name in scans_of(content):
-        source = (folder / name).resolve()
+    for table in scans_of(content):
+        path = folder / table["file"]
+        source = path.resolve()
         if not source.is_file():
-            raise CaseError(
-                f"roughness.file: {folder / name} is not a file; give the path of a scan"
-            )
+            raise CaseError(f"roughness.file: {path} is not a file; give the path of a scan")
         link = scans / source.name
         if not link.exists():
             link.symlink_to(source)
-    for table in content.get("roughness", []):
-        if isinstance(table, dict) and "file" in table:
-            table["file"] = (folder / table["file"]).resolve().name
+        table["file"] = source.name

@@ -12,7 +12,8 @@ import signal
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import partial
 from multiprocessing.connection import Connection
 from pathlib import Path
 from tempfile import mkdtemp
@@ -34,39 +35,28 @@ class Request:
     number: int
     tab: str
     kind: str
-    values: dict[str, Any] = field(default_factory=dict)
+    values: dict[str, Any]
 
 
 class NotWanted(KeyboardInterrupt):
     """A newer request has replaced this request, or the page was closed."""
 
 
-class Wire:
-    """The connection to the parent, for answers from several threads."""
-
-    def __init__(self, connection: Connection) -> None:
-        self._connection, self._lock = connection, threading.Lock()
-
-    def send(self, number: int, line: str | None) -> None:
-        """Send a line of the answer to request `number`, or None at its end."""
-        with self._lock:
-            self._connection.send((number, line))
-
-    def receive(self) -> Any:
-        """Wait for the next message from the parent process."""
-        return self._connection.recv()
-
-
 class Inbox:
     """The waiting requests. A new request replaces an older one of the same tab and kind."""
 
-    def __init__(self, wire: Wire) -> None:
-        self._wire = wire
+    def __init__(self, connection: Connection) -> None:
+        self._connection, self._sending = connection, threading.Lock()
         self._waiting: dict[tuple[str, str], Request] = {}
         self._now: Request | None = None
         self._given_up: set[int] = set()
         self._changed = threading.Condition()
         threading.Thread(target=self._listen, daemon=True).start()
+
+    def send(self, number: int, line: str | None) -> None:
+        """Send a line of the answer to request `number`, or None at its end."""
+        with self._sending:
+            self._connection.send((number, line))
 
     def next(self) -> Request:
         """Wait for a request, and return the one that has waited longest."""
@@ -90,7 +80,7 @@ class Inbox:
         """Receive requests, and the numbers of requests to give up, until the parent has ended."""
         while True:
             try:
-                message = self._wire.receive()
+                message = self._connection.recv()
             except (EOFError, OSError):
                 os._exit(0)  # end even during a solve, because nobody needs its result
             with self._changed:
@@ -98,22 +88,18 @@ class Inbox:
                     self._drop((message.tab, message.kind))
                     self._waiting[message.tab, message.kind] = message
                 else:
-                    self._give_up(message)
+                    # The request is being computed, waits, or was answered already.
+                    self._given_up.add(message)
+                    for key in [k for k, each in self._waiting.items() if each.number == message]:
+                        self._drop(key)
                 self._changed.notify_all()
-
-    def _give_up(self, number: int) -> None:
-        waits = [key for key, each in self._waiting.items() if each.number == number]
-        for key in waits:
-            self._drop(key)
-        if not waits:  # the request is being computed, or was answered already
-            self._given_up.add(number)
 
     def _drop(self, key: tuple[str, str]) -> None:
         """Remove the request that waits under `key`, if any, and answer that it was replaced."""
         dropped = self._waiting.pop(key, None)
         if dropped is not None:
-            self._wire.send(dropped.number, REPLACED)
-            self._wire.send(dropped.number, None)
+            self.send(dropped.number, REPLACED)
+            self.send(dropped.number, None)
 
 
 class Worker:
@@ -149,7 +135,7 @@ class Worker:
 
     def run(self, tab: str, text: str, grids: int) -> Iterator[str]:
         """Yield the whole run of the case, or its convergence study on several grids."""
-        yield from results_line(self._folder(text, grids))
+        yield results_line(self._folder(text, grids))
 
     def take(
         self, tab: str, text: str, what: str, code: str, velocity: str, grids: int
@@ -191,15 +177,11 @@ def serve(connection: Connection, scans: Path, room: Path) -> None:
     # Ctrl-C reaches every process of the terminal. Ignore it, because the parent ends this process.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.environ["MPLBACKEND"] = "agg"
-    wire = Wire(connection)
-    inbox = Inbox(wire)
+    inbox = Inbox(connection)
     worker = Worker(scans, room, inbox.check)
     while True:
         request = inbox.next()
-
-        def send(line: str, number: int = request.number) -> None:
-            wire.send(number, line)
-
+        send = partial(inbox.send, request.number)
         try:
             worker.answer(request, send)
         except NotWanted:
@@ -212,4 +194,4 @@ def serve(connection: Connection, scans: Path, room: Path) -> None:
             words = one_line(f"{type(error).__name__}: {error}")
             send(as_json({"error": f"stopped by an unexpected error, {words}"}))
         with suppress(BrokenPipeError):
-            wire.send(request.number, None)
+            send(None)

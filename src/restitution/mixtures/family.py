@@ -11,14 +11,12 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import tomli_w
 
-from restitution.case.bodies import BodyTable
 from restitution.case.case import Case
 from restitution.case.case_file import parse_case
 from restitution.case.derived import deepest_indentation
@@ -66,13 +64,12 @@ class Family:
     @cached_property
     def meetings(self) -> tuple[Meeting, ...]:
         """All pairs of sizes that can meet, without repetition."""
-        return tuple(_meeting(one, two) for one, two in self._sizes())
-
-    def _sizes(self) -> Iterable[tuple[Particle, Particle]]:
-        ours = _particles(self.first)
+        ours, theirs = _particles(self.first), _particles(self.second)
         if self.second is self.first:
-            return itertools.combinations_with_replacement(ours, 2)
-        return itertools.product(ours, _particles(self.second))
+            return tuple(
+                itertools.starmap(_meeting, itertools.combinations_with_replacement(ours, 2))
+            )
+        return tuple(itertools.starmap(_meeting, itertools.product(ours, theirs)))
 
     @cached_property
     def radii(self) -> tuple[float, ...]:
@@ -99,8 +96,7 @@ class Family:
         if self.mixture.grid is not None:
             return {"refine": "auto", **self.mixture.grid}
         probe = {"nodes": 64, "spacing": "1 um"}
-        contents = [self._content(radius, probe) for radius in (self.radii[0], self.radii[-1])]
-        cases = [self._parsed(content) for content in contents]
+        cases = [self._parsed(radius, probe) for radius in (self.radii[0], self.radii[-1])]
         width = _WIDTH * max(_half_width(case) for case in cases)
         spacing = min(width / _NODES, *(_spacing(part) for part in cases[0].roughness), math.inf)
         nodes = 2 * math.ceil(0.5 * width / spacing)
@@ -112,25 +108,22 @@ class Family:
             )
         return {"nodes": nodes, "spacing": f"{spacing!r} m", "refine": "auto"}
 
-    def _parsed(self, content: dict[str, Any]) -> Case:
+    def _parsed(self, radius: float, grid: dict[str, Any]) -> Case:
         try:
-            return parse_case(tomli_w.dumps(content))
+            return parse_case(tomli_w.dumps(self._content(radius, grid)))
         except RestitutionError as error:
             raise CaseError(f"in the pair {self.name}: {error}") from None
 
     def _content(self, radius: float, grid: dict[str, Any]) -> dict[str, Any]:
         flat = self.second.wall
         own = f"{radius if flat else 2 * radius!r} m"
-        bodies = {
-            "first": {**self.first.body, "radius": own},
-            "second": {**self.second.body, "radius": "flat" if flat else own},
-        }
         rough = [*self.first.roughness]
         for table in self.second.roughness:
             rough.append(_another(table, rough))
         return {
             "title": f"{self.name}, R* = {1e6 * radius:.6g} um",
-            **bodies,
+            "first": {**self.first.body, "radius": own},
+            "second": {**self.second.body, "radius": "flat" if flat else own},
             "interface": self.mixture.interface(self.first, self.second),
             **({"roughness": rough} if rough else {}),
             "grid": grid,
@@ -141,8 +134,8 @@ class Family:
     def _velocities(self, radius: float) -> list[float]:
         """Velocities (m/s) of the mixture, extended to cover W/R*³ of every pair of the family."""
         asked = self.mixture.velocities
-        own = Particle(**_values(self.first), radius=radius if self.second.wall else 2 * radius)
-        other = Particle(**_values(self.second), radius=None if self.second.wall else 2 * radius)
+        own = _particle(self.first, radius if self.second.wall else 2 * radius)
+        other = _particle(self.second, None if self.second.wall else 2 * radius)
         kappa = _meeting(own, other).kappa
         scales = [math.sqrt(meeting.kappa / kappa) for meeting in self.meetings]
         low, high = asked[0] * min(scales), asked[-1] * max(scales)
@@ -154,10 +147,12 @@ class Family:
 
 def families(mixture: Mixture) -> list[Family]:
     """Make the families of a mixture. Raises `CaseError` if the case of a pair is invalid."""
-    found = [Family(mixture, first, second) for first, second in mixture.families()]
+    pairs = itertools.combinations_with_replacement(mixture.components, 2)
+    # Walls follow the materials, so that a wall is always the second component.
+    found = [Family(mixture, first, second) for first, second in pairs if not first.wall]
     for family in found:
         for radius in (family.radii[0], family.radii[-1]):
-            family._parsed(family._content(radius, family._grid))
+            family._parsed(radius, family._grid)
     return found
 
 
@@ -183,32 +178,34 @@ def _another(table: dict[str, Any], others: list[dict[str, Any]]) -> dict[str, A
     return {**table, key: next(free)}
 
 
-def _values(component: Component) -> dict[str, Any]:
-    body = BodyTable.model_validate({**component.body, "radius": "flat"})
-    return {
-        "name": component.name,
-        "youngs_modulus": body.youngs_modulus,
-        "poissons_ratio": body.poissons_ratio,
-        "density": body.density,
-    }
+def _particle(
+    component: Component, radius: float | None, number_fraction: float | None = None
+) -> Particle:
+    return Particle(
+        name=component.name,
+        radius=radius,
+        youngs_modulus=component.material.youngs_modulus,
+        poissons_ratio=component.material.poissons_ratio,
+        density=component.material.density,
+        number_fraction=number_fraction,
+    )
 
 
 def _particles(component: Component) -> list[Particle]:
     """Make a particle for each size, or the flat wall."""
-    values = _values(component)
     if component.wall:
-        return [Particle(**values, radius=None)]
+        return [_particle(component, None)]
     return [
-        Particle(**values, radius=radius, number_fraction=fraction)
+        _particle(component, radius, fraction)
         for radius, fraction in zip(component.radii, component.fractions, strict=True)
     ]
 
 
 def _meeting(first: Particle, second: Particle) -> Meeting:
-    bodies = [
+    bodies = (
         Body(body.radius or math.inf, body.youngs_modulus, body.poissons_ratio, body.density)
         for body in (first, second)
-    ]
+    )
     pair = Pair(*bodies)
     assert pair.mass is not None  # `parse_mixture` requires the density of every material
     return Meeting(first, second, pair.radius, pair.mass)

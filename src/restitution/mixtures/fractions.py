@@ -12,12 +12,15 @@ KEYS = ("mass_fractions", "number_fractions")
 _OFF = 0.02  # largest accepted difference of the sum from 1 (fractions are often rounded)
 
 
-def number_fractions(key: str, table: dict[str, Any], radii: Sequence[float]) -> tuple[float, ...]:
+def number_fractions(
+    key: str, table: dict[str, Any], sizes: object, radii: Sequence[float]
+) -> tuple[float, ...]:
     """Remove the fractions from the `table` of a material, and return fractions by number.
 
-    The sum of the result is 1. `radii` (m) are in the order of the file. Without fractions, every
-    size has the same number of particles. All sizes have the same density, so a mass fraction is
-    proportional to the number times R³. Raises a `CaseError` that names the key.
+    The sum of the result is 1. `sizes` is the value of the key `radius`, and `radii` (m) are in the
+    order of the file. Without fractions, every size has the same number of particles. All sizes
+    have the same density, so a mass fraction is proportional to the number times R³. Raises a
+    `CaseError` that names the key.
     """
     given = [name for name in KEYS if name in table]
     if len(given) > 1:
@@ -27,7 +30,6 @@ def number_fractions(key: str, table: dict[str, Any], radii: Sequence[float]) ->
     where = f"{key}.{given[0]}"
     if not radii:
         raise CaseError(f"{where}: a wall has no sizes; remove this key")
-    sizes = table.get("radius")
     if isinstance(sizes, dict) and "median" in sizes:
         raise CaseError(
             f"{where}: each bin of a log-normal distribution holds the same number of particles, "

@@ -8,8 +8,8 @@ repeated until no error exceeds the limit.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +23,7 @@ from restitution.mixtures.scaling import Computed
 from restitution.sweeps.executors import Workers
 from restitution.sweeps.scheduler import Tally, run_study
 from restitution.sweeps.study_folder import StudyFolder
-from restitution.sweeps.sweep import Study, SweptCase
+from restitution.sweeps.sweep import SweptCase
 
 Progress = Callable[[Tally], None]
 
@@ -32,15 +32,9 @@ Progress = Callable[[Tally], None]
 class PairLaw:
     """The law of one pair of particles, and its interpolation error (0 if `computed`)."""
 
-    meeting: Meeting
     law: Law
     computed: bool
     interpolation_error: float
-
-
-def empty_study(mixture: Mixture) -> Study:
-    """Make the study of a mixture before its first round, without cases."""
-    return Study(mixture.title, mixture.text, {"pair": [], "reduced_radius": []}, "paired", ())
 
 
 def run_mixture(
@@ -56,58 +50,51 @@ def run_mixture(
     that an interrupted mixture can be resumed. Raises `OutputError` if a run fails, because some
     pairs would then have no law.
     """
-    rounds = _Rounds(mixture, folder, out, workers, progress)
     found = families(mixture)
+    cases: dict[tuple[str, float], SweptCase] = {}
     wanted = [(family, radius) for family in found for radius in _first_radii(family)]
     while wanted:
-        rounds.compute(wanted)
-        wanted = [(family, r) for family in found for r in _more_radii(rounds.computed(family))]
-    return [pair for family in found for pair in _laws(rounds.computed(family))]
-
-
-class _Rounds:
-    """The runs of a mixture, computed round by round."""
-
-    def __init__(
-        self,
-        mixture: Mixture,
-        folder: Path,
-        out: StudyFolder,
-        workers: Workers,
-        progress: Progress,
-    ) -> None:
-        self._mixture, self._folder, self._out = mixture, folder, out
-        self._workers, self._progress = workers, progress
-        self._cases: dict[tuple[str, float], SweptCase] = {}
-
-    def compute(self, wanted: list[tuple[Family, float]]) -> None:
-        """Run the case of each family and reduced radius (m) in `wanted`."""
         for family, radius in wanted:
             values = {"pair": family.name, "reduced_radius": f"{1e6 * radius:.6g} um"}
-            case = SweptCase(len(self._cases) + 1, values, family.case(radius))
-            self._cases[family.name, radius] = case
-        cases = tuple(self._cases.values())
-        swept = {name: [case.values[name] for case in cases] for name in cases[0].values}
-        study = Study(self._mixture.title, self._mixture.text, swept, "paired", cases)
-        self._out.study = study
-        run_study(study, self._folder, self._out, self._workers, self._progress)
-        for case in cases:
-            if reason := self._out.reason(case):
-                raise OutputError(
-                    f"{self._out.folder_of(case)}: the run of {case.values['pair']} at R* = "
-                    f"{case.values['reduced_radius']} failed: {reason}"
-                )
+            case = SweptCase(len(cases) + 1, values, family.case(radius))
+            cases[family.name, radius] = case
+        _run_all(tuple(cases.values()), folder, out, workers, progress)
+        computed = [_computed(family, cases, out) for family in found]
+        wanted = [(each.family, radius) for each in computed for radius in _more_radii(each)]
+    return [_pair_law(each, meeting) for each in computed for meeting in each.family.meetings]
 
-    def computed(self, family: Family) -> Computed:
-        """Return the laws of `family` that have been computed so far."""
-        radii = sorted(radius for name, radius in self._cases if name == family.name)
-        folders = [self._out.folder_of(self._cases[family.name, radius]) for radius in radii]
-        return Computed(family, tuple(map(bare_law, folders)))
+
+def _run_all(
+    cases: tuple[SweptCase, ...],
+    folder: Path,
+    out: StudyFolder,
+    workers: Workers,
+    progress: Progress,
+) -> None:
+    """Make `cases` the cases of the study in `out`, and run those that are not stored yet."""
+    swept = {name: [case.values[name] for case in cases] for name in cases[0].values}
+    out.study = replace(out.study, swept=swept, cases=cases)
+    run_study(out.study, folder, out, workers, progress)
+    for case in cases:
+        if reason := out.reason(case):
+            raise OutputError(
+                f"{out.folder_of(case)}: the run of {case.values['pair']} at R* = "
+                f"{case.values['reduced_radius']} failed: {reason}"
+            )
+
+
+def _computed(
+    family: Family, cases: Mapping[tuple[str, float], SweptCase], out: StudyFolder
+) -> Computed:
+    """Read the laws of `family` at the reduced radii (m) that have been computed so far."""
+    radii = sorted(radius for name, radius in cases if name == family.name)
+    folders = [out.folder_of(cases[family.name, radius]) for radius in radii]
+    return Computed(family, tuple(map(bare_law, folders)))
 
 
 def _first_radii(family: Family) -> list[float]:
     radii = family.radii
-    middle = radii[_nearest(radii, float(np.sqrt(radii[0] * radii[-1])))]
+    middle = _nearest(radii, float(np.sqrt(radii[0] * radii[-1])))
     return sorted({radii[0], middle, radii[-1]})
 
 
@@ -120,20 +107,17 @@ def _more_radii(computed: Computed) -> Iterator[float]:
     poor = {meeting.radius for meeting in family.meetings if not computed.is_good(meeting)}
     for low, high in zip(computed.radii[:-1], computed.radii[1:], strict=True):
         if any(low < radius < high for radius in poor):
-            inside = [radius for radius in family.radii if low < radius < high]
-            inside = [radius for radius in inside if not computed.has(radius)]
-            yield inside[_nearest(inside, float(np.sqrt(low * high)))]
+            inside = [r for r in family.radii if low < r < high and not computed.has(r)]
+            yield _nearest(inside, float(np.sqrt(low * high)))
 
 
-def _nearest(radii: list[float] | tuple[float, ...], radius: float) -> int:
-    return int(np.abs(np.log(np.array(radii) / radius)).argmin())
+def _nearest(radii: Sequence[float], radius: float) -> float:
+    return radii[int(np.abs(np.log(np.array(radii) / radius)).argmin())]
 
 
-def _laws(computed: Computed) -> Iterator[PairLaw]:
-    for meeting in computed.family.meetings:
-        yield PairLaw(
-            meeting,
-            computed.law(meeting),
-            computed.has(meeting.radius),
-            max(computed.interpolation_errors(meeting)),
-        )
+def _pair_law(computed: Computed, meeting: Meeting) -> PairLaw:
+    return PairLaw(
+        computed.law(meeting),
+        computed.has(meeting.radius),
+        max(computed.interpolation_errors(meeting)),
+    )

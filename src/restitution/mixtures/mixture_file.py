@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 import numpy as np
 from pydantic import Field, ValidationError, model_validator
@@ -21,6 +20,7 @@ from restitution.errors import CaseError
 from restitution.mixtures.fractions import number_fractions
 
 MOST_SIZES = 50  # largest number of sizes of one material
+_T = TypeVar("_T", bound=Table)
 
 
 class Sizes(Table):
@@ -47,8 +47,7 @@ class Sizes(Table):
         for low, high in self.bins or []:
             if not low < high:
                 raise ValueError("bins: the lower edge of each bin must be below its upper edge")
-        ordered = sorted(self.bins or [])
-        for (_, high), (low, _) in itertools.pairwise(ordered):
+        for (_, high), (low, _) in itertools.pairwise(sorted(self.bins or [])):
             if low < high * (1 - 1e-9):
                 raise ValueError(
                     f"bins: overlap between {low:.6g} m and {high:.6g} m; let each bin begin where "
@@ -71,13 +70,14 @@ class Sizes(Table):
 class Component:
     """A material with its sizes, or a wall.
 
-    `body` has the keys of the table `[first]` of a case, without `radius`. `roughness` contains the
-    roughness tables. `radii` (m) increase and are empty for a wall. `fractions` are the fractions
-    by number of the sizes; their sum is 1.
+    `body` has the keys of the table `[first]` of a case, without `radius`, and `material` has their
+    checked values. `roughness` contains the roughness tables. `radii` (m) increase and are empty
+    for a wall. `fractions` are the fractions by number of the sizes; their sum is 1.
     """
 
     name: str
     body: dict[str, Any]
+    material: BodyTable
     roughness: list[dict[str, Any]]
     radii: tuple[float, ...]
     fractions: tuple[float, ...]
@@ -101,28 +101,24 @@ class _File(Table):
 
 @dataclass(frozen=True)
 class Mixture:
-    """A checked mixture file. `interfaces` and `grid` are tables as written in the file."""
+    """A checked mixture file.
+
+    `interfaces` and `grid` are tables as written in the file. The key of an interface holds the
+    names of its two components; the key of the interface of all other pairs is empty.
+    """
 
     title: str
     text: str
     components: tuple[Component, ...]
-    interfaces: dict[tuple[str, str], dict[str, Any]]
+    interfaces: dict[frozenset[str], dict[str, Any]]
     grid: dict[str, Any] | None
     velocities: tuple[float, ...]
     interpolation_error: float
 
-    def families(self) -> Iterator[tuple[Component, Component]]:
-        """Yield the pairs of components that can meet; a wall is always the second component."""
-        for first, second in itertools.combinations_with_replacement(self.components, 2):
-            if not first.wall:
-                yield first, second
-
     def interface(self, first: Component, second: Component) -> dict[str, Any]:
         """The table `[interface]` of the pair of components `first` and `second`."""
-        for names in ((first.name, second.name), (second.name, first.name)):
-            if names in self.interfaces:
-                return self.interfaces[names]
-        return self.interfaces["", ""]
+        names = frozenset((first.name, second.name))
+        return self.interfaces.get(names, self.interfaces[frozenset()])
 
 
 def read_mixture(path: Path) -> Mixture:
@@ -140,10 +136,7 @@ def parse_mixture(text: str) -> Mixture:
         raise CaseError("materials: is missing; write a table [materials.NAME] for each material")
     if not isinstance(walls, dict):
         raise CaseError("walls: should be tables [walls.NAME]")
-    try:
-        file = _File.model_validate(content)
-    except ValidationError as error:
-        raise CaseError(in_words(error, _File)) from None
+    file = _validated(_File, content)
     components = [_component(f"materials.{name}", name, table) for name, table in materials.items()]
     for name, table in walls.items():
         if name in materials:
@@ -156,10 +149,10 @@ def parse_mixture(text: str) -> Mixture:
         )
     names = [component.name for component in components]
     interface = content.get("interface", {})
-    interfaces = {("", ""): interface}
+    interfaces = {frozenset[str](): interface}
     for key, table in content.get("pairs", {}).items():
         pair = _names_of(key, names)
-        if pair in interfaces or pair[::-1] in interfaces:
+        if pair in interfaces:
             raise CaseError(f"pairs.{key}: is given twice")
         interfaces[pair] = {**interface, **table}
     return Mixture(
@@ -173,11 +166,11 @@ def parse_mixture(text: str) -> Mixture:
     )
 
 
-def _names_of(key: str, names: list[str]) -> tuple[str, str]:
+def _names_of(key: str, names: list[str]) -> frozenset[str]:
     """Split the key of a pair into the names of its two components."""
     for first, second in itertools.product(names, repeat=2):
         if key == f"{first}+{second}":
-            return first, second
+            return frozenset((first, second))
     raise CaseError(
         f'pairs."{key}": is not a pair of this mixture; write [pairs."FIRST+SECOND"] with two of '
         f"{', '.join(names)}"
@@ -190,11 +183,8 @@ def _component(key: str, name: str, table: Any) -> Component:
     body = dict(table)
     rough = body.pop("roughness", [])
     rough = rough if isinstance(rough, list) else [rough]
-    try:
-        _Rough.model_validate({"roughness": rough})
-    except ValidationError as error:
-        raise CaseError(in_words(error, _Rough, key)) from None
-    sizes = body.get("radius")
+    _validated(_Rough, {"roughness": rough}, key)
+    sizes = body.pop("radius", None)
     radii: tuple[float, ...] = ()
     if key.startswith("walls."):
         if sizes not in (None, "flat"):
@@ -202,18 +192,14 @@ def _component(key: str, name: str, table: Any) -> Component:
     elif sizes is None:
         raise CaseError(f"{key}.radius: is missing; give one or more radii, or bins")
     else:
-        radii = _radii(f"{key}.radius", sizes)
-    fractions = number_fractions(key, body, radii)
-    body.pop("radius", None)
-    try:
-        checked = BodyTable.model_validate({**body, "radius": "flat"})
-    except ValidationError as error:
-        raise CaseError(in_words(error, BodyTable, key)) from None
-    if radii and checked.density is None:
+        radii = _radii(key, sizes)
+    fractions = number_fractions(key, body, sizes, radii)
+    material = _validated(BodyTable, {**body, "radius": "flat"}, key)
+    if radii and material.density is None:
         raise CaseError(f"{key}.density: is missing; the impact velocity depends on it")
     order = sorted(range(len(radii)), key=radii.__getitem__)
     increasing, shares = (tuple(values[k] for k in order) for values in (radii, fractions))
-    return Component(name, body, rough, increasing, shares)
+    return Component(name, body, material, rough, increasing, shares)
 
 
 class _Rough(Table):
@@ -229,14 +215,18 @@ class _Radii(Table):
 
 
 def _radii(key: str, sizes: Any) -> tuple[float, ...]:
-    try:
-        if isinstance(sizes, dict):
-            return tuple(Sizes.model_validate(sizes).radii())
-        listed = sizes if isinstance(sizes, list) else [sizes]
-        radii = _Radii.model_validate({"radius": listed}).radius
-    except ValidationError as error:
-        where = key if isinstance(sizes, dict) else key.removesuffix(".radius")
-        raise CaseError(in_words(error, Sizes, where)) from None
+    if isinstance(sizes, dict):
+        return tuple(_validated(Sizes, sizes, f"{key}.radius").radii())
+    listed = sizes if isinstance(sizes, list) else [sizes]
+    radii = _validated(_Radii, {"radius": listed}, key).radius
     if len(set(radii)) < len(radii):
-        raise CaseError(f"{key}: a radius is given twice")
+        raise CaseError(f"{key}.radius: a radius is given twice")
     return tuple(radii)
+
+
+def _validated(model: type[_T], table: dict[str, Any], key: str = "") -> _T:
+    """Check a `table`, whose dotted path in the file is `key`. Raises `CaseError`."""
+    try:
+        return model.model_validate(table)
+    except ValidationError as error:
+        raise CaseError(in_words(error, model, key)) from None

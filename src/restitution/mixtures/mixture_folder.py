@@ -8,10 +8,11 @@ from pathlib import Path
 
 from restitution.display import some_of, without_numbers
 from restitution.laws.law_files import LAWS, MIXTURE_FILE, write_law
-from restitution.mixtures.mixture import PairLaw, empty_study
+from restitution.mixtures.mixture import PairLaw
 from restitution.mixtures.mixture_file import Mixture
 from restitution.results.writer import write_json, write_table, writing
 from restitution.sweeps.study_folder import STUDY_FILE, StudyFolder, prepare_folder
+from restitution.sweeps.sweep import Study
 
 RUNS, PAIRS = "runs", "pairs.csv"
 
@@ -24,7 +25,10 @@ def open_mixture_folder(out: Path, mixture: Mixture, *, resume: bool) -> StudyFo
     """
     prepare_folder(out, MIXTURE_FILE, mixture.text, resume=resume, what="mixture")
     begun = (out / RUNS / STUDY_FILE).is_file()
-    return StudyFolder(out / RUNS, empty_study(mixture), resume=begun)
+    without_cases = Study(
+        mixture.title, mixture.text, {"pair": [], "reduced_radius": []}, "paired", ()
+    )
+    return StudyFolder(out / RUNS, without_cases, resume=begun)
 
 
 def write_mixture(
@@ -42,23 +46,23 @@ def write_mixture(
     for number, pair in enumerate(pairs, 1):
         name = f"pair-{number:03d}"
         write_law(pair.law, out / LAWS / name)
-        for point in pair.law.points:
-            rows.append(
-                {
-                    "law": name,
-                    "first": pair.law.first.name,
-                    "first_radius_m": pair.law.first.radius or float("inf"),
-                    "second": pair.law.second.name,
-                    "second_radius_m": pair.law.second.radius or float("inf"),
-                    "reduced_radius_m": pair.law.radius,
-                    "reduced_mass_kg": pair.law.mass,
-                    "computed": pair.computed,
-                    "velocity_m_per_s": point.velocity,
-                    "restitution": point.restitution,
-                    "restitution_error": point.error,
-                    "resolved": point.resolved,
-                }
-            )
+        rows += [
+            {
+                "law": name,
+                "first": pair.law.first.name,
+                "first_radius_m": pair.law.first.radius or float("inf"),
+                "second": pair.law.second.name,
+                "second_radius_m": pair.law.second.radius or float("inf"),
+                "reduced_radius_m": pair.law.radius,
+                "reduced_mass_kg": pair.law.mass,
+                "computed": pair.computed,
+                "velocity_m_per_s": point.velocity,
+                "restitution": point.restitution,
+                "restitution_error": point.error,
+                "resolved": point.resolved,
+            }
+            for point in pair.law.points
+        ]
     write_table(out / PAIRS, rows)
     write_json(
         out / "summary.json",

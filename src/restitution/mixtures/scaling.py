@@ -63,7 +63,10 @@ class Computed:
         curves = self._curves(meeting)
         if self.has(meeting.radius):
             return [0.0] * len(curves)
-        return [_error_of(curve, meeting.radius, near) for curve, near in _with_near(curves)]
+        return [
+            _error_of(curve, meeting.radius, curves[max(k - 1, 0) : k + 2])
+            for k, curve in enumerate(curves)
+        ]
 
     def law(self, meeting: Meeting) -> Law:
         """The law of one pair at the velocities of the mixture.
@@ -105,13 +108,11 @@ class Computed:
 
     def _curves(self, meeting: Meeting) -> list[RatioCurve]:
         """Make a curve of W_u/W_l against R* from all laws, for each velocity of the mixture."""
-        found = []
-        for V in self.family.mixture.velocities:
-            ratios = np.array(
-                [law.curve().at(_of(law, V, meeting)) for law in self.laws], dtype=float
-            )
-            found.append(RatioCurve(self.radii, ratios, adhesive=False))
-        return found
+        ratios = (
+            np.array([law.curve().at(_of(law, V, meeting)) for law in self.laws], dtype=float)
+            for V in self.family.mixture.velocities
+        )
+        return [RatioCurve(self.radii, each, adhesive=False) for each in ratios]
 
     def _point(self, meeting: Meeting, V: float, curve: RatioCurve, between: float) -> Point:
         ratio = _value(curve, meeting.radius)
@@ -146,29 +147,24 @@ class Computed:
 
 
 def _of(law: Law, V: float, meeting: Meeting) -> float:
-    """Velocity (m/s) at which `law` has the same W/R*³ as the pair `meeting` at V (m/s)."""
+    """Velocity (m/s) at which `law` has the same W/R*³ as the pair `meeting` at V (m/s).
+
+    A velocity that is outside the range of `law` by at most 1e-3 (relative) is moved into it.
+    """
     velocity = V * math.sqrt(meeting.kappa / (law.mass / law.radius**3))
-    return min(max(velocity, law.lowest), law.highest) if _near(velocity, law) else velocity
-
-
-def _near(velocity: float, law: Law) -> bool:
-    """Whether `velocity` is within the range of `law`, with a relative tolerance of 1e-3."""
-    return law.lowest * (1 - 1e-3) <= velocity <= law.highest * (1 + 1e-3)
+    near = law.lowest * (1 - 1e-3) <= velocity <= law.highest * (1 + 1e-3)
+    return min(max(velocity, law.lowest), law.highest) if near else velocity
 
 
 def _value(curve: RatioCurve, radius: float) -> float:
-    if curve.velocities.size == 1:
-        return float(curve.at(curve.velocities[0]))
-    return curve.at(min(max(radius, curve.velocities[0]), curve.velocities[-1]))
-
-
-def _with_near(curves: list[RatioCurve]) -> list[tuple[RatioCurve, list[RatioCurve]]]:
-    """Pair each curve with a list: itself and the curves at the next lower and higher velocity."""
-    return [(curve, curves[max(k - 1, 0) : k + 2]) for k, curve in enumerate(curves)]
+    return float(curve.at(min(max(radius, curve.velocities[0]), curve.velocities[-1])))
 
 
 def _error_of(curve: RatioCurve, radius: float, near: list[RatioCurve]) -> float:
-    """The interpolation error of COR at `radius` (m)."""
+    """The interpolation error of COR at `radius` (m).
+
+    `near` contains `curve` and the curves at the next lower and higher velocity.
+    """
     ratio = _value(curve, radius)
     off = max(other.error(radius) for other in near)
     e = _root(ratio)

@@ -22,23 +22,24 @@ _ALWAYS = (
     ),
     ("restitution", "sqrt(unloading work / loading work)", "Johnson (1985), §11.5"),
 )
-_EQUILIBRIUM = (
-    "yield",
-    "pressure bounded by p_y, pressure and surface in equilibrium",
-    "Polonsky and Keer (1999)",
-)
-_TRUNCATED = (
-    "yield",
-    "elastic pressure truncated at p_y",
-    "Thornton and Ning (1998), Powder Technol. 99, 154–162",
-)
-_CAVITY = (
-    "yield",
-    "pressure bounded by 1.6 to 3.5 yield strengths, growing with the elastic pressure",
-    "Johnson (1970), J. Mech. Phys. Solids 18, 115–126; Jackson and Green (2005), J. Tribol. 127, "
-    "343–354",
-)
-_YIELD = {"equilibrium": _EQUILIBRIUM, "truncated": _TRUNCATED, "expanding-cavity": _CAVITY}
+_YIELD = {
+    "equilibrium": (
+        "yield",
+        "pressure bounded by p_y, pressure and surface in equilibrium",
+        "Polonsky and Keer (1999)",
+    ),
+    "truncated": (
+        "yield",
+        "elastic pressure truncated at p_y",
+        "Thornton and Ning (1998), Powder Technol. 99, 154–162",
+    ),
+    "expanding-cavity": (
+        "yield",
+        "pressure bounded by 1.6 to 3.5 yield strengths, growing with the elastic pressure",
+        "Johnson (1970), J. Mech. Phys. Solids 18, 115–126; Jackson and Green (2005), J. Tribol. "
+        "127, 343–354",
+    ),
+}
 _ADHESION = (
     "adhesion",
     "JKR limit, energy balance at the edge of contact",

@@ -15,12 +15,10 @@ from restitution.results.reader import read_json, read_text
 def write_mixture_page(out: Path) -> Path:
     """Write `report.html` from the laws, the summary and the mixture file in `out`."""
     laws, summary = read_laws([out]), read_json(out / "summary.json")
-    parts: list[Table | Drawing | Listing] = [
-        _drawing(members) for members in families_of(laws).values()
-    ]
-    parts += [
-        Table("Summary", ["quantity", "value"], _numbers(summary)),
-        Listing("Mixture file", read_text(out / "mixture.toml")),
+    rows: list[list[Cell]] = [
+        [key.replace("_", " "), value if isinstance(value, (int, float)) else json.dumps(value)]
+        for key, value in summary.items()
+        if key not in ("title", "warnings")
     ]
     page = Page(
         title=summary["title"] or "Mixture",
@@ -30,10 +28,13 @@ def write_mixture_page(out: Path) -> Path:
             "radii R*, at equal loading work over R*³."
         ],
         warnings=summary["warnings"],
-        parts=parts,
+        parts=[
+            *map(_drawing, families_of(laws).values()),
+            Table("Summary", ["quantity", "value"], rows),
+            Listing("Mixture file", read_text(out / "mixture.toml")),
+        ],
     )
-    write_page(out / "report.html", page)
-    return out / "report.html"
+    return write_page(out / "report.html", page)
 
 
 def _drawing(laws: list[Law]) -> Drawing:
@@ -62,11 +63,3 @@ def _drawing(laws: list[Law]) -> Drawing:
 
 def _micrometres(radius: float | None) -> Cell:
     return "flat" if radius is None else 1e6 * radius
-
-
-def _numbers(summary: dict[str, object]) -> list[list[Cell]]:
-    return [
-        [key.replace("_", " "), value if isinstance(value, (int, float)) else json.dumps(value)]
-        for key, value in summary.items()
-        if key not in ("title", "warnings")
-    ]

@@ -19,9 +19,8 @@ _NOTE = (
 
 def oblique_drawing(results: xr.Dataset, rows: list[dict[str, float]]) -> Drawing:
     """The figure of the oblique impacts in `results`, with the table of their `rows`."""
-    known = [row["tangential_restitution"] for row in rows]
-    finite = [value for value in known if not math.isnan(value)]
-    ends = f"from {min(finite):.3f} to {max(finite):.3f} " if finite else ""
+    known = [e_t for row in rows if not math.isnan(e_t := row["tangential_restitution"])]
+    ends = f"from {min(known):.3f} to {max(known):.3f} " if known else ""
     cells: list[list[Cell]] = [
         [
             row["impact_velocity_m_per_s"],

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from functools import cache
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -60,30 +59,27 @@ class Page:
     title: str
     intro: Sequence[str] = ()
     warnings: Sequence[str] = ()
-    parts: Sequence[Table | Drawing | Listing] = field(default_factory=list)
+    parts: Sequence[Table | Drawing | Listing] = ()
 
 
-def write_page(path: Path, page: Page) -> None:
-    """Write `page` as one HTML file, atomically. Raises `OutputError`."""
-    text = _environment().get_template("page.html").render(page=page, plotly=_plotly())
-    replace_file(path, lambda to: to.write_text(text, encoding="utf-8"))
-
-
-@cache
-def _environment() -> Environment:
+def write_page(path: Path, page: Page) -> Path:
+    """Write `page` as one HTML file, atomically, and return the file. Raises `OutputError`."""
     environment = Environment(
         loader=PackageLoader("restitution.pages"), autoescape=True, undefined=StrictUndefined
     )
-    environment.filters["cell"] = _cell
-    environment.filters["plots"] = _plots
-    return environment
+    environment.filters |= {"cell": _cell, "plots": _plots}
+    template = environment.get_template("page.html")
+    text = template.render(page=page, plotly=Markup(get_plotlyjs()))
+    replace_file(path, lambda to: to.write_text(text, encoding="utf-8"))
+    return path
 
 
 def _plots(figure: Figure) -> list[dict[str, Any]]:
     """Prepare each panel for the template: Plotly JSON, title, shape, number of legend entries."""
     return [
         {
-            "script": _within_script(interactive.draw(panel, figure).to_json()),
+            # With "<" escaped, a text in the JSON cannot end the script element around it.
+            "script": Markup(interactive.draw(panel, figure).to_json().replace("<", "\\u003c")),
             "title": panel.title,
             "square": isinstance(panel, Map),
             "entries": len(legend_entries(panel)),
@@ -96,13 +92,3 @@ def _cell(value: Cell) -> str:
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return "–"
     return value if isinstance(value, str) else f"{value:.5g}"
-
-
-@cache
-def _plotly() -> Markup:
-    return Markup(get_plotlyjs())
-
-
-def _within_script(json: str) -> Markup:
-    """Escape `json` so that it cannot end the script element that contains it."""
-    return Markup(json.replace("<", "\\u003c"))

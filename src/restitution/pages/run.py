@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -13,14 +13,15 @@ from restitution.contact.checks.resolution import NODES_PER_PATCH
 from restitution.pages.methods import methods
 from restitution.pages.oblique import oblique_drawing
 from restitution.pages.page import Cell, Drawing, Listing, Page, Table, write_page
-from restitution.plots.figure import Figure
+from restitution.plots.cor import Abscissa
 from restitution.plots.oblique import has_oblique
 from restitution.plots.run import (
+    abscissae,
     has_map,
     load_displacement,
     pressure_map,
-    restitution_against_indentation,
-    restitution_against_velocity,
+    restitution_figure,
+    unloading_lines,
 )
 from restitution.results.reader import EnsembleResults, RunResults, read_run
 
@@ -31,9 +32,7 @@ def write_run_page(out: Path) -> Path:
     results, summary = run.dataset, run.summary
     parts: list[Table | Drawing | Listing] = []
     if results.sizes["indentation_max"]:
-        parts.append(_against_indentation(results))
-        if (results["impact_velocity"] > 0).any():
-            parts.append(_against_velocity(results))
+        parts += [_restitution(results, abscissa) for abscissa in abscissae(results)]
         if run.oblique and has_oblique(results):
             parts.append(oblique_drawing(results, run.oblique))
         parts.append(_force(results))
@@ -51,8 +50,7 @@ def write_run_page(out: Path) -> Path:
         warnings=summary["warnings"],
         parts=parts,
     )
-    write_page(out / "report.html", page)
-    return out / "report.html"
+    return write_page(out / "report.html", page)
 
 
 def _in_words(run: RunResults) -> str:
@@ -68,34 +66,24 @@ def _in_words(run: RunResults) -> str:
     return f"{what}; {nx} × {ny} nodes of {1e6 * h:.4g} µm{ended}"
 
 
-def _against_indentation(results: xr.Dataset) -> Drawing:
-    figure = restitution_against_indentation(results)
-    return _restitution(results, figure, "indentation", 1e6, "maximum indentation", "µm")
-
-
-def _against_velocity(results: xr.Dataset) -> Drawing:
-    figure = restitution_against_velocity(results)
-    return _restitution(results, figure, "impact_velocity", 1.0, "impact velocity", "m/s")
-
-
-def _restitution(
-    results: xr.Dataset, figure: Figure, variable: str, scale: float, words: str, unit: str
-) -> Drawing:
-    x, cor = scale * results[variable].values, results["restitution"].values
+def _restitution(results: xr.Dataset, abscissa: Abscissa) -> Drawing:
+    words, unit = abscissa.axis.label, abscissa.axis.unit
+    x = abscissa.scale * results[abscissa.variable].values
+    cor = results["restitution"].values
     resolved = results["resolved"].values.astype(bool)
     errors = ["restitution_error", "total_error", "model_error"]
     columns = zip(x, cor, resolved, *(results[name].values for name in errors), strict=True)
     few = int(np.count_nonzero(~resolved))
     return Drawing(
         f"Restitution against {words}",
-        figure,
+        restitution_figure(results, abscissa),
         f"Coefficient of restitution from {np.nanmin(cor):.3f} to {np.nanmax(cor):.3f} against "
         f"{words} from {np.nanmin(x):.3g} to {np.nanmax(x):.3g} {unit}",
         f"Open markers ({few} of {cor.size}): not resolved by the grid; half of the contact is in "
         f"patches of fewer than {NODES_PER_PATCH} nodes.",
         Table(
             "Restitution",
-            [f"{words} ({unit})", "COR", "resolved", *errors],
+            [abscissa.axis.title, "COR", "resolved", *errors],
             [
                 [float(a), float(b), "yes" if good else "no", *map(float, of_cor)]
                 for a, b, good, *of_cor in columns
@@ -109,11 +97,8 @@ def _force(results: xr.Dataset) -> Drawing:
     rows: list[list[Cell]] = [
         ["loading", float(d), float(f)] for d, f in zip(depth, load, strict=True)
     ]
-    for k in range(results.sizes.get("unloading", 0)):
-        x = 1e6 * results["unloading_indentation"][k].values
-        y = results["unloading_force"][k].values
-        name = f"unloading from {1e6 * float(results['unloading_from'][k]):.3g} µm"
-        rows += [[name, float(d), float(f)] for d, f in zip(x, y, strict=True) if f == f]
+    for line in unloading_lines(results):
+        rows += [[line.name, float(d), float(f)] for d, f in zip(line.x, line.y, strict=True)]
     return Drawing(
         "Load and displacement",
         load_displacement(results),
@@ -124,17 +109,16 @@ def _force(results: xr.Dataset) -> Drawing:
 
 
 def _pressure(results: xr.Dataset) -> Drawing:
-    figure = pressure_map(results)
-    pressed = [1e-6 * values[values != 0] for values in (results["pressure"].values,)]
+    pressure, depth = results["pressure"].values, results.get("plastic_displacement")
+    pressed = [1e-6 * pressure[pressure != 0]]
     quantities, yields = ["pressure (MPa)"], ""
-    depth = results["plastic_displacement"].values if "plastic_displacement" in results else None
     if depth is not None and depth.any():
-        pressed.append(1e6 * depth[depth != 0])
+        pressed.append(1e6 * depth.values[depth.values != 0])
         quantities.append("plastic displacement (µm)")
         yields = " Plastic displacement: the depth by which yielding has lowered the surface."
     return Drawing(
         "Contact pressure",
-        figure,
+        pressure_map(results),
         f"Map of the contact pressure at the largest indentation, up to {pressed[0].max():.4g} MPa",
         f"At the largest indentation; areas without contact are blank.{yields}",
         Table(
@@ -149,10 +133,11 @@ def _pressure(results: xr.Dataset) -> Drawing:
 
 
 def _diagnostics(results: xr.Dataset, summary: Mapping[str, Any]) -> Table:
-    diagnostics = {
-        key: value for key, value in summary["diagnostics"].items() if not isinstance(value, list)
-    }
-    rows: list[list[Cell]] = [[key.replace("_", " "), value] for key, value in diagnostics.items()]
+    rows: list[list[Cell]] = [
+        [key.replace("_", " "), value]
+        for key, value in summary["diagnostics"].items()
+        if not isinstance(value, list)
+    ]
     resolved = results["resolved"].values.astype(bool)
     rows.append(["depths resolved", f"{np.count_nonzero(resolved)} of {resolved.size}"])
     if summary.get("observed_order") is not None:
@@ -161,8 +146,7 @@ def _diagnostics(results: xr.Dataset, summary: Mapping[str, Any]) -> Table:
     return Table("Diagnostics", ["quantity", "value"], rows)
 
 
-def _groups(summary: Mapping[str, Any]) -> list[Table]:
-    tables = []
+def _groups(summary: Mapping[str, Any]) -> Iterator[Table]:
     for key, title in (
         ("derived", "Derived quantities"),
         ("surface_statistics", "Surface"),
@@ -172,8 +156,7 @@ def _groups(summary: Mapping[str, Any]) -> list[Table]:
     ):
         if group := summary.get(key):
             rows = [[name, _cell(value)] for name, value in group.items()]
-            tables.append(Table(title, ["quantity", "value"], rows))
-    return tables
+            yield Table(title, ["quantity", "value"], rows)
 
 
 def _cell(value: Any) -> Cell:

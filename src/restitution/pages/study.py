@@ -8,14 +8,8 @@ from restitution.case.case_file import parse_toml
 from restitution.contact.checks.resolution import NODES_PER_PATCH
 from restitution.pages.methods import methods
 from restitution.pages.page import Cell, Drawing, Listing, Page, Table, write_page
-from restitution.plots.study import (
-    IMPACT_VELOCITY,
-    INDENTATION,
-    MOST_LINES,
-    Abscissa,
-    rows_with,
-    study_figure,
-)
+from restitution.plots.cor import IMPACT_VELOCITY, INDENTATION, Abscissa
+from restitution.plots.study import MOST_LINES, rows_with, study_figure
 from restitution.results.reader import StoredCase, StudyResults
 
 
@@ -23,23 +17,20 @@ def write_study_page(out: Path) -> Path:
     """Write `report.html` from the `table.csv`, `study.nc` and cases in `out`."""
     study = StudyResults(out)
     cases, text = study.cases, study.text
-    title = str(parse_toml(text).get("title", ""))
     swept = list(cases[0].swept)
     count = {
         status: sum(case.status == status for case in cases)
         for status in ("complete", "failed", "missing")
     }
-    parts: list[Table | Drawing | Listing] = []
-    if count["complete"]:
-        parts.append(_restitution(cases, swept, INDENTATION))
+    parts: list[Table | Drawing | Listing] = [_cases(cases, swept), Listing("Study file", text)]
+    if complete := [case for case in cases if case.status == "complete"]:
+        abscissae = [INDENTATION]
         if any(rows_with(case, IMPACT_VELOCITY) for case in cases):
-            parts.append(_restitution(cases, swept, IMPACT_VELOCITY))
-    parts += [_cases(cases, swept), Listing("Study file", text)]
-    complete = next((case.name for case in cases if case.status == "complete"), None)
-    if complete is not None:
-        parts.append(methods(study.run(complete).summary))
+            abscissae.append(IMPACT_VELOCITY)
+        drawings = (_restitution(complete, swept, each) for each in abscissae)
+        parts = [*drawings, *parts, methods(study.run(complete[0].name).summary)]
     page = Page(
-        title=title or "Study",
+        title=str(parse_toml(text).get("title", "")) or "Study",
         intro=[
             f"{len(cases)} cases over {', '.join(swept)}: "
             + ", ".join(f"{number} {status}" for status, number in count.items() if number)
@@ -47,8 +38,7 @@ def write_study_page(out: Path) -> Path:
         warnings=_warnings(cases, count),
         parts=parts,
     )
-    write_page(out / "report.html", page)
-    return out / "report.html"
+    return write_page(out / "report.html", page)
 
 
 def _warnings(cases: list[StoredCase], count: dict[str, int]) -> list[str]:
@@ -69,9 +59,8 @@ def _warnings(cases: list[StoredCase], count: dict[str, int]) -> list[str]:
     return found
 
 
-def _restitution(cases: list[StoredCase], swept: list[str], abscissa: Abscissa) -> Drawing:
+def _restitution(drawn: list[StoredCase], swept: list[str], abscissa: Abscissa) -> Drawing:
     axis = abscissa.axis
-    drawn = [case for case in cases if case.status == "complete"]
     table: list[list[Cell]] = [
         [
             *case.swept.values(),

@@ -69,15 +69,15 @@ def write_surface_page(out: Path) -> Path:
     """Write `surface.html` from the `surface.nc` and `statistics.json` in `out`."""
     dataset, statistics = read_netcdf(out / "surface.nc"), read_json(out / "statistics.json")
     provenance = statistics["provenance"]
-    x, y = dataset["x"].values, dataset["y"].values
-    nodes = x.size, y.size
-    spacing = tuple(float(provenance[f"spacing_{axis}_m"]) for axis in ("x", "y"))
-    surface = Surface(dataset["height"].values, Grid(nodes, (spacing[0], spacing[1])), provenance)
+    nodes = dataset.sizes["x"], dataset.sizes["y"]
+    hx, hy = (float(provenance[f"spacing_{axis}_m"]) for axis in ("x", "y"))
+    surface = Surface(dataset["height"].values, Grid(nodes, (hx, hy)), provenance)
+    origin: list[list[Cell]] = [[k, value] for k, value in provenance.items() if k != "notice"]
     size = " × ".join(f"{1e6 * edge:.4g}" for edge in surface.grid.size)
     page = Page(
         title=dataset.attrs.get("title") or "Surface",
         intro=[
-            f"{nodes[0]} × {nodes[1]} nodes of {1e6 * spacing[0]:.4g} × {1e6 * spacing[1]:.4g} µm, "
+            f"{nodes[0]} × {nodes[1]} nodes of {1e6 * hx:.4g} × {1e6 * hy:.4g} µm, "
             f"{size} µm; {provenance.get('kind') or provenance.get('source', 'surface')}"
         ],
         warnings=[str(provenance["notice"])] if "notice" in provenance else [],
@@ -87,12 +87,11 @@ def write_surface_page(out: Path) -> Path:
             _heights(surface, statistics),
             _autocorrelation(surface),
             _spectrum(surface),
-            _made(provenance),
+            Table("Origin", ["step or source", "value"], origin),
             _methods(surface),
         ],
     )
-    write_page(out / "surface.html", page)
-    return out / "surface.html"
+    return write_page(out / "surface.html", page)
 
 
 def _map(surface: Surface) -> Drawing:
@@ -208,11 +207,6 @@ def _spectrum(surface: Surface) -> Drawing:
         ),
         Table("Spectrum", ["directions", "q (1/µm)", "wave length (µm)", "C (µm⁴)"], rows),
     )
-
-
-def _made(provenance: Mapping[str, Any]) -> Table:
-    rows: list[list[Cell]] = [[k, value] for k, value in provenance.items() if k != "notice"]
-    return Table("Origin", ["step or source", "value"], rows)
 
 
 def _methods(surface: Surface) -> Table:

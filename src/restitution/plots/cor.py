@@ -1,15 +1,46 @@
-"""Parts shared by all figures of COR: the axis, and the bars of the total error."""
+"""Parts shared by all figures of COR: the axes, and the bars of the total error."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
-from restitution.plots.figure import Array, Axis, Band, Mark, Points, Series, has_error
+from restitution.plots.figure import Array, Axis, Band, Chart, Mark, Points, Series, has_error
 
 _STEP = 0.1  # the ends of the axis are multiples of this value
 _MARGIN = 0.02  # smallest distance of the values from the ends of the axis
+
+
+class Abscissa(NamedTuple):
+    """The x axis of a COR figure.
+
+    `variable` is the variable of a dataset and `column` the column of a table to plot. `scale`
+    converts their values to the unit of `axis`.
+    """
+
+    name: str
+    variable: str
+    column: str
+    scale: float
+    axis: Axis
+
+
+INDENTATION = Abscissa(
+    "indentation",
+    "indentation",
+    "max_indentation_m",
+    1e6,
+    Axis("maximum indentation", "µm", "log"),
+)
+IMPACT_VELOCITY = Abscissa(
+    "velocity",
+    "impact_velocity",
+    "impact_velocity_m_per_s",
+    1.0,
+    Axis("impact velocity", "m/s", "log"),
+)
 
 
 def cor_axis(series: Sequence[Series]) -> Axis:
@@ -24,6 +55,11 @@ def cor_axis(series: Sequence[Series]) -> Axis:
         low=-_MARGIN if values.min() <= 0 else float(low),
         high=float(high) if high < 1 else 1.05,
     )
+
+
+def cor_chart(x: Axis, series: Sequence[Series], title: str = "") -> Chart:
+    """Make a chart of COR with the axis of `cor_axis`."""
+    return Chart(x, cor_axis(series), series, title)
 
 
 def bars(cor: Array, error: Array) -> tuple[Array, str]:

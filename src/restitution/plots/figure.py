@@ -155,17 +155,14 @@ def legend_entries(panel: Chart | Map) -> list[str]:
     """The legend texts of one panel, in the order of the series, without repetition."""
     if isinstance(panel, Map):
         return []
-    found: dict[str, None] = {}
+    found = []
     for each in panel.series:
-        if isinstance(each, Mark):
-            continue
-        found[each.label] = None
+        if not isinstance(each, Mark):
+            found.append(each.label)
         if isinstance(each, Points):
-            if has_open(each):
-                found[each.open_label] = None
-            if has_error(each):
-                found[each.error_label] = None
-    return [label for label in found if label]
+            found.append(each.open_label if has_open(each) else "")
+            found.append(each.error_label if has_error(each) else "")
+    return [label for label in dict.fromkeys(found) if label]
 
 
 def has_open(points: Points) -> bool:

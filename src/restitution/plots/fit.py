@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from restitution.calibration.fit import Fit
-from restitution.plots.cor import cor_axis
-from restitution.plots.figure import BLUE, ORANGE, Axis, Band, Chart, Figure, Line, Points, Series
+from restitution.plots.cor import IMPACT_VELOCITY, cor_chart
+from restitution.plots.figure import BLUE, ORANGE, Band, Figure, Line, Points, Series
 
 
 def fit_figure(found: Fit) -> Figure:
@@ -32,5 +32,4 @@ def fit_figure(found: Fit) -> Figure:
         f"{each.key} {each.text(factor)}"
         for each, factor in zip(found.parameters, found.factors, strict=True)
     )
-    chart = Chart(Axis("impact velocity", "m/s", "log"), cor_axis(series), series)
-    return Figure(values, [chart])
+    return Figure(values, [cor_chart(IMPACT_VELOCITY.axis, series)])

@@ -12,7 +12,6 @@ from restitution.plots.figure import (
     Axis,
     Band,
     Chart,
-    Dash,
     Figure,
     Line,
     Map,
@@ -121,14 +120,12 @@ def _traces(each: Band | Line | Points, chart: Chart) -> list[dict[str, Any]]:
         trace |= {"line_shape": "hvh"} if each.step else {}
         return [trace | ({"yaxis": "y2"} if each.right else {})]
     hollow = np.zeros(np.shape(each.x), bool) if each.open is None else each.open
+    closed = {"symbol": each.symbol, "size": 7, "color": each.color}
     trace |= {
         "mode": "lines+markers" if each.joined else "markers",
         "line": {"color": each.color, "width": 1.5},
-        "marker": {
-            "symbol": [f"{each.symbol}-open" if h else each.symbol for h in hollow],
-            "size": 7,
-            "color": each.color,
-        },
+        "marker": closed
+        | {"symbol": [f"{each.symbol}-open" if h else each.symbol for h in hollow]},
     }
     traces = [trace]
     if each.error is not None and has_error(each):
@@ -143,11 +140,9 @@ def _traces(each: Band | Line | Points, chart: Chart) -> list[dict[str, Any]]:
     if has_open(each) and not hollow.all():
         # By default the legend shows the marker of the first point, which may be open. Show a
         # closed marker instead.
-        closed = {"symbol": each.symbol, "size": 7, "color": each.color}
         traces.insert(0, _legend_only(each.label, closed, mode=trace["mode"], line=trace["line"]))
     if has_open(each):
-        hollow_marker = {"symbol": f"{each.symbol}-open", "size": 7, "color": each.color}
-        traces.append(_legend_only(each.open_label, hollow_marker))
+        traces.append(_legend_only(each.open_label, closed | {"symbol": f"{each.symbol}-open"}))
     if has_error(each):
         bar = {"symbol": "line-ns-open", "size": 12, "color": each.color}
         traces.append(_legend_only(each.error_label, bar))
@@ -183,7 +178,6 @@ def _draw_mark(plot: Plot, mark: Mark) -> None:
 
 def _heatmap(part: Map) -> dict[str, Any]:
     step, unit = shown_step(part), _escaped(part.quantity.unit)
-    label = f"{_escaped(part.quantity.label)} {{}} {unit}"
     return {
         "type": "heatmap",
         "x": part.x[::step].astype(np.float32),
@@ -192,7 +186,7 @@ def _heatmap(part: Map) -> dict[str, Any]:
         "colorscale": part.colours,
         "colorbar": {"title": {"text": unit}, "thickness": 18},
         "hovertemplate": "x %{x:.4g} µm, y %{y:.4g} µm<br>"
-        f"{label.format('%{z:.4g}')}<extra></extra>",
+        f"{_escaped(part.quantity.label)} %{{z:.4g}} {unit}<extra></extra>",
     }
 
 
@@ -225,8 +219,7 @@ def _axis(axis: Axis) -> dict[str, Any]:
 
 
 def _dashes(line: Line) -> str:
-    dash: Dash = line.dash
-    return ",".join(f"{length * (line.width + 0.3):.3g}px" for length in dash) or "solid"
+    return ",".join(f"{length * (line.width + 0.3):.3g}px" for length in line.dash) or "solid"
 
 
 def _faint(color: str) -> str:

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from restitution.laws.law import Law
-from restitution.plots.cor import bars, cor_axis
+from restitution.plots.cor import IMPACT_VELOCITY, bars, cor_chart
 from restitution.plots.figure import (
     BLUE,
     DASHED,
     SOLID,
-    Axis,
-    Chart,
     Dash,
     Figure,
     Line,
@@ -50,11 +46,11 @@ def law_figure(law: Law) -> Figure:
         label = f"compact fit (within {law.fit.worst:.1g})"
         series.append(Line(fine, law.fit.restitution(fine), label, color=BLUE))
     for other in law.laws:
-        values = np.array([math.nan if value is None else value for value in other.restitution])
+        values = np.array(other.restitution, dtype=float)  # None becomes NaN
         label = f"{other.name} ({other.worst:.2g})"
         color, dash, width = LAW_LINES[other.name]
         series.append(Line(V, values, label, color=color, dash=dash, width=width))
-    chart = Chart(Axis("impact velocity", "m/s", "log"), cor_axis(series), series)
+    chart = cor_chart(IMPACT_VELOCITY.axis, series)
     return Figure(law.title, [chart], "largest difference in brackets")
 
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from restitution.laws.law import Law
-from restitution.plots.cor import cor_axis
-from restitution.plots.figure import GREY, PALETTE, Axis, Chart, Figure, Line, Series
+from restitution.plots.cor import IMPACT_VELOCITY, cor_chart
+from restitution.plots.figure import GREY, PALETTE, Figure, Line
 
 
 def mixture_figure(title: str, laws: Sequence[Law]) -> Figure:
@@ -17,22 +18,17 @@ def mixture_figure(title: str, laws: Sequence[Law]) -> Figure:
     charts = []
     for (first, second), members in families_of(laws).items():
         ordered = sorted(members, key=lambda law: law.radius)
-        shown = ordered[:: max(1, -(-len(ordered) // 5))]
-        series: list[Series] = []
-        for law in ordered:
-            number = shown.index(law) if law in shown else None
-            series.append(
-                Line(
-                    law.column("velocity"),
-                    law.column("restitution"),
-                    "" if number is None else f"R* = {1e6 * law.radius:.3g} µm",
-                    color=GREY if number is None else PALETTE[number],
-                )
+        step = math.ceil(len(ordered) / 5)
+        series = [
+            Line(
+                law.column("velocity"),
+                law.column("restitution"),
+                "" if number % step else f"R* = {1e6 * law.radius:.3g} µm",
+                color=GREY if number % step else PALETTE[number // step],
             )
-        heading = f"{first} on {second}"
-        charts.append(
-            Chart(Axis("impact velocity", "m/s", "log"), cor_axis(series), series, heading)
-        )
+            for number, law in enumerate(ordered)
+        ]
+        charts.append(cor_chart(IMPACT_VELOCITY.axis, series, f"{first} on {second}"))
     return Figure(title, charts)
 
 

@@ -15,7 +15,6 @@ from restitution.plots.figure import (
     GREY,
     PALETTE,
     SYMBOLS,
-    Array,
     Axis,
     Chart,
     Figure,
@@ -50,14 +49,8 @@ def oblique_figure(results: xr.Dataset) -> Figure:
         ("angle of rebound", "°", "oblique_rebound_angle", math.degrees(1)),
         ("spin of the first body", "rad/s", "oblique_first_spin", 1.0),
     ):
-        series: list[Series] = list(_points(results, variable, scale))
-        if slip is not None:
-            begins, angles, along = slip
-            series.append(Mark("x", begins, "full slip", side="right"))
-            if variable == "oblique_tangential_restitution" and angles.size:
-                series.append(
-                    Line(angles, along, "full slip, closed form", color=GREY, dash=DASHED)
-                )
+        shown = slip if variable == "oblique_tangential_restitution" else slip[:1]
+        series = [*_points(results, variable, scale), *shown]
         charts.append(Chart(axis, Axis(title, unit), series))
     return Figure(results.attrs.get("title", ""), charts)
 
@@ -83,29 +76,32 @@ def _points(results: xr.Dataset, variable: str, scale: float) -> Iterator[Points
         )
 
 
-def _full_slip(results: xr.Dataset) -> tuple[float, Array, Array] | None:
-    """Return the angle of full slip, and angles and tangential restitution of the closed form.
+def _full_slip(results: xr.Dataset) -> list[Series]:
+    """Mark the angle of full slip; beyond it, draw the closed form of tangential restitution.
 
-    The angle of full slip is the angle of impact from which the whole contact slides. All angles
-    are in degrees. The result is None without friction or without results. It is also None if a
-    body spins before the impact, which the closed form does not include.
+    The angle of full slip is the angle of impact from which the whole contact slides. The list is
+    empty without friction or without results. It is also empty if a body spins before the impact,
+    which the closed form does not include.
     """
     if results["oblique_first_spin_before"].any() or results["oblique_second_spin_before"].any():
-        return None
+        return []
     pair = parse_case(results.attrs["case"]).pair()
     friction = float(results["oblique_friction"].max())
     e = results["oblique_normal_restitution"][-1].values
     angles = results["oblique_angle"].values[np.isfinite(e)]
     e = e[np.isfinite(e)]
     if not e.size or friction == 0:
-        return None
+        return []
     begins, ratio = float(angles[0]), pair.tangential_modulus / pair.contact_modulus
     for _ in range(_ROUNDS):
         begins = full_slip_angle(friction, float(np.interp(begins, angles, e)), ratio)
-    last = float(angles[-1])
-    beyond = np.linspace(begins, last, _CURVE) if last > begins else np.zeros(0)
-    along = [
-        full_slip_restitution(friction, float(np.interp(each, angles, e)), float(each))
-        for each in beyond
-    ]
-    return math.degrees(begins), np.degrees(beyond), np.array(along)
+    slip: list[Series] = [Mark("x", math.degrees(begins), "full slip")]
+    if (last := float(angles[-1])) > begins:
+        beyond = np.linspace(begins, last, _CURVE)
+        along = [
+            full_slip_restitution(friction, float(np.interp(each, angles, e)), float(each))
+            for each in beyond
+        ]
+        label = "full slip, closed form"
+        slip.append(Line(np.degrees(beyond), np.array(along), label, color=GREY, dash=DASHED))
+    return slip

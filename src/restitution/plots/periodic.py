@@ -6,7 +6,6 @@ from collections.abc import Iterator
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from restitution.plots.figure import DASHED, GREY, Axis, Chart, Figure, Line, Map, Points, Series
 from restitution.theory import Persson
@@ -29,7 +28,8 @@ def area_against_pressure(results: xr.Dataset) -> Figure:
     p = 1e-6 * pressure
     along = Axis("nominal pressure", "MPa", "log")
     area = 100 * results["corrected_relative_area"].values
-    series: list[Series] = [Points(p, area, "this contact", joined=True, open=_unresolved(results))]
+    unresolved = ~results["resolved"].values.astype(bool)
+    series: list[Series] = [Points(p, area, "this contact", joined=True, open=unresolved)]
     slope = float(results.attrs["derived_rms_slope"])
     E_star = float(results.attrs["derived_contact_modulus_Pa"])
     if slope > 0:
@@ -43,10 +43,6 @@ def area_against_pressure(results: xr.Dataset) -> Figure:
             Chart(along, Axis("mean gap", "nm"), [gap]),
         ],
     )
-
-
-def _unresolved(results: xr.Dataset) -> NDArray[np.bool_]:
-    return ~results["resolved"].values.astype(bool)
 
 
 def _pressure_map(results: xr.Dataset) -> Figure:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 import xarray as xr
@@ -14,7 +15,7 @@ from restitution.laws.references import (
     restitution_references_by_indentation,
     restitution_references_by_velocity,
 )
-from restitution.plots.cor import bars, cor_axis
+from restitution.plots.cor import IMPACT_VELOCITY, INDENTATION, Abscissa, bars, cor_chart
 from restitution.plots.figure import (
     DASH_DOTTED,
     DASHED,
@@ -46,6 +47,10 @@ _UNIFORM = 0.01  # relative difference up to which a pressure counts as the larg
 # map is left out.
 _SATURATED = 0.95
 _SMOOTH = "smooth, same model"
+_REFERENCES = {
+    INDENTATION: restitution_references_by_indentation,
+    IMPACT_VELOCITY: restitution_references_by_velocity,
+}
 _DASHES = (DOTTED, DASH_DOTTED, DASHED, SOLID)  # line styles of the coarser grids, coarsest first
 
 
@@ -54,13 +59,18 @@ def run_figures(results: xr.Dataset) -> Iterator[tuple[str, Figure]]:
     if results.sizes["indentation_max"] == 0:
         return
     yield "load-displacement", load_displacement(results)
-    yield "restitution-indentation", restitution_against_indentation(results)
-    if (results["impact_velocity"] > 0).any():
-        yield "restitution-velocity", restitution_against_velocity(results)
+    for abscissa in abscissae(results):
+        yield f"restitution-{abscissa.name}", restitution_figure(results, abscissa)
     if has_map(results):
         yield "pressure", pressure_map(results)
     if has_oblique(results):
         yield "oblique", oblique_figure(results)
+
+
+def abscissae(results: xr.Dataset) -> list[Abscissa]:
+    """The x axes of the COR figures of `results`, which hold at least one depth."""
+    impacts = (results["impact_velocity"] > 0).any()
+    return [INDENTATION, IMPACT_VELOCITY] if impacts else [INDENTATION]
 
 
 def has_map(results: xr.Dataset) -> bool:
@@ -75,7 +85,7 @@ def load_displacement(results: xr.Dataset) -> Figure:
     if "smooth_force" in results and results.attrs["derived_yield_pressure_Pa"] != "None":
         x, y = 1e6 * results["smooth_indentation"].values, results["smooth_force"].values
         beside.insert(0, Line(x, y, _SMOOTH, color=GREY))
-    back = _unloading(results)
+    back = unloading_lines(results)
     loading = Points(np.append(0, depth), np.append(0, force), "loading", joined=True)
     across, up = (_span([loading, *back], name) for name in ("x", "y"))
     linear = Chart(
@@ -102,28 +112,6 @@ def load_displacement(results: xr.Dataset) -> Figure:
     return Figure(results.attrs.get("title", ""), [linear, logarithmic])
 
 
-def restitution_against_indentation(results: xr.Dataset) -> Figure:
-    """Plot the coefficient of restitution against the maximum indentation."""
-    return _restitution(
-        results,
-        "indentation",
-        Axis("maximum indentation", "µm", "log"),
-        1e6,
-        restitution_references_by_indentation,
-    )
-
-
-def restitution_against_velocity(results: xr.Dataset) -> Figure:
-    """Plot the coefficient of restitution against the impact velocity."""
-    return _restitution(
-        results,
-        "impact_velocity",
-        Axis("impact velocity", "m/s", "log"),
-        1.0,
-        restitution_references_by_velocity,
-    )
-
-
 def pressure_map(results: xr.Dataset) -> Figure:
     """Draw maps of the contact pressure and the plastic displacement at the deepest indentation.
 
@@ -131,8 +119,7 @@ def pressure_map(results: xr.Dataset) -> Figure:
     the whole contact is at the same yield pressure.
     """
     pressure = 1e-6 * results["pressure"].values
-    none = np.zeros_like(pressure)
-    depth = results["plastic_displacement"].values if "plastic_displacement" in results else none
+    depth = results.get("plastic_displacement", xr.zeros_like(results["pressure"])).values
     touched, yields = (pressure != 0) | (depth != 0), bool(depth.any())
     where = f"at an indentation of {1e6 * float(results['indentation'].max()):.3g} µm"
     share = float(np.mean(pressure[touched] > (1 - _UNIFORM) * pressure.max()))
@@ -160,13 +147,9 @@ def pressure_map(results: xr.Dataset) -> Figure:
     return Figure(results.attrs.get("title", ""), panels)
 
 
-def _restitution(
-    results: xr.Dataset,
-    variable: str,
-    axis: Axis,
-    scale: float,
-    references: Callable[[xr.Dataset], list[Reference]],
-) -> Figure:
+def restitution_figure(results: xr.Dataset, abscissa: Abscissa) -> Figure:
+    """Plot the coefficient of restitution with its error, and closed forms for smooth bodies."""
+    scale, variable = abscissa.scale, abscissa.variable
     x, cor = scale * results[variable].values, results["restitution"].values
     series: list[Series] = []
     label = "this contact"
@@ -178,10 +161,10 @@ def _restitution(
         series += [
             Line(x, cor + sign * std, "± standard deviation", dash=DOTTED) for sign in (1, -1)
         ]
-    for coarser, dash in zip(results.get("coarser_restitution", ()), _DASHES, strict=False):
-        series.append(
-            Line(x, coarser.values, f"refine = {int(coarser['refine'])}", color=ORANGE, dash=dash)
-        )
+    series += [
+        Line(x, coarser.values, f"refine = {int(coarser['refine'])}", color=ORANGE, dash=dash)
+        for coarser, dash in zip(results.get("coarser_restitution", ()), _DASHES, strict=False)
+    ]
     error, error_label = bars(cor, results["total_error"].values)
     series.append(
         Points(
@@ -198,11 +181,10 @@ def _restitution(
     if f"smooth_{variable}" in results:
         smooth = scale * results[f"smooth_{variable}"].values
         series.append(Line(smooth, results["smooth_restitution"].values, _SMOOTH, color=GREY))
-    series += _references(references(results), scale)
+    series += _references(_REFERENCES[abscissa](results), scale)
     inside = x[x > 0]
-    ends = (inside.min() / _MARGIN, inside.max() * _MARGIN)
-    axis = Axis(axis.label, axis.unit, axis.scale, *ends)
-    return Figure(results.attrs.get("title", ""), [Chart(axis, cor_axis(series), series)])
+    axis = replace(abscissa.axis, low=inside.min() / _MARGIN, high=inside.max() * _MARGIN)
+    return Figure(results.attrs.get("title", ""), [cor_chart(axis, series)])
 
 
 def _references(found: list[Reference], scale: float) -> list[Series]:
@@ -212,7 +194,7 @@ def _references(found: list[Reference], scale: float) -> list[Series]:
     ]
 
 
-def _unloading(results: xr.Dataset) -> list[Line]:
+def unloading_lines(results: xr.Dataset) -> list[Line]:
     """The unloading curves, without the NaN at their ends."""
     found = []
     for k in range(results.sizes.get("unloading", 0)):

@@ -22,7 +22,6 @@ from restitution.plots.figure import (
     Array,
     Band,
     Chart,
-    Dash,
     Figure,
     Line,
     Map,
@@ -132,11 +131,10 @@ def _draw_chart(axes: Axes, chart: Chart, handles: dict[str, Any]) -> None:
     right = axes.twinx() if chart.right is not None else axes
     for each in chart.series:
         _draw_series(right if isinstance(each, Line) and each.right else axes, each, handles)
-    axes.set(xlabel=_escaped(chart.x.title), ylabel=_escaped(chart.y.title))
-    axes.set(xscale=chart.x.scale, yscale=chart.y.scale)
-    axes.set_xlim(chart.x.low, chart.x.high)
-    axes.set_ylim(chart.y.low, chart.y.high)
-    for axis, described in ((axes.xaxis, chart.x), (axes.yaxis, chart.y)):
+    x, y = chart.x, chart.y
+    axes.set(xlabel=_escaped(x.title), xscale=x.scale, xlim=(x.low, x.high))
+    axes.set(ylabel=_escaped(y.title), yscale=y.scale, ylim=(y.low, y.high))
+    for axis, described in ((axes.xaxis, x), (axes.yaxis, y)):
         if described.scale == "log":
             _set_log_ticks(axis)
         else:
@@ -145,8 +143,8 @@ def _draw_chart(axes: Axes, chart: Chart, handles: dict[str, Any]) -> None:
             axis.set_major_locator(MaxNLocator(_TICKS, steps=(1, 2, 5, 10)))
             axis.set_major_formatter(formatter)
     if chart.right is not None:
-        right.set(ylabel=_escaped(chart.right.title), yscale=chart.right.scale)
-        right.set_ylim(chart.right.low, chart.right.high)
+        y = chart.right
+        right.set(ylabel=_escaped(y.title), yscale=y.scale, ylim=(y.low, y.high))
 
 
 def _set_log_ticks(axis: Axis) -> None:
@@ -182,7 +180,7 @@ def _draw_series(axes: Axes, each: Series, handles: dict[str, Any]) -> None:
             each.y,
             color=each.color,
             lw=each.width,
-            ls=_dashes(each.dash),
+            ls=(0, each.dash) if each.dash else "-",
             marker="o" if np.size(each.x) == 1 else "",
             drawstyle="steps-mid" if each.step else "default",
         )
@@ -221,14 +219,11 @@ def _draw_mark(axes: Axes, mark: Mark) -> None:
     if mark.axis == "x":
         axes.axvline(mark.value, **style)
         # Place the text near the lower end of the line, beside the line.
-        where, shift, align = (mark.value, 0.03), (4 * sign, 0), "bottom"
-        transform = axes.get_xaxis_transform()
-        horizontal = "left" if sign > 0 else "right"
+        where, shift, transform = (mark.value, 0.03), (4 * sign, 0), axes.get_xaxis_transform()
     else:
         axes.axhline(mark.value, **style)
-        where, shift, align = (1.0 if sign > 0 else 0.0, mark.value), (-4 * sign, 2), "bottom"
-        transform = axes.get_yaxis_transform()
-        horizontal = "right" if sign > 0 else "left"
+        end = 1.0 if sign > 0 else 0.0
+        where, shift, transform = (end, mark.value), (-4 * sign, 2), axes.get_yaxis_transform()
     if text:
         axes.annotate(
             text,
@@ -236,8 +231,8 @@ def _draw_mark(axes: Axes, mark: Mark) -> None:
             xycoords=transform,
             xytext=shift,
             textcoords="offset points",
-            ha=horizontal,
-            va=align,
+            ha="left" if shift[0] > 0 else "right",
+            va="bottom",
             color="0.3",
             fontsize="small",
             zorder=7,
@@ -260,10 +255,6 @@ def _draw_map(drawing: Drawing, axes: Axes, part: Map) -> None:
 
 def _cell(centres: Array) -> float:
     return float(centres[1] - centres[0]) if centres.size > 1 else 1.0
-
-
-def _dashes(dash: Dash) -> Any:
-    return (0, dash) if dash else "-"
 
 
 def _plain(text: str) -> str:

@@ -4,30 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 
-from restitution.plots.cor import cor_axis
-from restitution.plots.figure import PALETTE, SYMBOLS, Axis, Chart, Figure, Points
+from restitution.plots.cor import Abscissa, cor_chart
+from restitution.plots.figure import PALETTE, SYMBOLS, Figure, Points
 from restitution.results.reader import StoredCase
 
 MOST_LINES = 60  # largest number of lines in a figure; more cannot be distinguished
-
-
-class Abscissa(NamedTuple):
-    """The x axis of a COR figure.
-
-    `column` is the column to plot, and `scale` converts its values to the unit of `axis`.
-    """
-
-    column: str
-    scale: float
-    axis: Axis
-
-
-INDENTATION = Abscissa("max_indentation_m", 1e6, Axis("maximum indentation", "µm", "log"))
-IMPACT_VELOCITY = Abscissa("impact_velocity_m_per_s", 1.0, Axis("impact velocity", "m/s", "log"))
 
 
 def rows_with(case: StoredCase, abscissa: Abscissa) -> list[dict[str, float]]:
@@ -55,4 +39,4 @@ def study_figure(cases: Sequence[StoredCase], abscissa: Abscissa) -> Figure:
                 open=np.array([not row["resolved"] for row in rows]),
             )
         )
-    return Figure("", [Chart(abscissa.axis, cor_axis(series), series)])
+    return Figure("", [cor_chart(abscissa.axis, series)])

@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from restitution.laws.law import Law
-from restitution.plots.cor import cor_axis
-from restitution.plots.figure import Array, Axis, Chart, Figure, Line, Mark, Series
+from restitution.plots.cor import IMPACT_VELOCITY, cor_chart
+from restitution.plots.figure import Array, Figure, Line, Mark, Series
 from restitution.plots.law import LAW_LINES, computed_points
 
 
@@ -23,9 +23,9 @@ def theory_figure(
     Each of `lines` has a name, a flag for fits, velocities (m/s) and COR. Lines without a finite
     COR are left out. `marks` maps symbols to the velocities (m/s) of first yield and of sticking.
     """
-    series: list[Series] = []
-    if law is not None:
-        series.append(computed_points(law, "computed", "computed, not resolved"))
+    series: list[Series] = (
+        [] if law is None else [computed_points(law, "computed", "computed, not resolved")]
+    )
     for name, fitted, V, e in lines:
         if np.isfinite(e).any():
             color, dash, width = LAW_LINES[name]
@@ -40,6 +40,4 @@ def theory_figure(
         if velocities.min() <= V <= velocities.max()
     ]
     beside = "smooth bodies" if law is None else "smooth bodies, and fits"
-    return Figure(
-        title, [Chart(Axis("impact velocity", "m/s", "log"), cor_axis(series), series)], beside
-    )
+    return Figure(title, [cor_chart(IMPACT_VELOCITY.axis, series)], beside)

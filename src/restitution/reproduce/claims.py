@@ -59,12 +59,10 @@ def curves(study: xr.Dataset) -> list[Curve]:
     """Return the complete cases of a study, labelled with their swept values."""
     dims = [str(dim) for dim in study["restitution"].dims if dim != "depth"]
     stacked = study.stack(_case=dims).transpose("_case", "depth", ...)
+    keys = [str(key) for key in study.coords if str(key) != "case"]
     found = []
-    for k in range(stacked.sizes["_case"]):
+    for k in np.flatnonzero(stacked["status"].values == "complete"):
         case = stacked.isel(_case=k)
-        if str(case["status"].item()) != "complete":
-            continue
-        keys = [str(key) for key in study.coords if str(key) != "case"]
         label = ", ".join(_as_written(study[key])[case[key].item()] for key in keys)
         have = np.isfinite(case["indentation"].values)
         depth, cor, force, pull_off, resolved = (case[name].values[have] for name in _VARIABLES)
@@ -82,9 +80,25 @@ def _as_written(coordinate: xr.DataArray) -> dict[float | str, str]:
     )
 
 
+def rough_and_smooth(study: xr.Dataset) -> tuple[list[Curve], Curve]:
+    """Return the rough cases and the smooth case of a study, in which the roughness varies."""
+    found = curves(study)
+    smooth = next(curve for curve in found if curve.label.startswith(SMOOTH))
+    return [curve for curve in found if not curve.label.startswith(SMOOTH)], smooth
+
+
 def _resolved(*of: Curve) -> str:
-    flags = np.concatenate([curve.resolved for curve in of])
+    return _count(np.concatenate([curve.resolved for curve in of]))
+
+
+def _count(flags: NDArray[np.bool_]) -> str:
     return f"{np.count_nonzero(flags)} of {flags.size}"
+
+
+def _verdict(agrees: bool, in_part: bool = False) -> Verdict:
+    if agrees:
+        return "agrees"
+    return "agrees in part" if in_part else "does not agree"
 
 
 def _figure_5(studies: Studies) -> Finding:
@@ -95,7 +109,7 @@ def _figure_5(studies: Studies) -> Finding:
         "The elastic solution agrees with Hertz's.",
         f"Force within {off:.2%} of Hertz's at all depths.",
         off,
-        "agrees" if off < 0.01 else "does not agree",
+        _verdict(off < 0.01),
         _resolved(curve),
     )
 
@@ -117,7 +131,7 @@ def _figure_6(studies: Studies) -> Finding:
         "figures, it is up to "
         f"{off['equilibrium']:.0%} larger: a difference of models, not of solutions.",
         off["truncated"],
-        "agrees" if off["truncated"] < 0.02 else "does not agree",
+        _verdict(off["truncated"] < 0.02),
         _resolved(*found),
     )
 
@@ -128,9 +142,6 @@ def _figure_7(studies: Studies) -> Finding:
     loading = float(np.abs(curve.force / jkr.force(curve.depth) - 1).max())
     off = np.abs(curve.pull_off / jkr.pull_off_force - 1)
     worst, deepest = max(loading, float(off.max())), float(off[-1])
-    verdict: Verdict = "agrees" if worst < 0.05 else "does not agree"
-    if verdict != "agrees" and max(loading, deepest) < 0.05:
-        verdict = "agrees in part"
     return Finding(
         "7",
         "Adhesive elastic contact agrees with the JKR theory.",
@@ -138,7 +149,7 @@ def _figure_7(studies: Studies) -> Finding:
         f"after the deepest indentation, and within {off.max():.1%} after any: at shallow depths, "
         "small unloading steps resolve the largest jumps that the grid causes.",
         worst,
-        verdict,
+        _verdict(worst < 0.05, max(loading, deepest) < 0.05),
         _resolved(curve),
     )
 
@@ -156,7 +167,7 @@ def _figure_8(studies: Studies) -> Finding:
         "For both yield stresses COR first increases with indentation and then reduces.",
         f"The largest COR ({where}) lies between the ends in {sum(inside)} of {len(inside)} cases.",
         sum(inside) / len(inside),
-        _share(inside),
+        _verdict(all(inside), any(inside)),
         _resolved(*found),
     )
 
@@ -167,20 +178,19 @@ def _figure_9(studies: Studies) -> Finding:
     spread = np.ptp(cor, axis=0)
     deep = found[0].depth > 100e-9
     shallow, left = float(spread.max()), float(spread[deep].max())
-    good = left < 0.05 < shallow
     return Finding(
         "9",
         "For smooth spheres interface energy affects COR at small indentations only.",
         f"Between the energies COR differs by up to {shallow:.2f} below 100 nm and by up to "
         f"{left:.3f} beyond.",
         left,
-        "agrees" if good else "does not agree",
+        _verdict(left < 0.05 < shallow),
         _resolved(*found),
     )
 
 
 def _stages(studies: Studies) -> Finding:
-    rough, _ = _rough_and_smooth(studies)
+    rough, _ = rough_and_smooth(studies["roughness"])
     complete = []
     for curve in rough:
         low = int(curve.cor[:-1].argmin())
@@ -195,13 +205,13 @@ def _stages(studies: Studies) -> Finding:
         f"All three stages within the depths computed for Rq = {names} ({sum(complete)} "
         f"of {len(complete)}). The rougher the surface, the deeper the last stage begins.",
         sum(complete) / len(complete),
-        _share(complete),
+        _verdict(all(complete), any(complete)),
         _resolved(*rough),
     )
 
 
 def _shallow_merging(studies: Studies) -> Finding:
-    rough, smooth = _rough_and_smooth(studies)
+    rough, smooth = rough_and_smooth(studies["roughness"])
     # Skip depths where the smooth sphere sticks: the relative difference is undefined.
     shallow = (smooth.depth <= 8e-9) & (smooth.cor > 0)
     off = max(float(np.abs(c.cor[shallow] / smooth.cor[shallow] - 1).max()) for c in rough)
@@ -212,13 +222,13 @@ def _shallow_merging(studies: Studies) -> Finding:
         f"Up to 8 nm COR differs by up to {off:.0%} from the smooth sphere's."
         + _single_nodes(flags),
         off,
-        "agrees" if off < _NEAR else "does not agree",
-        f"{np.count_nonzero(flags)} of {flags.size}",
+        _verdict(off < _NEAR),
+        _count(flags),
     )
 
 
 def _shallow_trend(studies: Studies) -> Finding:
-    rough, smooth = _rough_and_smooth(studies)
+    rough, smooth = rough_and_smooth(studies["roughness"])
     shallow = (smooth.depth >= 8e-9) & (smooth.depth <= 50e-9)
     cor = np.array([curve.cor[shallow] for curve in rough])
     off = float((np.ptp(cor, axis=0) / cor.mean(axis=0)).max())
@@ -229,8 +239,8 @@ def _shallow_trend(studies: Studies) -> Finding:
         f"Between 8 and 50 nm COR differs between roughnesses by up to {off:.0%} of its mean."
         + _single_nodes(flags),
         off,
-        "agrees" if off < 0.1 else "does not agree",
-        f"{np.count_nonzero(flags)} of {flags.size}",
+        _verdict(off < 0.1),
+        _count(flags),
     )
 
 
@@ -260,17 +270,24 @@ def critical_indentation(curve: Curve, smooth: Curve) -> float:
     return float(curve.depth[last] * (curve.depth[last + 1] / curve.depth[last]) ** share)
 
 
+def critical_indentations(study: xr.Dataset) -> dict[str, tuple[float, float]]:
+    """Rq/R and the critical indentation (m) of the rough cases of a study, by their labels."""
+    rough, smooth = rough_and_smooth(study)
+    return {
+        curve.label: (
+            1e-6 * float(curve.label.split()[0]) / RADIUS,
+            critical_indentation(curve, smooth),
+        )
+        for curve in rough
+    }
+
+
 def _figure_11(studies: Studies) -> Finding:
     from scipy.stats import linregress
 
-    cases = curves(studies["critical"])
-    smooth = next(curve for curve in cases if curve.label.startswith(SMOOTH))
-    found = [
-        (1e-6 * float(curve.label.split()[0]) / RADIUS, critical_indentation(curve, smooth))
-        for curve in cases
-        if not curve.label.startswith(SMOOTH)
-    ]
-    reached = np.array([pair for pair in found if not math.isnan(pair[1])])
+    found = critical_indentations(studies["critical"])
+    resolved = _resolved(*curves(studies["critical"]))
+    reached = np.array([pair for pair in found.values() if not math.isnan(pair[1])])
     count = f"{len(reached)} of {len(found)} surfaces"
     claim = "The critical indentation i_cr,max depends linearly on Rq/R."
     roughnesses = len(set(reached[:, 0])) if len(reached) else 0
@@ -282,7 +299,7 @@ def _figure_11(studies: Studies) -> Finding:
                 for ratio in sorted(set(reached[:, 0]))
             )
             words += f"Means: {means}."
-        return Finding("11", claim, words, math.nan, "not decided", _resolved(*cases))
+        return Finding("11", claim, words, math.nan, "not decided", resolved)
     line = linregress(reached[:, 0], reached[:, 1])
     r2 = float(line.rvalue**2)
     return Finding(
@@ -292,19 +309,18 @@ def _figure_11(studies: Studies) -> Finding:
         f"r² = {r2:.2f}, standard error of the slope {1e3 * line.stderr:.2g} mm; reached by "
         f"{count}.",
         r2,
-        "agrees" if r2 > 0.9 else "agrees in part" if r2 > 0.7 else "does not agree",
-        _resolved(*cases),
+        _verdict(r2 > 0.9, r2 > 0.7),
+        resolved,
     )
 
 
 def _figure_12(studies: Studies) -> Finding:
-    rough, smooth = _rough_and_smooth(studies)
+    rough, smooth = rough_and_smooth(studies["roughness"])
     carries = smooth.cor > 0
     most = [
         float(((smooth.cor - c.cor) / np.where(carries, smooth.cor, 1))[carries].max())
         for c in rough
     ]
-    grows = bool(np.all(np.diff(most) > -0.02))
     return Finding(
         "12",
         "Rougher surfaces deviate more from the smooth one, and lose more energy.",
@@ -312,7 +328,7 @@ def _figure_12(studies: Studies) -> Finding:
         + ", ".join(f"{m:.0%} at {c.label}" for m, c in zip(most, rough, strict=True))
         + ".",
         max(most),
-        "agrees" if grows else "agrees in part",
+        _verdict(bool(np.all(np.diff(most) > -0.02)), in_part=True),
         _resolved(*rough),
     )
 
@@ -329,7 +345,7 @@ def _figure_13(studies: Studies) -> Finding:
         f"it is {float(np.nanmin(ratio[~deep])):.0%} to {float(np.nanmax(ratio[~deep])):.0%}, so "
         "the curves also differ there.",
         beyond,
-        "agrees" if beyond < 0.8 else "does not agree",
+        _verdict(beyond < 0.8),
         _resolved(soft, hard),
     )
 
@@ -353,21 +369,9 @@ def _figure_14(studies: Studies) -> Finding:
         f"(up to {of_rough.max():.2f}), and COR of smooth spheres at the same depths by "
         f"{of_smooth.mean():.3f} (up to {of_smooth.max():.2f}).",
         float(of_rough.mean() / of_smooth.mean()),
-        "agrees" if of_rough.mean() < of_smooth.mean() else "does not agree",
+        _verdict(of_rough.mean() < of_smooth.mean()),
         _resolved(*rough),
     )
-
-
-def _rough_and_smooth(studies: Studies) -> tuple[list[Curve], Curve]:
-    found = curves(studies["roughness"])
-    smooth = next(curve for curve in found if curve.label == SMOOTH)
-    return [curve for curve in found if curve.label != SMOOTH], smooth
-
-
-def _share(flags: list[bool]) -> Verdict:
-    if all(flags):
-        return "agrees"
-    return "agrees in part" if any(flags) else "does not agree"
 
 
 CLAIMS: tuple[Callable[[Studies], Finding], ...] = (

@@ -27,14 +27,14 @@ from restitution.reproduce.claims import (
     CLAIMS,
     E_STAR,
     P_Y,
-    RADIUS,
     SMOOTH,
     Array,
     Curve,
     Finding,
     R,
-    critical_indentation,
+    critical_indentations,
     curves,
+    rough_and_smooth,
 )
 from restitution.reproduce.studies import NAMES, Size
 from restitution.results.reader import StudyResults
@@ -84,8 +84,7 @@ def write_reproduction(out: Path, size: Size) -> tuple[Path, list[Finding]]:
             methods(stored["roughness"].run("case-00002").summary),
         ],
     )
-    write_page(out / "report.html", page)
-    return out / "report.html", findings
+    return write_page(out / "report.html", page), findings
 
 
 def _warnings(size: Size) -> list[str]:
@@ -102,15 +101,10 @@ def _warnings(size: Size) -> list[str]:
 
 
 def _drawings(studies: dict[str, xr.Dataset], findings: list[Finding]) -> list[Drawing]:
-    by_figure: dict[str, list[Finding]] = {}
-    for finding in findings:
-        by_figure.setdefault(finding.figure, []).append(finding)
-
     def words(figure: str) -> str:
-        return " ".join(f"{f.found} ({f.verdict})" for f in by_figure[figure])
+        return " ".join(f"{f.found} ({f.verdict})" for f in findings if f.figure == figure)
 
-    smooth = next(c for c in curves(studies["roughness"]) if c.label == SMOOTH)
-    rough = [c for c in curves(studies["roughness"]) if c.label != SMOOTH]
+    rough, smooth = rough_and_smooth(studies["roughness"])
     return [
         _lines(
             "Figure 5: force on smooth elastic spheres",
@@ -118,7 +112,7 @@ def _drawings(studies: dict[str, xr.Dataset], findings: list[Finding]) -> list[D
             words("5"),
             [(c, c.force) for c in curves(studies["hertz"])],
             [("Hertz", Hertz(R, E_STAR).force)],
-            log=True,
+            scale="log",
         ),
         _lines(
             "Figure 6: force on smooth elastic–plastic spheres",
@@ -126,7 +120,7 @@ def _drawings(studies: dict[str, xr.Dataset], findings: list[Finding]) -> list[D
             words("6"),
             [(c, c.force) for c in curves(studies["thornton-ning"])],
             [("Thornton and Ning", ThorntonNing(R, E_STAR, P_Y).loading_force)],
-            log=True,
+            scale="log",
         ),
         _lines(
             "Figure 7: force on smooth elastic adhesive spheres",
@@ -185,7 +179,7 @@ def _lines(
     lines: Sequence[tuple[Curve, Array]],
     laws: Sequence[tuple[str, Callable[[Array], Array]]] = (),
     *,
-    log: bool = False,
+    scale: Literal["linear", "log"] = "linear",
 ) -> Drawing:
     """Draw `y` against indentation for several curves; theoretical laws are dashed."""
     rows: list[list[Cell]] = []
@@ -212,7 +206,6 @@ def _lines(
         depth = lines[0][0].depth
         fine = np.geomspace(depth[0], depth[-1], 100)
         series.append(Line(1e9 * fine, law(fine), name, color=GREY, dash=DASHED))
-    scale: Literal["linear", "log"] = "log" if log else "linear"
     chart = Chart(Axis("indentation", "nm", "log"), Axis(y, scale=scale), series)
     return Drawing(
         title,
@@ -224,13 +217,7 @@ def _lines(
 
 
 def _critical(study: xr.Dataset, caption: str) -> Drawing:
-    cases: list[Curve] = curves(study)
-    smooth = next(c for c in cases if c.label.startswith(SMOOTH))
-    points = [
-        (c.label, 1e-6 * float(c.label.split()[0]) / RADIUS, 1e6 * critical_indentation(c, smooth))
-        for c in cases
-        if not c.label.startswith(SMOOTH)
-    ]
+    points = [(name, x, 1e6 * y) for name, (x, y) in critical_indentations(study).items()]
     title = "Figure 11: critical indentation"
     series = [Points(np.array([x]), np.array([y]), "one surface", name) for name, x, y in points]
     chart = Chart(Axis("Rq/R"), Axis("i_cr,max", "µm"), series)

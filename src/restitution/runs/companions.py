@@ -98,9 +98,20 @@ class Companions:
     depths: Sequence[float]
 
     @cached_property
+    def coarse(self) -> Contact:
+        """The contact of the case on cells twice as large."""
+        return self._coarse(self.case)
+
+    @cached_property
     def own(self) -> Curve:
-        """The curve of the case's own surface on cells twice as large."""
-        return self._curve(self._coarse(self.case))
+        """The curve of `coarse`."""
+        return self._curve(self.coarse)
+
+    def weaker(self, factor: float) -> Curve:
+        """The curve of `coarse` with its yield pressure or strength multiplied by `factor`."""
+        keys = ("yield_pressure", "yield_strength")
+        lowered = replace(self.coarse, **{key: factor * getattr(self.coarse, key) for key in keys})
+        return self.own if lowered == self.coarse else self._curve(lowered)
 
     def others(self, progress: Say = ignore) -> Iterator[Curve]:
         """Compute curves of other surfaces of the same kind (other seeds or places of the scan)."""
@@ -116,7 +127,7 @@ class Companions:
         spread, and the larger change of COR is used. The list is empty if no value comes from the
         library.
         """
-        coarse = self._coarse(self.case)
+        coarse = self.coarse
         ends = [_spread(self.case, end) for end in ("low", "high")]
         here, mass = self.own.at(work), coarse.pair.mass
         changes = []

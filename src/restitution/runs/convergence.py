@@ -28,6 +28,7 @@ from restitution.results.reader import RunResults
 from restitution.results.schema import COLUMNS
 from restitution.results.total_error import total
 from restitution.results.writer import ResultsFolder, curve_variables, write_table
+from restitution.runs.companions import Companions
 from restitution.runs.depths import later_touches
 from restitution.runs.error_budget import (
     MISSING_BAND,
@@ -35,6 +36,7 @@ from restitution.runs.error_budget import (
     Row,
     add_errors,
     total_error_summary,
+    unseen_yield,
     widened_error,
 )
 from restitution.runs.log import RunLog, Say, ignore
@@ -110,15 +112,22 @@ def _add_errors(
     runs: _Runs,
     progress: Say,
 ) -> None:
-    """Add errors due to surface and materials to the rows of the finest grid in `runs`.
+    """Add errors due to surface, materials and unseen yielding to the rows of the finest grid.
 
-    These errors are computed on the coarsest grid.
+    The errors due to surface and materials are computed on the coarsest grid.
     """
     coarsest, finest = case.refined(min(runs)), runs[max(runs)][1]
     alone = [dict(row) for row in finest]
     add_errors(coarsest, folder, coarsest.surface(folder), alone, progress)
     for row, errors in zip(finest, alone, strict=True):
         row.update({name: errors[name] for name in ("surface_scatter", "material_error")})
+    if not (reached := [row for row in finest if row["loading_work_J"] > 0]):
+        return
+    fine = case.refined(max(runs))
+    companions = Companions(fine, folder, sorted(row["max_indentation_m"] for row in reached))
+    unseen = unseen_yield(companions, Band.of(fine.surface(folder)), reached)
+    for row, error in zip(reached, unseen, strict=True):
+        row["unseen_yield"] = float(error)
 
 
 def _levels(case: Case, folder: Path, grids: int) -> dict[int, float]:
@@ -232,19 +241,22 @@ def _write_results(
 
 
 def _with_grid_errors(case: Case, folder: Path, rows: list[Row]) -> int:
-    """Add two parts to the discretisation error of `rows`, the rows of the finest grid.
+    """Add three parts to the discretisation error of `rows`, the rows of the finest grid.
 
-    One part is a lower limit, because differences of COR between grids may vanish by chance. The
-    other part is the effect of the waves that the finest grid leaves out of a scan. Returns the
-    number of rows that are unresolved because of these waves.
+    The first part is a lower limit, because differences of COR between grids may vanish by chance.
+    The second part is the effect of the waves that the finest grid leaves out of a scan, and the
+    third is that of nodes that would yield only on a finer grid. If the study was interrupted
+    before `_add_errors`, the rows get no parts and no total. Returns the number of rows that are
+    unresolved because of the waves.
     """
     octaves = Band.of(case.refined(int(max(row["refine"] for row in rows))).surface(folder)).octaves
     lacking = 0
     for row in rows:
-        if math.isnan(row["discretisation_error"]) or not row["loading_work_J"] > 0:
+        if math.isnan(row["discretisation_error"]) or "unseen_yield" not in row:
             continue
-        widened, band = widened_error(row["discretisation_error"], row["last_change"], row, octaves)
-        row["discretisation_error"] = widened
+        row["discretisation_error"], band = widened_error(
+            row["discretisation_error"], row["last_change"], row["unseen_yield"], row, octaves
+        )
         if band > MISSING_BAND:
             row["resolved"], lacking = False, lacking + 1
         row["total_error"] = total(row)

@@ -7,19 +7,24 @@ COR is the mean over surfaces of the same kind, on a grid that resolves all wave
 ΔCOR is the change of COR on cells twice as large, without the shortest octave of waves
 (`companions`):
 
-    discretisation_error² = ΔCOR² [1 + (1.5 n)²] + (s f)²,   n = ln(S/S_h)/ln(S_h/S_2h).
+    discretisation_error² = ΔCOR² [1 + (1.5 n)²] + (q² D)² + (s f)²,   n = ln(S/S_h)/ln(S_h/S_2h).
 
 S is the rms slope of the scan, and S_h and S_2h are the rms slopes on cells of h and 2h. The
 formula assumes that the waves beyond the grid change COR with ln S at the same rate as the last
-octave that the grid resolves. For generated surfaces n = 0, because their definition includes the
-shortest wave.
+octave that the grid resolves. For generated surfaces n = 0 and S = S_h, because their definition
+includes the shortest wave.
+
+D is the change of COR on the larger cells if the yield pressure is multiplied by (S_2h/S)². Waves
+that a grid lacks raise the local pressure. Therefore, a contact may yield on a finer grid although
+it is elastic on cells of h and of 2h, where ΔCOR vanishes. q is the elastic share of the work
+stored and dissipated in loading: nodes that already yield do so on a finer grid, too.
 
 f is the usual error of contacts with the same number of nodes in the median patch, the contact
 patch of the median contact node (docs/resolution.md). s is the fraction of f that is added. s is
 large if the grid does not resolve the contact. Otherwise s is small; it only keeps the error from
 vanishing by chance.
 
-The constants of these formulas were chosen on about 260 random cases, 30 of them adhesive, and
+The constants of these formulas were chosen on about 400 random cases, 45 of them adhesive, and
 checked on other cases (docs/error.md).
 """
 
@@ -43,6 +48,8 @@ from restitution.surfaces.refine import coarsen
 Row = dict[str, float]
 
 _BAND = 1.5  # safety factor on the change of COR expected from waves that the grid leaves out
+# Exponent of S_2h/S in D. It exceeds 1 because the largest pressures rise more than the rms slope.
+_PEAKS = 2
 
 # The fraction s (see the top of this file) for resolved and for unresolved contacts. For unresolved
 # contacts it is interpolated between its values at 3 and at 7 nodes in the median patch.
@@ -74,12 +81,13 @@ NOT_INCLUDED = (
 class Band:
     """The waves that a grid leaves out of a scan.
 
-    `octaves` is n in the formula of the module docstring, 0 if no wave is left out. `removed_slope`
-    is the rms slope of the omitted waves, divided by that of the scan. `pixel` is the spacing (m)
-    that resolves these waves.
+    `octaves` is n in the formula of the module docstring, 0 if no wave is left out. `coarser_slope`
+    is S_2h/S in the same formula, 1 for a plane. `removed_slope` is the rms slope of the omitted
+    waves, divided by that of the scan. `pixel` is the spacing (m) that resolves these waves.
     """
 
     octaves: float
+    coarser_slope: float
     removed_slope: float
     pixel: float
 
@@ -89,37 +97,54 @@ class Band:
         provenance = surface.provenance
         removed = float(provenance.get("removed_slope", 0.0))
         pixel = max(float(provenance.get(f"pixel_{axis}_m", 0.0)) for axis in "xy")
-        coarser = rms_slope(coarsen(surface))
-        if removed < 1e-3 or coarser == 0:
-            return cls(0.0, removed, pixel)
+        slope, coarser = rms_slope(surface), rms_slope(coarsen(surface))
+        if coarser == 0:
+            return cls(0.0, 1.0, removed, pixel)
         beyond = -0.5 * math.log(max(1 - removed**2, 1e-4))
-        last = math.log(max(rms_slope(surface) / coarser, 1.05))
-        return cls(beyond / last, removed, pixel)
+        octaves = beyond / math.log(max(slope / coarser, 1.05)) if removed >= 1e-3 else 0.0
+        return cls(octaves, coarser / slope * math.exp(-beyond), removed, pixel)
+
+
+def unseen_yield(companions: Companions, waves: Band, rows: Sequence[Row]) -> Array:
+    """Error of COR of `rows` due to nodes that would yield only on a finer grid.
+
+    It is the term q² D of the formula in the module docstring. `waves` describes the waves that the
+    grid of the rows leaves out.
+    """
+    work, stored, plastic = (
+        np.array([row[name] for row in rows])
+        for name in ("loading_work_J", "stored_energy_J", "plastic_work_J")
+    )
+    weaker = companions.weaker(waves.coarser_slope**_PEAKS)
+    change = companions.own.at(work) - weaker.at(work)
+    return np.asarray((stored / (stored + plastic)) ** 2 * change)
 
 
 def grid_error(
-    change: Array, work: Array, rows: Sequence[Row], octaves: float
+    change: Array, unseen: Array, work: Array, rows: Sequence[Row], octaves: float
 ) -> tuple[Array, Array]:
     """Discretisation error of COR of `rows`, and the part due to waves that the grid omits.
 
     `change` is the difference of COR from the value on cells twice as large, at `work` (J).
-    `octaves` is `Band.octaves`.
+    `unseen` comes from `unseen_yield`, and `octaves` is `Band.octaves`.
     """
     near = np.sqrt(_smoothed(change**2, work, _NEAR_GRID))
     band = _BAND * octaves * near
-    return np.sqrt(near**2 + band**2 + np.array([_floor(row) for row in rows]) ** 2), band
+    floor = np.array([_floor(row) for row in rows])
+    return np.sqrt(near**2 + band**2 + unseen**2 + floor**2), band
 
 
 def widened_error(
-    error: float, last_change: float, row: Row, octaves: float
+    error: float, last_change: float, unseen: float, row: Row, octaves: float
 ) -> tuple[float, float]:
-    """Add a minimum error and the effect of omitted waves to `error`, in quadrature.
+    """Add a minimum error, unseen yielding and omitted waves to `error`, in quadrature.
 
     `error` comes from a convergence study. `last_change` is the difference of COR between the last
-    two grids. `octaves` is `Band.octaves`. Returns the sum and the effect of the waves.
+    two grids. `unseen` comes from `unseen_yield`, and `octaves` is `Band.octaves`. Returns the sum
+    and the effect of the waves.
     """
     band = _BAND * octaves * last_change
-    return math.hypot(error, band, _floor(row)), band
+    return math.hypot(error, band, unseen, _floor(row)), band
 
 
 def scatter(restitution: Array, work: Array) -> Array:
@@ -174,9 +199,11 @@ def _add_errors(
     work = np.array([row["loading_work_J"] for row in reached])
     restitution = np.array([row["restitution"] for row in reached])
     companions = Companions(case, folder, sorted(row["max_indentation_m"] for row in reached))
+    waves = Band.of(surface)
     progress("error: cells twice as large")
     own = companions.own.at(work)
-    errors, band = grid_error(restitution - own, work, reached, Band.of(surface).octaves)
+    unseen = unseen_yield(companions, waves, reached)
+    errors, band = grid_error(restitution - own, unseen, work, reached, waves.octaves)
     columns = {"discretisation_error": errors}
     if case.roughness and scattered:
         others = [curve.at(work) for curve in companions.others(progress)]

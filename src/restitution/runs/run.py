@@ -257,7 +257,7 @@ def _materials(case: Case) -> dict[str, Any]:
             "material": body.material,
             **{key: found.model_dump() for key, found in body.from_library().items()},
         }
-        for name, body in (("first", case.first), ("second", case.second or case.first))
+        for name, body in case.bodies().items()
         if body.material is not None
     }
 

@@ -36,8 +36,7 @@ def kept(parameters: Mapping[str, Any], make: Callable[[], Surface]) -> Surface:
     """
     key = json.dumps({"version": version("restitution"), **parameters}, sort_keys=True)
     file = _folder() / f"{hashlib.sha256(key.encode()).hexdigest()}.npz"
-    found = _read(file, key)
-    if found is not None:
+    if (found := _read(file, key)) is not None:
         return found
     began = time.perf_counter()
     surface = make()
@@ -60,8 +59,7 @@ def _read(file: Path, key: str) -> Surface | None:
             told = json.loads(str(content["told"]))
             if told["key"] != key:
                 return None
-            nodes, spacing = told["nodes"], told["spacing"]
-            grid = Grid((nodes[0], nodes[1]), (spacing[0], spacing[1]))
+            grid = Grid(told["nodes"], told["spacing"])
             surface = Surface(np.asarray(content["height"], np.float64), grid, told["provenance"])
         os.utime(file)  # so that the modification time states the last use
         return surface
@@ -95,9 +93,8 @@ def _free_space(folder: Path, size: int) -> None:
     new file fits.
     """
     files = [(entry.stat(), entry) for entry in folder.iterdir() if entry.is_file()]
-    files.sort(key=lambda item: item[0].st_mtime)
     total = size + sum(stat.st_size for stat, _ in files)
-    for stat, entry in files:
+    for stat, entry in sorted(files, key=lambda item: item[0].st_mtime):
         abandoned = entry.suffix == ".part" and stat.st_mtime < time.time() - 3600
         if total > _MOST or abandoned:
             entry.unlink(missing_ok=True)

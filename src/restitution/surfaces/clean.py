@@ -36,28 +36,26 @@ def crop(surface: Surface, *, x: Range | None = None, y: Range | None = None) ->
     Raises:
         SurfaceError: No pixel lies within a range.
     """
-    part, nodes = [], []
+    part = []
     for name, within, centres in (("x", x, surface.grid.x), ("y", y, surface.grid.y)):
-        inside = np.arange(centres.size)
-        if within is not None:
-            inside = np.flatnonzero((within[0] <= centres) & (centres <= within[1]))
+        low, high = within or (-math.inf, math.inf)
+        inside = np.flatnonzero((low <= centres) & (centres <= high))
         if inside.size == 0:
             raise SurfaceError(
-                f"{name}: no pixel of the scan lies between {_um(*(within or (0.0, 0.0)))}; choose "
+                f"{name}: no pixel of the scan lies between {_um(low, high)}; choose "
                 f"a range between {_um(centres[0], centres[-1])}"
             )
-        part.append(slice(int(inside[0]), int(inside[-1]) + 1))
-        nodes.append(int(inside.size))
-    size_x, size_y = (n * h for n, h in zip(nodes, surface.grid.spacing, strict=True))
+        part.append(inside)
+    grid = Grid((part[0].size, part[1].size), surface.grid.spacing)
     return Surface(
-        np.ascontiguousarray(surface.height[part[0], part[1]]),
-        Grid((nodes[0], nodes[1]), surface.grid.spacing),
+        surface.height[np.ix_(*part)],
+        grid,
         {
             **surface.provenance,
-            "cropped": f"{nodes[0]} x {nodes[1]} of {surface.grid.nodes[0]} x "
+            "cropped": f"{grid.nodes[0]} x {grid.nodes[1]} of {surface.grid.nodes[0]} x "
             f"{surface.grid.nodes[1]} pixels",
-            "size_x_m": size_x,
-            "size_y_m": size_y,
+            "size_x_m": grid.size[0],
+            "size_y_m": grid.size[1],
         },
     )
 

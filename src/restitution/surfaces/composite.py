@@ -3,10 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Sequence
+from typing import Any
 
 from restitution.errors import SurfaceError
 from restitution.surfaces.surface import Surface, is_periodic
+
+# Provenance entries of the parts, and how their values are combined to the value of the sum. The
+# waves that are too short for the grid are added in quadrature.
+_COMBINED: dict[str, Callable[[list[Any]], str | float]] = {
+    "file": lambda files: ", ".join(map(str, files)),
+    "pixel_x_m": max,
+    "pixel_y_m": max,
+    "shortest_carried_m": max,
+    "removed_rms_m": lambda heights: math.hypot(*heights),
+    "removed_slope": max,
+}
 
 
 def composite(surfaces: Sequence[Surface]) -> Surface:
@@ -40,42 +52,16 @@ def composite(surfaces: Sequence[Surface]) -> Surface:
         raise SurfaceError("surfaces: are on different grids; place all of them on one grid")
     provenances = [surface.provenance for surface in surfaces]
     whole: dict[str, str | float] = {"source": "composite", "kind": f"sum of {len(surfaces)}"}
-    files = [str(p["file"]) for p in provenances if "file" in p]
-    if files:
-        whole["file"] = ", ".join(files)
-    for axis in "xy":
-        pixels = [float(p[f"pixel_{axis}_m"]) for p in provenances if f"pixel_{axis}_m" in p]
-        if pixels:
-            whole[f"pixel_{axis}_m"] = max(pixels)
+    for key, combine in _COMBINED.items():
+        if values := [p[key] for p in provenances if key in p]:
+            whole[key] = combine(values)
     if "refined" in provenances[0]:
         whole["refined"] = provenances[0]["refined"]  # the same for all parts
-    whole.update(_removed(provenances))
     if all(is_periodic(surface) for surface in surfaces):
         whole["periodicity"] = "periodic over the domain"
-    notices = [str(p["notice"]) for p in provenances if "notice" in p]
-    if notices:
+    if notices := [str(p["notice"]) for p in provenances if "notice" in p]:
         whole["notice"] = "; ".join(notices)
     for number, provenance in enumerate(provenances, 1):
         whole.update({f"part_{number}_{key}": value for key, value in provenance.items()})
     height = sum((surface.height for surface in surfaces[1:]), start=first.height)
     return Surface(height, first.grid, whole)
-
-
-def _removed(provenances: Sequence[Mapping[str, str | float]]) -> dict[str, float]:
-    """Return the provenance entries on the waves that are too short for the grid.
-
-    The rms heights of the parts are added in quadrature. Each other entry is the largest value of
-    all parts.
-    """
-    known = [p for p in provenances if "removed_slope" in p]
-    if not known:
-        return {}
-
-    def values(key: str) -> list[float]:
-        return [float(p[key]) for p in known]
-
-    return {
-        "shortest_carried_m": max(values("shortest_carried_m")),
-        "removed_rms_m": math.hypot(*values("removed_rms_m")),
-        "removed_slope": max(values("removed_slope")),
-    }

@@ -10,9 +10,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-from restitution.surfaces.surface import Surface
+from restitution.surfaces.surface import Array, Surface
 
 # Value of the autocorrelation that defines the correlation length (Hu and Tonder 1992), as in
 # `generate_surface`. The autocorrelation length Sal of the standard uses 0.2 instead.
@@ -67,10 +66,12 @@ def describe(surface: Surface) -> dict[str, float | None]:
     # Rounding can make the heights of a flat surface differ from their mean.
     if Sq > 8 * np.finfo(np.float64).eps * float(np.abs(height).max()):
         unit = z / Sq
-        values["Ssk"] = float(np.mean(unit**3))
-        values["Sku"] = float(np.mean(unit**4))
-        values["correlation_length_x_m"] = _correlation_length(unit, hx)
-        values["correlation_length_y_m"] = _correlation_length(unit.T, hy)
+        values |= {
+            "Ssk": float(np.mean(unit**3)),
+            "Sku": float(np.mean(unit**4)),
+            "correlation_length_x_m": _correlation_length(unit, hx),
+            "correlation_length_y_m": _correlation_length(unit.T, hy),
+        }
     return values
 
 
@@ -81,12 +82,12 @@ def rms_slope(surface: Surface) -> float:
     return math.sqrt(_mean_square_slope(z, hx) + _mean_square_slope(z.T, hy))
 
 
-def _mean_square_slope(z: NDArray[np.float64], h: float) -> float:
+def _mean_square_slope(z: Array, h: float) -> float:
     """Mean square slope ⟨(∂z/∂x)²⟩ along the first axis; 0 for a single line of cells."""
     return float(np.mean((np.diff(z, axis=0) / h) ** 2)) if z.shape[0] > 1 else 0.0
 
 
-def _rms_curvature(z: NDArray[np.float64], hx: float, hy: float) -> float:
+def _rms_curvature(z: Array, hx: float, hy: float) -> float:
     """Half the rms Laplacian (1/m) of the inner nodes; axes of fewer than 3 nodes are omitted."""
     laplacian = np.zeros([n - 2 if n > 2 else n for n in z.shape])
     inner = tuple(slice(1, -1) if n > 2 else slice(None) for n in z.shape)
@@ -97,7 +98,7 @@ def _rms_curvature(z: NDArray[np.float64], hx: float, hy: float) -> float:
     return 0.5 * math.sqrt(np.mean(laplacian**2))
 
 
-def _correlation_length(z: NDArray[np.float64], h: float) -> float | None:
+def _correlation_length(z: Array, h: float) -> float | None:
     """Lag (m) along the first axis where the autocorrelation first falls to 10 %, or None."""
     from scipy.fft import irfft, next_fast_len, rfft
 

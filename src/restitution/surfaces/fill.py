@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from restitution.surfaces.surface import Array
 
 
-def fill_harmonically(
-    height: NDArray[np.float64], spacing: tuple[float, float]
-) -> NDArray[np.float64]:
+def fill_harmonically(height: Array, spacing: tuple[float, float]) -> Array:
     """Fill NaN pixels with the solution of Laplace's equation between the defined pixels.
 
     `height` has shape (nx, ny) and at least one defined pixel; `spacing` is (hx, hy) in m. The
@@ -24,6 +23,7 @@ def fill_harmonically(
         return height
     number = np.full(height.shape, -1)
     number[unknown] = np.arange(count)
+    at = np.nonzero(unknown)
 
     # The matrix is the five-point Laplacian, with one row for each unknown pixel:
     # Σ weight (z_here − z_neighbour) = 0.
@@ -33,15 +33,16 @@ def fill_harmonically(
         # The weights are proportional to 1/h²; a common factor has no effect.
         weight = (max(spacing) / h) ** 2
         for step in (1, -1):
-            here, there = _neighbours(axis, step)
-            pairs = unknown[here]
-            me, other = number[here][pairs], number[there][pairs]
+            along = at[axis] + step
+            me = np.flatnonzero((along >= 0) & (along < height.shape[axis]))
+            there = tuple((along if k == axis else at[k])[me] for k in range(2))
+            other = number[there]
             diagonal[me] += weight
             inside = other >= 0
             rows.append(me[inside])
             columns.append(other[inside])
             values.append(np.full(np.count_nonzero(inside), -weight))
-            right_side[me[~inside]] += weight * height[there][pairs][~inside]
+            right_side[me[~inside]] += weight * height[there][~inside]
     laplacian = coo_array(
         (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))),
         shape=(count, count),
@@ -50,11 +51,3 @@ def fill_harmonically(
     # This ordering of the unknowns exploits the symmetry of the matrix.
     filled[unknown] = spsolve(laplacian.tocsc(), right_side, permc_spec="MMD_AT_PLUS_A")
     return filled
-
-
-def _neighbours(axis: int, step: int) -> tuple[tuple[slice, slice], tuple[slice, slice]]:
-    """Slices of the pixels with a neighbour at `step` along `axis`, and of these neighbours."""
-    low, high = slice(None, -1), slice(1, None)
-    here, there = [slice(None), slice(None)], [slice(None), slice(None)]
-    here[axis], there[axis] = (low, high) if step > 0 else (high, low)
-    return (here[0], here[1]), (there[0], there[1])

@@ -15,7 +15,6 @@ import math
 from typing import Literal, TypedDict, Unpack
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
@@ -23,9 +22,8 @@ from restitution.surfaces.heights import adjusted, distribution, filtered, in_or
 from restitution.surfaces.johnson import LEAST_KURTOSIS, possible
 from restitution.surfaces.noise import white_noise
 from restitution.surfaces.spectra import Autocorrelated, SelfAffine, Spectrum
-from restitution.surfaces.surface import Surface
+from restitution.surfaces.surface import Array, Surface
 
-Array = NDArray[np.float64]
 RoughnessKind = Literal["exponential", "gaussian", "self-affine"]
 
 # A non-periodic surface is cut from a periodic surface that is larger by this margin (in units of
@@ -115,17 +113,22 @@ def generate_surface(
     height, made = _heights(grid, spectrum, seed, (skewness, kurtosis), periodic)
     height -= height.mean()
     height *= rms / math.sqrt(np.mean(height**2))
-    asked: dict[str, str | float] = {"source": "generated", **made, "kind": kind}
-    asked["rms_m"] = float(rms)
-    asked |= spectrum.parameters(grid)
-    asked["skewness"], asked["kurtosis"] = float(skewness), float(kurtosis)
-    asked["seed"] = int(seed)
-    asked["noise"] = "PCG64 raw stream, inverse normal distribution"
-    asked["periodicity"] = "periodic over the domain" if periodic else "none"
+    asked = {
+        "source": "generated",
+        **made,
+        "kind": kind,
+        "rms_m": float(rms),
+        **spectrum.parameters(grid),
+        "skewness": float(skewness),
+        "kurtosis": float(kurtosis),
+        "seed": int(seed),
+        "noise": "PCG64 raw stream, inverse normal distribution",
+        "periodicity": "periodic over the domain" if periodic else "none",
+    }
     return Surface(height, grid, asked)
 
 
-def _spectrum(kind: str, waves: Waves) -> Spectrum:
+def _spectrum(kind: RoughnessKind, waves: Waves) -> Spectrum:
     """Return the spectrum of `kind`. Raises `SurfaceError` for an argument of another kind."""
     if kind not in _WAVES:
         raise SurfaceError(
@@ -139,22 +142,18 @@ def _spectrum(kind: str, waves: Waves) -> Spectrum:
             raise SurfaceError(f"{name}: does not belong to kind = {kind!r}; leave it out")
     shortest = waves.get("shortest")
     if kind == "self-affine":
-        hurst = waves.get("hurst")
-        if hurst is None:
+        if (hurst := waves.get("hurst")) is None:
             raise SurfaceError(
                 "hurst: missing; a self-affine surface needs a Hurst exponent, such as 0.8"
             )
         return SelfAffine(hurst, waves.get("rolloff"), shortest)
-    beta = waves.get("correlation_length")
-    if beta is None:
+    if (beta := waves.get("correlation_length")) is None:
         raise SurfaceError(
             f"correlation_length: missing; kind = {kind!r} needs the length over which "
             "the autocorrelation falls to 10 %, such as 2 um"
         )
-    autocorrelation: Literal["exponential", "gaussian"]
-    autocorrelation = "exponential" if kind == "exponential" else "gaussian"
     both = beta if isinstance(beta, tuple) else (beta, beta)
-    return Autocorrelated(autocorrelation, both, waves.get("lay") or 0.0, shortest)
+    return Autocorrelated(kind, both, waves.get("lay") or 0.0, shortest)
 
 
 def _heights(
@@ -175,23 +174,21 @@ def _heights(
             "roughness; give more nodes"
         )
     made: dict[str, str | float] = {"method": "Hu and Tonder 1992"}
-    z: Array | None = None
-    if wanted != (0.0, 3.0):
-        z = filtered(noise, H, *wanted)
-        made["method"] = "Hu and Tonder 1992, Johnson-translated noise"
-    if z is None:
-        z = irfft2(H * rfft2(noise), s=larger.nodes)
-        if wanted != (0.0, 3.0):
-            heights = distribution(z.size, *wanted)
-            if heights is None:
-                raise SurfaceError(
-                    f"kurtosis: no Johnson distribution was found with a skewness of "
-                    f"{wanted[0]:g} and a kurtosis of {wanted[1]:g}; ask for a larger kurtosis"
-                )
-            z, made["amplitude_misfit"] = adjusted(z, heights)
-            made["method"] = "Schreiber and Schmitz 1996, adjusted amplitudes"
+    z: Array = irfft2(H * rfft2(noise), s=larger.nodes)
+    if wanted == (0.0, 3.0):
+        return z[: grid.nodes[0], : grid.nodes[1]].copy(), made
+    if (translated := filtered(noise, H, *wanted)) is not None:
+        z, made["method"] = translated, "Hu and Tonder 1992, Johnson-translated noise"
+    else:
+        if (heights := distribution(z.size, *wanted)) is None:
+            raise SurfaceError(
+                f"kurtosis: no Johnson distribution was found with a skewness of "
+                f"{wanted[0]:g} and a kurtosis of {wanted[1]:g}; ask for a larger kurtosis"
+            )
+        z, made["amplitude_misfit"] = adjusted(z, heights)
+        made["method"] = "Schreiber and Schmitz 1996, adjusted amplitudes"
     z = z[: grid.nodes[0], : grid.nodes[1]].copy()
-    if not periodic and wanted != (0.0, 3.0):  # cropping changed skewness and kurtosis
+    if not periodic:  # cropping changed skewness and kurtosis
         heights = distribution(z.size, *wanted)
         z = z if heights is None else in_order(heights, z)
     return z, made

@@ -18,15 +18,11 @@ heights, so their distribution is exact and the amplitudes are approximate.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
-from restitution.surfaces.johnson import possible, translation
-
-Array = NDArray[np.float64]
-Waves = Callable[[Array], Array]
+from restitution.surfaces.johnson import translation
+from restitution.surfaces.surface import Array
 
 _STRONGEST = 3.0, 40.0  # largest skewness and kurtosis of the noise in `filtered`
 _CLOSE = 0.02  # tolerance on skewness (absolute) and kurtosis (relative) in `filtered`
@@ -51,10 +47,9 @@ def filtered(noise: Array, H: Array, skewness: float, kurtosis: float) -> Array 
         return None
     asked = skewness / skewing if skewness else 0.0, 3 + (kurtosis - 3) / peaking
     for _ in range(_CORRECTIONS):
-        if abs(asked[0]) > _STRONGEST[0] or asked[1] > _STRONGEST[1] or not possible(*asked):
+        if abs(asked[0]) > _STRONGEST[0] or asked[1] > _STRONGEST[1]:
             return None
-        translate = translation(*asked)
-        if translate is None:
+        if (translate := translation(*asked)) is None:
             return None
         z: Array = irfft2(H * rfft2(translate(noise)), s=noise.shape)
         skew, kurt = moments(z)
@@ -107,8 +102,7 @@ def distribution(n: int, skewness: float, kurtosis: float) -> Array | None:
     """
     from scipy.special import ndtri
 
-    translate = translation(skewness, kurtosis)
-    if translate is None:
+    if (translate := translation(skewness, kurtosis)) is None:
         return None
     heights = translate(ndtri((np.arange(n) + 0.5) / n))
     heights -= heights.mean()

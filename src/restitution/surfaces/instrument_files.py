@@ -163,8 +163,7 @@ def _value_unit(channel: Any) -> str | None:
     `channel.unit` is the lateral unit, or a pair (lateral unit, value unit) if the reader could not
     convert the values to the lateral unit.
     """
-    unit: str | None
-    unit = channel.unit[1] if isinstance(channel.unit, tuple) else channel.data_unit
+    unit: str | None = channel.unit[1] if isinstance(channel.unit, tuple) else channel.data_unit
     return unit
 
 

@@ -13,12 +13,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from restitution.surfaces.surface import Array
+
+_Form = Callable[..., Array]
 
 # Smallest allowed value of kurtosis − skewness². For any distribution this difference is at least
 # 1. Near 1, nearly all heights take one of two values.
@@ -28,15 +29,6 @@ _ABSCISSAE, _WEIGHTS = np.polynomial.hermite_e.hermegauss(201)
 # misfit is at most _CLOSE, because neither form fits a lognormal distribution exactly.
 _EXACT, _CLOSE = 1e-6, 2e-3
 _STARTS = ((0.0, 0.0), (0.5, 0.3), (1.5, 0.5), (3.0, 0.8), (0.5, -0.7), (1.2, -1.2), (2.5, -1.5))
-
-
-@dataclass(frozen=True)
-class _Fit:
-    form: Callable[..., Array]
-    shape: tuple[float, float]
-    mean: float
-    deviation: float
-    miss: float
 
 
 def possible(skewness: float, kurtosis: float) -> bool:
@@ -55,17 +47,10 @@ def translation(skewness: float, kurtosis: float) -> Callable[[Array], Array] | 
     if not possible(skewness, kurtosis):
         return None
     sign = -1.0 if skewness < 0 else 1.0
-    best: _Fit | None = None
-    for form in (_unbounded, _bounded):
-        fit = _fitted(form, abs(skewness), kurtosis)
-        if best is None or fit.miss < best.miss:
-            best = fit
-        if best.miss < _EXACT:
-            break
-    assert best is not None
-    if best.miss > _CLOSE:
+    miss, form, shape = _best_fit(abs(skewness), kurtosis)
+    if miss > _CLOSE:
         return None
-    form, shape, mean, deviation = best.form, best.shape, best.mean, best.deviation
+    mean, deviation, _, _ = _moments(form, shape)
     return lambda z: sign * (form(sign * z, *shape) - mean) / deviation
 
 
@@ -79,7 +64,7 @@ def _bounded(z: Array, gamma: float, log_delta: float) -> Array:
     return np.asarray(expit((z - gamma) / math.exp(log_delta)))
 
 
-def _moments(form: Callable[..., Array], shape: Array) -> tuple[float, float, float, float]:
+def _moments(form: _Form, shape: Array) -> tuple[float, float, float, float]:
     """Mean, standard deviation, skewness and kurtosis of a form, by Gauss–Hermite quadrature."""
     weight = _WEIGHTS / _WEIGHTS.sum()
     x = form(_ABSCISSAE, *shape)
@@ -94,8 +79,22 @@ def _moments(form: Callable[..., Array], shape: Array) -> tuple[float, float, fl
     )
 
 
-def _fitted(form: Callable[..., Array], skewness: float, kurtosis: float) -> _Fit:
-    """Fit the parameters (γ, ln δ) of a form to the skewness and kurtosis."""
+def _best_fit(skewness: float, kurtosis: float) -> tuple[float, _Form, Array]:
+    """Misfit, form and parameters (γ, ln δ) that fit skewness and kurtosis best."""
+    best = math.inf, _unbounded, np.zeros(2)
+    for form, start in product((_unbounded, _bounded), _STARTS):
+        shape, miss = _fitted(form, start, skewness, kurtosis)
+        if miss < best[0]:
+            best = miss, form, shape
+        if miss < _EXACT:
+            break
+    return best
+
+
+def _fitted(
+    form: _Form, start: tuple[float, float], skewness: float, kurtosis: float
+) -> tuple[Array, float]:
+    """Fit the parameters (γ, ln δ) of a form, from `start`; also return the misfit."""
     from scipy.optimize import least_squares
 
     def miss(shape: Array) -> Array:
@@ -103,17 +102,6 @@ def _fitted(form: Callable[..., Array], skewness: float, kurtosis: float) -> _Fi
         # The logarithm limits the effect of kurtosis, which is very large for long tails.
         return np.array([skew - skewness, math.log(kurt / kurtosis)])
 
-    best: _Fit | None = None
-    for start in _STARTS:
-        with np.errstate(over="ignore", invalid="ignore"):
-            found = least_squares(
-                miss, start, bounds=([-30, -2.5], [30, 4]), xtol=1e-12, ftol=1e-14
-            )
-        missed = float(np.abs(found.fun).max())
-        if best is None or missed < best.miss:
-            mean, deviation, _, _ = _moments(form, found.x)
-            best = _Fit(form, (float(found.x[0]), float(found.x[1])), mean, deviation, missed)
-        if missed < _EXACT:
-            break
-    assert best is not None
-    return best
+    with np.errstate(over="ignore", invalid="ignore"):
+        found = least_squares(miss, start, bounds=([-30, -2.5], [30, 4]), xtol=1e-12, ftol=1e-14)
+    return found.x, float(np.abs(found.fun).max())

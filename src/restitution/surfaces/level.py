@@ -6,10 +6,9 @@ from dataclasses import replace
 from typing import Literal, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.errors import SurfaceError
-from restitution.surfaces.surface import Surface
+from restitution.surfaces.surface import Array, Surface
 
 Levelling = Literal["none", "center", "tilt", "curvature"]
 _DEGREE = {"center": 0, "tilt": 1, "curvature": 2}
@@ -35,8 +34,8 @@ def level(surface: Surface, how: Levelling) -> Surface:
         raise SurfaceError(
             f"how={how!r} is unknown; choose one of {', '.join(get_args(Levelling))}"
         )
-    before = [str(surface.provenance["levelling"])] if "levelling" in surface.provenance else []
-    done = [step for step in [*before, how] if step != "none"]
+    before = str(surface.provenance.get("levelling", "none"))
+    done = [step for step in (before, how) if step != "none"]
     height = surface.height
     if how != "none":
         height = height - _least_squares_form(height, _DEGREE[how])
@@ -47,7 +46,7 @@ def level(surface: Surface, how: Levelling) -> Surface:
     )
 
 
-def _least_squares_form(height: NDArray[np.float64], degree: int) -> NDArray[np.float64]:
+def _least_squares_form(height: Array, degree: int) -> Array:
     """Least-squares polynomial of total degree `degree` through the heights, shape (nx, ny).
 
     On a regular grid the products of orthonormal polynomials along x and y are orthonormal. So each
@@ -57,11 +56,10 @@ def _least_squares_form(height: NDArray[np.float64], degree: int) -> NDArray[np.
     coefficients = P.T @ height @ Q
     power_x, power_y = np.indices(coefficients.shape)
     coefficients[power_x + power_y > degree] = 0.0
-    form: NDArray[np.float64] = P @ coefficients @ Q.T
-    return form
+    return np.asarray(P @ coefficients @ Q.T)
 
 
-def _orthonormal_polynomials(n: int, degree: int) -> NDArray[np.float64]:
+def _orthonormal_polynomials(n: int, degree: int) -> Array:
     """Polynomials of degree 0 to `degree` (at most n − 1) on n equidistant points, as columns."""
     s = np.linspace(-1.0, 1.0, n) if n > 1 else np.zeros(1)
     return np.linalg.qr(np.vander(s, min(degree + 1, n), increasing=True)).Q

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Literal, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.errors import SurfaceError, shown
 from restitution.numerics.grid import Grid
@@ -24,7 +23,7 @@ from restitution.surfaces.instrument_files import (
 from restitution.surfaces.numpy_files import NUMPY_SUFFIXES, read_numpy
 from restitution.surfaces.refused import RefusedSurfaceError
 from restitution.surfaces.scan import MOST_PIXELS, Scan
-from restitution.surfaces.surface import Surface
+from restitution.surfaces.surface import Array, Surface
 from restitution.surfaces.text_files import TEXT_SUFFIXES, NotAMatrixError, read_text
 
 UndefinedPixels = Literal["error", "interpolate"]
@@ -133,8 +132,7 @@ def _check_readable(file: Path) -> None:
                 f"{file}: has {kind.st_size} bytes, more than the {_LARGEST} that a scan may have; "
                 "crop it, or save fewer pixels"
             )
-        with file.open("rb"):
-            length = kind.st_size
+        file.open("rb").close()
     except SurfaceError:
         raise
     except FileNotFoundError as error:
@@ -144,7 +142,7 @@ def _check_readable(file: Path) -> None:
         raise SurfaceError(
             f"{shown(str(file), 200)}: cannot be opened ({why}); check the path"
         ) from error
-    if length == 0:
+    if kind.st_size == 0:
         raise SurfaceError(f"{file}: is empty; export the topography again")
 
 
@@ -222,7 +220,7 @@ def _check_undefined(file: Path, missing: int, total: int, undefined: UndefinedP
         )
 
 
-def _check_metres(file: Path, heights: NDArray[np.float64], edges: tuple[float, float]) -> None:
+def _check_metres(file: Path, heights: Array, edges: tuple[float, float]) -> None:
     span = float(heights.max()) - float(heights.min())
     if span > _TALLEST * max(edges):
         raise SurfaceError(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.numerics.grid import Grid
 from restitution.surfaces.resample import (
@@ -13,9 +12,7 @@ from restitution.surfaces.resample import (
     same_spacing,
     spline,
 )
-from restitution.surfaces.surface import Surface
-
-Array = NDArray[np.float64]
+from restitution.surfaces.surface import Array, Surface
 
 
 def mirrored(scan: Surface, grid: Grid) -> Surface:
@@ -27,19 +24,16 @@ def mirrored(scan: Surface, grid: Grid) -> Surface:
     """
     if all(g <= s * (1 + 1e-9) for g, s in zip(grid.size, scan.grid.size, strict=True)):
         return place_on_grid(scan, grid)
-    at = [
-        _pixel(along, axis) for axis, along in zip(_axes(scan.grid), (grid.x, grid.y), strict=True)
-    ]
+    axes = zip((grid.x, grid.y), scan.grid.nodes, scan.grid.spacing, strict=True)
+    at = [_pixel(along, n, h) for along, n, h in axes]
     kept = carried(scan, grid.spacing, mirrored=True)
     if same_spacing(scan.grid, grid):
         height = kept[np.ix_(*(np.rint(a).astype(int) for a in at))]
     else:
-        height = kept
-        for a in at:
-            height = spline(height, np.arange(height.shape[0], dtype=float), a).T
+        height = spline(kept, [np.arange(n, dtype=float) for n in kept.shape], at)
     tiles = " x ".join(f"{g / s:.3g}" for g, s in zip(grid.size, scan.grid.size, strict=True))
     return Surface(
-        np.ascontiguousarray(height),
+        height,
         grid,
         {
             **scan.provenance,
@@ -53,17 +47,11 @@ def mirrored(scan: Surface, grid: Grid) -> Surface:
     )
 
 
-def _axes(grid: Grid) -> tuple[tuple[int, float], tuple[int, float]]:
-    """Number of nodes and spacing (m) of each axis."""
-    return (grid.nodes[0], grid.spacing[0]), (grid.nodes[1], grid.spacing[1])
-
-
-def _pixel(along: Array, axis: tuple[int, float]) -> Array:
+def _pixel(along: Array, n: int, h: float) -> Array:
     """Convert coordinates `along` (m) of the tiled surface to fractional pixel indices in the scan.
 
-    `axis` is the number of pixels of the scan along this axis and their spacing (m).
+    The scan has `n` pixels with the spacing `h` (m) along this axis.
     """
-    n, h = axis
     from_edge = np.mod(along / h + n // 2 + 0.5, 2 * n)
     folded: Array = np.minimum(from_edge, 2 * n - from_edge) - 0.5
     return np.clip(folded, 0.0, n - 1.0)

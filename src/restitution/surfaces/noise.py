@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.surfaces.surface import Array
 
-def white_noise(shape: tuple[int, int], seed: int) -> NDArray[np.float64]:
+
+def white_noise(shape: tuple[int, int], seed: int) -> Array:
     """Return independent standard normal numbers in an array of this shape."""
     from scipy.special import ndtri
 
@@ -14,13 +16,11 @@ def white_noise(shape: tuple[int, int], seed: int) -> NDArray[np.float64]:
     # standard_normal) can change between releases (NEP 19). So the raw 64-bit words are mapped to
     # normal numbers here. u = (52 bits + ½)/2⁵² is never 0 or 1, where the inverse distribution is
     # infinite. With 53 bits u could round to 1.
-    raw = np.random.PCG64(seed).random_raw(shape[0] * shape[1])
-    u = ((raw >> np.uint64(12)).astype(np.float64) + 0.5) * 2.0**-52
-    noise: NDArray[np.float64] = ndtri(u).reshape(shape)
-    return noise
+    u = (_random_bits(np.random.PCG64(seed), shape[0] * shape[1]) + 0.5) * 2.0**-52
+    return np.asarray(ndtri(u).reshape(shape))
 
 
-def wave_phases(seed: int, numbers: NDArray[np.int64], count: int) -> NDArray[np.float64]:
+def wave_phases(seed: int, numbers: NDArray[np.int64], count: int) -> Array:
     """Random phases (rad) of the waves (m, n) with m in `numbers` and n in 0 … `count` − 1.
 
     The shape is (numbers.size, count). A phase depends only on `seed`, m and n. So a finer grid
@@ -29,13 +29,18 @@ def wave_phases(seed: int, numbers: NDArray[np.int64], count: int) -> NDArray[np
     """
     phases = np.empty((numbers.size, count))
     for row, m in enumerate(numbers.tolist()):
-        # Each m has its own random stream. The raw stream of Philox is the same in all NumPy
-        # versions.
-        key = np.array([seed, m % 2**64], dtype=np.uint64)
-        raw = np.random.Philox(key=key).random_raw(count)
-        phases[row] = (raw >> np.uint64(12)).astype(np.float64)
+        # Each m has its own random stream.
+        phases[row] = _random_bits(_stream(seed, m), count)
         if m < 0:
-            opposite = np.random.Philox(key=np.array([seed, -m], dtype=np.uint64)).random_raw(1)
-            phases[row, 0] = -(opposite >> np.uint64(12)).astype(np.float64)[0]
+            phases[row, 0] = -_random_bits(_stream(seed, -m), 1)[0]
     phases *= 2.0**-51 * np.pi
     return phases
+
+
+def _stream(seed: int, m: int) -> np.random.Philox:
+    return np.random.Philox(key=np.array([seed, m % 2**64], dtype=np.uint64))
+
+
+def _random_bits(stream: np.random.BitGenerator, count: int) -> Array:
+    """Return `count` random whole numbers of 52 bits from the raw `stream`."""
+    return (stream.random_raw(count) >> np.uint64(12)).astype(np.float64)

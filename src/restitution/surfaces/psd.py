@@ -13,14 +13,12 @@ fourth power of the wave number. The resolution in frequency is ±1.5/size.
 from __future__ import annotations
 
 import math
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from restitution.surfaces.surface import Surface, is_periodic
-
-Array = NDArray[np.float64]
+from restitution.surfaces.surface import Array, Surface, is_periodic
 
 _TAPERS = 3  # number of sine tapers along each axis
 _BANDS_PER_OCTAVE = 4  # bands of the radial spectrum per factor of two in wave number
@@ -58,10 +56,8 @@ def power_spectral_density(surface: Surface) -> Array:
     if is_periodic(surface):
         power += np.abs(fft2(z)) ** 2
     else:
-        across = [_tapers(n) for n in z.shape]
-        for a in across[0]:
-            for b in across[1]:
-                power += np.abs(fft2(z * a[:, None] * b[None, :])) ** 2 / _TAPERS**2
+        for a, b in product(*(_tapers(n) for n in z.shape)):
+            power += np.abs(fft2(z * a[:, None] * b[None, :])) ** 2 / _TAPERS**2
     power *= surface.grid.cell_area / z.size
     return power
 
@@ -78,13 +74,11 @@ def radial_spectrum(surface: Surface, density: Array | None = None) -> RadialSpe
     least, most = 2 * math.pi / min(surface.grid.size), math.pi / max(surface.grid.spacing)
     count = max(1, round(_BANDS_PER_OCTAVE * math.log2(max(most / least, 1.0))))
     edges = np.geomspace(0.999 * least, 1.001 * most, count + 1)
-    band = np.digitize(q.ravel(), edges)
-    known = np.isfinite(C.ravel())
-    band = np.where(known, band, 0)
+    # Band 0 is left out. It contains waves that are longer than all bands or have no density.
+    band = np.where(np.isfinite(C), np.digitize(q, edges), 0).ravel()
     size = np.bincount(band, minlength=count + 2)[1:-1]
-    sums = (np.bincount(band, np.where(known, v.ravel(), 0), count + 2)[1:-1] for v in (q, C))
-    mean_q, mean_C = (values[size > 0] / size[size > 0] for values in sums)
-    return RadialSpectrum(mean_q, mean_C)
+    sums = (np.bincount(band, values.ravel(), count + 2)[1:-1] for values in (q, C))
+    return RadialSpectrum(*(total[size > 0] / size[size > 0] for total in sums))
 
 
 def directed_spectra(surface: Surface) -> list[DirectedSpectrum]:

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
-from restitution.surfaces.surface import Surface, is_periodic
-
-Array = NDArray[np.float64]
+from restitution.surfaces.surface import Array, Surface, is_periodic
 
 
 def refine(surface: Surface, factor: int) -> Surface:
@@ -56,7 +53,7 @@ def coarsen(surface: Surface, factor: int = 2) -> Surface:
     nx, ny = (-(-n // factor) for n in surface.grid.nodes)
     wide, long = surface.grid.size
     grid = Grid((nx, ny), (wide / nx, long / ny))
-    return Surface(_resampled(surface, grid.nodes), grid, {**surface.provenance})
+    return Surface(_resampled(surface, grid.nodes), grid, surface.provenance)
 
 
 def _resampled(surface: Surface, nodes: tuple[int, int]) -> Array:
@@ -64,7 +61,7 @@ def _resampled(surface: Surface, nodes: tuple[int, int]) -> Array:
     height = surface.height
     for n in nodes:
         height = _at_nodes(height, n, periodic=is_periodic(surface)).T
-    return np.ascontiguousarray(height)
+    return height
 
 
 def divided(grid: Grid, factor: int) -> Grid:
@@ -93,5 +90,4 @@ def _at_nodes(height: Array, nodes: int, *, periodic: bool) -> Array:
         modes = modes[: (new_period + 1) // 2]
     number = np.arange(modes.shape[0])[:, None]
     modes *= new_period / period * np.exp(2j * np.pi * number * first / period)
-    resampled: Array = irfft(modes, n=new_period, axis=0)
-    return resampled[:nodes]
+    return np.asarray(irfft(modes, n=new_period, axis=0)[:nodes])

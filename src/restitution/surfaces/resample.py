@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.numerics.grid import Grid
 from restitution.surfaces.describe import rms_slope
 from restitution.surfaces.refused import RefusedSurfaceError
-from restitution.surfaces.surface import Surface
-
-Array = NDArray[np.float64]
+from restitution.surfaces.surface import Array, Surface
 
 _ROUNDING = 1e-9  # largest relative difference of two lengths that count as equal
 
@@ -44,16 +42,13 @@ def place_on_grid(surface: Surface, grid: Grid) -> Surface:
     kept = carried(surface, grid.spacing)
     if same_spacing(surface.grid, grid):
         height = crop_to(kept, grid.nodes)
-        changed = surface.grid.nodes != grid.nodes
         placement = (
             f"cropped from {_nodes(surface.grid)} to {_nodes(grid)} pixels"
-            if changed
+            if surface.grid.nodes != grid.nodes
             else "pixels taken as they are"
         )
     else:
-        height, had = kept, surface.grid
-        for at, to in ((had.x, grid.x), (had.y, grid.y)):
-            height = spline(height, at, to).T
+        height = spline(kept, (surface.grid.x, surface.grid.y), (grid.x, grid.y))
         placement = _describe_interpolation(surface.grid, grid)
     provenance = {
         **surface.provenance,
@@ -163,22 +158,23 @@ def _carried_mirrored(height: Array, ratio: float) -> Array:
 
     modes = dct(height, type=2, axis=0)  # cosine k has a wavelength of 2n/k pixels
     modes[math.floor(height.shape[0] * ratio) + 1 :] = 0.0
-    kept: Array = idct(modes, type=2, axis=0)
-    return kept
+    return np.asarray(idct(modes, type=2, axis=0))
 
 
-def spline(height: Array, at: Array, to: Array) -> Array:
-    """Interpolate along the first axis from points `at` to points `to` by a cubic spline.
+def spline(height: Array, at: Sequence[Array], to: Sequence[Array]) -> Array:
+    """Interpolate by a cubic spline from the coordinates `at` (along x and y) to `to`.
 
     Heights are constant beyond the ends.
     """
     from scipy.interpolate import make_interp_spline
 
-    if at.size == 1:
-        return np.repeat(height, to.size, axis=0)
-    through = make_interp_spline(at, height, k=min(3, at.size - 1), axis=0)
-    held: Array = through(np.clip(to, at[0], at[-1]))
-    return held
+    for old, new in zip(at, to, strict=True):
+        if old.size == 1:
+            height = np.repeat(height, new.size, axis=0).T
+        else:
+            through = make_interp_spline(old, height, k=min(3, old.size - 1), axis=0)
+            height = through(np.clip(new, old[0], old[-1])).T
+    return height
 
 
 def _describe_interpolation(scan: Grid, grid: Grid) -> str:

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import unicodedata
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
+from restitution.surfaces.surface import Array
 
 # Number of units per metre. Values are divided by these numbers, because 10/1e6 is exactly 1e-05,
 # but 10 times 1e-6 is not.
@@ -42,9 +41,9 @@ class Scan:
     picture.
     """
 
-    height: NDArray[np.float64]
-    size: tuple[float | None, float | None] = (None, None)
-    details: Mapping[str, str | float] = field(default_factory=dict)
+    height: Array
+    size: tuple[float | None, float | None]
+    details: Mapping[str, str | float]
 
 
 def in_metres(value: float, unit: object) -> float | None:

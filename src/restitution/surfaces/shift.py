@@ -28,14 +28,10 @@ def place_of(surface: Surface, number: int) -> Surface:
         for step, n in zip(_STEPS, surface.grid.nodes, strict=True)
     ]
     height = surface.height
-    for axis, cell in enumerate(cells):
-        n = surface.grid.nodes[axis]
-        if is_periodic(surface):
-            at = (np.arange(n) + cell) % n
-        else:
-            at = (np.arange(n) + cell) % (2 * n)
-            at = np.minimum(at, 2 * n - 1 - at)
-        height = np.take(height, at, axis=axis)
+    for cell in cells:
+        n = height.shape[0]
+        period = height if is_periodic(surface) else np.concatenate([height, height[::-1]])
+        height = np.roll(period, -cell, axis=0)[:n].T
     x, y = (cell * h for cell, h in zip(cells, surface.grid.spacing, strict=True))
     moved = {"place": number, "place_x_m": float(x), "place_y_m": float(y)}
     return replace(surface, height=height, provenance={**surface.provenance, **moved})

@@ -24,12 +24,10 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
-
-Array = NDArray[np.float64]
+from restitution.surfaces.surface import Array
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,8 @@ from restitution.errors import SurfaceError
 from restitution.numerics.grid import Grid
 from restitution.numerics.read_only import read_only
 
+Array = NDArray[np.float64]
+
 
 @dataclass(frozen=True, eq=False)
 class Surface:
@@ -51,10 +53,9 @@ class Surface:
 
     def _summary(self) -> list[str]:
         source = self.provenance.get("kind") or self.provenance.get("source", "heights")
-        rms, *edges = (self.height.std(), self.height.min(), self.height.max())
-        low, high = (quantity(float(edge), "m") for edge in edges)
-        roughness = f"{source}, Sq {quantity(float(rms), 'm')}"
-        return [roughness, f"heights {low} to {high}", *self.grid._summary()]
+        z = self.height
+        rms, low, high = (quantity(float(value), "m") for value in (z.std(), z.min(), z.max()))
+        return [f"{source}, Sq {rms}", f"heights {low} to {high}", *self.grid._summary()]
 
     __repr__ = summary_text
     _repr_html_ = summary_html

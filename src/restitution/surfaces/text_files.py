@@ -30,6 +30,7 @@ _COLUMNS = frozenset({"nx", "columns", "values per line"})
 _LINES = frozenset({"ny", "rows", "lines"})
 _OWN_KEYS = frozenset({"width", "height", "value units"})
 _BOTH = re.compile(r"(\d{1,9})\s{0,9}[x×,\s]\s{0,9}(\d{1,9})")
+_STATEMENT = re.compile(r"#(?P<key>[^:=]*)[:=](?P<value>.*)")
 _UNDEFINED = frozenset({"", "bad", "nan", "inf", "-inf", "infinite"})
 _Counts = dict[str, int]
 
@@ -89,21 +90,21 @@ def _parse_rows(path: Path, data: list[tuple[int, str]], *, plain: bool) -> list
     above the scan lines also counts as damaged if the comments show that the file is a `plain`
     matrix.
     """
-    rows: list[list[float] | None] = []
+    rows: list[list[float]] = []  # empty for a line of text
     first: NotAMatrixError | None = None
     for number, line in data:
         try:
             rows.append(_parse_row(path, number, line))
         except NotAMatrixError as error:
-            rows.append(None)
+            rows.append([])
             first = first or error
     if first is None:
-        return [row for row in rows if row is not None]
-    widths = [len(row) for row in rows if row is not None and len(row) >= _LEAST_VALUES]
+        return rows
+    widths = [len(row) for row in rows if len(row) >= _LEAST_VALUES]
     usual = max(set(widths), key=widths.count) if widths else 0
-    begin = next((i for i, row in enumerate(rows) if row and len(row) == usual), 0)
+    begin = next((i for i, row in enumerate(rows) if len(row) == usual), 0)
     for i, (row, (number, line)) in enumerate(zip(rows, data, strict=True)):
-        if row is None and usual and (plain or begin < i or _is_nearly_a_row(path, line, usual)):
+        if usual and not row and (plain or begin < i or _is_nearly_a_row(path, line, usual)):
             raise SurfaceError(
                 f"{path}: line {number}, {shown(line, 20)}, is not a scan line of {usual} values "
                 "like the others, so the file is damaged; export it again"
@@ -198,11 +199,8 @@ def _statement(comment: str) -> tuple[str, str]:
 
     For any other comment, return two empty texts.
     """
-    text = comment[1:]
-    ends = [at for at in (text.find(":"), text.find("=")) if at >= 0]
-    if not ends:
-        return "", ""
-    return text[: min(ends)].strip().lower(), text[min(ends) + 1 :].strip()
+    entry = _STATEMENT.fullmatch(comment)
+    return (entry["key"].strip().lower(), entry["value"].strip()) if entry else ("", "")
 
 
 def _counts(key: str, value: str) -> _Counts:

@@ -11,11 +11,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from restitution.surfaces.surface import Surface, is_periodic
-
-Array = NDArray[np.float64]
+from restitution.surfaces.surface import Array, Surface, is_periodic
 
 _BINS = 80  # number of bins of the density of heights
 _DECAY = 0.2  # value of the autocorrelation that defines Sal and Str (clause 4.2)
@@ -61,17 +58,12 @@ def texture(surface: Surface) -> dict[str, float | None]:
     - `Sk_m`, `Spk_m`, `Svk_m`: core, reduced peak and reduced dale height; `Smr1`, `Smr2`: material
       ratios where peaks and dales begin (5.2 to 5.4, after ISO 13565-2)
     """
-    longest = shortest = direction = None
     decays = _decay_lags(autocorrelation(surface))
-    if np.isfinite(decays).any():
-        shortest = float(np.nanmin(decays))
-    if np.isfinite(decays).all():
-        longest = float(decays.max())
-        direction = 180 * int(decays.argmax()) / _DIRECTIONS
+    found = np.isfinite(decays)
     return {
-        "Sal_m": shortest,
-        "Str": shortest / longest if shortest and longest else None,
-        "lay_deg": direction,
+        "Sal_m": float(np.nanmin(decays)) if found.any() else None,
+        "Str": float(decays.min() / decays.max()) if found.all() else None,
+        "lay_deg": 180 * int(decays.argmax()) / _DIRECTIONS if found.all() else None,
         "Sdr": _developed_area(surface),
         **_core(material_ratio(surface)),
     }
@@ -102,15 +94,13 @@ def autocorrelation(surface: Surface) -> Autocorrelation:
 
     z = surface.height - surface.height.mean()
     (nx, ny), (hx, hy) = z.shape, surface.grid.spacing
+    lag_x, lag_y = np.arange(nx) - nx // 2, np.arange(ny) - ny // 2
     if is_periodic(surface):
-        R = irfft2(np.abs(rfft2(z)) ** 2, s=z.shape) / z.size
+        padded, pairs = z.shape, z.size
     else:
         padded = next_fast_len(2 * nx, real=True), next_fast_len(2 * ny, real=True)
-        R = irfft2(np.abs(rfft2(z, s=padded)) ** 2, s=padded)
-    lag_x, lag_y = np.arange(nx) - nx // 2, np.arange(ny) - ny // 2
-    R = R[np.ix_(lag_x, lag_y)]
-    if not is_periodic(surface):
-        R = R / ((nx - np.abs(lag_x))[:, None] * (ny - np.abs(lag_y))[None, :])
+        pairs = (nx - np.abs(lag_x))[:, None] * (ny - np.abs(lag_y))[None, :]
+    R = irfft2(np.abs(rfft2(z, s=padded)) ** 2, s=padded)[np.ix_(lag_x, lag_y)] / pairs
     whole = R[nx // 2, ny // 2]
     return Autocorrelation(lag_x * hx, lag_y * hy, R / whole if whole > 0 else np.zeros_like(R))
 
@@ -126,11 +116,10 @@ def _decay_lags(R: Autocorrelation) -> Array:
     """Lag (m) at which the autocorrelation first falls to 0.2, in each direction; NaN if never."""
     from scipy.ndimage import map_coordinates
 
-    reach = min(-R.x[0], -R.y[0])
-    hx, hy = (lags[1] - lags[0] if lags.size > 1 else math.inf for lags in (R.x, R.y))
-    if not (math.isfinite(hx) and math.isfinite(hy)):
+    if min(R.values.shape) < 2:
         return np.full(_DIRECTIONS, np.nan)
-    lag = np.arange(0.0, reach, 0.5 * min(hx, hy))
+    hx, hy = R.x[1] - R.x[0], R.y[1] - R.y[0]
+    lag = np.arange(0.0, min(-R.x[0], -R.y[0]), 0.5 * min(hx, hy))
     angle = np.arange(_DIRECTIONS) * math.pi / _DIRECTIONS
     at = (
         R.values.shape[0] // 2 + np.cos(angle)[:, None] * lag / hx,
@@ -143,8 +132,7 @@ def _decay_lags(R: Autocorrelation) -> Array:
     above = along[rows, first - 1]
     drop = np.where(first > 0, above - along[rows, first], 1.0)
     lags = lag[first - 1] + (above - _DECAY) / drop * lag[1]
-    decays: Array = np.where(first > 0, lags, np.nan)
-    return decays
+    return np.where(first > 0, lags, np.nan)
 
 
 def _developed_area(surface: Surface) -> float:

@@ -21,19 +21,17 @@ A coarse grid takes its waves from the first band that contains all of them.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from restitution.numerics.grid import Grid
 from restitution.surfaces.describe import describe, rms_slope
 from restitution.surfaces.psd import power_spectral_density, radial_spectrum
 from restitution.surfaces.refused import RefusedSurfaceError
 from restitution.surfaces.resample import carried, crop_to, left_out, place_on_grid
-from restitution.surfaces.surface import Surface
+from restitution.surfaces.surface import Array, Surface
 from restitution.surfaces.wave_spectrum import Modes, WaveSpectrum, spectrum_of
-
-Array = NDArray[np.float64]
 
 LEAST_PIXELS = 16  # smallest number of pixels of a scan along each axis
 _UNADJUSTED = 0.01  # fraction of the mean square height in waves that are not adjusted
@@ -74,24 +72,24 @@ def twin(scan: Surface, grid: Grid, seed: int) -> Surface:
     cells that are too large for any wave of the scan.
     """
     _check(scan, grid)
-    repeats = tuple(
-        math.ceil(s / g * (1 - 1e-9)) for s, g in zip(scan.grid.size, grid.size, strict=True)
+    nx, ny = (
+        n * math.ceil(s / g * (1 - 1e-9))
+        for n, s, g in zip(grid.nodes, scan.grid.size, grid.size, strict=True)
     )
-    nodes = repeats[0] * grid.nodes[0], repeats[1] * grid.nodes[1]
-    whole = Grid(nodes, grid.spacing)
+    whole = Grid((nx, ny), grid.spacing)
     spectrum = spectrum_of(scan, whole.size)
-    height = _heights(_adjusted(spectrum, scan, whole, seed), nodes)
-    made = Surface(np.ascontiguousarray(crop_to(height, grid.nodes)), grid)
-    return Surface(made.height, grid, _provenance(scan, made, seed, periodic=nodes == grid.nodes))
+    height = _heights(_adjusted(spectrum, scan, whole, seed), whole.nodes)
+    made = Surface(crop_to(height, grid.nodes), grid)
+    return replace(made, provenance=_provenance(scan, made, seed, periodic=whole == grid))
 
 
 def _check(scan: Surface, grid: Grid) -> None:
     name = scan.provenance.get("file", "the scan")
-    pixels = " x ".join(map(str, scan.grid.nodes))
     if min(scan.grid.nodes) < LEAST_PIXELS:
         raise RefusedSurfaceError(
             "too-few-pixels",
-            f"{name}: {pixels} pixels are too few for the spectrum of a twin",
+            f"{name}: {scan.grid.nodes[0]} x {scan.grid.nodes[1]} pixels are too few for the "
+            "spectrum of a twin",
             f'give a scan of at least {LEAST_PIXELS} x {LEAST_PIXELS}, or how="mirror"',
         )
     if np.ptp(scan.height) <= 8 * np.finfo(np.float64).eps * float(np.abs(scan.height).max()):
@@ -111,21 +109,15 @@ def _check(scan: Surface, grid: Grid) -> None:
 
 def _adjusted(spectrum: WaveSpectrum, scan: Surface, grid: Grid, seed: int) -> Modes:
     """Return the waves of the twin that `grid` resolves, in the order of `rfft2` on `grid`."""
-    cells = _bands(spectrum, scan)
-    modes: Modes | None = None
+    modes: Modes = np.zeros((1, 1), dtype=np.complex128)
     most = 0, 0
-    for cell in cells:
+    for cell in _bands(spectrum, scan):
         modes, most = _band(spectrum, scan, cell, seed, modes, most)
         if all(c <= h for c, h in zip(cell, grid.spacing, strict=True)):
             break
-    assert modes is not None  # `_bands` returns at least one cell size
     wanted = spectrum.numbers(grid.spacing)
-    common = min(wanted[0], most[0]), min(wanted[1], most[1])
-    if wanted == common:
-        full: Modes = np.zeros((grid.nodes[0], grid.nodes[1] // 2 + 1), dtype=np.complex128)
-    else:
-        full = spectrum.modes(wanted, grid.nodes, seed)
-    _copy(modes, full, common)
+    full = spectrum.modes(wanted, grid.nodes, seed)
+    _copy(modes, full, (min(wanted[0], most[0]), min(wanted[1], most[1])))
     return full
 
 
@@ -139,15 +131,13 @@ def _bands(spectrum: WaveSpectrum, scan: Surface) -> list[tuple[float, float]]:
     def cell(level: int) -> tuple[float, float]:
         return scan.grid.spacing[0] * 2.0**level, scan.grid.spacing[1] * 2.0**level
 
-    def enough(level: int) -> bool:
-        pixels: int = min(scan.grid.nodes)
-        return pixels >= _LEAST_FIRST << level
-
+    # The largest level at which each edge of the scan has at least _LEAST_FIRST cells.
+    coarsest = (min(scan.grid.nodes) // _LEAST_FIRST).bit_length() - 1
     last = 0
-    while enough(last + 1) and float(np.var(carried(scan, cell(last + 1)))) > most:
+    while last < coarsest and float(np.var(carried(scan, cell(last + 1)))) > most:
         last += 1
     first = last
-    while enough(first + 1) and math.prod(_nodes(spectrum.numbers(cell(first)))) > _FIRST_BAND:
+    while first < coarsest and math.prod(_nodes(spectrum.numbers(cell(first)))) > _FIRST_BAND:
         first += 1
     return [cell(level) for level in range(first, last - 1, -1)]
 
@@ -157,7 +147,7 @@ def _band(
     scan: Surface,
     cell: tuple[float, float],
     seed: int,
-    known: Modes | None,
+    known: Modes,
     kept: tuple[int, int],
 ) -> tuple[Modes, tuple[int, int]]:
     """Adjust the phases of the waves that cells of size `cell` (m) resolve.
@@ -177,8 +167,7 @@ def _band(
     wanted *= math.sqrt(power / float(np.mean(wanted**2)))
     misfit, fewest = math.inf, _ADJUSTMENTS[0]
     for _ in range(max(fewest, min(_WORK // math.prod(nodes), _ADJUSTMENTS[1]))):
-        if known is not None:
-            _copy(known, modes, kept)
+        _copy(known, modes, kept)
         z = irfft2(modes, s=nodes, norm="forward")
         adjusted = _with_heights(z, wanted)
         z -= adjusted
@@ -187,8 +176,7 @@ def _band(
             break
         modes = rfft2(adjusted, norm="forward")
         modes *= size / np.maximum(np.abs(modes), np.finfo(float).tiny)
-    if known is not None:
-        _copy(known, modes, kept)
+    _copy(known, modes, kept)
     return modes, most
 
 
@@ -240,8 +228,7 @@ def _heights(modes: Modes, nodes: tuple[int, int]) -> Array:
     number = np.fft.fftfreq(nodes[0], 1 / nodes[0]), np.arange(modes.shape[1])
     for k, n, shape in zip(number, nodes, ((-1, 1), (1, -1)), strict=True):
         modes *= np.exp(-2j * np.pi * (n // 2) / n * k).reshape(shape)
-    height: Array = irfft2(modes, s=nodes, norm="forward", overwrite_x=True)
-    return height
+    return np.asarray(irfft2(modes, s=nodes, norm="forward", overwrite_x=True))
 
 
 def _provenance(

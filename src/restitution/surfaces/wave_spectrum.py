@@ -14,7 +14,7 @@ same for grids of any spacing.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,9 +22,8 @@ from numpy.typing import NDArray
 from restitution.surfaces.describe import rms_slope
 from restitution.surfaces.noise import wave_phases
 from restitution.surfaces.psd import power_spectral_density
-from restitution.surfaces.surface import Surface
+from restitution.surfaces.surface import Array, Surface
 
-Array = NDArray[np.float64]
 Modes = NDArray[np.complex128]
 
 _SUMMED = 2**20  # approximate largest number of waves that `_moments` sums one by one
@@ -97,25 +96,24 @@ def spectrum_of(scan: Surface, period: tuple[float, float]) -> WaveSpectrum:
     C *= 1 / (scan.grid.size[0] * scan.grid.size[1] * waves[0] * waves[1])
     raw = WaveSpectrum(C, (waves[0], waves[1]), scan.grid.spacing, period)
     wanted = float(np.var(scan.height)), rms_slope(scan) ** 2
-    moments = _moments(raw)
+    moments = _moments(raw)  # without a factor, because a = 1 and b = 0
     a, b = wanted[0] / moments[0, 0], 0.0
     if abs(np.linalg.det(moments)) > 1e-9 * abs(moments[0, 0] * moments[1, 1]):
         a, b = (float(value) for value in np.linalg.solve(moments, wanted))
-    spectrum = WaveSpectrum(C, raw.waves, raw.pixel, period, a, b)
+    spectrum = replace(raw, flat=a, steep=b)
     # `power` sets negative values to zero, which changes the mean square height. The coefficients a
     # and b are rescaled to restore the mean square height.
-    excess = _moments(spectrum, raw=False)[0, 0] / wanted[0]
-    return WaveSpectrum(C, raw.waves, raw.pixel, period, a / excess, b / excess)
+    excess = _moments(spectrum)[0, 0] / wanted[0]
+    return replace(raw, flat=a / excess, steep=b / excess)
 
 
-def _moments(spectrum: WaveSpectrum, *, raw: bool = True) -> Array:
+def _moments(spectrum: WaveSpectrum) -> Array:
     """Mean square height and mean square slope (rows) for the powers C and C/k² (columns).
 
-    k is the size of the scan divided by the wavelength. If `raw` is False, the first column is for
-    the power C(a + b/k²), and the second is 0. Slopes are differences between neighbouring pixels,
-    as in `rms_slope`. Long waves are summed one by one, over the wave vectors of the twin. Short
-    waves are summed over the wave vectors of the scan, which are fewer, because the twin is not
-    smaller.
+    C is the power of `spectrum` with the factor a + b/k², and k the size of the scan divided by the
+    wavelength. Slopes are differences between neighbouring pixels, as in `rms_slope`. Long waves
+    are summed one by one, over the wave vectors of the twin. Short waves are summed over the wave
+    vectors of the scan, which are fewer, because the twin is not smaller.
     """
     wx, wy = spectrum.waves
     (mx, my), (hx, hy) = spectrum.density.shape, spectrum.pixel
@@ -131,10 +129,9 @@ def _moments(spectrum: WaveSpectrum, *, raw: bool = True) -> Array:
             4 * np.sin(np.pi * x) ** 2 / hx**2, 4 * np.sin(np.pi * y) ** 2 / hy**2
         )
         squares = np.maximum(squares, 1.0)
-        if not raw:
-            C = np.maximum(C * (spectrum.flat + spectrum.steep / squares), 0.0)
+        C = np.maximum(C * (spectrum.flat + spectrum.steep / squares), 0.0)
         moments += [
-            [C.sum(), (C / squares).sum() if raw else 0.0],
-            [(C * slope2).sum(), (C / squares * slope2).sum() if raw else 0.0],
+            [C.sum(), (C / squares).sum()],
+            [(C * slope2).sum(), (C / squares * slope2).sum()],
         ]
     return moments

@@ -12,10 +12,9 @@ import signal
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import dataclass
 from multiprocessing.managers import SyncManager
-from queue import Empty
 from typing import Any
 
 from restitution.errors import CaseError, OutputError
@@ -62,44 +61,38 @@ def local_workers(count: int | None) -> Iterator[Workers]:
     threads = max(1, (cores or 1) // places)
     # Spawn processes, because a fork would copy locks that other threads hold.
     context = multiprocessing.get_context("spawn")
-    started: list[ProcessPoolExecutor] = []
-
-    def begin(size: int) -> Executor:
-        pool = _Pool(size, mp_context=context, initializer=_serve)
-        started.append(pool)
-        return pool
-
     manager = SyncManager(ctx=context)
     with hold_signals(), _without_interrupts():
         manager.start(_serve)
-    with manager:
+    with manager, ExitStack() as pools:
         queue = manager.Queue()
 
-        def heard() -> list[tuple[int, int]]:
-            messages = []
-            while True:
-                try:
-                    messages.append(queue.get_nowait())
-                except Empty:
-                    return messages
+        def begin(size: int) -> Executor:
+            return pools.enter_context(_Pool(size, mp_context=context, initializer=_serve))
 
-        try:
-            yield Workers(begin(places), places, threads, queue, heard, begin)
-        finally:
-            with hold_signals():
-                for pool in started:
-                    # Stop running cases, because nothing would store their results.
-                    for process in list((pool._processes or {}).values()):
-                        process.terminate()
-                    pool.shutdown(cancel_futures=True)
+        def heard() -> list[tuple[int, int]]:
+            # Only this process takes messages, so those that are counted do not disappear.
+            return [queue.get_nowait() for _ in range(queue.qsize())]
+
+        yield Workers(begin(places), places, threads, queue, heard, begin)
 
 
 class _Pool(ProcessPoolExecutor):
-    """A pool that blocks Ctrl-C in its processes. Processes start when tasks are submitted."""
+    """A pool that blocks Ctrl-C in its processes. Processes start when tasks are submitted.
+
+    At the end of a `with` body, running cases are stopped, because nothing would store their
+    results.
+    """
 
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         with _without_interrupts():
             return super().submit(function, *args, **kwargs)
+
+    def __exit__(self, *_: object) -> None:
+        with hold_signals():
+            for process in list((self._processes or {}).values()):
+                process.terminate()
+            self.shutdown(cancel_futures=True)
 
 
 @contextmanager
@@ -168,8 +161,7 @@ def cluster_workers(address: str) -> Iterator[Workers]:
         queue = Queue(client=client)
 
         def heard() -> list[tuple[int, int]]:
-            messages: list[tuple[int, int]] = queue.get(batch=True)
-            return [(number, done) for number, done in messages]
+            return [(number, done) for number, done in queue.get(batch=True)]
 
         # Dask itself repeats the tasks of dead workers (a limited number of times), so no new
         # executor is needed.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, wait
 from dataclasses import dataclass, field
@@ -52,8 +52,11 @@ def run_study(
         for case in study.cases
         if known[case.number] is None or (retry_failed and known[case.number])
     ]
-    tally = Tally(len(study.cases), done=len(study.cases) - len(missing))
-    tally.failed = sum(bool(known[c.number]) for c in study.cases if c not in missing)
+    tally = Tally(
+        len(study.cases),
+        done=len(study.cases) - len(missing),
+        failed=0 if retry_failed else sum(map(bool, known.values())),
+    )
     progress(tally)
     try:
         _compute_all(deque(missing), folder, out, workers, tally, progress)
@@ -71,7 +74,7 @@ def _compute_all(
     tally: Tally,
     progress: Callable[[Tally], None],
 ) -> None:
-    executor, size, deaths = workers.executor, workers.places, dict[int, int]()
+    executor, size, deaths = workers.executor, workers.places, Counter[int]()
     suspects: deque[SweptCase] = deque()
     running: dict[Future[Outcome], SweptCase] = {}
     broken = False
@@ -95,12 +98,12 @@ def _compute_all(
         done, _ = wait(running, timeout=_POLL, return_when=FIRST_COMPLETED)
         for future in done:
             case = running.pop(future)
-            tally.in_flight.pop(case.number, None)
+            del tally.in_flight[case.number]
             try:
                 outcome = future.result()
             except BrokenExecutor:
                 broken = True
-                deaths[case.number] = deaths.get(case.number, 0) + 1
+                deaths[case.number] += 1
                 if deaths[case.number] < _DEATHS:
                     suspects.append(case)
                     continue
@@ -114,10 +117,9 @@ def _compute_all(
             tally.failed += bool(outcome.reason)
         if broken:
             # The other running cases were lost with the executor.
-            for case in running.values():
-                suspects.append(case)
-                tally.in_flight.pop(case.number, None)
+            suspects.extend(running.values())
             running.clear()
+            tally.in_flight.clear()
         for number, depths in workers.heard():
             if number in tally.in_flight:
                 tally.in_flight[number] = depths

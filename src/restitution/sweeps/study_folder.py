@@ -86,18 +86,16 @@ class StudyFolder:
 
     def put(self, case: SweptCase, outcome: Outcome) -> None:
         """Store the outcome of a case. Raises `OutputError` if it cannot be written."""
-        part, whole = self._cases / f".{case.name}", self._cases / case.name
+        part, whole = self._cases / f".{case.name}", self.folder_of(case)
+        files = outcome.files | {"case.toml": case.text.encode()}
+        if outcome.reason:
+            files[FAILED] = json.dumps({"reason": outcome.reason}, ensure_ascii=False).encode()
         with hold_signals(), writing(self.path):
             shutil.rmtree(part, ignore_errors=True)
-            for name, content in outcome.files.items():
+            for name, content in files.items():
                 file = part / name
                 file.parent.mkdir(parents=True, exist_ok=True)
                 file.write_bytes(content)
-            part.mkdir(exist_ok=True)
-            (part / "case.toml").write_text(case.text, encoding="utf-8")
-            if outcome.reason:
-                why = json.dumps({"reason": outcome.reason}, ensure_ascii=False)
-                (part / FAILED).write_text(why, encoding="utf-8")
             shutil.rmtree(whole, ignore_errors=True)
             part.rename(whole)
 
@@ -107,7 +105,7 @@ class StudyFolder:
         A case is complete if its files pass the checks of `RunResults`. A stored case whose text
         differs from `case` counts as missing.
         """
-        folder = self._cases / case.name
+        folder = self.folder_of(case)
         try:
             if (folder / "case.toml").read_text(encoding="utf-8") != case.text:
                 return None
@@ -121,76 +119,62 @@ class StudyFolder:
 
     def write_tables(self) -> None:
         """Write `table.csv` and `study.nc` from the stored cases."""
-        known = {case.number: self.reason(case) for case in self.study.cases}
-        curves = {
-            case.number: RunResults(self._cases / case.name).curve
-            for case in self.study.cases
-            if known[case.number] == ""
-        }
-        cells = {number: curve.cells for number, curve in curves.items()}
-        rows = {number: curve.rows for number, curve in curves.items()}
-        write_table(self.path / "table.csv", self._rows(known, cells))
-        write_netcdf(self.path / "study.nc", self._dataset(known, rows))
+        reasons = [self.reason(case) for case in self.study.cases]
+        curves = [
+            RunResults(self.folder_of(case)).curve if reason == "" else None
+            for case, reason in zip(self.study.cases, reasons, strict=True)
+        ]
+        cells = [curve.cells if curve else [] for curve in curves]
+        rows = [curve.rows if curve else [] for curve in curves]
+        write_table(self.path / "table.csv", self._rows(reasons, cells))
+        write_netcdf(self.path / "study.nc", self._dataset(reasons, rows))
         write_checksums(self.path, ["study.nc", "study.toml", "table.csv"])
 
     def _rows(
-        self, known: dict[int, str | None], curves: dict[int, list[dict[str, str]]]
+        self, reasons: list[str | None], curves: list[list[dict[str, str]]]
     ) -> list[dict[str, str]]:
         """Make the rows of `table.csv`.
 
         Each row contains the swept values of a case and a row of its `curve.csv`. A case without a
         curve has one row.
         """
-        columns = next((list(rows[0]) for rows in curves.values() if rows), list(COLUMNS))
+        columns = next((list(cells[0]) for cells in curves if cells), list(COLUMNS))
         rows = []
-        for case in self.study.cases:
-            reason = known[case.number]
+        for case, reason, cells in zip(self.study.cases, reasons, curves, strict=True):
             swept = {key: as_text(value) for key, value in case.values.items()}
             end = {"case": case.name, "status": _status(reason), "reason": reason or ""}
-            for row in curves.get(case.number, [{}]):
+            for row in cells or [{}]:
                 rows.append({**swept, **{name: row.get(name, "") for name in columns}, **end})
         return rows
 
     def _dataset(
-        self, known: dict[int, str | None], curves: dict[int, list[dict[str, float]]]
+        self, reasons: list[str | None], curves: list[list[dict[str, float]]]
     ) -> xr.Dataset:
         """Make a dataset of all curves.
 
         Its dimensions are the swept keys (or the cases, if paired) and the depth.
         """
         study = self.study
-        depths = max((len(rows) for rows in curves.values()), default=0)
-        if study.mode == "paired":
-            dims: tuple[str, ...] = ("case",)
-            coordinates: dict[str, Any] = {
-                key: ("case", *coordinate(values)) for key, values in study.swept.items()
-            }
-        else:
-            dims = tuple(study.swept)
-            coordinates = {key: (key, *coordinate(values)) for key, values in study.swept.items()}
+        paired, depths = study.mode == "paired", max(map(len, curves), default=0)
+        dims = ("case",) if paired else tuple(study.swept)
+        coordinates = {
+            key: ("case" if paired else key, *coordinate(values))
+            for key, values in study.swept.items()
+        }
         data: dict[str, Any] = {}
         for name, column in ALL_COLUMNS.items():
-            if not any(name in rows[0] for rows in curves.values()):
+            if not any(name in rows[0] for rows in curves if rows):
                 continue
             values = np.full((len(study.cases), depths), np.nan)
-            for row, case in enumerate(study.cases):
-                for k, numbers in enumerate(curves.get(case.number, [])):
-                    values[row, k] = numbers.get(name, math.nan)
-            data[column.variable] = (
-                (*dims, "depth"),
-                values.reshape(*study.shape, depths),
-                {"units": column.unit, "long_name": column.meaning},
+            for line, rows in zip(values, curves, strict=True):
+                line[: len(rows)] = [row.get(name, math.nan) for row in rows]
+            data[column.variable] = column.labelled(
+                (*dims, "depth"), values.reshape(*study.shape, depths)
             )
-        reasons = [known[case.number] for case in study.cases]
-        data["status"] = (
-            dims,
-            np.reshape([_status(reason) for reason in reasons], study.shape),
-        )
+        data["status"] = dims, np.reshape([_status(reason) for reason in reasons], study.shape)
         attributes = {"title": study.title, "study": study.text}
         return xr.Dataset(data, coordinates, attributes)
 
 
 def _status(reason: str | None) -> str:
-    if reason is None:
-        return "missing"
-    return "failed" if reason else "complete"
+    return {None: "missing", "": "complete"}.get(reason, "failed")

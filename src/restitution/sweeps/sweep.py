@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import copy
-import itertools
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 from typing import Any, Literal
 
@@ -15,7 +16,6 @@ from restitution.case.case_file import naming, parse_case, parse_toml, read_text
 from restitution.errors import CaseError, shown
 
 MOST_CASES = 100_000
-_MODES = ("grid", "paired")
 
 
 @dataclass(frozen=True)
@@ -67,12 +67,15 @@ def parse_study(text: str) -> Study:
     if not isinstance(sweep, dict):
         raise CaseError("the table [sweep] is missing; give the keys that vary, with their values")
     mode = sweep.pop("mode", "grid")
-    if mode not in _MODES:
+    if mode not in ("grid", "paired"):
         raise CaseError(f'sweep.mode: {shown(mode)} should be "grid" or "paired"')
     swept = dict(_paths(sweep))
     _check_values(swept, mode)
+    # In the mode "grid" the last key varies fastest.
+    rows = zip(*swept.values(), strict=True) if mode == "paired" else product(*swept.values())
     cases = []
-    for number, values in enumerate(_combinations(swept, mode), 1):
+    for number, row in enumerate(rows, 1):
+        values = dict(zip(swept, row, strict=True))
         case = copy.deepcopy(content)
         for key, value in values.items():
             put(case, key, value)
@@ -103,11 +106,9 @@ def _check_values(swept: Mapping[str, Any], mode: str) -> None:
         raise CaseError(
             'sweep: is empty; give a key that varies: "roughness.rms" = ["0.1 um", "0.2 um"]'
         )
-    count = 1
     for key, values in swept.items():
         if not isinstance(values, list) or not values:
             raise CaseError(f"sweep.{key}: {shown(values)} should be a list of values")
-        count *= len(values)
     lengths = {key: len(values) for key, values in swept.items()}
     if mode == "paired":
         if len(set(lengths.values())) > 1:
@@ -115,19 +116,8 @@ def _check_values(swept: Mapping[str, Any], mode: str) -> None:
             raise CaseError(
                 f'sweep: mode = "paired" needs lists of equal length; the lengths are {each}'
             )
-    elif count > MOST_CASES:
+    elif (count := math.prod(lengths.values())) > MOST_CASES:
         raise CaseError(f"sweep: gives {count} cases; reduce them to at most {MOST_CASES}")
-
-
-def _combinations(swept: Mapping[str, list[Any]], mode: str) -> Iterator[dict[str, Any]]:
-    """Yield the swept values of each case; in the mode "grid" the last key varies fastest."""
-    rows = (
-        zip(*swept.values(), strict=True)
-        if mode == "paired"
-        else itertools.product(*swept.values())
-    )
-    for row in rows:
-        yield dict(zip(swept, row, strict=True))
 
 
 def put(case: dict[str, Any], path: str, value: Any) -> None:

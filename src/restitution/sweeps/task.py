@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import tempfile
 from dataclasses import dataclass
@@ -30,7 +31,7 @@ class Outcome:
     reason: str
 
 
-def compute(text: str, folder: str, number: int, threads: int, channel: Channel | None) -> Outcome:
+def compute(text: str, folder: str, number: int, threads: int, channel: Channel) -> Outcome:
     """Run the case file `text` in this process; paths in it are relative to `folder`.
 
     Results are returned, not written to the folder of the study. So workers need no shared disk,
@@ -42,13 +43,10 @@ def compute(text: str, folder: str, number: int, threads: int, channel: Channel 
     from restitution.results.writer import ResultsFolder
     from restitution.runs.ensemble import run_realisations
 
-    done, reason = 0, ""
+    depths, reason = itertools.count(1), ""
 
     def progress(_: str) -> None:
-        nonlocal done
-        done += 1
-        if channel is not None:
-            channel.put((number, done))
+        channel.put((number, next(depths)))
 
     with tempfile.TemporaryDirectory(prefix="restitution-") as temporary:
         out = Path(temporary) / "case"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, fields
 from typing import TypeAlias
 
 import numpy as np
@@ -31,25 +32,6 @@ def positive(**quantities: Values) -> tuple[Array, ...]:
     return tuple(arrays)
 
 
-def between(low: Values, high: Values, **quantities: Values) -> tuple[Array, ...]:
-    """Check that the named quantities are finite and within bounds; return them as float arrays.
-
-    The error message names the keyword, so pass each quantity under its public argument name.
-    """
-    arrays = []
-    for name, value in quantities.items():
-        array = np.asarray(value, dtype=np.float64)
-        bad = ~(np.isfinite(array) & (array >= low) & (array <= high))
-        if bad.any():
-            found, least, most = (np.broadcast_to(x, bad.shape)[bad][0] for x in (array, low, high))
-            raise CaseError(
-                f"{name}: {found:g} is not a finite number from {least:g} to {most:g}; "
-                f"give {name} in SI units, within that range"
-            )
-        arrays.append(array)
-    return tuple(arrays)
-
-
 def keep_positive(law: object, *names: str) -> None:
     """Check named fields of a frozen `law` with `positive` and store them as read-only arrays."""
     for name in names:
@@ -57,8 +39,24 @@ def keep_positive(law: object, *names: str) -> None:
 
 
 def keep_between(law: object, name: str, low: Values, high: Values = np.inf) -> None:
-    """Check a field of a frozen `law` with `between` and store it as a read-only array."""
-    keep(law, name, *between(low, high, **{name: getattr(law, name)}))
+    """Check that a field of a frozen `law` is finite and within bounds; store a read-only array."""
+    array = np.asarray(getattr(law, name), dtype=np.float64)
+    bad = ~(np.isfinite(array) & (array >= low) & (array <= high))
+    if bad.any():
+        found, least, most = (np.broadcast_to(x, bad.shape)[bad][0] for x in (array, low, high))
+        raise CaseError(
+            f"{name}: {found:g} is not a finite number from {least:g} to {most:g}; "
+            f"give {name} in SI units, within that range"
+        )
+    keep(law, name, array)
+
+
+@dataclass(frozen=True, eq=False)
+class PositiveFields:
+    """Base class of a law whose fields must all be positive and finite."""
+
+    def __post_init__(self) -> None:
+        keep_positive(self, *(field.name for field in fields(self)))
 
 
 def touching(value: Values) -> Array:

@@ -32,13 +32,13 @@ from functools import cached_property
 
 import numpy as np
 
-from ._inputs import Array, Values, keep_positive, scalar_or_array, touching
+from ._inputs import Array, PositiveFields, Values, scalar_or_array, touching
 from .jkr import JKR
 from .thornton_ning import ThorntonNing
 
 
 @dataclass(frozen=True, eq=False)
-class AdhesiveThorntonNing:
+class AdhesiveThorntonNing(PositiveFields):
     """Impact of elastic, perfectly plastic spheres with adhesion.
 
     The fields and arguments may be arrays and broadcast (see `restitution.theory`).
@@ -61,9 +61,6 @@ class AdhesiveThorntonNing:
     contact_modulus: Values
     yield_pressure: Values
     work_of_adhesion: Values
-
-    def __post_init__(self) -> None:
-        keep_positive(self, "radius", "contact_modulus", "yield_pressure", "work_of_adhesion")
 
     @cached_property
     def elastic(self) -> JKR:

@@ -31,7 +31,7 @@ from typing import Self
 
 import numpy as np
 
-from ._inputs import Array, Values, keep_positive, positive, scalar_or_array, touching
+from ._inputs import Array, PositiveFields, Values, positive, scalar_or_array, touching
 from .hertz import Hertz
 
 _NUMERATOR = 0.501086, 1.0
@@ -39,7 +39,7 @@ _DENOMINATOR = 0.532178, 0.577977, 1.15345, 0.501086, 1.0
 
 
 @dataclass(frozen=True, eq=False)
-class Brilliantov:
+class Brilliantov(PositiveFields):
     """Impact of viscoelastic spheres.
 
     The field and arguments may be arrays and broadcast (see `restitution.theory`).
@@ -56,9 +56,6 @@ class Brilliantov:
     """
 
     dissipation: Values
-
-    def __post_init__(self) -> None:
-        keep_positive(self, "dissipation")
 
     @classmethod
     def from_material(

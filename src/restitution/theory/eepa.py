@@ -35,12 +35,11 @@ from ._inputs import (
     Values,
     keep_between,
     keep_positive,
-    positive,
     scalar_or_array,
     touching,
 )
 from ._roots import increasing_root
-from .law import restitution_of_work
+from .law import impact_energy, restitution_of_work
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,8 +117,8 @@ class EEPA:
         Returns:
             Residual indentation δ_p (m).
         """
-        k1, k2, _ = self._springs
-        return (1 - k1 / k2) ** (1 / self.exponent) * touching(maximum_indentation)
+        remaining = 1 - self.loading_stiffness / self.unloading_stiffness
+        return remaining ** (1 / self.exponent) * touching(maximum_indentation)
 
     def pull_off_force(self, maximum_indentation: Values) -> Array:
         """Largest attractive force on unloading.
@@ -181,9 +180,8 @@ class EEPA:
         Raises:
             CaseError: `mass` is not positive and finite.
         """
-        (m,) = positive(mass=mass)
         k1, f0, n = self.loading_stiffness, self.constant_force, self.exponent
-        K = 0.5 * m * touching(velocity) ** 2
+        K = impact_energy(velocity, mass)
         a, b = ((n + 1) * K / k1) ** (1 / (n + 1)), (-(n + 1) * f0 / k1) ** (1 / n)
         d = increasing_root(lambda d: self.loading_work(d) - K, np.maximum(a, b), a + b)
         return scalar_or_array(np.where(np.asarray(velocity) <= 0, 0.0, d))

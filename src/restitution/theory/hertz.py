@@ -18,11 +18,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ._inputs import Array, Values, keep_positive, positive, scalar_or_array, touching
+from ._inputs import Array, PositiveFields, Values, positive, scalar_or_array, touching
 
 
 @dataclass(frozen=True, eq=False)
-class Hertz:
+class Hertz(PositiveFields):
     """Hertz contact of smooth elastic spheres.
 
     The fields and arguments may be arrays and broadcast (see `restitution.theory`).
@@ -40,9 +40,6 @@ class Hertz:
 
     radius: Values
     contact_modulus: Values
-
-    def __post_init__(self) -> None:
-        keep_positive(self, "radius", "contact_modulus")
 
     def force(self, indentation: Values) -> Array:
         """Normal force at an indentation.
@@ -64,8 +61,7 @@ class Hertz:
         Returns:
             Normal force F = 4E*a³/(3R*) (N).
         """
-        a = touching(contact_radius)
-        return 4 * self.contact_modulus * a**3 / (3 * self.radius)
+        return 4 * self.contact_modulus * touching(contact_radius) ** 3 / (3 * self.radius)
 
     def indentation(self, force: Values) -> Array:
         """Indentation under a normal force; the inverse of `force`.
@@ -76,8 +72,8 @@ class Hertz:
         Returns:
             Indentation δ (m).
         """
-        F = touching(force)
-        return scalar_or_array((0.75 * F / (self.contact_modulus * self.radius**0.5)) ** (2 / 3))
+        stiffness = self.contact_modulus * self.radius**0.5
+        return scalar_or_array((0.75 * touching(force) / stiffness) ** (2 / 3))
 
     def indentation_from_energy(self, energy: Values) -> Array:
         """Indentation at which an elastic energy is stored; the inverse of `stored_energy`.
@@ -151,8 +147,8 @@ class Hertz:
         Returns:
             Peak pressure p₀ = 2E*a/(πR*) (Pa), with the contact radius a.
         """
-        d = touching(indentation)  # p₀ = 2E*a/(πR*) with a = (R*δ)^½
-        return 2 * self.contact_modulus / np.pi * (d / self.radius) ** 0.5
+        # p₀ = 2E*a/(πR*) with a = (R*δ)^½
+        return 2 * self.contact_modulus / np.pi * (touching(indentation) / self.radius) ** 0.5
 
     def pressure(self, radial_distance: Values, indentation: Values) -> Array:
         """Pressure at a distance from the axis.

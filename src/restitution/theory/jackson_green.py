@@ -115,9 +115,8 @@ class JacksonGreen:
         Returns:
             Mean pressure H_G (Pa).
         """
-        a = touching(contact_radius)
         with np.errstate(divide="ignore"):  # for a = 0, the exponential is exp(−∞) = 0
-            share = -np.expm1(-0.82 * (a / self.radius) ** -0.7)
+            share = -np.expm1(-0.82 * (touching(contact_radius) / self.radius) ** -0.7)
         return scalar_or_array(2.84 * self.yield_strength * share)
 
     def loading_force(self, indentation: Values) -> Array:
@@ -132,8 +131,10 @@ class JacksonGreen:
         w, first = self._normalised(indentation), self.first_yield
         deep = np.maximum(w, TRANSITION)
         H_G = self.hardness(self.contact_radius(deep * first.indentation))
-        fit = np.exp(-0.25 * deep ** (5 / 12)) * deep**1.5
-        fit = fit - 4 * H_G / first.yield_pressure * np.expm1(-(deep ** (5 / 9)) / 25) * deep
+        fit = (
+            np.exp(-0.25 * deep ** (5 / 12)) * deep**1.5
+            - 4 * H_G / first.yield_pressure * np.expm1(-(deep ** (5 / 9)) / 25) * deep
+        )
         return scalar_or_array(first.force * np.where(w <= TRANSITION, w**1.5, fit))
 
     def _normalised(self, indentation: Values) -> Array:

@@ -61,7 +61,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ._inputs import Array, Values, keep_positive, positive, scalar_or_array, touching
+from ._inputs import Array, PositiveFields, Values, positive, scalar_or_array, touching
 from .hertz import Hertz
 from .kendall import Kendall
 
@@ -72,7 +72,7 @@ _AT_JUMP_IN = -24 / 5 * 4 * math.cbrt(4)
 
 
 @dataclass(frozen=True, eq=False)
-class JKR:
+class JKR(PositiveFields):
     """JKR contact of elastic spheres with adhesion.
 
     The fields and arguments may be arrays and broadcast (see `restitution.theory`).
@@ -92,9 +92,6 @@ class JKR:
     radius: Values
     contact_modulus: Values
     work_of_adhesion: Values
-
-    def __post_init__(self) -> None:
-        keep_positive(self, "radius", "contact_modulus", "work_of_adhesion")
 
     def force(self, indentation: Values) -> Array:
         """Normal force of spheres in contact, on the branch that is stable at fixed grips.
@@ -133,7 +130,7 @@ class JKR:
         Returns:
             Normal force F (N), positive in compression.
         """
-        pressed = self._pressed.force_at_contact_radius(contact_radius)
+        pressed = Hertz(self.radius, self.contact_modulus).force_at_contact_radius(contact_radius)
         return pressed - self._drawn.pull_off_force(contact_radius)
 
     def indentation_at_contact_radius(self, contact_radius: Values) -> Array:
@@ -343,10 +340,6 @@ class JKR:
         """
         (z0,) = positive(equilibrium_separation=equilibrium_separation)
         return self.adhesive_length / z0
-
-    @property
-    def _pressed(self) -> Hertz:
-        return Hertz(self.radius, self.contact_modulus)
 
     @property
     def _drawn(self) -> Kendall:

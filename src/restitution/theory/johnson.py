@@ -27,14 +27,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ._inputs import Array, Values, keep_positive, positive, scalar_or_array, touching
+from ._inputs import Array, PositiveFields, Values, positive, scalar_or_array
+from .law import impact_energy
 
 COEFFICIENT = 3.8
 """Coefficient printed by Johnson; the derived value is (3π^{5/4} 4^{3/4}/10)^½ 3^{5/8} = 3.743."""
 
 
 @dataclass(frozen=True, eq=False)
-class Johnson:
+class Johnson(PositiveFields):
     """Fully plastic impact of a sphere at a contact pressure of three times the yield strength.
 
     The fields and arguments may be arrays and broadcast (see `restitution.theory`).
@@ -55,9 +56,6 @@ class Johnson:
     contact_modulus: Values
     yield_strength: Values
 
-    def __post_init__(self) -> None:
-        keep_positive(self, "radius", "contact_modulus", "yield_strength")
-
     def restitution(self, velocity: Values, mass: Values) -> Array:
         """Coefficient of restitution after an impact.
 
@@ -73,8 +71,7 @@ class Johnson:
         Raises:
             CaseError: `mass` is not positive and finite.
         """
-        (m,) = positive(mass=mass)
-        reduced = 0.5 * m * touching(velocity) ** 2 / (self.yield_strength * self.radius**3)
+        reduced = impact_energy(velocity, mass) / (self.yield_strength * self.radius**3)
         unity = self._energy_of_unity
         return scalar_or_array((unity / np.maximum(reduced, unity)) ** 0.125)
 

@@ -29,11 +29,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ._inputs import Array, Values, keep_positive, scalar_or_array, touching
+from ._inputs import Array, PositiveFields, Values, scalar_or_array, touching
 
 
 @dataclass(frozen=True, eq=False)
-class Kendall:
+class Kendall(PositiveFields):
     """Flat circular punch that adheres to an elastic half-space.
 
     The fields and arguments may be arrays and broadcast (see `restitution.theory`).
@@ -51,9 +51,6 @@ class Kendall:
 
     contact_modulus: Values
     work_of_adhesion: Values
-
-    def __post_init__(self) -> None:
-        keep_positive(self, "contact_modulus", "work_of_adhesion")
 
     def pull_off_force(self, contact_radius: Values) -> Array:
         """Tensile force that detaches the punch.

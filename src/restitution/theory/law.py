@@ -1,4 +1,4 @@
-"""The interface that impact laws share, and restitution computed from work and velocity."""
+"""The interface that impact laws share, and restitution and energy computed from velocity."""
 
 from __future__ import annotations
 
@@ -28,13 +28,18 @@ class ImpactLaw(Protocol):
         ...
 
 
+def impact_energy(velocity: Values, mass: Values) -> Array:
+    """Impact energy ½ m* V² (J) of the velocity V (m/s) and the reduced mass m* (kg)."""
+    (m,) = positive(mass=mass)
+    return 0.5 * m * touching(velocity) ** 2
+
+
 def restitution_of_work(unloading_work: Values, velocity: Values, mass: Values) -> Array:
     """Coefficient of restitution e = (W_u/½m*V²)^½, limited to 1; 0 where W_u ≤ 0.
 
     `unloading_work` W_u (J) is the work that the contact returns, `velocity` V (m/s) the impact
     velocity and `mass` m* (kg) the reduced mass. The result is 1 at zero or negative velocity.
     """
-    (m,) = positive(mass=mass)
-    W_l = 0.5 * m * touching(velocity) ** 2
+    W_l = impact_energy(velocity, mass)
     e = (touching(unloading_work) / np.where(W_l > 0, W_l, 1.0)) ** 0.5
     return scalar_or_array(np.where(np.asarray(velocity) <= 0, 1.0, np.minimum(e, 1.0)))

@@ -26,11 +26,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ._inputs import Array, Values, keep_positive, positive, scalar_or_array
+from ._inputs import Array, PositiveFields, Values, positive, scalar_or_array
 
 
 @dataclass(frozen=True, eq=False)
-class LennardJones:
+class LennardJones(PositiveFields):
     """Lennard-Jones traction between two surfaces, and the force between rigid spheres.
 
     Attributes:
@@ -46,9 +46,6 @@ class LennardJones:
 
     work_of_adhesion: Values
     equilibrium_separation: Values
-
-    def __post_init__(self) -> None:
-        keep_positive(self, "work_of_adhesion", "equilibrium_separation")
 
     def traction(self, gap: Values) -> Array:
         """Attractive force per area between two surfaces.
@@ -115,8 +112,7 @@ class LennardJones:
         """
         (R,) = positive(radius=radius)
         x2 = self._ratio(gap) ** 2
-        force = -8 / 3 * math.pi * self.work_of_adhesion * R * x2 * (1 - x2**3 / 4)
-        return scalar_or_array(force)
+        return scalar_or_array(-8 / 3 * math.pi * self.work_of_adhesion * R * x2 * (1 - x2**3 / 4))
 
     def rigid_sphere_energy(self, gap: Values, radius: Values) -> Array:
         """Interaction energy of rigid spheres, ∫F dg from the gap to infinity.
@@ -133,8 +129,7 @@ class LennardJones:
         """
         (R,) = positive(radius=radius)
         x, z0 = self._ratio(gap), self.equilibrium_separation
-        energy = -8 / 3 * math.pi * self.work_of_adhesion * R * z0 * (x - x**7 / 28)
-        return scalar_or_array(energy)
+        return scalar_or_array(-8 / 3 * math.pi * self.work_of_adhesion * R * z0 * (x - x**7 / 28))
 
     def rigid_pull_off_force(self, radius: Values) -> Array:
         """Largest tension between rigid spheres (Bradley 1932).

@@ -113,8 +113,9 @@ class Luding:
         d = touching(indentation)
         k2, d0 = self._unloading_line(maximum_indentation)
         unloading = np.maximum(k2 * (d - d0), -self.adhesive_stiffness * d)
-        beyond = d > touching(maximum_indentation)
-        return scalar_or_array(np.where(beyond, self.loading_force(d), unloading))
+        return scalar_or_array(
+            np.where(d > touching(maximum_indentation), self.loading_force(d), unloading)
+        )
 
     def residual_indentation(self, maximum_indentation: Values) -> Array:
         """Indentation at which the force is zero on unloading.

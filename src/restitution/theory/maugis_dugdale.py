@@ -25,7 +25,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ._inputs import Array, Values, keep_positive, scalar_or_array
+from ._inputs import Array, PositiveFields, Values, scalar_or_array
 from ._roots import increasing_root
 
 # Upper limit of the search for the normalised contact radius ā at pull-off, where ā is always below
@@ -36,7 +36,7 @@ _SECTIONS = 60  # number of golden sections in this search
 
 
 @dataclass(frozen=True, eq=False)
-class MaugisDugdale:
+class MaugisDugdale(PositiveFields):
     """Elastic spheres with a constant attraction of finite range (Dugdale).
 
     The fields may be arrays and broadcast (see `restitution.theory`).
@@ -58,9 +58,6 @@ class MaugisDugdale:
     contact_modulus: Values
     work_of_adhesion: Values
     traction: Values
-
-    def __post_init__(self) -> None:
-        keep_positive(self, "radius", "contact_modulus", "work_of_adhesion", "traction")
 
     @property
     def transition_parameter(self) -> Array:
@@ -104,15 +101,13 @@ def _force(a: Array, parameter: Array) -> Array:
         root, angle, m = _ring(log_width)
         inner = root + (m * m - 2) * angle
         outer = root * angle - m + 1
-        found: Array = parameter * a**2 / 2 * inner + 4 / 3 * parameter**2 * a * outer - 1
-        return found
+        return parameter * a**2 / 2 * inner + 4 / 3 * parameter**2 * a * outer - 1
 
     # The unknown is ln(m − 1), where m is the ratio of the outer radius of the ring to the contact
     # radius. m − 1 ranges from 0 (JKR) to infinity (rigid spheres).
     width = increasing_root(excess, np.full_like(a, -40.0), np.full_like(a, 40.0))
     root, angle, m = _ring(width)
-    force: Array = a**3 - parameter * a**2 * (root + m * m * angle)
-    return force
+    return a**3 - parameter * a**2 * (root + m * m * angle)
 
 
 def _ring(log_width: Array) -> tuple[Array, Array, Array]:

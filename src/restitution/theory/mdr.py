@@ -50,12 +50,12 @@ from ._inputs import (
     Values,
     keep_between,
     keep_positive,
-    positive,
     scalar_or_array,
     touching,
 )
 from ._roots import increasing_root
 from .hertz import Hertz
+from .law import impact_energy
 
 # With 16 nodes, the error of the loading work is not larger than rounding errors.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
@@ -105,8 +105,8 @@ class MDR:
         Returns:
             Mean pressure p_Y (Pa).
         """
-        d = touching(indentation)
-        return self.yield_strength * (1 + 1.75 * np.exp(-4.4 * d / self.radius))
+        falling = np.exp(-4.4 * touching(indentation) / self.radius)
+        return self.yield_strength * (1 + 1.75 * falling)
 
     @cached_property
     def yield_indentation(self) -> Array:
@@ -200,8 +200,7 @@ class MDR:
         Raises:
             CaseError: `mass` is not positive and finite.
         """
-        (m,) = positive(mass=mass)
-        K = 0.5 * m * touching(velocity) ** 2
+        K = impact_energy(velocity, mass)
         d = increasing_root(lambda d: self._work(d) - K, 0 * K, self.radius)
         d = np.where(self._work(self.radius) < K, np.nan, d)
         return scalar_or_array(np.where(np.asarray(velocity) <= 0, 0.0, d))
@@ -237,8 +236,7 @@ class MDR:
         """
         R, d_Y = self.radius, self.yield_indentation
         t = touching(d - d_Y)
-        a: Array = (R * d_Y + t * (2 * (R - d_Y) - t)) ** 0.5
-        return a
+        return (R * d_Y + t * (2 * (R - d_Y) - t)) ** 0.5
 
     def _force(self, d: Values) -> Array:
         """Normal force F (N) at the indentation `d` on first loading."""
@@ -272,8 +270,7 @@ class MDR:
         z = self.radius - d + d_e
         s = (a**2 + z**2) ** 0.5
         grip = (1 - 2 * nu) * z * (s - z) - 2 * (1 - nu) * a**2
-        recovery: Array = d_e * (1 + grip / (2 * (1 - nu) * a * s))
-        return recovery
+        return d_e * (1 + grip / (2 * (1 - nu) * a * s))
 
     def _returned(self, d: Values) -> Array:
         """Unloading work W_u (J) from the indentation `d`.

@@ -23,13 +23,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ._inputs import Array, Values, keep_positive, scalar_or_array, touching
+from ._inputs import Array, PositiveFields, Values, scalar_or_array, touching
 
 _erf = np.vectorize(math.erf, otypes=[np.float64])
 
 
 @dataclass(frozen=True, eq=False)
-class Persson:
+class Persson(PositiveFields):
     """Contact of nominally flat elastic bodies with random roughness.
 
     The fields and arguments may be arrays and broadcast (see `restitution.theory`).
@@ -47,9 +47,6 @@ class Persson:
 
     rms_slope: Values
     contact_modulus: Values
-
-    def __post_init__(self) -> None:
-        keep_positive(self, "rms_slope", "contact_modulus")
 
     def relative_area(self, pressure: Values) -> Array:
         """Ratio of the real contact area to the nominal area.

@@ -31,13 +31,13 @@ from functools import cached_property
 
 import numpy as np
 
-from ._inputs import Array, Values, keep_positive, positive, scalar_or_array, touching
+from ._inputs import Array, PositiveFields, Values, positive, scalar_or_array, touching
 from .hertz import Hertz
 from .yielding import FirstYield
 
 
 @dataclass(frozen=True, eq=False)
-class ThorntonNing:
+class ThorntonNing(PositiveFields):
     """Impact of elastic, perfectly plastic spheres without adhesion.
 
     The fields and arguments may be arrays and broadcast (see `restitution.theory`).
@@ -58,9 +58,6 @@ class ThorntonNing:
     radius: Values
     contact_modulus: Values
     yield_pressure: Values
-
-    def __post_init__(self) -> None:
-        keep_positive(self, "radius", "contact_modulus", "yield_pressure")
 
     @cached_property
     def elastic(self) -> Hertz:
@@ -156,8 +153,9 @@ class ThorntonNing:
         d, R_p = touching(indentation), self.unloading_radius(maximum_indentation)
         left = d - self.residual_indentation(maximum_indentation)
         unloading = (R_p / self.radius) ** 0.5 * self.elastic.force(left)
-        beyond = d > touching(maximum_indentation)
-        return scalar_or_array(np.where(beyond, self.loading_force(d), unloading))
+        return scalar_or_array(
+            np.where(d > touching(maximum_indentation), self.loading_force(d), unloading)
+        )
 
     def unloading_work(self, maximum_indentation: Values) -> Array:
         """Work that the contact returns on unloading from `maximum_indentation` to separation.
@@ -171,8 +169,9 @@ class ThorntonNing:
         d, first = touching(maximum_indentation), self.first_yield
         x = self._yielded(d)
         plastic = 0.4 * first.force * first.indentation * _line(x) ** 2 / x**0.5
-        elastic = self.elastic.stored_energy(d)
-        return scalar_or_array(np.where(d <= first.indentation, elastic, plastic))
+        return scalar_or_array(
+            np.where(d <= first.indentation, self.elastic.stored_energy(d), plastic)
+        )
 
     def impact_velocity(self, maximum_indentation: Values, mass: Values) -> Array:
         """Impact velocity that is just large enough to reach an indentation.
@@ -259,8 +258,7 @@ class ThorntonNing:
         At x = 1 the formulas for the flattened radius, the residual indentation and the restitution
         give the values of a Hertz contact, which hold up to first yield.
         """
-        x: Array = np.maximum(touching(maximum_indentation) / self.first_yield.indentation, 1.0)
-        return x
+        return np.maximum(touching(maximum_indentation) / self.first_yield.indentation, 1.0)
 
 
 def _line(x: Array) -> Array:

@@ -89,8 +89,9 @@ class WaltonBraun:
         """
         d, k2 = touching(indentation), self._stiffness(maximum_indentation)
         unloading = k2 * touching(d - self.residual_indentation(maximum_indentation))
-        beyond = d > touching(maximum_indentation)
-        return scalar_or_array(np.where(beyond, self.loading_force(d), unloading))
+        return scalar_or_array(
+            np.where(d > touching(maximum_indentation), self.loading_force(d), unloading)
+        )
 
     def residual_indentation(self, maximum_indentation: Values) -> Array:
         """Indentation at which unloading ends.

@@ -22,7 +22,7 @@ import numpy as np
 
 from restitution.errors import CaseError
 
-from ._inputs import Array, Values, keep_positive, positive, scalar_or_array
+from ._inputs import Array, PositiveFields, Values, positive, scalar_or_array
 
 # Impact velocity at first yield in units of (p_y⁵R*³/(E*⁴m*))^½; its value is 3.19385.
 _COEFFICIENT = math.sqrt(math.pi**5 / 30)
@@ -30,7 +30,7 @@ _EXP = np.vectorize(math.exp, otypes=[np.float64])  # same result on every proce
 
 
 @dataclass(frozen=True, eq=False)
-class FirstYield:
+class FirstYield(PositiveFields):
     """First yield of a Hertz contact, where its peak pressure reaches the yield pressure.
 
     The fields and arguments may be arrays and broadcast (see `restitution.theory`).
@@ -51,9 +51,6 @@ class FirstYield:
     radius: Values
     contact_modulus: Values
     yield_pressure: Values
-
-    def __post_init__(self) -> None:
-        keep_positive(self, "radius", "contact_modulus", "yield_pressure")
 
     @property
     def indentation(self) -> Array:

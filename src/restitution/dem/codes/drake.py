@@ -30,7 +30,6 @@ from restitution.dem.damping import hunt_crossley_dissipation, hunt_crossley_res
 from restitution.dem.export_common import (
     Pair,
     commented,
-    contact_time,
     header,
     pairs_at,
     render,
@@ -58,24 +57,19 @@ _STEPS = 200
 
 @dataclass(frozen=True)
 class Contact:
-    """The contact of a pair at the velocity of the export (m/s).
-
-    `duration` is the contact time (s), and `dissipation` the coefficient d (s/m).
-    """
+    """The contact of a pair; `dissipation` is the coefficient d (s/m)."""
 
     pair: Pair
-    velocity: float
-    duration: float
     dissipation: float
 
     @property
     def stiffness(self) -> float:
         """The stiffness (N/m) of the contact."""
-        return self.pair.law.mass * (math.pi / self.duration) ** 2
+        return self.pair.law.mass * (math.pi / self.pair.contact_time) ** 2
 
     def restitution(self, share: float) -> float:
         """Return Drake's coefficient of restitution at `share` times the velocity of the export."""
-        return hunt_crossley_restitution(self.dissipation * self.velocity * share)
+        return hunt_crossley_restitution(self.dissipation * self.pair.velocity * share)
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
@@ -86,7 +80,9 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
     pairs = pairs_at(table, velocity, CODE, LOWEST)
     head = header(table, pairs, velocity, code=CODE, ends=_ENDS, constant=False)
     short = summary(pairs, velocity, code=CODE, ends=_ENDS, fragment=FRAGMENT, constant=False)
-    contacts = [_contact(pair, velocity) for pair in pairs]
+    contacts = [
+        Contact(pair, hunt_crossley_dissipation(pair.restitution) / velocity) for pair in pairs
+    ]
     return {
         FRAGMENT: render(
             FRAGMENT,
@@ -104,12 +100,3 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
             steps=_STEPS,
         ),
     }
-
-
-def _contact(pair: Pair, velocity: float) -> Contact:
-    return Contact(
-        pair,
-        velocity,
-        duration=contact_time(pair.law) * velocity**-0.2,
-        dissipation=hunt_crossley_dissipation(pair.restitution) / velocity,
-    )

@@ -48,47 +48,42 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
     notes = commented(_NOTES[2:], "#")
     comments = f"{commented(head, '#')}\n{friction}\n{notes}\n"
     return {
-        INTERACTIONS: comments + table_text([_interaction(pair, velocity) for pair in pairs]),
+        INTERACTIONS: comments + table_text([_interaction(pair) for pair in pairs]),
         MATERIALS: comments + table_text(_materials(table)),
     }
 
 
-def _interaction(pair: Pair, velocity: float) -> dict[str, str]:
-    springs = _springs(pair, velocity)
-    force = pull_off_force(pair.law, velocity)
+def _interaction(pair: Pair) -> dict[str, str]:
+    k1, k2 = _springs(pair)
     return {
         "material_1": identifier(pair.first, pair.i),
         "material_2": identifier(pair.second, pair.j),
         "coefficient_of_restitution": number(pair.restitution),
-        "restitution_error": f"{pair.law.at(velocity).error:.2g}",
-        "pull_off_force_N": "" if math.isnan(force) else number(force),
+        "restitution_error": f"{pair.law.at(pair.velocity).error:.2g}",
+        "pull_off_force_N": _cell(pull_off_force(pair.law, pair.velocity)),
         "coefficient_of_static_friction": number(pair.friction),
         "coefficient_of_rolling_friction": "0",
-        "hysteretic_K1_N_per_m": number(springs[0]) if springs else "",
-        "hysteretic_K2_N_per_m": number(springs[1]) if springs else "",
-        "hysteretic_restitution": number(math.sqrt(springs[0] / springs[1])) if springs else "",
-        "hysteretic_yield_strength_Pa": number(springs[0] / (5 * pair.law.radius))
-        if springs
-        else "",
+        "hysteretic_K1_N_per_m": _cell(k1),
+        "hysteretic_K2_N_per_m": _cell(k2),
+        "hysteretic_restitution": _cell(math.sqrt(k1 / k2)),
+        "hysteretic_yield_strength_Pa": _cell(k1 / (5 * pair.law.radius)),
     }
 
 
-def _springs(pair: Pair, velocity: float) -> tuple[float, float] | None:
+def _springs(pair: Pair) -> tuple[float, float]:
     """Stiffness K1 of loading and K2 of unloading (N/m) of the fitted Walton–Braun law.
 
-    K2 = k_u + S V (m* K1)^½, with the `velocity` V (m/s), the reduced mass m*, and the fitted
-    parameters k_u (unloading stiffness) and S (hardening). None if there is no such fit, or if
-    `velocity` is outside the fitted range.
+    K2 = k_u + S V (m* K1)^½, with the velocity V (m/s) of the export, the reduced mass m*, and the
+    fitted parameters k_u (unloading stiffness) and S (hardening). NaN if there is no such fit, or
+    if V is outside the fitted range.
     """
-    if not pair.law.fits_hold_at(velocity):
-        return None
-    for fit in pair.law.laws:
-        if fit.name == "walton-braun":
-            k1 = fit.parameters["loading_stiffness_N_per_m"]
-            k_u = fit.parameters["unloading_stiffness_N_per_m"]
-            hardening = fit.parameters.get("hardening_per_m", 0.0)
-            return k1, k_u + hardening * velocity * math.sqrt(pair.law.mass * k1)
-    return None
+    fit = pair.fitted("walton-braun")
+    if fit is None or not pair.law.fits_hold_at(pair.velocity):
+        return math.nan, math.nan
+    k1 = fit.parameters["loading_stiffness_N_per_m"]
+    k_u = fit.parameters["unloading_stiffness_N_per_m"]
+    hardening = fit.parameters.get("hardening_per_m", 0.0)
+    return k1, k_u + hardening * pair.velocity * math.sqrt(pair.law.mass * k1)
 
 
 def _materials(table: PairTable) -> list[dict[str, str]]:
@@ -96,10 +91,14 @@ def _materials(table: PairTable) -> list[dict[str, str]]:
         {
             "material": identifier(body, k),
             "poissons_ratio": number(body.poissons_ratio),
-            "solids_density_kg_per_m3": "" if body.density is None else number(body.density),
+            "solids_density_kg_per_m3": _cell(body.density),
             "youngs_modulus_Pa": number(body.youngs_modulus),
             "shear_modulus_Pa": number(body.youngs_modulus / (2 * (1 + body.poissons_ratio))),
-            "radius_m": "" if body.radius is None else number(body.radius),
+            "radius_m": _cell(body.radius),
         }
         for k, body in enumerate(table.particles, 1)
     ]
+
+
+def _cell(value: float | None) -> str:
+    return "" if value is None or math.isnan(value) else number(value)

@@ -22,16 +22,15 @@ from restitution.dem.export_common import (
     STEPS,
     Pair,
     commented,
-    contact_time,
     header,
     number,
     pairs_at,
     render,
     summary,
 )
-from restitution.dem.friction import STIFFNESS_SHARE, friction_note, mindlin_stiffness
+from restitution.dem.friction import STIFFNESS_SHARE, friction_note
 from restitution.dem.pair_table import PairTable
-from restitution.dem.velocity_matching import SCRIPT, Target, matching_script
+from restitution.dem.velocity_matching import SCRIPT, matching_script
 
 CODE = "LAMMPS"
 LOWEST = 0.001  # smallest e that is reproduced within 0.5 %, with `STEPS` time steps in a contact
@@ -41,7 +40,6 @@ _GRAINS = 500  # number of spheres of the packing
 _FALLS = 0.25  # ratio of the duration of the run to the falling time of the highest sphere
 _FILLED = 0.12  # fraction of the initial volume that the spheres fill
 KOKKOS = "restitution_kokkos.lmp"
-_MATCHED = Target(CODE, "lmp -in my.in", FRAGMENT, "matched.lmp", LOWEST)
 _ENDS = (
     "the overlap is back to zero. The force is tensile shortly before, due to damping; do not add "
     "limit_damping, which cuts off the tension and raises e (from 0.8 to 0.808)."
@@ -68,6 +66,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
     if not walls_only:
         table.require_spheres(CODE)
     pairs = pairs_at(table, velocity, CODE, LOWEST)
+    spheres = [pair for pair in pairs if not pair.wall]
     head = header(table, pairs, velocity, code=CODE, ends=_ENDS)
     short = summary(pairs, velocity, code=CODE, ends=_ENDS, fragment=FRAGMENT)
     kokkos = summary(
@@ -79,20 +78,28 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
             comments=commented(head, "#"),
             friction_note=friction_note(pairs, "#", _TANGENTIAL),
             tangential=_tangential,
-            spheres=[pair for pair in pairs if not pair.wall],
+            spheres=spheres,
             walls=[pair for pair in pairs if pair.wall],
-            mdr=mdr_offers(pairs, velocity),
+            mdr=mdr_offers(pairs),
         ),
         KOKKOS: render(
             KOKKOS,
             comments=commented(kokkos, "#"),
             friction_note=friction_note(pairs, "#"),
-            spheres=[pair for pair in pairs if not pair.wall],
-            damping=velocity_damping(pairs, velocity),
-            spring=linear_spring(pairs, velocity),
+            spheres=spheres,
+            damping=[velocity_damping(pair) for pair in pairs],
+            spring=linear_spring(spheres[0]) if len(spheres) == 1 else None,
             velocity=velocity,
         ),
-        SCRIPT: matching_script(_MATCHED, pairs, commented(short, "#")),
+        SCRIPT: matching_script(
+            pairs,
+            commented(short, "#"),
+            code=CODE,
+            command="lmp -in my.in",
+            fragment=FRAGMENT,
+            matched="matched.lmp",
+            lowest=LOWEST,
+        ),
         COLLISION: render(
             COLLISION,
             comments=commented(short, "#"),
@@ -108,9 +115,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
         size = table.largest_radius
         edge = 24 * size
         height = _GRAINS * 4.2 * size**3 / (_FILLED * edge**2)
-        step = (
-            min(contact_time(law) for _, _, law in table.pairs()) * velocity**-0.2 / _PACKING_STEPS
-        )
+        step = min(pair.contact_time for pair in pairs) / _PACKING_STEPS
         files[PACKING] = render(
             PACKING,
             comments=commented(short, "#"),
@@ -131,7 +136,7 @@ def _tangential(pair: Pair) -> str:
     """The tangential model of a pair; LAMMPS' default stiffness if the case has no friction."""
     if pair.law.friction is None:
         return f"mindlin NULL 1.0 {pair.friction}"
-    stiffness = STIFFNESS_SHARE * mindlin_stiffness(pair)
+    stiffness = STIFFNESS_SHARE * pair.mindlin_stiffness
     return f"mindlin_rescale/force {number(stiffness)} 1.0 {number(pair.friction)}"
 
 
@@ -151,7 +156,6 @@ def _counts(table: PairTable) -> list[int]:
 def _floor(table: PairTable) -> int | None:
     """Type number of the first wall that has a law with every type of sphere; None without one."""
     count = len(table.spheres)
-    for wall in range(count + 1, len(table.particles) + 1):
-        if all((k, wall) in table.laws for k in range(1, count + 1)):
-            return wall
-    return None
+    walls = range(count + 1, len(table.particles) + 1)
+    with_all = (w for w in walls if all((k, w) in table.laws for k in range(1, count + 1)))
+    return next(with_all, None)

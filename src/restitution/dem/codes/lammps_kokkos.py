@@ -19,16 +19,14 @@ import math
 from dataclasses import dataclass
 
 from restitution.dem.damping import hertz_damping, hertz_restitution_at
-from restitution.dem.export_common import Pair, contact_time
-from restitution.dem.friction import mindlin_stiffness
+from restitution.dem.export_common import Pair
 
 
 @dataclass(frozen=True)
 class VelocityDamping:
-    """Hertz force with a constant `damping` coefficient (kg/s), chosen at `velocity` (m/s)."""
+    """Hertz force with a constant `damping` coefficient (kg/s) that gives the e of `pair`."""
 
     pair: Pair
-    velocity: float
     damping: float
 
     @property
@@ -36,40 +34,19 @@ class VelocityDamping:
         """The coefficient Kn (Pa) of the style `hertz` of LAMMPS."""
         return 4 / 3 * self.pair.law.contact_modulus
 
-    @property
-    def tangential_stiffness(self) -> float:
-        """The coefficient Kt (Pa) of the style `mindlin` of LAMMPS."""
-        return mindlin_stiffness(self.pair)
-
     def restitution(self, share: float) -> float:
         """Return the coefficient of restitution at `share` times the velocity of the export."""
-        return hertz_restitution_at(self.pair.law, self.damping, share * self.velocity)
+        return hertz_restitution_at(self.pair.law, self.damping, share * self.pair.velocity)
 
 
-@dataclass(frozen=True)
-class LinearSpring:
-    """The coefficients Kn (N/m) and gamma_n (1/s) of `gran/hooke/history` for a pair."""
-
-    pair: Pair
-    stiffness: float
-    damping: float
+def velocity_damping(pair: Pair) -> VelocityDamping:
+    """Compute the damping that gives `pair` the e of its law at the velocity of the export."""
+    return VelocityDamping(pair, hertz_damping(pair.law, pair.velocity, pair.restitution))
 
 
-def velocity_damping(pairs: list[Pair], velocity: float) -> list[VelocityDamping]:
-    """Compute the damping that gives every pair the COR of its law at `velocity` (m/s)."""
-    return [
-        VelocityDamping(pair, velocity, hertz_damping(pair.law, velocity, pair.restitution))
-        for pair in pairs
-    ]
-
-
-def linear_spring(pairs: list[Pair], velocity: float) -> LinearSpring | None:
-    """Compute the linear spring of the only pair of spheres; None if there is not exactly one."""
-    spheres = [pair for pair in pairs if not pair.wall]
-    if len(spheres) != 1:
-        return None
-    (pair,) = spheres
-    frequency = math.pi / (contact_time(pair.law) * velocity**-0.2)
+def linear_spring(pair: Pair) -> tuple[float, float]:
+    """Coefficients Kn (N/m) and gamma_n (1/s) of `gran/hooke/history` that give the e of `pair`."""
+    frequency = math.pi / pair.contact_time
     loss = -math.log(pair.restitution)
     ratio = loss / math.hypot(math.pi, loss)
-    return LinearSpring(pair, pair.law.mass * frequency**2, 2 * ratio * frequency)
+    return pair.law.mass * frequency**2, 2 * ratio * frequency

@@ -18,19 +18,15 @@ NAME = "lammps-mdr"
 _FAR = 0.1  # a fitted law is offered if its largest difference in e is at most this value
 
 
-def mdr_offers(pairs: list[Pair], velocity: float) -> list[tuple[Pair, FittedLaw | None, str]]:
+def mdr_offers(pairs: list[Pair]) -> list[tuple[Pair, FittedLaw | None, str]]:
     """Return every pair with its fitted mdr law (or None) and the reason not to offer this law.
 
     The reason is empty if the law can be offered.
     """
-    return [(pair, _fit_of(pair), _obstacle(pairs, pair, velocity)) for pair in pairs]
+    return [(pair, pair.fitted(NAME), _obstacle(pairs, pair)) for pair in pairs]
 
 
-def _fit_of(pair: Pair) -> FittedLaw | None:
-    return next((fit for fit in pair.law.laws if fit.name == NAME), None)
-
-
-def _obstacle(pairs: list[Pair], pair: Pair, velocity: float) -> str:
+def _obstacle(pairs: list[Pair], pair: Pair) -> str:
     """Return the reason why `pair` gets no mdr line; empty if it gets such a line."""
     spheres = [other for other in pairs if not other.wall]
     if not pair.wall and len(spheres) > 1:
@@ -38,24 +34,26 @@ def _obstacle(pairs: list[Pair], pair: Pair, velocity: float) -> str:
             "LAMMPS takes one mdr model in a pair_style, with the same values for all\n"
             "pairs of types, and no other normal model; this export has several types"
         )
-    if pair.wall and spheres and any(_obstacle(spheres, other, velocity) for other in spheres):
+    if pair.wall and spheres and any(_obstacle(spheres, other) for other in spheres):
         return (
             "LAMMPS takes mdr at a wall only if pair_style granular has mdr, too,\n"
             "and the pairs of spheres above do not"
         )
-    return _unfit(pair, velocity)
+    return _unfit(pair)
 
 
-def _unfit(pair: Pair, velocity: float) -> str:
+def _unfit(pair: Pair) -> str:
     """Return the reason why the mdr fit of `pair` itself is not offered; empty if it is offered."""
-    fit = _fit_of(pair)
+    fit = pair.fitted(NAME)
     if fit is None and not pair.law.laws:
         return "no law was fitted to it"
     if fit is None:
         return "mdr is fitted only to a sphere on a wall and to two equal spheres"
     if fit.worst > _FAR:
         return f"the fitted mdr is off by up to {fit.worst:.2g} in e"
-    if not pair.law.fits_hold_at(velocity):
+    if not pair.law.fits_hold_at(pair.velocity):
         low, high = pair.law.fitted_range or (math.nan, math.nan)
-        return f"it is fitted from {low:.4g} to {high:.4g} m/s, and {velocity:.4g} m/s is outside"
+        return (
+            f"it is fitted from {low:.4g} to {high:.4g} m/s, and {pair.velocity:.4g} m/s is outside"
+        )
     return ""

@@ -8,6 +8,8 @@ is tensile at the end of the contact. The option `limitForce on` would cut off t
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from restitution.dem.export_common import (
     FRICTION,
     STEPS,
@@ -21,12 +23,11 @@ from restitution.dem.export_common import (
 )
 from restitution.dem.friction import friction_note
 from restitution.dem.pair_table import PairTable
-from restitution.dem.velocity_matching import SCRIPT, Target, matching_script
+from restitution.dem.velocity_matching import SCRIPT, matching_script
 
 CODE = "LIGGGHTS"
 LOWEST = 0.0501  # LIGGGHTS stops with "0.05 < coefficientRestitution <= 1 required"
 FRAGMENT, COLLISION = "restitution.liggghts", "collision.in.liggghts"
-_MATCHED = Target(CODE, "liggghts -in my.in", FRAGMENT, "matched.liggghts", LOWEST)
 _ENDS = (
     "the overlap is back to zero. The force is tensile shortly before, due to damping; do not add "
     "`limitForce on`, which cuts off the tension and raises e (from 0.3 to 0.397)."
@@ -54,11 +55,19 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
             table=table,
             hardness=_hardness(table),
             pairs=pairs,
-            restitution=_restitution(table),
-            friction=_friction(table, pairs),
+            restitution=_by_types(table, pairs, lambda p: f"${{e_{p.i}_{p.j}}}", walls="1"),
+            friction=_by_types(table, pairs, lambda p: number(p.friction), walls=number(FRICTION)),
             friction_note=friction_note(pairs, "#", _TANGENTIAL),
         ),
-        SCRIPT: matching_script(_MATCHED, pairs, commented(short, "#")),
+        SCRIPT: matching_script(
+            pairs,
+            commented(short, "#"),
+            code=CODE,
+            command="liggghts -in my.in",
+            fragment=FRAGMENT,
+            matched="matched.liggghts",
+            lowest=LOWEST,
+        ),
         COLLISION: render(
             COLLISION,
             comments=commented(short, "#"),
@@ -80,25 +89,13 @@ def _hardness(table: PairTable) -> str:
     return "soft_particles yes" if min(E) < _SOFT else ""
 
 
-def _restitution(table: PairTable) -> list[list[str]]:
-    """Return the symmetric matrix of the variables that contain e, with a row for each type.
+def _by_types(
+    table: PairTable, pairs: list[Pair], entry: Callable[[Pair], str], walls: str
+) -> list[list[str]]:
+    """Return the symmetric matrix of the `entry` of each pair, with a row for each type.
 
-    Two walls never touch; their entry is 1.
+    Two walls never touch; their entry is `walls`.
     """
+    known = {(pair.i, pair.j): entry(pair) for pair in pairs}
     numbers = range(1, len(table.particles) + 1)
-
-    def entry(i: int, j: int) -> str:
-        pair = min(i, j), max(i, j)
-        return f"${{e_{pair[0]}_{pair[1]}}}" if pair in table.laws else "1"
-
-    return [[entry(i, j) for j in numbers] for i in numbers]
-
-
-def _friction(table: PairTable, pairs: list[Pair]) -> list[list[str]]:
-    """Return the symmetric matrix of the coefficients of friction, with a row for each type.
-
-    Two walls never touch; their entry is the placeholder `FRICTION`.
-    """
-    known = {(pair.i, pair.j): pair.friction for pair in pairs}
-    numbers = range(1, len(table.particles) + 1)
-    return [[number(known.get((min(i, j), max(i, j)), FRICTION)) for j in numbers] for i in numbers]
+    return [[known.get((min(i, j), max(i, j)), walls) for j in numbers] for i in numbers]

@@ -22,13 +22,14 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
     table.require_all(CODE)
     pairs = pairs_at(table, velocity, CODE, 0.0)
     head = header(table, pairs, velocity, code=CODE, ends=_ENDS)
-    text = render(
-        FILE,
-        comments=commented(head, "//"),
-        table=table,
-        friction_note=friction_note(pairs, "//"),
-        placeholder=FRICTION,
-        alike=[pair for pair in pairs if pair.i == pair.j],
-        unlike=[pair for pair in pairs if pair.i != pair.j],
-    )
-    return {FILE: text}
+    return {
+        FILE: render(
+            FILE,
+            comments=commented(head, "//"),
+            table=table,
+            friction_note=friction_note(pairs, "//"),
+            placeholder=FRICTION,
+            alike=[pair for pair in pairs if pair.i == pair.j],
+            unlike=[pair for pair in pairs if pair.i != pair.j],
+        )
+    }

@@ -26,7 +26,6 @@ from restitution.dem.damping import dashpot_ratio
 from restitution.dem.export_common import (
     Pair,
     commented,
-    contact_time,
     header,
     pairs_at,
     render,
@@ -67,23 +66,8 @@ class Contact:
     soft_duration: float
     ratio: float
 
-    @property
-    def solref(self) -> tuple[float, float]:
-        """`solref` in the direct format (1/s², 1/s)."""
-        return self.softened(self.duration)
-
-    @property
-    def soft_solref(self) -> tuple[float, float]:
-        """`solref` of the softened contact."""
-        return self.softened(self.soft_duration)
-
-    @property
-    def soft_step(self) -> float:
-        """Time step (s) for the softened contact."""
-        return self.soft_duration / _COARSE
-
-    def softened(self, duration: float) -> tuple[float, float]:
-        """`solref` of a contact with the same e and another duration (s)."""
+    def solref(self, duration: float) -> tuple[float, float]:
+        """`solref` in the direct format (1/s², 1/s) of a contact of this duration (s)."""
         frequency = math.pi / duration
         return -(frequency**2), -2 * self.ratio * frequency
 
@@ -120,8 +104,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
 
 
 def _contact(pair: Pair, velocity: float) -> Contact:
-    hertz = contact_time(pair.law) * velocity**-0.2
-    duration = max(hertz, math.pi * velocity / _LARGEST)
+    duration = max(pair.contact_time, math.pi * velocity / _LARGEST)
     radius = min(body.radius for body in (pair.first, pair.second) if body.radius is not None)
     soft = max(duration, math.pi * _DEEPEST * radius / velocity)
     return Contact(pair, duration, soft, dashpot_ratio(pair.restitution))

@@ -17,6 +17,8 @@ can set at first touch according to the velocity. So e can follow the law e(V).
 
 from __future__ import annotations
 
+from functools import partial
+
 from restitution.dem.export_common import (
     Pair,
     commented,
@@ -30,7 +32,7 @@ from restitution.dem.export_common import (
 from restitution.dem.friction import STIFFNESS_SHARE, friction_note
 from restitution.dem.pair_table import PairTable
 from restitution.dem.velocity_matching import law_points
-from restitution.laws.law import Law, Particle
+from restitution.laws.law import Particle
 
 CODE = "YADE"
 LOWEST = 0.01  # lowest e for which the fit of betan is valid
@@ -70,7 +72,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
             fit=_FIT,
             wall_density=_WALL_DENSITY,
             density=_density,
-            points=_points,
+            points=partial(law_points, lowest=LOWEST),
             friction_note=friction_note(pairs, "#", _TANGENTIAL),
             tangential=_tangential,
         ),
@@ -94,11 +96,6 @@ def _tangential(pair: Pair) -> float:
 def _density(body: Particle) -> float:
     """The density (kg/m³) of a body; `_WALL_DENSITY` for a wall without a density."""
     return _WALL_DENSITY if body.wall and body.density is None else density_of(body)
-
-
-def _points(law: Law) -> list[tuple[float, float]]:
-    """Velocities (m/s) and e of `law`, for linear interpolation."""
-    return law_points(law, LOWEST)
 
 
 def _contact_time(pair: Pair) -> float:

@@ -411,7 +411,7 @@ async function runWhole() {
       else if (line.problems) showProblems(line.problems);
       else if (line.error) { showError(line.error); say("the errors are unknown"); }
       else if (line.results) {
-        curve = { rows: line.results, figures: line.figures, errors: true, content: asked, includes: line.includes };
+        curve = { rows: line.results, figures: line.figures, errors: true, content: asked };
         if (line.failure) showProblems(problemsOf(line.failure));
         showWarnings(line.warnings);
         drawCurves();
