@@ -19,7 +19,7 @@ _THORNTON_NING = "smooth, Thornton–Ning (truncated pressure)"
 
 @dataclass(frozen=True, eq=False)
 class Reference:
-    """Values `y` of a closed form at `x` (SI units), and whether it includes yielding."""
+    """Values `y` of a closed form at `x` (SI units), and whether the form includes yielding."""
 
     label: str
     x: Array

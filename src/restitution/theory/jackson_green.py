@@ -75,7 +75,7 @@ class JacksonGreen:
 
     @cached_property
     def first_yield(self) -> FirstYield:
-        """First yield, below the surface, at the peak pressure C Y, with C of `yield_coefficient`."""
+        """First yield below the surface, at the peak pressure C Y (see `yield_coefficient`)."""
         p_c = yield_coefficient(self.poissons_ratio) * self.yield_strength
         return FirstYield(self.radius, self.contact_modulus, p_c)
 

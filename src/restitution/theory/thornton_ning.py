@@ -135,7 +135,8 @@ class ThorntonNing(PositiveFields):
         """
         x = self._yielded(maximum_indentation)
         s = x**0.5
-        # This equals x − f/s with f = (3s² − 1)/2; the factored form avoids cancellation at yield.
+        # The factor after δ_y equals x − f/s with the relative force f = (3s² − 1)/2. The form used
+        # here avoids cancellation at yield.
         return self.first_yield.indentation * ((x - 1) / (s + 1)) ** 2 * (s + 0.5) / s
 
     def unloading_force(self, indentation: Values, maximum_indentation: Values) -> Array:
