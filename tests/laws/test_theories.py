@@ -77,7 +77,7 @@ def test_johnson_answers_only_in_fully_plastic_impacts():
     assert "Y = p_y/2.8 = 200 MPa" in found.holds
     lowest = float(found.holds.split("above ")[1].split(" m/s")[0])
     assert Johnson(R, E, 200e6).restitution(lowest, m) == approx(0.6, rel=2e-3)
-    highest = float(found.holds.split("on, ")[1].split(" m/s")[0])
+    highest = float(found.holds.split("no value above ")[1].split(" m/s")[0])
     assert highest == approx(V[small][-1], rel=0.1)
 
 
@@ -134,7 +134,7 @@ def test_spheres_are_equal_only_if_their_yield_strengths_are():
     equal = case_of(first=sphere.format(150), second=sphere.format(150.0))
     assert by_name(equal)["mdr"].parameters["yield_strength_Pa"] == approx(150e6)
     unlike = case_of(first=sphere.format(150), second=sphere.format(160))
-    assert "it needs equal spheres" in room.left_out(unlike)["mdr"]
+    assert "needs equal spheres" in room.left_out(unlike)["mdr"]
 
 
 @pytest.mark.parametrize("wall_first", [False, True])
@@ -297,7 +297,7 @@ PAIRS = ((SPHERE + LIGHT, WALL), (WALL, SPHERE + LIGHT))
 def test_the_end_of_a_theory_that_is_said_is_the_one_of_its_values(name, second):
     case = case_of(second=second)
     holds = by_name(case)[name].holds
-    last = float(holds.split("up to " if name == "mdr" else "on, ")[-1].split(" m/s")[0])
+    last = float(holds.split("up to " if name == "mdr" else "no value above ")[-1].split(" m/s")[0])
     below, above = by_name(case, last * np.array([0.99, 1.01]))[name].restitution
     assert np.isfinite(below)
     assert np.isnan(above)

@@ -3,9 +3,9 @@
 The modules of `restitution.theory` state the ranges. Outside the range of a theory, this module
 returns NaN, even if the formula gives a number. No theory includes roughness.
 
-The theories describe yielding by one of two quantities. Hertz, sticking and Thornton–Ning use the
-contact pressure at yield p_y of the case. The other theories use the yield strength Y of a tensile
-test. If every body has a `yield_strength`, Y is that of the softer body; otherwise Y = p_y/2.8.
+The theories describe yielding by one of two quantities. Hertz, sticking and Thornton–Ning use p_y,
+the contact pressure at yield, from the case. The other theories use the yield strength Y of a
+tensile test. If both bodies have a `yield_strength`, Y is the smaller one; otherwise Y = p_y/2.8.
 
 All units are SI. Arrays of velocities and of the coefficient of restitution e have the same shape.
 """
@@ -27,7 +27,7 @@ from restitution.theory import JKR, MDR, AdhesiveThorntonNing, Hertz, Johnson, T
 Array = NDArray[np.float64]
 
 STRENGTHS = 2.8
-"""Ratio p_y/Y that is assumed for bodies without a yield strength."""
+"""Ratio p_y/Y of contact pressure at yield to yield strength, assumed if Y is not given."""
 
 _SMALL = 0.01  # largest ratio of indentation to R* for which Hertz's theory is used
 _JOHNSON = 0.6  # largest e for which Johnson's formula is used
@@ -61,7 +61,7 @@ class Bodies:
     sphere_poisson: float
     strengths: tuple[float, float] | None  # Y of both bodies; None unless both have one
     labels: tuple[str, str]
-    separation: float
+    separation: float  # equilibrium separation of the surface forces (m)
 
     @classmethod
     def of(cls, case: Case) -> Bodies:
@@ -131,7 +131,7 @@ class Bodies:
 
     @property
     def strength(self) -> float:
-        """Yield strength Y (Pa) of the softer body; p_y/2.8 if the case lacks a yield strength."""
+        """Yield strength Y (Pa) of the softer body; p_y/2.8 unless both bodies have one."""
         return self.p_y / STRENGTHS if self.strengths is None else min(self.strengths)
 
     @property
@@ -152,12 +152,12 @@ class Bodies:
     def velocity(self, indentation: Array) -> Array:
         """Impact velocity (m/s) that reaches `indentation` (m).
 
-        The theory is that of Thornton and Ning, or of Hertz if the bodies are elastic.
+        The velocity follows from Thornton and Ning or, for elastic bodies, from Hertz.
         """
         return (self.hertz if self.elastic else self.yielding).impact_velocity(indentation, self.m)
 
     def depth_under(self, force: Array) -> Array:
-        """Indentation (m) under `force` (N), from the same theories as in `velocity`."""
+        """Indentation (m) under `force` (N), from the same theory as in `velocity`."""
         return (self.hertz if self.elastic else self.yielding).indentation(force)
 
 
@@ -196,8 +196,8 @@ def _sticking(b: Bodies, V: Array) -> Form | str:
     failing = "" if V_s < V_y else ", so at no velocity here"
     return Form(
         within(limit >= V, b.sticking.restitution(V, b.m)),
-        f"nothing yields and the contact is small, {_elastic_range(b)}; V_s = {speed(V_s)} below "
-        f"V_y{failing}; {_tabor(b)}",
+        f"nothing yields and the contact is small, {_elastic_range(b)}; V_s < V_y (here V_s = "
+        f"{speed(V_s)}){failing}; {_tabor(b)}",
         {"sticking_velocity_m_per_s": V_s, "work_of_adhesion_J_per_m2": b.w},
         with_adhesion=True,
     )
@@ -209,7 +209,7 @@ def _thornton_ning(b: Bodies, V: Array) -> Form | str:
     depth = b.yielding.indentation_from_velocity(V, b.m)
     limit = float(b.yielding.impact_velocity(b.R, b.m))
     deepest = math.sqrt(float(np.max(depth, initial=0.0)) / b.R)
-    small = f"a << R* (here a/R* up to {deepest:.2g}; no value from a = R* on, {speed(limit)})"
+    small = f"a << R* (here a/R* up to {deepest:.2g}; no value above {speed(limit)}, where a = R*)"
     inside = depth < b.R
     parameters = {"yield_pressure_Pa": b.p_y}
     if b.w == 0:
@@ -218,7 +218,7 @@ def _thornton_ning(b: Bodies, V: Array) -> Form | str:
     V_s, V_y = b.sticking_velocity, b.yield_velocity
     additive = (
         "sum of the losses by adhesion and by yielding; e is an upper estimate, accurate for V_s "
-        f"<< V_y ({speed(V_s)}, {speed(V_y)})"
+        f"<< V_y (here V_s = {speed(V_s)}, V_y = {speed(V_y)})"
         if V_s <= V_y
         else f"only up to V_y = {speed(V_y)}, because V_s = {speed(V_s)} is higher"
     )
@@ -239,9 +239,9 @@ def _johnson(b: Bodies, V: Array) -> Form | str:
     highest = float(law.velocity_at_full_radius(b.m))
     return Form(
         within((e < _JOHNSON) & (highest > V), e),
-        f"fully plastic, e < {_JOHNSON:g}: above {speed(lowest)}; a << R* (no value from a = R* "
-        f"on, {speed(highest)}){'' if lowest < highest else ', so at no velocity here'}; "
-        "pressure 3 Y",
+        f"fully plastic, e < {_JOHNSON:g}, above {speed(lowest)}; a << R* (no value above "
+        f"{speed(highest)}, where a = R*){'' if lowest < highest else ', so at no velocity here'}; "
+        "contact pressure 3 Y",
         takes_strength=True,
     )
 
@@ -250,12 +250,12 @@ def _mdr(b: Bodies, V: Array) -> Form | str:
     if b.elastic:
         return _ELASTIC
     if b.wall is None and not b.equal:
-        return "it needs equal spheres, or a sphere and a wall"
+        return "the model needs equal spheres, or a sphere and a wall"
     if b.yielding_wall:
         return "the wall is softer than the sphere, but the model assumes a rigid wall"
     nu = b.sphere_poisson
     if nu < 0:
-        return "it does not hold for a negative Poisson's ratio"
+        return "the model does not hold for a negative Poisson's ratio"
     n = 2 if b.equal else 1
     E = n * b.E * (1 - nu**2)
     sphere = MDR(n * b.R, E, nu, b.strength)

@@ -3,12 +3,12 @@
     e² = Σ c_k L^k − s/V²,   L = ln(V/V₀)/w in [−1, 1]
 
 V₀ is the geometric mean of the lowest and highest velocity, and w scales ln(V/V₀) to the interval
-[−1, 1]. The term s/V² is the loss by adhesion, which is the same energy at every velocity. For an
+[−1, 1]. The term s/V² describes the loss by adhesion: the same energy at every velocity. For an
 elastic pair s is the square of the sticking velocity (Thornton & Ning 1998). The polynomial
 describes the loss by yielding. Low velocities at which nothing is lost (e = 1) or the pair sticks
-(e = 0) are excluded, except the highest of these velocities.
+(e = 0) are excluded from the fit, except the highest of these velocities.
 
-The fit is linear least squares in e². The error between the points is estimated by the larger of
+The fit is linear least squares in e². Its error between the points is estimated as the larger of
 two values: the largest residual, and the largest leave-one-out residual (as in PRESS, Allen 1974,
 but with the maximum instead of the sum). The polynomial has the lowest degree whose error is below
 0.001 or at most 1.1 times the smallest error of all degrees.
@@ -26,14 +26,14 @@ _HIGHEST_DEGREE = 8
 _FEWEST = 4  # smallest number of points for a fit
 _NO_LOSS = 1e-3  # a point counts as lossless if 1 − e² is below this value
 _SIMPLER = 1.1  # a lower degree is preferred if its error is at most 1.1 times the smallest error
-_GOOD = 1e-3  # a lower degree is always preferred if its error of e is below this value
-_COUNTS = 0.01  # decrease of e² due to adhesion at the velocity `adhesive_below`
+_GOOD = 1e-3  # a lower degree is always preferred if the error of its e is below this value
+_COUNTS = 0.01  # at the velocity `adhesive_below`, adhesion lowers e² by this value
 
 
 def compact_fit(law: Law) -> CompactFit | None:
     """Fit the compact formula to the resolved points of `law`; None if there are too few points."""
     V, ratio = law.column("velocity", resolved=True), law.column("ratio", resolved=True)
-    lossless = int(np.append(ratio <= 1 - _NO_LOSS, True).argmax())  # number of points
+    lossless = int(np.append(ratio <= 1 - _NO_LOSS, True).argmax())  # number of lossless points
     # Keep the last lossless (or sticking) point, because it fixes the polynomial at the low end.
     first = max(lossless - 1, 0) if law.work_of_adhesion == 0 else 0
     sticks = law.sticks_below

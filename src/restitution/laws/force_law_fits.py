@@ -1,10 +1,10 @@
 """Force laws of DEM codes, fitted to a computed law.
 
 Each force law is fitted to COR by least squares over the resolved points. COR does not determine
-the loading stiffness of spring models. This stiffness is chosen such that the maximum forces agree
-with the computed maximum forces in the geometric mean over the points. The duration and depth of
-contacts then agree on average, too. The COR of the fitted law at every point is stored with its
-parameters.
+the loading stiffness of spring models. This stiffness is chosen such that the maximum forces of the
+model agree with the computed ones in the geometric mean over the points. The duration and depth of
+contacts then agree on average, too. The parameters of a fitted law are stored together with its COR
+at every point.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ NAMES = (
 )
 """The force laws, in the order in which they are fitted."""
 Begin = Callable[[str, int, int], None]
-"""Function called before each fit with its name, its number (from 1) and the number of fits."""
+"""Called before each fit: name of the force law, number of the fit (from 1), number of fits."""
 
 _MOST = 1e6  # largest ratio of unloading to loading stiffness
 _AT_FORCE_ZERO = "separation, where the force is back to zero"
@@ -131,7 +131,7 @@ def _thornton_ning(law: Law) -> Iterator[FittedLaw]:
 def _adhesion_of(law: Law, V_s: float) -> Parameters:
     """Sticking velocity V_s, and the work of adhesion of smooth elastic bodies with this V_s.
 
-    Empty if V_s is 0.
+    The result is empty if V_s is 0.
     """
     if V_s <= 0:
         return {}
@@ -231,8 +231,9 @@ def _fitted_springs(
 ) -> FittedLaw:
     """Fit a spring model to COR.
 
-    `springs` returns the parameters of the model in the order of the arguments of `theory`. Its
-    argument is searched from `start` and stays above `low`. `words` are passed to `_judged`.
+    `springs` computes the parameters of the model, in the order of the arguments of `theory`, from
+    an array of unknowns. The fit varies the unknowns, beginning with `start` and not below `low`.
+    `words` are passed to `_judged`.
     """
 
     def restitution(V: Array, x: Array) -> Array:
@@ -243,9 +244,9 @@ def _fitted_springs(
 
 
 def _mdr(law: Law) -> FittedLaw | None:
-    """Fit the model mdr of LAMMPS; None for two unlike spheres.
+    """Fit the model mdr of LAMMPS. Returns None for two unlike spheres.
 
-    The model describes a sphere on a rigid flat. Two equal spheres are like two such contacts in
+    The model describes a sphere on a rigid flat. Two equal spheres act like two such contacts in
     series.
     """
     sphere = law.second if law.first.wall else law.first  # a pair has at most one wall
@@ -270,7 +271,7 @@ def _mdr(law: Law) -> FittedLaw | None:
         {"yield_strength_Pa": math.exp(x[0]), "youngs_modulus_Pa": E, "poissons_ratio": nu},
         source="W. Zunker, K. Kamrin, J. Mech. Phys. Solids 183 (2024) 105492, as in LAMMPS",
         ends=_AT_FORCE_ZERO,
-        note="without its adhesion" if law.work_of_adhesion > 0 else "",
+        note="without the adhesion of the model" if law.work_of_adhesion > 0 else "",
     )
 
 
@@ -345,7 +346,7 @@ def _judged(
     fitted_to: str = "the coefficient of restitution",
     note: str = "",
 ) -> FittedLaw:
-    """Make the fitted law, with its COR at the points and differences from the computed COR."""
+    """Make the fitted law, with its COR at the points and its deviations from the computed COR."""
     V = law.column("velocity")
     found = np.where(law.fits_hold_at(V), restitution(V), np.nan)
     miss = found - law.column("restitution")

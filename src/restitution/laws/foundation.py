@@ -1,15 +1,18 @@
 """A one-dimensional foundation with the normal and tangential response of a stored contact.
 
-Springs stand side by side on a line. The spring at the distance x from the middle touches when the
-indentation reaches g(x). At the indentation δ, its normal load is 2E* (δ − g) per unit length of
-the half line. With the tangential displacement u, its tangential load is 2G* u. g follows from the
-normal curve F(δ) alone: the inverse of g(x) is the contact radius a(δ) = F′(δ)/2E*. A sticking
-spring is displaced with the bodies. The tangential load |2G* u| is at most µ times the normal load,
-where µ is the coefficient of friction. For a sphere, g = x²/R*, and the foundation is exact: it
-gives Hertz's force, and Cattaneo's and Mindlin's tangential force for every history (Popov and Heß
-2015, Method of Dimensionality Reduction, chapters 3 and 5). For other elastic contacts, µ times the
-difference of two normal forces is a good approximation of the tangential force (Jäger 1995, Arch.
-Appl. Mech. 65, 478–487; Ciavarella 1998, Int. J. Solids Struct. 35, 2349–2378).
+Springs stand side by side on a line that is symmetric about its middle. The two springs at the
+distance x from the middle count as one spring here. This spring touches when the indentation
+reaches g(x). At the indentation δ, its normal load per unit length is 2E* (δ − g), where E* is the
+contact modulus. With the tangential displacement u and the tangential modulus G*, its tangential
+load is 2G* u. The function g follows from the normal curve F(δ) alone: the inverse of g(x) is the
+contact radius a(δ) = F′(δ)/2E*. A sticking spring is displaced with the bodies. The tangential load
+|2G* u| is at most µ times the normal load, where µ is the coefficient of friction.
+
+For a sphere, g = x²/R*, and the foundation is exact: it gives Hertz's force, and Cattaneo's and
+Mindlin's tangential force for every history (Popov and Heß 2015, Method of Dimensionality
+Reduction, chapters 3 and 5). For other elastic contacts, µ times the difference of two normal
+forces is a good approximation of the tangential force (Jäger 1995, Arch. Appl. Mech. 65, 478–487;
+Ciavarella 1998, Int. J. Solids Struct. 35, 2349–2378).
 
 A contact that has yielded responds to small motions elastically, as on its unloading curve. At
 every depth of loading, the normal loads of the springs are therefore computed from the unloading
@@ -30,7 +33,8 @@ Array = NDArray[np.float64]
 
 _SPRINGS = 400  # number of springs on each half of the line
 _DEPTHS = 200  # number of depths of loading at which the loads of the springs are tabulated
-_ELASTIC = 1e-3  # a contact counts as elastic below this ratio of residual to largest indentation
+# A contact counts as elastic if residual divided by largest indentation is below this value.
+_ELASTIC = 1e-3
 _POINTS = 400  # number of points of an unloading curve at which its slope is computed
 
 
@@ -39,8 +43,8 @@ class Foundation:
     """Springs of a contact that is loaded up to `depths[-1]` (m).
 
     `radius` (m, shape (n,)) holds the distances of the springs from the middle, and `width` (m) is
-    their spacing. `loads` (N/m, shape (depths, n)) holds the normal loads, summed over both half
-    lines, at each depth of loading. `moduli` are E* and G* (Pa).
+    their spacing. `loads` (N/m, shape (depths, n)) holds the normal loads per unit length at each
+    depth of loading, summed over the two sides of the middle. `moduli` are E* and G* (Pa).
     """
 
     radius: Array
@@ -85,7 +89,7 @@ class Foundation:
         """Move the bodies tangentially by `motion` (m).
 
         `u` (m) holds the tangential displacements of the springs, and `limit` (N) their friction
-        limits. `factor` multiplies the tangential modulus. `motion` and `factor` may be arrays with
+        limits. `factor` scales the tangential modulus. `motion` and `factor` may be arrays with
         one value for each row of `u`. Returns the new displacements (m), the tangential force (N),
         and the work of friction (J).
         """
@@ -105,8 +109,8 @@ def has_yielded(law: StoredForce, deepest: float) -> bool:
 def _touching(law: StoredForce, depth: float, contact_modulus: float) -> tuple[Array, Array]:
     """Return indentations (m) on the unloading curve from `depth` (m), with contact radii (m).
 
-    The radii are made to increase with the indentation, so that every spring touches once. The
-    radii are scaled so that the loads of the springs add up to the force.
+    The radii are made to increase with the indentation, so that every spring touches once. They
+    are then scaled so that the loads of the springs add up to the force.
     """
     end, force = law.separation(depth), law.loading(depth)
     shape, _ = law.shape(depth)

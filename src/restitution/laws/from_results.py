@@ -69,7 +69,7 @@ def _law(out: Path, run: RunResults) -> Law:
     if left := len(rows) - len(points):
         warnings.append(
             f"{left} of {len(rows)} depths are left out: no impact has its maximum indentation "
-            "there, because adhesion pulls the bodies together or they do not touch"
+            "there, because adhesion pulls the bodies together or the bodies do not touch"
         )
     pair = case.pair()
     for name, value in (
@@ -79,8 +79,8 @@ def _law(out: Path, run: RunResults) -> Law:
     ):
         if value is None or not math.isclose(derived[name], value, rel_tol=_SAME):
             raise OutputError(
-                f"{out}: {name} in summary.json differs from the case in results.nc; a file is "
-                "damaged: run the case again"
+                f"{out}: {name} in summary.json differs from the case in results.nc, so a file "
+                "is damaged; run the case again"
             )
     law = Law(
         title=case.title,
@@ -137,7 +137,7 @@ def _read(out: Path) -> RunResults:
 
 
 def _error_includes(diagnostics: Mapping[str, object]) -> str:
-    """Describe which parts the error of a point includes, and which it excludes."""
+    """Describe which parts of the error the field `error` of a point includes and excludes."""
     includes = diagnostics.get("total_error_includes") or "solver"
     excludes = diagnostics.get("total_error_does_not_include") or "anything else"
     model = diagnostics.get("largest_model_error")
@@ -180,9 +180,9 @@ def _ratio(row: _Row, work: float, *, means: bool) -> float:
 def _error(row: _Row, *, asked: bool) -> float:
     """Return the total error of a row.
 
-    If the total error is missing although the case `asked` for it, a part of it is unknown, and the
-    largest possible error of COR is returned. If the case did not ask for it, the sum of the known
-    parts is returned.
+    If the case `asked` for the total error but the row has none, a part of the error is unknown.
+    The result is then the largest possible error of COR. If the case did not ask for the total
+    error, the result is the sum of the known parts.
     """
     if not math.isnan(known := row.get("total_error", math.nan)):
         return known

@@ -1,16 +1,17 @@
 """Closed forms for impacts in which the whole contact slides from the beginning to the end.
 
-The bodies meet at the angle θ from the normal, with the tangential velocity V_t, the normal
-velocity V_n and the normal restitution e. In the foundation (`foundation`), a spring that slides
-has the displacement µ (E*/G*)(δ − g), where δ is the indentation and g the indentation at which
-this spring touches. It continues to slide as long as the velocity U of the contact point exceeds
-the rate of this displacement:
+The bodies meet at the angle θ from the normal, with the tangential velocity V_t and the normal
+velocity V_n. e is the normal restitution, µ the coefficient of friction, E* the contact modulus and
+G* the tangential modulus. In the foundation (`foundation`), a spring that slides has the
+displacement µ (E*/G*)(δ − g), where δ is the indentation and g the indentation at which this spring
+touches. The spring continues to slide as long as the velocity U of the contact point exceeds the
+rate of this displacement:
 
     U > µ (E*/G*) dδ/dt.
 
-With full slip, the difference of the two sides decreases during the whole contact. So the condition
-is strictest at the end of contact, where dδ/dt = −e V_n and U = V_t − (7/2) µ (1 + e) V_n. There
-the condition becomes
+With full slip, U minus this rate decreases during the whole contact. So the condition is strictest
+at the end of contact, where dδ/dt = −e V_n and U = V_t − (7/2) µ (1 + e) V_n. There the condition
+becomes
 
     tan θ ≥ µ [(7/2)(1 + e) − e E*/G*].
 
@@ -30,13 +31,13 @@ def full_slip_angle(friction: float, restitution: float, modulus_ratio: float) -
     Args:
         friction: Coefficient of friction µ (dimensionless).
         restitution: Normal restitution e (dimensionless).
-        modulus_ratio: G*/E* (dimensionless).
+        modulus_ratio: Ratio G*/E* of tangential to contact modulus (dimensionless).
 
     Returns:
         The angle from the normal (rad).
 
     Source:
-        Maw, Barber and Fawcett (1976) for e = 1; extended to e < 1 at the top of this module.
+        Maw, Barber and Fawcett (1976) for e = 1. The top of this module derives it for e < 1.
     """
     least = 3.5 * (1 + restitution) - restitution / modulus_ratio
     # If the dimensionless angle of impact ψ₁ is below 1, the contact sticks at first (Maw, Barber

@@ -4,15 +4,14 @@
 
 W_u and W_l are the works of unloading and loading, V is the impact velocity and V_s the sticking
 velocity. A monotone cubic (PCHIP) interpolates q. The term s/V² is the loss by adhesion, an energy
-that is about the same at every velocity (s = V_s² for an elastic pair: Thornton & Ning 1998). s is
-chosen such that q is constant between the two lowest velocities. A negative s is replaced by zero,
-and without adhesion s is zero. The pair rebounds above the velocity at which the interpolated ratio
-is zero.
+that is about the same at every velocity (s = V_s² for an elastic pair: Thornton & Ning 1998). The
+value of s makes q equal at the two lowest velocities. If this value is negative, or without
+adhesion, s is zero. The pair rebounds above the velocity at which the interpolated ratio is zero.
 
 The error estimate at the middle of an interval is 1.5 times the larger leave-one-out residual of
 the two end points, and at least the difference between the cubic and linear interpolation. With
 only two points, it is the difference between their values. Towards the end points, the estimate
-decreases to zero as 2 (t (1 − t))^½, where t (0 to 1) is the position in the interval of ln V. The
+decreases to zero as 2 (t (1 − t))^½, where t (0 to 1) is the position of ln V in the interval. The
 standard deviation of a random walk with both ends fixed has the same form. For rough surfaces,
 docs/dem.md states how often the true error is within the estimate.
 """
@@ -27,7 +26,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-_SAFETY = 1.5  # ratio of the error estimate to the leave-one-out residual
+_SAFETY = 1.5  # error estimate divided by leave-one-out residual
 
 
 class RatioCurve:
@@ -46,7 +45,7 @@ class RatioCurve:
         self._q = ratios + self.adhesion / velocities**2
 
     def at(self, velocity: float) -> float:
-        """Interpolate the ratio at `velocity` (m/s), which must lie within `velocities`."""
+        """Interpolate the ratio at `velocity` (m/s), which must be in the range of `velocities`."""
         return _pchip(self._L, self._q, math.log(velocity)) - self.adhesion / velocity**2
 
     def error(self, velocity: float) -> float:
@@ -82,7 +81,7 @@ class RatioCurve:
         below, above = self.velocities[sticking[-1] : sticking[-1] + 2]
         if self.ratios[sticking[-1]] == 0:
             return float(below)
-        # Rounding can change the sign of a nearly zero ratio, but `brentq` needs opposite signs.
+        # Rounding can change the sign of a nearly zero ratio. `brentq` needs opposite signs.
         if self.at(above) <= 0 or self.at(below) >= 0:
             return float(above if self.at(above) <= 0 else below)
         return float(brentq(self.at, below, above))

@@ -21,7 +21,7 @@ from restitution.laws.interpolation import RatioCurve
 Array = NDArray[np.float64]
 
 LOSS = 1e-3
-"""A law is not fitted if e is below this value at every velocity, or 1 − e at every velocity."""
+"""A law is not fitted if e, or 1 − e, is below this value at every velocity."""
 # Largest relative difference of velocities that count as equal. With integrated loading work, a run
 # reaches the velocities of its case only within 1e-4 (`solve_at_velocity`).
 _SAME = 1.01e-4
@@ -39,8 +39,8 @@ class _Stored(BaseModel):
 class Particle(_Stored):
     """One body of the pair, in SI units. `radius` is None for a flat wall.
 
-    In a mixture, `number_fraction` is the fraction by number of this size among the particles of
-    the same material.
+    In a mixture, `number_fraction` is the number of particles of this size divided by the number of
+    all particles of the same material.
     """
 
     name: str
@@ -64,7 +64,7 @@ class Particle(_Stored):
 class Point(_Stored):
     """The result at one impact velocity, in SI units.
 
-    `ratio` is W_u/W_l, the unloading work divided by the loading work; it is negative if the pair
+    `ratio` is W_u/W_l, the unloading work divided by the loading work, and negative if the pair
     sticks. `error` is the error of `restitution`. `indentation` and `force` are the maxima during
     the impact.
     """
@@ -89,12 +89,15 @@ class Point(_Stored):
 class CompactFit(_Stored):
     """Fit e² = Σ c_k L^k − s/V², L = ln(V/V₀)/w, between `lowest` and `highest` velocity.
 
-    `coefficients` are c_k, `centre` is V₀ and `width` is w. e = 0 where e² is negative and for V ≤
-    `sticks_below`; e = 1 for V ≤ `elastic_below`. The fit uses the resolved points. `lowest` and
-    `highest` (m/s) are the velocities of the first and the last resolved point; outside them the
-    fit has no value. `worst` is the largest difference in e at the resolved points; `between` is
-    the largest difference at a point that was left out of the fit. Velocities are in m/s, and
-    `adhesion` is s in m²/s².
+    `coefficients` are c_k, `centre` is V₀, `width` is w and `adhesion` is s (m²/s²). All velocities
+    are in m/s. e = 0 where the formula gives a negative e² and for V ≤ `sticks_below`; e = 1 for
+    V ≤ `elastic_below`. At `adhesive_below`, adhesion lowers e² by 0.01. The fit uses the resolved
+    points. `lowest` and `highest` are the velocities of the first and the last of them; outside
+    this range the fit has no value.
+
+    `worst` is the largest difference between fitted and computed e at the resolved points.
+    `between` is the largest such difference at a point that was left out of the fit, and at least
+    `worst`.
     """
 
     coefficients: tuple[float, ...]
@@ -132,8 +135,8 @@ class FittedLaw(_Stored):
 
     The keys of `parameters` include the units. `restitution` is the COR of the force law at the
     velocities of the points; it is None where the force law has no solution, and outside the
-    resolved velocities (`Law.fitted_range`). `rms` and `worst` are the differences from the
-    computed COR at the resolved points.
+    resolved velocities (`Law.fitted_range`). `rms` and `worst` are the root mean square and the
+    largest difference from the computed COR at the resolved points.
     """
 
     name: str
@@ -172,7 +175,7 @@ class Law(_Stored):
     `radius`, `contact_modulus` and `mass` are R*, E* and m*. `friction` is the coefficient of
     friction of the case, or None; e does not depend on friction. `yield_velocity` and
     `sticking_velocity` are those of the smooth bodies. `sticks_below` is the velocity above which
-    this pair rebounds; None if the pair rebounds at every computed velocity, or at none of them.
+    this pair rebounds. It is None if the pair rebounds at every computed velocity, or at none.
     """
 
     title: str
@@ -299,7 +302,7 @@ class Law(_Stored):
 
 
 def velocity_of(text: str) -> float:
-    """Parse a velocity such as "0.5 m/s" to m/s. Raises `CaseError`."""
+    """Return the velocity (m/s) that a text such as "0.5 m/s" gives. Raises `CaseError`."""
     try:
         return read_positive(text, "m/s")
     except ValueError as error:

@@ -21,7 +21,8 @@ from restitution.results.interruption import hold_signals
 from restitution.results.writer import make_folder, replace_file, write_checksums, write_table
 
 LAW_FILE = "law.json"
-LAWS, MIXTURE_FILE = "laws", "mixture.toml"  # folder of the laws of a mixture, and its input file
+# In the folder of a mixture: the folder of its laws, and a copy of the input file.
+LAWS, MIXTURE_FILE = "laws", "mixture.toml"
 
 
 def write_law(law: Law, out: Path) -> list[Path]:
@@ -40,7 +41,7 @@ def write_law(law: Law, out: Path) -> list[Path]:
 
 
 def read_law(folder: Path) -> Law:
-    """Read the law in `folder`, as `restitution fit-law` wrote it, or the file `law.json` itself.
+    """Read a law. `folder` is an output folder of `restitution fit-law`, or its file `law.json`.
 
     Raises `OutputError` if there is no law or its checksum differs, and `CaseError` if the file is
     not a law of this version.
@@ -66,7 +67,7 @@ def read_law(folder: Path) -> Law:
 
 
 def read_laws(folders: Sequence[Path]) -> list[Law]:
-    """Read the law in each folder of `fit-law`, and all laws in each folder of a mixture.
+    """Read the law of each `fit-law` folder, and all laws of each mixture folder.
 
     Raises the errors of `read_law`.
     """

@@ -6,16 +6,16 @@ normal velocity (`time_integration`). The contact point slides with the velocity
     U = v_t − R₁ω₁ − R₂ω₂,   dU/dt = −(7/2) T/m*,   dv_t/dt = −T/m*,   dω_i/dt = (5/2) T/(m_i R_i)
 
 for solid spheres (moment of inertia I = 2/5 m R²) with the radii R_i, the masses m_i and the spins
-ω_i. v_t is the tangential velocity of the centres and m* the reduced mass. A spin is positive in
-the direction in which friction turns a sphere without spin. The tangential force T follows from a
-one-dimensional foundation of springs with constant friction µ (`foundation`). If all springs slide
-to the end, the impulse of T is µ (1 + e) m* V_n for every force law, with the normal impact
-velocity V_n.
+ω_i. Here v_t is the relative tangential velocity of the centres, m* the reduced mass and T the
+tangential force. A spin is positive in the direction in which friction turns a sphere without spin.
+T follows from a one-dimensional foundation of springs with constant friction µ (`foundation`). If
+all springs slide to the end, the impulse of T is µ (1 + e) m* V_n for every force law, with the
+normal impact velocity V_n and the normal restitution e.
 
 To convert the error of the tangential law (`tangential_error`) to an error of the impulse of T, the
 motion is integrated again with a larger and a smaller tangential modulus. If the contact has
 yielded, a fraction of the impulse is added to the error. This fraction vanishes in full slip, where
-the impulse is exact for like bodies.
+the impulse is exact for bodies of equal materials.
 
 Neglected: the coupling of normal and tangential displacements of unlike materials, the torque about
 the normal, rolling friction, and elastic waves.
@@ -51,8 +51,8 @@ class ObliqueCollision:
     """One oblique collision, in SI units. The arrays are time series of equal length.
 
     Attributes:
-        velocity: Impact velocity (m/s).
-        angle: Angle of impact from the normal (rad).
+        velocity: Relative velocity of the centres before the impact (m/s).
+        angle: Angle between this velocity and the normal (rad).
         friction: Coefficient of friction µ (dimensionless).
         normal_restitution: Ratio of the normal velocities after and before the impact
             (dimensionless).
@@ -72,7 +72,7 @@ class ObliqueCollision:
         normal_force: Normal force (N).
         tangential_force: Tangential force (N).
         slip_velocity: Velocity of the contact point (m/s).
-        sticking: Fraction of the normal force that sticking springs carry (dimensionless).
+        sticking: Fraction of the normal force on sticking springs (dimensionless).
     """
 
     velocity: float
@@ -132,8 +132,8 @@ def collide_obliquely(
 
     Raises:
         CaseError: An argument lies outside its range, or the spin of a wall is not 0.
-        DomainError: The normal velocity is above the computed velocities, or no stored unloading
-            curves enclose the depth of the impact.
+        DomainError: The normal velocity is above the computed velocities, or the depth of the
+            impact is outside the depths of the stored unloading curves.
         NotConvergedError: The integration of the normal motion failed.
     """
     if not 0 <= angle < math.pi / 2:
@@ -184,7 +184,7 @@ def collide_obliquely(
 
 
 def spin_per_impulse(pair: Pair) -> tuple[float, float]:
-    """Change of the spins of both bodies per tangential impulse (rad/s per N s); 0 for a wall."""
+    """Change of spin per tangential impulse (rad/s per N s) of each body; 0 for a wall."""
     first, second = (
         0.0 if math.isinf(body.radius) else 2.5 / (body.mass or math.inf) / body.radius
         for body in (pair.first, pair.second)
@@ -204,7 +204,7 @@ def oblique_force(run: RunResults, key: str = "angle") -> StoredForce:
 
     Raises:
         CaseError: The pair has adhesion, or no mass.
-        OutputError: There are no unloading curves, or a file is damaged.
+        OutputError: The run has no unloading curves, or a file is damaged.
     """
     if run.case.interface.adhesive_energy > 0:
         raise CaseError(f"{key}: oblique impacts are computed for pairs without adhesion only")
@@ -253,7 +253,7 @@ def _slide(
     turn = float(t[int(np.argmax(delta))])
     F = np.array([(law.loading if s <= turn else back)(x) for s, x in zip(t, delta, strict=True)])
     T, U, stick = np.zeros(t.size), np.full(t.size, slip), np.zeros(t.size)
-    # Factors of the tangential modulus: nominal, reduced by the error, and increased by the error.
+    # Factors of the tangential modulus: unchanged, reduced by the error, increased by the error.
     factors = np.array([1.0, 1 / (1 + error), 1 + error])
     u, speed, loss = np.zeros((3, springs.radius.size)), np.full(3, slip), 0.0
     slowing, least = _INERTIA / (law.pair.mass or math.nan) * dt, _LEAST * F.max()

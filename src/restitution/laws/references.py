@@ -19,7 +19,7 @@ _THORNTON_NING = "smooth, Thornton–Ning (truncated pressure)"
 
 @dataclass(frozen=True, eq=False)
 class Reference:
-    """Values `y` of a closed form at `x` (SI units), and whether it includes yielding."""
+    """Values `y` of a closed form at `x` (SI units), and whether the form includes yielding."""
 
     label: str
     x: Array
@@ -30,7 +30,8 @@ class Reference:
 def force_references(results: xr.Dataset) -> list[Reference]:
     """Closed forms of the force (N) against indentation (m): elastic and, if bodies yield, plastic.
 
-    The curves begin below the smallest indentation with a force in loading or unloading.
+    The curves begin below the smallest indentation at which the run has a force, on loading or on
+    unloading.
     """
     R, E_star, p_y, w = _parameters(results)
     deepest = float(results["indentation"].max())
@@ -85,7 +86,7 @@ def restitution_references_by_velocity(results: xr.Dataset) -> list[Reference]:
 
 
 def least_indentation(results: xr.Dataset) -> float:
-    """The smallest positive indentation (m) with a force in loading or unloading."""
+    """The smallest positive indentation (m) with a stored force, on loading or on unloading."""
     found = [float(results["indentation"].min())]
     for k in range(results.sizes.get("unloading", 0)):
         force = results["unloading_force"][k].values
@@ -95,7 +96,7 @@ def least_indentation(results: xr.Dataset) -> float:
 
 
 def _parameters(results: xr.Dataset) -> tuple[float, float, float, float]:
-    """R* (m), E* (Pa), yield pressure (Pa; inf if elastic), work of adhesion (J/m²) of a run."""
+    """Return R* (m), E* (Pa), yield pressure (Pa; inf if elastic), work of adhesion (J/m²)."""
     p_y = results.attrs["derived_yield_pressure_Pa"]
     return (
         float(results.attrs["derived_reduced_radius_m"]),

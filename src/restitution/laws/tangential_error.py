@@ -1,27 +1,28 @@
 """Error of the one-dimensional tangential law, from a comparison with boundary elements.
 
-docs/oblique.md describes the comparison (`docs/studies/tangential.py` and `unlike.py`). The law is
-exact for like bodies with Poisson's ratio 0 and any roughness, as long as they do not yield. Four
-effects cause an error:
+docs/oblique.md describes the comparison (`docs/studies/tangential.py` and `unlike.py`). For bodies
+of equal materials with Poisson's ratio 0, the law is exact with any roughness, as long as the
+bodies do not yield. Four effects cause an error:
 
-* Patches that are not round. Under a point load along x, the displacement at a given distance is
-  1 + χ times the mean on the x axis and 1 − χ times the mean on the y axis, with χ = ν/(2 − ν) for
-  like bodies with Poisson's ratio ν. The law uses the mean, so its stiffness has an error of up to
-  χ for a line contact. The patches of a rough contact are elongated in random directions, so the
-  error is inversely proportional to the square root of the number of patches. On a surface with a
-  lay (a preferred direction) the patches are aligned, and the error decreases less.
+* Contact patches that are not round. Under a point load along x, the displacement at a given
+  distance is 1 + χ times its mean over all directions on the x axis, and 1 − χ times on the y axis,
+  with χ = ν/(2 − ν) for equal materials with Poisson's ratio ν. The law uses the mean, so its
+  stiffness has an error of up to χ for a line contact. The patches of a rough contact are elongated
+  in random directions, so the error is inversely proportional to the square root of their number.
+  On a surface with a lay (a preferred direction) the patches are aligned, and the error decreases
+  less.
 * Yield. At nodes that have reached the pressure bound, the friction limit stays constant during
   further loading. In the law, the friction limits of all springs increase.
 * Few unloading curves. Between two unloading curves, the stiffness is interpolated.
-* Unlike bodies. Pressure also moves the surfaces tangentially, in proportion to Dundurs' second
-  constant β. Without slip this adds no tangential force by symmetry, and the stiffness grows only
-  by about β²/3 (atanh(β)/β − 1 for a round punch; Spence 1968, Proc. R. Soc. A 305, 55–80). But if
-  µ is not large compared with |β|, the surfaces slip radially under pressure alone (Spence 1975, J.
-  Elast. 5, 297–319), and friction cannot also resist a tangential motion. Solutions that include
-  this effect were compared with the law. The difference of the impulse corresponded to a relative
-  change of the stiffness of less than |β| if µ < |β|, and of less than |β|³/µ² for larger µ. In
-  full slip the radial slip turns the friction away from the direction of motion, so the impulse is
-  smaller.
+* Unlike materials. Pressure also moves the surfaces tangentially, in proportion to Dundurs' second
+  constant β. Without slip this motion adds no tangential force, by symmetry, and the stiffness
+  grows only by about β²/3 (atanh(β)/β − 1 for a round punch; Spence 1968, Proc. R. Soc. A 305,
+  55–80). But if the coefficient of friction µ is not large compared with |β|, the surfaces slip
+  radially under pressure alone (Spence 1975, J. Elast. 5, 297–319). Friction that opposes this
+  radial slip cannot also resist a tangential motion. Solutions that include the radial slip were
+  compared with the law. The difference of the impulse was that of a relative change of the
+  stiffness by less than |β| if µ < |β|, and by less than |β|³/µ² for larger µ. In full slip the
+  radial slip turns the friction away from the direction of motion, so the impulse is smaller.
 """
 
 from __future__ import annotations
@@ -38,19 +39,19 @@ from restitution.laws.time_integration import StoredForce
 # All differences found in the comparison are within the errors that these constants give. The top
 # of this file defines χ and β.
 #
-# Relative error of the stiffness of smooth contacts for ν = 0, and additional error of rough ones.
+# Relative errors of the stiffness for ν = 0: of smooth contacts, and in addition of rough contacts.
 _NUMERICAL, _ROUGH = 0.005, 0.04
-# _SHAPE is the relative error due to the shape of one patch, divided by χ. The error is constant up
-# to _ALIGNED patches, and again above _INDEPENDENT patches, because small patches are then parts of
-# larger ones. In between it decreases.
+# _SHAPE is the relative error of the stiffness due to the shape of the patches, divided by χ. It is
+# constant up to _ALIGNED patches and then decreases with the number of patches. Above _INDEPENDENT
+# patches it is constant again, because small patches are then parts of larger ones.
 _SHAPE, _ALIGNED, _INDEPENDENT = 0.35, 4.0, 36.0
-# Relative errors of stiffness and impulse after yield. On rough contacts they are multiplied by
-# the largest ratio between the depths of neighbouring unloading curves.
+# Relative errors of stiffness and impulse after yield. For rough contacts they are multiplied by
+# the largest ratio of the depths of two neighbouring unloading curves.
 _YIELDED_STIFFNESS, _YIELDED_IMPULSE = 0.01, 0.1
-# Relative error of the impulse in full slip, divided by the relative error of the stiffness, both
-# due to β (the measure of unlike materials defined at the top of this file).
+# Unlike materials (β): relative error of the impulse in full slip, divided by the relative error of
+# the stiffness.
 _TURNED = 0.15
-# Unloading curves that start at less than this fraction of the deepest depth are ignored.
+# Unloading curves that start at less than this fraction of the largest indentation are ignored.
 _SHALLOWEST = 0.2
 
 
@@ -71,8 +72,8 @@ class TangentialError:
 def tangential_error(law: StoredForce, deepest: float, friction: float) -> TangentialError:
     """Error of the tangential law for an impact with the maximum indentation `deepest` (m).
 
-    `friction` is the coefficient of friction (dimensionless). The errors hold for the grid of the
-    stored contact and do not include the error of the normal forces.
+    `friction` is the coefficient of friction (dimensionless). The result does not include the
+    errors of the grid and of the normal forces.
     """
     beta = abs(dundurs(law.pair))
     slipping = min(beta / friction, 1.0) ** 2 if friction > 0 else 1.0
@@ -92,7 +93,7 @@ def tangential_error(law: StoredForce, deepest: float, friction: float) -> Tange
 
 
 def dundurs(pair: Pair) -> float:
-    """Dundurs' second constant β of a pair (dimensionless), zero for like bodies.
+    """Dundurs' second constant β of a pair (dimensionless), zero for equal materials.
 
     β = [(1 − 2ν₁)/G₁ − (1 − 2ν₂)/G₂]/2[(1 − ν₁)/G₁ + (1 − ν₂)/G₂] (Johnson 1985, eq. 5.3).
     """

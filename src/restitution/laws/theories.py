@@ -1,4 +1,4 @@
-"""COR of a case by closed forms and by theories fitted to a computed law."""
+"""COR of a case from closed forms, and from theories fitted to a computed law."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from restitution.laws.law import LOSS, Array, FittedLaw, Law
 from restitution.theory import Brilliantov
 
 STEPS = 25
-"""Number of velocities in a table over the span of a case."""
+"""Number of velocities in a table, from the lowest to the highest velocity of a case."""
 COMPUTED = "computed"
-"""Name of the entry for the computed points in a list of theories."""
+"""Name of the computed points in a list of theories."""
 
 _FINE = 600  # number of velocities at which a line in a figure is computed
 _SAME = 1e-6  # values of R*, E* or m* with at most this relative difference count as equal
-_FITTED = ("constant", "walton-braun", "luding", "eepa")  # theories whose parameters need a fit
+_FITTED = ("constant", "walton-braun", "luding", "eepa")  # theories with fitted parameters
 
 
 @dataclass(frozen=True)
@@ -73,10 +73,11 @@ def theories(case: Case, velocities: Array, law: Law | None = None) -> list[Theo
 def theory_lines(
     case: Case, velocities: Array, found: list[Theory]
 ) -> list[tuple[str, bool, Array, Array]]:
-    """Lines of a figure: name, flag for fits, velocities (m/s) and COR of each theory in `found`.
+    """Lines of a figure: name, whether it is a fit, velocities (m/s) and COR of each theory.
 
-    Closed forms are evaluated at many velocities between the first and the last of `velocities`,
-    and fits only at `velocities`. The computed points are left out.
+    The theories are those of `found`. Closed forms are evaluated at many velocities between the
+    first and the last of `velocities`, and fits only at `velocities`. The computed points are left
+    out.
     """
     V = velocities
     if velocities.size > 1:
@@ -107,7 +108,7 @@ def marks(case: Case) -> dict[str, float]:
 
 
 def check_same_pair(case: Case, law: Law) -> None:
-    """Raise `CaseError` if R*, E* or m* of case and law differ by more than 1e-6 (relative)."""
+    """Raise `CaseError` if R*, E* or m* of `case` and `law` differ, relatively by over 1e-6."""
     bodies = Bodies.of(case)
     quantities = {
         "R*": (law.radius, bodies.R, "m"),
@@ -121,8 +122,8 @@ def check_same_pair(case: Case, law: Law) -> None:
     ]
     if differing:
         raise CaseError(
-            f"the law of {law.pair} belongs to another pair: its {', its '.join(differing)}; give "
-            "the case from which it was computed, or another law"
+            f"the law of {law.pair} belongs to another pair: its {', its '.join(differing)}; "
+            "give the case from which the law was computed, or another law"
         )
 
 
@@ -197,7 +198,7 @@ def _unresolved(law: Law) -> str:
 
 
 def _other_interface(bodies: Bodies, law: Law) -> str:
-    """Describe yield pressure and adhesion of the law, if they differ from the case."""
+    """Describe the yield pressure and the adhesion of the law where the case has other values."""
     differing = []
     p_y = math.inf if law.yield_pressure is None else law.yield_pressure
     if not math.isclose(p_y, bodies.p_y, rel_tol=_SAME):

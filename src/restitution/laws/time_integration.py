@@ -3,13 +3,13 @@
     m₁ x₁'' = −F(δ),  m₂ x₂'' = F(δ),  δ = x₁ − x₂ (0 at first touch),  e = (v₂' − v₁')/(v₁ − v₂)
 
 x'' is an acceleration; v and v' are the velocities before and after the impact. F follows the
-loading curve until the particles stop approaching, and then the unloading curve from the depth
-reached. The resulting e checks the stored unloading work against the unloading forces. It also
-checks the formula for e from energies against an equation of motion.
+loading curve until the particles stop approaching. Then F follows the unloading curve from the
+largest indentation. The resulting e is a check of two things: of the stored unloading work, against
+the unloading forces, and of the formula for e from energies, against an equation of motion.
 
 The loading force is the derivative of a cubic Hermite spline through the stored loading work W. At
 the stored depths, the slope of the spline is the stored force. The particles therefore stop
-approaching where W equals the initial kinetic energy, as in the formula from energies. If W
+approaching where W equals the initial kinetic energy, as the formula from energies assumes. If W
 increases about as a power of δ, the spline interpolates ln W against ln δ.
 
 Unloading curves are monotone cubics (PCHIP) and are stored for some depths only. Between two of
@@ -42,8 +42,10 @@ from restitution.results.tables import damaged
 Force = Callable[[float], float]
 
 _RTOL = 1e-10
-_SLACK = 1e-3  # relative excess over the deepest stored depth, allowed for integration errors
-_STEEPEST = 6.0  # largest exponent of a power law of the work; above it, adhesion nearly cancels W
+# Because of integration errors, an impact may exceed the deepest stored depth by this fraction.
+_SLACK = 1e-3
+# Largest exponent of W as a power of δ. If the exponent is larger, adhesion nearly cancels W.
+_STEEPEST = 6.0
 _SAME = 1e-5  # largest relative difference of depths that count as equal
 
 
@@ -73,8 +75,8 @@ class StoredRoughness:
     """Properties of the roughness of a stored contact.
 
     `patches` holds the number of contact patches at each of the indentations `depths` (m). `lay` is
-    the anisotropy of the slopes: 0 if they are equal in all directions, 1 if all slopes are along
-    one direction.
+    the anisotropy of the slopes: 0 if they are equal in all directions, 1 if all of them are along
+    one axis.
     """
 
     depths: Array
@@ -88,9 +90,9 @@ class StoredForce:
 
     `deepest` is the largest indentation (m) with a stored force, and `highest` the impact velocity
     (m/s) that reaches it. The function `loading` maps indentation (m) to force (N). The function
-    `separation` maps the maximum indentation to the indentation at separation (m). `unloading`
-    contains one curve (increasing indentations, and forces) for each depth of `unloading_from`;
-    these depths increase. `roughness` is None for smooth bodies.
+    `separation` maps the maximum indentation (m) to the indentation at separation (m).
+    `unloading_from` contains increasing depths (m). For each of them, `unloading` contains one
+    curve: increasing indentations (m) and the forces (N). `roughness` is None for smooth bodies.
     """
 
     pair: Pair
@@ -107,10 +109,11 @@ class StoredForce:
             raise CaseError("density: is missing; integrating a collision in time needs the masses")
 
     def branch(self, deepest: float) -> tuple[Force, float, bool]:
-        """Return the force of unloading from `deepest` (m), the separation (m), and a flag.
+        """Return the force of unloading from `deepest` (m), the end of contact (m), and a flag.
 
-        The separation is an indentation. The flag says whether the force is interpolated between
-        two stored curves. Raises `DomainError` if these curves do not enclose `deepest`.
+        The end of contact is the indentation at separation. The flag says whether the force is
+        interpolated between two stored curves. Raises `DomainError` if `deepest` is outside the
+        depths of the stored curves.
         """
         depths = self.unloading_from
         if not depths[0] * (1 - _SAME) <= deepest <= depths[-1] * (1 + _SAME):
@@ -127,8 +130,8 @@ class StoredForce:
         """Return the shape of the unloading curve from `deepest` (m), and a flag.
 
         The shape is F/F_max as a function of (δ − δ_s)/(δ_max − δ_s); the module docstring defines
-        these symbols. The flag says whether it is interpolated between two stored curves. Beyond
-        the first or the last stored curve, the shape is that of the nearest curve.
+        these symbols. The flag says whether the shape is interpolated between two stored curves. If
+        `deepest` is outside the stored depths, the shape is that of the nearest curve.
         """
         depths = self.unloading_from
         near = np.flatnonzero(np.abs(depths / deepest - 1) < _SAME)
@@ -163,9 +166,9 @@ def stored_force(out: Path) -> StoredForce:
 
 
 def force_of(pair: Pair, results: xr.Dataset, unloading: Sequence[UnloadingCurve]) -> StoredForce:
-    """Make the force law of `pair` from the variables of a curve and its unloading curves.
+    """Make the force law of `pair` from the results of a run and its unloading curves.
 
-    `results` has the variables of `results.nc`, including the height at x and y. `unloading` is
+    `results` has the variables of `results.nc`, including `height`, `x` and `y`. `unloading` is
     sorted by `start`. Raises `OutputError` if no unloading reaches separation, and `CaseError` if
     `pair` has no mass.
     """
@@ -313,12 +316,12 @@ def _integrate(
 
 
 def _loading(depth: Array, force: Array, work: Array) -> Force:
-    """Return the loading force (N), the derivative of the work with respect to indentation."""
+    """Return the loading force (N): the derivative of `work` with respect to the indentation."""
     with np.errstate(divide="ignore", invalid="ignore"):
         powers = force * depth / work
     if (work > 0).all() and (powers > 0.5).all() and (powers < _STEEPEST).all():
-        # ln W is interpolated against ln δ. From zero to the first depth, ln W is linear in ln δ,
-        # so W is a power of δ.
+        # ln W is interpolated against ln δ. From δ = 0 to the first stored depth, ln W is linear in
+        # ln δ, so W is a power of δ.
         L, slope = np.log(depth), powers
         log_work = _hermite(L, np.log(work), slope)
         first = float(L[0])
@@ -333,15 +336,18 @@ def _loading(depth: Array, force: Array, work: Array) -> Force:
             return math.exp(value) / x * its_slope
 
         return pushing
-    # Adhesion: the force is assumed to be linear in δ up to the first depth. Its value at δ = 0 is
-    # chosen such that its integral equals the stored work at the first depth.
+    # Adhesion: up to the first stored depth, the force is assumed to be linear in δ. The force at
+    # δ = 0 is chosen such that the work up to the first depth equals the stored work.
     jump_in = 2 * work[0] / depth[0] - force[0]
     curve = _hermite(np.append(0.0, depth), np.append(0.0, work), np.append(jump_in, force))
     return lambda x: curve(max(x, 0.0))[1]
 
 
 def _hermite(x: Array, y: Array, slope: Array) -> Callable[[float], tuple[float, float]]:
-    """Return a function for value and slope of a cubic Hermite spline, linear beyond the end."""
+    """Return a function for the value and the slope of a cubic Hermite spline.
+
+    Beyond the last point, the spline continues as a straight line.
+    """
     from scipy.interpolate import CubicHermiteSpline
 
     if x.size == 1:
@@ -382,5 +388,5 @@ def _pchip(x: Array, y: Array) -> Force:
         return lambda _: float(y[0])
     curve = PchipInterpolator(x, y)
     low, high = float(x[0]), float(x[-1])
-    # The integrator also evaluates trial points slightly beyond the ends.
+    # The integrator also evaluates points slightly beyond the ends; the curve is constant there.
     return lambda where: curve(np.minimum(np.maximum(where, low), high))

@@ -4,16 +4,17 @@ Each module states the range of validity of its law.
 
 A law is a frozen object. Its parameters are fields, checked on construction, and its quantities are
 properties and methods: `Hertz(radius, contact_modulus).force(indentation)`. Laws that predict an
-impact follow `ImpactLaw`: `restitution(velocity, mass)`. Only `Brilliantov.restitution` takes no
-mass, because the parameter of this law includes the mass.
+impact follow `ImpactLaw`: `restitution(velocity, mass)`. The one exception is
+`Brilliantov.restitution`, which takes no mass: the dissipation parameter of this law already
+includes the mass.
 
 These conventions hold for every law:
 
 - **Units** are SI: m, Pa, N, J, kg, m/s. `radius` is the reduced radius R*, `contact_modulus` is
-  E*, and `mass` is the reduced mass m*: 1/R* = 1/R₁ + 1/R₂, 1/m* = 1/m₁ + 1/m₂,
-  1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂. Only `MDR` uses the radius and mass of one sphere. The
-  indentation δ is the rigid-body approach, zero at first touch and positive when the contact is
-  compressed.
+  E*, and `mass` is the reduced mass m*. For two bodies with the indices 1 and 2,
+  1/R* = 1/R₁ + 1/R₂, 1/m* = 1/m₁ + 1/m₂ and 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂. Only `MDR` uses the
+  radius and mass of one sphere. The indentation δ is the rigid-body approach, zero at first touch
+  and positive when the contact is compressed.
 - **Shapes**: every argument and field may be a number or an array. They broadcast, and the result
   has the broadcast shape (a NumPy scalar if all are numbers).
 - **Separated spheres**: if the indentation, force or velocity is zero or negative, every force,

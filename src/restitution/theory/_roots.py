@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from ._inputs import Array, Values
 
-# Limit on iterations. About 10 are usual; bisection alone takes 100 for a root of 1e-14 in [0, 1].
+# Largest number of iterations. About 10 are usual. Bisection alone would need about 100 for a root
+# of 1e-14 in [0, 1].
 _MAX_STEPS = 200
 _EXACT = 2 * np.finfo(float).eps  # relative width of a converged bracket
 
@@ -30,7 +31,7 @@ def increasing_root(excess: Callable[[Array], Array], low: Values, high: Values)
     root = np.where(below >= 0, low, np.where(above <= 0, high, low + high + below + above))
     inside = (below < 0) & (above > 0)
     if inside.any():
-        # Elements that have converged divide by zero, but their trial values are not used.
+        # The formulas divide by zero in elements that have converged; those values are not used.
         with np.errstate(all="ignore"):
             found = _chandrupatla(excess, low, high, below, above, inside)
         root = np.where(inside, found, root)

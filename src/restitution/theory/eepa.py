@@ -3,8 +3,9 @@
 J. P. Morrissey, thesis, University of Edinburgh (2013); S. C. Thakur, J. P. Morrissey, J. Sun, J.
 F. Chen, J. Y. Ooi, Granular Matter 16 (2014) 383–400. The stiffnesses are k₁ (loading), k₂
 (unloading) and k_adh (adhesion). The exponent n is the same for all branches (1: linear, 3/2:
-Hertz-like). With the constant force f₀ ≤ 0, the largest indentation d = δ_max, the indentation δ_p
-at which the unloading force has fallen to f₀, the loading work W_l and the returned work W_u:
+Hertz-like). The constant force is f₀ ≤ 0 and the largest indentation d = δ_max. At δ_p the
+unloading force has fallen to f₀, and at δ_min the unloading branch meets the adhesive branch. The
+loading work is W_l, the work returned on unloading W_u, and the impact velocity V:
 
     loading     F = f₀ + k₁δⁿ
     unloading   F = f₀ + k₂(δⁿ − δ_pⁿ),  δ_p = (1 − k₁/k₂)^{1/n} d
@@ -15,12 +16,12 @@ at which the unloading force has fallen to f₀, the loading work W_l and the re
 
 The contact begins and ends at δ = 0, where the force jumps between f₀ and zero. Without adhesion
 (f₀ = 0, k_adh = 0) the contact ends at δ_p, where F = 0, and e does not depend on velocity:
-e² = [1 − (n + 1)q + n q^{1+1/n}] k₂/k₁ with q = 1 − k₁/k₂, which is k₁/k₂ for n = 1.
+e² = [1 − (n + 1)q + n q^{1+1/n}] k₂/k₁ with q = 1 − k₁/k₂. For n = 1, e² = k₁/k₂.
 
-k_adh is a constant here. Codes that derive k_adh from a surface energy (EDEM, PFC, LIGGGHTS'
-default) make it a function of δ_p, and the exponent of their adhesive branch (Morrissey's χ) may
-differ from n. The dashpot of the model is left out. The stiffnesses are parameters to be fitted; R*
-and E* do not enter.
+Here k_adh is a constant. Some codes (EDEM, PFC, LIGGGHTS by default) derive k_adh from a surface
+energy, so that it depends on δ_p. The exponent of their adhesive branch (Morrissey's χ) may differ
+from n. The dashpot of the model is left out. The stiffnesses are parameters to be fitted; R* and E*
+do not enter.
 Units, shapes and errors are those of `restitution.theory`, with stiffness in N/mⁿ.
 """
 
@@ -80,7 +81,7 @@ class EEPA:
         """Normal force on first loading.
 
         Args:
-            indentation: Approach of the spheres δ (m).
+            indentation: Approach δ of the spheres (m).
 
         Returns:
             Normal force F (N). It jumps from 0 to the constant force f₀ at first touch.
@@ -95,8 +96,8 @@ class EEPA:
         Above `maximum_indentation` the force is `loading_force`.
 
         Args:
-            indentation: Approach of the spheres δ (m).
-            maximum_indentation: Indentation at which unloading began, δ_max (m).
+            indentation: Approach δ of the spheres (m).
+            maximum_indentation: Indentation δ_max at which unloading began (m).
 
         Returns:
             Normal force F (N), negative if attractive.
@@ -112,7 +113,7 @@ class EEPA:
         """Indentation at which the force has fallen to the constant force f₀ on unloading.
 
         Args:
-            maximum_indentation: Indentation at which unloading began, δ_max (m).
+            maximum_indentation: Indentation δ_max at which unloading began (m).
 
         Returns:
             Residual indentation δ_p (m).
@@ -124,11 +125,11 @@ class EEPA:
         """Largest attractive force on unloading.
 
         Args:
-            maximum_indentation: Indentation at which unloading began, δ_max (m).
+            maximum_indentation: Indentation δ_max at which unloading began (m).
 
         Returns:
-            Magnitude k_adhδ_minⁿ − f₀ of the force (N), where δ_min is the indentation at which the
-            unloading branch meets the adhesive branch; 0 if `maximum_indentation` ≤ 0.
+            Magnitude k_adh δ_minⁿ − f₀ of the force (N), where δ_min is the indentation at which
+            the unloading branch meets the adhesive branch; 0 if `maximum_indentation` ≤ 0.
         """
         d, (k1, k2, k_adh) = touching(maximum_indentation), self._springs
         F_c = k_adh * (k2 - k1) / (k2 + k_adh) * d**self.exponent - self.constant_force
@@ -138,7 +139,7 @@ class EEPA:
         """Work done from first touch to an indentation on first loading.
 
         Args:
-            indentation: Approach of the spheres δ (m).
+            indentation: Approach δ of the spheres (m).
 
         Returns:
             Loading work W_l = ∫F dδ (J), negative where the constant force draws the bodies
@@ -151,7 +152,7 @@ class EEPA:
         """Work that the contact returns on unloading from `maximum_indentation` to δ = 0.
 
         Args:
-            maximum_indentation: Indentation at which unloading began, δ_max (m).
+            maximum_indentation: Indentation δ_max at which unloading began (m).
 
         Returns:
             Unloading work W_u (J), negative if the bodies stick.
@@ -166,9 +167,9 @@ class EEPA:
         """Largest indentation of an impact.
 
         The indentation is the root of W_l(δ) = K, where W_l is the loading work and K = ½m*V² the
-        impact energy. Two special cases bracket it: without the constant force f₀ the root is
-        a = ((n + 1) K/k₁)^{1/(n+1)}, and without impact energy it is b = (−(n + 1) f₀/k₁)^{1/n}.
-        In general the root lies between max(a, b) and a + b.
+        impact energy. k₁ is the loading stiffness, n the exponent and f₀ the constant force. For
+        f₀ = 0 the root is a = ((n + 1) K/k₁)^{1/(n+1)}, and for K = 0 it is
+        b = (−(n + 1) f₀/k₁)^{1/n}. In general the root lies between max(a, b) and a + b.
 
         Args:
             velocity: Relative normal impact velocity V (m/s).
@@ -194,8 +195,8 @@ class EEPA:
             mass: Reduced mass m* (kg).
 
         Returns:
-            Coefficient of restitution e = (W_u/W_l)^½ (dimensionless); 0 if the bodies stick, 1
-            at zero or negative velocity.
+            Coefficient of restitution e = (W_u/W_l)^½ (dimensionless), with the unloading work W_u
+            and the loading work W_l; 0 if the bodies stick, 1 at zero or negative velocity.
 
         Raises:
             CaseError: `mass` is not positive and finite.

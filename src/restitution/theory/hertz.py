@@ -45,7 +45,7 @@ class Hertz(PositiveFields):
         """Normal force at an indentation.
 
         Args:
-            indentation: Approach of the spheres δ (m).
+            indentation: Approach δ of the spheres (m).
 
         Returns:
             Normal force F = 4/3 E* R*^½ δ^{3/2} (N), positive in compression.
@@ -91,7 +91,7 @@ class Hertz(PositiveFields):
         """Contact radius at an indentation.
 
         Args:
-            indentation: Approach of the spheres δ (m).
+            indentation: Approach δ of the spheres (m).
 
         Returns:
             Contact radius a = (R*δ)^½ (m).
@@ -99,10 +99,12 @@ class Hertz(PositiveFields):
         return scalar_or_array(np.sqrt(self.radius * touching(indentation)))
 
     def contact_area(self, indentation: Values) -> Array:
-        """Contact area at an indentation: half the area in which undeformed spheres would overlap.
+        """Contact area at an indentation.
+
+        Undeformed spheres at the same approach would intersect in a circle of twice this area.
 
         Args:
-            indentation: Approach of the spheres δ (m).
+            indentation: Approach δ of the spheres (m).
 
         Returns:
             Contact area πa² = πR*δ (m²).
@@ -113,7 +115,7 @@ class Hertz(PositiveFields):
         """Elastic energy stored from first touch to an indentation.
 
         Args:
-            indentation: Approach of the spheres δ (m).
+            indentation: Approach δ of the spheres (m).
 
         Returns:
             Elastic energy W = ∫F dδ = 8/15 E* R*^½ δ^{5/2} (J).
@@ -126,7 +128,7 @@ class Hertz(PositiveFields):
         The impact energy ½ m* V² then equals the elastic energy stored at this indentation.
 
         Args:
-            indentation: Approach of the spheres δ (m).
+            indentation: Approach δ of the spheres (m).
             mass: Reduced mass m* (kg).
 
         Returns:
@@ -142,7 +144,7 @@ class Hertz(PositiveFields):
         """Pressure at the centre of the contact, 3/2 of the mean pressure.
 
         Args:
-            indentation: Approach of the spheres δ (m).
+            indentation: Approach δ of the spheres (m).
 
         Returns:
             Peak pressure p₀ = 2E*a/(πR*) (Pa), with the contact radius a.
@@ -158,7 +160,7 @@ class Hertz(PositiveFields):
 
         Args:
             radial_distance: Distance r from the axis (m); its sign does not matter.
-            indentation: Approach of the spheres δ (m).
+            indentation: Approach δ of the spheres (m).
 
         Returns:
             Pressure p(r) = p₀ (1 − r²/a²)^½ (Pa), with the peak pressure p₀ and the contact radius

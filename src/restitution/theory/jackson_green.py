@@ -1,8 +1,8 @@
 """Jackson & Green (2005): finite-element fit of an elastic, perfectly plastic sphere on a flat.
 
-R. L. Jackson, I. Green, J. Tribology 127 (2005) 343–354, doi 10.1115/1.1866166. With the contact
-modulus E* (their E′), the yield strength Y of a tensile test (their S_y), the indentation ω and
-ω* = ω/ω_c, the force P and the contact area A = πa² are:
+R. L. Jackson, I. Green, J. Tribology 127 (2005) 343–354, doi 10.1115/1.1866166. E* is the contact
+modulus (their E′), Y the yield strength of a tensile test (their S_y), ν Poisson's ratio, ω the
+indentation and ω* = ω/ω_c. The force P and the contact area A = πa² are:
 
     C = 1.295 exp(0.736 ν),  ω_c = (πCY/2E*)² R*,  P_c = 4/3 (R*/E*)² (πCY/2)³,  A_c = πR*ω_c
     ω* ≤ 1.9    P/P_c = ω*^{3/2},  A/A_c = ω*: Hertz, although yield begins inside at ω* = 1
@@ -17,8 +17,8 @@ The fit covers only loading against a rigid frictionless flat. Its data are fini
 for five steel-like materials (Y/E* from 0.001 to 0.007, ν = 0.32; von Mises, no hardening) up to
 a/R* = 0.412. The force deviates from these results by 1 % on average and by at most 3.5 %, the area
 by 1.3 % on average and by at most 4.3 %. Outside these ranges the fit extrapolates. At ω* = 1.9 the
-forces of the two branches agree within 0.1 % for ν = 0.32. For other values of ν the force jumps
-there: by +7.5 % for ν = 0, +1.5 % for ν = 0.25 and −3.4 % for ν = 0.5. For two deformable bodies
+forces of the two branches agree within 0.1 % for ν = 0.32. For other values of ν the force jumps at
+ω* = 1.9: by +7.5 % for ν = 0, +1.5 % for ν = 0.25 and −3.4 % for ν = 0.5. For two deformable bodies
 use Y and ν of the body with the smaller CY.
 Units, shapes and errors are those of `restitution.theory`.
 """
@@ -35,7 +35,7 @@ from .hertz import Hertz
 from .yielding import FirstYield, yield_coefficient
 
 TRANSITION = 1.9
-"""Normalised indentation ω* = ω/ω_c up to which the fit equals Hertz."""
+"""Indentation relative to first yield, ω* = ω/ω_c, up to which the fit equals Hertz."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +75,7 @@ class JacksonGreen:
 
     @cached_property
     def first_yield(self) -> FirstYield:
-        """First yield, which begins below the surface at the peak pressure C Y."""
+        """First yield below the surface, at the peak pressure C Y (see `yield_coefficient`)."""
         p_c = yield_coefficient(self.poissons_ratio) * self.yield_strength
         return FirstYield(self.radius, self.contact_modulus, p_c)
 
@@ -83,7 +83,7 @@ class JacksonGreen:
         """Contact area on first loading.
 
         Args:
-            indentation: Approach of the spheres δ (m).
+            indentation: Approach δ of the spheres (m).
 
         Returns:
             Contact area A (m²).
@@ -93,10 +93,12 @@ class JacksonGreen:
         return self.elastic.contact_area(indentation) * (deep / TRANSITION) ** B
 
     def contact_radius(self, indentation: Values) -> Array:
-        """Contact radius on first loading; the range of the fit is a ≤ 0.412 R*.
+        """Contact radius on first loading.
+
+        The finite-element data of the fit end at 0.412 R*.
 
         Args:
-            indentation: Approach of the spheres δ (m).
+            indentation: Approach δ of the spheres (m).
 
         Returns:
             Contact radius a (m).
@@ -106,8 +108,8 @@ class JacksonGreen:
     def hardness(self, contact_radius: Values) -> Array:
         """Mean contact pressure of fully plastic flow.
 
-        It is 2.84 times the yield strength in the limit of small contacts, and decreases as the
-        contact radius grows.
+        This pressure is 2.84 times the yield strength in the limit of small contacts. It decreases
+        as the contact radius grows.
 
         Args:
             contact_radius: Contact radius a (m).
@@ -115,7 +117,7 @@ class JacksonGreen:
         Returns:
             Mean pressure H_G (Pa).
         """
-        with np.errstate(divide="ignore"):  # for a = 0, the exponential is exp(−∞) = 0
+        with np.errstate(divide="ignore"):  # a = 0 gives exp(−∞) = 0
             share = -np.expm1(-0.82 * (touching(contact_radius) / self.radius) ** -0.7)
         return scalar_or_array(2.84 * self.yield_strength * share)
 
@@ -123,7 +125,7 @@ class JacksonGreen:
         """Normal force on first loading.
 
         Args:
-            indentation: Approach of the spheres δ (m).
+            indentation: Approach δ of the spheres (m).
 
         Returns:
             Normal force P (N).

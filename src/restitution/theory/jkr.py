@@ -2,15 +2,16 @@
 
 K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. Lond. A 324 (1971) 301–313, doi
 10.1098/rspa.1971.0141; D. Maugis, *Contact, Adhesion and Rupture of Elastic Solids*, Springer 2000.
-With the work of adhesion w, the contact is a Hertz contact minus an adhering flat punch (`kendall`)
-of the same contact radius a:
+The force and the indentation are those of a Hertz contact, minus those at which an adhering flat
+punch of the same contact radius a detaches (`kendall`). With the work of adhesion w:
 
     F = 4E*a³/(3R*) − (8πE*wa³)^½,   δ = a²/R* − (2πwa/E*)^½
 
 Forces are positive in compression, except `pull_off_force`, which is a magnitude; δ is positive
-when the contact is compressed. The contact radius at the break is a_b = (πwR*²/8E*)^{1/3}, and the
-pull-off force is F_c = 3/2 πwR*. With the unit of energy U = E*a_b⁵/R*², the indentation δ, the
-force F, the elastic energy U_el and the total energy U_T are polynomials in s = (a/a_b)^½:
+when the contact is compressed. At fixed grips (prescribed δ) the contact breaks at the radius
+a_b = (πwR*²/8E*)^{1/3}; at fixed load it detaches at the tension F_c = 3/2 πwR*, the pull-off
+force. With the unit of energy U = E*a_b⁵/R*², the indentation δ, the force F, the elastic energy
+U_el and the total energy U_T are polynomials in s = (a/a_b)^½:
 
     δ = (s⁴ − 4s) a_b²/R*,   F = (s⁶ − 6s³) F_c/9
     U_el/U = 8/15 s¹⁰ − 16/3 s⁷ + 16 s⁴,   U_T = U_el − wπa² = U_el − 8 s⁴ U,   dU_T = F dδ
@@ -20,8 +21,8 @@ force F, the elastic energy U_el and the total energy U_T are polynomials in s =
     s³ = 4    δ = 0, where approaching spheres jump into contact:  F = −8/9 F_c
     s³ = 6    no load:  a = (9πwR*²/2E*)^{1/3}
 
-At fixed grips (prescribed δ) the branch s ≥ 1 is stable and the branch s < 1 unstable. Methods that
-take the contact radius hold on both branches; methods that take the indentation hold on the stable
+At fixed grips the branch s ≥ 1 is stable and the branch s < 1 unstable. Methods with the argument
+`contact_radius` cover both branches; methods with the argument `indentation` cover the stable
 branch. The stable branch exists for δ ≥ δ_b. Approaching spheres jump onto this branch at δ = 0
 (F = 0 before the jump), and separating spheres leave it at δ_b; below δ_b all quantities are 0. The
 jump into contact and the break together dissipate the same energy for any largest indentation:
@@ -36,20 +37,21 @@ the sticking velocity V_s:
 
     ½ m* V_s² = W_s:  V_s = (14.18/m*)^½ (w⁵R*⁴/E*²)^{1/6},   e² = 1 − (V_s/V)², 0 for V ≤ V_s
 
-(the same authors print 14.18; the exact value 2 × 7.092 = 14.184 is used here).
+(Thornton & Ning print 14.18; the exact value 2 × 7.092 = 14.184 is used here).
 
 Valid for quasi-static normal impacts in the range of Hertz (a ≪ R*, no yield: V and V_s below
-`FirstYield.velocity`) and for surface forces of short range, that is for a large Tabor parameter
+`FirstYield.velocity`) and for surface forces of short range. The range z₀ is short if the Tabor
+parameter μ, the ratio of the height of the JKR neck to z₀, is large (D. Tabor, J. Colloid Interface
+Sci. 58 (1977) 2–13):
 
     μ = (R*w²/(E*²z₀³))^{1/3}
 
-(D. Tabor, J. Colloid Interface Sci. 58 (1977) 2–13), the ratio of the height of the JKR neck to the
-range z₀ of the forces. JKR holds for μ > 5; for μ < 0.1 the contact follows DMT or the spheres are
-rigid (Johnson & Greenwood, J. Colloid Interface Sci. 192 (1997) 326–333). As μ grows, the pull-off
-force approaches its JKR value long before the jump into contact does, because forces of finite
-range act before first touch. So a larger μ is needed for an accurate W_s than for an accurate
-pull-off force (Ciavarella, Greenwood & Barber, J. Mech. Phys. Solids 98 (2017) 236–244). Small hard
-particles have a small μ, and their sticking velocity is below V_s.
+JKR holds for μ > 5. For μ < 0.1 the contact follows the theory of Derjaguin, Muller and Toporov
+(DMT), or the spheres are rigid (Johnson & Greenwood, J. Colloid Interface Sci. 192 (1997) 326–333).
+As μ grows, the pull-off force approaches its JKR value long before the jump into contact does,
+because forces of finite range act before first touch. So a larger μ is needed for an accurate W_s
+than for an accurate pull-off force (Ciavarella, Greenwood & Barber, J. Mech. Phys. Solids 98 (2017)
+236–244). Small hard particles have a small μ, and their sticking velocity is below V_s.
 Units, shapes and errors are those of `restitution.theory`.
 """
 
@@ -102,7 +104,7 @@ class JKR(PositiveFields):
         δ = 0.
 
         Args:
-            indentation: Approach of the spheres δ (m).
+            indentation: Approach δ of the spheres (m).
 
         Returns:
             Normal force F (N), positive in compression; 0 below `break_indentation`.
@@ -114,7 +116,7 @@ class JKR(PositiveFields):
         """Contact radius at an indentation, on the branch that is stable at fixed grips.
 
         Args:
-            indentation: Approach of the spheres δ (m).
+            indentation: Approach δ of the spheres (m).
 
         Returns:
             Contact radius a (m), at least `break_radius`; 0 below `break_indentation`.
@@ -197,7 +199,7 @@ class JKR(PositiveFields):
 
     @cached_property
     def break_radius(self) -> Array:
-        """Contact radius a_b = (πwR*²/8E*)^{1/3} (m) at the break; no stable radius is smaller."""
+        """Contact radius a_b = (πwR*²/8E*)^{1/3} (m) at the break, the smallest stable radius."""
         R, E_star, w = self.radius, self.contact_modulus, self.work_of_adhesion
         return scalar_or_array(np.cbrt(np.pi / 8 * w * R**2 / E_star))
 
@@ -218,7 +220,7 @@ class JKR(PositiveFields):
 
     @property
     def adhesive_length(self) -> Array:
-        """Height h = (w²R*/E*²)^{1/3} (m) of the neck; `break_indentation` is −1.61 h."""
+        """Height h = (w²R*/E*²)^{1/3} (m) of the adhesive neck; `break_indentation` is −1.61 h."""
         R, E_star, w = self.radius, self.contact_modulus, self.work_of_adhesion
         return scalar_or_array((w * w * R / E_star**2) ** (1 / 3))
 
@@ -226,7 +228,7 @@ class JKR(PositiveFields):
         """Work from the jump into contact at δ = 0 to an indentation.
 
         Args:
-            indentation: Approach of the spheres δ (m).
+            indentation: Approach δ of the spheres (m).
 
         Returns:
             Loading work W_l = ∫F dδ (J), negative at small indentation, where adhesion draws the
@@ -241,7 +243,7 @@ class JKR(PositiveFields):
         For δ ≥ 0 this work equals `loading_work` minus `hysteresis_loss`.
 
         Args:
-            indentation: Approach of the spheres δ (m).
+            indentation: Approach δ of the spheres (m).
 
         Returns:
             Unloading work W_u = ∫F dδ from the break to δ (J), negative if separation consumes
@@ -265,7 +267,7 @@ class JKR(PositiveFields):
         The impact energy ½ m* V² then equals the loading work up to this indentation.
 
         Args:
-            maximum_indentation: Largest indentation of the impact δ_max (m).
+            maximum_indentation: Largest indentation δ_max of the impact (m).
             mass: Reduced mass m* (kg).
 
         Returns:
@@ -315,11 +317,12 @@ class JKR(PositiveFields):
         """Coefficient of restitution after loading to `maximum_indentation`.
 
         Args:
-            maximum_indentation: Indentation at which unloading began, δ_max (m).
+            maximum_indentation: Indentation δ_max at which unloading began (m).
 
         Returns:
-            Coefficient of restitution e = (W_u/W_l)^½ (dimensionless); 0 if W_u ≤ 0 (the spheres
-            stick), 1 at zero or negative indentation.
+            Coefficient of restitution e = (W_u/W_l)^½ (dimensionless), with the unloading work W_u
+            and the loading work W_l; 0 if W_u ≤ 0 (the spheres stick), 1 at zero or negative
+            indentation.
         """
         W_l, W_s = self.loading_work(maximum_indentation), self.hysteresis_loss
         e = (1 - W_s / np.maximum(W_l, W_s)) ** 0.5

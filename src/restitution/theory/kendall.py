@@ -1,15 +1,15 @@
 """Kendall (1971): a flat circular punch that adheres to an elastic half-space.
 
 K. Kendall, J. Phys. D: Appl. Phys. 4 (1971) 1186–1195, doi 10.1088/0022-3727/4/8/320. The contact
-radius a is fixed, so the punch is a spring of stiffness 2E*a. Its rim is a crack with energy
+radius a is fixed, so the contact is a spring of stiffness 2E*a. Its rim is a crack with energy
 release rate F²/(8πE*a³). The punch detaches when this rate reaches the work of adhesion w:
 
     F = (8πE*wa³)^½,   displacement F/(2E*a) = (2πwa/E*)^½.
 
 The whole contact detaches at once, because crack growth raises the energy release rate. F grows as
 a^{3/2}, so the mean tension F/(πa²) at detachment decreases with a. The work up to detachment,
-½F²/(2E*a) = 2πwa², is twice the surface energy πwa² of the contact; the other half is dissipated.
-In JKR theory (`jkr`), this force and this displacement are subtracted from the force and the
+½F²/(2E*a) = 2πwa², is twice the surface energy πwa² of the contact; half of this work is
+dissipated. JKR theory (`jkr`) subtracts this force and this displacement from the force and the
 indentation of a Hertz contact of the same radius.
 
 Valid under four conditions:

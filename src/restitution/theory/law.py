@@ -1,4 +1,4 @@
-"""The interface that impact laws share, and restitution and energy computed from velocity."""
+"""The interface of impact laws, the impact energy, and the restitution from unloading work."""
 
 from __future__ import annotations
 

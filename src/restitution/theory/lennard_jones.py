@@ -67,8 +67,8 @@ class LennardJones(PositiveFields):
             gap: Gap g between the surfaces (m), positive.
 
         Returns:
-            Energy per area (J/m²), minus the work of adhesion at the equilibrium separation and 0
-            at infinity.
+            Energy per area (J/m²). At the equilibrium separation it is −w, where w is the work of
+            adhesion; at infinity it is 0.
         """
         x2 = self._ratio(gap) ** 2
         return scalar_or_array(-self.work_of_adhesion * x2 * (4 - x2**3) / 3)

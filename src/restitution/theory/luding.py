@@ -1,14 +1,15 @@
 """Luding (2008): linear springs with plastic loading, an elastic limit and linear adhesion.
 
 S. Luding, Granular Matter 10 (2008) 235–246, eqs. 6–8; the limit branch as given by A. Singh, V.
-Magnanimo, S. Luding, arXiv:1503.03720. The stiffnesses are k₁ (plastic loading), k̂₂ (the elastic
-limit) and k_c (adhesion), and φ_f is the plasticity depth. With the largest indentation d = δ_max,
-x = d/δ*, the unloading stiffness k₂, the residual indentation δ₀, the loading work W_l and the
-returned work W_u:
+Magnanimo, S. Luding, arXiv:1503.03720. The constants are the stiffnesses k₁ (plastic loading), k̂₂
+(elastic limit) and k_c (adhesion), and the plasticity depth φ_f. Beyond the indentation δ*, loading
+is elastic. After loading to the largest indentation d = δ_max, with x = d/δ*, the unloading
+stiffness is k₂ and the residual indentation δ₀. The loading work is W_l, the work returned on
+unloading W_u, and the impact velocity V:
 
     limit       δ* = k̂₂/(k̂₂ − k₁) φ_f 2R*,  with the residual indentation δ₀* = φ_f 2R*
     unloading   F = k₂(δ − δ₀),  k₂ = k₁ + (k̂₂ − k₁) min(x, 1),  δ₀ = min((1 − k₁/k₂) d, δ₀*)
-    loading     F = k₁δ up to δ*, then the limit F = k̂₂(δ − δ₀*): both are k₂(δ − δ₀) at δ = d
+    loading     F = k₁δ up to δ*, then F = k̂₂(δ − δ₀*); at δ = d, F = k₂(δ − δ₀) in both cases
     adhesion    F ≥ −k_cδ, reached at δ_min = k₂δ₀/(k₂ + k_c); from there F = −k_cδ to δ = 0
     work        W_l = ½k₂(d − δ₀)² + ½k₁ min(d, δ*) δ₀,  W_u = ½k₂(d − δ₀)² − ½ k_cδ_minδ₀
     impact      ½ m* V² = W_l, e² = W_u/W_l; if W_u ≤ 0, e = 0: the bodies stick at some δ > 0
@@ -50,7 +51,7 @@ class Luding:
     Attributes:
         radius: Reduced radius R* (m).
         loading_stiffness: Stiffness k₁ of plastic loading (N/m).
-        limit_stiffness: Stiffness k̂₂ of the elastic limit (N/m), at least k₁. If both are equal,
+        limit_stiffness: Stiffness k̂₂ of the elastic limit (N/m), at least k₁. If it equals k₁,
             the law is elastic.
         adhesive_stiffness: Stiffness k_c of the adhesive branch (N/m), at least 0.
         plasticity_depth: Plasticity depth φ_f (dimensionless): the largest residual indentation
@@ -88,7 +89,7 @@ class Luding:
         """Normal force on first loading: plastic up to `limit_indentation`, then elastic.
 
         Args:
-            indentation: Approach of the spheres δ (m).
+            indentation: Approach δ of the spheres (m).
 
         Returns:
             Normal force F (N), first k₁δ with the loading stiffness k₁ and then k̂₂(δ − δ₀*) with
@@ -104,11 +105,12 @@ class Luding:
         Above `maximum_indentation` the force is `loading_force`.
 
         Args:
-            indentation: Approach of the spheres δ (m).
-            maximum_indentation: Indentation at which unloading began, δ_max (m).
+            indentation: Approach δ of the spheres (m).
+            maximum_indentation: Indentation δ_max at which unloading began (m).
 
         Returns:
-            Normal force F (N), negative (attractive) below `residual_indentation`.
+            Normal force F (N). Below `residual_indentation` it is negative (attractive), or 0 if
+            the adhesive stiffness is 0.
         """
         d = touching(indentation)
         k2, d0 = self._unloading_line(maximum_indentation)
@@ -121,7 +123,7 @@ class Luding:
         """Indentation at which the force is zero on unloading.
 
         Args:
-            maximum_indentation: Indentation at which unloading began, δ_max (m).
+            maximum_indentation: Indentation δ_max at which unloading began (m).
 
         Returns:
             Residual indentation δ₀ (m).
@@ -132,7 +134,7 @@ class Luding:
         """Largest attractive force on unloading.
 
         Args:
-            maximum_indentation: Indentation at which unloading began, δ_max (m).
+            maximum_indentation: Indentation δ_max at which unloading began (m).
 
         Returns:
             Magnitude k_cδ_min of the force (N), with the adhesive stiffness k_c and the indentation
@@ -144,12 +146,12 @@ class Luding:
     def loading_work(self, indentation: Values) -> Array:
         """Work done from first touch to an indentation on first loading.
 
-        With the unloading stiffness k₂ and the residual indentation δ₀, the part ½k₂(δ − δ₀)² of
-        the work is elastic. With the loading stiffness k₁ and the limit indentation δ*, the part
-        ½k₁ min(δ, δ*) δ₀ is dissipated.
+        The elastic part of the work is ½k₂(δ − δ₀)², with the unloading stiffness k₂ and the
+        residual indentation δ₀. The dissipated part is ½k₁ min(δ, δ*) δ₀, with the loading
+        stiffness k₁ and the limit indentation δ*.
 
         Args:
-            indentation: Approach of the spheres δ (m).
+            indentation: Approach δ of the spheres (m).
 
         Returns:
             Loading work W_l = ∫F dδ (J).
@@ -163,7 +165,7 @@ class Luding:
         """Work that the contact returns on unloading from `maximum_indentation` to δ = 0.
 
         Args:
-            maximum_indentation: Indentation at which unloading began, δ_max (m).
+            maximum_indentation: Indentation δ_max at which unloading began (m).
 
         Returns:
             Unloading work W_u (J), negative if the bodies stick.
@@ -205,8 +207,8 @@ class Luding:
             mass: Reduced mass m* (kg).
 
         Returns:
-            Coefficient of restitution e = (W_u/W_l)^½ (dimensionless); 0 if the bodies stick, 1
-            at zero or negative velocity.
+            Coefficient of restitution e = (W_u/W_l)^½ (dimensionless), with the unloading work W_u
+            and the loading work W_l; 0 if the bodies stick, 1 at zero or negative velocity.
 
         Raises:
             CaseError: `mass` is not positive and finite.
@@ -225,7 +227,10 @@ class Luding:
         return touching(indentation) * rise / self._limit_residual
 
     def _unloading_line(self, maximum_indentation: Values) -> tuple[Array, Array]:
-        """Unloading stiffness k₂ (N/m) and residual indentation δ₀ (m) after first loading."""
+        """Unloading stiffness k₂ (N/m) and residual indentation δ₀ (m).
+
+        Both hold for unloading from `maximum_indentation` (m).
+        """
         d, k1 = touching(maximum_indentation), self.loading_stiffness
         k2 = k1 + (self.limit_stiffness - k1) * np.minimum(self._depth(d), 1.0)
         return k2, np.minimum((1 - k1 / k2) * d, self._limit_residual)

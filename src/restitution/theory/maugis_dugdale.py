@@ -28,11 +28,11 @@ import numpy as np
 from ._inputs import Array, PositiveFields, Values, scalar_or_array
 from ._roots import increasing_root
 
-# Upper limit of the search for the normalised contact radius ā at pull-off, where ā is always below
+# Upper limit of the search for the normalised contact radius ā at pull-off. This radius is below
 # 1.15, its value in the JKR limit.
 _LARGEST_RADIUS = 2.0
 _GOLDEN = 0.5 * (5**0.5 - 1)
-_SECTIONS = 60  # number of golden sections in this search
+_SECTIONS = 60  # number of steps of this golden-section search
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +61,7 @@ class MaugisDugdale(PositiveFields):
 
     @property
     def transition_parameter(self) -> Array:
-        """Maugis' transition parameter λ = 2σ₀ (R*/(πwK²))^{1/3}, dimensionless; K = 4/3 E*."""
+        """Maugis' transition parameter λ = 2σ₀ (R*/(πwK²))^{1/3} (dimensionless), K = 4/3 E*."""
         w, K = self.work_of_adhesion, 4 / 3 * np.asarray(self.contact_modulus)
         return scalar_or_array(2 * self.traction * np.cbrt(self.radius / (np.pi * w * K**2)))
 

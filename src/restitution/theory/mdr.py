@@ -2,7 +2,9 @@
 
 W. Zunker, K. Kamrin, J. Mech. Phys. Solids 183 (2024) 105492, as implemented in the source of
 LAMMPS (release 22Jul2025): one sphere of radius R on a rigid flat, here without adhesion
-(`dgamma` = 0) and without damping. With x = δ_max/R, E* = E/(1 − ν²) and G = E/(2 + 2ν):
+(`dgamma` = 0) and without damping. E is Young's modulus, ν Poisson's ratio and Y the yield strength
+of a tensile test. δ, R and m belong to the one sphere, and V is its impact velocity. With
+x = δ_max/R, E* = E/(1 − ν²) and G = E/(2 + 2ν):
 
     pressure    p_Y = Y (1 + 1.75 exp(−4.4x)), the mean pressure of the yielded contact
     yield       at δ_Y, where Hertz's mean pressure 4E*(δ/R)^½/3π reaches p_Y
@@ -17,11 +19,9 @@ LAMMPS (release 22Jul2025): one sphere of radius R on a rigid flat, here without
     work        W_u = (1 + δ_R/d) 8p_Y²a³/3E*;  W_l = ∫F dδ by quadrature
     impact      ½ m V² = W_l, e² = W_u/W_l; the contact ends where F returns to zero
 
-Y is the yield strength of a tensile test. The contact stays elastic up to a mean pressure of almost
-2.75 Y (a peak of 4.1 Y) and is then fully plastic at once. δ, R and m are those of one sphere.
-LAMMPS puts a rigid flat between two spheres: the impact of two equal spheres at relative velocity V
-is two impacts on a flat at V/2, each with the radius and mass of one sphere. The law cannot
-describe a deformable flat.
+The contact stays elastic up to a mean pressure of almost 2.75 Y (a peak of 4.1 Y) and is then fully
+plastic at once. LAMMPS puts a rigid flat between two spheres: if two equal spheres collide, each of
+them hits the flat with half of the relative velocity. The law cannot describe a deformable flat.
 
 At yield the rebound changes abruptly from Hertz to the elliptical indenter: e drops from 1 by at
 least 5 % (more for a larger Y/E*), rises a little, and then decreases with V. LAMMPS does the same.
@@ -32,7 +32,7 @@ These parts of the LAMMPS implementation are left out:
 - Below δ_Y, LAMMPS uses an ellipse in place of Hertz's parabola.
 - Spheres confined on all sides have a bulk response.
 
-The first two have relative order δ/R; they change e by 10⁻⁴ at δ = 0.01 R.
+The first two effects are of relative order δ/R; they change e by 10⁻⁴ at δ = 0.01 R.
 
 The result is NaN for δ > R.
 Units, shapes and errors are those of `restitution.theory`.
@@ -97,10 +97,10 @@ class MDR:
     def yield_pressure(self, indentation: Values) -> Array:
         """Mean pressure of the yielded contact.
 
-        It falls as the indentation grows, from 2.75 times the yield strength towards this strength.
+        As the indentation grows, the pressure falls from 2.75 times the yield strength Y towards Y.
 
         Args:
-            indentation: Indentation of the sphere δ (m).
+            indentation: Indentation δ of the sphere (m).
 
         Returns:
             Mean pressure p_Y (Pa).
@@ -112,7 +112,8 @@ class MDR:
     def yield_indentation(self) -> Array:
         """Indentation δ_Y (m) at which the mean Hertz pressure reaches `yield_pressure`.
 
-        It is s²R, where s is the root of s = c (1 + 1.75 exp(−4.4s²)) with c = 3πY/4E*.
+        With the contact modulus E*, δ_Y = s²R, where s is the root of
+        s = c (1 + 1.75 exp(−4.4s²)) with c = 3πY/4E*.
         """
         nu = self.poissons_ratio
         c = 0.75 * np.pi * self.yield_strength * (1 - nu**2) / self.youngs_modulus
@@ -123,7 +124,7 @@ class MDR:
         """Normal force on first loading.
 
         Args:
-            indentation: Indentation of the sphere δ (m).
+            indentation: Indentation δ of the sphere (m).
 
         Returns:
             Normal force F (N); NaN if the indentation exceeds the radius of the sphere.
@@ -137,7 +138,7 @@ class MDR:
         Gauss–Legendre quadrature.
 
         Args:
-            indentation: Indentation of the sphere δ (m).
+            indentation: Indentation δ of the sphere (m).
 
         Returns:
             Loading work W_l = ∫F dδ (J); NaN if the indentation exceeds the radius of the sphere.
@@ -150,8 +151,8 @@ class MDR:
         Above `maximum_indentation` the force is `loading_force`.
 
         Args:
-            indentation: Indentation of the sphere δ (m).
-            maximum_indentation: Indentation at which unloading began, δ_max (m).
+            indentation: Indentation δ of the sphere (m).
+            maximum_indentation: Indentation δ_max at which unloading began (m).
 
         Returns:
             Normal force F (N); 0 at and below `residual_indentation`, NaN if an indentation exceeds
@@ -168,7 +169,7 @@ class MDR:
         """Indentation at which unloading ends.
 
         Args:
-            maximum_indentation: Indentation at which unloading began, δ_max (m).
+            maximum_indentation: Indentation δ_max at which unloading began (m).
 
         Returns:
             Residual indentation (m), which is δ_max minus the elastic recovery; 0 up to yield.
@@ -180,7 +181,7 @@ class MDR:
         """Work that the contact returns on unloading from `maximum_indentation` to separation.
 
         Args:
-            maximum_indentation: Indentation at which unloading began, δ_max (m).
+            maximum_indentation: Indentation δ_max at which unloading began (m).
 
         Returns:
             Unloading work W_u (J); up to yield it equals the loading work.
@@ -214,8 +215,9 @@ class MDR:
             mass: Mass m of the sphere (kg).
 
         Returns:
-            Coefficient of restitution e = (W_u/W_l)^½ (dimensionless); 1 up to yield, NaN if the
-            indentation would exceed the radius of the sphere.
+            Coefficient of restitution e = (W_u/W_l)^½ (dimensionless), with the unloading work W_u
+            and the loading work W_l; 1 up to yield, NaN if the indentation would exceed the radius
+            of the sphere.
 
         Raises:
             CaseError: `mass` is not positive and finite.
@@ -225,7 +227,7 @@ class MDR:
         return scalar_or_array(np.where(d <= d_Y, 1.0, np.minimum(e, 1.0)))
 
     def _inside(self, indentation: Values) -> Array:
-        """Indentation δ (m) with negative values set to zero, values above the radius to NaN."""
+        """Indentation δ (m), with negative values set to 0 and values above the radius to NaN."""
         d = touching(indentation)
         return np.where(d > self.radius, np.nan, d)
 

@@ -3,8 +3,8 @@
 `AdhesiveThorntonNing` adds adhesion. C. Thornton, Z. Ning, Powder Technology 99 (1998) 154–162; the
 plastic law is that of Thornton, J. Appl. Mech. 64 (1997) 383–386. The Hertz pressure is truncated
 at the yield pressure p_y without restoring equilibrium, so the contact radius a still follows
-a² = R*δ. The index y marks values at first yield. With the indentation x = δ/δ_y, the force
-f = F/F_y and the works W in units of F_y δ_y:
+a² = R*δ. The index y marks values at first yield. The relative indentation is x = δ/δ_y and the
+relative force f = F/F_y. The works W are in units of F_y δ_y:
 
     loading     f = x^{3/2} for x ≤ 1, then the tangent  f = (3x − 1)/2,  F = F_y + πp_yR*(δ − δ_y)
                 W_l = ⅖ x^{5/2} for x ≤ 1, then  W_l = ⅖ + (x − 1) + ¾ (x − 1)²
@@ -18,7 +18,7 @@ x to v exactly.
 
 Valid for quasi-static, normal, frictionless impacts of smooth spheres with a ≪ R*. Up to yield the
 law is Hertz. Beyond yield its force is smaller than that of a contact in equilibrium at the same
-p_y. The difference grows with depth, because the area of a yielded contact tends to 2πR*δ whereas
+p_y. The difference grows with depth: the area of a real yielded contact tends to 2πR*δ, whereas
 this law keeps the area πR*δ. p_y is a contact pressure, as in `FirstYield`, and not the yield
 strength.
 Units, shapes and errors are those of `restitution.theory`.
@@ -73,7 +73,7 @@ class ThorntonNing(PositiveFields):
         """Normal force on first loading: Hertz up to first yield, then the tangent at first yield.
 
         Args:
-            indentation: Approach of the spheres δ (m).
+            indentation: Approach δ of the spheres (m).
 
         Returns:
             Normal force F (N).
@@ -98,7 +98,7 @@ class ThorntonNing(PositiveFields):
         """Work done from first touch to an indentation on first loading.
 
         Args:
-            indentation: Approach of the spheres δ (m).
+            indentation: Approach δ of the spheres (m).
 
         Returns:
             Loading work W_l = ∫F dδ (J).
@@ -116,7 +116,7 @@ class ThorntonNing(PositiveFields):
         in which the bracket is the square of the contact radius.
 
         Args:
-            maximum_indentation: Indentation at which unloading began, δ_max (m).
+            maximum_indentation: Indentation δ_max at which unloading began (m).
 
         Returns:
             Reduced radius R_p (m); R* up to yield.
@@ -128,14 +128,15 @@ class ThorntonNing(PositiveFields):
         """Indentation at which unloading ends.
 
         Args:
-            maximum_indentation: Indentation at which unloading began, δ_max (m).
+            maximum_indentation: Indentation δ_max at which unloading began (m).
 
         Returns:
             Residual indentation δ_p (m); 0 up to yield.
         """
         x = self._yielded(maximum_indentation)
         s = x**0.5
-        # This equals x − f/s with f = (3s² − 1)/2; the factored form avoids cancellation at yield.
+        # The factor after δ_y equals x − f/s with the relative force f = (3s² − 1)/2. The form used
+        # here avoids cancellation at yield.
         return self.first_yield.indentation * ((x - 1) / (s + 1)) ** 2 * (s + 0.5) / s
 
     def unloading_force(self, indentation: Values, maximum_indentation: Values) -> Array:
@@ -144,8 +145,8 @@ class ThorntonNing(PositiveFields):
         Above `maximum_indentation` the force is `loading_force`.
 
         Args:
-            indentation: Approach of the spheres δ (m).
-            maximum_indentation: Indentation at which unloading began, δ_max (m).
+            indentation: Approach δ of the spheres (m).
+            maximum_indentation: Indentation δ_max at which unloading began (m).
 
         Returns:
             Normal force F (N); 0 at and below `residual_indentation`.
@@ -161,7 +162,7 @@ class ThorntonNing(PositiveFields):
         """Work that the contact returns on unloading from `maximum_indentation` to separation.
 
         Args:
-            maximum_indentation: Indentation at which unloading began, δ_max (m).
+            maximum_indentation: Indentation δ_max at which unloading began (m).
 
         Returns:
             Unloading work W_u (J); up to yield it equals the loading work.
@@ -179,7 +180,7 @@ class ThorntonNing(PositiveFields):
         The impact energy ½ m* V² then equals the loading work up to this indentation.
 
         Args:
-            maximum_indentation: Largest indentation of the impact δ_max (m).
+            maximum_indentation: Largest indentation δ_max of the impact (m).
             mass: Reduced mass m* (kg).
 
         Returns:
@@ -217,9 +218,9 @@ class ThorntonNing(PositiveFields):
 
         Above the yield velocity V_y, with q = V_y/V,
 
-            e = (6√3/5)^½ (1 − q²/6)^½ [q/(q + 2(6/5 − q²/5)^½)]^¼,
+            e = (6√3/5)^½ (1 − q²/6)^½ [q/(q + 2(6/5 − q²/5)^½)]^¼.
 
-        which tends to 1.185 q^¼ at high velocity.
+        At high velocity e tends to 1.185 q^¼.
 
         Args:
             velocity: Relative normal impact velocity V (m/s).
@@ -243,7 +244,7 @@ class ThorntonNing(PositiveFields):
         The result equals `restitution` at the velocity `impact_velocity(maximum_indentation, …)`.
 
         Args:
-            maximum_indentation: Indentation at which unloading began, δ_max (m).
+            maximum_indentation: Indentation δ_max at which unloading began (m).
 
         Returns:
             Coefficient of restitution e (dimensionless); 1 up to yield.
@@ -262,5 +263,5 @@ class ThorntonNing(PositiveFields):
 
 
 def _line(x: Array) -> Array:
-    """Force beyond yield, which is linear in the indentation `x`; both relative to first yield."""
+    """Force beyond yield, linear in the indentation `x`; both are divided by values at yield."""
     return (3 * x - 1) / 2

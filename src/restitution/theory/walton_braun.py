@@ -9,7 +9,7 @@ and reloading have a larger stiffness k₂, which may grow with the largest forc
 
 Here k_u and S are constants, δ_max is the largest indentation, and unloading ends at the residual
 indentation δ₀. The paper uses two special cases. With S = 0 the unloading stiffness is constant and
-e = (k₁/k_u)^½ at any velocity. With k_u = k₁ the stiffness varies and
+e = (k₁/k_u)^½ at any velocity. With k_u = k₁ the unloading stiffness grows from k₁ and
 e = (1 + S V (m*/k₁)^½)^{−½}; the paper writes (m*/k₁)^½ as 1/ω₀ with ω₀ = (2k₁/m)^½, for two equal
 spheres of mass m.
 
@@ -43,8 +43,8 @@ class WaltonBraun:
 
     Attributes:
         loading_stiffness: Stiffness k₁ of first loading (N/m).
-        unloading_stiffness: Unloading stiffness k_u (N/m) after loading to a vanishing force, at
-            least k₁.
+        unloading_stiffness: Unloading stiffness k_u (N/m) in the limit of small forces, at least
+            k₁.
         hardening: Increase S of the unloading stiffness with the largest force (1/m, which is N/m
             per N), at least 0.
 
@@ -68,7 +68,7 @@ class WaltonBraun:
         """Normal force on first loading.
 
         Args:
-            indentation: Approach of the spheres δ (m).
+            indentation: Approach δ of the spheres (m).
 
         Returns:
             Normal force F = k₁δ (N).
@@ -81,8 +81,8 @@ class WaltonBraun:
         Above `maximum_indentation` the force is `loading_force`.
 
         Args:
-            indentation: Approach of the spheres δ (m).
-            maximum_indentation: Indentation at which unloading began, δ_max (m).
+            indentation: Approach δ of the spheres (m).
+            maximum_indentation: Indentation δ_max at which unloading began (m).
 
         Returns:
             Normal force F (N); 0 at and below `residual_indentation`.
@@ -97,7 +97,7 @@ class WaltonBraun:
         """Indentation at which unloading ends.
 
         Args:
-            maximum_indentation: Indentation at which unloading began, δ_max (m).
+            maximum_indentation: Indentation δ_max at which unloading began (m).
 
         Returns:
             Residual indentation δ₀ (m).

@@ -2,9 +2,9 @@
 
 `yield_pressure` p_y is a contact pressure, not the yield strength Y of a tensile test: p_y ≈ 1.6 Y
 at first yield below the surface, and p_y ≈ 2.8–3 Y (the hardness) for fully plastic flow (Johnson
-1985, sections 6.1 and 6.3). Setting the peak pressure p₀ = 2E*a/(πR*) with a² = R*δ equal to p_y
-gives the indentation, the force and the impact velocity at first yield, where W is the elastic
-energy of a Hertz contact:
+1985, sections 6.1 and 6.3). At first yield the peak pressure p₀ = 2E*a/(πR*), with a² = R*δ,
+equals p_y. With the elastic energy W of a Hertz contact, the indentation, the force and the impact
+velocity at first yield are:
 
     δ_y = (πp_y/2E*)² R*,   F_y = π³R*²p_y³/(6E*²),   ½ m* V_y² = W(δ_y) = ⅖ F_y δ_y.
 
@@ -68,9 +68,8 @@ class FirstYield(PositiveFields):
         """Largest relative normal velocity at which an impact stays elastic.
 
         Equating ½ m* V_y² with the elastic energy of the Hertz contact at first yield gives
-        V_y = (π⁵/30)^½ (p_y⁵R*³/(E*⁴m*))^½.
-        Thornton & Ning (1998) round the coefficient (π⁵/30)^½ to 3.194; the exact value is used
-        here.
+        V_y = (π⁵/30)^½ (p_y⁵R*³/(E*⁴m*))^½. Thornton & Ning (1998) round the coefficient (π⁵/30)^½
+        to 3.194; the exact value is used here.
 
         Args:
             mass: Reduced mass m* (kg).
