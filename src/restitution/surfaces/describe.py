@@ -1,8 +1,8 @@
 """Height, slope and correlation parameters of a rough surface, after ISO 25178-2.
 
 z is the height minus its mean, and ⟨ ⟩ is the mean over all cells. The standard defines the
-parameters for a surface without tilt and form (the scale-limited surface), so subtract these first
-(`level`). Clause numbers refer to ISO 25178-2:2012.
+parameters for a surface without tilt and form (the scale-limited surface), so subtract tilt and
+form first (`level`). Clause numbers refer to ISO 25178-2:2012.
 """
 
 from __future__ import annotations
@@ -21,7 +21,8 @@ _CORRELATION_LEVEL = 0.1
 def describe(surface: Surface) -> dict[str, float | None]:
     """Compute height, slope and correlation parameters, after ISO 25178-2:2012.
 
-    z is the height minus its mean, and ⟨ ⟩ is the mean over all cells.
+    z is the height minus its mean, and ⟨ ⟩ is the mean over all cells. Numbers in brackets are
+    clauses of the standard.
 
     - `Sq_m`: root mean square height, ⟨z²⟩^½ (4.1.1)
     - `Ssk`: skewness, ⟨z³⟩/Sq³ (4.1.2)
@@ -33,7 +34,7 @@ def describe(surface: Surface) -> dict[str, float | None]:
     - `Sdq`: root mean square gradient, ⟨(∂z/∂x)² + (∂z/∂y)²⟩^½ (4.3.1), from differences between
       neighbouring cells. (Central differences do not detect the shortest waves.)
     - `rms_curvature_per_m`: half the root mean square Laplacian, ½⟨(∇²z)²⟩^½, from second
-      differences. For isotropic asperities this is the rms curvature.
+      differences. For isotropic asperities this value is the rms curvature.
     - `correlation_length_x_m`, `correlation_length_y_m`: lag along x or y at which the
       autocorrelation of z first falls to 10 % of its value at lag zero (Hu and Tonder 1992). The
       biased estimate of the autocorrelation is interpolated linearly between lags.

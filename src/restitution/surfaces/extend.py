@@ -23,7 +23,7 @@ def extend(
     """Extend a scan to a larger area.
 
     - `twin`: a random surface with the spectrum, the distribution of heights and the rms slope
-      of the scan. It has no waves longer than the scan.
+      of the scan. The twin has no waves longer than the scan.
     - `mirror`: the scan in the middle, surrounded by tiles that are its mirror images. The surface
       repeats every two tiles, and slopes jump where tiles meet.
 
