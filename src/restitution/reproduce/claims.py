@@ -295,7 +295,7 @@ def _figure_11(studies: Studies) -> Finding:
     claim = "The critical indentation i_cr,max depends linearly on Rq/R."
     roughnesses = len(set(reached[:, 0])) if len(reached) else 0
     if roughnesses < 3:
-        words = f"Reached by {count} with {roughnesses} roughnesses, too few for a line. "
+        words = f"Reached by {count}, with {roughnesses} roughnesses: too few for a line. "
         if len(reached):
             means = ", ".join(
                 f"{1e6 * reached[reached[:, 0] == ratio, 1].mean():.2g} µm at Rq/R = {ratio:.2g}"
@@ -328,7 +328,7 @@ def _figure_12(studies: Studies) -> Finding:
         "12",
         "Rougher surfaces deviate more from the smooth one, and lose more energy.",
         "Largest (COR_smooth − COR_rough)/COR_smooth: "
-        + ", ".join(f"{m:.0%} at {c.label}" for m, c in zip(most, rough, strict=True))
+        + ", ".join(f"{m:.0%} at Rq = {c.label}" for m, c in zip(most, rough, strict=True))
         + ".",
         max(most),
         _verdict(bool(np.all(np.diff(most) > -0.02)), in_part=True),

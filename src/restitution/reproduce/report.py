@@ -226,6 +226,7 @@ def _critical(study: xr.Dataset, caption: str) -> Drawing:
         title,
         Figure(title, [chart]),
         f"{title} against roughness over radius for {len(points)} surfaces",
-        caption + " Surfaces whose COR is never within 5 % of the smooth sphere's are not drawn.",
+        caption + " A surface is not drawn if, at the deepest indentation, its COR differs by more "
+        "than 5 % from the smooth sphere's.",
         Table(title, ["Rq, seed", "Rq/R", "i_cr,max (µm)"], [list(p) for p in points]),
     )

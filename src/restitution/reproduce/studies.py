@@ -46,8 +46,8 @@ _QUICK: dict[str, dict[str, Any]] = {
     "rough-yield": {"grid.nodes": 256, "indentation.to": "1 um", "indentation.steps": 8},
     "rough-energy": {"grid.nodes": 256, "indentation.to": "1 um", "indentation.steps": 8},
 }
-# Changes for the refined size. The original spacing does not resolve rough contacts at indentations
-# smaller than some tens of nanometres.
+# Changes for the refined size. The spacing in the study files does not resolve rough contacts at
+# indentations smaller than some tens of nanometres.
 _REFINED: dict[str, dict[str, Any]] = {
     name: {"grid.refine": 2} for name in ("roughness", "rough-yield", "rough-energy")
 }

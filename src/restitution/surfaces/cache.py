@@ -54,7 +54,7 @@ def _folder() -> Path:
 
 def _read(file: Path, key: str) -> Surface | None:
     """Read the surface in `file`; None if it is missing, damaged or has another key."""
-    # A damaged file can raise any exception in NumPy's reader; the surface is then made again.
+    # NumPy can raise any exception for a damaged file. The surface is then made again.
     with suppress(Exception):
         with file.open("rb") as stream, np.load(stream, allow_pickle=False) as content:
             told = json.loads(str(content["told"]))

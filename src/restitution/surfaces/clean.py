@@ -15,7 +15,7 @@ from restitution.surfaces.surface import Surface
 Range = tuple[float, float]
 
 _NEIGHBOURHOOD = 5  # edge length (pixels) of the square window of the local median
-_SIGMA = 1.4826  # standard deviation/median absolute deviation of a normal distribution
+_SIGMA = 1.4826  # normal distribution: standard deviation divided by median absolute deviation
 _MOST = 0.1  # largest fraction of pixels that may be outliers
 
 
@@ -64,9 +64,9 @@ def remove_outliers(surface: Surface, threshold: float) -> Surface:
     """Replace outliers by harmonic interpolation of the pixels around them.
 
     Each height is compared with the median of the 5 x 5 pixels around it. A pixel is an outlier if
-    this difference exceeds `threshold` standard deviations of the differences of all pixels. The
-    standard deviation is estimated from the median absolute difference, on which outliers have
-    little effect. The number of outliers and their largest difference are added to the provenance.
+    this difference exceeds `threshold` standard deviations. The standard deviation of the
+    differences is estimated from their median absolute value, on which outliers have little effect.
+    The number of outliers and their largest difference are added to the provenance.
 
     Args:
         surface: Surface to clean.

@@ -26,7 +26,7 @@ def composite(surfaces: Sequence[Surface]) -> Surface:
 
     The gap between rough bodies depends only on the sum of their heights.
 
-    The heights of each surface are positive towards the other body, and all surfaces have the x and
+    The heights of each surface are positive towards the other body, and all surfaces use the x and
     y axes of the contact. If the relative orientation of two scans matters, rotate or mirror one of
     them first.
 

@@ -89,7 +89,7 @@ def _mean_square_slope(z: Array, h: float) -> float:
 
 
 def _rms_curvature(z: Array, hx: float, hy: float) -> float:
-    """Half the rms Laplacian (1/m) of the inner nodes; axes of fewer than 3 nodes are omitted."""
+    """Half the rms Laplacian (1/m) at the inner nodes; axes of fewer than 3 nodes are omitted."""
     laplacian = np.zeros([n - 2 if n > 2 else n for n in z.shape])
     inner = tuple(slice(1, -1) if n > 2 else slice(None) for n in z.shape)
     if z.shape[0] > 2:
@@ -103,8 +103,8 @@ def _correlation_length(z: Array, h: float) -> float | None:
     """Lag (m) along the first axis where the autocorrelation first falls to 10 %, or None."""
     from scipy.fft import irfft, next_fast_len, rfft
 
-    # The FFT treats each line as periodic. Padding it with zeros to twice its length prevents a
-    # correlation between its two ends.
+    # The FFT treats each line as periodic. Padding with zeros to twice the length prevents a
+    # correlation between the two ends of a line.
     n = z.shape[0]
     padded = next_fast_len(2 * n, real=True)
     power = np.sum(np.abs(rfft(z, n=padded, axis=0)) ** 2, axis=1)

@@ -26,8 +26,9 @@ from restitution.surfaces.surface import Array, Surface
 
 RoughnessKind = Literal["exponential", "gaussian", "self-affine"]
 
-# A non-periodic surface is cut from a periodic surface that is larger by this margin (in units of
-# `Spectrum.longest`), so that opposite edges are uncorrelated.
+# A non-periodic surface is cut from a larger periodic surface, so that opposite edges are
+# uncorrelated. The additional length along each axis is at most this factor times
+# `Spectrum.longest`.
 _MARGIN = 2.0
 
 
@@ -71,7 +72,7 @@ def generate_surface(
 
     Args:
         grid: Grid of the surface.
-        kind: Autocorrelation `exponential` or `gaussian`, or a `self-affine` power spectrum.
+        kind: `exponential` or `gaussian` autocorrelation, or `self-affine` power spectrum.
         rms: Root mean square height Rq (m). The surface has exactly this value.
         seed: Seed of the noise, not negative.
         skewness: Skewness of the heights (dimensionless).
@@ -80,7 +81,7 @@ def generate_surface(
         periodic: Whether opposite edges of the surface match (bool).
         **waves: Parameters of the waves of this `kind`. An argument of None counts as left out.
             `correlation_length` (m; exponential, gaussian): length over which the autocorrelation
-            falls to 10 %, or two lengths, along and across the lay.
+            falls to 10 %, or two such lengths, along and across the lay.
             `lay` (rad; exponential, gaussian): angle of the lay from the x axis, default 0.
             `hurst` (dimensionless; self-affine): Hurst exponent.
             `rolloff` (m; self-affine): wavelength above which the spectrum is constant; without

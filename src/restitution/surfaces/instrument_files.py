@@ -26,7 +26,7 @@ from restitution.surfaces.scan import Y_DOWN, Scan, in_metres
 # an error. For example, version 1.25.0 reads all lengths in .tmd files a thousand times too small,
 # and it reads undefined pixels of .sur files as heights.
 _OLDEST_VERSION = (1, 27)
-_LARGEST_UNPACKED = 2**31  # largest total size of the files in an archive (bytes)
+_LARGEST_UNPACKED = 2**31  # largest total size of the unpacked files of an archive (bytes)
 INSTALL_READERS = (
     'install the readers with `pip install "SurfaceTopography>=1.27"` (the extra "measured")'
 )

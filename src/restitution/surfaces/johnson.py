@@ -28,8 +28,8 @@ _Form = Callable[..., Array]
 LEAST_KURTOSIS = 1.1
 _ABSCISSAE, _WEIGHTS = np.polynomial.hermite_e.hermegauss(201)
 # The search ends if the misfits of skewness and kurtosis are both below _EXACT. Otherwise the best
-# fit is accepted if both misfits are at most _CLOSE. This limit is larger, because neither form
-# fits a lognormal distribution exactly.
+# fit is accepted if both misfits are at most _CLOSE. _CLOSE is larger than _EXACT, because neither
+# form fits a lognormal distribution exactly.
 _EXACT, _CLOSE = 1e-6, 2e-3
 _STARTS = ((0.0, 0.0), (0.5, 0.3), (1.5, 0.5), (3.0, 0.8), (0.5, -0.7), (1.2, -1.2), (2.5, -1.5))
 

@@ -28,8 +28,8 @@ from restitution.surfaces.text_files import TEXT_SUFFIXES, NotAMatrixError, read
 
 UndefinedPixels = Literal["error", "interpolate"]
 
-# Largest fraction of undefined pixels that is filled. A larger smooth fill would distort the
-# statistics of the surface.
+# Largest fraction of undefined pixels that are filled. Filling more pixels smoothly would distort
+# the statistics of the surface.
 _LARGEST_FILL = 0.2
 # The size in the file and the argument `size` count as equal up to this relative difference.
 _SIZE_ROUNDING = 1e-6
@@ -118,7 +118,7 @@ def read_surface(
 
 
 def _check_readable(file: Path) -> None:
-    """Raise `SurfaceError` if the file is missing, unreadable, empty, too large or not regular."""
+    """Raise `SurfaceError` if a file is missing, unreadable, not regular, empty or too large."""
     try:
         kind = file.stat()
         if stat.S_ISDIR(kind.st_mode):

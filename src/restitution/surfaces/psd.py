@@ -1,6 +1,6 @@
 """Power spectral density of a surface, after Jacobs, Junge and Pastewka (2017).
 
-    C(q) = |∫ z exp(−iq·r) d²r|²/A,   Sq² = (2π)⁻² ∫ C d²q,   (Surf. Topogr. 5, 013001, eqs 2, 6)
+    C(q) = |∫ z exp(−iq·r) d²r|²/A,   Sq² = (2π)⁻² ∫ C d²q.
 
 C is in m⁴, q is the wave vector (rad/m), z(r) the height at the position r minus the mean height,
 and A the area of the surface. A scan is not periodic, so the jump between opposite edges would
@@ -9,6 +9,8 @@ each axis), and the nine spectra are averaged (Riedel and Sidorenko 1995, IEEE T
 Process. 43, 188–195). Together the tapers cover all of the scan except the rim. The leakage from
 long waves to short waves decreases with the fourth power of the wave number. The resolution in
 spatial frequency (1/m) is ±1.5 divided by the size of the scan.
+
+Source: Jacobs, Junge and Pastewka (2017), Surf. Topogr. 5, 013001, eqs 2 and 6.
 """
 
 from __future__ import annotations

@@ -36,7 +36,7 @@ class Scan:
     """Content of a topography file: the heights, the size of the scan, and further details.
 
     `height` is in m, has shape (nx, ny) and is NaN where undefined. `size` contains the lengths of
-    the x and y edges (m), or None if the file does not contain a length. `details` become part of
+    the x and y edges (m); a length that the file does not contain is None. `details` become part of
     the provenance; they include `Y_DOWN` if the first line of the file is at the top of the
     picture.
     """

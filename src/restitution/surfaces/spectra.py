@@ -7,8 +7,7 @@
 
 where Rq is the rms height, τ₁ and τ₂ are the lags along and across the lay, and β₁ and β₂ are the
 correlation lengths. At a lag of β₁ along the lay, or β₂ across it, the autocorrelation has fallen
-to 10 % (e^−2.3 = 0.100). Source: Hu and Tonder
-(1992), Int. J. Mach. Tools Manufact. 32, 83–90.
+to 10 % (e^−2.3 = 0.100). Source: Hu and Tonder (1992), Int. J. Mach. Tools Manufact. 32, 83–90.
 
 `SelfAffine` surfaces have the power spectral density
 

@@ -90,7 +90,7 @@ def _parse_rows(path: Path, data: list[tuple[int, str]], *, plain: bool) -> list
     Text above the scan lines also counts as damaged if the comments show that the file is a `plain`
     matrix.
     """
-    rows: list[list[float]] = []  # empty for a line of text
+    rows: list[list[float]] = []  # a line of text becomes an empty row
     first: NotAMatrixError | None = None
     for number, line in data:
         try:

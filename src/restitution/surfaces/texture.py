@@ -36,7 +36,7 @@ class MaterialRatio(NamedTuple):
 
 
 class HeightDensity(NamedTuple):
-    """Heights (m) above the mean, their density, and the normal density of equal Sq (1/m)."""
+    """Heights (m) above the mean, their density (1/m), and the normal density (1/m) of equal Sq."""
 
     height: Array
     density: Array
@@ -59,7 +59,8 @@ def texture(surface: Surface) -> dict[str, float | None]:
       area of their projection, minus 1 (4.3.2)
     - `Sk_m`, `Spk_m`, `Svk_m`: core height, reduced peak height and reduced dale height (5.2 to
       5.4, after ISO 13565-2)
-    - `Smr1`, `Smr2`: material ratios at the boundaries of the core to the peaks and to the dales
+    - `Smr1`, `Smr2`: material ratios at the limits of the core: `Smr1` towards the peaks, `Smr2`
+      towards the dales (5.2 to 5.4)
     """
     decays = _decay_lags(autocorrelation(surface))
     found = np.isfinite(decays)
@@ -160,9 +161,9 @@ def _core(curve: MaterialRatio) -> dict[str, float | None]:
     top = float(height[start] - slope * ratio[start])
     bottom = top + float(slope)
     above, below = np.maximum(height - top, 0.0), np.maximum(bottom - height, 0.0)
-    # Spk is the height of a triangle with the base Smr1 and the area of the curve above the core.
-    # Svk is the height of a triangle with the base 1 − Smr2 and the area of the curve below the
-    # core.
+    # Spk is the height of a triangle with the base Smr1 and the same area as the curve above the
+    # core. Svk is the height of a triangle with the base 1 − Smr2 and the same area as the curve
+    # below the core.
     Smr1, Smr2 = float(np.mean(height > top)), float(np.mean(height >= bottom))
     peaks, dales = (float(trapezoid(part, ratio)) for part in (above, below))
     return {

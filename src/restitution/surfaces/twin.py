@@ -36,11 +36,9 @@ from restitution.surfaces.surface import Array, Surface
 from restitution.surfaces.wave_spectrum import Modes, WaveSpectrum, spectrum_of
 
 LEAST_PIXELS = 16  # smallest number of pixels of a scan along each axis
-_UNADJUSTED = 0.01  # fraction of the mean square height in waves that are not adjusted
+_UNADJUSTED = 0.01  # fraction of the scan's mean square height in waves that are not adjusted
 _FIRST_BAND = 2**20  # largest number of nodes of the grid for the band of the longest waves
-
-# Smallest number of cells of this grid along an edge of the scan.
-_LEAST_FIRST = 8
+_LEAST_FIRST = 8  # smallest number of cells along an edge of the scan, on the grid of this band
 
 # Largest number of adjustments of a band: _WORK divided by the number of nodes of the band's grid,
 # but at least the first and at most the second value of _ADJUSTMENTS.

@@ -76,8 +76,8 @@ class WaveSpectrum:
     def modes(self, most: tuple[int, int], nodes: tuple[int, int], seed: int) -> Modes:
         """Waves (m, n) up to `most` with random phases, in the order of `rfft2`.
 
-        `nodes` is the grid of the FFT. The normalisation is "forward": heights are the sum of the
-        modes.
+        `nodes` is the shape of the grid of the FFT. The normalisation is "forward": heights are the
+        sum of the modes.
         """
         M, N = most
         full: Modes = np.zeros((nodes[0], nodes[1] // 2 + 1), dtype=np.complex128)
@@ -114,8 +114,7 @@ def _moments(spectrum: WaveSpectrum) -> Array:
     C is the power of `spectrum` with the factor a + b/k², and k the size of the scan divided by the
     wavelength. Slopes are differences between neighbouring pixels, as in `rms_slope`. Long waves
     are summed one by one, over the wave vectors of the twin. Short waves are summed over the wave
-    vectors of the scan, which are fewer, because the twin is not smaller than the
-    scan.
+    vectors of the scan, which are fewer, because the twin is not smaller than the scan.
     """
     wx, wy = spectrum.waves
     (mx, my), (hx, hy) = spectrum.density.shape, spectrum.pixel
