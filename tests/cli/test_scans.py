@@ -169,7 +169,7 @@ def test_a_scan_may_be_refined_on_its_own_pixels(surface, scan):
         (
             'extend = "twin"\nseed = 1',
             '[grid]\nnodes = 20\nspacing = "5 um"',
-            "cells of 5 um cannot carry a wave of a scan of 9.6 x 9.6 um; use a smaller "
+            "cells of 5 um cannot resolve any wave of a scan of 9.6 x 9.6 um; use a smaller "
             "grid.spacing",
         ),
         (

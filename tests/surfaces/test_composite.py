@@ -36,7 +36,7 @@ def test_what_the_program_asks_for_is_that_of_the_parts():
 def test_one_is_itself_and_none_or_two_grids_are_refused():
     one = rough(1)
     assert composite([one]) is one
-    with pytest.raises(SurfaceError, match=r"^surfaces: is empty"):
+    with pytest.raises(SurfaceError, match=r"^surfaces: the sequence is empty"):
         composite([])
     other = Surface(np.zeros((4, 4)), Grid((4, 4), (1.0, 1.0)))
     with pytest.raises(SurfaceError, match="different grids"):

@@ -94,9 +94,9 @@ def test_what_the_grid_of_a_twin_does_not_carry_is_said():
     removed = full.height[::5, ::5] - twin.height
     assert said["removed_rms_m"] == approx(removed.std(), rel=0.1, abs=0)
     assert 0.5 < said["removed_slope"] < 1
-    assert "waves shorter than 1 um, which this grid does not carry, have" in said["notice"]
+    assert "waves shorter than 1 um, which this grid does not resolve, have" in said["notice"]
     assert full.provenance["removed_slope"] == full.provenance["removed_rms_m"] == 0
-    assert "does not carry" not in full.provenance["notice"]
+    assert "does not resolve" not in full.provenance["notice"]
 
 
 def test_a_twin_is_cut_out_of_one_as_large_as_the_scan():
@@ -130,7 +130,7 @@ def test_the_pixels_of_the_scan_over_the_whole_domain_are_never_made(how):
         (
             scan(),
             Grid((40, 40), (8e-6, 8e-6)),
-            "^grid: cells of 8 um cannot carry a wave of a scan",
+            "^grid: cells of 8 um cannot resolve any wave of a scan",
         ),
     ],
 )

@@ -1,1 +1,1 @@
-"""Reproduce the figures, and check the claims, of Ghanbarzadeh, Hassanpour and Neville (2019)."""
+"""Reproduce the figures of Ghanbarzadeh, Hassanpour and Neville (2019) and check their claims."""

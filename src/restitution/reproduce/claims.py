@@ -1,7 +1,7 @@
 """Claims of the paper on each figure, compared with the results of the bundled studies.
 
-Each function in `CLAIMS` judges one claim. The function takes the studies by name, contains the
-threshold for agreement, and returns a `Finding`.
+Each function in `CLAIMS` judges one claim. The function receives the studies by name, compares
+their results with its threshold for agreement, and returns a `Finding`.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ Studies = Mapping[str, xr.Dataset]
 Verdict = Literal["agrees", "agrees in part", "does not agree", "not decided"]
 
 # Reduced radius R* (m), contact modulus E* (Pa), yield pressure p_y (Pa) and radius (m) of the two
-# steel spheres of the paper. The R of the paper is taken as the radius of a particle.
+# steel spheres of the paper. The radius R in the paper is taken as the radius of each sphere.
 R, E_STAR, P_Y, RADIUS = 250e-6, 112e9, 750e6, 500e-6
 SMOOTH = "1 pm"  # rms roughness of cases that represent the smooth sphere
 _VARIABLES = ("indentation", "restitution", "force", "pull_off_force", "resolved")
-_NEAR = 0.05  # a rough sphere behaves as a smooth one if their COR differ by less (relative)
+_NEAR = 0.05  # largest relative difference at which COR counts as that of the smooth sphere
 
 
 @dataclass(frozen=True)
 class Finding:
-    """A claim, the result, the number that decides on agreement, and the resolved depths."""
+    """A claim, the result, the number that decides on agreement, and a count of resolved depths."""
 
     figure: str
     claim: str
@@ -81,7 +81,7 @@ def _as_written(coordinate: xr.DataArray) -> dict[float | str, str]:
 
 
 def rough_and_smooth(study: xr.Dataset) -> tuple[list[Curve], Curve]:
-    """Return the rough cases and the smooth case of a study, in which the roughness varies."""
+    """Return the rough cases and the smooth case of a study with varied roughness."""
     found = curves(study)
     smooth = next(curve for curve in found if curve.label.startswith(SMOOTH))
     return [curve for curve in found if not curve.label.startswith(SMOOTH)], smooth
@@ -107,7 +107,7 @@ def _figure_5(studies: Studies) -> Finding:
     return Finding(
         "5",
         "The elastic solution agrees with Hertz's.",
-        f"Force within {off:.2%} of Hertz's at all depths.",
+        f"The force is within {off:.2%} of Hertz's at all depths.",
         off,
         _verdict(off < 0.01),
         _resolved(curve),
@@ -126,10 +126,10 @@ def _figure_6(studies: Studies) -> Finding:
     return Finding(
         "6",
         "Loading and unloading with a yield cut-off agree with Thornton and Ning (1998).",
-        "With the pressure truncated at p_y as in their theory, force is within "
-        f"{off['truncated']:.1%}. With pressure and surface in equilibrium, as in the other "
-        "figures, it is up to "
-        f"{off['equilibrium']:.0%} larger: a difference of models, not of solutions.",
+        "With the pressure truncated at p_y as in their theory, the loading force is within "
+        f"{off['truncated']:.1%} of theirs. With pressure and surface in equilibrium, as in the "
+        f"other figures, the force is up to {off['equilibrium']:.0%} larger. The reason is "
+        "the model, not the accuracy of the solution.",
         off["truncated"],
         _verdict(off["truncated"] < 0.02),
         _resolved(*found),
@@ -145,9 +145,10 @@ def _figure_7(studies: Studies) -> Finding:
     return Finding(
         "7",
         "Adhesive elastic contact agrees with the JKR theory.",
-        f"Force in loading within {loading:.1%}; pull-off force within {deepest:.1%} of 3/2 π w R* "
-        f"after the deepest indentation, and within {off.max():.1%} after any: at shallow depths, "
-        "small unloading steps resolve the largest jumps that the grid causes.",
+        f"The force in loading is within {loading:.1%} of the JKR force. The pull-off force is "
+        f"within {deepest:.1%} of 3/2 π w R* after the deepest indentation, and within "
+        f"{off.max():.1%} after every indentation. After shallow indentations, the small unloading "
+        "steps resolve the largest force jumps that the grid causes.",
         worst,
         _verdict(worst < 0.05, max(loading, deepest) < 0.05),
         _resolved(curve),
@@ -165,7 +166,8 @@ def _figure_8(studies: Studies) -> Finding:
     return Finding(
         "8",
         "For both yield stresses COR first increases with indentation and then reduces.",
-        f"The largest COR ({where}) lies between the ends in {sum(inside)} of {len(inside)} cases.",
+        f"COR is largest between the ends of the curve in {sum(inside)} of {len(inside)} cases "
+        f"({where}).",
         sum(inside) / len(inside),
         _verdict(all(inside), any(inside)),
         _resolved(*found),
@@ -181,8 +183,8 @@ def _figure_9(studies: Studies) -> Finding:
     return Finding(
         "9",
         "For smooth spheres interface energy affects COR at small indentations only.",
-        f"Between the energies COR differs by up to {shallow:.2f} below 100 nm and by up to "
-        f"{left:.3f} beyond.",
+        f"COR differs between the energies by up to {shallow:.2f} over all depths, and by up to "
+        f"{left:.3f} beyond 100 nm.",
         left,
         _verdict(left < 0.05 < shallow),
         _resolved(*found),
@@ -202,7 +204,7 @@ def _stages(studies: Studies) -> Finding:
         "10",
         "COR of rough spheres has three stages: it falls as asperities yield, rises as the "
         "bulk takes over, and falls as the bulk yields.",
-        f"All three stages within the depths computed for Rq = {names} ({sum(complete)} "
+        f"All three stages occur within the computed depths for Rq = {names} ({sum(complete)} "
         f"of {len(complete)}). The rougher the surface, the deeper the last stage begins.",
         sum(complete) / len(complete),
         _verdict(all(complete), any(complete)),
@@ -219,7 +221,7 @@ def _shallow_merging(studies: Studies) -> Finding:
     return Finding(
         "10",
         "Below 8 nm COR merges with the smooth sphere's, for every roughness.",
-        f"Up to 8 nm COR differs by up to {off:.0%} from the smooth sphere's."
+        f"Up to 8 nm, COR differs by up to {off:.0%} from the smooth sphere's."
         + _single_nodes(flags),
         off,
         _verdict(off < _NEAR),
@@ -236,7 +238,7 @@ def _shallow_trend(studies: Studies) -> Finding:
     return Finding(
         "10",
         "Below 50 nm COR follows the same trend for every roughness.",
-        f"Between 8 and 50 nm COR differs between roughnesses by up to {off:.0%} of its mean."
+        f"Between 8 and 50 nm, COR differs between roughnesses by up to {off:.0%} of its mean."
         + _single_nodes(flags),
         off,
         _verdict(off < 0.1),
@@ -248,16 +250,17 @@ def _single_nodes(flags: NDArray[np.bool_]) -> str:
     if np.mean(flags) > 0.5:
         return ""
     return (
-        " Most of these contacts have a few nodes, whose yielding depends on the cell size and not "
-        "on the surface: a common trend would be an effect of the grid (docs/resolution.md)."
+        " Most of these contacts have only a few nodes. Their yielding depends on the cell size "
+        "and not on the surface, so a common trend would be an effect of the grid "
+        "(docs/resolution.md)."
     )
 
 
 def critical_indentation(curve: Curve, smooth: Curve) -> float:
     """Depth (m) beyond which COR stays within 5 % of the smooth sphere's; NaN if not reached.
 
-    The result lies between the last depth with a larger difference and the next depth, and is
-    interpolated in the logarithm of depth.
+    Between the last depth with a larger difference and the next depth, the result is interpolated
+    in the logarithm of depth.
     """
     off = np.abs(curve.cor / smooth.cor - 1)
     apart = np.flatnonzero(off > _NEAR)
@@ -271,7 +274,7 @@ def critical_indentation(curve: Curve, smooth: Curve) -> float:
 
 
 def critical_indentations(study: xr.Dataset) -> dict[str, tuple[float, float]]:
-    """Rq/R and the critical indentation (m) of the rough cases of a study, by their labels."""
+    """Map the label of each rough case of a study to its Rq/R and critical indentation (m)."""
     rough, smooth = rough_and_smooth(study)
     return {
         curve.label: (
@@ -292,7 +295,7 @@ def _figure_11(studies: Studies) -> Finding:
     claim = "The critical indentation i_cr,max depends linearly on Rq/R."
     roughnesses = len(set(reached[:, 0])) if len(reached) else 0
     if roughnesses < 3:
-        words = f"Reached by {count} ({roughnesses} roughnesses): too few for a line. "
+        words = f"Reached by {count}, with {roughnesses} roughnesses: too few for a line. "
         if len(reached):
             means = ", ".join(
                 f"{1e6 * reached[reached[:, 0] == ratio, 1].mean():.2g} µm at Rq/R = {ratio:.2g}"
@@ -325,7 +328,7 @@ def _figure_12(studies: Studies) -> Finding:
         "12",
         "Rougher surfaces deviate more from the smooth one, and lose more energy.",
         "Largest (COR_smooth − COR_rough)/COR_smooth: "
-        + ", ".join(f"{m:.0%} at {c.label}" for m, c in zip(most, rough, strict=True))
+        + ", ".join(f"{m:.0%} at Rq = {c.label}" for m, c in zip(most, rough, strict=True))
         + ".",
         max(most),
         _verdict(bool(np.all(np.diff(most) > -0.02)), in_part=True),
@@ -342,8 +345,8 @@ def _figure_13(studies: Studies) -> Finding:
         "13",
         "Yield stress dramatically affects COR of rough spheres.",
         f"Beyond 50 nm, COR at 150 MPa is on average {beyond:.0%} of COR at 750 MPa. Below 50 nm "
-        f"it is {float(np.nanmin(ratio[~deep])):.0%} to {float(np.nanmax(ratio[~deep])):.0%}, so "
-        "the curves also differ there.",
+        f"the ratio is {float(np.nanmin(ratio[~deep])):.0%} to "
+        f"{float(np.nanmax(ratio[~deep])):.0%}, so the curves also differ there.",
         beyond,
         _verdict(beyond < 0.8),
         _resolved(soft, hard),
@@ -353,7 +356,7 @@ def _figure_13(studies: Studies) -> Finding:
 def _figure_14(studies: Studies) -> Finding:
     rough = curves(studies["rough-energy"])
     smooth = curves(studies["smooth-energy"])
-    # Compare only depths that both studies have.
+    # Compare only depths in the range of both studies.
     depth = rough[0].depth
     depth = depth[(depth >= smooth[0].depth[0]) & (depth <= smooth[0].depth[-1])]
 
@@ -365,9 +368,9 @@ def _figure_14(studies: Studies) -> Finding:
     return Finding(
         "14",
         "Interface energy has less effect on COR of rough spheres than of smooth ones.",
-        f"From 0.01 to 0.09 J/m² COR of rough spheres changes on average by {of_rough.mean():.3f} "
-        f"(up to {of_rough.max():.2f}), and COR of smooth spheres at the same depths by "
-        f"{of_smooth.mean():.3f} (up to {of_smooth.max():.2f}).",
+        f"Between 0.01 and 0.09 J/m², COR of rough spheres differs on average by "
+        f"{of_rough.mean():.3f} (up to {of_rough.max():.2f}). COR of smooth spheres at the same "
+        f"depths differs by {of_smooth.mean():.3f} (up to {of_smooth.max():.2f}).",
         float(of_rough.mean() / of_smooth.mean()),
         _verdict(of_rough.mean() < of_smooth.mean()),
         _resolved(*rough),

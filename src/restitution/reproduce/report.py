@@ -1,4 +1,4 @@
-"""Write the page with the figures of the paper from the stored studies."""
+"""Write the page that compares the figures and claims of the paper with the stored studies."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ _OPEN = (
         "pressure truncated at the yield pressure",
     ),
     ("detachment", "crack closure", "criterion of Pohrt and Popov (2015)"),
-    ("seeds", "1; Figure 11: see its study", "not stated"),
+    ("seeds", "1, and several seeds in Figure 11", "not stated"),
     ("smooth sphere of Figures 10 to 12", f"Rq = {SMOOTH} on the same grid", "smooth"),
 )
 
@@ -93,10 +93,10 @@ def _warnings(size: Size) -> list[str]:
             "Quick size: fewer depths, fewer surfaces and smaller domains than in the paper; leave "
             "out --quick for the size of the paper."
         ]
-    spacing, more = ("0.25 µm", "; --refined halves it") if size == "paper" else ("0.125 µm", "")
+    spacing, more = ("0.25 µm", " (--refined halves it)") if size == "paper" else ("0.125 µm", "")
     return [
-        f"With a spacing of {spacing}{more}, rough contacts below some tens of nanometres have "
-        "only a few nodes (open markers), and their numbers depend on the grid."
+        f"With a spacing of {spacing}{more}, rough contacts at indentations below some tens of "
+        "nanometres have only a few nodes (open markers), so their results depend on the grid."
     ]
 
 
@@ -211,7 +211,7 @@ def _lines(
         title,
         Figure(title, [chart]),
         f"{title}: {y} against indentation for {len(lines)} cases",
-        caption + " Open markers: not resolved by the grid.",
+        caption + " Open markers: contacts that the grid does not resolve.",
         Table(title, ["case", "indentation (nm)", y, "resolved"], rows),
     )
 
@@ -225,6 +225,7 @@ def _critical(study: xr.Dataset, caption: str) -> Drawing:
         title,
         Figure(title, [chart]),
         f"{title} against roughness over radius for {len(points)} surfaces",
-        caption + " Surfaces whose COR is never within 5 % of the smooth sphere's are not drawn.",
+        caption + " A surface is not drawn if, at the deepest indentation, its COR differs by more "
+        "than 5 % from the smooth sphere's.",
         Table(title, ["Rq, seed", "Rq/R", "i_cr,max (µm)"], [list(p) for p in points]),
     )

@@ -24,7 +24,7 @@ NAMES = (
     "rough-energy",
 )
 
-# Values of the study file that `--quick` replaces, for each study.
+# For each study, the values in the study file that `--quick` replaces.
 _QUICK: dict[str, dict[str, Any]] = {
     "hertz": {"grid.nodes": 256, "indentation.to": "1 um", "indentation.steps": 6},
     "thornton-ning": {"grid.nodes": 256, "indentation.to": "1 um", "indentation.steps": 6},
@@ -46,8 +46,8 @@ _QUICK: dict[str, dict[str, Any]] = {
     "rough-yield": {"grid.nodes": 256, "indentation.to": "1 um", "indentation.steps": 8},
     "rough-energy": {"grid.nodes": 256, "indentation.to": "1 um", "indentation.steps": 8},
 }
-# Changes for the refined size. The spacing of the paper does not resolve rough contacts at
-# indentations below some tens of nanometres.
+# Changes for the refined size. The spacing in the study files does not resolve rough contacts at
+# indentations smaller than some tens of nanometres.
 _REFINED: dict[str, dict[str, Any]] = {
     name: {"grid.refine": 2} for name in ("roughness", "rough-yield", "rough-energy")
 }

@@ -1,8 +1,8 @@
 """Cache of surfaces that took long to make, in the user's cache folder.
 
 Each file contains the heights, the provenance and the key of a surface. The key lists everything on
-which the surface depends, including the version of the program. If a file cannot be written or
-read, the surface is made again without a message.
+which the surface depends, including the version of this package. A file that cannot be written or
+read causes no error; the surface is made again when it is needed.
 """
 
 from __future__ import annotations
@@ -23,16 +23,17 @@ import numpy as np
 from restitution.numerics.grid import Grid
 from restitution.surfaces.surface import Surface
 
-_LONG = 1.0  # a surface that took less time (s) to make is not cached
+_LONG = 1.0  # surfaces that take less time (s) to make are not cached
 _MOST = 2**30  # largest size of all files together (bytes)
 _LARGEST = 2**28  # largest size of the heights of one cached surface (bytes)
-_REST = 2**12  # upper estimate of what a file contains besides the heights (bytes)
+_REST = 2**12  # estimated largest size of a file without its heights (bytes)
 
 
 def kept(parameters: Mapping[str, Any], make: Callable[[], Surface]) -> Surface:
-    """Return the surface that `parameters` (JSON types) describe, from the cache if it is there.
+    """Return a surface from the cache, or make it.
 
-    Otherwise call `make`, and store the surface in the cache if making it took long.
+    `parameters` (JSON types) describe the surface completely. If the cache does not contain the
+    surface, `make` is called. The new surface is cached if making it took long.
     """
     key = json.dumps({"version": version("restitution"), **parameters}, sort_keys=True)
     file = _folder() / f"{hashlib.sha256(key.encode()).hexdigest()}.npz"
@@ -53,7 +54,7 @@ def _folder() -> Path:
 
 def _read(file: Path, key: str) -> Surface | None:
     """Read the surface in `file`; None if it is missing, damaged or has another key."""
-    # A damaged file can raise any exception in NumPy's reader; the surface is then made again.
+    # NumPy can raise any exception for a damaged file. The surface is then made again.
     with suppress(Exception):
         with file.open("rb") as stream, np.load(stream, allow_pickle=False) as content:
             told = json.loads(str(content["told"]))
@@ -61,7 +62,7 @@ def _read(file: Path, key: str) -> Surface | None:
                 return None
             grid = Grid(told["nodes"], told["spacing"])
             surface = Surface(np.asarray(content["height"], np.float64), grid, told["provenance"])
-        os.utime(file)  # so that the modification time states the last use
+        os.utime(file)  # the modification time records the last use
         return surface
     return None
 

@@ -14,8 +14,8 @@ from restitution.surfaces.surface import Surface
 
 Range = tuple[float, float]
 
-_NEIGHBOURHOOD = 5  # edge (pixels) of the square around a pixel over which the median is taken
-_SIGMA = 1.4826  # ratio of standard deviation to median absolute deviation of a normal distribution
+_NEIGHBOURHOOD = 5  # edge length (pixels) of the square window of the local median
+_SIGMA = 1.4826  # normal distribution: standard deviation divided by median absolute deviation
 _MOST = 0.1  # largest fraction of pixels that may be outliers
 
 
@@ -23,7 +23,7 @@ def crop(surface: Surface, *, x: Range | None = None, y: Range | None = None) ->
     """Keep only the pixels whose centres lie within ranges of x and y.
 
     The ranges are in the coordinates of `surface.grid`, with zero in the middle. The coordinates of
-    the new surface are zero in the middle of the cropped area.
+    the new surface are zero in the middle of the remaining area.
 
     Args:
         surface: Surface to crop.
@@ -63,10 +63,10 @@ def crop(surface: Surface, *, x: Range | None = None, y: Range | None = None) ->
 def remove_outliers(surface: Surface, threshold: float) -> Surface:
     """Replace outliers by harmonic interpolation of the pixels around them.
 
-    A pixel is an outlier if its height differs from the median of the 5 x 5 pixels around it by
-    more than `threshold` standard deviations. The standard deviation is that of these differences
-    over all pixels. It is estimated from the median of their absolute values, which outliers hardly
-    change. The number of outliers and the largest difference are added to the provenance.
+    Each height is compared with the median of the 5 x 5 pixels around it. A pixel is an outlier if
+    this difference exceeds `threshold` standard deviations. The standard deviation of the
+    differences is estimated from their median absolute value, on which outliers have little effect.
+    The number of outliers and their largest difference are added to the provenance.
 
     Args:
         surface: Surface to clean.
@@ -86,8 +86,8 @@ def remove_outliers(surface: Surface, threshold: float) -> Surface:
     height = surface.height
     step = np.abs(height - median_filter(height, _NEIGHBOURHOOD, mode="reflect"))
     deviation = _SIGMA * float(np.median(step))
-    # If the estimate is zero, most pixels equal the median of their neighbours. There is then no
-    # measure for a large difference, so no pixel counts as an outlier.
+    # If the estimate is zero, at least half of the pixels equal the local median. Without a scale
+    # for the differences, no pixel counts as an outlier.
     out = step > threshold * deviation if deviation > 0 else np.zeros(height.shape, bool)
     count = int(np.count_nonzero(out))
     if count > _MOST * out.size:

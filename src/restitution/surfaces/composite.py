@@ -9,8 +9,8 @@ from typing import Any
 from restitution.errors import SurfaceError
 from restitution.surfaces.surface import Surface, is_periodic
 
-# Provenance entries of the parts, and how their values are combined to the value of the sum. The
-# waves that are too short for the grid are added in quadrature.
+# For each provenance entry, the function that combines the values of the parts. The rms heights of
+# the waves that were removed from the parts are added in quadrature.
 _COMBINED: dict[str, Callable[[list[Any]], str | float]] = {
     "file": lambda files: ", ".join(map(str, files)),
     "pixel_x_m": max,
@@ -22,20 +22,20 @@ _COMBINED: dict[str, Callable[[list[Any]], str | float]] = {
 
 
 def composite(surfaces: Sequence[Surface]) -> Surface:
-    """Add the heights of surfaces to one surface.
+    """Sum the heights of several surfaces on the same grid.
 
     The gap between rough bodies depends only on the sum of their heights.
 
-    Positive heights of each surface point towards the other body, and all surfaces share the axes
-    of the contact. If the relative orientation of two scans matters, rotate or mirror one of them
-    first.
+    The heights of each surface are positive towards the other body, and all surfaces use the x and
+    y axes of the contact. If the relative orientation of two scans matters, rotate or mirror one of
+    them first.
 
     The provenance of the sum contains the provenance of each part, with the prefixes `part_1_`,
-    `part_2_`, … It also states the files, the largest pixel size, the waves that are too short for
-    the grid, and whether all parts are periodic.
+    `part_2_`, … It also states the files, the largest pixel size, the rms height and slope of the
+    removed waves, and whether all parts are periodic.
 
     Args:
-        surfaces: Surfaces on one grid.
+        surfaces: Surfaces on the same grid.
 
     Returns:
         Sum of the surfaces; the surface itself if there is only one.
@@ -44,7 +44,7 @@ def composite(surfaces: Sequence[Surface]) -> Surface:
         SurfaceError: `surfaces` is empty, or the grids differ.
     """
     if not surfaces:
-        raise SurfaceError("surfaces: is empty; give at least one surface")
+        raise SurfaceError("surfaces: the sequence is empty; give at least one surface")
     first = surfaces[0]
     if len(surfaces) == 1:
         return first

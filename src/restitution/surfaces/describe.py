@@ -1,8 +1,8 @@
 """Height, slope and correlation parameters of a rough surface, after ISO 25178-2.
 
 z is the height minus its mean, and ⟨ ⟩ is the mean over all cells. The standard defines the
-parameters for a surface without tilt and form (the scale-limited surface), so subtract these first
-(`level`). Clause numbers refer to ISO 25178-2:2012.
+parameters for a surface without tilt and form (the scale-limited surface), so subtract tilt and
+form first (`level`). Clause numbers refer to ISO 25178-2:2012.
 """
 
 from __future__ import annotations
@@ -21,7 +21,8 @@ _CORRELATION_LEVEL = 0.1
 def describe(surface: Surface) -> dict[str, float | None]:
     """Compute height, slope and correlation parameters, after ISO 25178-2:2012.
 
-    z is the height minus its mean, and ⟨ ⟩ is the mean over all cells.
+    z is the height minus its mean, and ⟨ ⟩ is the mean over all cells. Numbers in brackets are
+    clauses of the standard.
 
     - `Sq_m`: root mean square height, ⟨z²⟩^½ (4.1.1)
     - `Ssk`: skewness, ⟨z³⟩/Sq³ (4.1.2)
@@ -33,7 +34,7 @@ def describe(surface: Surface) -> dict[str, float | None]:
     - `Sdq`: root mean square gradient, ⟨(∂z/∂x)² + (∂z/∂y)²⟩^½ (4.3.1), from differences between
       neighbouring cells. (Central differences do not detect the shortest waves.)
     - `rms_curvature_per_m`: half the root mean square Laplacian, ½⟨(∇²z)²⟩^½, from second
-      differences. For isotropic asperities this is the rms curvature.
+      differences. For isotropic asperities this value is the rms curvature.
     - `correlation_length_x_m`, `correlation_length_y_m`: lag along x or y at which the
       autocorrelation of z first falls to 10 % of its value at lag zero (Hu and Tonder 1992). The
       biased estimate of the autocorrelation is interpolated linearly between lags.
@@ -88,7 +89,7 @@ def _mean_square_slope(z: Array, h: float) -> float:
 
 
 def _rms_curvature(z: Array, hx: float, hy: float) -> float:
-    """Half the rms Laplacian (1/m) of the inner nodes; axes of fewer than 3 nodes are omitted."""
+    """Half the rms Laplacian (1/m) at the inner nodes; axes of fewer than 3 nodes are omitted."""
     laplacian = np.zeros([n - 2 if n > 2 else n for n in z.shape])
     inner = tuple(slice(1, -1) if n > 2 else slice(None) for n in z.shape)
     if z.shape[0] > 2:
@@ -102,8 +103,8 @@ def _correlation_length(z: Array, h: float) -> float | None:
     """Lag (m) along the first axis where the autocorrelation first falls to 10 %, or None."""
     from scipy.fft import irfft, next_fast_len, rfft
 
-    # The FFT treats each line as periodic. Padding it with zeros to twice its length prevents a
-    # correlation between its two ends.
+    # The FFT treats each line as periodic. Padding with zeros to twice the length prevents a
+    # correlation between the two ends of a line.
     n = z.shape[0]
     padded = next_fast_len(2 * n, real=True)
     power = np.sum(np.abs(rfft(z, n=padded, axis=0)) ** 2, axis=1)

@@ -1,6 +1,6 @@
 """Extend a scan beyond the measured area, by tiles of mirror images or by a statistical twin.
 
-In both cases the result is not the measured surface, and the `notice` in its provenance says so.
+In both cases the result is not the measured surface, as the `notice` in its provenance states.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ def extend(
     """Extend a scan to a larger area.
 
     - `twin`: a random surface with the spectrum, the distribution of heights and the rms slope
-      of the scan. It has no waves longer than the scan.
+      of the scan. The twin has no waves longer than the scan.
     - `mirror`: the scan in the middle, surrounded by tiles that are its mirror images. The surface
       repeats every two tiles, and slopes jump where tiles meet.
 
@@ -37,7 +37,7 @@ def extend(
         seed: Seed of the random phases; for a twin only.
 
     Returns:
-        Extended surface. The `notice` in its provenance states that it is not the scan.
+        Extended surface. The `notice` in its provenance states that the surface is not the scan.
 
     Raises:
         SurfaceError: An argument is invalid, or the scan allows no twin because it is flat, has

@@ -8,11 +8,12 @@ from restitution.surfaces.surface import Array
 
 
 def fill_harmonically(height: Array, spacing: tuple[float, float]) -> Array:
-    """Fill NaN pixels with the solution of Laplace's equation between the defined pixels.
+    """Fill NaN pixels with heights that satisfy Laplace's equation in each hole.
 
     `height` has shape (nx, ny) and at least one defined pixel; `spacing` is (hx, hy) in m. The
-    heights in each hole stay between the lowest and the highest height on its rim, so filling adds
-    no summit that could make contact. The normal slope at the edge of the scan is zero.
+    defined pixels around a hole are the boundary values. All heights in a hole stay between the
+    lowest and the highest height on its rim, so filling adds no summit that could make contact. At
+    the edge of the scan, the slope normal to the edge is zero.
     """
     from scipy.sparse import coo_array
     from scipy.sparse.linalg import spsolve

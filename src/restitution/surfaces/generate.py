@@ -26,8 +26,9 @@ from restitution.surfaces.surface import Array, Surface
 
 RoughnessKind = Literal["exponential", "gaussian", "self-affine"]
 
-# A non-periodic surface is cut from a periodic surface that is larger by this margin (in units of
-# `Spectrum.longest`), so that opposite edges are uncorrelated.
+# A non-periodic surface is cut from a larger periodic surface, so that opposite edges are
+# uncorrelated. The additional length along each axis is at most this factor times
+# `Spectrum.longest`.
 _MARGIN = 2.0
 
 
@@ -62,8 +63,8 @@ def generate_surface(
     """Generate a random surface with zero mean and a given rms height.
 
     The same arguments give the same surface on every machine and with every NumPy version, within
-    rounding. The noise also depends on the grid, so the same seed on a finer grid gives a different
-    surface. Use `refine` to get the same surface on a finer grid.
+    rounding. The noise depends on both seed and grid, so the same seed on a finer grid gives a
+    different surface. Use `refine` to get the same surface on a finer grid.
 
     For heights that are not normally distributed, the noise is transformed before it is filtered.
     If the filtered noise cannot have the required skewness and kurtosis, heights and wave
@@ -71,18 +72,17 @@ def generate_surface(
 
     Args:
         grid: Grid of the surface.
-        kind: Autocorrelation `exponential` or `gaussian`, or a `self-affine` power spectrum.
-        rms: Root mean square height Rq (m), reached exactly.
+        kind: `exponential` or `gaussian` autocorrelation, or `self-affine` power spectrum.
+        rms: Root mean square height Rq (m). The surface has exactly this value.
         seed: Seed of the noise, not negative.
         skewness: Skewness of the heights (dimensionless).
         kurtosis: Kurtosis of the heights (dimensionless), 3 for a normal distribution; at
             least skewness² + 1.1.
         periodic: Whether opposite edges of the surface match (bool).
-        **waves: Parameters of the waves of this `kind`; None is the same as no argument.
+        **waves: Parameters of the waves of this `kind`. An argument of None counts as left out.
             `correlation_length` (m; exponential, gaussian): length over which the autocorrelation
-            falls to 10 %, or two lengths, along and across the lay.
-            `lay` (rad; exponential, gaussian): angle of the first length from the x axis,
-            default 0.
+            falls to 10 %, or two such lengths, along and across the lay.
+            `lay` (rad; exponential, gaussian): angle of the lay from the x axis, default 0.
             `hurst` (dimensionless; self-affine): Hurst exponent.
             `rolloff` (m; self-affine): wavelength above which the spectrum is constant; without
             `rolloff` the power law extends to the size of the domain.
@@ -170,7 +170,7 @@ def _heights(
     # The first mode is the mean, not a wave. A grid of one node has no other mode.
     if not H.ravel()[1:].any() or grid.nodes == (1, 1):
         raise SurfaceError(
-            f"grid: {grid.nodes[0]} x {grid.nodes[1]} nodes cannot represent a wave of this "
+            f"grid: {grid.nodes[0]} x {grid.nodes[1]} nodes cannot represent any wave of this "
             "roughness; give more nodes"
         )
     made: dict[str, str | float] = {"method": "Hu and Tonder 1992"}
@@ -183,7 +183,7 @@ def _heights(
         if (heights := distribution(z.size, *wanted)) is None:
             raise SurfaceError(
                 f"kurtosis: no Johnson distribution was found with a skewness of "
-                f"{wanted[0]:g} and a kurtosis of {wanted[1]:g}; ask for a larger kurtosis"
+                f"{wanted[0]:g} and a kurtosis of {wanted[1]:g}; give a larger kurtosis"
             )
         z, made["amplitude_misfit"] = adjusted(z, heights)
         made["method"] = "Schreiber and Schmitz 1996, adjusted amplitudes"

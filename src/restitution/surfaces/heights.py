@@ -1,7 +1,7 @@
 """Rough surfaces with given wave amplitudes and given skewness and kurtosis of the heights.
 
 There are two methods. `filtered` gives white noise η a skewness Sk_η and a kurtosis K_η (Johnson's
-translation) and then filters it. The heights z obtain the skewness and kurtosis
+translation) and then filters the noise. The filtered heights z have the skewness and kurtosis
 
     Sk_z = Sk_η Σθ³/(Σθ²)^{3/2},   K_z − 3 = (K_η − 3) Σθ⁴/(Σθ²)²,
 
@@ -24,7 +24,7 @@ import numpy as np
 from restitution.surfaces.johnson import translation
 from restitution.surfaces.surface import Array
 
-_STRONGEST = 3.0, 40.0  # largest skewness and kurtosis of the noise in `filtered`
+_STRONGEST = 3.0, 40.0  # largest |skewness| and kurtosis of the noise in `filtered`
 _CLOSE = 0.02  # tolerance on skewness (absolute) and kurtosis (relative) in `filtered`
 _CORRECTIONS = 12  # largest number of corrections of the moments of the noise in `filtered`
 _ADJUSTMENTS = 60  # largest number of adjustments of heights and amplitudes in `adjusted`
@@ -96,7 +96,7 @@ def in_order(heights: Array, z: Array) -> Array:
 
 
 def distribution(n: int, skewness: float, kurtosis: float) -> Array | None:
-    """Return n sorted heights with mean 0, variance 1 and nearly this skewness and kurtosis.
+    """Return n sorted heights with mean 0, variance 1 and nearly the given skewness and kurtosis.
 
     Return None if no such distribution is found.
     """

@@ -1,9 +1,9 @@
 """Read the file formats of instruments with the SurfaceTopography package.
 
-SurfaceTopography indexes heights `[i, j]` along x and y, as this package does. Its y axis points
-down the picture, so `imshow(heights.T)` shows the scan as the instrument does. The physical size of
-a scan is the number of pixels times the pixel size. SurfaceTopography is optional and imported on
-first use.
+SurfaceTopography and this package both index heights `[i, j]` along x and y. SurfaceTopography's y
+axis points down the picture, so `imshow(heights.T)` shows the scan as the instrument does. The
+physical size of a scan is the number of pixels times the pixel size. SurfaceTopography is optional
+and imported on first use.
 """
 
 from __future__ import annotations
@@ -22,10 +22,11 @@ import numpy as np
 from restitution.errors import SurfaceError
 from restitution.surfaces.scan import Y_DOWN, Scan, in_metres
 
-# Earlier versions misread some files without an error. For example, version 1.25.0 reads .tmd files
-# a thousand times too small along all axes, and it reads undefined pixels of .sur files as heights.
+# Oldest version of SurfaceTopography that is accepted. Earlier versions misread some files without
+# an error. For example, version 1.25.0 reads all lengths in .tmd files a thousand times too small,
+# and it reads undefined pixels of .sur files as heights.
 _OLDEST_VERSION = (1, 27)
-_LARGEST_UNPACKED = 2**31  # largest total size of the files in an archive (bytes)
+_LARGEST_UNPACKED = 2**31  # largest total size of the unpacked files of an archive (bytes)
 INSTALL_READERS = (
     'install the readers with `pip install "SurfaceTopography>=1.27"` (the extra "measured")'
 )
@@ -69,7 +70,7 @@ def read_instrument(path: Path, channel: int | None) -> Scan:
 
 
 def _check_archive(path: Path) -> None:
-    """Raise `SurfaceError` if the file is an archive (such as X3P) with too much content."""
+    """Raise `SurfaceError` if the file is an archive (such as X3P) that is too large unpacked."""
     if not zipfile.is_zipfile(path):
         return
     try:
@@ -124,7 +125,7 @@ def _read_channel(path: Path, reader: Any, channel: int | None) -> Scan:
             f"to metres; {remedy}"
         )
     # SurfaceTopography requires a physical size even if the file contains none. The number of
-    # pixels is then passed as a placeholder, and no size is returned.
+    # pixels is then passed as a placeholder, and the scan is returned without a size.
     sized = chosen.physical_sizes is not None
     topography = chosen.topography(physical_sizes=None if sized else chosen.nb_grid_pts)
     x, y = (in_metres(float(side), topography.unit) for side in topography.physical_sizes)
@@ -176,10 +177,10 @@ def _list(some: list[Any], channels: list[Any]) -> str:
 
 
 def _why_unreadable(error: Exception, suffix: str) -> str:
-    """Describe the error in words.
+    """Describe in words why SurfaceTopography cannot open a file.
 
-    If SurfaceTopography has a reader named after the `suffix` of the file, the message of this
-    reader is included.
+    If one of its readers is named after the `suffix` of the file, the message of this reader is
+    included.
     """
     named_after_suffix = rf"tried {re.escape(suffix.removeprefix('.'))}reader:\s*(.+)"
     reason = re.search(named_after_suffix, str(error), re.IGNORECASE)

@@ -1,11 +1,13 @@
-"""Johnson's translations: transform a standard normal variable z to a given skewness and kurtosis.
+"""Johnson's translations: change the skewness and kurtosis of a normally distributed variable.
 
     unbounded (SU):  x = sinh((z + γ)/δ)        bounded (SB):  x = 1/(1 + exp(−(z − γ)/δ))
 
-The parameters γ and δ determine the skewness and kurtosis of x. In the plane of skewness and
-kurtosis, each form covers one region. The line between the regions belongs to the lognormal
-distribution, which is the limit of both forms. The kurtosis of a normal variable is 3, as in ISO
-25178. Source: Johnson (1949), Biometrika 36, 149–176; fit of the parameters: Hill, Hill and Holder
+Here z is a standard normal variable. The parameters γ and δ determine the skewness and kurtosis of
+x. In the plane of skewness and kurtosis, each form covers one region. The line between the regions
+belongs to the lognormal distribution, which is the limit of both forms. Kurtosis is defined as in
+ISO 25178: a normal variable has the kurtosis 3.
+
+Sources: Johnson (1949), Biometrika 36, 149–176. Fit of the parameters: Hill, Hill and Holder
 (1976), Applied Statistics 25, 180–189 (AS 99).
 """
 
@@ -25,8 +27,9 @@ _Form = Callable[..., Array]
 # 1. Near 1, nearly all heights take one of two values.
 LEAST_KURTOSIS = 1.1
 _ABSCISSAE, _WEIGHTS = np.polynomial.hermite_e.hermegauss(201)
-# A misfit of skewness or kurtosis below _EXACT ends the search. The best fit is accepted if its
-# misfit is at most _CLOSE, because neither form fits a lognormal distribution exactly.
+# The search ends if the misfits of skewness and kurtosis are both below _EXACT. Otherwise the best
+# fit is accepted if both misfits are at most _CLOSE. _CLOSE is larger than _EXACT, because neither
+# form fits a lognormal distribution exactly.
 _EXACT, _CLOSE = 1e-6, 2e-3
 _STARTS = ((0.0, 0.0), (0.5, 0.3), (1.5, 0.5), (3.0, 0.8), (0.5, -0.7), (1.2, -1.2), (2.5, -1.5))
 
@@ -37,10 +40,10 @@ def possible(skewness: float, kurtosis: float) -> bool:
 
 
 def translation(skewness: float, kurtosis: float) -> Callable[[Array], Array] | None:
-    """Return an increasing function of a standard normal variable with the desired moments.
+    """Return an increasing function that transforms a standard normal variable.
 
-    The function values have the given skewness and kurtosis, mean 0 and variance 1. Return None if
-    no parameters are found that give the skewness within 0.002 and the kurtosis within 0.2 %.
+    The transformed variable has the given skewness and kurtosis, mean 0 and variance 1. Return None
+    if no parameters are found that give the skewness within 0.002 and the kurtosis within 0.2 %.
     """
     if skewness == 0 and kurtosis == 3:
         return np.array
@@ -65,7 +68,7 @@ def _bounded(z: Array, gamma: float, log_delta: float) -> Array:
 
 
 def _moments(form: _Form, shape: Array) -> tuple[float, float, float, float]:
-    """Mean, standard deviation, skewness and kurtosis of a form, by Gauss–Hermite quadrature."""
+    """Mean, standard deviation, skewness and kurtosis of x, by Gauss–Hermite quadrature."""
     weight = _WEIGHTS / _WEIGHTS.sum()
     x = form(_ABSCISSAE, *shape)
     mean = float(weight @ x)
@@ -80,7 +83,7 @@ def _moments(form: _Form, shape: Array) -> tuple[float, float, float, float]:
 
 
 def _best_fit(skewness: float, kurtosis: float) -> tuple[float, _Form, Array]:
-    """Misfit, form and parameters (γ, ln δ) that fit skewness and kurtosis best."""
+    """Return the misfit, the form and the parameters (γ, ln δ) of the best fit."""
     best = math.inf, _unbounded, np.zeros(2)
     for form, start in product((_unbounded, _bounded), _STARTS):
         shape, miss = _fitted(form, start, skewness, kurtosis)
@@ -94,12 +97,12 @@ def _best_fit(skewness: float, kurtosis: float) -> tuple[float, _Form, Array]:
 def _fitted(
     form: _Form, start: tuple[float, float], skewness: float, kurtosis: float
 ) -> tuple[Array, float]:
-    """Fit the parameters (γ, ln δ) of a form, from `start`; also return the misfit."""
+    """Fit the parameters (γ, ln δ) of a form, starting at `start`; also return the misfit."""
     from scipy.optimize import least_squares
 
     def miss(shape: Array) -> Array:
         _, _, skew, kurt = _moments(form, shape)
-        # The logarithm limits the effect of kurtosis, which is very large for long tails.
+        # The logarithm limits the weight of the kurtosis, which is very large for long tails.
         return np.array([skew - skewness, math.log(kurt / kurtosis)])
 
     with np.errstate(over="ignore", invalid="ignore"):

@@ -17,12 +17,12 @@ _DEGREE = {"center": 0, "tilt": 1, "curvature": 2}
 def level(surface: Surface, how: Levelling) -> Surface:
     """Subtract the mean, or the least-squares plane or paraboloid, from the heights.
 
-    The paraboloid has the terms 1, x, y, x², xy and y². The provenance entry `levelling` lists the
-    values of `how` of all levellings so far, in order.
+    The paraboloid has the terms 1, x, y, x², xy and y². The provenance entry `levelling` lists
+    all methods applied so far, in order.
 
     Args:
         surface: Surface to level.
-        how: `none`, `center` (mean), `tilt` (plane) or `curvature` (paraboloid).
+        how: Method, `none`, `center` (mean), `tilt` (plane) or `curvature` (paraboloid).
 
     Returns:
         Levelled surface.
@@ -47,7 +47,7 @@ def level(surface: Surface, how: Levelling) -> Surface:
 
 
 def _least_squares_form(height: Array, degree: int) -> Array:
-    """Least-squares polynomial of total degree `degree` through the heights, shape (nx, ny).
+    """Least-squares polynomial of total degree `degree` fitted to the heights, shape (nx, ny).
 
     On a regular grid the products of orthonormal polynomials along x and y are orthonormal. So each
     coefficient is a scalar product, and no least-squares matrix with a row per pixel is needed.

@@ -1,4 +1,4 @@
-"""Read measured topographies of all file formats with one function and one type of error."""
+"""Read measured topographies: one function for all file formats, and one type of error."""
 
 from __future__ import annotations
 
@@ -28,14 +28,13 @@ from restitution.surfaces.text_files import TEXT_SUFFIXES, NotAMatrixError, read
 
 UndefinedPixels = Literal["error", "interpolate"]
 
-# Largest fraction of undefined pixels that is filled. A larger smooth fill would distort the
-# statistics of the surface.
+# Largest fraction of undefined pixels that are filled. Filling more pixels smoothly would distort
+# the statistics of the surface.
 _LARGEST_FILL = 0.2
-# Largest relative difference between the size in the file and the argument `size` that is treated
-# as rounding.
+# The size in the file and the argument `size` count as equal up to this relative difference.
 _SIZE_ROUNDING = 1e-6
-# Largest ratio of the height range to the longer edge. Heights that are not in metres exceed this
-# ratio by far.
+# Largest allowed ratio of the height range to the longer edge of the scan. Heights that are not in
+# metres exceed this ratio by far.
 _TALLEST = 10.0
 _LARGEST = 2**30  # largest size of a file (bytes)
 
@@ -50,20 +49,21 @@ def read_surface(
     """Read a measured height map, without levelling it.
 
     - `.npy`, `.npz`: a 2-D array in metres, `array[i, j]` at x_i, y_j.
-    - `.txt`, `.csv`, `.dat`, `.asc`: a matrix in metres, with a scan line (constant y) on each
-      line.
-    - All other files, and text that is not a plain matrix: any format that SurfaceTopography reads
-      (the extra `measured`).
+    - `.txt`, `.csv`, `.dat`, `.asc`: a matrix in metres; each line of the file is a scan line
+      (constant y).
+    - All other files, and text that is not a plain matrix: any format that SurfaceTopography can
+      read. Install the extra `measured` for these formats.
 
-    The provenance contains the file, its SHA-256, format and channel, the size, and the number of
-    undefined pixels.
+    The provenance contains the file with its SHA-256, format and channel, the size of the scan, and
+    the number of undefined pixels.
 
     Args:
         path: File to read.
         channel: Number of the channel, counted from 0; None selects the reader's default height
             channel.
-        size: Lengths of the x and y edges (m): number of pixels times pixel size. Required if the
-            file does not contain the lengths. Otherwise `size` must agree with the file.
+        size: Edge lengths of the scan along x and y (m): number of pixels times pixel size.
+            Required if the file does not contain the lengths. Otherwise `size` must agree with the
+            file.
         undefined: `interpolate` fills undefined pixels harmonically from their neighbours, if at
             most 20 % of all pixels are undefined. `error` rejects a scan with undefined pixels.
 
@@ -118,7 +118,7 @@ def read_surface(
 
 
 def _check_readable(file: Path) -> None:
-    """Raise `SurfaceError` for a missing, unreadable, irregular, empty or too large file."""
+    """Raise `SurfaceError` if a file is missing, unreadable, not regular, empty or too large."""
     try:
         kind = file.stat()
         if stat.S_ISDIR(kind.st_mode):
@@ -159,7 +159,7 @@ def _read_scan(file: Path, channel: int | None) -> Scan:
         try:
             scan = read_text(file)
         except NotAMatrixError as not_a_matrix:
-            # Files of instruments can have these suffixes, too. If no reader of instrument files
+            # Instruments also write files with these suffixes. If no reader of instrument files
             # can open the file, the error of the matrix reader is reported.
             try:
                 return read_instrument(file, channel)
@@ -225,7 +225,7 @@ def _check_metres(file: Path, heights: Array, edges: tuple[float, float]) -> Non
     if span > _TALLEST * max(edges):
         raise SurfaceError(
             f"{file}: heights that span {span:g} m on a scan of {_text(edges)} um cannot be in "
-            "metres; convert them to metres, or correct size"
+            "metres; convert them to metres, or correct the size"
         )
 
 

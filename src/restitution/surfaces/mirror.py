@@ -18,9 +18,9 @@ from restitution.surfaces.surface import Array, Surface
 def mirrored(scan: Surface, grid: Grid) -> Surface:
     """Cover `grid` with tiles: the scan in the middle, surrounded by its mirror images.
 
-    If the scan is at least as large as the grid, the surface is a part of the scan. Waves that are
-    too short for the cells of `grid` are removed. A cubic spline interpolates the heights between
-    pixels.
+    If the scan is at least as large as the grid, no mirror images are needed, and the surface is a
+    part of the scan. Waves that are too short for the cells of `grid` are removed. A cubic spline
+    interpolates the heights between pixels.
     """
     if all(g <= s * (1 + 1e-9) for g, s in zip(grid.size, scan.grid.size, strict=True)):
         return place_on_grid(scan, grid)

@@ -14,8 +14,8 @@ def white_noise(shape: tuple[int, int], seed: int) -> Array:
 
     # NumPy never changes the raw stream of a bit generator, but the methods of Generator (such as
     # standard_normal) can change between releases (NEP 19). So the raw 64-bit words are mapped to
-    # normal numbers here. u = (52 bits + ½)/2⁵² is never 0 or 1, where the inverse distribution is
-    # infinite. With 53 bits u could round to 1.
+    # normal numbers here. The inverse normal distribution is infinite at 0 and 1, which
+    # u = (52 bits + ½)/2⁵² never reaches. With 53 bits, u could round to 1.
     u = (_random_bits(np.random.PCG64(seed), shape[0] * shape[1]) + 0.5) * 2.0**-52
     return np.asarray(ndtri(u).reshape(shape))
 
@@ -23,9 +23,10 @@ def white_noise(shape: tuple[int, int], seed: int) -> Array:
 def wave_phases(seed: int, numbers: NDArray[np.int64], count: int) -> Array:
     """Random phases (rad) of the waves (m, n) with m in `numbers` and n in 0 … `count` − 1.
 
-    The shape is (numbers.size, count). A phase depends only on `seed`, m and n. So a finer grid
-    keeps the phases of a coarser grid and adds phases of shorter waves. The phases of waves (m, 0)
-    and (−m, 0) have opposite signs, because heights are real.
+    m and n are the numbers of periods along x and y. The shape is (numbers.size, count). A phase
+    depends only on `seed`, m and n. So a finer grid keeps the phases of a coarser grid and adds
+    phases of shorter waves. The phases of waves (m, 0) and (−m, 0) have opposite signs, because
+    heights are real.
     """
     phases = np.empty((numbers.size, count))
     for row, m in enumerate(numbers.tolist()):

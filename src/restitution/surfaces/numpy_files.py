@@ -18,10 +18,11 @@ SAVE_AS_NUMPY = "save the heights in metres as a 2-D array with numpy.save"
 
 
 def read_numpy(path: Path) -> Scan:
-    """Read the 2-D array (m) of a `.npy`, or the array `height` (or the only array) of a `.npz`.
+    """Read a height map (m) from a NumPy file.
 
-    A `.npz` may also contain `size`, the two edge lengths (m). Raises `SurfaceError` for other
-    content, including pickled objects, which are not loaded.
+    A `.npy` file contains one 2-D array. In a `.npz` file, the height map is the array `height`, or
+    the only array. A `.npz` file may also contain `size`, the two edge lengths (m). Raises
+    `SurfaceError` for other content, including pickled objects, which are not loaded.
     """
     array, size, details = _load_arrays(path)
     if array.ndim != 2 or min(array.shape) < 2:
@@ -41,12 +42,12 @@ def read_numpy(path: Path) -> Scan:
 def _load_arrays(
     path: Path,
 ) -> tuple[NDArray[np.generic], tuple[float | None, float | None], dict[str, str | float]]:
-    # Unpickling would run code from the file, so it is forbidden for both formats.
+    # Unpickling could run code from the file, so it is forbidden for both formats.
     try:
         _check_headers(path)
         if path.suffix.lower() == ".npy":
             # Memory mapping compares the shape in the header with the length of the file. Loading
-            # would first allocate memory for this shape, which can be huge in a damaged header.
+            # would first allocate memory for this shape. A damaged header can state a huge shape.
             return np.lib.format.open_memmap(path, mode="r"), (None, None), {"format": "npy"}
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as archive:
             key = _height_key(path, archive.files)

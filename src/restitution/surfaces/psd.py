@@ -1,13 +1,16 @@
 """Power spectral density of a surface, after Jacobs, Junge and Pastewka (2017).
 
-    C(q) = |∫ z exp(−iq·r) d²r|²/A,   Sq² = (2π)⁻² ∫ C d²q,   (Surf. Topogr. 5, 013001, eqs 2, 6)
+    C(q) = |∫ z exp(−iq·r) d²r|²/A,   Sq² = (2π)⁻² ∫ C d²q.
 
-C is in m⁴, q is the wave vector (rad/m), z the height minus its mean at the position r, and A the
-area of the surface. A scan is not periodic, so the jump between opposite edges would dominate the
-spectrum. The scan is therefore multiplied by each of nine sine tapers, and the nine spectra are
-averaged (Riedel and Sidorenko 1995, IEEE Trans. Signal Process. 43, 188–195). Together the tapers
-cover all of the scan except the rim. The leakage from long waves to short waves decreases with the
-fourth power of the wave number. The resolution in frequency is ±1.5/size.
+C is in m⁴, q is the wave vector (rad/m), z(r) the height at the position r minus the mean height,
+and A the area of the surface. A scan is not periodic, so the jump between opposite edges would
+dominate the spectrum. The scan is therefore multiplied by each of nine sine tapers (three along
+each axis), and the nine spectra are averaged (Riedel and Sidorenko 1995, IEEE Trans. Signal
+Process. 43, 188–195). Together the tapers cover all of the scan except the rim. The leakage from
+long waves to short waves decreases with the fourth power of the wave number. The resolution in
+spatial frequency (1/m) is ±1.5 divided by the size of the scan.
+
+Source: Jacobs, Junge and Pastewka (2017), Surf. Topogr. 5, 013001, eqs 2 and 6.
 """
 
 from __future__ import annotations
@@ -21,7 +24,7 @@ import numpy as np
 from restitution.surfaces.surface import Array, Surface, is_periodic
 
 _TAPERS = 3  # number of sine tapers along each axis
-_BANDS_PER_OCTAVE = 4  # bands of the radial spectrum per factor of two in wave number
+_BANDS_PER_OCTAVE = 4  # number of bands per factor of two in wave number (radial spectrum)
 _SECTOR = 15  # half the width of the sectors around the x and y axes (°)
 
 
@@ -44,7 +47,7 @@ class DirectedSpectrum(NamedTuple):
 
 
 def power_spectral_density(surface: Surface) -> Array:
-    """Power spectral density C (m⁴) at the wave vectors of `numpy.fft.fftfreq` times 2π.
+    """Power spectral density C (m⁴) at the wave vectors 2π times `numpy.fft.fftfreq`.
 
     The shape is `grid.nodes`. C is exact for a periodic surface; otherwise it is estimated with
     tapers.
@@ -63,18 +66,19 @@ def power_spectral_density(surface: Surface) -> Array:
 
 
 def radial_spectrum(surface: Surface, density: Array | None = None) -> RadialSpectrum:
-    """The power spectral density, averaged over directions and in bands of the wave number.
+    """Power spectral density in bands of the wave number, averaged over directions.
 
     `density` is the `power_spectral_density` of `surface`, if it is already known. Wave vectors at
-    which `density` is NaN are left out. Bands are about a quarter of an octave wide, up to the wave
-    number of the shortest wave that the grid resolves along both axes.
+    which `density` is NaN are left out. Bands are about a quarter of an octave wide. The highest
+    band ends at the shortest wave that the grid resolves along both axes.
     """
     C = power_spectral_density(surface) if density is None else density
     q = wave_numbers(C.shape, surface.grid.spacing)
     least, most = 2 * math.pi / min(surface.grid.size), math.pi / max(surface.grid.spacing)
     count = max(1, round(_BANDS_PER_OCTAVE * math.log2(max(most / least, 1.0))))
     edges = np.geomspace(0.999 * least, 1.001 * most, count + 1)
-    # Band 0 is left out. It contains waves that are longer than all bands or have no density.
+    # Band 0 contains the waves below the lowest band and the waves without density. It is left out,
+    # as are the waves above the highest band.
     band = np.where(np.isfinite(C), np.digitize(q, edges), 0).ravel()
     size = np.bincount(band, minlength=count + 2)[1:-1]
     sums = (np.bincount(band, values.ravel(), count + 2)[1:-1] for values in (q, C))
@@ -82,7 +86,7 @@ def radial_spectrum(surface: Surface, density: Array | None = None) -> RadialSpe
 
 
 def directed_spectra(surface: Surface) -> list[DirectedSpectrum]:
-    """The radial spectra over all directions, within 15° of x, and within 15° of y."""
+    """Radial spectra of all directions, of those within 15° of x, and of those within 15° of y."""
     C = power_spectral_density(surface)
     qx, qy = (
         2 * math.pi * np.fft.fftfreq(n, h)

@@ -12,10 +12,9 @@ from restitution.surfaces.surface import Array, Surface, is_periodic
 def refine(surface: Surface, factor: int) -> Surface:
     """Resample a surface to smaller cells over the same domain.
 
-    Heights at the new nodes are values of the trigonometric polynomial through the old heights
-    (zero padding of the spectrum), so no wave is added. A surface that is not periodic is first
-    extended by its mirror image, to avoid ringing at its edges. The origins of the two grids
-    coincide (see `Grid`).
+    The new heights are values of the trigonometric polynomial through the old heights (zero padding
+    of the spectrum), so no wave is added. A surface that is not periodic is first extended by its
+    mirror image, to avoid ringing at its edges. The origins of the two grids coincide (see `Grid`).
 
     Args:
         surface: Surface to refine.

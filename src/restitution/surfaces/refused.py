@@ -1,4 +1,4 @@
-"""Errors of surfaces that store the reason and the remedy separately.
+"""Surface errors that store the reason and the remedy in separate attributes.
 
 The remedy names Python arguments. The package `case` replaces it by a remedy that names keys of the
 case file.
@@ -23,8 +23,8 @@ Code = Literal[
 class RefusedSurfaceError(SurfaceError):
     """The surface cannot be made.
 
-    `fact` states the reason, and `code` identifies it. `remedy` names the Python arguments to
-    change.
+    `fact` states the reason, `code` is an identifier of the reason, and `remedy` names the Python
+    arguments to change.
     """
 
     def __init__(self, code: Code, fact: str, remedy: str) -> None:

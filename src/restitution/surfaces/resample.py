@@ -19,14 +19,14 @@ _ROUNDING = 1e-9  # largest relative difference of two lengths that count as equ
 def place_on_grid(surface: Surface, grid: Grid) -> Surface:
     """Resample the middle of a surface to the cells of a grid.
 
-    The origins coincide (see `Grid`). If the spacings are equal, the cells coincide with pixels,
-    the surface is cropped, and heights do not change. Otherwise a cubic spline through the pixel
-    centres is evaluated at the cell centres. Along an axis where cells are larger than pixels,
-    waves shorter than two cells are removed first, because they would be aliased to longer waves.
-    Beyond the outermost pixel centres (by less than a pixel) the height is constant, not
-    extrapolated.
+    The origins of the two grids coincide (see `Grid`). If the spacings are equal, the cells
+    coincide with pixels, so the surface is cropped and the heights do not change. Otherwise a cubic
+    spline through the pixel centres is evaluated at the cell centres. Along an axis where cells are
+    larger than pixels, waves shorter than two cells are removed first, because they would be
+    aliased to longer waves. Heights are not extrapolated: between the outermost pixel centres and
+    the edges of the surface they are constant.
 
-    The method (`placement`) and the waves that were removed are added to the provenance.
+    The method (`placement`) and data on the removed waves are added to the provenance.
 
     Args:
         surface: Surface to resample, such as a scan.
@@ -81,7 +81,8 @@ def carried(surface: Surface, spacing: tuple[float, float], *, mirrored: bool = 
 def left_out(surface: Surface, kept: Array, spacing: tuple[float, float]) -> dict[str, float]:
     """Provenance entries that describe the waves removed by resampling to cells of `spacing` (m).
 
-    `kept` are the heights of `surface` without these waves. Earlier resampling is included:
+    `kept` are the heights of `surface` without these waves. The entries also include the waves
+    removed by earlier resampling:
 
     - `removed_rms_m`: rms height of the removed waves
     - `removed_slope`: rms slope of the removed waves divided by that of the original surface
@@ -128,7 +129,7 @@ def same_spacing(scan: Grid, grid: Grid) -> bool:
 
 
 def crop_to(height: Array, nodes: tuple[int, int]) -> Array:
-    """Crop `height` to `nodes` (nx, ny) nodes around the same origin."""
+    """Crop `height` to the shape `nodes` (nx, ny), with the same origin."""
     # The origin of a `Grid` is node n // 2.
     i, j = (have // 2 - want // 2 for have, want in zip(height.shape, nodes, strict=True))
     return height[i : i + nodes[0], j : j + nodes[1]]
@@ -162,9 +163,10 @@ def _carried_mirrored(height: Array, ratio: float) -> Array:
 
 
 def spline(height: Array, at: Sequence[Array], to: Sequence[Array]) -> Array:
-    """Interpolate by a cubic spline from the coordinates `at` (along x and y) to `to`.
+    """Interpolate `height` by a cubic spline.
 
-    Heights are constant beyond the ends.
+    `at` contains the old coordinates along x and y, and `to` the new ones. Heights are constant
+    beyond the ends of the old coordinates.
     """
     from scipy.interpolate import make_interp_spline
 

@@ -1,4 +1,4 @@
-"""A scan: the result of a file reader, before it is checked and converted to a `Surface`."""
+"""A scan as a file reader returns it, before it is checked and converted to a `Surface`."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _PER_METRE = {
     "fm": 1e15,
 }
 
-# Largest number of pixels of a scan. More pixels would take gigabytes of memory before any check.
+# Largest number of pixels of a scan, which limits the memory needed for reading.
 MOST_PIXELS = 2**26
 
 # Provenance entry for files whose first scan line is at the top of the picture.
@@ -36,7 +36,7 @@ class Scan:
     """Content of a topography file: the heights, the size of the scan, and further details.
 
     `height` is in m, has shape (nx, ny) and is NaN where undefined. `size` contains the lengths of
-    the x and y edges (m), or None for a length that is not in the file. `details` become part of
+    the x and y edges (m); a length that the file does not contain is None. `details` become part of
     the provenance; they include `Y_DOWN` if the first line of the file is at the top of the
     picture.
     """

@@ -9,17 +9,17 @@ import numpy as np
 
 from restitution.surfaces.surface import Surface, is_periodic
 
-# Steps along x and y of an additive recurrence with low discrepancy: its first N points fill a
-# square evenly for any N. The steps are 1/ρ and 1/ρ², where ρ is the plastic number (ρ³ = ρ + 1).
+# Steps along x and y of an additive recurrence with low discrepancy: for any N, its first N points
+# fill a square evenly. The steps are 1/ρ and 1/ρ², where ρ is the plastic number (ρ³ = ρ + 1).
 _STEPS = 1 / 1.324717957244746, 1 / 1.324717957244746**2
 
 
 def place_of(surface: Surface, number: int) -> Surface:
     """Move `surface` so that point `number` of a fixed sequence is in the middle.
 
-    Point 0 is the middle itself. The first N points of the sequence fill the surface evenly for any
-    N. Beyond its edges a periodic surface is continued periodically, and any other surface by its
-    mirror image.
+    Point 0 is the middle itself. For any N, the first N points of the sequence fill the surface
+    evenly. A periodic surface is continued periodically beyond its edges, and any other surface by
+    its mirror image.
     """
     if number == 0:
         return surface

@@ -5,9 +5,9 @@
     R(τ) = Rq² exp(−2.3 ρ)   (exponential)     R(τ) = Rq² exp(−2.3 ρ²)   (Gaussian)
     ρ = sqrt((τ₁/β₁)² + (τ₂/β₂)²),
 
-with the rms height Rq, the lags τ₁ along the lay and τ₂ across it, and the correlation lengths β₁
-and β₂, at which the autocorrelation has fallen to 10 % (e^−2.3 = 0.100). Source: Hu and Tonder
-(1992), Int. J. Mach. Tools Manufact. 32, 83–90.
+where Rq is the rms height, τ₁ and τ₂ are the lags along and across the lay, and β₁ and β₂ are the
+correlation lengths. At a lag of β₁ along the lay, or β₂ across it, the autocorrelation has fallen
+to 10 % (e^−2.3 = 0.100). Source: Hu and Tonder (1992), Int. J. Mach. Tools Manufact. 32, 83–90.
 
 `SelfAffine` surfaces have the power spectral density
 
@@ -34,8 +34,8 @@ from restitution.surfaces.surface import Array
 class Autocorrelated:
     """Waves of a surface with an exponential or Gaussian autocorrelation.
 
-    `correlation_length` (m) is given along and across the lay. `lay` is the angle of the lay from
-    the x axis (rad), and `shortest` the shortest wavelength (m).
+    `correlation_length` contains the lengths along and across the lay (m). `lay` is the angle of
+    the lay from the x axis (rad), and `shortest` the shortest wavelength (m).
     """
 
     kind: Literal["exponential", "gaussian"]
@@ -101,8 +101,9 @@ class Autocorrelated:
 class SelfAffine:
     """Waves of a self-affine surface, with the Hurst exponent `hurst`.
 
-    The power spectral density is a power law between the wavelengths `shortest` and `rolloff` (m)
-    and constant above `rolloff`. Without `rolloff` the power law extends to the size of the domain.
+    Between the wavelengths `shortest` and `rolloff` (m), the power spectral density is a power law.
+    At longer wavelengths it is constant. Without `rolloff` the power law extends to the size of the
+    domain.
     """
 
     hurst: float
@@ -130,7 +131,7 @@ class SelfAffine:
             raise SurfaceError(
                 f"rolloff: {rolloff * 1e6:g} um is not between the shortest wavelength, "
                 f"{shortest * 1e6:g} um, and the size of the domain, {max(grid.size) * 1e6:g} um; "
-                "change rolloff, or leave it out for a power law up to the size of the domain"
+                "change rolloff, or leave rolloff out for a power law up to the size of the domain"
             )
 
     def amplitude(self, grid: Grid) -> Array:

@@ -1,6 +1,6 @@
 """Read height matrices from plain text.
 
-Each line of the file is a scan line: x runs along a line, and y counts the lines, as in files of
+Each line of the file is a scan line: x runs along a line, and y from line to line, as in files of
 Gwyddion, SurfaceTopography and instruments. The array of heights is transposed, so that it is
 indexed `[i, j]` along x and y, as everywhere in this package.
 """
@@ -19,13 +19,13 @@ from restitution.surfaces.scan import Y_DOWN, Scan, in_metres
 
 TEXT_SUFFIXES = frozenset({".txt", ".csv", ".dat", ".asc"})
 
-_LEAST_VALUES = 4  # smallest number of values of a scan line; shorter lines are coordinates
-_LONGEST = 200  # longest header value that is read as a number with a unit (characters)
+_LEAST_VALUES = 4  # smallest number of values of a scan line; shorter lines may be coordinates
+_LONGEST = 200  # largest length (characters) of a header value that is read as a number with unit
 _NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?"
 _QUANTITY = re.compile(rf"(?P<number>{_NUMBER})\s*(?P<unit>\S+)")
 # Keys with which headers of other programs (SPIP, Nova, Gwyddion's XYZ) set units and scales.
 _FOREIGN_KEY = re.compile(r"unit|length|pixel|bit2|file format|factor", re.IGNORECASE)
-# Keys for the number of values per line (x) and of lines (y).
+# Keys for the number of values per line (x) and for the number of lines (y).
 _COLUMNS = frozenset({"nx", "columns", "values per line"})
 _LINES = frozenset({"ny", "rows", "lines"})
 _OWN_KEYS = frozenset({"width", "height", "value units"})
@@ -42,10 +42,10 @@ class NotAMatrixError(SurfaceError):
 def read_text(path: Path) -> Scan:
     """Read a matrix of heights (m), separated by white space, commas or semicolons.
 
-    Lines that start with # are comments. `# Width:` and `# Height:` give the size,
-    `# Value units:` the unit of the heights, and keys such as `# nx:`, `# ny:` and `# Pixels:` the
-    numbers of values and lines. An empty field, `nan` or `bad` is undefined. If fields are
-    separated by semicolons, the comma is the decimal sign.
+    Lines that start with # are comments. `# Width:` and `# Height:` give the size of the scan, and
+    `# Value units:` the unit of the heights. Keys such as `# nx:`, `# ny:` and `# Pixels:` give the
+    number of values per line and the number of lines. An empty field, `nan` or `bad` marks an
+    undefined pixel. If fields are separated by semicolons, the comma is the decimal sign.
 
     Raises `NotAMatrixError` if the content is not such a matrix but another reader may understand
     it, and `SurfaceError` for a matrix that is damaged or does not contain heights.
@@ -86,11 +86,11 @@ def _decode(path: Path) -> str:
 def _parse_rows(path: Path, data: list[tuple[int, str]], *, plain: bool) -> list[list[float]]:
     """Parse all lines. Raise `NotAMatrixError` for text and `SurfaceError` for damaged lines.
 
-    Text between scan lines counts as a damaged line, because other readers would skip it. Text
-    above the scan lines also counts as damaged if the comments show that the file is a `plain`
+    Text between scan lines counts as a damaged line, because other readers would silently skip it.
+    Text above the scan lines also counts as damaged if the comments show that the file is a `plain`
     matrix.
     """
-    rows: list[list[float]] = []  # empty for a line of text
+    rows: list[list[float]] = []  # a line of text becomes an empty row
     first: NotAMatrixError | None = None
     for number, line in data:
         try:
@@ -113,7 +113,7 @@ def _parse_rows(path: Path, data: list[tuple[int, str]], *, plain: bool) -> list
 
 
 def _is_nearly_a_row(path: Path, line: str, width: int) -> bool:
-    """Whether `line` holds at least half as many numbers as a scan line."""
+    """Whether `line` holds at least half as many numbers as a scan line of `width` values."""
     numbers = 0
     for text in line.replace(";", " ").replace(",", " ").split():
         with suppress(NotAMatrixError):
@@ -156,7 +156,7 @@ def _read_header(
     """Read the header lines.
 
     Returns the edge lengths (m), the unit of the heights in metres, details for the provenance, and
-    two counts: values per line, and lines.
+    the stated numbers of values per line and of lines.
     """
     sides: dict[str, float] = {}
     metres_per_value = 1.0
@@ -186,7 +186,7 @@ def _read_header(
                 )
             details["channel_name"] = value
         elif length is not None or _FOREIGN_KEY.search(key):
-            # A wrong guess of the unit could change heights by a factor of a million unnoticed.
+            # A wrong guess of the unit could change heights by a factor of a million.
             raise NotAMatrixError(
                 f"{path}: its header line {comment[:60]!a} may set an unknown unit or scale; give "
                 "only '# Width:', '# Height:' and '# Value units:'"

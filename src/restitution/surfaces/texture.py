@@ -1,8 +1,8 @@
 """Texture and material ratio parameters after ISO 25178-2.
 
-Unlike the parameters of `describe`, these parameters are derived from the autocorrelation in all
-directions or from the material ratio curve. Clause numbers refer to ISO 25178-2:2012. Subtract tilt
-and form first (`level`).
+Unlike the parameters of `describe`, most of these parameters are derived from the autocorrelation
+in all directions or from the material ratio curve. Clause numbers refer to ISO 25178-2:2012.
+Subtract tilt and form first (`level`).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from restitution.surfaces.surface import Array, Surface, is_periodic
 _BINS = 80  # number of bins of the density of heights
 _DECAY = 0.2  # value of the autocorrelation that defines Sal and Str (clause 4.2)
 _DIRECTIONS = 180  # number of directions over a half turn
-_CORE = 0.4  # range of the material ratio that the secant through the core spans (clause 5.2)
+_CORE = 0.4  # difference of material ratio between the ends of the secant (clause 5.2)
 
 
 class Autocorrelation(NamedTuple):
@@ -29,14 +29,14 @@ class Autocorrelation(NamedTuple):
 
 
 class MaterialRatio(NamedTuple):
-    """Abbott curve: material ratios from 0 to 1 and the heights (m) above the mean, decreasing."""
+    """Abbott curve: material ratios from 0 to 1, and heights (m) above the mean, which decrease."""
 
     ratio: Array
     height: Array
 
 
 class HeightDensity(NamedTuple):
-    """Heights (m) above the mean, their density (1/m), and the normal density of equal Sq (1/m)."""
+    """Heights (m) above the mean, their density (1/m), and the normal density (1/m) of equal Sq."""
 
     height: Array
     density: Array
@@ -46,17 +46,21 @@ class HeightDensity(NamedTuple):
 def texture(surface: Surface) -> dict[str, float | None]:
     """Texture and material ratio parameters of `surface`, in SI units; None where undefined.
 
-    - `Sal_m`: autocorrelation length, the shortest lag at which the autocorrelation falls to 0.2
-      (4.2.1)
-    - `Str`: texture aspect ratio, the shortest lag at which the autocorrelation falls to 0.2,
-      divided by the longest such lag; near 1 without a lay and near 0 with a lay; None if the
-      autocorrelation stays above 0.2 in some direction up to half of the domain (4.2.2)
-    - `lay_deg`: direction (°) of this longest lag from the x axis, 0 to 180; it is the direction of
-      the lay if Str is small
+    The decay lag of a direction is the lag at which the autocorrelation first falls to 0.2. Numbers
+    in brackets are clauses of the standard.
+
+    - `Sal_m`: autocorrelation length, the shortest decay lag of all directions (4.2.1)
+    - `Str`: texture aspect ratio, the shortest decay lag divided by the longest (4.2.2). It is near
+      1 without a lay and near 0 with a lay. It is None if the autocorrelation stays above 0.2 in
+      some direction up to half of the domain.
+    - `lay_deg`: direction (°) of the longest decay lag from the x axis, 0 to 180. If Str is small,
+      this is the direction of the lay.
     - `Sdr`: developed interfacial area ratio, the area of triangles between nodes divided by the
       area of their projection, minus 1 (4.3.2)
-    - `Sk_m`, `Spk_m`, `Svk_m`: core, reduced peak and reduced dale height; `Smr1`, `Smr2`: material
-      ratios where peaks and dales begin (5.2 to 5.4, after ISO 13565-2)
+    - `Sk_m`, `Spk_m`, `Svk_m`: core height, reduced peak height and reduced dale height (5.2 to
+      5.4, after ISO 13565-2)
+    - `Smr1`, `Smr2`: material ratios at the limits of the core: `Smr1` towards the peaks, `Smr2`
+      towards the dales (5.2 to 5.4)
     """
     decays = _decay_lags(autocorrelation(surface))
     found = np.isfinite(decays)
@@ -70,7 +74,7 @@ def texture(surface: Surface) -> dict[str, float | None]:
 
 
 def height_density(surface: Surface) -> HeightDensity:
-    """Probability density of the heights minus their mean, and the normal density of equal Sq.
+    """Probability density of the heights above their mean, and the normal density of equal Sq.
 
     The normal density of a flat surface is set to 0.
     """
@@ -106,7 +110,7 @@ def autocorrelation(surface: Surface) -> Autocorrelation:
 
 
 def material_ratio(surface: Surface, points: int = 1001) -> MaterialRatio:
-    """The Abbott curve: the fraction of the surface above each height, at `points` points."""
+    """Abbott curve at `points` points: the fraction of the surface above each height."""
     ratio = np.linspace(0.0, 1.0, points)
     z = surface.height - surface.height.mean()
     return MaterialRatio(ratio, np.quantile(z, 1 - ratio))
@@ -157,9 +161,9 @@ def _core(curve: MaterialRatio) -> dict[str, float | None]:
     top = float(height[start] - slope * ratio[start])
     bottom = top + float(slope)
     above, below = np.maximum(height - top, 0.0), np.maximum(bottom - height, 0.0)
-    # Spk is the height of a triangle with the base Smr1 and the area of the curve above the core.
-    # Svk is the height of a triangle with the base 1 − Smr2 and the area of the curve below the
-    # core.
+    # Spk is the height of a triangle with the base Smr1 and the same area as the curve above the
+    # core. Svk is the height of a triangle with the base 1 − Smr2 and the same area as the curve
+    # below the core.
     Smr1, Smr2 = float(np.mean(height > top)), float(np.mean(height >= bottom))
     peaks, dales = (float(trapezoid(part, ratio)) for part in (above, below))
     return {

@@ -3,19 +3,21 @@
 The waves of a twin (`wave_spectrum`) first get random phases. Then heights and amplitudes are
 adjusted alternately (Schreiber and Schmitz 1996, Phys. Rev. Lett. 77, 635–638), because the
 skewness and kurtosis of the heights depend on the phases of all waves together. Phases and
-adjustment depend on the scan, the period and the seed, but not on the grid. So a grid with half the
-spacing gives the same surface with shorter waves added.
+adjustment depend on the scan, the period of the twin and the seed, but not on the grid. So a grid
+with half the spacing gives the same surface with shorter waves added.
 
-To make the result independent of the grid, the adjustment proceeds from long to short waves:
+To make the result independent of the grid, the waves are divided into bands by their wavelength.
+The adjustment proceeds from long to short waves:
 
-* All waves of the longest band are adjusted together, on the coarsest grid that resolves them. The
+* All waves of the first band are adjusted together, on the coarsest grid that resolves them. The
   target is the distribution of heights of the scan without the shorter waves. The last step adjusts
   the amplitudes, so the amplitudes are exact.
-* Each further band halves the shortest wavelength. Only the phases of its new waves are adjusted.
+* Each further band adds waves down to half the shortest wavelength so far. Only the phases of the
+  added waves are adjusted.
 * The bands end where the remaining waves have about 1 % of the scan's mean square height. These
   waves hardly affect the distribution of heights and keep their random phases.
 
-A coarse grid takes its waves from the first band that contains all of them.
+Bands whose waves are all too short for the grid are not computed.
 """
 
 from __future__ import annotations
@@ -34,20 +36,22 @@ from restitution.surfaces.surface import Array, Surface
 from restitution.surfaces.wave_spectrum import Modes, WaveSpectrum, spectrum_of
 
 LEAST_PIXELS = 16  # smallest number of pixels of a scan along each axis
-_UNADJUSTED = 0.01  # fraction of the mean square height in waves that are not adjusted
+_UNADJUSTED = 0.01  # fraction of the scan's mean square height in waves that are not adjusted
 _FIRST_BAND = 2**20  # largest number of nodes of the grid for the band of the longest waves
+_LEAST_FIRST = 8  # smallest number of cells along an edge of the scan, on the grid of this band
 
-# Smallest number of pixels along an edge of the scan after it is coarsened to the cells of this
-# grid.
-_LEAST_FIRST = 8
-_WORK = 2**24  # limit on the number of nodes times the number of adjustments of a band
-_ADJUSTMENTS = 3, 60  # smallest and largest number of adjustments of a band
+# Largest number of adjustments of a band: _WORK divided by the number of nodes of the band's grid,
+# but at least the first and at most the second value of _ADJUSTMENTS.
+_WORK = 2**24
+_ADJUSTMENTS = 3, 60
+
 _NEGLIGIBLE = 1e-3  # misfit of heights at which the adjustment ends
 _STANDSTILL = 0.05  # the adjustment ends if the misfit decreases by less than this fraction
 
-# Largest number of parts of the twin, each as large as the scan, for the comparison of spectra.
+# Largest number of parts of the twin whose spectra are averaged and compared with the spectrum of
+# the scan. Each part is as large as the scan.
 _PARTS = 16
-_COMPARED = 2**23  # largest number of nodes of these parts together, if there is more than one part
+_COMPARED = 2**23  # largest number of nodes of all these parts, if there is more than one part
 _UNLIKE = 0.5  # misfit of the spectrum above which the notice contains a warning
 
 # Probabilities of the quantiles that represent a distribution of heights, denser in the tails.
@@ -101,7 +105,7 @@ def _check(scan: Surface, grid: Grid) -> None:
     if any(2 * h >= s for h, s in zip(grid.spacing, scan.grid.size, strict=True)):
         raise RefusedSurfaceError(
             "cells-above-scan",
-            f"grid: cells of {1e6 * max(grid.spacing):g} um cannot carry a wave of a scan of "
+            f"grid: cells of {1e6 * max(grid.spacing):g} um cannot resolve any wave of a scan of "
             f"{1e6 * scan.grid.size[0]:.4g} x {1e6 * scan.grid.size[1]:.4g} um",
             "use a smaller spacing",
         )
@@ -152,8 +156,8 @@ def _band(
 ) -> tuple[Modes, tuple[int, int]]:
     """Adjust the phases of the waves that cells of size `cell` (m) resolve.
 
-    The waves `known`, with wave numbers up to `kept` along the two axes, do not change. Return all
-    waves and their largest wave numbers.
+    The waves `known`, with numbers of periods up to `kept` along the two axes, do not change.
+    Return all waves and their largest numbers of periods.
     """
     from scipy.fft import irfft2, rfft2
 
@@ -204,7 +208,7 @@ def _between(table: Array, at: Array) -> Array:
 
 
 def _nodes(most: tuple[int, int]) -> tuple[int, int]:
-    """Return the smallest grid with a fast FFT that resolves wave numbers up to `most`."""
+    """Return the smallest grid with a fast FFT that resolves up to `most` periods per axis."""
     from scipy.fft import next_fast_len
 
     return (
@@ -214,7 +218,7 @@ def _nodes(most: tuple[int, int]) -> tuple[int, int]:
 
 
 def _copy(source: Modes, target: Modes, most: tuple[int, int]) -> None:
-    """Copy the waves of `source` with wave numbers up to `most` into `target`."""
+    """Copy the waves of `source` with numbers of periods up to `most` into `target`."""
     M, N = most
     target[: M + 1, : N + 1] = source[: M + 1, : N + 1]
     if M:
@@ -222,7 +226,7 @@ def _copy(source: Modes, target: Modes, most: tuple[int, int]) -> None:
 
 
 def _heights(modes: Modes, nodes: tuple[int, int]) -> Array:
-    """Sum the waves; their phases are relative to the origin of `Grid` (node n // 2)."""
+    """Sum the waves, whose phases are relative to the origin of `Grid` (node n // 2)."""
     from scipy.fft import irfft2
 
     number = np.fft.fftfreq(nodes[0], 1 / nodes[0]), np.arange(modes.shape[1])
@@ -252,7 +256,7 @@ def _provenance(
     if removed["removed_slope"] > 0:
         notice += (
             f"; waves shorter than {1e6 * removed['shortest_carried_m']:.4g} um, which this grid "
-            f"does not carry, have {removed['removed_slope']:.0%} of the scan's rms slope"
+            f"does not resolve, have {removed['removed_slope']:.0%} of the scan's rms slope"
         )
     if misfit > _UNLIKE:
         notice += (

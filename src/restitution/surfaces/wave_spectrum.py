@@ -36,8 +36,9 @@ _ROUNDING = 1e-9
 class WaveSpectrum:
     """Mean square heights of the waves (m, n) of a surface with edges `period` (m).
 
-    Wave (m, n) has the wave vector 2π(m/Px, n/Py). `density` is the spectrum of the scan, as mean
-    square height (m²) per wave of the twin, with the zero wave vector in the middle.
+    Wave (m, n) has the wave vector 2π(m/Px, n/Py), where (Px, Py) is the `period`. `density` is the
+    spectrum of the scan, as mean square height (m²) per wave of the twin. The zero wave vector is
+    in the middle of the array.
     """
 
     density: Array
@@ -65,7 +66,7 @@ class WaveSpectrum:
         return C, k2
 
     def numbers(self, spacing: tuple[float, float]) -> tuple[int, int]:
-        """Largest wave numbers m and n that both the scan and cells of `spacing` (m) resolve."""
+        """Largest m and n of the waves that both the scan and cells of size `spacing` resolve."""
         most = [
             math.ceil(0.5 * edge / max(h, pixel) * (1 - _ROUNDING)) - 1
             for edge, h, pixel in zip(self.period, spacing, self.pixel, strict=True)
@@ -73,10 +74,10 @@ class WaveSpectrum:
         return most[0], most[1]
 
     def modes(self, most: tuple[int, int], nodes: tuple[int, int], seed: int) -> Modes:
-        """Waves with wave numbers up to `most` and random phases, in the order of `rfft2`.
+        """Waves (m, n) up to `most` with random phases, in the order of `rfft2`.
 
-        `nodes` is the grid of the FFT. The normalisation is "forward": heights are the sum of the
-        modes.
+        `nodes` is the shape of the grid of the FFT. The normalisation is "forward": heights are the
+        sum of the modes.
         """
         M, N = most
         full: Modes = np.zeros((nodes[0], nodes[1] // 2 + 1), dtype=np.complex128)
@@ -113,7 +114,7 @@ def _moments(spectrum: WaveSpectrum) -> Array:
     C is the power of `spectrum` with the factor a + b/k², and k the size of the scan divided by the
     wavelength. Slopes are differences between neighbouring pixels, as in `rms_slope`. Long waves
     are summed one by one, over the wave vectors of the twin. Short waves are summed over the wave
-    vectors of the scan, which are fewer, because the twin is not smaller.
+    vectors of the scan, which are fewer, because the twin is not smaller than the scan.
     """
     wx, wy = spectrum.waves
     (mx, my), (hx, hy) = spectrum.density.shape, spectrum.pixel
