@@ -77,9 +77,9 @@ __all__ = [
     "unloading_path",
 ]
 
-# Modules and the public names that each of them defines. A module is imported on first use of one
-# of its names, so that `import restitution` does not load NumPy. The command line imports this
-# package, too. If NumPy were loaded first, help texts and the reaction to Ctrl-C would be delayed.
+# Modules and the public names that each of them defines. A module is imported when one of its names
+# is first used, so `import restitution` does not load NumPy. The command line also imports this
+# package, and loading NumPy would delay its help texts and its reaction to Ctrl-C.
 _MODULES = {
     "api": ("collide_obliquely", "export", "law_of", "open_results", "run"),
     "case.materials": ("material", "materials"),

@@ -1,4 +1,4 @@
-"""`python -m restitution` is the command line."""
+"""The command line, started with `python -m restitution`."""
 
 from restitution.cli import main
 

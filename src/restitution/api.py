@@ -1,4 +1,4 @@
-"""Python functions for complete tasks: run a case, open its results, collide, export a law."""
+"""Python functions for complete tasks: run a case, open results, make a law and export it."""
 
 from __future__ import annotations
 
@@ -29,19 +29,21 @@ def run(
 ) -> RunResults | PeriodicResults:
     """Run a case, as `restitution run` does, and open its results.
 
-    `results.dataset` is an xarray Dataset with units, `results.curve` has the rows of `curve.csv`,
-    and `results.summary` has the content of `summary.json`. An interrupted or failed run keeps the
-    computed depths in `out`. No figures are drawn. Use `on_device` to run on a GPU.
+    The returned results have the attributes `dataset` (an xarray Dataset with units), `summary`
+    (the content of `summary.json`) and, unless the case is periodic, `curve` (the rows of
+    `curve.csv`). If the run fails or is interrupted, the depths computed so far are kept in `out`.
+    No figures are drawn. Use `on_device` to run on a GPU.
 
     Args:
         case: Case file, or its tables: `{"first": {"material": "steel", "radius": "500 um"}, …}`.
             File names in these tables are relative to the current folder.
         out: Folder for the results; new or empty.
-        progress: Called with a short text after every step.
+        progress: Function that is called with a short text, such as "3 of 8 depths", at every step
+            of the computation.
 
     Returns:
-        The stored results (`PeriodicResults` for a periodic case). Each of their warnings is also
-        issued as a `UserWarning`.
+        The stored results (`PeriodicResults` for a periodic case). Each warning stored in them is
+        also issued as a `UserWarning`.
 
     Raises:
         RestitutionError: The case is invalid, `out` is not empty, or the run failed.
@@ -78,16 +80,19 @@ def _read(case: Folder | Mapping[str, Any]) -> tuple[Case, str, Path]:
         try:
             text = tomli_w.dumps(case)
         except TypeError as error:
-            raise CaseError(f"{error}; use the types of a case file (docs/case-file.md)") from None
+            raise CaseError(
+                f"{error}; use only value types of a case file (docs/case-file.md)"
+            ) from None
         return parse_case(text), text, name
 
 
 def open_results(folder: Folder) -> RunResults | StudyResults | PeriodicResults:
     """Open the stored results of a run, ensemble, convergence study or study.
 
-    `results.dataset` is an xarray Dataset in SI units, with the attribute `units` on every
-    variable. Its dimension is `indentation_max` for a run. For a study the dimensions are the swept
-    keys and `depth`; swept quantities are numeric coordinates with units, so they can be selected:
+    The attribute `dataset` of the returned results is an xarray Dataset in SI units. Each of its
+    variables has the attribute `units`. For a run, the dimension is `indentation_max`, or `depth`
+    if the case is periodic. For a study, the dimensions are the swept keys and `depth`. Swept
+    quantities are numeric coordinates with units, so cases can be selected by value:
     `open_results("study").dataset.sel({"roughness.rms": 1e-7}, method="nearest")`. The attribute
     `as_written` of a coordinate holds its values as written in the study file.
 
@@ -95,8 +100,8 @@ def open_results(folder: Folder) -> RunResults | StudyResults | PeriodicResults:
         folder: Folder that `restitution run`, `converge` or `study` wrote.
 
     Returns:
-        `StudyResults` for a study, `EnsembleResults` for several surfaces, `PeriodicResults` for a
-        periodic case, and otherwise `RunResults`.
+        `StudyResults` for a study, `EnsembleResults` for a run on several surfaces,
+        `PeriodicResults` for a periodic case, and `RunResults` otherwise.
 
     Raises:
         OutputError: The folder does not hold results, or a file is damaged.
@@ -120,17 +125,17 @@ def open_results(folder: Folder) -> RunResults | StudyResults | PeriodicResults:
 
 
 def law_of(results: Folder | RunResults) -> Law:
-    """Make the restitution law of stored results, with its fits, as `restitution fit-law` does.
+    """Make the restitution law and its fits from stored results, as `restitution fit-law` does.
 
     Args:
-        results: Results of a run, ensemble or convergence study, or their folder. If the folder
-            already holds a law, this law is read and returned.
+        results: Results of a run, ensemble or convergence study, or the folder of these results. If
+            the folder already holds a law, this law is read and returned.
 
     Returns:
-        The law, which is COR with its error at each computed impact velocity.
+        Restitution law, that is, COR and its error at each computed impact velocity.
 
     Raises:
-        CaseError: The results have no impact velocities.
+        CaseError: The results have no impact velocities, for example because a density is missing.
         OutputError: The folder does not hold results, or a file is damaged.
     """
     from restitution.laws.from_results import law_of as law_from
@@ -158,12 +163,13 @@ def collide_obliquely(
         results: Results of a run of one surface, their folder, or a force law
             (`restitution.laws.time_integration.StoredForce`).
         velocity: Relative velocity of the centres, such as "0.5 m/s", or a number (m/s).
-        angle: Angle of impact from the normal, such as "30 deg", or a number (rad), from 0 to below
-            90 degrees.
-        friction: Coefficient of friction µ (dimensionless); by default that of the case.
+        angle: Angle of impact from the normal, such as "30 deg", or a number (rad). It must be at
+            least 0 and less than 90 degrees.
+        friction: Coefficient of friction (dimensionless). By default, the coefficient in the case
+            of the run is used.
         spin: Spin before the impact: one value for the first body, or a pair of values for both
-            bodies. A value is a text such as "100 rad/s" or "20 rpm", or a number (rad/s). It is
-            positive in the direction in which friction turns a body without spin.
+            bodies. A value is a text such as "100 rad/s" or "20 rpm", or a number (rad/s). The
+            direction in which friction turns a body without spin is positive.
 
     Returns:
         The collision, with normal and tangential restitution, angle of rebound, spins, losses, and
@@ -188,7 +194,7 @@ def collide_obliquely(
         force = oblique_force(run)
         friction = run.case.interface.friction if friction is None else friction
     if friction is None:
-        raise CaseError("friction: is missing; an oblique impact needs a coefficient of friction")
+        raise CaseError("friction: not given; an oblique impact needs a coefficient of friction")
     speed = velocity_of(velocity) if isinstance(velocity, str) else velocity
     try:
         slope = read_impact_angle(angle) if isinstance(angle, str) else angle
@@ -205,7 +211,7 @@ def collide_obliquely(
 
 
 def _laws_in(given: Folder | Law) -> list[Law]:
-    """Return the given law in a list. From a folder, read one law, or all laws of a mixture."""
+    """Return a list of the given law, the law in a folder, or all laws in a mixture's folder."""
     from restitution.laws.law import Law
     from restitution.laws.law_files import is_mixture, read_laws
 
@@ -226,17 +232,18 @@ def export(
 
     Args:
         laws: One law or several, one for each pair of particles. Each is a `Law`, or a folder that
-            holds a law or results (see `law_of`). A mixture's folder stands for all laws in it.
-        to: DEM code: "lammps", "liggghts", "yade", "mercurydpm", "edem", "mujoco" or "drake"; or
-            "csv" for one table.
+            holds a law or results (see `law_of`). The folder of a mixture gives all of its laws.
+        to: DEM code ("lammps", "liggghts", "yade", "mercurydpm", "edem", "mujoco" or "drake"), or
+            "csv" to write a table.
         out: Folder for the files; existing files are never overwritten.
-        velocity: Impact velocity, such as "1 m/s", or a number (m/s); "csv" does not need it.
+        velocity: Impact velocity, such as "1 m/s", or a number (m/s). It is optional for "csv".
 
     Returns:
         The files that were written.
 
     Raises:
-        CaseError: The DEM code is unknown, or does not accept these laws.
+        CaseError: The DEM code is unknown, it does not accept these laws, or it needs a velocity
+            and none is given.
         DomainError: The velocity lies outside the range of computed velocities.
         OutputError: A file exists, or cannot be read or written.
     """

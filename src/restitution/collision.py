@@ -1,9 +1,9 @@
-"""Restitution, impact velocity and sticking of a collision from the works of loading and unloading.
+"""Restitution and impact velocity of a collision, from its works of loading and unloading.
 
 The impact is quasi-static and normal, without waves, friction or rate effects. The contact ends at
-separation. Without adhesion, the bodies separate where the force returns to zero; unloading is
-elastic and reversible, so it returns the stored energy. With adhesion, the bodies separate where
-the last node detaches; unloading is simulated step by step, or its work is estimated.
+separation. Without adhesion, the bodies separate when the force returns to zero. Unloading is then
+elastic and reversible, so it returns the stored energy. With adhesion, the bodies separate when the
+last grid node detaches. Unloading is then simulated step by step, or its work is estimated.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from restitution.contact.state import State
 from restitution.display import quantity, summary_html, summary_text
 
 UnloadingMethod = Literal["path", "energy-estimate"]
-# On a grid, each detachment criterion causes an error of the unloading work. It is stated as a
-# fraction of the work of adhesion w times the contact area. Smaller unloading steps do not reduce
-# this error. With `crack-closure`, nodes detach at an energy release rate of 0.985 to 0.99 w. With
+# Error of the unloading work that each detachment criterion causes on a grid, divided by w times
+# the contact area, where w is the work of adhesion. Smaller unloading steps do not reduce this
+# error. With `crack-closure`, nodes detach at an energy release rate of 0.985 to 0.99 w. With
 # `pohrt-popov`, nodes at a kink of the contact edge detach at 1.0 w, and nodes on a straight edge
 # at 1.8 w.
 _RELEASE_ERROR = {"crack-closure": 0.015, "pohrt-popov": 0.4}
@@ -29,7 +29,7 @@ _RELEASE_ERROR = {"crack-closure": 0.015, "pohrt-popov": 0.4}
 
 @dataclass(frozen=True)
 class Collision:
-    """Works of loading and unloading of one collision, and the quantities that follow from them.
+    """Works of loading and unloading of one collision, and quantities that follow from these works.
 
     Attributes:
         loading_work: Work of loading W_l (J).
@@ -37,7 +37,7 @@ class Collision:
         mass: Reduced mass m* (kg); None if a density is missing.
         separation_indentation: Indentation at which the bodies separate (m); NaN if it is not
             known.
-        pull_off_force: Largest tension during unloading (N); NaN if it is not known.
+        pull_off_force: Largest tensile force during unloading (N); NaN if it is not known.
         adhesive_loss: Energy dissipated by adhesion (J).
         loading_work_error: Error of the work of loading (J).
         unloading_work_error: Error of the work of unloading (J).
@@ -56,14 +56,14 @@ class Collision:
 
     @property
     def sticks(self) -> bool:
-        """Whether the bodies stick, that is, unloading returns no work and they do not rebound."""
+        """Whether the bodies stick, because the work of unloading or loading is not positive."""
         return self.unloading_work <= 0 or self.loading_work <= 0
 
     @property
     def restitution(self) -> float:
-        """Coefficient of restitution (dimensionless); 0 if the bodies stick.
+        """Coefficient of restitution sqrt(W_u/W_l) (dimensionless); 0 if the bodies stick.
 
-        It is sqrt(W_u/W_l) with the works of unloading W_u and loading W_l (Johnson 1985, §11.5).
+        W_u and W_l are the works of unloading and loading (Johnson 1985, §11.5).
         """
         return _restitution(self.unloading_work, self.loading_work)
 
@@ -83,8 +83,8 @@ class Collision:
         """Impact velocity V (m/s) whose kinetic energy ½ m* V² is the work of loading.
 
         None if a density is missing, because the reduced mass m* is then unknown. Also None if the
-        work of loading is negative: adhesion then pulls the bodies deeper than the deepest point of
-        this collision at any impact velocity.
+        work of loading is negative. At any impact velocity, adhesion then pulls the bodies deeper
+        than the deepest point of this collision.
         """
         if self.mass is None or self.loading_work < 0:
             return None
@@ -117,21 +117,23 @@ def collide(
 ) -> Collision:
     """Compute the collision whose deepest point is `state`.
 
-    Without adhesion, the work of unloading is the stored energy, and `method` has no effect. With
-    adhesion, `method="path"` simulates unloading. `method="energy-estimate"` subtracts the surface
-    energy from the elastic energy, W_u = E_el − wA, where w is the work of adhesion and A the
-    contact area. For cohesive contacts this method uses the computed interaction energy in place of
-    −wA. The method leaves the pull-off force and the indentation at separation NaN, and it sets the
-    error of W_u to wA. In all comparisons with simulated unloading, wA exceeded the energy
-    dissipated at detachment plus the grid error of detachment.
+    Without adhesion, the work of unloading W_u is the stored energy, and `method` has no effect.
+    With adhesion, `method="path"` simulates unloading, and `method="energy-estimate"` estimates the
+    work of unloading as W_u = E_el − wA. Here E_el is the elastic energy, w the work of adhesion
+    and A the contact area. For cohesive contacts, the estimate contains the computed interaction
+    energy in place of −wA.
+
+    With the estimate, the pull-off force and the indentation at separation are NaN, and the error
+    of W_u is wA. In all comparisons with simulated unloading, wA exceeded the energy dissipated at
+    detachment plus the grid error of detachment.
 
     Args:
         state: Deepest state of the collision, reached by loading.
-        unloading: States of unloading that `unloading_path` has yielded. By default they are
-            computed here. Used only with adhesion.
+        unloading: States of unloading from `unloading_path`. By default they are computed here.
+            Used only with adhesion and `method="path"`.
         method: Method for the work of unloading with adhesion.
-        tolerance: Error of the coefficient of restitution (dimensionless) that the unloading steps
-            may cause.
+        tolerance: Largest error of the coefficient of restitution (dimensionless) that the
+            unloading steps may cause.
 
     Returns:
         Works of loading and unloading, and restitution.
@@ -179,6 +181,6 @@ def collide(
 def _restitution(unloading_work: float, loading_work: float) -> float:
     if unloading_work <= 0 or loading_work <= 0:
         return 0.0
-    # The work of unloading can exceed the work of loading only by numerical errors, which
-    # restitution_error includes.
+    # Only numerical errors can make the work of unloading exceed the work of loading. These errors
+    # are contained in restitution_error.
     return min(1.0, math.sqrt(unloading_work / loading_work))

@@ -1,7 +1,7 @@
 """Short descriptions of objects: the text of `repr`, and HTML for notebooks.
 
 A class with such a description defines the method `_summary`, which returns at most three lines
-without arrays. It assigns `summary_text` to `__repr__` and `summary_html` to `_repr_html_`.
+without arrays. The class assigns `summary_text` to `__repr__` and `summary_html` to `_repr_html_`.
 """
 
 from __future__ import annotations
@@ -52,14 +52,14 @@ def counted(number: int, noun: str) -> str:
 
 
 def without_numbers(text: str) -> str:
-    """Replace each number in `text` by #, so that texts that differ only in numbers are equal."""
+    """Replace each number in `text` by #. Texts that differ only in numbers become equal."""
     return _NUMBER.sub("#", text)
 
 
 def some_of(names: Iterable[str], most: int = 6) -> str:
-    """Join the first `most` different names with commas, and add "and … more" for the rest.
+    """Join the first `most` names with commas; if there are more, add, for example, "and 3 more".
 
-    Empty names are skipped.
+    Empty and repeated names are skipped.
     """
     each = list(dict.fromkeys(filter(None, names)))
     more = f" and {len(each) - most} more" if len(each) > most else ""

@@ -1,7 +1,7 @@
 """Errors that the user can fix.
 
-Each message is one sentence that names the key, file or quantity at fault, followed by the remedy.
-The command line prints it in red on one line and exits with status 1.
+Each message is one sentence. It names the key, file or quantity at fault, and then the remedy. The
+command line prints the message in red on one line and exits with status 1.
 """
 
 
@@ -18,14 +18,17 @@ class SurfaceError(RestitutionError, ValueError):
 
 
 class NotConvergedError(RestitutionError):
-    """A solve did not reach its tolerance, or a path did not reach its end; there is no result."""
+    """A solve did not reach its tolerance, or loading or unloading did not reach its end.
+
+    There is no result.
+    """
 
 
 class DomainError(RestitutionError):
     """The contact reaches the edge of the grid, or a value lies outside the computed range.
 
-    Contact at the edge is an error because the material beyond the edge, which is not modelled,
-    would carry a part of the load. Results are not extrapolated beyond the computed range.
+    Contact at the edge is an error because material beyond the edge would support part of the load
+    but is not modelled. Results are not extrapolated beyond the computed range.
     """
 
 
@@ -41,7 +44,7 @@ def one_line(text: str) -> str:
 def shown(value: object, limit: int = 60) -> str:
     """Format a user's value for use in a message, on one line of at most `limit` characters.
 
-    Strings are put in quotes.
+    Strings are put in quotes, which are not counted.
     """
     if isinstance(value, bool):
         return str(value).lower()  # TOML writes true and false in lower case

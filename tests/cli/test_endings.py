@@ -99,7 +99,7 @@ def test_a_standard_output_that_is_full(case, verb):
         done = call(verb, *([case] if verb == "check" else []), stdout=full, stderr=subprocess.PIPE)
     assert done.returncode == 1
     assert done.stderr == (
-        "Error: standard output: cannot be written (No space left on device); "
+        "Error: standard output cannot be written (No space left on device); "
         "redirect it elsewhere\n"
     )
 

@@ -20,7 +20,7 @@ def test_repetitions_are_counted(capsys):
     ) == [
         "Warning: the edge is 1.5 um away",
         "Warning: the scan is tilted",
-        'Warning: the same warning with other numbers applies to 2 more: "the edge is 1.5 um away"',
+        'Warning: this warning was repeated 2 times with other numbers: "the edge is 1.5 um away"',
     ]
 
 
@@ -28,7 +28,7 @@ def test_subjects_are_named(capsys):
     long = "a warning" + 10 * " that is long"
     lines = warned(capsys, *((long, name) for name in ("glass", "steel", "zinc")))
     assert lines[0] == f"Warning: glass: {long}"
-    assert lines[1].startswith("Warning: the same warning applies to 2 more (steel, zinc): ")
+    assert lines[1].startswith("Warning: this warning was repeated 2 times (steel, zinc): ")
     assert lines[1].endswith('…"')
     assert len(lines) == 2
 
@@ -36,7 +36,7 @@ def test_subjects_are_named(capsys):
 def test_of_many_subjects_the_first_six_are_named(capsys):
     lines = warned(capsys, *(("tilted", f"pair {k}") for k in range(10)))
     assert lines[1] == (
-        "Warning: the same warning applies to 9 more (pair 1, pair 2, pair 3, pair 4, pair 5, "
+        "Warning: this warning was repeated 9 times (pair 1, pair 2, pair 3, pair 4, pair 5, "
         'pair 6 and 3 more): "tilted"'
     )
 
@@ -48,4 +48,4 @@ def test_a_run_that_fails_on_every_surface_says_why_once(cli, case_text, tmp_pat
     status, _, said = cli("run", tmp_path / "case.toml", "-o", tmp_path / "out")
     assert status == 0
     assert said.count("the contact reaches the edge of the 36 um x 38.4 um grid") == 1
-    assert "the same warning with other numbers applies to 2 more" in said
+    assert "this warning was repeated 2 times with other numbers" in said

@@ -252,7 +252,7 @@ def test_the_command_line(cli, refused, computed_yielding, tmp_path):
     assert "slides" in said
     assert "±: error of the tangential law" in said
     assert table.read_text().startswith("impact_velocity_m_per_s,angle_rad,time_s")
-    assert "--friction: is missing" in refused(*given, "--angle", "30 deg")
+    assert "--friction: not given" in refused(*given, "--angle", "30 deg")
     assert "--angle" in refused(*given, "--friction", "0.2")
     assert "is not an angle" in refused(*given, "--friction", "0.2", "--angle", "30 m")
     assert "below 90 degrees" in refused(*given, "--friction", "0.2", "--angle", "95 deg")

@@ -1,12 +1,16 @@
-"""The command line: one module for each verb (subcommand); large modules are imported on use."""
+"""The command line: one module for each verb (subcommand), and modules that the verbs share.
+
+Large modules are imported inside the functions that use them, so that help texts appear quickly.
+"""
 
 import errno
 import sys
 
-# Error numbers of failed output: the disk is full, a quota is used up, or a device fails.
+# Error numbers of failed output: the disk or the quota is full, a file is too large, or a device
+# fails.
 _OUTPUT_FAILS = {errno.ENOSPC, errno.EFBIG, errno.EIO, getattr(errno, "EDQUOT", errno.ENOSPC)}
 
-# Error numbers for a file or folder that this user may not access, or whose name is not possible.
+# Error numbers of a file or folder that the user may not access, or whose path is not valid.
 _ACCESS_DENIED = {
     errno.EACCES,
     errno.EPERM,
@@ -58,8 +62,8 @@ def _run() -> int:
             return 1
         if error.errno not in _OUTPUT_FAILS:
             raise
-        print_error(f"standard output: cannot be written ({error.strerror}); redirect it elsewhere")
-        # Otherwise Python would try to write the rest of its buffer at exit, and fail again.
+        print_error(f"standard output cannot be written ({error.strerror}); redirect it elsewhere")
+        # Without this, Python would try at exit to write the rest of its buffer, and fail again.
         sys.stdout = None
     except Stopped as stop:
         return stop.status

@@ -80,7 +80,7 @@ def _options(
             "--version",
             callback=_print_version,
             is_eager=True,
-            help="Print the version, and the compiled kernels in use.",
+            help="Print the version and the compiled kernels in use.",
         ),
     ] = False,
 ) -> None:

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from restitution.case.case import Case
     from restitution.contact.contact import Contact
 
-# For each derived quantity: label, factor from SI, unit.
+# For each derived quantity: label, conversion factor from SI, displayed unit.
 _LABELS = {
     "reduced_radius_m": ("reduced radius R*", 1e6, "um"),
     "contact_modulus_Pa": ("contact modulus E*", 1e-9, "GPa"),
@@ -51,7 +51,7 @@ def check(
         ),
     ],
 ) -> None:
-    """Validate CASE and print derived quantities, such as first yield; solve nothing."""
+    """Validate CASE and print derived quantities, such as the yield velocity; solve nothing."""
     from restitution.case.case_file import naming
     from restitution.case.derived import deepest_indentation
     from restitution.cli.console import answers, command, errors, say, say_next, warn
@@ -81,10 +81,7 @@ def check(
 
 
 def _read(path: Path) -> tuple[Case, int]:
-    """Read the case in `path`, or the first case of a study; return it with the number of cases.
-
-    The number is 0 if the file is not a study.
-    """
+    """Return the case in `path` and 0. For a study, return its first case and number of cases."""
     from restitution.case.case_file import naming, parse_case, parse_toml, read_text
     from restitution.sweeps.sweep import parse_study
 

@@ -12,7 +12,8 @@ def compare(
         Path, typer.Argument(help="Results folder of a run or study.", metavar="A", readable=False)
     ],
     b: Annotated[
-        Path, typer.Argument(help="Results folder of the same kind.", metavar="B", readable=False)
+        Path,
+        typer.Argument(help="Results folder of the same kind as A.", metavar="B", readable=False),
     ],
     out: Annotated[
         Path | None,
@@ -21,7 +22,7 @@ def compare(
         ),
     ] = None,
 ) -> None:
-    """Print the differences between the results in A and B, with their errors."""
+    """Print the differences between the results in A and B, and the errors of the differences."""
     from rich.markup import escape
 
     from restitution.cli.console import answers, say

@@ -1,4 +1,4 @@
-"""`restitution compare-theory`: COR of the smooth bodies of a case from published closed forms."""
+"""`restitution compare-theory`: COR of smooth bodies from published closed-form theories."""
 
 import math
 import textwrap
@@ -23,7 +23,7 @@ def compare_theory(
             "-o",
             "--out",
             metavar="OUT",
-            help="Folder for theory.csv and a figure, theory.png; new or empty.",
+            help="Folder for theory.csv and the figure theory.png; new or empty.",
             readable=False,
         ),
     ] = None,
@@ -32,13 +32,14 @@ def compare_theory(
         typer.Option(
             "--law",
             metavar="LAW",
-            help="Folder of `restitution fit-law` for the same pair; adds its computed points.",
+            help="Folder that `restitution fit-law` wrote for the same pair; adds the computed "
+            "points of this law.",
             readable=False,
         ),
     ] = None,
     figures: Figures = FigureFormat.png,
 ) -> None:
-    """Print COR of the smooth bodies of CASE against velocity, from published closed forms."""
+    """Print COR against velocity for the smooth bodies of CASE, from closed-form theories."""
     from restitution.case.case_file import naming, read_case
     from restitution.cli.console import answers, command, say, say_next, say_written
     from restitution.laws import theories
@@ -85,11 +86,11 @@ def compare_theory(
 
 
 def _tables(velocities: list[float], found: "list[Theory]", width: int) -> Iterator[Table]:
-    """Make a column for each theory, and as many tables as the width of the terminal requires."""
+    """Make tables with one column for each theory, as many as fit into `width` characters."""
     heads = ["\n".join(textwrap.wrap(each.name, 9, break_long_words=False)) for each in found]
     start = 0
     while start < len(found):
-        end, left = start, width - 11  # the column of velocities takes 11 characters
+        end, left = start, width - 11  # 11 characters for the column of velocities
         while end < len(found) and (end == start or left >= _width(heads[end])):
             left -= _width(heads[end])
             end += 1

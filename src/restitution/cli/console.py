@@ -20,7 +20,7 @@ def say(text: str, console: Console = answers, style: str | None = None) -> None
 
 
 def table_of_numbers(*columns: str | Column) -> Table:
-    """Make an empty table, whose columns are right-aligned unless they are given as `Column`."""
+    """Make an empty table. Columns that are given by their names only are right-aligned."""
     each = (
         column if isinstance(column, Column) else Column(column, justify="right", no_wrap=True)
         for column in columns
@@ -40,7 +40,7 @@ def print_error(message: str) -> None:
 
 @cache
 def hint_at_kernels() -> None:
-    """Print a hint on standard error if compiled kernels are missing, which makes solves slow."""
+    """Print a hint on standard error if solves are slow because compiled kernels are missing."""
     from restitution.numerics.convolution.device import CPU, current
     from restitution.numerics.kernels import missing
 
@@ -54,7 +54,7 @@ def command(verb: str, *arguments: object) -> str:
 
 
 def say_written(path: Path, names: Iterable[str] = ()) -> None:
-    """Print the name of a written file, or the `names` of written files in a folder."""
+    """Print that the file `path`, or the files `names` in the folder `path`, were written."""
     inside = ", ".join(names)
     say(f"In {path}: {inside}" if inside else f"Written: {path}")
 

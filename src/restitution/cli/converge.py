@@ -1,4 +1,4 @@
-"""`restitution converge`: a case on successively finer grids."""
+"""`restitution converge`: compute a case on successively finer grids."""
 
 from functools import partial
 from typing import Annotated
@@ -22,12 +22,17 @@ def converge(
     out: OutFolder,
     grids: Annotated[
         int,
-        typer.Option(min=2, max=5, metavar="N", help="Number of grids; each halves the spacing."),
+        typer.Option(
+            min=2,
+            max=5,
+            metavar="N",
+            help="Number of grids, each with half the spacing of the previous one.",
+        ),
     ] = 3,
     device: OnDevice = Device.cpu,
     figures: Figures = FigureFormat.png,
 ) -> None:
-    """Run CASE on its grid and finer ones; write COR with its discretisation error to OUT."""
+    """Run CASE on its grid and on finer grids; write COR and its discretisation error to OUT."""
     from restitution.cli.console import answers
     from restitution.runs.convergence import run_convergence
 

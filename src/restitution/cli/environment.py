@@ -7,17 +7,18 @@ from collections.abc import Sequence
 
 from restitution.errors import CaseError, shown
 
-_THREADS = ("DUCC0_NUM_THREADS", "OMP_NUM_THREADS")  # the first variable that is set is used
+# Variables for the number of threads. The first of them that is set is used.
+_THREADS = ("DUCC0_NUM_THREADS", "OMP_NUM_THREADS")
 
 
 def prepare(arguments: Sequence[str]) -> None:
-    """Check the arguments of the command line and the variables that libraries read.
+    """Check the current folder, the arguments of the command line and environment variables.
 
-    Raises `CaseError` for an invalid number of threads, and for a path that is not UTF-8, which the
-    netCDF library requires.
+    Raises `CaseError` if the number of threads is invalid, if the current folder was removed, or if
+    a path is not UTF-8. The netCDF library requires UTF-8.
     """
-    # Select the matplotlib backend that writes files, because the user may have set an interactive
-    # backend.
+    # Select a matplotlib backend that writes files, because the environment may select an
+    # interactive one.
     os.environ["MPLBACKEND"] = "agg"
     _check_threads()
     try:
@@ -29,7 +30,7 @@ def prepare(arguments: Sequence[str]) -> None:
             path.encode()
         except UnicodeEncodeError:
             raise CaseError(
-                f"{shown(path, 200)}: the name is not UTF-8, which netCDF requires; rename it"
+                f"{shown(path, 200)}: the name is not UTF-8, but netCDF requires UTF-8; rename it"
             ) from None
 
 
@@ -39,11 +40,12 @@ def _check_threads() -> None:
     if not text.strip():
         os.environ.pop(name, None)
         return
-    # OpenMP accepts a list of numbers of threads; the first is for the outermost parallel level.
+    # OMP_NUM_THREADS may be a list of numbers, one for each level of nested parallelism. The first
+    # number is for the outermost level.
     first = text.split(",")[0].strip() if name == "OMP_NUM_THREADS" else text.strip()
     if not (first.isascii() and first.isdigit() and len(first) < 10):
         raise CaseError(
-            f"{name}: {shown(text)} is not a number of threads; set it to a whole number from 1, "
-            "or unset it"
+            f"{name}: {shown(text)} is not a number of threads; set the variable to a whole number "
+            "of at least 1, or unset it"
         )
     os.environ["DUCC0_NUM_THREADS"] = first

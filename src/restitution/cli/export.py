@@ -17,8 +17,8 @@ def export(
         list[Path],
         typer.Argument(
             metavar="LAW",
-            help="Folders of `restitution fit-law`, one for every pair of particles, or of "
-            "`restitution mixture`.",
+            help="Folders that `restitution fit-law` wrote, one for each pair of particles, or "
+            "the folder that `restitution mixture` wrote.",
             show_default=False,
             readable=False,
         ),

@@ -28,7 +28,7 @@ def fit(
         typer.Option(
             "--case",
             metavar="CASE",
-            help="Case file (TOML); its values of the free keys are first guesses.",
+            help="Case file (TOML); its values of KEYS are the first guesses.",
             readable=False,
         ),
     ],
@@ -36,7 +36,7 @@ def fit(
         list[str],
         typer.Option(
             metavar="KEYS",
-            help="Keys of the case to fit, separated by commas, such as yield_strength,rms.",
+            help="Keys of CASE to be fitted, separated by commas, such as yield_strength,rms.",
         ),
     ],
     out: OutFolder,

@@ -75,8 +75,8 @@ def _in_words(law: "Law") -> Iterator[str]:
         yield "no compact fit: too few resolved velocities (four or more are needed)"
     else:
         yield (
-            f"compact fit: {len(law.fit.coefficients)} coefficients, within {law.fit.worst:.1g} of "
-            f"COR at the velocities, {law.fit.between:.1g} between them"
+            f"compact fit: {len(law.fit.coefficients)} coefficients; it differs from COR by at "
+            f"most {law.fit.worst:.1g} at the velocities and {law.fit.between:.1g} between them"
         )
     if unresolved := sum(not point.resolved for point in law.points):
         yield f"{unresolved} of {len(law.points)} velocities are not resolved by the grid"

@@ -11,7 +11,7 @@ def app(
         Path | None,
         typer.Argument(
             metavar="CASE",
-            help="Case file (TOML) to begin with.",
+            help="Case file (TOML) that the page shows first.",
             show_default="two rough steel spheres",
             readable=False,
         ),

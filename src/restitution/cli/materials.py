@@ -10,7 +10,7 @@ from rich.table import Column, Table
 if TYPE_CHECKING:
     from restitution.case.materials import Material
 
-# For each key of the library: name, symbol, factor from SI, unit.
+# For each key of the library: name, symbol, conversion factor from SI, displayed unit.
 _QUANTITIES = {
     "youngs_modulus": ("Young's modulus", "E", 1e-9, "GPa"),
     "poissons_ratio": ("Poisson's ratio", "ν", 1.0, ""),
@@ -32,7 +32,7 @@ def materials(
         str | None,
         typer.Argument(
             metavar="NAME",
-            help="Material to show with its spread and sources.",
+            help="Material to show, with the spread and the sources of its values.",
             show_default=False,
             autocompletion=_names,
         ),

@@ -24,7 +24,7 @@ def mixture(
     resume: Resume = False,
     figures: Figures = FigureFormat.png,
 ) -> None:
-    """Compute the restitution law of every pair in MIXTURE; write all laws to OUT."""
+    """Compute the restitution laws of all pairs in MIXTURE, and write them to OUT."""
     import time
 
     from restitution.cli.console import command, say, say_next, say_written, warn

@@ -8,11 +8,16 @@ import typer
 
 def new(
     dem: Annotated[
-        bool, typer.Option("--dem", help="Case for a DEM code: COR against impact velocity.")
+        bool,
+        typer.Option(
+            "--dem", help="Write a case for a DEM code, with COR against impact velocity."
+        ),
     ] = False,
-    scan: Annotated[bool, typer.Option("--scan", help="Case with a measured surface.")] = False,
+    scan: Annotated[
+        bool, typer.Option("--scan", help="Write a case with a measured surface.")
+    ] = False,
     study: Annotated[
-        bool, typer.Option("--study", help="Study: a case with a table \\[sweep].")
+        bool, typer.Option("--study", help="Write a study, which is a case with a table \\[sweep].")
     ] = False,
     out: Annotated[
         Path | None,
@@ -20,13 +25,13 @@ def new(
             "-o",
             "--out",
             metavar="FILE",
-            help="File to write; an existing one is never overwritten.",
+            help="File to write; an existing file is never overwritten.",
             show_default="case.toml, or study.toml",
             readable=False,
         ),
     ] = None,
 ) -> None:
-    """Write a commented case file, or study file, to start from."""
+    """Write a commented case file or study file to start from."""
     from importlib.resources import files
 
     from restitution.cli.console import command, say_next, say_written

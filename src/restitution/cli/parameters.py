@@ -38,7 +38,10 @@ OutFolder = Annotated[
     ),
 ]
 OnDevice = Annotated[
-    Device, typer.Option(help="Device to solve on; auto uses a GPU if available (needs CuPy).")
+    Device,
+    typer.Option(
+        help="Device for the solves; auto uses a GPU if one is available. A GPU needs CuPy."
+    ),
 ]
 Figures = Annotated[FigureFormat, typer.Option("--figures", help="Format of the figures.")]
 Scheduler = Annotated[
@@ -57,5 +60,5 @@ Workers = Annotated[
     ),
 ]
 Resume = Annotated[
-    bool, typer.Option("--resume", help="Compute the cases that OUT does not hold yet.")
+    bool, typer.Option("--resume", help="Compute only the cases that are not yet in OUT.")
 ]

@@ -21,7 +21,7 @@ from restitution.cli.console import errors, hint_at_kernels, say
 
 
 def progress_bar(*counts: ProgressColumn) -> Progress:
-    """Make a progress bar with a description and times; `counts` are columns beside the bar."""
+    """Make a progress bar with a description, the columns `counts`, and times."""
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(),
@@ -35,7 +35,7 @@ def progress_bar(*counts: ProgressColumn) -> Progress:
 
 @contextmanager
 def spinner(words: str) -> Iterator[Callable[[str], None]]:
-    """Show a spinner with `words` and the elapsed time. Yield a function that replaces `words`."""
+    """Show a spinner, `words` and the elapsed time; yield a function that replaces the words."""
     columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
     with Progress(*columns, console=errors, transient=True) as bar:
         task = bar.add_task(words)
@@ -44,10 +44,12 @@ def spinner(words: str) -> Iterator[Callable[[str], None]]:
 
 @contextmanager
 def cases_progress(cases: int | None, out: object, resume: str) -> Iterator[Progress]:
-    """Announce `cases` cases (None: number unknown) with results in `out`, and show their progress.
+    """Show the progress of a computation of several cases.
 
-    The command `resume` continues the computation. After an interruption, this command is printed,
-    and the process exits with the status that shells expect.
+    `cases` is the number of cases (None if it is unknown), `out` is the folder of the results, and
+    `resume` is the command that continues the computation. All three are printed at the start.
+    After an interruption, `resume` is printed again, and the process exits with the status that
+    shells expect.
     """
     number = "" if cases is None else f"{cases} cases. "
     say(f"{number}Results go to {out}; to resume: {resume}", errors)
@@ -58,4 +60,4 @@ def cases_progress(cases: int | None, out: object, resume: str) -> Iterator[Prog
     except KeyboardInterrupt:
         errors.print("Interrupted.", style="red")
         say(f"Completed cases are kept; to resume: {resume}", errors)
-        raise typer.Exit(130) from None  # `main` sets another status after SIGTERM
+        raise typer.Exit(130) from None  # after SIGTERM, `main` sets another status

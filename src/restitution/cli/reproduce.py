@@ -12,7 +12,10 @@ from restitution.cli.parameters import OutFolder, Resume, Workers
 def reproduce(
     out: OutFolder,
     quick: Annotated[
-        bool, typer.Option("--quick", help="Smaller grids and fewer cases: about three minutes.")
+        bool,
+        typer.Option(
+            "--quick", help="Use smaller grids and fewer cases, which takes about three minutes."
+        ),
     ] = False,
     refined: Annotated[
         bool, typer.Option("--refined", help="Halve the grid spacing of rough contacts.")

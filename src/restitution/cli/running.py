@@ -1,4 +1,4 @@
-"""Functions for verbs that solve one case: progress, warnings, results, and the end of a run."""
+"""Compute one case with progress, warnings and figures, for the verbs `run` and `converge`."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ def run_with_progress(
     start: Callable[..., dict[str, Any]],
     figures: FigureFormat,
 ) -> dict[str, Any]:
-    """Compute the case file `case` by calling `start`; store, print and draw the results.
+    """Compute the case in the file `case` by calling `start`; store, print and draw the results.
 
     `start` has the parameters of `run_realisations`. It returns the summary, which this function
-    also returns. `runs(case)` is the number of curves, for the progress bar. If a run is
-    interrupted or fails, the depths computed so far are stored and drawn.
+    also returns. `runs` maps the case to its number of curves, which the progress bar needs. If a
+    run is interrupted or fails, the depths computed so far are stored and drawn.
     """
     from restitution.case.case_file import naming, read_case
     from restitution.cli.console import (
@@ -82,7 +82,7 @@ def run_with_progress(
     except KeyboardInterrupt:
         errors.print("Interrupted.", style="red")
         _draw_partial_results(folder, depths, figures)
-        raise typer.Exit(130) from None  # `main` sets another status after SIGTERM
+        raise typer.Exit(130) from None  # after SIGTERM, `main` sets another status
     except BaseException:
         if received:
             errors.print("Interrupted.", style="red")
@@ -103,7 +103,7 @@ def _draw_partial_results(folder: ResultsFolder, depths: int, figures: FigureFor
 
     if not folder.rows:
         return
-    of = " (means of the surfaces done)" if "realisations" in folder.rows[0] else ""
+    of = " (means over the completed surfaces)" if "realisations" in folder.rows[0] else ""
     say(
         f"{len(folder.rows)} of {depths} depths were computed{of} and are kept in {folder.path}",
         errors,

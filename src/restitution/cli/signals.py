@@ -10,13 +10,13 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 
-# Time (s) after which a signal is sent again if Python dropped its exception in a callback. By then
-# the callback has returned.
+# If Python dropped the exception of a signal in a callback, the signal is sent again after this
+# time (s). By then the callback has returned.
 _REPEAT_AFTER = 0.05
 
 
 class Stopped(KeyboardInterrupt):
-    """A signal to end this process; `status` is the exit status that shells expect."""
+    """A signal told this process to end; `status` is the exit status that shells expect."""
 
     def __init__(self, number: int) -> None:
         super().__init__(number)
@@ -30,10 +30,11 @@ received: list[int] = []
 
 @contextmanager
 def stoppable() -> Iterator[None]:
-    """Raise `Stopped` on SIGTERM and SIGHUP, unless the signal was already ignored (`nohup`).
+    """Raise `Stopped` on SIGTERM and SIGHUP, unless they are already ignored (`nohup`) or handled.
 
     Python drops exceptions that are raised in a destructor or in the callback of a weak reference.
-    A signal or Ctrl-C that is dropped there is raised again a moment later.
+    If the exception of a signal or of Ctrl-C is dropped there, the signal is sent again a moment
+    later.
     """
 
     def stop(number: int, _: FrameType | None) -> None:
@@ -66,7 +67,7 @@ def stoppable() -> Iterator[None]:
 
 
 def _signal_main_thread(number: int) -> None:
-    if hasattr(signal, "pthread_kill"):  # this also interrupts a system call that is waiting
+    if hasattr(signal, "pthread_kill"):  # also interrupts a system call in which the thread waits
         signal.pthread_kill(threading.main_thread().ident or 0, number)
     else:
         _thread.interrupt_main(signal.Signals(number))

@@ -22,7 +22,7 @@ def simulate(
         typer.Option(
             metavar="VELOCITY",
             help='Impact velocity, such as "0.5 m/s"; may be repeated.',
-            show_default="those of the unloading curves",
+            show_default="the velocities of the unloading curves",
         ),
     ] = None,
     friction: Annotated[
@@ -31,7 +31,7 @@ def simulate(
             min=0.0,
             metavar="MU",
             help="Coefficient of friction, for oblique impacts.",
-            show_default="that of the case",
+            show_default="the coefficient in the case",
         ),
     ] = None,
     angle: Annotated[
@@ -39,16 +39,16 @@ def simulate(
         typer.Option(
             metavar="ANGLE",
             help='Angle of impact from the normal, such as "30 deg"; may be repeated.',
-            show_default="those of the case, or head-on",
+            show_default="the angles in the case, or head-on",
         ),
     ] = None,
     spin: Annotated[
         list[str] | None,
         typer.Option(
             metavar="SPIN",
-            help='Spin of the first body before the impact, such as "100 rad/s"; give it twice '
-            "for both bodies.",
-            show_default="those of the case, or none",
+            help='Spin of the first body before the impact, such as "100 rad/s"; a second --spin '
+            "is for the second body.",
+            show_default="the spins in the case, or none",
         ),
     ] = None,
     out: Annotated[
@@ -64,9 +64,9 @@ def simulate(
 ) -> None:
     """Integrate collisions in time with the stored forces of RESULTS; compare with stored COR.
 
-    If the options or the case give an angle or a spin, the impacts are oblique: VELOCITY is the
-    relative velocity of the centres, and the table contains the tangential restitution, the angle
-    of rebound and the spin.
+    The impacts are oblique if an option gives an angle, a spin or a coefficient of friction, or if
+    the case gives an angle or a spin. VELOCITY is then the relative velocity of the centres, and
+    the table contains the tangential restitution, the angle of rebound and the spins.
     """
     from restitution.cli.console import answers, say_written, table_of_numbers
     from restitution.laws.from_results import bare_law
@@ -100,8 +100,8 @@ def simulate(
     courses, blended = [], False
     for each in velocities:
         found, energies = collide_in_time(force, each), law.at(each)
-        # The difference from the COR of the stored energies is an estimate of the error that is due
-        # to the force curves.
+        # The difference from the COR that follows from the stored energies is used as an estimate
+        # of the error that the force curves cause.
         error = max(abs(found.restitution - energies.restitution), energies.error)
         courses += course(found)
         table.add_row(
@@ -120,8 +120,8 @@ def simulate(
     answers.print(table)
     if blended:
         answers.print(
-            "Some collisions reverse between two stored unloading curves; forces are interpolated. "
-            "More curves (unloading.curves) bring COR in time closer to COR by energies."
+            "Some collisions reverse at a depth between two stored unloading curves, so their "
+            "forces are interpolated. More curves (unloading.curves) reduce the difference."
         )
     if out is not None:
         say_written(out)
@@ -147,7 +147,7 @@ def _oblique(
     if friction is None:
         friction = run.case.interface.friction
     if friction is None:
-        raise CaseError("--friction: is missing; an oblique impact needs a coefficient of friction")
+        raise CaseError("--friction: not given; an oblique impact needs a coefficient of friction")
     try:
         at = [read_impact_angle(text) for text in angles]
     except ValueError as error:
@@ -164,7 +164,7 @@ def _oblique(
         turning = turning or list(impact.spins())
     at = at or ([0.0] if turning else [])
     if not at or not fast:
-        raise CaseError("--angle, --velocity: an oblique impact needs both; give them")
+        raise CaseError("--angle, --velocity: an oblique impact needs both options; give them")
     first, second = [*turning, 0.0, 0.0][:2]
     force = oblique_force(run, "--angle")
     table = table_of_numbers(
@@ -194,8 +194,8 @@ def _oblique(
             )
     answers.print(table)
     say(
-        "loss: energy lost to friction. ±: error of the tangential law, without the errors of the "
-        "normal forces and of the grid."
+        "loss: energy lost to friction. ±: error of the tangential law; errors of the normal "
+        "forces and of the grid are not included."
     )
     if out is not None:
         write_table(out, courses)

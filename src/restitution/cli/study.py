@@ -23,10 +23,10 @@ def study(
     scheduler: Scheduler = None,
     resume: Resume = False,
     retry_failed: Annotated[
-        bool, typer.Option("--retry-failed", help="With --resume: also compute failed cases again.")
+        bool, typer.Option("--retry-failed", help="With --resume: compute failed cases again, too.")
     ] = False,
 ) -> None:
-    """Run all cases of STUDY; write their results and one table of them to OUT."""
+    """Run all cases of STUDY; write the results of each case and a table of all to OUT."""
     from restitution.case.case_file import parse_case
     from restitution.cli.console import command, say, say_next, say_written, warn
     from restitution.cli.progress import cases_progress
@@ -56,9 +56,7 @@ def study(
             read, study.parent.resolve(), folder, there, show, retry_failed=retry_failed
         )
     if tally.failed:
-        warn(
-            f"{tally.failed} of {tally.cases} cases failed; the column reason of table.csv says why"
-        )
+        warn(f'{tally.failed} of {tally.cases} cases failed; see the column "reason" of table.csv')
     say(f"{tally.done} of {tally.cases} cases")
     say_written(out, ["cases", "study.nc", "study.toml", "table.csv"])
     if tally.failed == tally.cases:

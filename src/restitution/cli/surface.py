@@ -1,4 +1,4 @@
-"""`restitution surface`: make or read the surface of a case and describe it."""
+"""`restitution surface`: describe the generated or measured surface of a case."""
 
 import typer
 from rich.table import Table

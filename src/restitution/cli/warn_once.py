@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Protocol
 
-# Number of characters that are quoted of a warning when the number of its repetitions is printed.
+# The message that counts the repetitions of a warning quotes this many of its first characters.
 _QUOTED = 60
 
 
@@ -19,12 +19,12 @@ class Warn(Protocol):
 
 @contextmanager
 def warn_once() -> Iterator[Warn]:
-    """Print each warning once. At the end, print how often and for which subjects it was repeated.
+    """Print each warning once; at the end, print how often and for which subjects it was repeated.
 
-    Warnings that differ only in their numbers count as repetitions.
+    A warning that differs from an earlier one only in its numbers counts as a repetition.
     """
     from restitution.cli.console import warn
-    from restitution.display import some_of, without_numbers
+    from restitution.display import counted, some_of, without_numbers
 
     first: dict[str, str] = {}
     repeated: dict[str, list[tuple[str, str]]] = {}  # messages and subjects of each kind
@@ -47,4 +47,5 @@ def warn_once() -> Iterator[Warn]:
             numbers = " with other numbers" if differ else ""
             named = some_of(subject for _, subject in others)
             which = f" ({named})" if named else ""
-            warn(f'the same warning{numbers} applies to {len(others)} more{which}: "{start}"')
+            times = counted(len(others), "time")
+            warn(f'this warning was repeated {times}{numbers}{which}: "{start}"')
