@@ -11,7 +11,7 @@ from restitution.calibration.fit import Fit
 from restitution.calibration.least_squares import DISTANCE, RANGE
 
 WIDEST = 4.0
-"""A parameter is not identifiable if the ends of its 95 % interval have a larger ratio."""
+"""A parameter is not identifiable if its 95 % interval spans more than this factor."""
 _CORRELATED = 0.99  # correlation above which two parameters cannot be told apart
 
 # A parameter has no effect if doubling it changes the residuals by less than this number of

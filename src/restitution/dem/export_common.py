@@ -280,7 +280,7 @@ def _about(pair: Pair, code: str) -> list[str]:
         f"  end of contact assumed for e: {law.conventions.end_of_contact}",
         f"  the error of e includes: {law.conventions.restitution_error}",
         f"  elastic contact time: {pair.contact_time:.3g} s; a time step of 1/50 "
-        "of this time changes e by less than 1 % in LAMMPS",
+        "of this time changes e by at most 1 % in LAMMPS",
         f"  computed from {law.lowest:.4g} to {law.highest:.4g} m/s; nothing is extrapolated",
     ]
     return lines + adhesion_lines(law, velocity, code) + _warnings(pair)

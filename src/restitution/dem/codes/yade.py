@@ -11,8 +11,9 @@ from the required e. With the coefficients c_k in `_FIT`, the fit is
     β = L exp(Σ c_k L^k),  L = −ln e.
 
 YADE computes E* from the two materials. On a wall, YADE uses R/2 for R*, which makes the contact
-softer by a factor of √2 and does not change e. Each contact has its own `betan`. A function of the
-export can set it at first touch according to the impact velocity V, so that e follows the law e(V).
+softer by a factor of √2 and does not change e. Each contact has its own `betan`. The exported
+function `follow` can set it at first touch according to the impact velocity V, so that e follows
+the law e(V).
 """
 
 from __future__ import annotations
