@@ -142,8 +142,8 @@ def cluster_workers(address: str) -> Iterator[Workers]:
         from distributed import Client, Queue
     except ImportError:
         raise OutputError(
-            "scheduler: Dask is not installed; to install it, run `pip install "
-            '".[cluster]"` in a checkout'
+            "scheduler: Dask is not installed; to install it, run in a checkout "
+            '`pip install ".[cluster]"`'
         ) from None
     try:
         client = Client(address, timeout=PATIENCE, set_as_default=False)
