@@ -181,4 +181,4 @@ def test_what_fails_is_said(equal, lammps_environment, texts):
     (folder / "short.dump").write_text("\n".join([*lines, "ITEM: ATOMS id type", "1 1"]))
     copy = "import shutil; shutil.copy('short.dump', 'impacts.dump')"
     said = match(folder, lammps_environment, "--", sys.executable, "-c", copy, status=1)
-    assert "dump id type radius x y z vx vy vz; it has id type" in said
+    assert "has id type, but needs id type radius x y z vx vy vz" in said

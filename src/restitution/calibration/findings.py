@@ -11,17 +11,18 @@ from restitution.calibration.fit import Fit
 from restitution.calibration.least_squares import DISTANCE, RANGE
 
 WIDEST = 4.0
-"""Ratio of the ends of a 95 % interval above which a parameter is not identifiable."""
+"""A parameter is not identifiable if its 95 % interval spans more than this factor."""
 _CORRELATED = 0.99  # correlation above which two parameters cannot be told apart
 
 # A parameter has no effect if doubling it changes the residuals by less than this number of
 # standard deviations.
 _NO_EFFECT = 0.3
-# Another minimum explains the data equally well if its χ² is larger by less than this value. A
-# parameter that is off by two standard deviations increases χ² by 4.
+# Another minimum explains the data equally well if its χ² is larger by less than this value. If the
+# best minimum has a reduced χ² above 1, this value is multiplied by the reduced χ². The value
+# is 4, because a parameter that is off by two standard deviations increases χ² by 4.
 _AS_GOOD = 4.0
-# A combination is a product of powers of parameters. Parameters with a smaller exponent (magnitude)
-# are left out.
+# A combination is a product of powers of parameters. Parameters whose exponent has a smaller
+# magnitude are left out.
 _SHARE = 0.1
 # The case does not explain the data if residuals at least as large as the actual ones have a
 # probability below this value.
@@ -57,8 +58,9 @@ def interval_in_words(found: Fit, k: int) -> str:
 def combination(found: Fit) -> tuple[dict[str, float], float] | None:
     """Find the combination, a product of powers of parameters, that the data determine best.
 
-    Returns the exponents by key, and the half-width of the 95 % interval of the logarithm of the
-    product. Returns None for a single parameter, or if even this product is not identifiable.
+    Returns a dictionary with the exponent of each key, and the half-width of the 95 % interval of
+    the logarithm of the product. Returns None for a single parameter, or if even this product is
+    not identifiable.
     """
     direction = found.uncertainty.best_direction
     half = found.uncertainty.half(direction)
@@ -167,6 +169,6 @@ def _unresolved(found: Fit) -> Iterator[str]:
 def _unknown(found: Fit) -> Iterator[str]:
     if found.deviations.grid is None:
         yield (
-            "the intervals do not include the error of the grid, because cells twice as large "
-            "could not be solved"
+            "the intervals do not include the error of the grid, because the case could not be "
+            "solved on cells twice as large"
         )

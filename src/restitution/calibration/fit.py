@@ -101,12 +101,12 @@ def fit(
     names: Sequence[str],
     progress: Say = ignore,
 ) -> Fit:
-    """Fit the keys `names` of a case file to the `measured` COR.
+    """Fit the values of the keys `names` of a case file to the `measured` COR.
 
-    `text` is the content of the case file. File names in it are relative to `folder`. Its values of
-    the free keys are the first guesses. The impact velocities of `measured` replace the depths of
-    the case. `progress` is called with a few words after every curve. Raises `CaseError`, and the
-    errors of `solve_at_velocity` if the fitted case cannot be solved.
+    `text` is the content of the case file. File names in it are relative to `folder`. The values of
+    `names` in the case file are the first guesses. The impact velocities of `measured` replace the
+    depths of the case. `progress` is called with a short text after every curve. Raises
+    `CaseError`, and the errors of `solve_at_velocity` if the fitted case cannot be solved.
     """
     content = parse_toml(text)
     parse_case(text).require_impact()
@@ -122,8 +122,8 @@ def fit(
     given = measured.deviation
     data = Data(V, measured.restitution, np.full(V.size, _EQUAL) if given is None else given)
     minima = search_widely(model, data)
-    # The minima were found on cells twice as large. Now search on the grid of the case, from the
-    # best of them at which the case can be solved on this grid.
+    # The minima were found on cells twice as large. Now search on the grid of the case. Start from
+    # the best minimum at which the case can be solved on this grid.
     best = next(searches(model, data, [each.x for each in minima]))
     # Give less weight to points whose COR differs between surfaces or grids.
     noise = _noise(measured, model.restitution(best.x, V), best.x.size)
@@ -165,7 +165,7 @@ def _deviations(model: CaseModel, x: Array, velocity: Array) -> Deviations:
 
 
 def _noise(measured: Measured, fitted: Array, parameters: int) -> Array:
-    """Standard deviations of the measured COR: as given, or else estimated from the residuals."""
+    """Standard deviations of the measured COR, estimated from the residuals if not measured."""
     if measured.deviation is not None:
         return measured.deviation
     freedom = fitted.size - parameters

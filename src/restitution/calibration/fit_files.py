@@ -22,7 +22,7 @@ from restitution.results.writer import (
     write_table,
 )
 
-_DIGITS = 8  # number of digits of fitted values in the case file
+_DIGITS = 8  # number of significant digits of fitted values in the case file
 _NAMES = ("fit.json", "fit.csv", "case.toml")
 
 

@@ -12,18 +12,18 @@ import numpy as np
 from restitution.calibration.model import Array, CaseModel, Cost
 from restitution.errors import CaseError, RestitutionError
 
-RANGE = 30.0  # values from 1/30 to 30 times the first guess are searched
+RANGE = 30.0  # the search covers values from 1/30 to 30 times the first guess
 
 # Step of finite differences in the logarithm of a parameter. The noise of the solver (1e-8) would
-# allow a smaller step. But the COR of shallow contacts is not smooth over changes of about 1 %,
-# because nodes begin to yield one at a time.
+# allow a smaller step. But over changes of a parameter by about 1 %, the COR of shallow contacts is
+# not smooth, because nodes begin to yield one at a time.
 _STEP = 0.03
 # Number of scanned points besides the first guess, and number of searches that start from the best
 # of these points.
 _SCANNED, _STARTS = 15, 2
 # Two minima count as different if the logarithm of a parameter differs by more than this value.
 DISTANCE = math.log(1.5)
-# A minimum is kept if its sum of squares is at most this multiple of the smallest one.
+# A minimum is kept if its sum of squares is at most this multiple of the smallest sum of squares.
 _WORTH = 3.0
 _FAILED = 1e3  # residual (in standard deviations) assigned to a case that cannot be solved
 _EVALUATIONS = 40  # largest number of function evaluations of a search
@@ -117,7 +117,7 @@ def searches(
 ) -> Iterator[Minimum]:
     """Search from each of `starts`, except from those at which the case cannot be solved.
 
-    If the case cannot be solved at any of them, the `RestitutionError` of the first one is raised.
+    If the case cannot be solved at any start, the `RestitutionError` of the first start is raised.
     """
     failures: list[RestitutionError] = []
     for start in starts:
@@ -132,9 +132,9 @@ def searches(
 def search_widely(model: CaseModel, data: Data) -> list[Minimum]:
     """Return the minima of searches with `cost="quick"`, the best first.
 
-    The searches start from the first guess and from the best of `_SCANNED` points, which are spread
-    evenly over the range of the parameters. Raises `CaseError` if the case cannot be solved at any
-    of these starting points.
+    The searches start from the first guess and from the best `_STARTS` of `_SCANNED` points. These
+    points are spread evenly over the range of the logarithms of the parameters. Raises `CaseError`
+    if the case cannot be solved at any of these starts.
     """
     from scipy.stats.qmc import Halton
 

@@ -19,8 +19,8 @@ Array = NDArray[np.float64]
 VELOCITY, RESTITUTION = "velocity_m_per_s", "restitution"
 # Columns with the standard deviation of COR. If the file has both, the first one is used.
 DEVIATIONS = ("restitution_std", "restitution_error")
-# Which values a column accepts, and what is wrong with the others. The range of velocities is that
-# of a case file.
+# For each column: the test that a value must pass, and the message if the value fails the test.
+# Velocities have the same range as in a case file.
 _ACCEPTED: dict[str, tuple[Callable[[float], bool], str]] = {
     VELOCITY: (lambda V: 1e-9 <= V <= 1e4, "is not a velocity of 1e-09 to 10000 m/s"),
     RESTITUTION: (lambda e: 0 <= e <= 1, "is outside 0 to 1"),

@@ -56,7 +56,8 @@ class Curve:
     """COR of one surface at increasing impact velocities (m/s), shape (depths,).
 
     `ratio` is W_u/W_l, the work of unloading divided by the work of loading. `solver_error` and
-    `model_error` are errors of COR. `resolved` is 1 if the grid resolves the contact, else 0.
+    `model_error` are the errors of COR due to the solver, and due to the models of plasticity and
+    adhesion. `resolved` is 1 if the grid resolves the contact, else 0.
     """
 
     ratio: RatioCurve
@@ -136,7 +137,7 @@ def curve_of(
 def _row(state: State, unloading: UnloadingTable) -> tuple[float, ...]:
     """Return the values of a `Curve` at one depth, and the depth.
 
-    They are the impact velocity (m/s), W_u/W_l, the solver error and the model error of COR,
+    The values are the impact velocity (m/s), W_u/W_l, the solver error and the model error of COR,
     whether the grid resolves the contact, and the depth (m).
     """
     collision = collide(state, method=unloading.method, tolerance=unloading.restitution_error)
@@ -232,7 +233,8 @@ class CaseModel:
 def velocities_to_run(measured: Array) -> list[float]:
     """Velocities (m/s) of the fitted case.
 
-    They are the measured velocities or, if these are too many, fewer velocities over their range.
+    They are the measured velocities. If there are more than `MOST_VELOCITIES` of them,
+    `MOST_VELOCITIES` velocities are spread evenly (on a logarithmic scale) over the same range.
     """
     own = np.unique(measured)
     if own.size <= MOST_VELOCITIES:

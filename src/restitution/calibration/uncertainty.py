@@ -1,17 +1,18 @@
 """Uncertainty of fitted parameters: covariance, intervals, and combinations.
 
-Parameters are logarithms. With the Jacobian J = ∂COR/∂x and the standard deviations σ that weight
-the points, A = J/σ is the scaled Jacobian. A deviation ΔCOR of data or model changes the parameters
-by P ΔCOR, where P = (AᵀA)⁻¹Aᵀ/σ is the pseudo-inverse of A divided by σ. Three kinds of deviations
-contribute to the covariance C of the parameters:
+Here, the parameters x are logarithms: ln(value/first guess). J = ∂COR/∂x is the Jacobian, and σ are
+the standard deviations that weight the points. A = J/σ is the scaled Jacobian. A deviation ΔCOR of
+data or model changes the parameters by P ΔCOR, where P = (AᵀA)⁻¹Aᵀ/σ is the pseudo-inverse of A
+divided by σ. Three kinds of deviations contribute to the covariance C of the parameters:
 
     C = P diag(s²) Pᵀ + 2 S/n + (P Δ_grid)(P Δ_grid)ᵀ,  S = Σ (P Δ)(P Δ)ᵀ/(n − 1).
 
-In the first term, s are standard deviations that are independent between points. In the second
-term, Δ are the differences of the COR of n surfaces from their mean, which is fitted to the data.
-This term is the variance of the difference between two means: the fitted mean, and the mean over n
-places of impact. If all impacts hit the same place, the term would be (1 + 1/n) S. In the third
-term, Δ_grid is the deviation due to the grid.
+In the first term, s are the standard deviations of errors that are independent between points. In
+the second term, Δ are the differences of the COR of n computed surfaces from their mean, which is
+fitted to the data. This term is the covariance of the difference between two means: the fitted
+mean, and the measured mean, which is assumed to be over n places of impact. If all impacts hit the
+same place, the term would be (1 + 1/n) S. In the third term, Δ_grid is the deviation due to the
+grid.
 
 Intervals are computed with Student's t distribution, with the degrees of freedom according to Welch
 and Satterthwaite (Satterthwaite 1946).
@@ -32,8 +33,8 @@ CONFIDENCE = 0.95
 # Singular values of the scaled Jacobian A below this value are replaced by it. A combination of
 # parameters with this singular value is known only within a factor of e^1000.
 _LEAST = 1e-3
-# The interval of a parameter counts as infinite if half of the interval of its logarithm exceeds
-# this value.
+# The interval of a parameter counts as infinite if the half-width of the interval of its logarithm
+# is at least this value.
 _UNBOUNDED = math.log(1e6)
 
 

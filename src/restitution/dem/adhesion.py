@@ -15,7 +15,7 @@ _LEFT_OUT = (
 )
 _OBSTACLES = {
     "LAMMPS": "jkr and dmt do not accept coeff_restitution",
-    "LIGGGHTS": "cohesion sjkr takes an energy density instead of w",
+    "LIGGGHTS": "cohesion sjkr needs an energy density instead of the work of adhesion",
     "MuJoCo": "contact forces are never attractive",
     "Drake": "contact forces are never attractive",
 }
@@ -32,7 +32,7 @@ def pull_off_force(law: Law, velocity: float) -> float:
 
 
 def adhesion_lines(law: Law, velocity: float, code: str) -> list[str]:
-    """Write comment lines on the adhesion of `law`, if any, for the export to `code`."""
+    """Make comment lines about adhesion for the export of `law` to `code`; [] without adhesion."""
     if law.work_of_adhesion == 0:
         return []
     force = pull_off_force(law, velocity)

@@ -1,19 +1,19 @@
-"""Damping parameters of simple contact laws that return a given coefficient of restitution e.
+"""Damping parameters with which simple contact laws have a given coefficient of restitution e.
 
 A linear spring and dashpot without tension has the equation x″ = −max(ω²x + 2ζωx′, 0) for the
 overlap x, with the natural frequency ω and the damping ratio ζ. The contact ends when the force
-returns to zero, which is at the phase 2 arccos ζ. Then
+returns to zero. At this time t after first touch, ω(1 − ζ²)^½ t = 2 arccos ζ, and therefore
 
     e = exp(−2ζ arccos ζ/(1 − ζ²)^½).
 
 For ζ > 1, arccosh and ζ² − 1 replace arccos and 1 − ζ². Source: T. Schwager, T. Pöschel, Granular
-Matter 9 (2007) 465, where the force is never attractive.
+Matter 9 (2007) 465.
 
-The law of Hunt and Crossley is F = f(x)(1 + d x′) with any function f and the dissipation d.
-Dividing m x′ dx′ by 1 + d x′ and integrating over the contact gives, with c = dV and the impact
-velocity V,
+The law of Hunt and Crossley is F = f(x)(1 + d x′) with any function f and the dissipation d. The
+equation of motion of the reduced mass m is m x′ dx′ = −F dx. Divide both sides by 1 + d x′ and
+integrate over the contact. With the impact velocity V and c = dV, the result is
 
-    c (1 + e) = ln((1 + c)/(1 − ec))
+    c (1 + e) = ln((1 + c)/(1 − ec)).
 
 Source: K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42 (1975) 440; the solution in the phase plane
 is that of D. W. Marhefka, D. E. Orin, IEEE Trans. Syst. Man Cybern. A 29 (1999) 566.
@@ -22,9 +22,10 @@ A Hertz contact with a constant damping coefficient γ has the equation
 
     m x″ = −(4/3)E* R*^½ x^{3/2} − γx′
 
-until x = 0. In units of the length L = (mV²/((4/3)E* R*^½))^⅖ and the time L/V the equation is
-x″ = −x^{3/2} − g x′ with g = γL/(mV). So e depends only on the dimensionless damping g, which is
-proportional to V^{−⅕}. The equation is integrated numerically.
+until x = 0, where E* is the contact modulus and R* the reduced radius. In units of the length
+L = (mV²/((4/3)E* R*^½))^⅖ and the time L/V the equation is x″ = −x^{3/2} − g x′ with g = γL/(mV).
+So e depends only on the dimensionless damping g, which is proportional to V^{−⅕}. The equation is
+integrated numerically.
 """
 
 from __future__ import annotations
@@ -37,9 +38,10 @@ from scipy.optimize import brentq
 
 from restitution.laws.law import Law
 
-_NEARLY_ELASTIC = 1e-4  # below this value of 1 − e, only the first terms of a series of dV are used
+# If 1 − e is below this value, dV is computed from an equation in which the first terms of a power
+# series in dV replace the logarithm.
+_NEARLY_ELASTIC = 1e-4
 _TOLERANCE = 1e-12  # tolerance of root finding
-
 # If the dissipation d times the impact velocity V is below this value, the series e = 1 − ⅔ dV is
 # used. Its omitted terms are of the order (dV)². Solving the equation for e would lose more digits
 # to rounding.
@@ -49,7 +51,7 @@ _LARGEST_DAMPING = 20.0
 
 
 def dashpot_restitution(ratio: float) -> float:
-    """Return e of a linear spring and dashpot without tension from its damping ratio ζ."""
+    """Return e of a linear spring and dashpot without tension with the damping ratio ζ."""
     if ratio == 1:
         return math.exp(-2)
     root = math.sqrt(abs(1 - ratio**2))
@@ -58,12 +60,12 @@ def dashpot_restitution(ratio: float) -> float:
 
 
 def dashpot_ratio(restitution: float) -> float:
-    """Return the damping ratio ζ with which a spring and dashpot without tension has a given e."""
+    """Return the damping ratio ζ of a spring and dashpot without tension that has a given e."""
     return _root(dashpot_restitution, restitution, _LARGEST_DAMPING)
 
 
 def hunt_crossley_dissipation(restitution: float) -> float:
-    """Return the product dV (dimensionless) of dissipation d and impact velocity V for e > 0."""
+    """Return the product dV (dimensionless) of dissipation d and impact velocity V from e > 0."""
     e = restitution
     if 1 - e < _NEARLY_ELASTIC:
         return 1.5 * (1 - e**2) / (1 + e**3)
@@ -92,7 +94,7 @@ def hunt_crossley_restitution(dissipation: float) -> float:
 
 
 def hertz_restitution(damping: float) -> float:
-    """Return e of a Hertz contact with the dimensionless damping g; 0 without rebound."""
+    """Return e of a Hertz contact with the dimensionless damping g; 0 if there is no rebound."""
 
     def slope(_: float, y: tuple[float, float]) -> list[float]:
         return [y[1], -(max(y[0], 0.0) ** 1.5) - damping * y[1]]
@@ -106,7 +108,7 @@ def hertz_restitution(damping: float) -> float:
 
 
 def hertz_damping(law: Law, velocity: float, restitution: float) -> float:
-    """Return the damping γ (kg/s) with which a Hertz contact has e at `velocity` (m/s)."""
+    """Return the damping coefficient γ (kg/s) of a Hertz contact that has e at `velocity` (m/s)."""
     g = _root(hertz_restitution, restitution, 2.0)
     return g * law.mass * velocity / _length(law, velocity)
 

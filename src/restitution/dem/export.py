@@ -34,12 +34,12 @@ _WHOLE = (
 def export(laws: Sequence[Law], code: str, velocity: float | None) -> dict[str, str]:
     """Make input files of `code` (one of `CODES`) for the pairs of `laws`.
 
-    Returns the text of each file by name.
+    Returns the text of each file, by file name.
 
     All codes except `csv` use one coefficient of restitution for each pair, so they need the
     `velocity` (m/s) at which this coefficient holds. Raises `CaseError` if the velocity is missing,
-    if a pair has no law, or if the code does not accept a value. Raises `DomainError` for a
-    velocity outside the computed velocities.
+    if a pair that the code needs has no law, or if the code does not accept a value of a pair.
+    Raises `DomainError` for a velocity outside the computed velocities.
     """
     table = pair_table(laws)
     if code == "csv":
@@ -63,7 +63,10 @@ def limit(code: str) -> str:
 
 
 def write_export(texts: dict[str, str], out: Path) -> list[Path]:
-    """Write `texts` (by file name) into `out`; never overwrite a file. Raises `OutputError`."""
+    """Write `texts` (by file name) into `out`.
+
+    Raises `OutputError` if one of the files exists already, or if they cannot be written.
+    """
     with writing(out):
         out.mkdir(parents=True, exist_ok=True)
         there = [name for name in texts if (out / name).exists()]
@@ -77,7 +80,11 @@ def write_export(texts: dict[str, str], out: Path) -> list[Path]:
 
 
 def _table(table: PairTable, velocity: float | None) -> str:
-    """Make a CSV table of all pairs: values at `velocity` (m/s), or all points if it is None."""
+    """Make a CSV table of all pairs.
+
+    Each pair has one row with its values at `velocity` (m/s). If `velocity` is None, each pair has
+    a row for every point of its law.
+    """
     rows: list[dict[str, float | str]] = []
     for i, j, law in table.pairs():
         pair: dict[str, float | str] = {

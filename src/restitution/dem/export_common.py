@@ -36,9 +36,9 @@ _PLAIN = str.maketrans("–—−‐‑’‘“”·×≈→µ", "-----''''.x~>
 
 @dataclass(frozen=True)
 class Pair:
-    """A pair of particle types `i` ≤ `j`: its bodies, its law, and e at `velocity` (m/s).
+    """A pair of particle types `i` ≤ `j` in an export.
 
-    `velocity` is the velocity of the export.
+    `restitution` is e at `velocity` (m/s), which is the impact velocity of the export.
     """
 
     i: int
@@ -66,7 +66,7 @@ class Pair:
 
     @property
     def shear_modulus(self) -> float:
-        """Mindlin's G* (Pa): 1/G* = Σ 2 (2 − ν)(1 + ν)/E."""
+        """Mindlin's effective shear modulus G* (Pa): 1/G* = Σ 2 (2 − ν)(1 + ν)/E of both bodies."""
         bodies = self.first, self.second
         return 1 / sum(
             2 * (2 - b.poissons_ratio) * (1 + b.poissons_ratio) / b.youngs_modulus for b in bodies
@@ -74,15 +74,15 @@ class Pair:
 
     @property
     def mindlin_stiffness(self) -> float:
-        """Mindlin's tangential stiffness per contact radius, 8 G* (Pa)."""
+        """Mindlin's tangential stiffness divided by the contact radius: 8 G* (Pa)."""
         return 8 * self.shear_modulus
 
     @property
     def twin(self) -> tuple[float, float]:
-        """E (Pa) and ν of a material that, used for both bodies, gives the E* and G* of this pair.
+        """E (Pa) and ν with which two bodies of one material have the E* and G* of this pair.
 
-        E and ν follow from E* = E/2(1 − ν²) and G* = E/4(2 − ν)(1 + ν). ν lies between the values
-        of the two bodies.
+        E and ν follow from E* = E/(2(1 − ν²)) and G* = E/(4(2 − ν)(1 + ν)). ν lies between the
+        values of the two bodies.
         """
         k = self.shear_modulus / self.law.contact_modulus
         nu = min(max((1 - 4 * k) / (1 - 2 * k), 0.0), 0.5)
@@ -97,7 +97,7 @@ def pairs_at(table: PairTable, velocity: float, code: str, lowest: float) -> lis
     """Return all pairs of `table` with their e at `velocity` (m/s).
 
     Raises `CaseError` if e is below `lowest`, the smallest e that `code` reproduces. Raises
-    `DomainError` outside the computed velocities.
+    `DomainError` if `velocity` is outside the computed velocities of a pair.
     """
     found = []
     for i, j, law in table.pairs():
@@ -115,8 +115,8 @@ def pairs_at(table: PairTable, velocity: float, code: str, lowest: float) -> lis
 def contact_time(law: Law, radius: float | None = None) -> float:
     """Contact time (s) of an elastic impact at 1 m/s.
 
-    It is 2.87 (m*²/(R* E*² V))^⅕ with V = 1 m/s (Johnson 1985, eq. 11.24). `radius` (m) replaces
-    the R* of the law.
+    It is 2.87 (m*²/(R* E*² V))^⅕ with V = 1 m/s (Johnson 1985, eq. 11.24). `radius` (m),
+    if given, replaces the R* of the law.
     """
     R = law.radius if radius is None else radius
     return float(2.87 * (law.mass**2 / (R * law.contact_modulus**2)) ** 0.2)
@@ -152,7 +152,7 @@ def header(
     ends: str,
     constant: bool = True,
 ) -> list[str]:
-    """Write the comment lines above the export for `code`.
+    """Write the comment lines at the top of an exported file for `code`.
 
     `ends` describes the condition at which `code` ends a contact. `constant` says whether e in
     `code` is the same at every velocity.
@@ -193,13 +193,16 @@ def commented(lines: Iterable[str], sign: str) -> str:
 
 
 def xml_comment(lines: Iterable[str]) -> str:
-    """Make one XML comment of `lines`; double hyphens, which XML forbids there, are separated."""
+    """Make one XML comment of `lines`.
+
+    Double hyphens are separated, because XML forbids them in comments.
+    """
     safe = (re.sub("-(?=-)", "- ", line).rstrip() for line in lines)
     return "\n".join(["<!--", *safe, "-->"])
 
 
 def render(name: str, **values: object) -> str:
-    """Fill in the template `templates/NAME.j2` of the file `name` with `values`.
+    """Fill `values` into the template of the file `name`, which is `templates/NAME.j2`.
 
     Templates can also use the names and the filters of `_environment`.
     """
@@ -277,7 +280,7 @@ def _about(pair: Pair, code: str) -> list[str]:
         f"  end of contact assumed for e: {law.conventions.end_of_contact}",
         f"  the error of e includes: {law.conventions.restitution_error}",
         f"  elastic contact time: {pair.contact_time:.3g} s; a time step of 1/50 "
-        "of this time keeps e within 1 % in LAMMPS",
+        "of this time changes e by at most 1 % in LAMMPS",
         f"  computed from {law.lowest:.4g} to {law.highest:.4g} m/s; nothing is extrapolated",
     ]
     return lines + adhesion_lines(law, velocity, code) + _warnings(pair)
@@ -299,7 +302,7 @@ def _warnings(pair: Pair) -> list[str]:
 
 
 def _elsewhere(law: Law, velocity: float) -> str:
-    """Say what e is at half and at twice `velocity` (m/s), as far as the law has these values."""
+    """State e at half and at twice `velocity` (m/s), if the law includes these velocities."""
     said = []
     for V in (velocity / 2, velocity * 2):
         with suppress(DomainError):

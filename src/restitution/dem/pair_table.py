@@ -37,12 +37,12 @@ class PairTable:
         return [(i, j, law) for (i, j), law in sorted(self.laws.items())]
 
     def require_spheres(self, code: str) -> None:
-        """Raise `CaseError` if a pair of types of spheres has no law; `code` needs all of them."""
+        """Raise `CaseError`, which names `code`, if a pair of two types of spheres has no law."""
         numbers = range(1, len(self.spheres) + 1)
         self._require(code, combinations_with_replacement(numbers, 2), "pair of particle types")
 
     def require_all(self, code: str) -> None:
-        """Raise `CaseError` if a pair of two spheres, or of a sphere and a wall, has no law."""
+        """Raise `CaseError`, which names `code`, if any pair except two walls has no law."""
         self.require_spheres(code)
         spheres, last = len(self.spheres), len(self.particles)
         pairs = product(range(1, spheres + 1), range(spheres + 1, last + 1))
@@ -58,15 +58,15 @@ class PairTable:
             more = f" (and {len(missing) - 1} more)" if len(missing) > 1 else ""
             raise CaseError(
                 f"{code} needs a law for every {what}, but there is none for "
-                f"{missing[0]}{more}; the law of another pair cannot replace it: compute this law "
-                "(`restitution run`, `restitution fit-law`) and give it, too"
+                f"{missing[0]}{more}; the law of another pair cannot replace it: compute the "
+                "missing law (`restitution run`, `restitution fit-law`) and give it, too"
             )
 
 
 def pair_table(laws: Sequence[Law]) -> PairTable:
-    """Make the table of pairs of `laws`. Bodies with equal values become one type.
+    """Make the table of pairs from `laws`. Bodies with equal values become one type.
 
-    Raises `CaseError` for two laws of one pair.
+    Raises `CaseError` if two of the laws are for the same pair.
     """
     bodies = list(dict.fromkeys(body for law in laws for body in (law.first, law.second)))
     spheres = tuple(body for body in bodies if not body.wall)

@@ -1,4 +1,4 @@
-"""Write a script that matches the constant e of a DEM code to the velocities of a simulation."""
+"""Write a script that fits the constant COR e of a DEM code to the velocities in a simulation."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from restitution.laws.law import Law
 SCRIPT = "match_velocity.py"
 _ROUNDS = 6  # largest number of runs of the simulation
 _TOLERANCE = 0.005  # change of e below which the script stops
-_SAMPLES = 4  # number of intervals of the exported table between two computed velocities
+_SAMPLES = 4  # number of table intervals between two neighbouring computed velocities
 
 
 def matching_script(
@@ -25,10 +25,11 @@ def matching_script(
     matched: str,
     lowest: float,
 ) -> str:
-    """Make the text of `match_velocity.py` for the file `fragment` of the export to `code`.
+    """Make the text of the script `match_velocity.py`, which belongs to the export to `code`.
 
-    `command` runs the code, `matched` is the name of the file with the matched e, and `lowest` is
-    the smallest e that the code accepts.
+    `comments` is the text at the top of the script, and `command` is the command that runs the
+    code. `fragment` is the name of the exported file with the pairs, and `matched` is the name of
+    the file that the script writes. `lowest` is the smallest e that the code accepts.
     """
     return render(
         SCRIPT,
@@ -46,7 +47,10 @@ def matching_script(
 
 
 def law_points(law: Law, lowest: float) -> list[tuple[float, float]]:
-    """Tabulate velocity (m/s) and e (at least `lowest`), finely enough for linear interpolation."""
+    """Tabulate e of `law` against velocity (m/s), finely enough for linear interpolation.
+
+    Values of e below `lowest` are replaced by `lowest`.
+    """
     V = law.column("velocity")
     fine = np.interp(
         np.arange((V.size - 1) * _SAMPLES + 1) / _SAMPLES, np.arange(V.size), np.log(V)

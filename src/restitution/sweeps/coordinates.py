@@ -20,7 +20,7 @@ _UNITS = {
     "rad/s": "rad s-1",
 }
 AS_WRITTEN = "as_written"
-"""Name of the attribute that lists the values as in the study file (a JSON list of texts)."""
+"""Name of the attribute with the values as written in the study file (a JSON list of texts)."""
 
 
 def as_text(value: Any) -> str:
@@ -33,8 +33,8 @@ def as_text(value: Any) -> str:
 def coordinate(values: Sequence[Any]) -> tuple[list[Any], dict[str, str]]:
     """Convert the values of a swept key to a coordinate; return its values and attributes.
 
-    Quantities of one kind ("0.1 um") become numbers with the attribute `units`. Numbers stay
-    numbers. All other values become text as in the study file.
+    Quantities of one kind ("0.1 um") become numbers in SI units, with the attribute `units`.
+    Numbers stay numbers. All other values become text as written in the study file.
     """
     texts = [as_text(value) for value in values]
     attributes = {AS_WRITTEN: json.dumps(texts, ensure_ascii=False)}

@@ -1,7 +1,7 @@
 """Processes that compute cases, on this machine or on a Dask cluster.
 
-In both cases, `Workers` holds a `concurrent.futures.Executor`, the number of cases that it computes
-at a time, and a channel for progress. So `scheduler` treats local and cluster processes alike.
+For both kinds of processes, `Workers` holds a `concurrent.futures.Executor`, the number of cases
+that it computes at a time, and a channel for progress. So `scheduler` treats both kinds alike.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ PATIENCE = "15s"  # timeout of the connection to a Dask scheduler
 class Workers:
     """An executor that computes `places` cases at a time, each with `threads` threads.
 
-    `renewed` makes a new executor for a given number of cases at a time, after a process has died.
-    `heard` returns the messages that arrived through `channel` since the last call of `heard`.
+    After a process has died, `renewed` makes a new executor, which computes a given number of cases
+    at a time. `heard` returns the messages that arrived through `channel` since its last call.
     """
 
     executor: Executor
@@ -71,7 +71,7 @@ def local_workers(count: int | None) -> Iterator[Workers]:
             return pools.enter_context(_Pool(size, mp_context=context, initializer=_serve))
 
         def heard() -> list[tuple[int, int]]:
-            # Only this process takes messages, so those that are counted do not disappear.
+            # Only this process takes messages, so the queue holds at least `qsize()` messages.
             return [queue.get_nowait() for _ in range(queue.qsize())]
 
         yield Workers(begin(places), places, threads, queue, heard, begin)
@@ -97,10 +97,10 @@ class _Pool(ProcessPoolExecutor):
 
 @contextmanager
 def _without_interrupts() -> Iterator[None]:
-    """Block SIGINT in processes that start in the `with` body, until `_serve` lets them ignore it.
+    """Block SIGINT in processes that start in the `with` body.
 
-    Ctrl-C reaches all processes of a terminal. Before `_serve` has run in a new process, Ctrl-C
-    would end this process with a traceback.
+    Ctrl-C sends SIGINT to all processes of a terminal. A new process ignores it only after `_serve`
+    has run there. Before that, an unblocked SIGINT would end the new process with a traceback.
     """
     if not hasattr(signal, "pthread_sigmask"):  # Windows lacks this function
         yield
@@ -109,9 +109,9 @@ def _without_interrupts() -> Iterator[None]:
 
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGHUP})
     try:
-        # Start the resource tracker now, because starting it with the first process would unblock
-        # SIGINT. The tracker keeps SIGHUP blocked, because it must outlive this process when the
-        # terminal closes.
+        # The first new process would start the resource tracker, and thereby unblock SIGINT.
+        # Therefore, start the tracker now. SIGHUP is blocked in the tracker, because the tracker
+        # must outlive this process when the terminal closes.
         resource_tracker.ensure_running()
         signal.pthread_sigmask(signal.SIG_SETMASK, before | {signal.SIGINT})
         yield
@@ -142,7 +142,7 @@ def cluster_workers(address: str) -> Iterator[Workers]:
         from distributed import Client, Queue
     except ImportError:
         raise OutputError(
-            "scheduler: Dask is not installed; install the extra cluster, from a checkout with "
+            "scheduler: Dask is not installed; to install it, run in a checkout "
             '`pip install ".[cluster]"`'
         ) from None
     try:
@@ -163,7 +163,7 @@ def cluster_workers(address: str) -> Iterator[Workers]:
         def heard() -> list[tuple[int, int]]:
             return [(number, done) for number, done in queue.get(batch=True)]
 
-        # Dask itself repeats the tasks of dead workers (a limited number of times), so no new
-        # executor is needed.
+        # No new executor is needed after a worker has died, because Dask itself repeats the task (a
+        # limited number of times).
         executor = client.get_executor(pure=False)
         yield Workers(executor, places, 1, queue, heard, lambda _: executor)

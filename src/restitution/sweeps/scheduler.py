@@ -21,7 +21,10 @@ _DEATHS = 3  # a case has failed if its worker died this many times
 
 @dataclass
 class Tally:
-    """Progress of a study: numbers of cases, and the depths done of each running case."""
+    """Progress of a study, in numbers of cases.
+
+    `in_flight` holds the number of completed depths of each running case, by case number.
+    """
 
     cases: int
     done: int = 0

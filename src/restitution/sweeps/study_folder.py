@@ -152,7 +152,7 @@ class StudyFolder:
     ) -> xr.Dataset:
         """Make a dataset of all curves.
 
-        Its dimensions are the swept keys (or the cases, if paired) and the depth.
+        Its dimensions are the swept keys (or the cases, if the values are paired) and the depth.
         """
         study = self.study
         paired, depths = study.mode == "paired", max(map(len, curves), default=0)

@@ -121,7 +121,10 @@ def _check_values(swept: Mapping[str, Any], mode: str) -> None:
 
 
 def put(case: dict[str, Any], path: str, value: Any) -> None:
-    """Set the key at the dotted `path`; a number (from 1) in it selects one of several tables."""
+    """Set the key at the dotted `path` to `value`.
+
+    A number in the path (from 1) selects one of several tables. Raises `CaseError`.
+    """
     table: Any = case
     *way, last = path.split(".")
     for step in way:

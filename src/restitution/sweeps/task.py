@@ -21,7 +21,7 @@ class Channel(Protocol):
 
 @dataclass(frozen=True)
 class Outcome:
-    """The outcome of a case: the files of its results folder, and the reason for a failure.
+    """The outcome of a case: the files of its results folder, and the reason if it failed.
 
     `reason` is empty if the case is complete. A failed case has only the files that were written
     before the failure.
@@ -35,7 +35,7 @@ def compute(text: str, folder: str, number: int, threads: int, channel: Channel)
     """Run the case file `text` in this process; paths in it are relative to `folder`.
 
     Results are returned, not written to the folder of the study. So workers need no shared disk,
-    and only one process writes to this folder.
+    and only the main process writes to the folder of the study.
     """
     # DUCC0 reads this variable only once per process, before its first transform.
     os.environ.setdefault("DUCC0_NUM_THREADS", str(threads))

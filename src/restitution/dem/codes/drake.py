@@ -9,12 +9,13 @@ Hydroelastic contact: Hunt & Crossley). Two geometries a and b in contact have
 So the export gives both geometries the values 2k and d to obtain a contact with k and d.
 
 The coefficient of restitution e depends only on the product of d and the impact velocity, not on k
-or the mass (`damping.hunt_crossley_dissipation`). e decreases with the velocity. k is chosen such
-that the contact lasts as long as a Hertz contact. The relation between e and d holds for every
-elastic force that is multiplied by (1 + d x′). So it also holds for a hydroelastic contact whose
-surfaces approach at one velocity (not tested in Drake).
+or the mass (`damping.hunt_crossley_dissipation`). e decreases with increasing velocity. k is chosen
+such that the contact lasts as long as a Hertz contact. The relation between e and d holds for every
+elastic force that is multiplied by (1 + d x′). So it also holds for a hydroelastic contact if all
+points of its surfaces approach at the same velocity (not tested in Drake).
 
-A geometry has only one k and one d, so one scene cannot contain all pairs of three types of bodies.
+A geometry has only one k and one d. So in a scene with three types of bodies, the pairs of types
+cannot all have their own k and d.
 
 In Drake 1.51, a continuous plant (`time_step=0`) reproduces the exported e. A discrete plant loses
 additional energy because of its time step. With its SAP approximation, a discrete plant ignores the
@@ -39,7 +40,7 @@ from restitution.dem.friction import friction_note
 from restitution.dem.pair_table import PairTable
 
 CODE = "Drake"
-LOWEST = 0.05
+LOWEST = 0.05  # smallest e that is exported
 FRAGMENT, COLLISION = "restitution_drake.py", "collision_drake.py"
 NOTE = (
     "Drake: e holds in a continuous plant (time_step=0). A discrete plant lowers e, from 0.800 to "
@@ -52,7 +53,7 @@ _ENDS = (
     "500 time steps in a contact, 0.766 with 100 and 0.653 with 20; sap ignores the dissipation, "
     "so e is close to 0."
 )
-_STEPS = 200
+_STEPS = 200  # number of time steps in the contact of the test collision
 
 
 @dataclass(frozen=True)

@@ -2,9 +2,10 @@
 
 The tables were not tested in EDEM. EDEM's Hertz–Mindlin model has Tsuji's damping with the
 coefficient of Antypov & Elliott (Altair's documentation). EDEM's hysteretic spring model is that of
-Walton & Braun, with the stiffness K1 of loading and K2 of unloading. K1 = 5 R* min(Y1, Y2), where
-Y1 and Y2 are the yield strengths. The coefficient of restitution (K1/K2)^½ of this model is the
-same at every velocity, so the exported K2 holds at one velocity.
+Walton & Braun, with the loading stiffness K1 and the unloading stiffness K2. K1 is
+5 R* min(Y1, Y2), where Y1 and Y2 are the yield strengths. The coefficient of restitution
+(K1/K2)^½ of this model is the same at every velocity, whereas that of the law is not. So the
+exported K2 holds at one velocity only.
 """
 
 from __future__ import annotations
@@ -27,14 +28,14 @@ from restitution.results.writer import table_text
 CODE = "EDEM"
 INTERACTIONS, MATERIALS = "restitution_edem.csv", "restitution_edem_materials.csv"
 _ENDS = (
-    "in Hertz-Mindlin the overlap is back to zero, according to its formulas (it is not documented "
-    "whether EDEM cuts off the tensile damping force before); in the hysteretic spring model the "
+    "in Hertz-Mindlin the overlap is back to zero, according to its formulas (whether EDEM cuts "
+    "off the tensile damping force earlier is not documented); in the hysteretic spring model the "
     "force is back to zero."
 )
 _NOTES = [
     "",
-    "Tables to be typed into EDEM (not run here): Interactions, and Bulk Material.",
-    "hysteretic_*: the hysteretic spring model fitted to the law, K2 at this velocity;",
+    "Tables to be typed into EDEM (not tested in EDEM): Interactions, and Bulk Material.",
+    "hysteretic_*: the hysteretic spring model fitted to the law, with K2 at the velocity above;",
     "    its restitution is (K1/K2)^(1/2); EDEM computes K1 from the yield strength K1/(5 R*).",
     "    Empty if there is no such fit, or if the velocity is outside its fitted range.",
 ]
@@ -71,10 +72,11 @@ def _interaction(pair: Pair) -> dict[str, str]:
 
 
 def _springs(pair: Pair) -> tuple[float, float]:
-    """Stiffness K1 of loading and K2 of unloading (N/m) of the fitted Walton–Braun law.
+    """Return the stiffnesses K1 and K2 (N/m) of the Walton–Braun law fitted to the pair.
 
-    K2 = k_u + S V (m* K1)^½, with the velocity V (m/s) of the export, the reduced mass m*, and the
-    fitted parameters k_u (unloading stiffness) and S (hardening). NaN if there is no such fit, or
+    K1 is the loading stiffness. The unloading stiffness is K2 = k_u + S V (m* K1)^½, with the
+    velocity V (m/s) of the export and the reduced mass m*. k_u (the unloading stiffness without
+    hardening) and S (the hardening) are fitted parameters. NaN if there is no such fit, or
     if V is outside the fitted range.
     """
     fit = pair.fitted("walton-braun")

@@ -2,7 +2,7 @@
 
 LAMMPS uses the E and ν of a pair_coeff for both bodies, also at walls:
 
-    E* = E/2(1 − ν²),   G* = E/4(2 − ν)(1 + ν).
+    E* = E/(2(1 − ν²)),   G* = E/(4(2 − ν)(1 + ν)).
 
 So each pair gets values of E and ν that lead to its E* and G*. LAMMPS' mixing of two materials
 applies the factor ½ twice, so the export does not use the mixing. Force and damping (Antypov &
@@ -46,8 +46,9 @@ _ENDS = (
 )
 _TANGENTIAL = (
     f"These pairs have {STIFFNESS_SHARE} times the tangential stiffness of a contact that sticks, "
-    "because the edge of a contact slides first. With this factor e_t of elastic spheres is within "
-    "0.03 of the law (docs/oblique.md). For the full stiffness, replace the number by NULL."
+    "because the edge of a contact slides first. With this factor, the tangential restitution of "
+    "elastic spheres is within 0.03 of the theory (docs/oblique.md). For the full stiffness, "
+    "replace the number after mindlin_rescale/force by NULL."
 )
 _KOKKOS_ENDS = (
     "the overlap is back to zero. The force is tensile shortly before, due to damping; do not add "
@@ -133,7 +134,10 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
 
 
 def _tangential(pair: Pair) -> str:
-    """The tangential model of a pair; LAMMPS' default stiffness if the case has no friction."""
+    """The tangential model of a pair.
+
+    If the case has no friction, the model has the full stiffness, which LAMMPS computes (NULL).
+    """
     if pair.law.friction is None:
         return f"mindlin NULL 1.0 {pair.friction}"
     stiffness = STIFFNESS_SHARE * pair.mindlin_stiffness
@@ -143,8 +147,9 @@ def _tangential(pair: Pair) -> str:
 def _counts(table: PairTable) -> list[int]:
     """Number of spheres of each type, at least one; the sum is `_GRAINS`.
 
-    The numbers are proportional to the number fractions of the sizes. For a type without a number
-    fraction, the fraction 1 is used. So all materials of a mixture have the same number of spheres.
+    The numbers are proportional to the number fractions of the types, where a type without a number
+    fraction has the fraction 1. The fractions of the sizes of one material add up to 1, so all
+    materials of a mixture have the same number of spheres.
     """
     weights = [body.number_fraction or 1.0 for body in table.spheres]
     ends = [round(_GRAINS * part / sum(weights)) for part in itertools.accumulate(weights)]
@@ -154,7 +159,10 @@ def _counts(table: PairTable) -> list[int]:
 
 
 def _floor(table: PairTable) -> int | None:
-    """Type number of the first wall that has a law with every type of sphere; None without one."""
+    """Type number of the first wall that has a law with every type of sphere.
+
+    None if there is no such wall.
+    """
     count = len(table.spheres)
     walls = range(count + 1, len(table.particles) + 1)
     with_all = (w for w in walls if all((k, w) in table.laws for k in range(1, count + 1)))

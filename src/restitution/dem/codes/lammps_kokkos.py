@@ -1,16 +1,19 @@
-"""Second fragment of the export to LAMMPS, with damping models that its package KOKKOS supports.
+"""Second fragment of the export to LAMMPS, with damping models for LAMMPS' package KOKKOS.
 
 LAMMPS 22Jul2025 has no KOKKOS variant of pair_style granular. Pull request 5187 adds a variant with
 hooke and hertz normal forces, velocity-based damping, and linear and Mindlin tangential forces.
 This variant needs the setting `newton off`. The older gran/hooke/history/kk has only one set of
 values for all pairs of types.
 
-Each pair gets a Hertz force with a constant damping coefficient (`damping velocity`,
-`damping.hertz_damping`). Its coefficient of restitution e increases with the velocity V, because
-the dimensionless damping g (`damping`) decreases as V^{−⅕}. If there is a single type of particle,
-the fragment also offers a linear spring, whose e is constant. Its contact lasts as long as a Hertz
-contact. In LAMMPS the damping force may be tensile until the overlap is zero, so the damping ratio
-ζ gives e = exp(−πζ/(1 − ζ²)^½) (Schäfer, Dippel, Wolf, J. Phys. I France 6 (1996) 5).
+Each pair gets a Hertz force with a constant damping coefficient (`damping velocity` in LAMMPS).
+The function `hertz_damping` of the module `damping` computes the coefficient. The coefficient of
+restitution e of this model increases with the velocity V, because the dimensionless damping g
+(defined in `damping`) is proportional to V^{−⅕}.
+
+If there is a single type of particle, the fragment also offers a linear spring, whose e is
+constant. A contact with this spring lasts as long as a Hertz contact. In LAMMPS the damping force
+may be tensile until the overlap is zero, so the damping ratio ζ gives e = exp(−πζ/(1 − ζ²)^½)
+(Schäfer, Dippel, Wolf, J. Phys. I France 6 (1996) 5).
 """
 
 from __future__ import annotations
@@ -31,7 +34,7 @@ class VelocityDamping:
 
     @property
     def normal_stiffness(self) -> float:
-        """The coefficient Kn (Pa) of the style `hertz` of LAMMPS."""
+        """The coefficient Kn (Pa) of LAMMPS' normal model `hertz`."""
         return 4 / 3 * self.pair.law.contact_modulus
 
     def restitution(self, share: float) -> float:

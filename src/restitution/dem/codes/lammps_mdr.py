@@ -15,7 +15,8 @@ from restitution.dem.export_common import Pair
 from restitution.laws.law import FittedLaw
 
 NAME = "lammps-mdr"
-_FAR = 0.1  # a fitted law is offered if its largest difference in e is at most this value
+# A fitted law is offered if its e differs by at most this value from the computed e.
+_FAR = 0.1
 
 
 def mdr_offers(pairs: list[Pair]) -> list[tuple[Pair, FittedLaw | None, str]]:
@@ -27,17 +28,17 @@ def mdr_offers(pairs: list[Pair]) -> list[tuple[Pair, FittedLaw | None, str]]:
 
 
 def _obstacle(pairs: list[Pair], pair: Pair) -> str:
-    """Return the reason why `pair` gets no mdr line; empty if it gets such a line."""
+    """Return the reason why `pair` gets no mdr line; empty if it gets one."""
     spheres = [other for other in pairs if not other.wall]
     if not pair.wall and len(spheres) > 1:
         return (
-            "LAMMPS takes one mdr model in a pair_style, with the same values for all\n"
+            "LAMMPS accepts one mdr model in a pair_style, with the same values for all\n"
             "pairs of types, and no other normal model; this export has several types"
         )
     if pair.wall and spheres and any(_obstacle(spheres, other) for other in spheres):
         return (
-            "LAMMPS takes mdr at a wall only if pair_style granular has mdr, too,\n"
-            "and the pairs of spheres above do not"
+            "LAMMPS accepts mdr at a wall only if pair_style granular has mdr, too,\n"
+            "but no mdr line is offered for the pairs of spheres above"
         )
     return _unfit(pair)
 

@@ -33,10 +33,12 @@ _ENDS = (
     "`limitForce on`, which cuts off the tension and raises e (from 0.3 to 0.397)."
 )
 _TANGENTIAL = (
-    "LIGGGHTS uses the full tangential stiffness of a contact that sticks. Its impacts that slide "
-    "are exact, and impacts that stick return too much tangential velocity (docs/oblique.md)."
+    "LIGGGHTS uses the full tangential stiffness of a contact that sticks. Impacts "
+    "that slide are exact, but impacts that stick return too much tangential velocity "
+    "(docs/oblique.md)."
 )
-_HARD, _SOFT = 1e9, 5e6  # limits of E (Pa); LIGGGHTS needs an extra command to accept other values
+# Upper and lower limit of E (Pa). LIGGGHTS needs an additional command to accept other values.
+_HARD, _SOFT = 1e9, 5e6
 
 
 def write(table: PairTable, velocity: float) -> dict[str, str]:
@@ -92,9 +94,9 @@ def _hardness(table: PairTable) -> str:
 def _by_types(
     table: PairTable, pairs: list[Pair], entry: Callable[[Pair], str], walls: str
 ) -> list[list[str]]:
-    """Return the symmetric matrix of the `entry` of each pair, with a row for each type.
+    """Return a symmetric matrix with a row and a column for each type.
 
-    Two walls never touch; their entry is `walls`.
+    `entry` computes the value of a pair. Two walls never touch; their value is `walls`.
     """
     known = {(pair.i, pair.j): entry(pair) for pair in pairs}
     numbers = range(1, len(table.particles) + 1)

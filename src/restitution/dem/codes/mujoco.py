@@ -1,16 +1,18 @@
-"""MuJoCo: `solref` and `solimp` of a contact pair, in the direct format (−stiffness, −damping).
+"""MuJoCo: `solimp` and `solref` of a contact pair; `solref` is (−stiffness, −damping).
 
-With contact, MuJoCo sets the normal acceleration to a₁ = (1 − d) a₀ + d a_ref, where a₀ is the
-acceleration without contact, d the impedance, r the distance of the surfaces and v its rate. Here
-a_ref = −bv − kr, b = damping/d_max and k = stiffness d(r)/d_max² (MuJoCo documentation,
-Computation: Constraint model, and Modeling: Solver parameters). If the impedance d is constant, the
-equation of motion is
+During a contact, MuJoCo sets the normal acceleration to a₁ = (1 − d) a₀ + d a_ref, where a₀ is the
+acceleration without contact and d the impedance. The reference acceleration a_ref = −bv − kr
+depends on the distance r of the surfaces and its rate v. Its coefficients are b = damping/d_max and
+k = stiffness d(r)/d_max², where d_max is the largest impedance (MuJoCo documentation, Computation:
+Constraint model, and Modeling: Solver parameters). If the impedance d is constant, the equation of
+motion is
 
-    r″ = −stiffness r − damping r′ + (1 − d) a₀,
+    r″ = −stiffness r − damping r′ + (1 − d) a₀.
 
-This is a linear spring and dashpot per unit of mass, independent of the masses. The contact force
-is never attractive, so `damping.dashpot_ratio` gives the damping ratio ζ for e. The usual formula
-e = exp(−πζ/(1 − ζ²)^½) does not apply: with the ζ that it gives for e = 0.6, MuJoCo returns 0.632.
+This is a linear spring and dashpot whose stiffness and damping are per unit of mass, so e does not
+depend on the masses. The contact force is never attractive, so `damping.dashpot_ratio` gives the
+damping ratio ζ for e. The usual formula e = exp(−πζ/(1 − ζ²)^½) does not apply: with the ζ from
+this formula for e = 0.6, MuJoCo returns 0.632.
 
 d = 0.9999, the largest value that MuJoCo accepts, makes e independent of the friction cone.
 With d = 0.9 and pyramidal cones, MuJoCo returns 0.79 for e = 0.8. The stiffness is chosen such that
@@ -40,15 +42,16 @@ LOWEST = 0.05  # smallest e that is reproduced within 2 %, with `_STEPS` time st
 FRAGMENT, COLLISION = "restitution_mujoco.xml", "collision_mujoco.py"
 NOTE = (
     "MuJoCo: e is the exported e at every velocity, if the time step is at most 1/200 of the "
-    "contact (1/50 for e of 0.5 and more); the file lists softer contacts for longer time steps."
+    "contact time (1/50 for e of 0.5 and more); the file lists softer contacts for longer time "
+    "steps."
 )
 _ENDS = (
     "the force is back to zero, which is before the overlap is zero: contact forces are never "
-    "attractive. e is within 2 % with 200 time steps in a contact for e of 0.2 and more, and with "
-    "50 for e of 0.5 and more."
+    "attractive. The error of e is at most 2 % with 200 time steps in a contact if e is at least "
+    "0.2, and with 50 time steps if e is at least 0.5."
 )
-_STEPS = 500
-_LARGEST = 1e8  # largest acceleration (m/s²), because MuJoCo resets a simulation above 1e10
+_STEPS = 500  # number of time steps in the contact of the test collision
+_LARGEST = 1e8  # largest acceleration (m/s²) in an export; MuJoCo resets a simulation above 1e10
 _DEEPEST = 0.05  # largest overlap in a softened contact, as a fraction of the smaller radius
 _COARSE = 50  # number of time steps in a softened contact
 
@@ -57,8 +60,9 @@ _COARSE = 50  # number of time steps in a softened contact
 class Contact:
     """Durations (s) and damping ratio ζ (dimensionless) of the contact of a pair.
 
-    `duration` belongs to an elastic Hertz contact. `soft_duration` belongs to a softened contact,
-    whose largest overlap is the fraction `_DEEPEST` of the smaller radius.
+    `duration` is the duration of an elastic Hertz contact. `soft_duration` is the duration of a
+    softened contact, whose largest overlap is the fraction `_DEEPEST` of the smaller radius.
+    `ratio` is ζ.
     """
 
     pair: Pair
@@ -75,9 +79,7 @@ class Contact:
 def write(table: PairTable, velocity: float) -> dict[str, str]:
     """Write an MJCF file to include and a test collision that prints e.
 
-    Returns file names and texts.
-
-    Raises `CaseError`, `DomainError`.
+    Returns file names and texts. Raises `CaseError`, `DomainError`.
     """
     pairs = pairs_at(table, velocity, CODE, LOWEST)
     head = header(table, pairs, velocity, code=CODE, ends=_ENDS)

@@ -1,4 +1,4 @@
-"""YADE: `Ip2_FrictMat_FrictMat_MindlinPhys` with a `betan` for each pair of materials, or e(V).
+"""YADE: `Ip2_FrictMat_FrictMat_MindlinPhys` with a `betan` for each pair of materials.
 
 YADE adds the damping force 2β(m* dF/dδ)^½ dδ/dt to Hertz's force F at the overlap δ. The sum is
 never attractive, so a contact ends when the force returns to zero. YADE 2023.02a converts the
@@ -6,13 +6,14 @@ coefficient of restitution `en` to β by a fit (Thornton et al., Powder Technol.
 B6, B7). This fit returns e = 0.979 for en = 0.99 and e = 0.948 for en = 0.95; other releases
 convert `en` differently. The export therefore writes β (`betan`), computed by a new fit to this
 equation of motion. The new fit is valid for e ≥ 0.01, and the resulting e differs by less than 10⁻⁵
-from the required e:
+from the required e. With the coefficients c_k in `_FIT`, the fit is
 
-    β = L exp(Σ c_k L^k),  L = −ln e
+    β = L exp(Σ c_k L^k),  L = −ln e.
 
 YADE computes E* from the two materials. On a wall, YADE uses R/2 for R*, which makes the contact
-softer by a factor of √2 and does not change e. Each contact has its own `betan`, which the export
-can set at first touch according to the velocity. So e can follow the law e(V).
+softer by a factor of √2 and does not change e. Each contact has its own `betan`. The exported
+function `follow` can set it at first touch according to the impact velocity V, so that e follows
+the law e(V).
 """
 
 from __future__ import annotations
@@ -40,13 +41,13 @@ FRAGMENT, COLLISION = "restitution_yade.py", "collision_yade.py"
 _ENDS = (
     "the force is back to zero, which is before the overlap is zero: the force is never tensile. e "
     "is given as betan, not as en, because en = 0.99 gives e = 0.979 in YADE 2023.02a. On a wall "
-    "YADE takes R*/2 for R*: the contact is softer by sqrt(2), with the same e."
+    "YADE uses R*/2 instead of R*, so the contact is softer by a factor of sqrt(2); e is the same."
 )
 _TANGENTIAL = (
-    "soften and follow reduce the tangential stiffness of these pairs, because the edge of a "
-    "contact slides first (docs/oblique.md)."
+    "The functions `soften` and `follow` reduce the tangential stiffness of these pairs, because "
+    "the edge of a contact slides first (docs/oblique.md)."
 )
-_STEPS = 2000
+_STEPS = 2000  # number of time steps in the contact of the test collision
 # Density (kg/m³) of a wall whose case gives none. YADE needs a value, which has no effect.
 _WALL_DENSITY = 1000.0
 
@@ -89,7 +90,7 @@ def write(table: PairTable, velocity: float) -> dict[str, str]:
 
 
 def _tangential(pair: Pair) -> float:
-    """Factor on YADE's tangential stiffness (dimensionless); 1 if the case has no friction."""
+    """The factor (dimensionless) by which the tangential stiffness of YADE is multiplied."""
     return 1.0 if pair.law.friction is None else STIFFNESS_SHARE
 
 
@@ -99,5 +100,5 @@ def _density(body: Particle) -> float:
 
 
 def _contact_time(pair: Pair) -> float:
-    """Contact time (s) of an elastic impact at 1 m/s; on a wall, R/2 replaces R*, as in YADE."""
+    """Contact time (s) of an elastic impact at 1 m/s; R/2 replaces R* on a wall, as in YADE."""
     return contact_time(pair.law, pair.law.radius / (2 if pair.wall else 1))
