@@ -61,7 +61,7 @@ class LiveCurves:
         yield from curve.compute(folder, check)
 
     def maps(self, tab: str, depth: int) -> Iterator[str]:
-        """Yield the contact maps at the depth of number `depth` of the last curve of `tab`."""
+        """Yield the contact maps at depth number `depth` of the last curve of `tab`."""
         curve = self._curves.get(tab)
         if curve is not None and len(curve.maps):
             yield curve.maps.line(min(max(depth, 0), len(curve.maps) - 1))

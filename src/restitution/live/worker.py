@@ -154,7 +154,7 @@ class Worker:
         yield as_json({"file": str(file.relative_to(self._room))})
 
     def read(self, tab: str, file: str) -> Iterator[str]:
-        """Read a scan and yield its nodes and spacing, or an error if the file is unreadable."""
+        """Read a scan; yield its nodes and spacing, or `needs_size` if it has no edge lengths."""
         from restitution.surfaces import read_surface
         from restitution.surfaces.refused import RefusedSurfaceError
 

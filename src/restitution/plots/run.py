@@ -195,7 +195,7 @@ def _references(found: list[Reference], scale: float) -> list[Series]:
 
 
 def unloading_lines(results: xr.Dataset) -> list[Line]:
-    """Make a line of each unloading curve, without the NaN at its end."""
+    """Make a line of each unloading curve, without the NaN values that pad it."""
     found = []
     for k in range(results.sizes.get("unloading", 0)):
         x, y = (results[f"unloading_{name}"][k].values for name in ("indentation", "force"))

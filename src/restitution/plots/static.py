@@ -47,7 +47,7 @@ _MOST_BELOW = 8
 _DIGITS: tuple[tuple[float, tuple[int, ...]], ...] = ((1.0, (1, 2, 3, 5, 7)), (3.0, (1, 2, 5)))
 _TICKS = 6  # largest number of intervals between the labels of a linear axis
 _LINEAR = 0.5  # a logarithmic axis that spans fewer decades than this has linear ticks
-_PLAIN = (0.9e-3, 1e4)  # labels of an axis within this range have no powers of ten
+_PLAIN = (0.9e-3, 1e4)  # an axis inside this range has labels without powers of ten
 _MARKERS = {
     "circle": "o",
     "square": "s",

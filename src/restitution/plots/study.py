@@ -20,7 +20,7 @@ def rows_with(case: StoredCase, abscissa: Abscissa) -> list[dict[str, float]]:
 
 
 def study_figure(cases: Sequence[StoredCase], abscissa: Abscissa) -> Figure:
-    """Plot COR against `abscissa` for each of `cases`, but at most `MOST_LINES` of them."""
+    """Plot COR against `abscissa` for the first `MOST_LINES` of `cases`."""
     series = []
     for number, case in enumerate(cases[:MOST_LINES]):
         rows = rows_with(case, abscissa)
