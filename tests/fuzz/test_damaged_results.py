@@ -151,7 +151,7 @@ def assert_shares(path):
     tables = _tables(path) if path.suffix == ".html" else [_rows(path)]
     for columns, rows in tables:
         for at, name in enumerate(columns):
-            if name in ("COR", "least COR", "largest COR") or re.fullmatch(
+            if name in ("COR", "smallest COR", "largest COR") or re.fullmatch(
                 r"restitution(_a|_b|_low|_high)?", name
             ):
                 for row in rows:

@@ -91,7 +91,7 @@ def test_a_text_with_a_value_that_no_case_has_is_told(page, live_case, value):
     expect(page.locator("#case-text")).to_have_value(re.compile('material = "steel"'))
     page.locator("#case-text").fill(f"colour = {value}\n{live_case}")
     page.get_by_role("button", name="Use this text").click()
-    expect(page.locator("#text-problem")).to_contain_text("no key of a case takes such a value")
+    expect(page.locator("#text-problem")).to_contain_text("no key of a case accepts such a value")
 
 
 def test_an_unknown_key_of_the_case_as_a_text_is_told(page, live_case):

@@ -128,7 +128,7 @@ def test_the_page_of_the_runs_names_the_reduced_radii(cli, computed_mixture, tmp
     shutil.copytree(computed_mixture / "runs", tmp_path / "runs")
     assert cli("report", tmp_path / "runs")[0] == 0
     page = (tmp_path / "runs" / "report.html").read_text()
-    assert "14 cases over pair, reduced_radius: 14 complete" in page
+    assert "14 cases that vary pair, reduced_radius: 14 complete" in page
     for radius in ("25 um", "40 um", "37.5 um"):
         assert radius in page
     assert "3.9999999999999996e-05" not in page

@@ -1,4 +1,4 @@
-"""The case that the page edits: the tables of a case file, in a uniform form."""
+"""Conversion between a case file and the tables that the page edits."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ Content = dict[str, Any]
 def content_of(text: str) -> Content:
     """Parse the case file `text`; make every body a table, and `roughness` a list of tables.
 
-    Raises `CaseError` if `text` is not TOML, or has a value that JSON cannot represent.
+    Raises `CaseError` if `text` is not TOML, or contains a value that JSON cannot represent.
     """
     content = parse_toml(text)
     try:
         json.dumps(content, allow_nan=False)
     except (TypeError, ValueError):
         raise CaseError(
-            "a value is a date, a time, inf or nan; no key of a case takes such a value"
+            "a value is a date, a time, inf or nan; no key of a case accepts such a value"
         ) from None
     for name in ("first", "second"):
         if isinstance(content.get(name), str):
@@ -48,7 +48,9 @@ def text_of(content: Content) -> str:
     try:
         return tomli_w.dumps(tables)
     except (TypeError, ValueError) as error:
-        raise CaseError(f"{error}; a case file holds texts, numbers, lists and tables") from None
+        raise CaseError(
+            f"{error}; a case file may contain texts, numbers, lists and tables"
+        ) from None
 
 
 def problems_in(text: str, folder: Path) -> dict[str, str]:
@@ -60,7 +62,7 @@ def problems_in(text: str, folder: Path) -> dict[str, str]:
     if problems := problems_of(content):
         return problems
     for name in (table["file"] for table in scans_of(content)):
-        # The page reads only files that the user gave it.
+        # Only scans that the user gave to the page are read.
         if PurePath(name).name != name or not (folder / name).is_file():
             return {
                 "roughness.file": f'"{name}" is not a scan of this page; drop the file onto the '

@@ -1,4 +1,4 @@
-"""The curve that the page redraws while a slider moves: one surface, without the total error."""
+"""The curve that the page redraws while a slider moves. It has one surface and no total error."""
 
 from __future__ import annotations
 
@@ -42,8 +42,8 @@ class LiveCurves:
     def lines(self, tab: str, text: str, folder: Path, check: Callable[[], None]) -> Iterator[str]:
         """Compute the curve of the case `text`; yield lines of JSON for the page.
 
-        `check` raises an exception if the curve is no longer wanted. Depths that were computed are
-        drawn even if other depths fail.
+        The scans of the case are in `folder`. `check` raises an exception if the curve is no longer
+        wanted. Depths that were computed are drawn even if other depths fail.
         """
         case = parse_case(text).realisation(0)
         case.require_impact()
@@ -61,13 +61,13 @@ class LiveCurves:
         yield from curve.compute(folder, check)
 
     def maps(self, tab: str, depth: int) -> Iterator[str]:
-        """Yield the contact maps at one depth of the last curve."""
+        """Yield the contact maps at depth number `depth` of the last curve of `tab`."""
         curve = self._curves.get(tab)
         if curve is not None and len(curve.maps):
             yield curve.maps.line(min(max(depth, 0), len(curve.maps) - 1))
 
     def beside(self, tab: str, shown: str, check: Callable[[], None]) -> Iterator[str]:
-        """Yield the curve of the smooth bodies and the surface, both of the latest case.
+        """Yield the curve of the smooth bodies, then the surface, for the last case of `tab`.
 
         The surface is left out if its key is `shown`, because the page then shows it already.
         """
@@ -79,7 +79,7 @@ class LiveCurves:
     def _contact(self, case: Case, folder: Path) -> Contact:
         """Make the contact of `case`; reuse the last surface, which most sliders do not change."""
         scans = [folder / part.file for part in case.roughness if part.kind == "measured"]
-        # The times and sizes of the scans show whether a file was replaced.
+        # A new modification time or size shows that the file of a scan was replaced.
         stamps = [(each.stat().st_mtime_ns, each.stat().st_size) for each in scans]
         key = repr((case.roughness, case.grid, stamps))
         if self._surface is not None and self._surface[0] == key:

@@ -51,7 +51,7 @@ def _finite(value: Any) -> Any:
 
 
 def live_dataset(case: Case, contact: Contact, rows: Sequence[Mapping[str, float]]) -> xr.Dataset:
-    """Convert `rows` to the dataset of a run's figures, without unloading curves and maps."""
+    """Make a dataset of `rows` that suffices for the figures of COR and of force."""
     derived = {f"derived_{k}": str(v) for k, v in derived_quantities(case, contact).items()}
     return xr.Dataset(curve_variables(rows), attrs={"title": case.title, **derived})
 
@@ -71,7 +71,7 @@ def drawing(figure: Figure) -> Raw:
 
 
 def surface_content(surface: Surface) -> dict[str, Any]:
-    """The map of `surface` and its statistics, for `as_json`."""
+    """Return the map of `surface` and its statistics, for `as_json`."""
     nodes, spacing = surface.grid.nodes, surface.grid.spacing
     rows = [
         ["nodes", " × ".join(map(str, nodes))],
@@ -99,7 +99,7 @@ def _thinned(surface: Surface) -> Surface:
 
 
 class ContactMaps:
-    """Small maps of pressure and plastic displacement at every depth of a curve."""
+    """Coarse maps of pressure and plastic displacement at every depth of a curve."""
 
     def __init__(self, contact: Contact) -> None:
         self._down = contact.surface.provenance.get("y_axis") == "down"

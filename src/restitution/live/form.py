@@ -1,4 +1,4 @@
-"""The fields of the form: keys of a case file with labels, units and the ranges of sliders."""
+"""The form on the page of `restitution app`; each of its fields edits one key of a case file."""
 
 from __future__ import annotations
 
@@ -16,19 +16,20 @@ from restitution.display import quantity
 from restitution.surfaces.extend import Extension
 from restitution.surfaces.generate import RoughnessKind
 
-Choice = tuple[str, str]  # the value in the file, and its label
+Choice = tuple[str, str]  # the value in the case file, and its label in the form
 
 _GENERATED = get_args(RoughnessKind)
 
 
 @dataclass(frozen=True)
 class Field:
-    """One key of the case file.
+    """A field of the form, which edits the key `key` of the case file.
 
-    `unit` is the SI unit of a quantity. `low` and `high` are the ends of the slider, in the same
-    unit; without them the field has no slider. The field is shown while the key `when[0]` has one
-    of the values `when[1:]`, where "" means that the key is left out. `initial` is filled in when
-    the field appears. A field with `more` is hidden behind "More" while it is empty.
+    `unit` is the SI unit of the quantity. `low` and `high` are the ends of the slider in this unit;
+    a field without them has no slider. If `when` is given, the field is shown only while the key
+    `when[0]` has one of the values `when[1:]` ("": the key is left out). `initial` is the value of
+    a field that appears for the first time. Fields with `more` are placed under "More", which is
+    open if one of them has a value.
     """
 
     key: str
@@ -55,7 +56,7 @@ class Group:
 
 
 def form() -> dict[str, Any]:
-    """The form as JSON: groups of fields, units with their factors, DEM codes, and the library."""
+    """Return the groups of fields, units with their factors, DEM codes and materials, for JSON."""
     return {
         "groups": [asdict(group) for group in _groups()],
         "units": unit_factors(),
@@ -65,7 +66,7 @@ def form() -> dict[str, Any]:
 
 
 def _library_values(material: Material) -> dict[str, str]:
-    """The values that `material` supplies to a body, as texts of a case file."""
+    """The values that `material` supplies to a body, written as in a case file."""
     found = ((key, unit, getattr(material, key)) for key, unit in FROM_LIBRARY.items())
     return {
         key: quantity(each.value, unit) if unit == "Pa" else f"{each.value:g} {unit}".strip()
@@ -131,7 +132,7 @@ _INTERFACE = (
         "Pa",
         1e6,
         1e11,
-        hint="from a tensile test; if empty, that of the softer body",
+        hint="from a tensile test; if empty, the Y of the softer body",
     ),
     Field(
         "interface.yield_pressure",
@@ -139,7 +140,7 @@ _INTERFACE = (
         "Pa",
         1e6,
         1e11,
-        hint='instead of Y: a hardness, "2.8 Y", "hardness" or "elastic"',
+        hint='replaces Y; a pressure, "2.8 Y", "hardness" (of the softer body) or "elastic"',
     ),
     Field(
         "interface.tangent_modulus",
@@ -237,7 +238,7 @@ _SURFACE = (
     Field("roughness.seed", "Seed", "", 0, 100, False, True, when=_MADE, initial=1),
     Field("roughness.channel", "Channel of the file", whole=True, when=_READ, more=True),
     Field(
-        "roughness.size", "Edge lengths", "m", when=_READ, hint="if the file has none", more=True
+        "roughness.size", "Edge lengths", "m", when=_READ, hint="if the file lacks them", more=True
     ),
     Field(
         "roughness.detrend",
@@ -290,7 +291,7 @@ _SURFACE = (
         False,
         True,
         when=_ROUGH,
-        hint="the curve is their mean; while a slider moves, only the first surface is computed",
+        hint="the curve is the mean over them; while a slider moves, only the first is computed",
     ),
 )
 
@@ -322,7 +323,7 @@ def _span(
             "Values",
             unit,
             when=when,
-            hint="a list, separated by commas, instead of the span",
+            hint='separated by commas; used instead of "from", "to" and "Steps"',
             more=True,
         ),
     )
@@ -331,7 +332,7 @@ def _span(
 _RANGE = (
     Field(
         "depths",
-        "Depths are",
+        "Depths given as",
         choices=(
             ("indentation", "indentations (fastest)"),
             ("impact", "impact velocities"),
@@ -345,7 +346,7 @@ _RANGE = (
         "Angles of impact",
         "rad",
         when=("depths", "impact"),
-        hint="from the normal, separated by commas; adds depths at the normal velocities",
+        hint="from the normal, separated by commas; adds depths for the normal velocities V cos θ",
         more=True,
     ),
     Field(
@@ -353,7 +354,7 @@ _RANGE = (
         "Spin before impact",
         "rad/s",
         when=("depths", "impact"),
-        hint="of the first body, or of both",
+        hint="one value for the first body, or two values for both bodies",
         more=True,
     ),
     *_span("load", "Load", "N", (1e-9, 1e2), ("1 mN", "0.3 N")),

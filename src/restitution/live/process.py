@@ -21,18 +21,21 @@ from restitution.live.worker import Request, serve
 _PATIENCE = 1.5  # time (s) that a cancelled request may take to stop
 _LOST = as_json(
     {
-        "error": "the computing process has ended unexpectedly (perhaps because the memory was "
+        "error": "the process that computes has ended unexpectedly (perhaps because the memory was "
         "full); the next change starts it again",
         "lost": True,
     }
 )
 _CLOSED = as_json({"error": "the program has ended; start restitution app again", "lost": True})
-_AGAIN = "again"  # tells `ask` to repeat a request, because another request ended its process
+_AGAIN = "again"  # makes `ask` repeat a request whose process was ended because of another one
 _Lines = asyncio.Queue[str | None]
 
 
 class Process:
-    """One worker process: `ask` sends a request, and yields the lines of its answer."""
+    """One worker process: `ask` sends a request, and yields the lines of the answer.
+
+    The process reads scans from the folder `scans` and writes files into the folder `room`.
+    """
 
     def __init__(self, scans: Path, room: Path) -> None:
         self._folders = scans, room
@@ -62,16 +65,16 @@ class Process:
 
 
 class _Running:
-    """A process that is alive, and the requests that wait for it."""
+    """A process that was started, and the requests that wait for its answers."""
 
     def __init__(self, scans: Path, room: Path) -> None:
         context = multiprocessing.get_context("spawn")
         self._connection, theirs = context.Pipe()
         self.process = context.Process(target=serve, args=(theirs, scans, room), daemon=True)
         self.process.start()
-        theirs.close()  # otherwise the connection would stay open after the end of the process
+        theirs.close()  # otherwise this side would not notice that the process has ended
         self.waiting: dict[int, _Lines] = {}
-        self._last_words = ""  # last line for waiting requests, if the process is ended on purpose
+        self._last_words = ""  # line that waiting requests get if the process is ended on purpose
         self._watching: set[asyncio.Task[None]] = set()
         self._loop = asyncio.get_running_loop()
         threading.Thread(target=self._receive, daemon=True).start()
@@ -112,7 +115,7 @@ class _Running:
             task.cancel()
 
     def _receive(self) -> None:
-        """Pass answers to the waiting requests; tell all of them when the process has ended."""
+        """Pass each answer to its request; tell all waiting requests when the process has ended."""
         with suppress(EOFError, OSError, RuntimeError):  # RuntimeError: the loop is closed
             while True:
                 self._loop.call_soon_threadsafe(self._put, *self._connection.recv())

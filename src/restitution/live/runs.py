@@ -1,4 +1,4 @@
-"""Complete runs for the page; each writes the same results folder as `restitution run`."""
+"""Complete runs for the page; each writes the same files as `restitution run`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from restitution.results.writer import ResultsFolder
 from restitution.runs.convergence import run_convergence
 from restitution.runs.ensemble import run_realisations
 
-_KEPT = 4  # number of results folders that are kept
+_KEPT = 4  # largest number of results folders that are kept
 Check = Callable[[str], None]  # called with the progress; raises if the run is no longer wanted
 
 
@@ -30,7 +30,8 @@ class Runs:
     def folder(self, text: str, folder: Path, check: Check, grids: int = 1) -> Path:
         """Return the results folder of the case `text`; run the case if it is not stored.
 
-        If `grids` > 1, the results are those of a convergence study on several grids.
+        The scans of the case are in `folder`. If `grids` > 1, the results are those of a
+        convergence study on several grids.
         """
         key = hashlib.blake2b(f"{grids}\n{text}".encode()).hexdigest()
         if key not in self._folders:
@@ -56,7 +57,7 @@ class Runs:
 
 
 def results_line(out: Path) -> str:
-    """The figures, rows and warnings of the results in `out`, as a line of JSON."""
+    """Return the figures, rows and warnings of the results in `out` as a line of JSON."""
     run = read_run(out)
     summary = run.summary
     return as_json(

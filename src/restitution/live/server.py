@@ -1,8 +1,9 @@
-"""The server of the page: static files, and requests as JSON that only this page can make.
+"""The server of the page: it sends static files, and answers requests that only this page can make.
 
-A request is a POST with the token from the address of the page and, from a browser, the Origin of
-this page. The Host header must name this machine. Without this condition, a web site could point
-its own domain name to this machine, and its pages could then reach the server (DNS rebinding).
+These requests are POST requests with the token, which is part of the address of the page. An Origin
+header, if there is one, must name this page. The Host header must name this machine, because
+otherwise a web site could point its own domain name to this machine (DNS rebinding), and its pages
+could then reach the server.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ _HEADERS = {
     "Cross-Origin-Resource-Policy": "same-origin",
     "Cache-Control": "no-store",
 }
-# The values, with their types, of the requests that a process answers.
+# Names and types of the values in each kind of request that a worker process answers.
 _ASKED: dict[str, dict[str, type]] = {
     "curve": {"tab": str, "content": dict},
     "beside": {"tab": str, "shown": str},
@@ -58,7 +59,8 @@ Handler = Callable[[Request], Awaitable[Response]]
 class Server:
     """Receives the requests of the page and passes each of them to a worker process.
 
-    Live curves, complete runs and finer runs have a process each, so they do not delay each other.
+    Live curves, complete runs and finer runs do not delay each other, because each of the three has
+    its own process.
     """
 
     def __init__(self, session: Session) -> None:
@@ -78,7 +80,7 @@ class Server:
         )
 
     def stop(self) -> None:
-        """End the processes, and with them all unfinished requests."""
+        """End the processes, and so all unfinished requests."""
         for process in (self._live, self._runs, self._finer):
             process.stop()
 
@@ -102,13 +104,13 @@ class Server:
             kind = request.headers.get("content-type", "").split(";")[0].strip().lower()
             wanted = "application/octet-stream" if handler == self._upload else "application/json"
             if kind != wanted:
-                raise HTTPException(415, f"the content must be {wanted}")
+                raise HTTPException(415, f"the content type must be {wanted}")
             return await handler(request)
 
         return answer
 
     async def _page(self, _: Request) -> Response:
-        """The page, with a content security policy that allows only its own scripts and styles."""
+        """Return the page, with a policy that allows only scripts and styles of this server."""
         nonce = secrets.token_urlsafe(16)
         policy = (
             "default-src 'none'; script-src 'self'; connect-src 'self'; "
@@ -143,16 +145,20 @@ class Server:
             return JSONResponse({"error": str(error)})
 
     async def _text(self, request: Request) -> Response:
-        """Return the text of the case file with the given tables."""
+        """Return the text of a case file; the request contains its tables."""
         values = await _values(request, {"content": dict})
         return JSONResponse({"text": _text(values["content"])})
 
     async def _stream(self, name: str, request: Request) -> Response:
-        """Stream the lines with which a process answers the request `name`."""
+        """Return a response that streams the answer of a process to the request `name`."""
         return _streamed(request, await self._ask(name, request))
 
     async def _ask(self, name: str, request: Request) -> AsyncGenerator[str]:
-        """Pass the request `name` to its process; only complete and finer runs have `grids`."""
+        """Pass the request `name` to a process.
+
+        The value `grids` of the request selects the process: live curves if the request has no such
+        value, complete runs if it is 1, and otherwise finer runs.
+        """
         values = await _values(request, _ASKED[name])
         if "content" in values:
             values["text"] = _text(values.pop("content"))
@@ -161,7 +167,7 @@ class Server:
 
     async def _take(self, request: Request) -> Response:
         """Return a file to download, or an error message as JSON."""
-        error = "there is no file"
+        error = "no file was written"
         async for line in await self._ask("take", request):
             found = json.loads(line)
             if "file" in found:
@@ -173,7 +179,7 @@ class Server:
         return JSONResponse({"error": error})
 
     async def _upload(self, request: Request) -> Response:
-        """Store a dropped scan if it can be read."""
+        """Store the scan that the user has given to the page, if it can be read."""
         name = self._session.free_name(unquote(request.headers.get("x-file-name", "")))
         file = self._session.scans / name
         try:
@@ -245,7 +251,7 @@ async def _gone(request: Request) -> None:
 
 
 async def _values(request: Request, kinds: dict[str, type]) -> dict[str, Any]:
-    """The values of a JSON request. Raises `HTTPException` if one is missing or of a wrong type."""
+    """Read the values of a JSON request. Raises `HTTPException` if a name or type is wrong."""
     body = b""
     async for part in request.stream():
         body += part
@@ -256,7 +262,7 @@ async def _values(request: Request, kinds: dict[str, type]) -> dict[str, Any]:
     except (ValueError, RecursionError):
         raise HTTPException(400, "the content is not JSON") from None
     if not isinstance(content, dict) or set(content) != set(kinds):
-        raise HTTPException(400, f"the content must be an object with {', '.join(kinds)}")
+        raise HTTPException(400, f"the content must be an object with the keys {', '.join(kinds)}")
     for name, kind in kinds.items():
         if type(content[name]) is not kind:
             raise HTTPException(400, f"{name} must be a {kind.__name__}")
@@ -271,7 +277,7 @@ def _text(content: dict[str, Any]) -> str:
 
 
 async def _store(request: Request, file: Any) -> None:
-    """Write the body of `request` to `file`. Raises `HTTPException` if it is too large."""
+    """Write the body of `request` to `file`. Raises `HTTPException` if the body is too large."""
     size = 0
     try:
         with file.open("xb") as out:

@@ -34,9 +34,9 @@ class _Uvicorn(uvicorn.Server):
 
 
 def serve_page(session: Session, port: int, ready: Callable[[str], Any]) -> None:
-    """Serve the page of `session` at `port` (0: a free one) of this machine until Ctrl-C.
+    """Serve the page of `session` at `port` (0: any free port) of this machine until Ctrl-C.
 
-    `ready` is called with the address, which holds the token, as soon as the page can be opened.
+    `ready` is called with the address, which contains the token, as soon as the page can be opened.
     Raises `CaseError` if the port is taken.
     """
     listening = socket.socket()

@@ -1,4 +1,4 @@
-"""The temporary folder of one page, with the scans that the user added and the results."""
+"""The temporary folder of one page; it holds the results, and the scans that the user added."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Session:
 
 
 def first_content(case: Path | None) -> Content:
-    """Read the tables of the file `case`; if it is None, of the built-in first case."""
+    """Read the tables of the case file `case` or, if `case` is None, of the built-in first case."""
     if case is None:
         from importlib.resources import files
 
@@ -63,7 +63,7 @@ def first_content(case: Path | None) -> Content:
 
 
 def _bring_scans(content: Content, folder: Path, scans: Path) -> None:
-    """Link the scans of `content` into `scans`; in `content`, replace paths by file names."""
+    """Link the scans of `content` into `scans`, and replace their paths in `content` by names."""
     for table in scans_of(content):
         path = folder / table["file"]
         source = path.resolve()

@@ -24,7 +24,7 @@ CASE_FILE = "case.toml"
 
 
 def case_file(text: str, scans: Path, out: Path) -> Path:
-    """Write the case file into `out`, or a zip archive of the case file and its scans."""
+    """Write the case file into `out`; if it names scans, write a zip archive that includes them."""
     names = [table["file"] for table in scans_of(content_of(text))]
     if not names:
         (out / CASE_FILE).write_text(text, encoding="utf-8")
@@ -40,8 +40,8 @@ def case_file(text: str, scans: Path, out: Path) -> Path:
 def take(what: str, results: Path, out: Path, code: str, velocity: str) -> Path:
     """Write the download `what` from the folder `results` into `out`; return the file.
 
-    `code` and `velocity` are the DEM code and the impact velocity of the download "export"; the
-    velocity may be left out ("").
+    Only the download "export" uses `code` (the DEM code) and `velocity` (the impact velocity, or ""
+    to leave it out).
 
     Raises `CaseError` if `what` is unknown.
     """

@@ -1,8 +1,8 @@
 """The process that computes for the page: it answers one request after the other.
 
-A request is a `Request`; an answer is a series of lines of JSON, then None. Requests of the same
-kind from the same tab of the browser replace each other: only the newest is answered, and a request
-that is being computed stops at its next depth.
+A request is a `Request`; an answer is a series of lines of JSON, then None. A new request replaces
+an older one of the same kind from the same browser tab. If the older request is already being
+computed, it stops at its next depth. A new request for a curve stops any request of its tab.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ REPLACED = as_json({"replaced": True})
 
 @dataclass(frozen=True)
 class Request:
-    """A request of one tab: its number, its kind (a method of `Worker`), and its values."""
+    """A request of one browser tab. `kind` names the method of `Worker` that gets `values`."""
 
     number: int
     tab: str
@@ -88,7 +88,7 @@ class Inbox:
                     self._drop((message.tab, message.kind))
                     self._waiting[message.tab, message.kind] = message
                 else:
-                    # The request is being computed, waits, or was answered already.
+                    # The request of this number is in progress, waits, or was answered already.
                     self._given_up.add(message)
                     for key in [k for k, each in self._waiting.items() if each.number == message]:
                         self._drop(key)
@@ -103,7 +103,10 @@ class Inbox:
 
 
 class Worker:
-    """Answers requests, with a method for each kind; reads scans from `scans`, writes to `room`."""
+    """Answers requests, with a method for each kind.
+
+    Scans are read from the folder `scans`, and files are written into the folder `room`.
+    """
 
     def __init__(self, scans: Path, room: Path, check: Callable[[], None]) -> None:
         self._scans, self._room, self._check = scans, room, check
@@ -126,7 +129,7 @@ class Worker:
         return self._curves.lines(tab, text, self._scans, self._check)
 
     def beside(self, tab: str, shown: str) -> Iterator[str]:
-        """Yield the surface and the smooth curve that belong to the live curve."""
+        """Yield the curve of the smooth bodies, then the surface, for the last live curve."""
         return self._curves.beside(tab, shown, self._check)
 
     def maps(self, tab: str, depth: int) -> Iterator[str]:
@@ -134,7 +137,7 @@ class Worker:
         return self._curves.maps(tab, depth)
 
     def run(self, tab: str, text: str, grids: int) -> Iterator[str]:
-        """Yield the whole run of the case, or its convergence study on several grids."""
+        """Yield the results of the complete run or, if `grids` > 1, of a convergence study."""
         yield results_line(self._folder(text, grids))
 
     def take(
@@ -151,7 +154,7 @@ class Worker:
         yield as_json({"file": str(file.relative_to(self._room))})
 
     def read(self, tab: str, file: str) -> Iterator[str]:
-        """Read a scan and describe it, so that an unreadable file is refused at once."""
+        """Read a scan; yield its nodes and spacing, or `needs_size` if it has no edge lengths."""
         from restitution.surfaces import read_surface
         from restitution.surfaces.refused import RefusedSurfaceError
 

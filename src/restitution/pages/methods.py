@@ -1,4 +1,4 @@
-"""The table of methods at the end of a page: methods of the computation, with their sources."""
+"""The table at the end of a page that lists the methods of the computation with their sources."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _ALWAYS = (
 _YIELD = {
     "equilibrium": (
         "yield",
-        "pressure bounded by p_y, pressure and surface in equilibrium",
+        "equilibrium of pressure and surface, with p_y as the upper limit of pressure",
         "Polonsky and Keer (1999)",
     ),
     "truncated": (
@@ -35,7 +35,8 @@ _YIELD = {
     ),
     "expanding-cavity": (
         "yield",
-        "pressure bounded by 1.6 to 3.5 yield strengths, growing with the elastic pressure",
+        "upper limit of pressure that grows with the elastic pressure, from 1.6 to 3.5 yield "
+        "strengths",
         "Johnson (1970), J. Mech. Phys. Solids 18, 115–126; Jackson and Green (2005), J. Tribol. "
         "127, 343–354",
     ),
@@ -59,7 +60,7 @@ _DETACHMENT = {
     ),
     "pohrt-popov": (
         "detachment",
-        "largest tension of a node",
+        "release of a node if its tension exceeds a limit",
         "Pohrt and Popov (2015), Facta Univ. Mech. Eng. 13, 3–10",
     ),
 }

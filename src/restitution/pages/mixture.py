@@ -25,7 +25,7 @@ def write_mixture_page(out: Path) -> Path:
         intro=[
             f"{summary['pairs']} pairs of particles and walls, from {summary['curves_computed']} "
             "computed curves. The laws of other pairs are interpolated between computed reduced "
-            "radii R*, at equal loading work over R*³."
+            "radii R*, at equal values of loading work divided by R*³."
         ],
         warnings=summary["warnings"],
         parts=[
@@ -55,8 +55,8 @@ def _drawing(laws: list[Law]) -> Drawing:
     return Drawing(
         name,
         mixture_figure("", laws),
-        f"Coefficient of restitution of {name} against impact velocity, a line for each pair",
-        "A line for each pair of sizes.",
+        f"Coefficient of restitution of {name} against impact velocity, one line for each pair",
+        "One line for each pair of sizes.",
         Table("COR", columns, rows),
     )
 

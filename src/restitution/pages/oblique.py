@@ -18,7 +18,7 @@ _NOTE = (
 
 
 def oblique_drawing(results: xr.Dataset, rows: list[dict[str, float]]) -> Drawing:
-    """The figure of the oblique impacts in `results`, with the table of their `rows`."""
+    """Draw the oblique impacts in `results`, with a table of their `rows`."""
     known = [e_t for row in rows if not math.isnan(e_t := row["tangential_restitution"])]
     ends = f"from {min(known):.3f} to {max(known):.3f} " if known else ""
     cells: list[list[Cell]] = [

@@ -43,7 +43,7 @@ class Listing:
 
 @dataclass(frozen=True)
 class Drawing:
-    """A figure with a text alternative (`alt`), a `caption`, and the table of its numbers."""
+    """A figure with a text alternative (`alt`), a `caption`, and a table of its numbers."""
 
     title: str
     figure: Figure
@@ -63,7 +63,7 @@ class Page:
 
 
 def write_page(path: Path, page: Page) -> Path:
-    """Write `page` as one HTML file, atomically, and return the file. Raises `OutputError`."""
+    """Write `page` atomically as one HTML file, and return the file. Raises `OutputError`."""
     environment = Environment(
         loader=PackageLoader("restitution.pages"), autoescape=True, undefined=StrictUndefined
     )
@@ -78,7 +78,7 @@ def _plots(figure: Figure) -> list[dict[str, Any]]:
     """Prepare each panel for the template: Plotly JSON, title, shape, number of legend entries."""
     return [
         {
-            # With "<" escaped, a text in the JSON cannot end the script element around it.
+            # Escape "<", so that no text in the JSON can end the script element that contains it.
             "script": Markup(interactive.draw(panel, figure).to_json().replace("<", "\\u003c")),
             "title": panel.title,
             "square": isinstance(panel, Map),

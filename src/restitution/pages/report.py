@@ -33,6 +33,6 @@ def write_report(out: Path) -> Path:
                     f"{one_line(str(error))}); compute them again"
                 ) from error
     raise OutputError(
-        f"{out}: holds no results (it has none of the files {', '.join(_PAGES)}); give the folder "
+        f"{out}: holds no results (none of the files {', '.join(_PAGES)}); give the folder "
         "that a command wrote with -o"
     )

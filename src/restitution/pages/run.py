@@ -63,7 +63,7 @@ def _in_words(run: RunResults) -> str:
     if "grids" in summary:
         what += f", on grids refined {', '.join(map(str, summary['grids']))} times"
     ended = "" if summary["status"] == "complete" else f"; {summary['status']}: {summary['reason']}"
-    return f"{what}; {nx} × {ny} nodes of {1e6 * h:.4g} µm{ended}"
+    return f"{what}; {nx} × {ny} nodes, spacing {1e6 * h:.4g} µm{ended}"
 
 
 def _restitution(results: xr.Dataset, abscissa: Abscissa) -> Drawing:
@@ -79,8 +79,8 @@ def _restitution(results: xr.Dataset, abscissa: Abscissa) -> Drawing:
         restitution_figure(results, abscissa),
         f"Coefficient of restitution from {np.nanmin(cor):.3f} to {np.nanmax(cor):.3f} against "
         f"{words} from {np.nanmin(x):.3g} to {np.nanmax(x):.3g} {unit}",
-        f"Open markers ({few} of {cor.size}): not resolved by the grid; half of the contact is in "
-        f"patches of fewer than {NODES_PER_PATCH} nodes.",
+        f"Open markers ({few} of {cor.size}): not resolved by the grid, because at least half of "
+        f"the contact is in patches of fewer than {NODES_PER_PATCH} nodes.",
         Table(
             "Restitution",
             [abscissa.axis.title, "COR", "resolved", *errors],
@@ -103,7 +103,7 @@ def _force(results: xr.Dataset) -> Drawing:
         "Load and displacement",
         load_displacement(results),
         f"Normal force against indentation, up to {load.max():.4g} N at {depth.max():.4g} µm",
-        "Loading, and unloading from some of the depths.",
+        "The loading curve, and unloading curves from some of the depths.",
         Table("Curves", ["curve", "indentation (µm)", "force (N)"], rows),
     )
 

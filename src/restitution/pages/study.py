@@ -14,7 +14,7 @@ from restitution.results.reader import StoredCase, StudyResults
 
 
 def write_study_page(out: Path) -> Path:
-    """Write `report.html` from the `table.csv`, `study.nc` and cases in `out`."""
+    """Write `report.html` from the `table.csv` and the cases of the study in `out`."""
     study = StudyResults(out)
     cases, text = study.cases, study.text
     swept = list(cases[0].swept)
@@ -32,7 +32,7 @@ def write_study_page(out: Path) -> Path:
     page = Page(
         title=str(parse_toml(text).get("title", "")) or "Study",
         intro=[
-            f"{len(cases)} cases over {', '.join(swept)}: "
+            f"{len(cases)} cases that vary {', '.join(swept)}: "
             + ", ".join(f"{number} {status}" for status, number in count.items() if number)
         ],
         warnings=_warnings(cases, count),
@@ -47,14 +47,14 @@ def _warnings(cases: list[StoredCase], count: dict[str, int]) -> list[str]:
     few = len(resolved) - int(sum(resolved))
     if few:
         found.append(
-            f"{few} of {len(resolved)} depths are not resolved: "
-            f"half of their contact is in patches of fewer than {NODES_PER_PATCH} nodes, so their "
-            "numbers depend on the grid"
+            f"{few} of {len(resolved)} depths are not resolved: at least half of their contact "
+            f"is in patches of fewer than {NODES_PER_PATCH} nodes, so their numbers depend on the "
+            "grid"
         )
     if count["failed"] or count["missing"]:
         found.append(
             f"{count['failed']} cases failed and {count['missing']} are missing; the table of "
-            "cases has the reasons"
+            "cases states the reasons"
         )
     return found
 
@@ -77,7 +77,7 @@ def _restitution(drawn: list[StoredCase], swept: list[str], abscissa: Abscissa) 
     return Drawing(
         f"Restitution against {axis.label}",
         figure,
-        f"Coefficient of restitution against {axis.label}, a line for each of {lines} cases",
+        f"Coefficient of restitution against {axis.label}, one line for each of {lines} cases",
         f"Open markers: not resolved by the grid. A click in the legend hides a case.{few}",
         Table("Restitution", [*swept, axis.title, "COR", "resolved"], table),
     )
@@ -99,5 +99,5 @@ def _cases(cases: list[StoredCase], swept: list[str]) -> Table:
                 case.reason,
             ]
         )
-    columns = ["case", *swept, "status", "least COR", "largest COR", "depths resolved", "reason"]
+    columns = ["case", *swept, "status", "smallest COR", "largest COR", "depths resolved", "reason"]
     return Table("Cases", columns, rows)

@@ -27,8 +27,8 @@ from restitution.surfaces.texture import autocorrelation, height_density, materi
 
 _LAY = 0.5  # texture aspect ratio below which a surface has a lay
 
-# For each parameter: name, clause of ISO 25178-2:2012, unit in the table, factor from SI, and the
-# key of the requested value in the provenance of the surface.
+# For each parameter: name, clause of ISO 25178-2:2012, unit in the table, factor from SI to this
+# unit, and the key of the requested value in the provenance of the surface.
 _PARAMETERS: dict[str, tuple[str, str, str, float, str]] = {
     "Sq_m": ("root mean square height Sq", "4.1.1", "nm", 1e9, "rms_m"),
     "Ssk": ("skewness Ssk", "4.1.2", "", 1, "skewness"),
@@ -77,8 +77,9 @@ def write_surface_page(out: Path) -> Path:
     page = Page(
         title=dataset.attrs.get("title") or "Surface",
         intro=[
-            f"{nodes[0]} × {nodes[1]} nodes of {1e6 * hx:.4g} × {1e6 * hy:.4g} µm, "
-            f"{size} µm; {provenance.get('kind') or provenance.get('source', 'surface')}"
+            f"{nodes[0]} × {nodes[1]} nodes, spacing {1e6 * hx:.4g} × {1e6 * hy:.4g} µm, "
+            f"edge lengths {size} µm; "
+            f"{provenance.get('kind') or provenance.get('source', 'surface')}"
         ],
         warnings=[str(provenance["notice"])] if "notice" in provenance else [],
         parts=[
@@ -135,14 +136,14 @@ def _parameters(statistics: Mapping[str, Any], provenance: Mapping[str, Any]) ->
             ]
         )
     of_scan = any(row[-1] is not None for row in rows)
-    columns = ["parameter", "value", "unit", "ISO 25178-2", "asked for", "of the scan"]
+    columns = ["parameter", "value", "unit", "ISO 25178-2", "requested", "of the scan"]
     return Table(
         "Parameters",
         columns if of_scan else columns[:-1],
         rows if of_scan else [row[:-1] for row in rows],
         [
-            "Parameters of the surface that the contact uses: after the steps under “Origin”, "
-            "without further filters."
+            "These parameters describe the surface that the contact uses, after the steps under "
+            "“Origin” and without further filters."
         ],
     )
 
@@ -182,7 +183,11 @@ def _autocorrelation(surface: Surface) -> Drawing:
         "Autocorrelation of the heights against the lag along x and y",
         "Along both axes, with the levels that define the autocorrelation length Sal and the "
         "correlation length of the generators; "
-        + ("over the period." if is_periodic(surface) else "over all pairs of pixels."),
+        + (
+            "averaged over the period."
+            if is_periodic(surface)
+            else "averaged over all pairs of pixels."
+        ),
         Table("Autocorrelation", ["along", "lag (µm)", "autocorrelation"], rows),
     )
 
@@ -203,7 +208,7 @@ def _spectrum(surface: Surface) -> Drawing:
         + (
             "Exact for this periodic surface."
             if is_periodic(surface)
-            else "An estimate with nine sine tapers: the surface is not periodic."
+            else "An estimate with nine sine tapers, because the surface is not periodic."
         ),
         Table("Spectrum", ["directions", "q (1/µm)", "wave length (µm)", "C (µm⁴)"], rows),
     )
@@ -220,7 +225,11 @@ def _methods(surface: Surface) -> Table:
                 "over all nodes, slopes from node to node",
                 "ISO 25178-2:2012, 4.1, 4.3",
             ],
-            ["Sal, Str", "first lag of 0.2 in 180 directions", "ISO 25178-2:2012, 4.2"],
+            [
+                "Sal, Str",
+                "first lag with an autocorrelation of 0.2, in 180 directions",
+                "ISO 25178-2:2012, 4.2",
+            ],
             [
                 "Sk, Spk, Svk, Smr1, Smr2",
                 "flattest secant over 40 % of the material ratio curve",

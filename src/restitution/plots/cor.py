@@ -9,15 +9,15 @@ import numpy as np
 
 from restitution.plots.figure import Array, Axis, Band, Chart, Mark, Points, Series, has_error
 
-_STEP = 0.1  # the ends of the axis are multiples of this value
+_STEP = 0.1  # spacing of the values at which the axis may end
 _MARGIN = 0.02  # smallest distance of the values from the ends of the axis
 
 
 class Abscissa(NamedTuple):
     """The x axis of a COR figure.
 
-    `variable` is the variable of a dataset and `column` the column of a table to plot. `scale`
-    converts their values to the unit of `axis`.
+    The plotted values are those of `variable` in a dataset, or of `column` in a table. `scale`
+    converts these values to the unit of `axis`.
     """
 
     name: str
@@ -44,12 +44,15 @@ IMPACT_VELOCITY = Abscissa(
 
 
 def cor_axis(series: Sequence[Series]) -> Axis:
-    """Make an axis of COR that holds `series` and their bars; its ends are multiples of 0.1."""
+    """Make an axis of COR that spans `series` and their error bars.
+
+    Its ends are multiples of 0.1, except near COR = 0 and COR = 1.
+    """
     shown: Array = np.concatenate([np.ravel(part) for each in series for part in _values(each)])
     values = shown[np.isfinite(shown)] if np.isfinite(shown).any() else np.array([0.0, 1.0])
     low = max(_STEP * np.floor((values.min() - _MARGIN) / _STEP), 0.0)
     high = _STEP * np.ceil((values.max() + _MARGIN) / _STEP)
-    # The margin keeps lines visible that run along 0 (sticking) or 1 (elastic).
+    # The margin keeps lines at COR = 0 (sticking) and at COR = 1 (elastic) visible.
     return Axis(
         "coefficient of restitution",
         low=-_MARGIN if values.min() <= 0 else float(low),

@@ -1,7 +1,7 @@
 """The content of a figure as data. `static` draws it in files, `interactive` on pages.
 
 Texts contain no markup; the module that draws them escapes special characters. Numbers are in the
-units of the axes. Colours are written in a way that both CSS and matplotlib understand.
+units of the axes. Colours are written so that both CSS and matplotlib understand them.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ PALETTE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
 # Symbols distinguish series that share a colour, and all series in print without colours.
 SYMBOLS: tuple[Symbol, ...] = ("circle", "square", "diamond", "triangle-up", "triangle-down")
 BLUE, ORANGE = PALETTE[:2]
-GREY = "#7d858e"  # colour of references, legible on light and dark pages
+GREY = "#7d858e"  # colour of reference curves, legible on light and dark pages
 
 
 @dataclass(frozen=True)
@@ -54,8 +54,8 @@ class Line:
 
     Series of one figure with the same `label` share one entry of the legend; a series without a
     label has no entry. A page shows `name` beside the value under the pointer. With `step`, the
-    line is a staircase with one level for each `x`. With `right`, it belongs to the axis on the
-    right.
+    line is a staircase with one level for each `x`. With `right`, the line belongs to the axis
+    on the right.
     """
 
     x: Array
@@ -128,7 +128,7 @@ class Chart:
 
 @dataclass(frozen=True, eq=False)
 class Map:
-    """Values, shape (nx, ny), on nodes at `x` and `y` (µm), drawn as colours; NaN is left blank.
+    """Values, shape (nx, ny), at the nodes `x` and `y` (µm), drawn as colours; NaN is left blank.
 
     With `downwards`, y increases towards the bottom of the map.
     """

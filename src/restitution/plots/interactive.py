@@ -45,7 +45,7 @@ def draw(panel: Chart | Map, figure: Figure) -> Plot:
     }
     if isinstance(panel, Map):
         return Plot([_heatmap(panel)], layout | _map_axes(panel))
-    # Make the plot in one call, because Plotly validates the whole plot after each change.
+    # Add all traces in one call, because Plotly validates the whole plot after each change.
     plot = Plot(_all_traces(panel), layout | _chart_axes(panel))
     for each in panel.series:
         if isinstance(each, Mark):
@@ -54,12 +54,12 @@ def draw(panel: Chart | Map, figure: Figure) -> Plot:
 
 
 def shown_step(panel: Map) -> int:
-    """Return n if every n-th node of `panel` along x and along y is drawn."""
+    """Return the number n such that every n-th node along x and along y is drawn."""
     return math.ceil(max(panel.x.size, panel.y.size) / _MOST_PIXELS)
 
 
 def _chart_axes(chart: Chart) -> dict[str, Any]:
-    """The axes of a chart, with a wider margin if there is an axis on the right."""
+    """Make the axes of a chart; an axis on the right gets a wider margin."""
     axes = {"xaxis": _axis(chart.x), "yaxis": _axis(chart.y)}
     if chart.right is None:
         return axes
@@ -68,13 +68,13 @@ def _chart_axes(chart: Chart) -> dict[str, Any]:
         "overlaying": "y",
         "side": "right",
         "showgrid": False,
-        "tickmode": "auto",
-    }  # the right axis has its own ticks
+        "tickmode": "auto",  # ticks independent of those of the left axis
+    }
     return axes | {"yaxis2": right, "margin": {"l": 70, "r": 70, "t": 28, "b": 60}}
 
 
 def _all_traces(chart: Chart) -> list[dict[str, Any]]:
-    """The traces of all series, from bottom to top; each label has one entry in the legend."""
+    """Make the traces of all series, from bottom to top; each label has one legend entry."""
     ranks = {label: rank for rank, label in enumerate(legend_entries(chart), 1)}
     seen: set[str] = set()
     found = []

@@ -17,8 +17,8 @@ from restitution.plots.figure import (
     Series,
 )
 
-# Colour, dashes and width of the line of each law. Laws that often coincide, at COR = 1, have lines
-# of different width.
+# Colour, dashes and width of the line of each law. Lines that often coincide at COR = 1 differ in
+# width.
 LAW_LINES: dict[str, tuple[str, Dash, float]] = {
     "hertz": ("#bfbfbf", SOLID, 5.0),
     "sticking": ("#e69f00", SOLID, 3.2),
@@ -55,7 +55,7 @@ def law_figure(law: Law) -> Figure:
 
 
 def computed_points(law: Law, label: str, open_label: str) -> Points:
-    """Make markers of the points of `law` with error bars, open for unresolved points."""
+    """Make a marker with an error bar for each point of `law`; unresolved points are open."""
     cor = law.column("restitution")
     error, error_label = bars(cor, law.column("error"))
     return Points(

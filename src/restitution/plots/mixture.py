@@ -13,7 +13,8 @@ from restitution.plots.figure import GREY, PALETTE, Figure, Line
 def mixture_figure(title: str, laws: Sequence[Law]) -> Figure:
     """Plot the COR of all pairs, with a chart for every pair of materials.
 
-    Lines are labelled with R*. If a chart has more than five pairs, about five lines have labels.
+    Lines are labelled with the reduced radius R*. In a chart of more than five pairs, at most five
+    lines have labels.
     """
     charts = []
     for (first, second), members in families_of(laws).items():

@@ -1,4 +1,4 @@
-"""The figure of the oblique impacts of a run: tangential restitution, rebound and spin."""
+"""The figure of the oblique impacts of a run."""
 
 from __future__ import annotations
 
@@ -29,16 +29,16 @@ _ROUNDS = 50  # number of fixed-point iterations for the angle of full slip
 
 
 def has_oblique(results: xr.Dataset) -> bool:
-    """Whether `results` hold oblique impacts."""
+    """Whether `results` contain oblique impacts."""
     return "oblique_tangential_restitution" in results
 
 
 def oblique_figure(results: xr.Dataset) -> Figure:
     """Plot tangential restitution, rebound and spin of the first body against the angle of impact.
 
-    The dotted line marks the angle from which the whole contact slides. The dashed line is the
-    closed form of full slip. Both apply to the largest impact velocity, without spin before the
-    impact.
+    The dotted line marks the angle from which the whole contact slides (full slip). The dashed line
+    is the closed form for full slip. Both lines are drawn for the largest impact velocity, and only
+    if no body spins before the impact.
     """
     degrees = np.degrees(results["oblique_angle"].values)
     axis = Axis("angle of impact", "°", low=0.0, high=min(90.0, 1.05 * degrees.max() + 1))
@@ -56,7 +56,7 @@ def oblique_figure(results: xr.Dataset) -> Figure:
 
 
 def _points(results: xr.Dataset, variable: str, scale: float) -> Iterator[Points]:
-    """One series for each impact velocity; markers are open where the contact sticks in part."""
+    """Yield a series for each impact velocity; open markers: part of the contact sticks."""
     degrees = np.degrees(results["oblique_angle"].values)
     for k, velocity in enumerate(results["oblique_velocity"].values):
         values = scale * results[variable][k].values
@@ -81,7 +81,7 @@ def _full_slip(results: xr.Dataset) -> list[Series]:
 
     The angle of full slip is the angle of impact from which the whole contact slides. The list is
     empty without friction or without results. It is also empty if a body spins before the impact,
-    which the closed form does not include.
+    because the closed form does not include this spin.
     """
     if results["oblique_first_spin_before"].any() or results["oblique_second_spin_before"].any():
         return []

@@ -1,4 +1,4 @@
-"""Figures of a periodic contact: area and gap against nominal pressure, and the pressure."""
+"""Figures of a periodic contact: area and gap against nominal pressure, and a pressure map."""
 
 from __future__ import annotations
 
@@ -20,7 +20,10 @@ def periodic_figures(results: xr.Dataset) -> Iterator[tuple[str, Figure]]:
 
 
 def area_against_pressure(results: xr.Dataset) -> Figure:
-    """Plot relative contact area (computed, and after Persson) and mean gap against pressure."""
+    """Plot relative contact area and mean gap against nominal pressure.
+
+    For comparison, the area after Persson is drawn for an elastic contact.
+    """
     title = results.attrs.get("title", "")
     # Leave out negative nominal pressures (due to attraction), because the axis is logarithmic.
     results = results.isel(depth=results["nominal_pressure"].values > 0)

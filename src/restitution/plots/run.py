@@ -37,14 +37,14 @@ from restitution.plots.figure import (
 )
 from restitution.plots.oblique import has_oblique, oblique_figure
 
-UNRESOLVED = f"open: not resolved (patches below {NODES_PER_PATCH} nodes)"
+UNRESOLVED = f"open: not resolved (patches of under {NODES_PER_PATCH} nodes)"
 
 _MARGIN = 1.2  # factor by which a logarithmic axis extends beyond the first and the last point
 _RIM = 4  # number of nodes between the contact and each edge of its map
-_UNIFORM = 0.01  # relative difference up to which a pressure counts as the largest pressure
+_UNIFORM = 0.01  # pressures within this fraction of the largest pressure count as equal to it
 
-# If the pressure has its largest value on at least this fraction of the contact area, the pressure
-# map is left out.
+# If a contact yields, and at least this fraction of its area is at the largest pressure, the
+# pressure map is left out.
 _SATURATED = 0.95
 _SMOOTH = "smooth, same model"
 _REFERENCES = {
@@ -55,7 +55,7 @@ _DASHES = (DOTTED, DASH_DOTTED, DASHED, SOLID)  # line styles of the coarser gri
 
 
 def run_figures(results: xr.Dataset) -> Iterator[tuple[str, Figure]]:
-    """Yield the name and the content of every figure that `results` supports."""
+    """Yield the name and the content of every figure that can be drawn from `results`."""
     if results.sizes["indentation_max"] == 0:
         return
     yield "load-displacement", load_displacement(results)
@@ -68,13 +68,13 @@ def run_figures(results: xr.Dataset) -> Iterator[tuple[str, Figure]]:
 
 
 def abscissae(results: xr.Dataset) -> list[Abscissa]:
-    """The x axes of the COR figures of `results`, which hold at least one depth."""
+    """Return the x axes of the COR figures; `results` must contain at least one depth."""
     impacts = (results["impact_velocity"] > 0).any()
     return [INDENTATION, IMPACT_VELOCITY] if impacts else [INDENTATION]
 
 
 def has_map(results: xr.Dataset) -> bool:
-    """Whether `results` hold a contact map; means over surfaces have no map."""
+    """Whether `results` contain a contact map. The results of an ensemble contain no map."""
     return "pressure" in results and bool(results["pressure"].any())
 
 
@@ -115,7 +115,7 @@ def load_displacement(results: xr.Dataset) -> Figure:
 def pressure_map(results: xr.Dataset) -> Figure:
     """Draw maps of the contact pressure and the plastic displacement at the deepest indentation.
 
-    The plastic displacement of an elastic contact is left out. The pressure is left out if nearly
+    An elastic contact has no map of plastic displacement. The pressure map is left out if nearly
     the whole contact is at the same yield pressure.
     """
     pressure = 1e-6 * results["pressure"].values
@@ -195,7 +195,7 @@ def _references(found: list[Reference], scale: float) -> list[Series]:
 
 
 def unloading_lines(results: xr.Dataset) -> list[Line]:
-    """The unloading curves, without the NaN at their ends."""
+    """Make a line of each unloading curve, without the NaN values that pad it."""
     found = []
     for k in range(results.sizes.get("unloading", 0)):
         x, y = (results[f"unloading_{name}"][k].values for name in ("indentation", "force"))

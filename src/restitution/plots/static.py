@@ -36,18 +36,18 @@ from restitution.results.writer import replace_file
 
 Format = Literal["png", "svg", "pdf"]
 
-# Width and height of a chart and of a map, and width of each further panel (inches).
+# Sizes (inches): width and height of a chart, width and height of a map, width of a further panel.
 _CHART, _MAP, _SECOND = (6.4, 4.0), (5.6, 4.6), 4.6
-# Height of a row of the legend, and width of a legend at the side (inches).
+# Sizes (inches): height of a row of the legend, width of a legend at the side.
 _ROW, _SIDE = 0.2, 2.4
 # Largest number of entries of a legend below the axes; a longer legend is placed at the side.
 _MOST_BELOW = 8
-# Pairs (decades, digits): a logarithmic axis of at most this many decades has labels at these
-# digits.
+# Pairs (decades, digits): a logarithmic axis that spans at most this number of decades has labels
+# at these digits times powers of ten.
 _DIGITS: tuple[tuple[float, tuple[int, ...]], ...] = ((1.0, (1, 2, 3, 5, 7)), (3.0, (1, 2, 5)))
-_TICKS = 6  # approximate number of labels of a linear axis (at most one more)
+_TICKS = 6  # largest number of intervals between the labels of a linear axis
 _LINEAR = 0.5  # a logarithmic axis that spans fewer decades than this has linear ticks
-_PLAIN = (0.9e-3, 1e4)  # values in this range are labelled without powers of ten
+_PLAIN = (0.9e-3, 1e4)  # an axis inside this range has labels without powers of ten
 _MARKERS = {
     "circle": "o",
     "square": "s",
@@ -65,14 +65,17 @@ _DATELESS: dict[Format, dict[str, Any]] = {
 def write_figures(
     out: Path, figures: Iterable[tuple[str, Figure]], file_format: Format = "png"
 ) -> list[Path]:
-    """Write every named figure into the folder `out`; return the files. Raises `OutputError`."""
+    """Write each figure under its name into the folder `out`; return the files.
+
+    Raises `OutputError` if a file cannot be written.
+    """
     return [write_figure(out / name, figure, file_format) for name, figure in figures]
 
 
 def write_figure(path: Path, figure: Figure, file_format: Format = "png") -> Path:
-    """Write `figure` to `path` with the suffix of its format, atomically, and return the file.
+    """Write `figure` atomically to `path` with the suffix of the format, and return the file.
 
-    The same figure gives the same bytes. Raises `OutputError`.
+    The same figure gives the same bytes. Raises `OutputError` if the file cannot be written.
     """
     drawing, to_write = draw(figure), path.with_name(f"{path.name}.{file_format}")
     with warnings.catch_warnings(), matplotlib.rc_context({"svg.hashsalt": path.name}):
@@ -148,7 +151,7 @@ def _draw_chart(axes: Axes, chart: Chart, handles: dict[str, Any]) -> None:
 
 
 def _set_log_ticks(axis: Axis) -> None:
-    """Label the powers of ten and, if the axis has few of them, digits between them."""
+    """Label the powers of ten and, if the axis spans few decades, some values between them."""
     low, high = axis.get_view_interval()
     decades = math.log10(high / low) if low > 0 else math.inf
     axis.set_minor_formatter(NullFormatter())
@@ -218,7 +221,7 @@ def _draw_mark(axes: Axes, mark: Mark) -> None:
     sign = 1 if mark.side == "right" else -1
     if mark.axis == "x":
         axes.axvline(mark.value, **style)
-        # Place the text near the lower end of the line, beside the line.
+        # Place the text beside the line, near its lower end.
         where, shift, transform = (mark.value, 0.03), (4 * sign, 0), axes.get_xaxis_transform()
     else:
         axes.axhline(mark.value, **style)
@@ -263,5 +266,5 @@ def _plain(text: str) -> str:
 
 
 def _escaped(text: str) -> str:
-    """Escape the sign $, which begins mathematics."""
+    """Escape $, which would otherwise begin a formula."""
     return text.replace("$", r"\$")

@@ -1,4 +1,4 @@
-"""The figures of a study: one line for each case."""
+"""Figures of a study, with one line for each case."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def rows_with(case: StoredCase, abscissa: Abscissa) -> list[dict[str, float]]:
 
 
 def study_figure(cases: Sequence[StoredCase], abscissa: Abscissa) -> Figure:
-    """Plot COR of the first `MOST_LINES` of the complete `cases` against `abscissa`."""
+    """Plot COR against `abscissa` for the first `MOST_LINES` of `cases`."""
     series = []
     for number, case in enumerate(cases[:MOST_LINES]):
         rows = rows_with(case, abscissa)

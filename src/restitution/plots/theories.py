@@ -1,4 +1,4 @@
-"""The figure of closed forms for the smooth bodies of a case."""
+"""The figure of theories for the smooth bodies of a case."""
 
 from __future__ import annotations
 
@@ -20,8 +20,9 @@ def theory_figure(
 ) -> Figure:
     """Plot COR against velocity: one line for each theory, and the computed points of `law`.
 
-    Each of `lines` has a name, a flag for fits, velocities (m/s) and COR. Lines without a finite
-    COR are left out. `marks` maps symbols to the velocities (m/s) of first yield and of sticking.
+    Each of `lines` has a name, a flag that is true for fits, velocities (m/s) and COR. Lines
+    without a finite COR are left out. `marks` maps symbols to the velocities (m/s) of first yield
+    and of sticking.
     """
     series: list[Series] = (
         [] if law is None else [computed_points(law, "computed", "computed, not resolved")]

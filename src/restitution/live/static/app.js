@@ -6,9 +6,9 @@
 const token = location.hash.slice(1);
 const tab = crypto.randomUUID();
 const $ = (id) => document.getElementById(id);
-// Times (ms) without a change, after which the smooth curve and the surface are requested, and after
-// which the complete run is requested.
+// Time (ms) without a change after which the smooth curve and the surface are requested.
 const SHORT_REST = 100;
+// Time (ms) without a change after which the complete run is requested.
 const REST = 600;
 const DASHES = ["dash", "dot", "dashdot", "longdash", "solid"];
 const PIN_COLOURS = ["#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#d55e00"];
@@ -21,7 +21,7 @@ const SLIDER_UNITS = {
 let form = null;
 let content = {};
 let curve = { rows: [], figures: {}, errors: false };
-let cursor = null; // number of the depth under the cursor; null: the deepest
+let cursor = null; // index of the depth at the cursor; null: the deepest depth
 let pins = [];
 let surfaceKey = "";
 let finerContent = null;
@@ -95,9 +95,9 @@ function set(key, value) {
 const fields = () => form.groups.flatMap((group) => group.fields);
 const shown = (field) => !field.when.length || field.when.slice(1).includes(get(field.when[0]));
 
-const lastValues = new Map(); // values of the fields at the last choice, for fields that appear again
+const lastValues = new Map(); // values that fields had before a choice; a field that appears again gets its old value
 
-// After a choice: remove the keys of fields that vanish, and give fields that appear their last or initial value.
+// After a choice: remove the keys of fields that vanish; set fields that appear to their last or initial value.
 function settle(before) {
   const now = new Set(fields().filter(shown).map((field) => field.key));
   for (const field of before) if (!now.has(field.key) && !TABLES.includes(field.key.split(".")[0])) set(field.key, "");
@@ -184,7 +184,7 @@ function drawForm() {
   if (focused && $(focused)) $(focused).focus();
 }
 
-const opened = new Set(); // titles of groups whose rare fields are shown
+const opened = new Set(); // titles of groups whose fields under “More” are shown
 
 function drawGroup(group) {
   const visible = group.fields.filter(shown);
@@ -199,7 +199,7 @@ function drawGroup(group) {
   }
   if (group.title === "Surface") {
     const others = (content.roughness || []).length - 1;
-    if (others > 0) parts.unshift(element("p", { class: "hint" }, `The fields show the first of ${others + 1} roughness tables, whose heights are added; edit the others in the case file below.`));
+    if (others > 0) parts.unshift(element("p", { class: "hint" }, `This case adds the heights of ${others + 1} roughness tables. The fields show the first table; edit the others in the case file below.`));
     parts.push(drawUpload());
   }
   if (!group.closed) return element("fieldset", {}, element("legend", {}, group.title), ...parts);
@@ -225,7 +225,7 @@ function drawChoice(field, id) {
   const options = field.choices.map(([value, label]) => element("option", { value }, label));
   const select = element("select", { id }, ...options);
   select.value = String(get(field.key));
-  if (select.selectedIndex < 0) { // a value that the form does not know, which stays in the case
+  if (select.selectedIndex < 0) { // keep a value that the form does not know
     select.append(element("option", { value: asText(get(field.key)) }, asText(get(field.key))));
     select.value = asText(get(field.key));
   }
@@ -275,7 +275,7 @@ function placeSlider(field, slider) {
   slider.setAttribute("aria-valuetext", value || "left out");
 }
 
-// The field that a message is about. For a message about a table: the first of its fields that the message names.
+// The field that a message is about. If the message is about a table, this is the first field of the table that the message names.
 function fieldOf(key, words) {
   const visible = fields().filter(shown);
   const inside = visible.filter((field) => field.key.startsWith(`${key}.`));
@@ -301,7 +301,7 @@ function showProblems(problems) {
   $("general").hidden = !rest.length;
 }
 
-// A message of the solver starts with the key that it is about, if there is one.
+// If a message of the solver is about a key of the case, it starts with this key.
 function showError(message) {
   const match = /^([a-z_]+(?:\.[a-z_]+)?): (.*)$/s.exec(message);
   const known = match && fieldOf(match[1], match[2]);
@@ -312,22 +312,22 @@ function showError(message) {
 
 let asking = null; // the request under way: { abort, since, drawn }
 let waiting = null; // timer of a change that waits for the request under way
-let last = 300; // ms that the last curve took
-let resting = null;
-let running = null; // the request for smooth curve and surface, or for the complete run
+let last = 300; // time (ms) that the last curve took
+let resting = null; // timer that ends if no value changes for a while
+let running = null; // the request under way for the smooth curve and the surface, or for the complete run
 
 function changed() {
   clearTimeout(resting);
   if (running) running.abort();
   running = null;
   if (waiting) return;
-  // Wait for a curve under way if it is soon complete; otherwise replace it by the newest values.
+  // If the curve under way will soon be complete, wait for it; otherwise request a new curve at once.
   const patience = asking && !asking.drawn ? Math.min(2000, Math.max(500, 2 * last)) - (performance.now() - asking.since) : 0;
   if (patience > 0) waiting = setTimeout(ask, patience);
   else ask();
 }
 
-// Draw curves faint if they belong to other values than those of the form.
+// Draw curves faint if they no longer belong to the values in the form.
 function mark(stale) {
   for (const id of ["cor", "force", "pressure", "plastic"]) $(id).classList.toggle("stale", stale);
 }
@@ -344,7 +344,7 @@ async function ask() {
   try {
     await stream("curve", { tab, content: asked }, mine.abort.signal, (line) => {
       if (asking !== mine) return;
-      if (line.problems) { failed = true; mark(true); showProblems(line.problems); say("not computed: correct the value that is marked"); }
+      if (line.problems) { failed = true; mark(true); showProblems(line.problems); say("not computed: correct the marked value"); }
       else if (line.error) { failed = true; mark(true); showError(line.error); say(line.lost ? "stopped" : "not computed"); }
       else if (line.curve) {
         const received = performance.now();
@@ -365,7 +365,7 @@ async function ask() {
   if (!failed && mine.drawn && !waiting) resting = setTimeout(drawBeside, SHORT_REST);
 }
 
-// Report times (ms) of a curve to the benchmark: requested, duration of the solve, received, drawn.
+// Report to the benchmark when a curve was requested, received and drawn, and how long the solve took (ms).
 function record(asked, seconds, received) {
   const detail = { asked, solve: 1000 * seconds, received, drawn: performance.now() };
   document.dispatchEvent(new CustomEvent("curve", { detail }));
@@ -473,7 +473,7 @@ function drawCurves() {
   showCursor();
 }
 
-// COR with the error of the model of plasticity, which is known at once; the total error takes longer.
+// The band of COR ± the error of the plasticity model. The live curve has this error, but no total error.
 function modelBand(key, scale) {
   const rows = curve.rows.filter((row) => row[key] > 0);
   const edge = (sign) => ({
@@ -582,7 +582,7 @@ function flat(tables) {
 function differences(before, after) {
   const a = flat(before), b = flat(after);
   const keys = [...new Set([...Object.keys(a), ...Object.keys(b)])].filter((key) => a[key] !== b[key]);
-  return keys.map((key) => `${key} = ${b[key] === undefined ? "left out" : b[key]}`).join(", ") || "the same case";
+  return keys.map((key) => `${key} = ${b[key] === undefined ? "(left out)" : b[key]}`).join(", ") || "the same case";
 }
 
 function drawPins() {
@@ -636,11 +636,11 @@ async function upload(file) {
   changed();
 }
 
-// ---- the case as a file, finer runs, files to take away ---------------------------------------
+// ---- the case as a file, finer runs, files to download ----------------------------------------
 
-let textEdited = false; // the user has edited the text and not used it yet
+let textEdited = false; // the user has edited the text, but not pressed “Use this text” yet
 
-// A new value would clear what the user has typed or selected.
+// While this is true, the text is not replaced, because the user's changes or selection would be lost.
 const editsText = () => textEdited || document.activeElement === $("case-text");
 
 async function updateText() {
@@ -715,7 +715,7 @@ async function take(what) {
     const link = element("a", { href: URL.createObjectURL(await response.blob()), download: named[1] });
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 10000);
-    $("take-status").textContent = `${named[1]} is among your downloads`;
+    $("take-status").textContent = `${named[1]} was downloaded`;
   } catch (error) {
     $("take-status").textContent = lostServer(error);
   }
@@ -748,7 +748,7 @@ function listen() {
 }
 
 async function start() {
-  if (!token) { say("open the address that the terminal shows: it ends with a key"); return; }
+  if (!token) { say("open the complete address that the terminal shows, with the part after #"); return; }
   try {
     const found = await (await post("start", {})).json();
     form = found.form;
