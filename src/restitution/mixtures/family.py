@@ -149,7 +149,7 @@ class Family:
 def families(mixture: Mixture) -> list[Family]:
     """Make the families of a mixture. Raises `CaseError` if the case of a family is invalid."""
     pairs = itertools.combinations_with_replacement(mixture.components, 2)
-    # The components list walls after materials, so a wall is always the second of a pair.
+    # `mixture.components` lists walls after materials, so a wall is always the second of a pair.
     found = [Family(mixture, first, second) for first, second in pairs if not first.wall]
     for family in found:
         for radius in (family.radii[0], family.radii[-1]):
@@ -170,7 +170,7 @@ def _steps(start: float, end: float, step: float) -> list[float]:
 
 
 def _another(table: dict[str, Any], others: list[dict[str, Any]]) -> dict[str, Any]:
-    """Change the roughness table `table` of the second body so that its surface is independent.
+    """Return a roughness table for the second body: `table`, changed to an independent surface.
 
     The seed, or the place on the scan, differs from those in `others`. With the same seed, two
     surfaces would have the same phases, and their waves would add up.
